@@ -116,7 +116,7 @@ def test_the_most_frequent_reasons_of_failed_runs_are_named(study, tmp_path, cap
     monkeypatch.setattr("rockbatch.simulation.runs.MOST_STEPS", 10)
     assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 1
     printed = capsys.readouterr().err
-    assert "2 runs failed: the column reason of peaks.csv says why\n  1 ×: would take " in printed
+    assert "2 runs failed: see the column reason of peaks.csv\n  1 ×: would take " in printed
 
 
 def test_motions_replace_those_of_the_study_and_a_bad_file_is_a_row_with_its_reason(study, tmp_path, capsys):
@@ -136,9 +136,9 @@ def test_motions_replace_those_of_the_study_and_a_bad_file_is_a_row_with_its_rea
     assert "200" in bad["reason"]
     told = capsys.readouterr()
     assert "BAD090" in told.err
-    assert "1 file not used: the column reason of peaks.csv says why" in told.err
+    assert "1 file not used: see the column reason of peaks.csv" in told.err
     assert "failed" not in told.err
-    assert "No limits were set: no response passes or fails; " in told.out
+    assert "No limits were set, so nothing was checked. " in told.out
     assert told.out.index("uplift of the") < told.out.index("No limits were set")
     assert "BAD090" in (tmp_path / "out/report.html").read_text(encoding="utf-8")
 
@@ -185,7 +185,7 @@ def test_a_misspelt_option_is_answered_with_the_one_of_its_command(study, capsys
         with pytest.raises(SystemExit) as ended:
             main(words)
         assert ended.value.code == 2
-        assert capsys.readouterr().err.rstrip().removesuffix("; `rockbatch --help` says more").endswith(end)
+        assert capsys.readouterr().err.rstrip().removesuffix("; see `rockbatch --help`").endswith(end)
 
 
 def test_for_a_study_in_place_of_results_the_message_names_the_folder(study, capsys):
@@ -193,7 +193,7 @@ def test_for_a_study_in_place_of_results_the_message_names_the_folder(study, cap
         assert main([command, str(study)]) == 2
         told = capsys.readouterr().err
         assert (
-            f"{study}: a file, not a folder of results; write the folder, such as {Path('reports', study.stem)}" in told
+            f"{study}: a file, not a folder of results; give the folder, such as {Path('reports', study.stem)}" in told
         )
 
 
@@ -419,7 +419,7 @@ def test_a_run_ends_with_its_report_whatever_becomes_of_stdout_and_stderr(tmp_pa
 @pytest.mark.parametrize(
     ("code", "told"),
     [
-        (errno.ENOSPC, "the output cannot be printed (No space left on device); all else is still done\n"),
+        (errno.ENOSPC, "the output cannot be printed (No space left on device); the command goes on\n"),
         (errno.EPIPE, ""),
     ],
 )
@@ -517,21 +517,21 @@ def test_no_mistake_leads_to_the_option_that_discards_results(command, word, cap
     [
         ("chekc x", "rockbatch: there is no command chekc; did you mean check?"),
         ("Run pier.toml", "rockbatch: there is no command Run; did you mean run?"),
-        ("zzz", "rockbatch: there is no command zzz; `rockbatch --help` says more"),
+        ("zzz", "rockbatch: there is no command zzz; see `rockbatch --help`"),
         ("list", "rockbatch: there is no command list; did you mean examples?"),
         ("ls", "rockbatch: there is no command ls; did you mean examples?"),
         ("examples --list",
-         "rockbatch: unrecognized arguments: --list; `rockbatch examples` takes none; `rockbatch --help` says more"),
+         "rockbatch: unrecognized arguments: --list; `rockbatch examples` takes none; see `rockbatch --help`"),
         ("-v", "rockbatch: unrecognized arguments: -v; did you mean --version?"),
         ("run pier.toml -o", "rockbatch: unrecognized arguments: -o; did you mean --out?"),
         ("run pier.toml --threads 4", "rockbatch: unrecognized arguments: --threads 4; did you mean --jobs?"),
-        ("motions . --output=a.csv", "rockbatch: unrecognized arguments: --output=a.csv; `rockbatch --help` says more"),
-        ("run", "rockbatch run: the following arguments are required: STUDY.toml; `rockbatch run --help` says more"),
+        ("motions . --output=a.csv", "rockbatch: unrecognized arguments: --output=a.csv; see `rockbatch --help`"),
+        ("run", "rockbatch run: the following arguments are required: STUDY.toml; see `rockbatch run --help`"),
         ("run pier", "rockbatch: pier: no such file; did you mean pier.toml?"),
         ("run .", "rockbatch: .: a folder; did you mean pier.toml?"),
         ("run empty", "rockbatch: empty: a folder; give a study file, such as pier.toml"),
         ("motions pier.toml",
-         "rockbatch: pier.toml: no record; give the folder of records, as a study has it in path under [motions]"),
+         "rockbatch: pier.toml: not a record; give the folder of records, the path under [motions] of a study"),
         ("init --example nearfault x",
          "rockbatch: there is no example 'nearfault'; did you mean near_fault? `rockbatch examples` lists them"),
     ],

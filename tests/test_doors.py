@@ -49,7 +49,5 @@ def test_an_edited_table_of_an_analysis_is_reported_and_kept(tmp_path):
     assert not AnalysisFolder(tmp_path, "fragility", study).has("runs.csv", {"cases": "other"})
     (tmp_path / "runs.csv").write_text("a\n2\n")
     assert not AnalysisFolder(tmp_path, "fragility", study, fresh=True).has("runs.csv", {"cases": "5f1c"})
-    with pytest.raises(
-        InputError, match=r"runs\.csv: not as it was written; nothing is run: keep it as a copy elsewhere"
-    ):
+    with pytest.raises(InputError, match=r"runs\.csv: edited or damaged; nothing was run: move it away"):
         AnalysisFolder(tmp_path, "fragility", study).has("runs.csv", {"cases": "5f1c"})

@@ -552,7 +552,7 @@ def test_the_command_prints_and_writes_what_python_has_without_records(tmp_path,
     fewer = capsys.readouterr()
     assert (fewer.out.rstrip(), fewer.err) == (
         printed.split("\n\n")[0],
-        "3 cases: their curves are written with --curves FILE\n",
+        "3 cases: use --curves FILE for their curves\n",
     )
     table = pd.read_csv(sheet)
     assert list(table)[:2] == ["case", "stiffness_kN_m"]

@@ -1,1 +1,1 @@
-"""Many runs: which, in which groups, by what they are carried out, and what is left of them on disk."""
+"""Batches of runs: plan, prepare, execute on an engine, and write the results."""

@@ -1,11 +1,10 @@
-"""Rows of the tables beside peaks.csv: kept with the row of their run until it is written, or read from the run again."""
+"""Rows of the tables beside peaks.csv: kept in the journal with the row of their run, or computed by repeating the run."""
 
 import base64
 import json
 import zlib
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
 
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener
@@ -13,18 +12,19 @@ from rockbatch.batch.plan import simulations
 from rockbatch.common.lazy import pd
 from rockbatch.results.beside_peaks import NAMING
 from rockbatch.results.columns import StudyRun
+from rockbatch.results.labelled import Row
 from rockbatch.simulation.observing import Observer, observed
 from rockbatch.simulation.runs import run_fixed
 from rockbatch.study import Numerics, Study
 
 MOST_OF_A_CELL = 1 << 18
-"""Characters of the rows that one run adds to one table; of more the run is recorded again when the table is written."""
+"""Most characters of a run's rows in one table; with more, the run is repeated when the table is written."""
 
-Rows = list[dict[str, Any]]
+Rows = list[Row]
 
 
 def packed(run: StudyRun, table: str) -> str:
-    """Return the rows of a finished run in a ``table``, in a cell without commas; empty if it has none or too many."""
+    """Return the rows of a finished run in ``table`` as one cell without commas; "" without rows or with too many."""
     rows = None if run.outcome is None else run.outcome.tables.get(table)
     if rows is None:
         return ""
@@ -33,7 +33,7 @@ def packed(run: StudyRun, table: str) -> str:
 
 
 def unpacked(cell: str) -> Rows:
-    """Return the rows in a cell of :func:`packed`."""
+    """Return the rows in a cell made by :func:`packed`."""
     return list(json.loads(zlib.decompress(base64.b64decode(cell))))
 
 
@@ -46,10 +46,10 @@ def rows_beside(
     jobs: int,
     listener: Listener,
 ) -> dict[str, Rows]:
-    """Return the rows of the tables of ``observers``, of finished ``runs`` whose rows of peaks.csv are the first of ``peaks``.
+    """Return the rows of each table of ``observers`` for finished ``runs``, whose rows in ``peaks`` come first.
 
-    Mirror images have none. A run whose rows the ``journal`` lacks, such as one that was finished before they were asked for, is
-    recorded again.
+    Mirror images have none. Runs whose rows the ``journal`` lacks, for example because they were finished before the table
+    was requested, are repeated.
     """
     tables: dict[str, Rows] = {observer.table: [] for observer in observers}
     numbers = [number for number, run in enumerate(runs) if not run.mirror_of]
@@ -65,22 +65,22 @@ def rows_beside(
         with listener.progress(len(again)) as progress:
             of_again = pool.map(of_run, *zip(*again, strict=True)) if again else iter(())
             for number, missing in zip(numbers, lacking, strict=True):
-                found = {name: unpacked(cell) for name, cell in journal.cells_beside(number).items() if cell}
+                of_tables = {name: unpacked(cell) for name, cell in journal.cells_beside(number).items() if cell}
                 if missing:
-                    found |= next(of_again)
+                    of_tables |= next(of_again)
                     progress(1)
                 names = {name: peaks[name].iloc[number] for name in (*NAMING, *study.varied)}
                 for table, rows in tables.items():
-                    rows += [names | row for row in found.get(table, ())]
+                    rows += [names | row for row in of_tables.get(table, ())]
     finally:
-        pool.shutdown(cancel_futures=True)  # an interrupt does not wait for the others
+        pool.shutdown(cancel_futures=True)  # an interrupt does not wait for pending runs
     return tables
 
 
 def read_again(
     planned: StudyRun, row: "pd.Series", observers: Sequence[Observer], numerics: Numerics
 ) -> Mapping[str, Rows]:
-    """Return the rows of a run beside its ``row`` of peaks.csv: with the same steps it comes to the same bits."""
+    """Repeat a run with the steps of its ``row`` of peaks.csv, which gives bitwise equal results; return its other tables."""
     (run,) = simulations([planned])
     outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), numerics.quiet_s)
     outcome = outcome.changed(status=row["status"], reason=row["reason"], note=row["note"])

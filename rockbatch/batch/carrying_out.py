@@ -1,6 +1,4 @@
-"""The runs of a batch that are left, carried out into its journal."""
-
-from typing import Any
+"""Carry out the unfinished runs of a batch into its journal."""
 
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.execution import execute_runs, to_simulate
@@ -9,10 +7,11 @@ from rockbatch.batch.listening import count
 from rockbatch.batch.observers import observers_of
 from rockbatch.batch.preparing import Batch
 from rockbatch.batch.threads import Engine
+from rockbatch.results.labelled import Row
 
 
-def execute(batch: Batch, requested: range, journal: Journal, engine: Engine) -> dict[str, Any]:
-    """Carry out those of the ``requested`` runs that are missing in the journal; return their entry in run.json."""
+def execute(batch: Batch, requested: range, journal: Journal, engine: Engine) -> Row:
+    """Carry out the ``requested`` runs that the journal lacks; return ``jobs`` and ``kept`` for run.json."""
     runs, listener = batch.runs, batch.listener
     every, remaining = (len(to_simulate(runs, requested, finished)) for finished in ((), journal))
     n_finished = every - remaining

@@ -1,4 +1,4 @@
-"""Kernels are compiled, or loaded from their cache, before the clock starts: different ones side by side."""
+"""Compile kernels, or load them from their cache, before runs start; several processes compile in parallel."""
 
 import pickle
 import subprocess
@@ -24,21 +24,20 @@ from rockbatch.simulation.observing import Observer
 from rockbatch.study import Numerics, Study
 
 Task = tuple[StudyRun, Numerics, Sequence[Observer]]
-"""A short run that needs a kernel."""
+"""A short run that needs one kernel."""
 
 
 def make_ready(study: Study, listener: Listener, observers: Sequence[Observer] | None = None) -> None:
-    """Have every kernel that ``study`` needs compiled or loaded, and tell ``listener`` if any has to be compiled.
+    """Compile or load every kernel that ``study`` needs; tell ``listener`` if any has to be compiled.
 
-    ``observers`` are those of its runs, unless they are those of the columns of peaks.csv.
+    ``observers`` are those of its runs, by default those of columns of peaks.csv.
 
-    Numba compiles one function at a time in a process. Once the first kernel turns out not to be in the cache, processes
-    on the other processors compile the last ones, and leave them there.
+    Numba compiles one function at a time in a process. When the first kernel is not in the cache, processes on the other
+    processors start to compile from the end of the list, and share their kernels through the cache.
     """
     if not compiles():
         listener.say(
-            "NUMBA_DISABLE_JIT is set: nothing is compiled, and runs take a thousand times as long; `unset NUMBA_DISABLE_JIT` "
-            "ends this"
+            "NUMBA_DISABLE_JIT is set: nothing is compiled, and runs take a thousand times as long; run `unset NUMBA_DISABLE_JIT`"
         )
     load_numba()
     tasks = _tasks(study, observers_of(study.output) if observers is None else observers)
@@ -48,7 +47,7 @@ def make_ready(study: Study, listener: Listener, observers: Sequence[Observer] |
         listener.say("compiling the kernels (once for each kind of foundation, 10 to 30 s each)")
         for _ in range(min(cores() - 1, len(waiting)) if kept.usable() else 0):
             assistant = Thread(target=_compile_elsewhere, args=(waiting,), daemon=True)
-            with suppress(RuntimeError):  # no more threads: this one compiles all of them
+            with suppress(RuntimeError):  # without a further thread this one compiles all
                 assistant.start()
                 assistants.append(assistant)
 
@@ -58,13 +57,13 @@ def make_ready(study: Study, listener: Listener, observers: Sequence[Observer] |
     for assistant in assistants:
         assistant.join()
     for task in tasks if assistants else ():
-        _compile(task)  # loads what was compiled elsewhere
+        _compile(task)  # loads kernels compiled elsewhere
     if reason := kept.unreported():
         listener.say(reason)
 
 
 def _tasks(study: Study, observers: Sequence[Observer]) -> list[Task]:
-    """Return a run for each kernel of the study."""
+    """Return one short run for each kernel of the study."""
     still = Motion("still", 1e-3, np.zeros(2))
     numerics = replace(study.numerics, quiet_s=0.0)
     kernels = {kernel_of(case.pier, case.base): case for case in study.cases}
@@ -72,7 +71,7 @@ def _tasks(study: Study, observers: Sequence[Observer]) -> list[Task]:
 
 
 def _next_task(take: Callable[[], Task]) -> Task | None:
-    """Return the task that ``take`` takes from those that wait, if any."""
+    """Return the task that ``take`` pops; None if none is waiting."""
     with suppress(IndexError):
         return take()
     return None
@@ -84,7 +83,7 @@ def _compile(task: Task) -> None:
 
 
 def _compile_elsewhere(waiting: "deque[Task]") -> None:
-    """Have another process compile what waits, from its end; what it fails to compile is left to this one."""
+    """Compile waiting tasks, from the last, in another process; failures are left to this one."""
     while task := _next_task(waiting.pop):
         with suppress(OSError):
             subprocess.run(

@@ -1,4 +1,4 @@
-"""A batch on a dask.distributed cluster: groups of runs as tasks, each record sent once."""
+"""Carry out a batch on a dask.distributed cluster: groups of runs are tasks, each record is sent once."""
 
 import logging
 import signal
@@ -7,7 +7,7 @@ from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from importlib.util import find_spec
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 from rockbatch.batch.digests import program
 from rockbatch.batch.groups import Group, groups, outcomes_of
@@ -16,45 +16,49 @@ from rockbatch.common.errors import InputError, starting_threads
 from rockbatch.motions import Motion
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun
+from rockbatch.results.labelled import Row
 from rockbatch.simulation.observing import Observer
-from rockbatch.study import Numerics
+from rockbatch.study import Case, Numerics
 
 if TYPE_CHECKING:
     from distributed import Client, Future
 
+Member = tuple[int, str, float, Case, str | None, Outcome | None]
+"""The fields of a :class:`StudyRun`, with an index in place of the record."""
+
 AHEAD = 3
-"""Groups handed to the scheduler for each thread of its workers, so that none waits."""
+"""Groups submitted for each worker thread, so that none waits."""
 
 MOST_RUNS_OF_A_TASK = 16 * 1024
-"""A task is to take about a second: what the scheduler spends on each is then nothing."""
+"""Most runs of a task: it takes about a second, so that the scheduler's overhead is negligible."""
 
 PATIENCE_S = 60
-"""Time [s] that the scheduler and its first worker may take to appear, and for which there may be no worker later on."""
+"""Time [s] to wait for the scheduler and a first worker, and later for any worker."""
 
 MOST_DEATHS = 5
-"""Looks at which workers have died, without a result in between, for which they are waited for."""
+"""Number of glances at which a worker had died, without a result in between, before the batch gives up."""
 
-_PAUSED = ": those that are there have paused since their memory is full, give each more"
+_PAUSED = ": all have paused since their memory is full; give each more"
 
 GONE_S = 10
-"""Time [s] for which a scheduler may not answer."""
+"""Time [s] after which a silent scheduler counts as lost."""
 
 GLANCE_S = 1.0
-"""Time [s] between two looks at scheduler and workers."""
+"""Time [s] between glances at scheduler and workers."""
 
 
 class Dask:
     """The workers of a dask scheduler; see :class:`rockbatch.batch.threads.Engine`.
 
-    Workers may come, go and die meanwhile: the scheduler gives what they had to others, records included. A group at
-    which several workers have died in turn ends the batch with an ``InputError``.
+    Workers may come, go and die: the scheduler passes their tasks and records to others. A group at which several workers
+    die in turn ends the batch with an ``InputError``.
 
     Parameters
     ----------
     address : str, optional
-        Of the scheduler, such as "tcp://10.0.0.1:8786"; by default one of this process with workers on this machine.
+        Address of the scheduler, such as "tcp://10.0.0.1:8786"; by default a scheduler in this process.
     workers : int, optional
-        Processes on this machine, if there is no address; all processors by default.
+        Number of processes on this machine, without an ``address``; all processors by default.
     """
 
     def __init__(self, address: str | None = None, workers: int | None = None) -> None:
@@ -105,7 +109,7 @@ class Dask:
         return self
 
     def _check_workers(self, client: "Client") -> None:
-        """Refuse workers without rockbatch: they end at the first message about it, and would be waited for for ever."""
+        """Raise ``InputError`` for workers without rockbatch, whose tasks would never finish."""
         specs = client.run(find_spec, "rockbatch", on_error="return")
         lacking = [address for address, spec in specs.items() if spec is None or isinstance(spec, Exception)]
         if lacking:
@@ -130,7 +134,7 @@ class Dask:
 
     @property
     def jobs(self) -> int:
-        """Return the number of threads of all workers, as the scheduler last said."""
+        """Return the number of threads of all workers that the scheduler last reported."""
         if self._client is not None:
             with suppress(OSError):
                 self._threads = sum(worker["nthreads"] for worker in _workers(self._client).values())
@@ -159,7 +163,7 @@ class Dask:
             while pending:
                 for future in self._finished_of(self._client, pending):
                     group = pending[future]
-                    with starting_threads():  # of a worker that lacks them; its error comes as it was there
+                    with starting_threads():  # a worker's error is raised here unchanged
                         outcomes = _result_of(self._client, future)
                     del pending[future]
                     yield finished(group, outcomes)
@@ -184,7 +188,7 @@ class Dask:
                 self._client.cancel(list(pending))
 
     def _finished_of(self, client: "Client", pending: "Iterable[Future]") -> "list[Future]":
-        """Wait for results, one at least; raise ``OSError`` if no worker is left to finish them, or one dies after the other."""
+        """Wait for at least one result; raise ``OSError`` if no worker is left, or if they keep dying."""
         from distributed import TimeoutError as NotYetError
         from distributed import wait
 
@@ -210,39 +214,39 @@ class Dask:
                     ) from None
 
 
-def _workers(client: "Client") -> dict[str, dict[str, Any]]:
-    """Return the workers by their addresses, none while there is no connection; ``OSError`` if the scheduler does not answer."""
+def _workers(client: "Client") -> dict[str, Row]:
+    """Return the workers' states by address; empty while disconnected; raise ``OSError`` if the scheduler does not answer."""
     if client.status != "running":
         return {}
-    listed: dict[str, dict[str, Any]] = client.sync(client.scheduler.identity, callback_timeout=GONE_S)["workers"]
+    listed: dict[str, Row] = client.sync(client.scheduler.identity, callback_timeout=GONE_S)["workers"]
     return listed
 
 
-def _result_of(client: "Client", future: "Future") -> Any:
-    """Return what a finished group came to; ``OSError`` if it does not come, soon where the scheduler is silent."""
+def _result_of(client: "Client", future: "Future") -> list[Outcome | None]:
+    """Return the outcomes of a finished group; raise ``OSError`` if they do not arrive, early if the scheduler is silent."""
     with suppress(TimeoutError):
-        return future.result(timeout=GONE_S)
+        return list(future.result(timeout=GONE_S))
     _workers(client)
-    return future.result(timeout=PATIENCE_S)
+    return list(future.result(timeout=PATIENCE_S))
 
 
-def _able(workers: dict[str, dict[str, Any]]) -> set[str]:
+def _able(workers: dict[str, Row]) -> set[str]:
     """Return the addresses of the workers that have not paused."""
     return {address for address, worker in workers.items() if worker.get("status") != "paused"}
 
 
 def _finished_groups(pending: "dict[Future, Group]") -> Iterator[Group]:
-    """Yield those of the groups that were handed out that are finished."""
+    """Yield the finished ones of the submitted groups, with their outcomes."""
     for future, group in pending.items():
         if future.status == "finished":
             yield finished(group, future.result())
 
 
 class Records:
-    """The records on a cluster, from the first batch that needs one to the last.
+    """The records on a cluster, each sent once and kept for later batches.
 
-    Each is the result of a task of its own, which the workers hand on to each other, and which the scheduler repeats
-    when all that had it have died.
+    Each is the result of a task, which workers pass to each other, and which the scheduler repeats when all workers that
+    held it have died.
     """
 
     def __init__(self, client: "Client") -> None:
@@ -250,7 +254,7 @@ class Records:
         self._sent: dict[int, tuple[Motion, Future]] = {}
 
     def submit(self, runs: Iterable[StudyRun], numerics: Numerics, observers: Sequence[Observer]) -> "Future":
-        """Hand out a group of runs, whose records come by their places in it."""
+        """Submit a group of runs, which refer to records by their position in a list."""
         places: dict[int, int] = {}
         records = []
         members = []
@@ -262,14 +266,14 @@ class Records:
         return self.client.submit(simulate, records, members, numerics, observers, program(), pure=False)
 
     def _record(self, motion: Motion) -> "Future":
-        if id(motion) not in self._sent:  # kept with the motion, whose id must not become another's
-            self._sent[id(motion)] = motion, self.client.submit(_unchanged, motion, pure=False)
+        if id(motion) not in self._sent:  # keeping the motion prevents reuse of its id
+            self._sent[id(motion)] = motion, self.client.submit(_identity, motion, pure=False)
         return self._sent[id(motion)][1]
 
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Silence what distributed logs of lost connections: they are reported in one sentence instead."""
+    """Silence the logs of distributed: lost connections are reported in one sentence instead."""
     names = [name for name in logging.root.manager.loggerDict if name.partition(".")[0] == "distributed"]
     levels = {logging.getLogger(name): logging.getLogger(name).level for name in names}
     for logger in levels:
@@ -283,9 +287,9 @@ def _quiet() -> Iterator[None]:
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """Start processes that a terminal's Ctrl-C does not reach: they inherit that this thread blocks it.
+    """Block Ctrl-C in this thread while processes start, which inherit that.
 
-    Nothing is lost here: another thread takes it, or it waits until this one no longer blocks it.
+    No Ctrl-C is lost: another thread receives it, or it stays pending until the block ends.
     """
     if not hasattr(signal, "pthread_sigmask"):  # on Windows
         yield
@@ -297,20 +301,23 @@ def _without_interrupts() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
-def _unchanged(motion: Motion) -> Motion:
+def _identity(motion: Motion) -> Motion:
     return motion
 
 
 def simulate(
     records: Sequence[Motion],
-    members: Iterable[tuple[Any, ...]],
+    members: Iterable[Member],
     numerics: Numerics,
     observers: Sequence[Observer],
     expected: str,
 ) -> list[Outcome | None]:
-    """Return the outcomes of a group, on a worker, which has to run the ``program`` that is ``expected``."""
+    """Simulate a group on a worker; raise ``InputError`` unless its program has the ``expected`` digest.
+
+    ``members`` are the fields of :class:`StudyRun`, with an index into ``records`` in place of the record.
+    """
     if program() != expected:
         raise InputError(
             f"a worker runs another rockbatch or another Numba ({program()}, not {expected}): install the same everywhere"
         )
-    return outcomes_of([StudyRun(records[place], *rest) for place, *rest in members], numerics, observers)
+    return outcomes_of([StudyRun(records[member[0]], *member[1:]) for member in members], numerics, observers)

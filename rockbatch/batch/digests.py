@@ -1,4 +1,4 @@
-"""Digests of all that rows depend on: those of an earlier process count if all of them are the same."""
+"""Digests of everything that rows depend on; earlier rows count if all digests agree."""
 
 import hashlib
 from collections.abc import Iterable, Iterator
@@ -11,7 +11,7 @@ from rockbatch.simulation import core_digest
 from rockbatch.study import Study
 
 SHOW = ("commands", "terminal", "reporting", "__init__.py", "__main__.py", "common/version.py")
-"""Packages and modules that only show rows. All others decide what a row says, or which runs come next."""
+"""Packages and modules that only display rows; all others influence rows or the choice of runs."""
 
 OF_SLICES = ("command.py", "section.py", "figure.py")
 """Modules of analyses and observers that only show rows, likewise."""
@@ -20,7 +20,7 @@ _TOP = Path(__file__).parents[1]
 
 
 def digests(motions: Iterable[Motion], **settings: object) -> dict[str, str]:
-    """Return digests for a :class:`Journal`: of motions, settings (by their ``repr``), and the program."""
+    """Return digests for a :class:`Journal`: of motions, of each setting by its ``repr``, and of the program."""
     hashes = {name: hashlib.sha256(repr(value).encode()) for name, value in settings.items()}
     hashes["motions"] = hashlib.sha256()
     for motion in motions:
@@ -31,7 +31,7 @@ def digests(motions: Iterable[Motion], **settings: object) -> dict[str, str]:
 
 
 def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
-    """Return digests of all that the rows of a study depend on; not its title, its checks or its comments."""
+    """Return digests of the parts of a study that its rows depend on: not its title, checks or comments."""
     return digests(
         motions.motions,
         cases=study.cases,
@@ -41,7 +41,7 @@ def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
 
 
 def sources() -> Iterator[Path]:
-    """Yield the modules that take part in what a row says, in a fixed order."""
+    """Yield the modules that can influence a row, in a fixed order."""
     for path in sorted(_TOP.rglob("*.py")):
         module = path.relative_to(_TOP)
         shows = module.parts[0] in SHOW or module.as_posix() in SHOW
@@ -51,7 +51,7 @@ def sources() -> Iterator[Path]:
 
 @cache
 def program() -> str:
-    """Return the digest of the modules that can change an outcome, and of the compiler."""
+    """Return a digest of the modules that can influence a row, and of the compiler."""
     digest = hashlib.sha256(core_digest().encode())
     for path in sources():
         digest.update(path.relative_to(_TOP).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")

@@ -1,9 +1,8 @@
-"""Every record in every case: runs to rows, those that are not there yet."""
+"""Carry out runs that a journal lacks, and add their rows to it."""
 
 from array import array
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from contextlib import closing
-from typing import Any
 
 from rockbatch.batch.beside import packed
 from rockbatch.batch.journal import Journal
@@ -15,23 +14,26 @@ from rockbatch.results.columns import StudyRun, cells
 from rockbatch.simulation.observing import Observer
 from rockbatch.study import Numerics
 
-RowOf = Callable[[StudyRun], Mapping[str, Any]]
-"""From a finished run to its row of a table."""
+Values = Mapping[str, object]
+"""A row of a table, by column."""
+
+RowOf = Callable[[StudyRun], Values]
+"""Makes the row of a table from a finished run."""
 
 
-class InMemory(dict[int, Mapping[str, Any]]):
-    """Rows of finished runs by their numbers, with some ``columns``, in place of a journal where nothing is kept on disk."""
+class InMemory(dict[int, Values]):
+    """Rows of finished runs by number, with ``columns``: replaces a journal if nothing is written to disk."""
 
     beside: Sequence[str] = ()
 
     def __init__(self, columns: Sequence[str]) -> None:
         self.columns = columns
 
-    def add_all(self, rows: Mapping[int, Mapping[str, Any]]) -> None:
+    def add_all(self, rows: Mapping[int, Values]) -> None:
         """Add rows as :meth:`Journal.add_all`."""
         self.update(rows)
 
-    def add_columns(self, numbers: Sequence[int], columns: Mapping[str, Sequence[Any]]) -> None:
+    def add_columns(self, numbers: Sequence[int], columns: Mapping[str, Sequence[object]]) -> None:
         """Add rows as :meth:`Journal.add_columns`."""
         rows = zip(*columns.values(), strict=True)
         self.update((number, dict(zip(columns, row, strict=True))) for number, row in zip(numbers, rows, strict=True))
@@ -49,12 +51,11 @@ def execute_runs(
     row: RowOf | None = None,
     progress: Advance = silent,
 ) -> None:
-    """Carry out those runs that are not in ``journal``, and write each into it as soon as its group is finished.
+    """Carry out the runs that ``journal`` lacks, and add the rows of each group when it is finished.
 
-    Of mirror images one is simulated, and both are written. Rows of tables beside the peaks, which ``observers`` may give, stay
-    with those of the peaks. ``first`` is the number of ``runs[0]`` in the journal, ``among`` the
-    indices of the runs that are wanted, if not all; ``row`` makes the row of a finished run, where that is not one of peaks.csv,
-    and ``progress`` is called with the number of simulations of each group that is finished.
+    One of two mirror images is simulated, both are added. Rows of ``observers``' tables are kept with those of the peaks.
+    ``first`` is the number of ``runs[0]`` in the journal, ``among`` restricts the indices of runs; ``row`` makes the row of a
+    finished run, by default that of peaks.csv; ``progress`` is called with the number of simulations of each finished group.
     """
     requested = range(len(runs)) if among is None else among
     remaining = to_simulate(runs, requested, journal, first)
@@ -72,7 +73,7 @@ def execute_runs(
 
 
 def to_simulate(runs: Runs, requested: range, journal: Container[int] = (), first: int = 0) -> "array[int]":
-    """Return the indices of the runs that give all that are ``requested`` and not in ``journal``, or mirror images of them.
+    """Return the indices of the runs to simulate for all that are ``requested`` and not in ``journal``, mirror images once.
 
     Raises ``InputError`` for more than :data:`MOST_RUNS`.
     """
@@ -87,14 +88,13 @@ def to_simulate(runs: Runs, requested: range, journal: Container[int] = (), firs
 
     if not runs.mirrored:
         return array("q", filter(is_left, requested))
-    firsts = ((index, runs.images(index)[0]) for index in filter(is_left, requested))
-    return array(
-        "q", (first for index, first in firsts if first == index or not is_left(first))
-    )  # else in its own turn
+    pairs = ((index, runs.images(index)[0]) for index in filter(is_left, requested))
+    # An image whose simulated twin is requested, too, is covered when the twin's index comes
+    return array("q", (twin for index, twin in pairs if twin == index or not is_left(twin)))
 
 
 def _with_images(runs: Runs, simulated: Mapping[int, StudyRun]) -> Iterator[tuple[int, StudyRun]]:
-    """Yield the finished runs that were ``simulated``, by their indices in ``runs``, each followed by its mirror image."""
+    """Yield indices in ``runs`` and finished runs: each ``simulated`` one, followed by its mirror image, if any."""
     for index, run in simulated.items():
         yield index, run
         for image in runs.images(index):

@@ -1,4 +1,4 @@
-"""Estimate of the cost of a batch: runs, time and disk, measured on a few of its runs."""
+"""Estimate the cost of a batch, time and disk space, from a few of its runs."""
 
 import time
 from collections.abc import Collection, Sequence
@@ -12,7 +12,7 @@ from rockbatch.batch.groups import least_steps, outcomes_of
 from rockbatch.batch.listening import Listener
 from rockbatch.batch.observers import observers_beside, observers_of
 from rockbatch.batch.plan import Plan, some_of
-from rockbatch.batch.preparing import check_records, described, share_of
+from rockbatch.batch.preparing import check_records, run_count, share_of
 from rockbatch.common.errors import starting_threads
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun, columns, row
@@ -23,16 +23,16 @@ from rockbatch.study import Study
 from rockbatch.study.suite import ground_motions
 
 TRIED = 256
-"""Runs that are tried at most, spread over the whole study."""
+"""Most runs to try, spread over the whole study."""
 
 STEPS_TRIED = 3e7
-"""Steps of all of them, at most, as far as that can be foreseen: a second or two."""
+"""Most steps of all tried runs together, as far as foreseeable: a second or two."""
 
 SECONDS_TRIED = 0.5
-"""After which no more are begun."""
+"""Time after which no further runs are begun [s]."""
 
 BYTES_OF_A_CELL = 9.0
-"""Of peaks.csv, on average."""
+"""Average size of a cell of peaks.csv [bytes]."""
 
 
 @dataclass(frozen=True)
@@ -42,15 +42,15 @@ class Expected:
     Attributes
     ----------
     what : str
-        The runs, and how they come about: "2 records × 5 cases = 10 runs".
+        The number of runs in words: "2 records × 5 cases = 10 runs".
     runs : int
-        Simulations; of mirror images one counts.
+        Number of simulations; mirror images count once.
     tried : int
-        Those that were tried.
+        Number of simulations tried.
     seconds : float
-        Time of all runs on ``jobs`` threads; the report and the histories come on top.
+        Time of all runs on ``jobs`` threads, without report and histories.
     table, histories : float
-        Size of peaks.csv, and of the histories that are kept [bytes].
+        Sizes of peaks.csv and of the kept histories [bytes].
     """
 
     what: str
@@ -69,9 +69,9 @@ def expected(
     share: tuple[int, int] | None = None,
     records: Collection[str] = (),
 ) -> Expected:
-    """Run a few runs, spread over the study, on as many threads, and extrapolate by the number of samples.
+    """Time a few runs, spread over the study, on ``jobs`` threads, and extrapolate by the least number of steps.
 
-    ``share`` and ``records`` as in :func:`rockbatch.run`, of which a share keeps no histories.
+    ``share`` and ``records`` as in :func:`rockbatch.workflow.running.run_into`; a share keeps no histories.
     """
     motions = ground_motions(study)
     listener.motions(motions)
@@ -92,9 +92,8 @@ def expected(
         "none" if share else study.output.histories, min(len(study.cases) * size, 1e6 * study.output.histories_MB)
     )
     table = len(requested) * len(columns(study)) * BYTES_OF_A_CELL
-    what = described(study, motions) + (
-        f"; share {share[0]} of {share[1]} is {len(simulated)} of them" if share else ""
-    )
+    of_share = f"; share {share[0]} of {share[1]} is {len(simulated)} of them" if share else ""
+    what = run_count(study, motions) + of_share
     return Expected(what, len(simulated), len(tried), seconds, jobs, table, histories)
 
 
@@ -106,11 +105,12 @@ def _tried(
     jobs: int,
     listener: Listener,
 ) -> dict[int, Outcome]:
-    """Return outcomes of ``chosen`` runs by their indices: first a run for each thread, then twice as many, until time is up."""
+    """Return outcomes of ``chosen`` runs by index: a run for each thread, then ever twice as many, until time is up."""
     outcomes: dict[int, Outcome | None] = {}
     stop, begun = Stop(), 0
 
     def carried_out(share: Sequence[int]) -> list[Outcome | None]:
+        """Simulate the runs of one thread; None for those stopped."""
         return outcomes_of([runs[i] for i in share], study.numerics, observers, stop)
 
     with listener.progress(len(chosen)) as progress, ThreadPoolExecutor(jobs) as pool:
@@ -131,9 +131,11 @@ def _tried(
 
 
 def _spread(steps: Sequence[float]) -> list[int]:
-    """Return indices of runs spread evenly over all, at least one, with not more steps than :data:`STEPS_TRIED` together."""
+    """Return indices spread evenly over all runs, at least one, whose ``steps`` sum to at most :data:`STEPS_TRIED`."""
     number = min(TRIED, len(steps))
     chosen = [round((i + 0.5) * len(steps) / number - 0.5) for i in range(number)]
-    chosen = sorted(chosen, key=lambda i: (i * 7919) % len(steps))  # so that what is cut off is spread, too
+    chosen = sorted(
+        chosen, key=lambda i: (i * 7919) % len(steps)
+    )  # shuffled, so that cutting the list off keeps it spread
     sums = accumulate(steps[i] for i in chosen)
     return [i for place, (i, total) in enumerate(zip(chosen, sums, strict=True)) if total <= STEPS_TRIED or place == 0]

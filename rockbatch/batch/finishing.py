@@ -1,10 +1,9 @@
-"""Writing of a folder of results: from finished runs to the table, run.json, histories and the tables beside."""
+"""Write the results of finished runs into a folder: peaks.csv, run.json, histories and further tables."""
 
 import json
 from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from rockbatch.batch.beside import rows_beside
 from rockbatch.batch.journal import Journal
@@ -23,12 +22,12 @@ from rockbatch.results.run_json import INFO, write_info
 from rockbatch.study import Study
 
 _OF_COMMAND = ("created", "command", "machine", "jobs", "wall_s", "kept", "peaks")
-"""Entries of run.json that tell of the command, and not of what its results are."""
+"""Entries of run.json about the command instead of its results."""
 
 
 @dataclass(frozen=True, eq=False)
 class Written:
-    """Results that were written into a folder: the opened folder, its files, and why histories are not among them, if so."""
+    """Results written into a folder: the opened folder, its files, and the reason if histories are missing, else None."""
 
     saved: Results
     files: tuple[Path, ...]
@@ -36,40 +35,40 @@ class Written:
 
 
 def unchanged(batch: Batch) -> Written | None:
-    """Return what is in the folder of a finished ``batch`` if nothing of it would change by finishing it again; else None."""
+    """Return the results in the folder of a finished ``batch`` if writing them again would change nothing; else None."""
     directory, study, runs = batch.directory, batch.study, batch.runs
     saved = open_results(directory)
-    described = json.loads(json.dumps(batch.info))
-    if any(saved.info.get(name) != value for name, value in described.items() if name not in _OF_COMMAND):
+    info = json.loads(json.dumps(batch.info))
+    if any(saved.info.get(name) != value for name, value in info.items() if name not in _OF_COMMAND):
         return None
     kept = len(to_keep(study, runs, saved.peaks.iloc[: len(runs)]).numbers)
     try:
         histories = [HISTORIES] if len(saved.responses) else []
         if len(saved.responses) < kept:
             return None
-    except (InputError, OSError):  # damaged, or those of an earlier run
+    except (InputError, OSError):  # damaged, or of an earlier run
         return None
     files = tuple(directory / name for name in (PEAKS, INFO, *_beside_peaks(batch), *histories))
     return Written(saved, files, None) if all(map(is_plain, files)) else None
 
 
-def write_peaks(batch: Batch, journal: Journal) -> dict[str, Any]:
-    """Write peaks.csv; what belongs to earlier ones goes first, so that they cannot be mixed up.
+def write_peaks(batch: Batch, journal: Journal) -> Row:
+    """Write peaks.csv, after removing the files of an earlier one, so that they cannot be mixed up.
 
-    Returns its number of rows and its digest, as run.json has them.
+    Returns its number of rows and its digest for run.json.
     """
     for name in (*OUTPUTS[1:], *batch.later):
         remove(batch.directory / name)
     return journal.write_in_order(batch.directory / PEAKS, unusable_rows(batch.motions))._asdict()
 
 
-def finish(batch: Batch, journal: Journal, cost: dict[str, Any], records: Collection[str] = ()) -> Written:
-    """Write run.json, histories and tables beside peaks.csv; of ``records`` all histories, too.
+def finish(batch: Batch, journal: Journal, cost: Row, records: Collection[str] = ()) -> Written:
+    """Write run.json, tables beside peaks.csv and histories: the study's and all of ``records``.
 
-    ``cost`` is what run.json says of the runs: ``peaks``, ``jobs``, ``wall_s`` and ``kept``.
+    ``cost`` holds the entries ``peaks``, ``jobs``, ``wall_s`` and ``kept`` of run.json.
     """
     directory, listener = batch.directory, batch.listener
-    for name in batch.later:  # they come last: where they are, the others are there
+    for name in batch.later:  # these are written last: their presence shows that the folder is complete
         remove(directory / name)
     with announced_if_slow(listener, f"writing {INFO}"):
         write_info(directory, batch.info | cost)
@@ -101,7 +100,7 @@ def _tables(batch: Batch, saved: Results, journal: Journal) -> Iterator[tuple[st
 
 
 def _keep_histories(batch: Batch, saved: Results, records: Collection[str]) -> tuple[Path | None, InputError | None]:
-    """Write the histories that the study asks for: their file, and why some are not in it."""
+    """Write the histories of the study and of ``records``; return their file, None without any, and a refusal, if any."""
     study, runs, listener = batch.study, batch.runs, batch.listener
     chosen = to_keep(study, runs, saved.peaks.iloc[: len(runs)], records)
     if chosen.left_out:

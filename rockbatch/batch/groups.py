@@ -1,4 +1,4 @@
-"""Groups of runs that are simulated side by side, and their outcomes."""
+"""Simulate runs in groups, side by side."""
 
 from collections.abc import Iterable, Iterator, Sequence
 
@@ -13,20 +13,17 @@ from rockbatch.simulation.runs import Run, Stop, run_all_fixed, steps_of
 from rockbatch.study import Numerics
 
 LEAST_GROUP, MOST_GROUP = 32, 1024
-"""Runs in a group: enough to fill the lanes; few enough that little is lost when the last ones leave them empty."""
+"""Fewest and most runs of a group: enough to fill the lanes, few enough that lanes idle little at the end."""
 
 STEPS_OF_A_GROUP = 2e7
-"""About a second of work: the longest wait of an interrupt or the progress, and the most that a crash can lose."""
+"""Most steps of a group, about a second of work: the delay of progress and interrupts, and the loss in a crash."""
 
 Group = dict[int, StudyRun]
-"""Runs by their indices."""
+"""Runs by index."""
 
 
 def groups(runs: Sequence[StudyRun], numerics: Numerics, jobs: int, most: int = MOST_GROUP) -> Iterator[Group]:
-    """Yield consecutive runs to simulate side by side, in order: a share for every thread, a second's work at most.
-
-    ``most`` is the greatest number of runs in a group.
-    """
+    """Split runs, in order, into groups small enough for ``jobs`` threads, of at most ``most`` runs and a second of work."""
     share = len(runs) // (3 * jobs)
     most = min(max(share, LEAST_GROUP), most)
     group, work = Group(), 0.0
@@ -41,7 +38,7 @@ def groups(runs: Sequence[StudyRun], numerics: Numerics, jobs: int, most: int = 
 
 
 def least_steps(run: StudyRun, numerics: Numerics) -> float:
-    """Return the steps of a run that converges at once."""
+    """Return the number of steps of a run whose error estimate is accepted at first."""
     substeps = numerics.substeps or 3 * first_substeps(run.case.pier, run.case.base, run.record.dt)
     return steps_of(run.record, substeps, numerics.quiet_s)
 
@@ -49,12 +46,12 @@ def least_steps(run: StudyRun, numerics: Numerics) -> float:
 def outcomes_of(
     runs: Iterable[StudyRun], numerics: Numerics, observers: Sequence[Observer] = (), stop: Stop | None = None
 ) -> list[Outcome | None]:
-    """Simulate a group of runs with what ``observers`` add; ``None`` for those that ``stop`` has stopped."""
+    """Simulate a group of runs, with the results of ``observers``; return None for runs that ``stop`` interrupted."""
     stop = Stop() if stop is None else stop
     simulated = simulations(runs)
     outcomes = _run_all(simulated, numerics, stop)
     for observer in observers:
-        outcomes = _compared(observer, simulated, outcomes, numerics, stop)
+        outcomes = _with_comparisons(observer, simulated, outcomes, numerics, stop)
     done = [i for i, outcome in enumerate(outcomes) if outcome is not None]
     ended, results = [simulated[i] for i in done], [outcome for outcome in outcomes if outcome is not None]
     if not any(observer.separates_lean for observer in observers):
@@ -66,17 +63,17 @@ def outcomes_of(
 
 
 def _run_all(runs: list[Run], numerics: Numerics, stop: Stop) -> list[Outcome | None]:
-    """Simulate with the study's fixed step, or to its tolerance."""
+    """Simulate with the fixed step of ``numerics``, or to its tolerance; None for stopped runs."""
     if numerics.substeps is not None:
         return run_all_fixed(runs, [numerics.substeps] * len(runs), numerics.quiet_s, stop)
     assert numerics.tolerance is not None  # load_study gives one of the two
     return run_all_to_tolerance(runs, numerics.tolerance, numerics.quiet_s, stop)
 
 
-def _compared(
+def _with_comparisons(
     observer: Observer, runs: list[Run], outcomes: list[Outcome | None], numerics: Numerics, stop: Stop
 ) -> list[Outcome | None]:
-    """Return ``outcomes`` with what the other runs came to with which an ``observer`` compares them."""
+    """Simulate the runs that an ``observer`` compares with ``runs``; return ``outcomes`` with the comparison added."""
     beside = dict[int, Run]()
     for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True)):
         if outcome is not None and (another := observer.beside(run, outcome)) is not None:

@@ -1,4 +1,4 @@
-"""The rows of finished runs, on disk from the moment they are finished, until the table is written in its order."""
+"""Journal of finished rows: on disk as soon as they are finished, until the table is written in order."""
 
 import csv
 import hashlib
@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 from rockbatch.batch.plan import MOST_RUNS
 from rockbatch.common.errors import InputError
@@ -31,38 +31,38 @@ ABSENT = -1
 ROWS_AT_ONCE = 1000
 
 BUFFER = 1 << 16
-"""Bytes of the file that are read at a time when the table is written."""
+"""Bytes read at a time when the table is written."""
 
 MOST_OF_A_LINE = 1 << 20
-"""Bytes; a longer one is damage, and is not held in memory."""
+"""Most bytes of a line; longer ones are damaged, and are not held in memory."""
 
 
 class Written(NamedTuple):
-    """A table that was written: its rows, those that belong to no run included, and the digest of its file."""
+    """A written table: its number of rows, including those of no run, and the digest of its file."""
 
     rows: int
     sha256: str
 
 
 class _Rows:
-    """The rows of finished runs in an open file: where each stands, by the number of its run.
+    """Index of the rows in an open journal: the position of each, by the number of its run.
 
-    ``path`` names the file in messages, ``remedy`` says there what to do about rows of another digest. See :class:`Journal`.
+    ``path`` names the file in messages; ``remedy`` ends the message about rows of another digest. See :class:`Journal`.
     """
 
     def __init__(
         self, path: Path, columns: Sequence[str], digest: Mapping[str, str], runs: int = MOST_RUNS, remedy: str = ""
     ) -> None:
         self.path, self.columns, self.digest, self.runs, self.remedy = path, list(columns), dict(digest), runs, remedy
-        said = " ".join(f"{name}:{value}" for name, value in digest.items())
-        self.first = _encoded(csv_line([said, *self.columns]))[:-1]
+        digests = " ".join(f"{name}:{value}" for name, value in digest.items())
+        self.first = _encoded(csv_line([digests, *self.columns]))[:-1]
         self.seed = zlib.crc32(self.first)
         self.file: io.FileIO
         self.forget()
 
     def forget(self) -> None:
         """Forget all rows."""
-        self.starts, self.sizes = array("q"), array("q")  # of each row [bytes], by the number of its run
+        self.starts, self.sizes = array("q"), array("q")  # of each row [bytes], by number
         self.count = 0
         self.head = 0  # bytes of the first line
         self.end = 0
@@ -74,12 +74,12 @@ class _Rows:
         return (number for number, start in enumerate(self.starts) if start != ABSENT)
 
     def row(self, number: int) -> bytes:
-        """Return the line of a run as the table has it."""
+        """Return the row of a run as a line of the table."""
         self.file.seek(self.starts[number])
         return _unfolded(self.file.read(self.sizes[number]))
 
     def remember(self, number: int, start: int, size: int) -> None:
-        """Note where the row of a run stands."""
+        """Record the position and size of the row of a run."""
         missing = number + 1 - len(self.starts)
         self.starts.extend([ABSENT] * missing)
         self.sizes.extend([0] * missing)
@@ -87,9 +87,9 @@ class _Rows:
         self.starts[number], self.sizes[number] = start, size
 
     def recover(self) -> int:
-        """Find the rows that an earlier process has finished; return how many lines are damaged.
+        """Index the rows of an earlier process; return the number of damaged lines.
 
-        Raises ``InputError`` for rows of another study, or if nothing says of which study they are.
+        Raises ``InputError`` for rows of another study, or if it is unknown whose they are.
         """
         self.forget()
         lines = _whole_lines(self.file)
@@ -109,15 +109,15 @@ class _Rows:
                 self.remember(number, self.end - size, size)
         if rows and first is None and not self.count:
             raise InputError(
-                f"{self.path}: its first line is damaged, or of another version, and none of its {rows} rows are of this "
-                "study as it is now; choose another folder with --out, or start over with --fresh"
+                f"{self.path}: its first line is damaged, or of another version, and none of its {rows} rows belong to the "
+                "present study; choose another folder with --out, or start over with --fresh"
             )
         if not self.count:
             self.forget()
         return damaged
 
     def _number(self, body: bytes | None) -> int | None:
-        """Return the number of the run whose row ``body`` is; None where it is no row of this table."""
+        """Return the number of the run of a row; None if ``body`` is not a row of this table."""
         match = _NUMBER.match(body or b"")
         if body is None or not match or int(match[1]) >= self.runs:
             return None
@@ -128,7 +128,7 @@ class _Rows:
         return int(match[1]) if len(cells) == len(self.columns) + 1 else None
 
     def _refuse_rows_of(self, first: bytes, lines: Iterator[tuple[int, bytes]]) -> None:
-        """Report what has changed since a journal with another first line, unless it has no rows."""
+        """Raise ``InputError`` with the changes since a journal with another first line; forget it if it has no rows."""
         seed = zlib.crc32(first)
         rows = sum(_unsealed(line, seed) is not None for _, line in lines)
         self.forget()
@@ -146,14 +146,14 @@ class _Rows:
 class Journal:
     """Rows of an unfinished table, in a file beside it, each saved once its run is finished.
 
-    The file survives whatever ends the process. Its first line says what is run and names the columns; then comes a
-    line for each finished run, in whatever order they finish: its number, and its cells as they will be in the table.
-    Before each line stands a checksum (CRC-32), which of a row covers the first line too, so that a row counts for its
-    own study only. What a crash has left of a last line is dropped by whoever goes on; other lines that are damaged are
-    reported and dropped, each alone, and their runs are carried out again. Memory holds only where each row stands.
+    The file survives the end of the process. Its first line has the digests and the columns; then follows a line for each
+    finished run, in the order of finishing: its number, and its cells as in the table. Each line begins with a checksum
+    (CRC-32), which for rows also covers the first line, so that a row counts for its own study only. An incomplete last
+    line is dropped when a later process continues; other damaged lines are reported and dropped one by one, and their runs
+    are carried out again. Memory holds only the position of each row.
 
-    Use it as a context; meanwhile no other process can write into its folder. At the end of the context the file goes
-    if the table was written or no run is finished; else it stays.
+    Use it as a context; meanwhile no other process can write into its folder. At the end of the context the file is removed
+    if the table was written or no run is finished.
 
     Parameters
     ----------
@@ -162,27 +162,34 @@ class Journal:
     columns : sequence of str
         Columns of the table.
     beside : sequence of str
-        Names of cells that stay with the row of a run until the table is written, and are not part of it: texts without commas.
+        Names of further cells kept with each row but not written to the table: texts without commas.
     digest : mapping of str to str
-        What the rows depend on, in plural words, each with its digest: ``{"cases": "5f1c…", "motions": "09ab…"}``.
+        Digests of everything that the rows depend on, by plural nouns: ``{"cases": "5f1c…", "motions": "09ab…"}``.
     fresh : bool
-        Whether to drop what an earlier process has left there.
+        Whether to drop the rows of an earlier process.
     runs : int
-        How many runs there are, where that is known: a row with a higher number is none of them.
+        Number of runs, if known: rows with higher numbers are invalid.
     tell : function, optional
-        Called with a sentence about lines that are damaged.
+        Called with a sentence about damaged lines.
 
     Raises
     ------
     InputError
-        On entry, if the file holds runs of another digest, if it is no plain file, or if another process is writing into
-        the folder; from whatever writes, if the disk is full.
+        On entry, if the file has runs of another digest or is not a regular file, or if another process is writing into the
+        folder; while writing, if the disk is full.
     """
 
     def __init__(
-        self, path: Path, columns: Sequence[str], digest: Mapping[str, str], fresh: bool = False, *,
-        runs: int = MOST_RUNS, tell: Callable[[str], object] | None = None, beside: Sequence[str] = (),
-    ) -> None:  # fmt: skip
+        self,
+        path: Path,
+        columns: Sequence[str],
+        digest: Mapping[str, str],
+        fresh: bool = False,
+        *,
+        runs: int = MOST_RUNS,
+        tell: Callable[[str], object] | None = None,
+        beside: Sequence[str] = (),
+    ) -> None:
         self.path = path
         self.columns, self.beside = [*columns, *beside], list(beside)
         self._fresh = fresh
@@ -228,39 +235,39 @@ class Journal:
         return number in self._rows
 
     def __iter__(self) -> Iterator[int]:
-        """Yield the numbers of the finished runs, from the lowest."""
+        """Yield the numbers of the finished runs in rising order."""
         return iter(self._rows)
 
     def __getitem__(self, number: int) -> dict[str, str]:
-        """Return the cells of a finished run, as the table will have them: texts, "" where a column does not apply."""
+        """Return the cells of a finished run as texts, "" for None; raise ``KeyError`` for an unfinished one."""
         if number not in self:
             raise KeyError(number)
         (cells,) = csv.reader(io.StringIO(self._rows.row(number).decode(), newline=""))
         return dict(zip(self.columns, map(csv_plain, cells), strict=True))
 
     def cells_beside(self, number: int) -> dict[str, str]:
-        """Return the cells beside the row of a run by their names; none of a run that is not finished here."""
+        """Return the cells beside the row of a run by name; empty for an unfinished run."""
         if not self.beside or number not in self:
             return {}
         cells = self._rows.row(number).rstrip(b"\n").decode().rsplit(",", len(self.beside))[1:]
         return dict(zip(self.beside, cells, strict=True))
 
     def rows(self) -> Iterator[tuple[int, dict[str, str]]]:
-        """Yield number and cells of every finished run, from the lowest number."""
+        """Yield number and cells of every finished run in rising order."""
         return ((number, self[number]) for number in self)
 
-    def add_all(self, rows: Mapping[int, Mapping[str, Any]]) -> None:
-        """Save the rows of finished runs by their numbers; they are on disk on return."""
+    def add_all(self, rows: Mapping[int, Mapping[str, object]]) -> None:
+        """Save rows by the numbers of their runs; they are on disk on return."""
         self.add_columns(list(rows), {name: [row.get(name) for row in rows.values()] for name in self.columns})
 
-    def add_columns(self, numbers: Sequence[int], columns: Mapping[str, Sequence[Any]]) -> None:
-        """Save, as :meth:`add_all`, the columns of the rows of runs ``numbers``, each shape (n,), empty if missing."""
+    def add_columns(self, numbers: Sequence[int], columns: Mapping[str, Sequence[object]]) -> None:
+        """Save, as :meth:`add_all`, columns of the rows of n runs, each of length n; missing columns are empty."""
         self._add(zip(numbers, self._lines(len(numbers), columns), strict=True))
 
     def add_from(self, path: Path) -> None:
-        """Add the rows of another journal of the same digest and columns, such as that of another machine.
+        """Add the rows of another journal of the same digest and columns, for example of another machine.
 
-        Raises ``InputError`` if it is of another digest, or if the same run has another row there.
+        Raises ``InputError`` if its digest differs, or if a run has different rows in both.
         """
         mine = self._rows
         source = _Rows(path, mine.columns, mine.digest, mine.runs, "undo that, or have its share run again")
@@ -274,10 +281,10 @@ class Journal:
             for first in range(0, len(missing), ROWS_AT_ONCE):
                 self._add((number, source.row(number)) for number in missing[first : first + ROWS_AT_ONCE])
 
-    def write_in_order(self, path: Path, extra_rows: Iterable[Mapping[str, Any]] = ()) -> Written:
-        """Write the table, whole or not at all: finished runs by their numbers, then rows that belong to no run.
+    def write_in_order(self, path: Path, extra_rows: Iterable[Mapping[str, object]] = ()) -> Written:
+        """Write the table completely or not at all: finished runs in rising order, then rows of no run.
 
-        The journal has then served its purpose and goes at the end of the context.
+        The journal is then removed at the end of the context.
         """
         digest, rows = hashlib.sha256(), -1
         with replacing(path) as temporary, temporary.open("wb") as file:
@@ -288,7 +295,8 @@ class Journal:
         self._written = True
         return Written(rows, digest.hexdigest())
 
-    def _lines_in_order(self, extra_rows: Iterable[Mapping[str, Any]]) -> Iterator[bytes]:
+    def _lines_in_order(self, extra_rows: Iterable[Mapping[str, object]]) -> Iterator[bytes]:
+        """Yield the lines of the table: head, finished runs in rising order, extra rows."""
         yield _encoded(csv_line(self.columns[: len(self.columns) - len(self.beside)]))
         with os.fdopen(os.dup(self._rows.file.fileno()), "rb", BUFFER) as buffered:
             for number in self:
@@ -300,11 +308,12 @@ class Journal:
     def _without_beside(self, line: bytes) -> bytes:
         return line.rsplit(b",", len(self.beside))[0] + b"\n" if self.beside else line
 
-    def _lines(self, rows: int, columns: Mapping[str, Sequence[Any]]) -> Iterator[bytes]:
+    def _lines(self, rows: int, columns: Mapping[str, Sequence[object]]) -> Iterator[bytes]:
         empty = [None] * rows
         return (_encoded(f"{line}\n") for line in csv_lines([columns.get(name, empty) for name in self.columns]))
 
     def _add(self, rows: Iterable[tuple[int, bytes]]) -> None:
+        """Append rows as one block, and index them."""
         block = bytearray()
         places = []
         for number, row in rows:
@@ -317,16 +326,17 @@ class Journal:
             self._rows.remember(*place)
 
     def _append(self, block: bytes | bytearray) -> None:
+        """Write a block at the end of the file and onto the disk."""
         with naming_full_disk(self.path, f"the {self._rows.count} rows that are finished are kept"):
             self._rows.file.seek(self._rows.end)
             rest = memoryview(block)
-            while rest:  # of a disk that is almost full, a write may take a part
+            while rest:  # on an almost full disk a write may be partial
                 rest = rest[self._rows.file.write(rest) :]
             os.fsync(self._rows.file.fileno())
         self._rows.end += len(block)
 
     def _write_whole_rows_only(self) -> None:
-        """Drop damaged lines, so that they are reported once."""
+        """Rewrite the file without damaged lines, so that they are reported only once."""
         with replacing(self.path) as temporary, temporary.open("wb") as file:
             file.write(_sealed(self._rows.first))
             file.writelines(_sealed(b"%d," % number + self._rows.row(number)[:-1], self._rows.seed) for number in self)
@@ -339,7 +349,7 @@ _NUMBER = re.compile(rb"(\d{1,15}),")
 
 
 def _whole_lines(file: io.FileIO) -> Iterator[tuple[int, bytes]]:
-    """Yield the byte after each line, and the line: empty if it is too long for a row; a last one without an end is left out."""
+    """Yield the end [bytes] of each line, and the line, b"" if too long; an incomplete last line is left out."""
     end, whole = 0, True
     with os.fdopen(os.dup(file.fileno()), "rb") as buffered:
         buffered.seek(0)
@@ -352,7 +362,7 @@ def _whole_lines(file: io.FileIO) -> Iterator[tuple[int, bytes]]:
 
 
 def _sealed(body: bytes, seed: int = 0) -> bytes:
-    """Return a line of the file: a checksum, and ``body`` on one line, whatever line breaks its cells hold."""
+    """Return a line of the file: a checksum and ``body``, its line breaks escaped."""
     folded = body.replace(b"\\", b"\\\\").replace(b"\n", b"\\n")
     return b"%08x %b\n" % (zlib.crc32(folded, seed), folded)
 
@@ -364,13 +374,14 @@ def _unsealed(line: bytes, seed: int = 0) -> bytes | None:
 
 
 def _unfolded(body: bytes) -> bytes:
+    """Restore the line breaks and backslashes that :func:`_sealed` escaped."""
     if b"\\" not in body:
         return body
     return re.sub(rb"\\(.)", lambda escape: b"\n" if escape[1] == b"n" else escape[1], body)
 
 
 def _size_of_cells(line: bytes) -> int:
-    """Return the bytes of a line behind its number."""
+    """Return the number of bytes of a line after the run's number."""
     return len(line) - line.index(b",") - 1
 
 

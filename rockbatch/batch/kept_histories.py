@@ -1,4 +1,4 @@
-"""Histories kept beside the peaks: their runs are repeated and recorded."""
+"""Keep histories beside the peaks by repeating and recording their runs."""
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
@@ -28,13 +28,13 @@ def keep_histories(
     progress: Advance = silent,
     records: Collection[str] = (),
 ) -> Path | None:
-    """Write ``histories.h5`` beside the finished results of ``runs``: what the study asks for, and all histories of ``records``.
+    """Write ``histories.h5`` beside finished results: the histories the study requests, and all of ``records``.
 
-    They come one after another: memory holds two at most. Returns the path, or None if there is nothing to keep; an earlier file
-    is replaced as a whole, or not at all. Raises ``InputError`` if the disk is full, and at the end, when all others are
-    written, if the history of some run is too long to be held in memory.
+    Histories are written one by one, with at most two in memory. Returns the path, or None if there is nothing to keep; an
+    earlier file is replaced completely or not at all. Raises ``InputError`` if the disk is full and, after writing all
+    others, if a history was too long for memory.
     """
-    table = saved.peaks.iloc[: len(runs)]  # then come the files that could not be used
+    table = saved.peaks.iloc[: len(runs)]  # further rows are of files that could not be used
     chosen = to_keep(study, runs, table, records).numbers
     if not chosen:
         return None
@@ -57,17 +57,17 @@ def keep_histories(
 
 @dataclass(frozen=True)
 class Kept:
-    """Numbers of the runs whose histories are kept, in their order, and how many were chosen but left out for their size."""
+    """Numbers of the runs whose histories are kept, in order, and the number left out because of their size."""
 
     numbers: list[int]
     left_out: int = 0
 
 
 def to_keep(study: Study, runs: Sequence[StudyRun], table: "pd.DataFrame", records: Collection[str] = ()) -> Kept:
-    """Return the runs whose histories the study asks for, and all of ``records``; one that was refused has none.
+    """Choose the runs whose histories the study requests, and all of ``records``, except runs that were refused.
 
-    ``table`` has a row for each of ``runs``. With "worst", the greatest rotations go first, and what would make the file
-    larger than ``histories_MB`` is left out; one history is kept however large.
+    ``table`` has a row for each of ``runs``. With histories = "worst", runs are taken by decreasing rotation until the file
+    would exceed ``histories_MB``; one history is kept whatever its size.
     """
     output, ran = study.output, table["theta_max_over_alpha"].notna()
     if output.histories == "all":
@@ -89,10 +89,10 @@ def to_keep(study: Study, runs: Sequence[StudyRun], table: "pd.DataFrame", recor
 
 
 def worst(table: "pd.DataFrame", cases: int) -> list[int]:
-    """Return the number of the worst run of each case, in the order of the cases; none for a case that only failed.
+    """Return the number of each case's worst run, in the order of cases, leaving out cases whose runs all failed.
 
-    An overturned pier is worse than any rotation, and the earlier the worse. Flight that ended a run counts by the
-    rotation until then. Of equals the first is taken.
+    Overturned runs are worse than any rotation, the earliest worst. A run that stopped in flight counts by its rotation
+    until then. Of equal runs the first is taken.
     """
     if table.empty:
         return []
@@ -106,12 +106,11 @@ def worst(table: "pd.DataFrame", cases: int) -> list[int]:
 
 
 def _response(study: Study, planned: StudyRun, row: "pd.Series") -> Response:
+    """Repeat a run with the steps of its ``row``, and return its histories."""
     (run,), case = simulations([planned]), planned.case
     observers = [o for o in observers_of(study.output) if o.column and has_value(row, o.column)]
-    ended = Outcome(
-        row["status"], row["reason"], 0.0, 0.0, int(row["impacts"]), int(row["separations"]), None, row["t_end_s"],
-        int(row["substeps"]),
-    )  # fmt: skip
+    counts = int(row["impacts"]), int(row["separations"])
+    ended = Outcome(row["status"], row["reason"], 0.0, 0.0, *counts, None, row["t_end_s"], int(row["substeps"]))
     every_step = run.base.remembers or any(o.histories_of_steps for o in observers)
     recording = recorded(run, ended, study.numerics.quiet_s, every_step)
     return histories(

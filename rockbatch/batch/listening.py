@@ -1,4 +1,4 @@
-"""Messages and progress of a batch."""
+"""Listeners: receivers of the messages and progress of a batch."""
 
 import sys
 import time
@@ -23,7 +23,7 @@ Advance = Callable[[int], object]
 """Called with the number of items finished since the last call."""
 
 MOVES_S = 0.5
-"""Time [s] after which a bar is drawn again, whether something is finished or not."""
+"""Time [s] after which a bar is redrawn even if nothing was finished."""
 
 SHORT = 1.0
 """Delay [s] before a bar appears, unless one was requested."""
@@ -40,17 +40,17 @@ class Listener:
         """Receive the motions that were read, and the files that could not be used."""
 
     def say(self, text: str) -> None:
-        """Receive a sentence about what begins or already exists."""
+        """Receive a sentence about the state of the batch."""
 
     def progress(self, total: int) -> AbstractContextManager[Advance]:
-        """Return a context for ``total`` things that begin, called with the number of those that are done."""
+        """Return a context for ``total`` items; its value is called with the number of newly finished ones."""
         return nullcontext(silent)
 
 
 class Bars(Listener):
-    """Listener that shows a bar for whatever is under way, in a terminal or a notebook, once it has taken ``delay`` [s].
+    """Listener that shows a progress bar in a terminal or a notebook, once ``delay`` [s] have passed.
 
-    Its time goes on where nothing is finished for long, as while kernels are compiled.
+    The elapsed time is updated even if nothing is finished for long, as while kernels compile.
     """
 
     def __init__(self, delay: float = 0.0) -> None:
@@ -61,20 +61,20 @@ class Bars(Listener):
     def progress(self, total: int) -> "Iterator[Advance]":
         """See :class:`Listener`."""
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of a notebook without widgets, which gets a bar in characters
+            warnings.simplefilter("ignore")  # raised in notebooks without widgets, which get a text bar
             from tqdm.auto import tqdm
 
         ended = Event()
 
         def keep_moving() -> None:
             while not ended.wait(max(self.delay - time.monotonic() + started, MOVES_S)):
-                with suppress(OSError):  # whoever advances it hears of it
+                with suppress(OSError):  # the caller of update gets the error, too
                     bar.refresh()
 
         started = time.monotonic()
         with tqdm(total=total, unit="run", leave=False, delay=self.delay, dynamic_ncols=True) as bar:
             mover = Thread(target=keep_moving, daemon=True)
-            with suppress(RuntimeError):  # no more threads: it moves when something is finished
+            with suppress(RuntimeError):  # without a further thread it moves only when items finish
                 mover.start()
             self._bar = bar
             try:
@@ -86,12 +86,12 @@ class Bars(Listener):
                     mover.join()
 
     def making_room(self) -> AbstractContextManager[None]:
-        """Return a context in which the bar makes room for lines on stderr."""
+        """Return a context in which the bar is cleared, so that lines can be printed on stderr."""
         return nullcontext() if self._bar is None else self._bar.external_write_mode(sys.stderr)
 
 
 class Calls(Listener):
-    """Listener that calls a function with the number of finished items, and of all."""
+    """Listener that calls a function with the numbers of finished items and of all items."""
 
     def __init__(self, function: Callable[[int, int], object]) -> None:
         self.function = function
@@ -114,9 +114,9 @@ Progress = bool | Callable[[int, int], object] | Listener | None
 
 
 def listener_of(progress: Progress) -> Listener:
-    """Return the listener for ``progress``: a bar (True), none (False), a function of what is done and of all, or as it is.
+    """Return the listener for ``progress``: a bar (True), none (False), one that calls a function, or a listener itself.
 
-    None stands for a bar if stderr is a terminal, and for none elsewhere.
+    None means a bar if stderr is a terminal, else no bar.
     """
     if progress is None:
         return Bars(SHORT) if sys.stderr is not None and sys.stderr.isatty() else Listener()
@@ -125,30 +125,32 @@ def listener_of(progress: Progress) -> Listener:
     if callable(progress):
         return Calls(progress)
     if not isinstance(progress, bool):
-        raise InputError(f"progress = {progress!r}: expected True, False or a function of two numbers, done and of all")
+        raise InputError(
+            f"progress = {progress!r}: expected True, False or a function of two numbers, finished and all"
+        )
     return Bars() if progress else Listener()
 
 
 @contextmanager
 def announced_if_slow(listener: Listener, words: str) -> "Iterator[None]":
-    """Send ``listener`` a message on what is running, if it takes more than PATIENCE_S."""
+    """Send ``listener`` the message ``words`` if the context takes more than :data:`PATIENCE_S`."""
     timer = Timer(PATIENCE_S, listener.say, [words])
     timer.daemon = True
-    with suppress(RuntimeError):  # of no more threads, those that carry out the runs tell
+    with suppress(RuntimeError):  # without a further thread nothing is announced
         timer.start()
     try:
         yield
     finally:
         timer.cancel()
         if timer.is_alive():
-            timer.join()  # where few are allowed, the next thread may need its place
+            timer.join()  # where few threads are allowed, the next may need its place
 
 
 def once(study: "Study") -> str:
-    """Return why there are no more runs if a study asks for both polarities, else nothing."""
+    """Return a remark that mirror images count once if a study has both polarities; else ""."""
     return " (polarity: mirror images, counted once)" if len(study.motions.polarity) > 1 else ""
 
 
 def count(n: int, noun: str) -> str:
-    """Return a number of things: "1 run", "2 runs"."""
+    """Return a count with its noun: "1 run", "2 runs"."""
     return f"{n} {noun}" if n == 1 else f"{n} {noun}s"

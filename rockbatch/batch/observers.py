@@ -1,4 +1,4 @@
-"""Observers that a study asks for."""
+"""Observers that a study requests."""
 
 from collections.abc import Iterable
 
@@ -9,12 +9,12 @@ from rockbatch.study import Output
 
 
 def observers_of(output: Output) -> tuple[Observer, ...]:
-    """Return the observers that bring columns of peaks.csv."""
+    """Return the requested observers that add columns to peaks.csv."""
     return tuple(observer for observer in _requested(output) if not observer.table)
 
 
 def observers_beside(output: Output, motions: Iterable[Motion]) -> tuple[Observer, ...]:
-    """Return the observers that bring tables beside peaks.csv, of runs under these ``motions``."""
+    """Return the requested observers that write tables beside peaks.csv and apply to some of ``motions``."""
     read = list(motions)
     return tuple(observer for observer in _requested(output) if observer.table and observer.observes(read))
 

@@ -1,4 +1,4 @@
-"""Runs of a study, in the order of its table, each made on demand."""
+"""Plan of the runs of a study, in the order of its table, each made on demand."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -11,14 +11,14 @@ from rockbatch.study import Study
 
 
 def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
-    """Return a motion times ``scale``; with polarity "-" its horizontal component is reversed."""
+    """Return a motion times ``scale``, its horizontal component reversed for polarity "-"; itself if unchanged."""
     if scale == 1.0 and polarity == "+":
         return motion
     return motion.times(scale, reverse=polarity == "-")
 
 
 def simulations(runs: Iterable[StudyRun]) -> list[Run]:
-    """Return what is simulated for ``runs``; those with the same scale and polarity of a record share their motion."""
+    """Return the simulations of ``runs``; runs of a record with the same scale and polarity share one motion."""
     motions: dict[tuple[int, float, str], Motion] = {}
     made = []
     for run in runs:
@@ -30,17 +30,17 @@ def simulations(runs: Iterable[StudyRun]) -> list[Run]:
 
 
 class Runs(Sequence[StudyRun]):
-    """Runs made on demand, so that memory does not grow with their number."""
+    """Sequence of runs made on demand, so that memory does not grow with their number."""
 
     mirrored = False
-    """True if some are mirror images of others."""
+    """True if some runs are mirror images of others."""
 
     @abstractmethod
     def run(self, number: int) -> StudyRun:
         """Return run ``number``, from 0."""
 
     def images(self, number: int) -> Sequence[int]:
-        """Return the numbers of a run and of its mirror image, if it has one: the first is simulated for both."""
+        """Return the numbers of a run and of its mirror image, if any; the first of them is simulated for both."""
         return (number,)
 
     @overload
@@ -61,15 +61,13 @@ class Runs(Sequence[StudyRun]):
 
 
 MOST_RUNS = 10_000_000
-"""Of a table, which is held in memory when it is finished, some 300 bytes a row."""
+"""Most runs of a table, which is read into memory when finished, at some 300 bytes a row."""
 
 
 class Plan(Runs):
-    """The runs of a study: record, polarity, scale, case, the last running fastest.
+    """The runs of a study by record, polarity, scale and case, the last varying fastest.
 
-    Pier and foundation are symmetric: of both polarities one is the mirror image of the other.
-
-    Nothing is held but the study and its motions.
+    Pier and foundation are symmetric, so that the two polarities are mirror images.
     """
 
     def __init__(self, study: Study, motions: MotionSet) -> None:
@@ -121,5 +119,5 @@ class Made(Runs):
 
 
 def some_of(runs: Sequence[StudyRun], indices: Sequence[int]) -> Made:
-    """Return some of ``runs``, by their ``indices``."""
+    """Return the runs at ``indices``, made on demand."""
     return Made(len(indices), lambda number: runs[indices[number]])

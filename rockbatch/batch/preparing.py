@@ -1,4 +1,4 @@
-"""A study that is ready to be carried out in a folder, and what of it is there already."""
+"""Prepare a study for execution in a folder, and recognise earlier results there."""
 
 import datetime
 import json
@@ -7,7 +7,6 @@ import platform
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from rockbatch.batch.digests import study_digests
 from rockbatch.batch.execution import to_simulate
@@ -46,17 +45,17 @@ class Batch:
     study : Study
         The study.
     motions : MotionSet
-        What it is run under, and what of it could not be used.
+        Its ground motions, and the files that could not be used.
     runs : Plan
         Its runs.
     observers : tuple of Observer
-        Those of its tables beside peaks.csv.
+        Observers that write tables beside peaks.csv.
     info : dict
-        Content of run.json but for the cost.
+        Content of run.json without the cost.
     listener : Listener
         Receives its messages and progress.
     later : tuple of str
-        Files beside those of the batch, which whoever asked for it makes of them, and which go with them.
+        Names of files that the caller derives from the results; removed with the results.
     """
 
     directory: Path
@@ -64,12 +63,12 @@ class Batch:
     motions: MotionSet
     runs: Plan
     observers: tuple[Observer, ...]
-    info: dict[str, Any]
+    info: Row
     listener: Listener
     later: tuple[str, ...] = ()
 
     def journal(self, fresh: bool = False) -> Journal:
-        """Return the journal of its finished runs, a context; without those of earlier processes if ``fresh``."""
+        """Return the journal of finished runs, a context; with ``fresh`` earlier runs are dropped."""
         return Journal(
             self.directory / JOURNAL,
             columns(self.study),
@@ -81,9 +80,9 @@ class Batch:
         )
 
     @property
-    def described(self) -> str:
-        """How many runs there are, and why."""
-        return described(self.study, self.motions)
+    def run_count(self) -> str:
+        """Return the number of runs in words; see :func:`run_count`."""
+        return run_count(self.study, self.motions)
 
 
 def prepare(
@@ -95,26 +94,23 @@ def prepare(
     records: Collection[str] = (),
     later: tuple[str, ...] = (),
 ) -> Batch:
-    """Read the motions of ``study``, and return it ready to be carried out in ``directory``.
+    """Read the motions of ``study`` and prepare its runs for execution in ``directory``.
 
-    ``command`` are the words after ``rockbatch`` that do it again, for run.json, ``records`` names of records that have to be
-    there. Raises ``InputError`` where something other than a file is in the way.
+    ``command`` holds the words after ``rockbatch`` that repeat it, for run.json; ``records`` are names that must exist.
+    Raises ``InputError`` for unknown ``records``, or if something other than a regular file is where one will be written.
     """
     refuse_irregular(*(directory / name for name in (*OUTPUTS, *later)))
     motions = ground_motions(study)
     listener.motions(motions)
     check_records(records, motions)
     runs = Plan(study, motions)
-    info = what_was_run(study, motions, runs, study_digests(study, motions), command)
-    return Batch(
-        directory, study, motions, runs, observers_beside(study.output, motions.motions), info, listener, later
-    )
+    info = run_info(study, motions, runs, study_digests(study, motions), command)
+    observers = observers_beside(study.output, motions.motions)
+    return Batch(directory, study, motions, runs, observers, info, listener, later)
 
 
-def what_was_run(
-    study: Study, motions: MotionSet, runs: Plan, digest: dict[str, str], command: Sequence[str]
-) -> dict[str, Any]:
-    """Return the content of run.json but for the cost; ``command`` are the words after ``rockbatch`` that do it again."""
+def run_info(study: Study, motions: MotionSet, runs: Plan, digest: dict[str, str], command: Sequence[str]) -> Row:
+    """Return the content of run.json without the cost; ``command`` holds the words after ``rockbatch`` that repeat it."""
     return {
         "rockbatch": __version__,
         "created": datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
@@ -127,10 +123,10 @@ def what_was_run(
     }
 
 
-def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | None:
-    """Return the cost of the runs in ``directory``, if they are those of ``info``, all of them; else None.
+def cost_of_finished(directory: Path, info: Row) -> Row | None:
+    """Return the cost of the finished results in ``directory`` if they are exactly those of ``info``; else None.
 
-    Raises ``InputError`` where they are, and their table is not as it was written: it is nobody's to write over.
+    Raises ``InputError`` if they are but their table was edited, so that it is not overwritten.
     """
     try:
         earlier = json.loads(read_text(directory / INFO))
@@ -143,8 +139,8 @@ def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | 
         return None
     if differs := edited(directory, earlier):
         raise InputError(
-            f"{directory / PEAKS}: {differs}; nothing is run: keep it as a copy elsewhere if it was edited, and run the "
-            "study again with --fresh"
+            f"{directory / PEAKS}: {differs}; nothing was run: move it away if you edited it, and run the study again with "
+            "--fresh"
         )
     return cost
 
@@ -152,7 +148,7 @@ def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | 
 def to_be_replaced(directory: Path, study: Study) -> str | None:
     """Describe the results in ``directory`` that those of ``study`` will replace; None without any.
 
-    Raises ``InputError`` for those of another study: of another file, or of one that is gone and had another title.
+    Raises ``InputError`` for results of another study: of another file or, if that is gone, with another title.
     """
     try:
         earlier = json.loads(read_text(directory / INFO))
@@ -169,13 +165,9 @@ def to_be_replaced(directory: Path, study: Study) -> str | None:
     return f"the results of an earlier version of the study, of {legible(created)}, in {directory}"
 
 
-def described(study: Study, motions: MotionSet) -> str:
-    """Return how many runs there are, and why: "2 records × 5 cases = 10 runs"."""
-    factors = {
-        "record": len(motions.motions),
-        "scale": len(study.motions.scale),
-        "case": len(study.cases),
-    }
+def run_count(study: Study, motions: MotionSet) -> str:
+    """Return the number of runs as a product: "2 records × 5 cases = 10 runs"."""
+    factors = {"record": len(motions.motions), "scale": len(study.motions.scale), "case": len(study.cases)}
     counted = [count(n, noun) for noun, n in factors.items() if n > 1 or noun in ("record", "case")]
     stations = len({motion.of_station for motion in motions.motions})
     if stations < factors["record"]:
@@ -184,21 +176,19 @@ def described(study: Study, motions: MotionSet) -> str:
 
 
 def check_records(records: Collection[str], motions: MotionSet) -> None:
-    """Raise ``InputError`` for names of records that do not exist."""
+    """Raise ``InputError`` for ``records`` that are not names of ``motions``."""
     names = [motion.name for motion in motions.motions]
     wrong = []
     for name in (name for name in records if name not in names):
         near = closest(name, names)
-        wrong.append(
-            f"--history {name}: no such record; "
-            + (f"did you mean {near}?" if near else f"there is {', '.join(names)}")
-        )
+        hint = f"did you mean {near}?" if near else f"there is {', '.join(names)}"
+        wrong.append(f"--history {name}: no such record; {hint}")
     if wrong:
         raise InputError(*wrong)
 
 
 def share_of(runs: int, share: int, shares: int) -> range:
-    """Return the indices of a share of so many runs; ``InputError`` for more shares than runs."""
+    """Return the indices of the ``share``-th of ``shares`` of ``runs``; raise ``InputError`` for more shares than runs."""
     if shares > runs:
         raise InputError(f"--shard {share}/{shares}: the study has {count(runs, 'run')}; make as many shares or fewer")
     return range(runs * (share - 1) // shares, runs * share // shares)

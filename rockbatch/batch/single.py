@@ -1,4 +1,4 @@
-"""One run: its row of peaks.csv, and its histories."""
+"""Simulate a single run: its row of peaks.csv and its histories."""
 
 import math
 from collections.abc import Sequence
@@ -52,7 +52,7 @@ def simulate(
     initial_rotation_rad: float | None = None,
     **steps: Unpack[Steps],
 ) -> Response:
-    """Simulate one run, and return its results, as a row of peaks.csv, and its histories.
+    """Simulate one run; return its histories and its row of peaks.csv.
 
     Parameters
     ----------
@@ -61,39 +61,40 @@ def simulate(
     case : str, optional
         Name of the foundation; its kind by default.
     ledger : bool
-        Keep the energy balance too (THEORY.md, Energy ledger).
+        Also keep the energy balance (THEORY.md, Energy ledger).
     forces : bool
-        Keep the forces, and what lands at impacts, too (THEORY.md, Forces).
+        Also keep forces and impacts (THEORY.md, Forces).
     sections : int or list of float
-        Heights [m] of sections of the shaft, or how many from its foot to its top, whose greatest forces are kept too
+        Heights [m] of sections of the shaft, or their number from foot to top, whose greatest forces are also kept
         (THEORY.md, Forces in sections).
     devices_work : bool
-        Add the work of devices to the row, as ``[output] devices_work`` of a study; :meth:`Response.device_work` has it of each.
+        Add the work of devices to the row, as ``[output] devices_work`` of a study; :meth:`Response.device_work` gives that of
+        each device.
     least_normal_share : float
-        With the forces: share of the weight that the normal force has to exceed for friction to count, above 0 and below 1; as
-        ``[output] least_normal_share`` of a study, which :func:`rockbatch.run` takes.
+        With ``forces``: share of the weight, between 0 and 1, that the normal force must exceed for V/N to count; as
+        ``[output] least_normal_share`` of a study.
     initial_rotation_rad : float, optional
-        Rotation at which the pier is held and let go [rad], instead of its own; see :class:`rockbatch.Pier`.
+        Rotation from which the pier is released [rad], instead of its own; see :class:`rockbatch.Pier`.
     tolerance : float, default 1e-4
-        On θ_max/α; the steps per sample are chosen to meet it.
+        Tolerance of θ_max/α; the steps per sample are chosen to meet it.
     substeps : int, optional
-        Steps per sample instead, for a fixed step.
+        Fixed number of steps per sample, instead of a tolerance.
     quiet_s : float, default 2
         Free-vibration tail after the record [s].
     wait : bool
-        Go on after ``quiet_s`` until nothing that comes later can exceed the peak; ``False``, with ``substeps``: end there.
+        Continue after ``quiet_s`` until nothing later can exceed the peak; False, with ``substeps``, ends there.
 
     Returns
     -------
     Response
-        ``status``, ``theta_max`` [rad], ``theta_max_error``, ``settlement`` [m], ``reason`` and the whole ``row``, but for the
-        settlement by the other spring law; and the histories ``t``, ``theta``, …, of the same steps.
+        ``status``, ``theta_max`` [rad], ``theta_max_error``, ``settlement`` [m], ``reason``, the ``row`` without the settlement
+        by the other spring law, and the histories ``t``, ``theta``, …, of the same steps.
 
     Raises
     ------
     InputError
-        If the pier cannot stand on the foundation, with the limits; if a device or the motion is implausible and not
-        named in its ``confirm``; if the run would take too many steps.
+        If the pier cannot stand on the foundation; if a device or the motion is implausible and not named in its
+        ``confirm``; if the run would take too many steps.
 
     Examples
     --------
@@ -122,9 +123,9 @@ def simulate(
     observers = (*observers_of(output), *observers_beside(output, [motion]))
     kept = HistoriesOfRun(name, observers, foundation.remembers)
     (outcome,) = observed([run], [outcome], (*observers, kept), quiet_s, error=numerics.substeps is None, wait=wait)
-    response = outcome.tables.get(kept.table) or kept.read(
-        recorded(run, outcome, quiet_s, kept.every_step, wait), outcome
-    )
+    response = outcome.tables.get(kept.table)
+    if not response:
+        response = kept.read(recorded(run, outcome, quiet_s, kept.every_step, wait), outcome)
     finished = StudyRun(motion, "+", 1.0, Case(name, pier, foundation, {}), outcome=outcome)
     return replace(
         response,
@@ -136,7 +137,7 @@ def simulate(
 
 @dataclass(frozen=True)
 class HistoriesOfRun(Observer):
-    """The histories of a run of a ``case``, with those that other ``observers`` add."""
+    """Observer that keeps the histories of a run of ``case``, with those that other ``observers`` add."""
 
     case: str
     observers: tuple[Observer, ...]
@@ -164,7 +165,7 @@ class HistoriesOfRun(Observer):
 
 
 def _outcome(run: Run, numerics: Numerics, wait: bool) -> Outcome:
-    """Return the outcome of a run, with rocking and lean; raise ``InputError`` if it is refused."""
+    """Simulate a run and separate rocking from lean; raise ``InputError`` if the run is refused."""
     quiet_s, settings = numerics.quiet_s, (run.pier, run.base, run.motion)
     if numerics.substeps is None:
         outcome = run_to_tolerance(*settings, numerics.tolerance or 0.0, quiet_s)
@@ -176,7 +177,7 @@ def _outcome(run: Run, numerics: Numerics, wait: bool) -> Outcome:
 
 
 def _check(run: Run, numerics: Numerics, least_normal_share: float, wait: bool) -> None:
-    """Raise ``InputError`` with everything impossible or implausible in a run and its settings."""
+    """Raise ``InputError`` with every impossible or implausible value of a run and its settings."""
     pier, base, motion, substeps = run.pier, run.base, run.motion, numerics.substeps
     tolerance = numerics.tolerance or 0.0
     wrong: list[Problem | str] = [*(problems(pier, base) or unlikely_devices(pier, base.restraints))]

@@ -1,4 +1,4 @@
-"""Engines that carry out the runs of a batch: threads of this process, or a cluster (rockbatch.batch.dask)."""
+"""Engines for the runs of a batch: threads of this process here, a cluster in rockbatch.batch.dask."""
 
 import os
 from collections.abc import Generator, Sequence
@@ -16,16 +16,16 @@ from rockbatch.simulation.runs import Stop
 from rockbatch.study import Numerics
 
 AHEAD = 2
-"""Groups handed to each thread beforehand, so that none waits."""
+"""Groups submitted for each thread, so that none waits."""
 
 
 @runtime_checkable
 class Engine(Protocol):
-    """Carries out runs; a context, within which it may be used several times. ``str`` says what it is: "2 threads"."""
+    """Carries out runs; a context, within which it can be used repeatedly. ``str`` describes it: "2 threads"."""
 
     @property
     def jobs(self) -> int:
-        """Number of its threads."""
+        """Return the number of its threads."""
 
     def __enter__(self) -> Self: ...
 
@@ -36,20 +36,20 @@ class Engine(Protocol):
     def outcomes(
         self, runs: Sequence[StudyRun], numerics: Numerics, observers: Sequence[Observer] = ()
     ) -> Generator[Group, None, None]:
-        """Every run with its outcome, group by group, as they finish.
+        """Yield groups of runs with their outcomes, as they finish.
 
-        Results depend neither on the engine nor on the others of a group, only their order does. After
-        Ctrl-C come the results finished by then, and ``KeyboardInterrupt``.
+        Outcomes depend neither on the engine nor on the grouping; only their order does. After Ctrl-C, groups finished by
+        then are yielded before ``KeyboardInterrupt``.
         """
 
 
 def cores() -> int:
-    """Processors that this process may use."""
+    """Return the number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def engine_of(jobs: int | Engine | None) -> Engine:
-    """Return the engine that carries out the runs: so many threads, all processors by default, or an engine as it is."""
+    """Return threads, by default one for each processor, or the given engine; raise ``InputError`` for less than one."""
     if jobs is None:
         return Threads(cores())
     if not isinstance(jobs, int):
@@ -95,7 +95,7 @@ class Threads:
                 for future in done:
                     outcomes = future.result()
                     yield finished(pending.pop(future), outcomes)
-        except (KeyboardInterrupt, Exception):  # what is finished by then is not lost
+        except (KeyboardInterrupt, Exception):  # groups finished by then are not lost
             stop.set()
             pool.shutdown(cancel_futures=True)
             for future, group in pending.items():
@@ -108,6 +108,6 @@ class Threads:
 
 
 def finished(group: Group, outcomes: Sequence[Outcome | None]) -> Group:
-    """The runs of a group with their outcomes, but for those that were stopped."""
+    """Return the runs of a group with their outcomes, without stopped ones."""
     ended = zip(group.items(), outcomes, strict=True)
     return {i: run._replace(outcome=outcome) for (i, run), outcome in ended if outcome is not None}

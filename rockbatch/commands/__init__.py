@@ -1,1 +1,1 @@
-"""The command line: its arguments, and a module for each command, loaded when it is called."""
+"""The command line: arguments, and a module for each command, loaded when called."""

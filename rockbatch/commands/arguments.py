@@ -1,4 +1,4 @@
-"""Arguments and help of every command, whose module is loaded when it is called."""
+"""Arguments and help of every command; a command's module is loaded when it is called."""
 
 import argparse
 from collections.abc import Mapping
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rockbatch.study import Study
 
 Arguments = Mapping[str, Mapping[str, Any]]
-"""Names of arguments, with the keywords of ``ArgumentParser.add_argument``."""
+"""Names of arguments with keywords of ``ArgumentParser.add_argument``."""
 
 _PLAIN = argparse.RawDescriptionHelpFormatter
 
@@ -27,14 +27,14 @@ class Command:
     Attributes
     ----------
     help, example : str
-        What it does, in a line; and a command line that does it.
+        Its purpose in a line, and an example command line.
     function : str
-        Module and function of rockbatch that carry it out, ``"commands.run.main"``. It takes the arguments and, of a command
-        for a study, the study, and returns the exit code.
+        Module and function in rockbatch, such as ``"commands.run.main"``. The function takes the parsed arguments and, if the
+        command takes a study, the study; it returns the exit code.
     arguments : mapping
-        Names of the arguments, with what ``ArgumentParser.add_argument`` takes beside.
+        Names of the arguments with keywords of ``ArgumentParser.add_argument``.
     writes : str
-        Which files it leaves, in lines; empty for none.
+        The files it writes, a line each; empty for none.
     """
 
     help: str
@@ -43,16 +43,21 @@ class Command:
     arguments: Arguments
     writes: str = ""
 
-    def add_to(self, subparsers: Any, name: str, epilog: str) -> None:
-        """Add the parser of this command to those of all."""
+    def add_to(self, subparsers: "argparse._SubParsersAction[Any]", name: str, epilog: str) -> None:
+        """Add the parser of this command to ``subparsers``."""
         writes = f"writes:\n{self.writes}\n\n" if self.writes else ""
         text = f"example:\n  {self.example}\n\n{writes}{epilog}"
-        parser = subparsers.add_parser(name, description=self.help, epilog=text, formatter_class=_PLAIN)
+        parser = subparsers.add_parser(
+            name, description=self.help, epilog=text, formatter_class=_PLAIN, allow_abbrev=False
+        )
         for argument, options in self.arguments.items():
             parser.add_argument(argument, **options)
 
     def run_command(self, arguments: argparse.Namespace) -> int:
-        """Load the command, run it and return its exit code; a study is read first, since mistakes in it need no other module."""
+        """Load the command, run it and return its exit code.
+
+        A study is read first, so that mistakes in it are reported without loading the command.
+        """
         studies = [_study(arguments)] if "study" in self.arguments else []
         module, _, function = self.function.rpartition(".")
         code: int = getattr(import_module(f"rockbatch.{module}"), function)(arguments, *studies)
@@ -60,7 +65,7 @@ class Command:
 
 
 def _study(arguments: argparse.Namespace) -> "Study":
-    """Return the given study with the changes of the command line."""
+    """Load the study file, with --motions and --strict of the command line applied."""
     from rockbatch.study import load_study
 
     study = load_study(arguments.study, motions=arguments.motions)
@@ -73,11 +78,11 @@ _STUDY: Arguments = {
     "--motions": value(Path, "PATH", "file or folder of records instead of the study's motions"),
     "--strict": flag("run nothing if any record cannot be used"),
 }
-"""The study, its motions and the folder of its results."""
+"""Arguments of commands that take a study."""
 
 _ENGINE: Arguments = {
     "--jobs": value(whole, "N", "threads, or processes (default: all processors)"),
-    "--fresh": flag("start over instead of continuing with what is finished in the folder"),
+    "--fresh": flag("start over instead of continuing from finished runs in the folder"),
     "--engine": value(
         str, None, "threads of this process (default), or a dask.distributed cluster", choices=("threads", "dask")
     ),
@@ -85,33 +90,33 @@ _ENGINE: Arguments = {
         address, "ADDRESS", "address of a running dask scheduler (default: processes of this machine)"
     ),
 }
-"""The engine that carries out the runs."""
+"""Arguments on the execution of runs."""
 
 DISCARDING = ("--fresh",)
-"""Options that discard finished results: never suggested, and never taken from an abbreviation."""
+"""Options that discard finished results: never suggested for a misspelt option."""
 
 _CSV = {
-    "--csv": value(
-        str, None, "write peaks_semicolon.csv, too: with semicolons and decimal commas, as Excel opens it in half of Europe",
-        choices=("semicolon",),
-    )
-}  # fmt: skip
+    "--csv": value(str, None, "also write peaks_semicolon.csv, for Excel with decimal commas", choices=("semicolon",))
+}
 _RUN: Arguments = {
     "--shard": value(
         shard, "I/N", "carry out the I-th of N shares only, in a folder of its own, for `rockbatch merge`"
     ),
     "--history": value(
-        str, "RECORD", "keep the histories of all runs under this record, too; finished runs are not repeated for it",
-        action="append", default=[],
+        str,
+        "RECORD",
+        "also keep the histories of all runs under this record; finished runs are not repeated",
+        action="append",
+        default=[],
     ),
-    "--dry-run": flag("write nothing; say how many runs there are, and the time and disk space they will take"),
-}  # fmt: skip
+    "--dry-run": flag("write nothing; print the number of runs and the time and disk space they will take"),
+}
 _MOTIONS: Arguments = {
     "path": value(Path, "PATH", "files or folders (recursive)", nargs="+"),
-    "--all": flag("list every recording, what was done to it, and every file that is not used"),
-    "--csv": value(Path, "FILE", "write the table to FILE too; - is stdout"),
+    "--all": flag("list every recording, its processing, and every file that is not used"),
+    "--csv": value(Path, "FILE", "also write the table to FILE; - is stdout"),
     "--html": value(Path, "FILE", "write a page with the measures, trace and spectrum of each record; - is stdout"),
-    "--write-manifest": flag("draft PATH/motions.toml from what was found"),
+    "--write-manifest": flag("draft PATH/motions.toml from the records found"),
     "--strict": flag("fail if any file cannot be used"),
     "--unit": {"help": 'acceleration unit of files that do not state theirs, such as "cm/s2"'},
     "--dt": {"type": float, "help": "sampling interval [s] of text columns without a time column"},
@@ -123,7 +128,7 @@ _MOTIONS: Arguments = {
 
 
 class _Demands(argparse.Action):
-    """Lists what checks may ask for."""
+    """Print the demands that checks can limit, and exit."""
 
     def __call__(self, parser: argparse.ArgumentParser, *values: object) -> None:
         from rockbatch.quantities.catalogue import listed
@@ -134,82 +139,104 @@ class _Demands(argparse.Action):
         parser.exit()
 
 
-_FOLDER = value(Path, "DIR", "folder that `rockbatch run` has written")
+_FOLDER = value(Path, "DIR", "folder of results of `rockbatch run`")
 
 _FILES = """\
   peaks.csv      a row for each run: docs/columns.md explains the columns
   report.html    tables and pictures, for any browser
-  run.json       what was run, under which motions, with what
-  histories.h5   histories of the worst runs, or as [output] histories asks
+  run.json       inputs, records and versions
+  histories.h5   histories of the worst runs, or as set by [output] histories
   checks.csv     verdicts, if the study has checks
-  intensity.csv, half_cycles.csv, sections.csv   if [output] asks for them
+  intensity.csv, half_cycles.csv, sections.csv   if set in [output]
   peaks_semicolon.csv           with --csv semicolon: decimal commas, and 9,99E+307 for infinity"""
 
 
 def _of_analysis(name: str, door: Door) -> Command:
-    """Return the command of an analysis, all of which take a study."""
+    """Return the command of an analysis."""
     arguments = {**_STUDY, **(_ENGINE if door.engine else {}), **door.options}
     return Command(door.help, door.example, f"analyses.{name}.command.main", arguments, door.writes)
 
 
 COMMANDS = {
     "init": Command(
-        "write a study of your own to begin with, and its records", "rockbatch init mypier", "commands.examples.init",
+        "write a starter study with example records",
+        "rockbatch init mypier",
+        "commands.examples.init",
         {
-            "folder": value(Path, "FOLDER", "where (default: here)", nargs="?", default=Path()),
+            "folder": value(Path, "FOLDER", "folder to write to (default: current folder)", nargs="?", default=Path()),
             "--example": value(
-                str, "NAME", "begin with another example; `rockbatch examples` lists them", default=FIRST
+                str, "NAME", "start from another example; `rockbatch examples` lists them", default=FIRST
             ),
         },
         "  pier.toml      the study\n  checks.toml    design checks\n  records        a folder of records, if the study has one",
     ),
-    "examples": Command("list the studies that come with rockbatch", "rockbatch examples", "commands.examples.main", {}),
+    "examples": Command(
+        "list the studies that come with rockbatch", "rockbatch examples", "commands.examples.main", {}
+    ),
     "statics": Command(
-        "show what each pier bears and how it swings, without a run", "rockbatch statics pier.toml --csv statics.csv",
+        "print static strength and rocking periods; no records needed",
+        "rockbatch statics pier.toml --csv statics.csv",
         "commands.statics.main",
         {
-            "file": value(Path, "STUDY.toml", "the study file; its records are not read, and need not be there"),
-            "--csv": value(Path, "FILE", "write the sheet to FILE too, a row for each case; - is stdout"),
-            "--curves": value(Path, "FILE", "write the moment-rotation curves to FILE, a row for each rotation; - is stdout"),
+            "file": value(Path, "STUDY.toml", "the study file; its records are not read and may be missing"),
+            "--csv": value(Path, "FILE", "also write the sheet to FILE, a row for each case; - is stdout"),
+            "--curves": value(
+                Path, "FILE", "write the moment-rotation curves to FILE, a row for each rotation; - is stdout"
+            ),
         },
     ),
     "run": Command(
-        "run every record on every foundation; table and report", "rockbatch run pier.toml --out reports/pier",
+        "run every record on every foundation; write table and report",
+        "rockbatch run pier.toml --out reports/pier",
         "commands.run.main",
-        {**_STUDY, **_ENGINE, **_RUN, **_CSV}, _FILES,
+        {**_STUDY, **_ENGINE, **_RUN, **_CSV},
+        _FILES,
     ),
     "merge": Command(
-        "join the shares of `rockbatch run --shard`", "rockbatch merge pier.toml one two", "commands.run.merge_shares",
-        {**_STUDY, "shares": value(Path, "DIR", "folders of the shares", nargs="+"), **_CSV}, _FILES,
+        "join the shares of `rockbatch run --shard`",
+        "rockbatch merge pier.toml one two",
+        "commands.run.merge_shares",
+        {**_STUDY, "shares": value(Path, "DIR", "folders of the shares", nargs="+"), **_CSV},
+        _FILES,
     ),
     "motions": Command(
-        "list the records of a folder, and the files that are not used", "rockbatch motions records --csv records.csv",
-        "commands.motions.main", _MOTIONS,
+        "list the records of a folder and the files that are not used",
+        "rockbatch motions records --csv records.csv",
+        "commands.motions.main",
+        _MOTIONS,
         "  FILE           the table, with --csv, or the page, with --html\n  motions.toml   with --write-manifest",
     ),
     "check": Command(
-        "hold finished results against design checks", "rockbatch check reports/pier", "commands.check.main",
+        "check finished results against design limits",
+        "rockbatch check reports/pier",
+        "commands.check.main",
         {
             "directory": _FOLDER,
-            "--list": {"action": _Demands, "nargs": 0, "help": "list the demands that a check can make, and exit"},
+            "--list": {"action": _Demands, "nargs": 0, "help": "list the demands that checks can limit, and exit"},
             "--rules": value(Path, "RULES.toml", "file with [[check]] tables, instead of the study's own"),
-            "--all": flag("print every verdict with its numbers, and what each check asks"),
+            "--all": flag("print every verdict with its numbers, and each check's requirement"),
         },
-        "  checks.csv     a row for each verdict\n  report.html    again, with the verdicts",
+        "  checks.csv     a row for each verdict\n  report.html    updated with the verdicts",
     ),
     "report": Command(
-        "make the report again, or compare two studies", "rockbatch report reports/pier reports/other", "commands.check.report",
+        "rewrite the report, or compare two studies",
+        "rockbatch report reports/pier reports/other",
+        "commands.check.report",
         {
             "directory": _FOLDER,
             "other": value(Path, "OTHER", "a second folder, to compare with the first", nargs="?"),
-            "--out": value(Path, "FILE", "file to write (default: DIR/report.html, or DIR/compare-OTHER.html); - is stdout"),
-            "--all": flag("unfold every section, so that all of them are printed"),
+            "--out": value(
+                Path, "FILE", "file to write (default: DIR/report.html, or DIR/compare-OTHER.html); - is stdout"
+            ),
+            "--all": flag("unfold every section, so that all are printed"),
         },
     ),
     **{name: _of_analysis(name, door) for name, door in doors().items() if door.help},
     "cache": Command(
-        "show where compiled kernels are kept, or remove them", "rockbatch cache --clear", "commands.cache.main",
-        {"--clear": flag("remove all of them: the next run of each kind of pier compiles its own again")},
+        "show the cache of compiled kernels, or clear it",
+        "rockbatch cache --clear",
+        "commands.cache.main",
+        {"--clear": flag("remove all kernels; the next runs compile them again")},
     ),
-}  # fmt: skip
+}
 """All commands, in the order of the help."""

@@ -1,4 +1,4 @@
-"""``rockbatch cache``: which compiled kernels are kept, and their removal."""
+"""``rockbatch cache``: show or clear the cache of compiled kernels."""
 
 import argparse
 import time
@@ -9,7 +9,7 @@ from rockbatch.terminal.streams import show
 
 
 def main(arguments: argparse.Namespace) -> int:
-    """Print where compiled kernels are kept, how many there are and how large; or remove them."""
+    """Print folder, number and size of the compiled kernels, or remove them."""
     kernels = kept.clear() if arguments.clear else kept.files()
     size = f"{count(len(kernels), 'compiled kernel')}, {sum(kernel.size for kernel in kernels) / 1e6:.1f} MB"
     if arguments.clear:
@@ -17,9 +17,8 @@ def main(arguments: argparse.Namespace) -> int:
         return 0
     show(f"{kept.folder()}: {size} of at most {kept.MOST_BYTES / 1e6:.0f} MB")
     if kernels:
-        show(
-            f"last used between {_day(kernels[0].used)} and {_day(kernels[-1].used)}; unused for {kept.UNUSED_DAYS} days, they go"
-        )
+        days = f"{_day(kernels[0].used)} and {_day(kernels[-1].used)}"
+        show(f"last used between {days}; removed when unused for {kept.UNUSED_DAYS} days")
     return 0
 
 

@@ -1,4 +1,4 @@
-"""``rockbatch check`` and ``rockbatch report``: design checks on finished results, and the report made again."""
+"""``rockbatch check`` and ``rockbatch report``: check finished results, and rewrite their report."""
 
 import argparse
 import math
@@ -31,7 +31,7 @@ _COLOURS = {PASS: "32", FAIL: "31", NOT_DECIDED: "33"}  # green, red, amber
 _LOUD = {FAIL: "FAIL", NOT_DECIDED: "NOT DECIDED"}
 _PLAIN = {PASS: "+", FAIL: "x", NOT_DECIDED: "?", DOES_NOT_APPLY: "-"}
 _LEFT_OUT = (5, 4, 1)
-"""Columns of the verdicts that a narrow terminal leaves out, in this order: margin, ratio, records."""
+"""Columns of verdicts omitted in a narrow terminal, in this order: margin, ratio, records."""
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -45,23 +45,21 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def report(arguments: argparse.Namespace) -> int:
-    """Make the report of finished results again, or of two studies side by side."""
+    """Rewrite the report of finished results, or compare two studies."""
     say(str(make_report(arguments.directory, arguments.other, out=arguments.out, whole=arguments.all).path))
     return 0
 
 
 def mark(verdict: str) -> str:
-    """Return sign and word of a verdict: "✗ FAIL"; plain signs if the terminal cannot show these."""
+    """Return sign and word of a verdict: "✗ FAIL"; an ASCII sign if the terminal cannot show it."""
     return f"{shown(SIGNS[verdict], _PLAIN[verdict])} {_LOUD.get(verdict, verdict)}"
 
 
 def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved, whole: bool = False) -> int:
     """Print the scorecard and the answer; return the exit code.
 
-    ``path`` has the verdicts with all their numbers, which are printed before it on request, as is what the checks ask.
-
-    It is 1 if a check fails or is not decided, if none applies, or if a file could not be used; a case without a check is no
-    failed check.
+    ``path`` is the file of verdicts; with ``whole`` their numbers and the checks' requirements are printed first. The exit
+    code is 1 if a check fails or is not decided, if no check applies, or if a file could not be used, else 0.
     """
     many = len(verdicts) > wording.MOST
     applicable = [verdict.verdict != DOES_NOT_APPLY for verdict in verdicts if verdict.case]
@@ -73,13 +71,13 @@ def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved, whole: bool = Fa
     say(", ".join(f"{n} {kind}" for kind, n in count.items() if n))
     say(f"{path}{': all of them' if whole and many else ''}")
     if idle:
-        say("none of the checks applies to these cases")
+        say("no check applies to these cases")
     decided = count["pass"] and not (count["fail"] or count["not decided"] or idle)
     return 0 if decided and not saved.info["unusable"] else 1
 
 
 def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
-    """Return the scorecard, or the greatest responses without checks, and the sentences with which the report begins."""
+    """Return the scorecard, or without checks the greatest responses, and the sentences at the top of the report."""
     labels = {record["record"]: record.get("label") or record["record"] for record in saved.info["records"]}
     results, varied = labelled(saved.peaks, saved.info, saved.directory), saved.info["varied"]
     suites = runs_of_cases(results.runs, saved.info["cases"], len(saved.info["records"]))
@@ -106,9 +104,9 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
         lines.append(_coloured(filled(f"{mark(line.verdict).split()[0]} {_plain(words)}"), line.verdict))
     ended, planned = (sum(counts) for counts in zip(*((sum(s.ended.values()), s.runs) for s in suites), strict=True))
     if not checked:
-        lines.append("No limits were set: no response passes or fails; `rockbatch check --rules FILE` sets some.")
+        lines.append("No limits were set, so nothing was checked. Add some: rockbatch check DIR --rules FILE.")
         if ended:
-            lines.append(f"Greatest of {planned - ended} of {planned} runs that end standing.")
+            lines.append(f"Largest values over {planned - ended} of {planned} runs, those that end standing.")
     lines += [filled(words) for words in (wording.both_axes(verdicts),) if words]
     if undamped := undamped_settlement(worst):
         lines.append(filled(undamped))
@@ -116,13 +114,13 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
 
 
 def table(verdicts: Sequence[Verdict]) -> str:
-    """Return a block of lines for each case and scale, then what each check asks."""
+    """Return a block of lines for each case and scale, then each check's requirement."""
     notes = Notes(verdicts)
     return "\n\n".join([*_blocks(verdicts, notes), _checks(verdicts, notes)])
 
 
 def summed_up(verdicts: Sequence[Verdict]) -> str:
-    """Return how many verdicts of each kind every check has, the worst of them, and what each check asks."""
+    """Return each check's counts of verdicts, the :data:`WORST` verdicts, and each check's requirement."""
     rows = [(name, *map(str, count.values())) for name, count in wording.count_by_check(verdicts).items()]
     parts = ["\n".join([f"{len(verdicts)} verdicts", *aligned([("check", *wording.WAYS), *rows])])]
     notes = Notes(verdicts)
@@ -132,14 +130,13 @@ def summed_up(verdicts: Sequence[Verdict]) -> str:
 
 
 def _blocks(verdicts: Sequence[Verdict], notes: Notes) -> list[str]:
-    """Return a block of lines for each run of verdicts of one case and scale: their numbers and remarks."""
+    """Return a block of lines, numbers and remarks, for consecutive verdicts of one case and scale."""
     head, *lines = _numbers(verdicts)
     many_scales = wording.scaled(verdicts)
     blocks = []
     of_verdicts = zip(verdicts, lines, strict=True)
-    for (case, columns, scale), block in groupby(
-        of_verdicts, key=lambda pair: (pair[0].case, pair[0].columns, pair[0].scale)
-    ):
+    by_case = groupby(of_verdicts, key=lambda pair: (pair[0].case, pair[0].columns, pair[0].scale))
+    for (case, columns, scale), block in by_case:
         values = columns | ({"scale": scale} if many_scales else {})
         parts = [f"{case or wording.SUITE}  {named(values, values.values())}".rstrip(), head]
         for verdict, line in block:
@@ -152,7 +149,7 @@ def _blocks(verdicts: Sequence[Verdict], notes: Notes) -> list[str]:
 
 
 def _numbers(verdicts: Sequence[Verdict]) -> list[str]:
-    """Return the head, and a line for each verdict, of as many columns as the terminal has room for."""
+    """Return the head and a line for each verdict, with the columns that fit into the terminal."""
     head = ("check", wording.records_of(verdicts), "demand", "limit", "ratio", "margin", "unit", "verdict")
     lines, places, edge = [head, *map(_cells, verdicts)], list(range(len(head))), width() or math.inf
     for place in (None, *_LEFT_OUT):
@@ -165,6 +162,7 @@ def _numbers(verdicts: Sequence[Verdict]) -> list[str]:
 
 
 def _cells(verdict: Verdict) -> tuple[str, ...]:
+    """Return the cells of a verdict under the heads of :func:`_numbers`."""
     return (
         wording.name_of(verdict),
         str(verdict.records) if verdict.records else "",
@@ -178,19 +176,19 @@ def _cells(verdict: Verdict) -> tuple[str, ...]:
 
 
 def _plain(text: str) -> str:
+    """Replace characters that many terminals lack."""
     for sign, instead in {"\u00a0": " ", "∞": "inf", "≥": ">=", "≤": "<="}.items():
         text = text.replace(sign, instead)
     return text
 
 
 def _checks(verdicts: Sequence[Verdict], notes: Notes) -> str:
-    """Return what each check asks, and why; what a record is, and the basis of the statistics of codes."""
+    """Return each check's requirement and reason, the unit of counting, and the basis of the codes' statistics."""
     first = {wording.name_of(verdict): verdict for verdict in reversed(verdicts)}
     rests = {verdict.statistic: verdict for verdict in reversed(verdicts) if wording.unchecked(verdict)}
-    lines = [
-        f"{name}: {'; '.join(asked)} [{first[name].basis}] {first[name].reason}".rstrip()
-        for name, asked in wording.requirements(verdicts).items()
-    ]
+    lines = []
+    for name, asked in wording.requirements(verdicts).items():
+        lines.append(f"{name}: {'; '.join(asked)} [{first[name].basis}] {first[name].reason}".rstrip())
     lines += [*notes.common(), *wording.counting(verdicts)]
     lines += [f"{name}: {wording.unchecked(verdict)}." for name, verdict in rests.items()]
     return "\n".join(["Checks", *(filled(line, 2, 6) for line in lines)])

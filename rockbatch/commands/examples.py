@@ -1,4 +1,4 @@
-"""``rockbatch init`` and ``rockbatch examples``: a new study to begin with, and those that come with rockbatch."""
+"""``rockbatch init`` and ``rockbatch examples``: write a starter study, and list the examples."""
 
 import argparse
 import shlex
@@ -11,7 +11,7 @@ from rockbatch.terminal.streams import show
 
 
 def init(arguments: argparse.Namespace) -> int:
-    """Write a study to begin with, and its records."""
+    """Copy an example study with its records and checks, and print the next steps."""
     study = "pier.toml" if arguments.example == FIRST else f"{arguments.example}.toml"
     for path in copy(arguments.example, arguments.folder, study):
         show(str(path))
@@ -20,14 +20,14 @@ def init(arguments: argparse.Namespace) -> int:
     report = Path("reports", Path(study).stem, "report.html")
     show(
         f"\nNext:\n\n    {change_folder}{_called()} run {study}\n\n"
-        f"It leaves a report in {report}. Then put the numbers of your pier and the\n"
-        f"folder of your records (path) into {study}, and agree on limits {limits}."
+        f"It writes a report to {report}. Then enter your pier's numbers and the\n"
+        f"folder of your records (path) in {study}, and set limits {limits}."
     )
     return 0
 
 
 def _called() -> str:
-    """Return the word by which a shell finds rockbatch from any folder: its name, or its path if the name is not on PATH."""
+    """Return the command for rockbatch in a shell: its name, or its path if the name is not on PATH."""
     script = shutil.which("rockbatch", path=str(Path(sys.executable).parent))
     return "rockbatch" if script is None or shutil.which("rockbatch") == script else shlex.quote(script)
 

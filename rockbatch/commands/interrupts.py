@@ -1,4 +1,4 @@
-"""Ctrl-C: answered at once, whatever the program is in, and over soon."""
+"""Answer Ctrl-C at once, even while a kernel compiles, and end soon after."""
 
 import os
 import signal
@@ -10,20 +10,20 @@ from contextlib import contextmanager, suppress
 from rockbatch.terminal.streams import say
 
 QUICK_S = 0.2
-"""Time [s] within which a command ends without a word on it."""
+"""Time [s] after Ctrl-C within which a command may end without a message."""
 
 GRACE_S = 1.2
-"""Time [s] that it has from then on to end by itself. What is finished is on disk before."""
+"""Further time [s] before the process is ended; finished runs are on disk by then."""
 
 _END, _LATE = 0, -1
 
 
 @contextmanager
 def answered_interrupts() -> Iterator[None]:
-    """Answer an interrupt at once, and end the process at the second one, or if it does not end soon.
+    """Report an interrupt at once; end the process at a second one, or if it takes longer than :data:`GRACE_S`.
 
-    Python hears of it only between two of its own instructions, and compiling a kernel is one that takes seconds. A thread
-    that the signal wakes need not wait for that.
+    Python handles signals between bytecode instructions only, and compiling a kernel is one instruction of many seconds. A
+    thread that the signal wakes through a socket need not wait for it.
     """
     ours = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     if not ours or threading.current_thread() is not threading.main_thread():
@@ -34,7 +34,7 @@ def answered_interrupts() -> Iterator[None]:
     earlier = signal.set_wakeup_fd(rope.fileno(), warn_on_full_buffer=False)
     watcher = threading.Thread(target=_watch, args=(bell,), daemon=True)
     try:
-        with suppress(RuntimeError):  # no more threads: Ctrl-C is heard of as Python does
+        with suppress(RuntimeError):  # without a further thread Python handles Ctrl-C as usual
             watcher.start()
         yield
     finally:
@@ -46,14 +46,14 @@ def answered_interrupts() -> Iterator[None]:
 
 
 def _watch(bell: socket.socket) -> None:
-    """Wait for signals until the other end is closed."""
+    """Wait for Ctrl-C until the other end of the socket is closed; end the process if it does not end itself."""
     number = _next(bell)
     while number not in (_END, signal.SIGINT):
         number = _next(bell)
     if number == signal.SIGINT:
         number = _next(bell, QUICK_S)
     if number == _LATE:
-        say("stopping, a second at most; what is finished is kept; again to stop now")
+        say("stopping within a second; finished runs are kept; press again to stop now")
         number = _next(bell, GRACE_S)
     if number != _END:
         say("rockbatch: interrupted")
@@ -61,7 +61,7 @@ def _watch(bell: socket.socket) -> None:
 
 
 def _next(bell: socket.socket, patience: float | None = None) -> int:
-    """Return the number of the next signal, _LATE where none comes in time, or _END."""
+    """Return the next signal's number; _LATE if none arrives within ``patience`` [s], _END if the socket was closed."""
     bell.settimeout(patience)
     try:
         return next(iter(bell.recv(1)), _END)

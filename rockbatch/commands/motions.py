@@ -1,10 +1,9 @@
-"""``rockbatch motions``: what is in a folder of records, and what could not be read and why."""
+"""``rockbatch motions``: list the records of a folder, and the files that cannot be used, with reasons."""
 
 import argparse
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from rockbatch.batch.listening import count
 from rockbatch.common.errors import InputError
@@ -17,7 +16,7 @@ from rockbatch.motions.ranking import ADDED, RankedRecord, Use, ranked_records
 from rockbatch.motions.ranking import rows as csv_rows
 from rockbatch.terminal.streams import WIDTH, aligned, filled, in_width, say, shortened, show, width
 
-_SHOWN = {  # heads of the table in the terminal, and how their numbers are written
+_SHOWN = {  # heads and number formats of the table in the terminal
     "record": ("record", ""),
     "event": ("event", ""),
     "station_name": ("station", ""),
@@ -44,7 +43,7 @@ _SHOWN = {  # heads of the table in the terminal, and how their numbers are writ
     "file_v": ("vertical", ""),
 }
 
-_GLANCE = {  # the same of the scorecard, whose units stand above it
+_GLANCE = {  # the same for the scorecard, whose units are printed above it
     "pga_h_g": ("PGA", ".3f"),
     "pga_h2_g": ("2nd", ".3f"),
     "pga_v_g": ("up", ".3f"),
@@ -63,25 +62,23 @@ _NAMES = (10, 24)
 MOST_LINES = 60
 LEAST_LINES = 16
 MOST_GROUPS = 4
-"""Reasons of each kind that are printed, each with an example; rare ones first."""
+"""Most reasons printed under a title, each with an example; rare ones first."""
 _VARIABLE = re.compile(r'"[^"]*"|\([^)]*\)|[^\s;:,]*[\d/][^\s;:,]*')
-"""Names and numbers in a reason."""
+"""Names and numbers in a reason, which are ignored when reasons are compared."""
 
 
 def main(arguments: argparse.Namespace) -> int:
-    """Print the records of files or folders, and what is not used; write a table or a manifest if asked."""
+    """Print the records of files or folders and the files not used; write a table, page or manifest if requested."""
     columns = tuple(arguments.columns.split(",")) if arguments.columns else None
     options = ReadOptions(
         arguments.unit, arguments.dt, columns, arguments.sensitivity, arguments.role, arguments.layout
     )
     for path in arguments.path:
         if path.suffix == ".toml" and path.is_file():
-            raise InputError(
-                f"{path}: no record; give the folder of records, as a study has it in path under [motions]"
-            )
+            raise InputError(f"{path}: not a record; give the folder of records, the path under [motions] of a study")
     if arguments.write_manifest:
         if len(arguments.path) > 1:
-            raise InputError("--write-manifest: give one folder, which it is written into")
+            raise InputError("--write-manifest: give one folder, to which it is written")
         say(str(write_manifest(arguments.path[0], options)))
     suite = read_motions(arguments.path, options=options)
     if arguments.csv:
@@ -100,7 +97,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def counts(suite: MotionSet) -> str:
-    """Return how many files there are, and what becomes of them."""
+    """Return a sentence with the numbers of files, usable recordings, and files not used or left out."""
     sources = {source for motion in suite for source in (motion.source, motion.vertical_source) if source}
     for not_used in (suite.unusable, suite.left_out):
         sources |= {file.source for file in not_used}
@@ -110,12 +107,11 @@ def counts(suite: MotionSet) -> str:
 
 
 def overview(suite: MotionSet) -> str:
-    """Return the counts, what is missing or odd by its reason, and the scorecard of the records to look at first, in at most
-    :data:`MOST_LINES`."""
+    """Return counts, a scorecard of the doubtful and strongest records, and faults by reason, in :data:`MOST_LINES` lines."""
     entries = {
         "Not used": [(file.source, file.reason) for file in suite.unusable],
         "Look at these": [(motion.named, finding.text) for motion in suite for finding in motion.findings],
-        "No vertical": [(motion.named, "none beside it that fits") for motion in suite if motion.lacks_vertical],
+        "No vertical": [(motion.named, "no matching file") for motion in suite if motion.lacks_vertical],
         "Left out": [(file.source, file.reason.partition(";")[0]) for file in suite.left_out],
     }
     for most in range(MOST_GROUPS, 0, -1):
@@ -128,8 +124,10 @@ def overview(suite: MotionSet) -> str:
 
 
 def _scorecard(records: Sequence[RankedRecord], room: int) -> list[str]:
-    """Return the doubtful records, each with its doubts in a second line, and the strongest others, in ``room`` lines beside the
-    heads; and how many there are more."""
+    """Return the doubtful records, their doubts in a second line, and the strongest others.
+
+    The records take at most ``room`` lines; heads and the number of further records come on top.
+    """
     doubtful = [record for record in records if record.doubtful]
     sound = records[len(doubtful) :]
     first = min(len(doubtful), max(room // 4, (room - len(sound)) // 2))
@@ -139,9 +137,8 @@ def _scorecard(records: Sequence[RankedRecord], room: int) -> list[str]:
     numbers = aligned([[_GLANCE[key][0] for key in known], *cells], ())
     least, most = _NAMES
     letters = min(max((width() or WIDTH) - len(numbers[0]) - 2, least), most)
-    named = distinct(
-        [record.label for record in shown], lambda i, name: f"{name} {shown[i].values['event'] or ''}".strip()
-    )
+    labels = [record.label for record in shown]
+    named = distinct(labels, lambda i, name: f"{name} {shown[i].values['event'] or ''}".strip())
     names = ["record", *(shortened(name, letters) for name in named)]
     table = [f"{name.ljust(letters)}  {line}".rstrip() for name, line in zip(names, numbers, strict=True)]
     lines = ["", *filled(_UNITS).split("\n"), "", table[0]]
@@ -154,12 +151,12 @@ def _scorecard(records: Sequence[RankedRecord], room: int) -> list[str]:
     return [*lines, *([f"and {kinds} station{plural} more"] if kinds else [])]
 
 
-def _cell(value: Any, form: str) -> str:
+def _cell(value: object, form: str) -> str:
     return "" if value is None else format(value, form)
 
 
 def _by_reason(title: str, entries: Sequence[tuple[str, str]], most: int) -> list[str]:
-    """Return how often each reason occurs, with one example of it; reasons that differ in names and numbers alone are one."""
+    """Return a line for each reason: count, reason and an example; reasons that differ only in names and numbers are one."""
     reasons = sorted(grouped(entries, lambda entry: _VARIABLE.sub("", entry[1])).values(), key=len)
     lines = ["", title] if entries else []
     for same in reasons[:most]:
@@ -172,13 +169,13 @@ def _by_reason(title: str, entries: Sequence[tuple[str, str]], most: int) -> lis
     return lines
 
 
-def _show_all(rows: list[dict[str, Any]], suite: MotionSet) -> None:
-    """Print every recording, what was done to it, and every file that is not used."""
+def _show_all(rows: Sequence[Mapping[str, object]], suite: MotionSet) -> None:
+    """Print every recording, its processing, and every file that is not used."""
     if rows:
         show(_table(rows))
-    _list("What was done", [(motion.named, note) for motion in suite.motions for note in motion.notes])
+    _list("Processing", [(motion.named, note) for motion in suite.motions for note in motion.notes])
     lacking = [motion.named for motion in suite.motions if motion.lacks_vertical]
-    _list("No vertical", [(name, "none beside it that fits") for name in lacking])
+    _list("No vertical", [(name, "no matching file") for name in lacking])
     _list("Not used", [(file.source, file.reason) for file in suite.unusable])
     _list("Left out", [(file.source, file.reason) for file in suite.left_out])
     files = f"{count(len(suite.unusable), 'file')} not used, {len(suite.left_out)} left out"
@@ -186,14 +183,14 @@ def _show_all(rows: list[dict[str, Any]], suite: MotionSet) -> None:
 
 
 def _write(path: Path, suite: MotionSet) -> None:
-    """Write the table, with a row for each file that is not used."""
+    """Write the table as CSV, including a row for each file that is not used."""
     heads = [*COLUMNS, *ADDED]
     heads.insert(heads.index("azimuth_deg"), "reason")
     write_output(path, csv_text(heads, csv_rows(suite)))
 
 
-def _table(rows: list[dict[str, Any]]) -> str:
-    """Return the rows as a table; a column without a value is left out."""
+def _table(rows: Sequence[Mapping[str, object]]) -> str:
+    """Return the rows as text, without empty columns."""
     used = {key: shown for key, shown in _SHOWN.items() if key == "record" or any(row[key] is not None for row in rows)}
     cells = [[_cell(row[key], form) for key, (_, form) in used.items()] for row in rows]
     flush_left = [place for place, key in enumerate(used) if key in TEXTS]

@@ -1,4 +1,4 @@
-"""``rockbatch run`` and ``rockbatch merge``: a study file to peaks.csv, run.json and report.html, at once or in shares."""
+"""``rockbatch run`` and ``rockbatch merge``: run a study, at once or in shares, and write its results."""
 
 import argparse
 import sys
@@ -20,7 +20,7 @@ from rockbatch.workflow.running import FinishedBatch, merge, run_into
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Carry out the runs of a study, or a share of them."""
+    """Carry out the runs of a study or a share of them, or estimate their cost; print the results."""
     if arguments.dry_run:
         return _expect(study, arguments)
     directory = folder(arguments)
@@ -28,30 +28,36 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
         share, shares = arguments.shard
         directory /= f"shard-{share}-of-{shares}"
     finished = run_into(
-        directory, study, engine(arguments), Terminal(),
-        command=sys.argv[1:], fresh=arguments.fresh, share=arguments.shard, records=arguments.history,
-    )  # fmt: skip
+        directory,
+        study,
+        engine(arguments),
+        Terminal(),
+        command=sys.argv[1:],
+        fresh=arguments.fresh,
+        share=arguments.shard,
+        records=arguments.history,
+    )
     return 0 if finished is None else _finished(finished, study, arguments.csv)
 
 
 def merge_shares(arguments: argparse.Namespace, study: Study) -> int:
-    """Join the shares of a study that several machines have carried out, as if one run had."""
+    """Join the shares of a study that several machines computed; print the results."""
     finished = merge(folder(arguments), study, arguments.shares, Terminal(), sys.argv[1:])
     return _finished(finished, study, arguments.csv)
 
 
 def _expect(study: Study, arguments: argparse.Namespace) -> int:
-    """Print the time and the disk space that the study, or a share of it, would take."""
+    """Print the estimated time and disk space of a study or a share of it; return 0."""
     estimate = expected(study, arguments.jobs or cores(), Terminal(), arguments.shard, arguments.history)
     threads = count(estimate.jobs, "thread")
     show(estimate.what)
-    show(f"{in_words(estimate.seconds)} on {threads}, as {estimate.tried} of them took; then the report")
+    show(f"{in_words(estimate.seconds)} on {threads}, measured on {estimate.tried} of them; then the report")
     show(f"peaks.csv: about {estimate.table / 1e6:.2g} MB; histories: about {estimate.histories / 1e6:.2g} MB")
     return 0
 
 
 def in_words(seconds: float) -> str:
-    """Return a time as one would say it: "less than 1 s", "40 s", "12 min", "3.5 h"."""
+    """Return a time rounded for people: "less than 1 s", "about 40 s", "about 12 min", "about 3.5 h"."""
     if seconds < 1.0:
         return "less than 1 s"
     if seconds < 90.0:
@@ -60,7 +66,7 @@ def in_words(seconds: float) -> str:
 
 
 def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> int:
-    """Print the table of peaks and the verdicts, and the paths of the files in the folder; return the exit code."""
+    """Print peaks, warnings, verdicts, files and failures; return the exit code."""
     saved, code = finished.saved, 0
     if finished.without:
         say(str(finished.without))
@@ -86,7 +92,7 @@ def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> i
     failed = int((runs["status"] == "failed").sum())
     lost = ((failed, "run", "failed"), (len(saved.info["unusable"]), "file", "not used"))
     if words := " and ".join(f"{count(n, noun)} {state}" for n, noun, state in lost if n):
-        say(f"{words}: the column reason of peaks.csv says why")
+        say(f"{words}: see the column reason of peaks.csv")
         for reason, times in reasons_of_failure(runs).items():
             say(f"  {times} ×: {reason}")
         if later := failed_later(runs):

@@ -1,4 +1,4 @@
-"""The scorecard on the terminal: cases by checks, or the greatest responses of each case where nothing is checked."""
+"""The scorecard in the terminal: cases by checks, or the greatest responses of each case without checks."""
 
 import textwrap
 from collections.abc import Callable, Collection, Sequence
@@ -17,16 +17,16 @@ from rockbatch.reporting.markup import number
 from rockbatch.terminal.streams import in_width, shown
 
 MOST_COLUMNS = 5
-"""Checks that stand though they pass in every case."""
+"""Most columns of the scorecard, unless more checks fail or are undecided."""
 PLAIN = dict(zip(SIGNS.values(), "+x?-", strict=True)) | {"≤": "<=", "≥": ">=", "α": "alpha", "θ": "theta", "∞": "inf"}
-"""Replacements for signs and letters that the terminal cannot show."""
-_WRAPPED = 13  # letters of a head before it goes on below
+"""ASCII replacements for characters that the terminal cannot show."""
+_WRAPPED = 13  # characters per line of a head
 
 Names = Callable[[Verdict | CaseRuns], str]
 
 
 def of_checks(verdicts: Sequence[Verdict], case_of: Names, runs: Sequence[CaseRuns], worst: Sequence[Worst]) -> str:
-    """Return the scorecard as text: value, sign and share of the limit, a line for each case."""
+    """Return the scorecard as text: a line for each case with value, sign and share of the limit by check."""
     card = scorecard(verdicts, case_of, runs, worst)
     columns = card.open_columns(MOST_COLUMNS)
     rest = [i for i in range(len(card.columns)) if i not in columns]
@@ -45,8 +45,9 @@ def of_checks(verdicts: Sequence[Verdict], case_of: Names, runs: Sequence[CaseRu
 def of_responses(
     worst: Sequence[Worst], runs: "pd.DataFrame", cases: Sequence[Case], name_of: Callable[[Case], str]
 ) -> str:
-    """Return the greatest responses of each case as text, the best first: of those that end standing in the most runs the one
-    with the least rotation.
+    """Return the greatest responses of each case as text.
+
+    Cases with the fewest runs that do not end standing come first, then those with the smallest rotation.
     """
     heights = heights_of(worst)
     names = [name for name in RESPONSES if name in heights]
@@ -68,14 +69,14 @@ def of_responses(
 
 
 def _response(response: Worst | None, heights: Collection[float]) -> str:
-    """Return a response in the unit of its column, with its own height where the ``heights`` of the column differ."""
+    """Return a response in the unit of its column, with its height if the ``heights`` of the column differ; "-" for None."""
     if response is None:
         return "-"
     return number(response.value * RESPONSES[response.demand].factor, ".3g") + response.place_among(heights)
 
 
 def _head(words: str, *below: str) -> list[str]:
-    """Return the lines of a head: its words, and below them the height and the limit."""
+    """Return the lines of a head: its wrapped words, then height and limit."""
     return [*textwrap.wrap(words, _WRAPPED, break_long_words=False), *filter(None, below)]
 
 
@@ -86,7 +87,7 @@ def _written(cell: Cell | None) -> str:
 
 
 def _table(heads: Sequence[Sequence[str]], rows: Sequence[Sequence[str]]) -> str:
-    """Return lines of cells below heads of several lines, the best cases first, within the terminal's width."""
+    """Return rows below heads of several lines as text; of too many only the first, with a remark."""
     depth = max(map(len, heads), default=0)
     top = [["", *line] for line in zip(*([""] * (depth - len(head)) + list(head) for head in heads), strict=True)]
     kept = rows if len(rows) <= MOST_CASES else rows[:OPEN_CASES]
@@ -96,7 +97,7 @@ def _table(heads: Sequence[Sequence[str]], rows: Sequence[Sequence[str]]) -> str
 
 
 def _showable(cell: str) -> str:
-    """Return a cell as the terminal can show it."""
+    """Replace characters that the terminal cannot show."""
     for sign, plain in PLAIN.items():
         cell = cell.replace(sign, shown(sign, plain))
     return cell.replace("\u00a0", " ")

@@ -1,7 +1,6 @@
-"""The table of Fig. 7 in the terminal: θ_max/α of every record in every case, a block for each pier."""
+"""The table of peaks in the terminal, as in the paper's Fig. 7, and remarks on the runs."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,18 +13,19 @@ from rockbatch.pier.laws import steady
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.quantities.rows import with_case
+from rockbatch.results.labelled import Item
 from rockbatch.study import PIER_KEYS, Study
 from rockbatch.terminal.naming import named
 from rockbatch.terminal.streams import in_width
 
 MOST_RUNS = 1000
-"""Runs of a study beyond which its worst runs are printed instead of all."""
+"""Number of runs above which only the worst are printed."""
 
 
 def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str, str]) -> str:
-    """Return blocks of text, a line for each of ``records`` in their order, the status beside the value if it is not "ok".
+    """Return θ_max/α as text: a block for each pier, a line for each record, a column for each case.
 
-    ``records`` maps each name in the table to what is written in its place.
+    ``records`` maps the names of records, in order, to labels. A status other than "ok" precedes its value.
     """
     runs = with_case(table)
     if len(runs) > MOST_RUNS:
@@ -38,15 +38,15 @@ def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str
     rows = ["record", *(name for name in ("polarity", "scale") if runs[name].nunique() > 1)]
     if not pier_keys:
         return "Peak rotation theta_max/alpha\n" + _block(runs, rows, case_keys)
-    blocks = [
-        f"Peak rotation theta_max/alpha, {named(pier_keys, values)}\n" + _block(block, rows, case_keys)
-        for values, block in runs.groupby(pier_keys, sort=False)
-    ]
+    blocks = []
+    for values, block in runs.groupby(pier_keys, sort=False):
+        title = f"Peak rotation theta_max/alpha, {named(pier_keys, values)}"
+        blocks.append(f"{title}\n{_block(block, rows, case_keys)}")
     return "\n\n".join(blocks)
 
 
 def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
-    """Return how the runs of a large study ended, and the ten with the greatest rotations."""
+    """Return counts of statuses, and a table of the ten runs with the greatest rotations."""
     ended = ", ".join(f"{n} {status}" for status, n in runs["status"].value_counts().items())
     shown = ["record", "polarity", "scale", "case", *varied, "status", "theta_max_over_alpha", "theta_max_error"]
     largest = runs.nlargest(10, "theta_max_over_alpha")[shown]
@@ -57,39 +57,40 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
 
 
 def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
-    """Return remarks on the runs as a whole, a sentence each."""
+    """Return warnings about the runs as a whole, a sentence each."""
 
     def warning(runs: npt.NDArray[np.bool_], singular: str, plural: str) -> str:
-        """Return a sentence with the number of these runs, in the singular or the plural; empty for none."""
+        """Return the words for the number of these runs, in singular or plural; empty for none."""
         n = int(runs.sum())
         return "" if n == 0 else singular if n == 1 else plural.format(n)
 
     runs = Rows(table)
     rotate = warning(runs.facts("beyond_linearised"), "1 run rotates", "{} runs rotate")
     lean = warning(runs.texts("theta_max_is") == LEANS, "of 1 run, marked lean, is", "of {} runs, marked lean, is")
-    slide = warning(runs.facts("slides"), "1 run asks", "{} runs ask")
+    slide = warning(runs.facts("slides"), "1 run demands", "{} runs demand")
+    beyond = 'too far for linearised kinematics; see the column note, and run kinematics = "finite"'
+    leans = (
+        "mostly the lean of a yielded base; the column note gives the rocking about it, and rocking = true under [output] "
+        "adds a column for all runs"
+    )
+    slides = "more friction than the interface has: the pier would slide, which is not modelled; see the column note"
     sentences = [
         _other_law(table, varied),
-        rotate and f'{rotate} further than linearised kinematics holds; see the column note, and run kinematics = "finite"',
-        lean and (
-            f"theta_max/alpha {lean} mostly the lean of a base that has yielded; the column note has the rocking about it, and "
-            "with rocking = true under [output] so has a column, for all runs"
-        ),
-        slide and (
-            f"{slide} more friction than the interface has: the pier would slide, which is not modelled; see the column note"
-        ),
-    ]  # fmt: skip
+        rotate and f"{rotate} {beyond}",
+        lean and f"theta_max/alpha {lean} {leans}",
+        slide and f"{slide} {slides}",
+    ]
     return [sentence for sentence in sentences if sentence]
 
 
-def of_targets(info: Mapping[str, Any]) -> list[str]:
-    """Return remarks on the target spectra of a run.json (``info``), a sentence each."""
+def of_targets(info: Item) -> list[str]:
+    """Return the remarks on the target spectra in ``info``, the content of run.json, a sentence each."""
     targets = (info.get(name) or {} for name in NAMES)
     return [f"target spectrum: {remark}" for target in targets for remark in target.get("remarks") or ()]
 
 
 def failed_later(runs: "pd.DataFrame") -> str:
-    """Return how many runs failed after their motion with a peak until then that holds, and what to change; empty if none."""
+    """Return a sentence on the runs that failed after their motion, whose peaks are lower bounds; empty without any."""
     failed = (runs["status"] == "failed") & runs[IN_MOTION_ERROR].notna()
     if not failed.any():
         return ""
@@ -104,23 +105,23 @@ def failed_later(runs: "pd.DataFrame") -> str:
 
 
 def flexible(study: Study) -> list[str]:
-    """Return a warning about each case whose pier is not rigid by its flexural period; the period is compared only if given."""
+    """Return a warning for each case whose given flexural period is too long for a rigid pier."""
     flexible_cases = [case for case in study.cases if case.pier.flexural_period_s is not None]
     if not flexible_cases:
         return []
     from rockbatch.pier.statics import flexure, is_too_soft, sheet_of
 
     sheets = [(case, sheet_of(case.pier, case.base)) for case in flexible_cases]
-    return [
-        f"{case.name} {named(case.columns, case.columns.values())}".rstrip()
-        + f": {flexure(sheet)}".replace("α", "alpha")
-        for case, sheet in sheets
-        if is_too_soft(sheet)
-    ]
+    warnings = []
+    for case, sheet in sheets:
+        if is_too_soft(sheet):
+            name = f"{case.name} {named(case.columns, case.columns.values())}".rstrip()
+            warnings.append(f"{name}: {flexure(sheet)}".replace("α", "alpha"))
+    return warnings
 
 
 def _other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
-    """Return a warning if the settlement is a range by the spring law, of a tenth and a millimetre or more; else empty."""
+    """Return a warning if settlements by the two spring laws differ by over 10 % and 1 mm; else empty."""
     if "settlement_other_law_m" not in table:
         return ""
     of_case, by_other = table["settlement_m"], table["settlement_other_law_m"]
@@ -140,6 +141,7 @@ def _other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
 
 
 def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
+    """Return a table of θ_max/α as text: a line for each value of columns ``rows``, a column for each case."""
     cells: dict[str, dict[str, str]] = {}
     for run in runs.to_dict("records"):
         line = " ".join(f"{run[name]:g}" if name == "scale" else str(run[name]) for name in rows)
@@ -148,6 +150,5 @@ def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
         cell = f"{mark} {run['theta_max_over_alpha']:.4f}".lstrip()
         cells.setdefault(line, {})[f"{run['case']} {varied}".strip()] = cell
     cases = list(dict.fromkeys(case for line in cells.values() for case in line))
-    return in_width(
-        ["", *cases], [[line, *(of_line.get(case, "") for case in cases)] for line, of_line in cells.items()]
-    )
+    lines = [[line, *(of_line.get(case, "") for case in cases)] for line, of_line in cells.items()]
+    return in_width(["", *cases], lines)

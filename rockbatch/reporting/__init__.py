@@ -1,4 +1,4 @@
-"""The report of finished results: one HTML file that needs nothing else. Never loads the compiler."""
+"""The report of finished results: one self-contained HTML file. Never loads the compiler."""
 
 import os
 from collections.abc import Sequence
@@ -31,11 +31,11 @@ def write_report(
     saved: Results | None = None,
     whole: bool = False,
 ) -> Path:
-    """Write ``report.html`` beside its results, or ``out`` instead; return its path.
+    """Write the report of the results in ``directory`` to ``out``, by default ``report.html`` beside them; return its path.
 
-    ``directory`` has ``peaks.csv`` and ``run.json``, as ``rockbatch run`` leaves them, ``saved`` if they were read already.
-    Histories, those of ``responses`` in place of ``histories.h5``, verdicts and the measurement of ``rockbatch accuracy`` are
-    shown if they exist. With ``whole`` folded sections are printed, too. An earlier report is replaced as a whole, or not at all.
+    ``directory`` holds ``peaks.csv`` and ``run.json`` as written by ``rockbatch run``; pass ``saved`` if they were read already.
+    Histories (``responses`` instead of ``histories.h5``, if given), verdicts and the measurement of ``rockbatch accuracy`` are
+    shown if they exist. With ``whole`` folded sections are printed, too. An earlier report is replaced completely or not at all.
 
     Raises ``InputError`` if the results are missing, damaged or do not belong together.
     """
@@ -43,19 +43,16 @@ def write_report(
 
 
 def write_comparison(first: Path, second: Path, *, out: Path | None = None, whole: bool = False) -> Path:
-    """Write one page that compares two studies run by run, and return its path.
+    """Write one page that compares two studies run by run; return its path.
 
-    ``out`` is ``compare-NAME.html`` in the first folder by default, with the name of the second. Raises ``InputError``
+    ``out`` defaults to ``compare-NAME.html`` in the first folder, NAME being the second folder's. Raises ``InputError``
     if results are missing or damaged.
     """
     return _write([read(Path(first), ()), read(Path(second), ())], out, whole)
 
 
 def write_analyses(directory: Path, study: Study) -> Path:
-    """Write the report again with the analyses in it, if the folder holds results of the study; return its path.
-
-    Otherwise they get a page of their own, ``analyses.html``.
-    """
+    """Write the analyses of a folder into its report, or into ``analyses.html`` without results of ``study``; return the path."""
     description = describe_study(study)
     if is_of(directory, description["sha256"]):
         return write_report(directory)
@@ -66,16 +63,16 @@ def write_analyses(directory: Path, study: Study) -> Path:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Report:
-    """A written page, and the tables that it shows.
+    """A written page and the tables it shows.
 
     Attributes
     ----------
     path : Path
         The page.
     folders : tuple of Path
-        Folders of the results, one or two.
+        The one or two folders of results.
     peaks, checks : DataFrame
-        The rows of ``peaks.csv`` and ``checks.csv``; of two studies with a first column ``study``, "A" or "B".
+        The rows of ``peaks.csv`` and ``checks.csv``; for two studies with a first column ``study``, "A" or "B".
     """
 
     path: Path
@@ -87,7 +84,7 @@ class Report:
         return f"<report of {' and '.join(map(str, self.folders))}: {self.path}>"
 
     def save(self, folder: str | os.PathLike[str]) -> Path:
-        """Write the page into ``folder``, under its name; return its path."""
+        """Write the page into ``folder`` under its present name; return its path."""
         directory = made_folder(Path(folder))
         return _write(_finished(self.folders), directory / self.path.name)
 
@@ -139,17 +136,17 @@ def report(
     finished = _finished(folders)
     path = _write(finished, None if out is None else Path(out), whole)
     tables = [(results.saved.peaks, as_table(results.verdicts)) for results in finished]
-    peaks, checks = (_stacked(own) for own in zip(*tables, strict=True))
+    peaks, checks = (_stacked(of_studies) for of_studies in zip(*tables, strict=True))
     return Report(path, folders, peaks, checks)
 
 
 def _finished(folders: Sequence[Path]) -> list[Finished]:
-    """Return the results in a folder, or in two, of which a comparison shows no histories."""
+    """Read the results of one folder, or of two without their histories, which a comparison does not show."""
     return [read(folder, () if len(folders) > 1 else None) for folder in folders]
 
 
 def _write(finished: Sequence[Finished], out: Path | None, whole: bool = False) -> Path:
-    """Write the page of one folder, or that which compares two, to ``out`` or beside the first; return its path."""
+    """Write the report of one folder or the comparison of two, to ``out`` or into the first folder; return its path."""
     if len(finished) > 1:
         content = comparison(pair(*finished), whole)
         target = finished[0].directory / f"compare-{finished[1].directory.resolve().name}.html"
@@ -160,7 +157,7 @@ def _write(finished: Sequence[Finished], out: Path | None, whole: bool = False) 
 
 
 def _stacked(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":
-    """Return one table as it is, or two stacked, with a first column ``study`` that says which."""
+    """Return a single table unchanged; stack two under a first column ``study``, "A" or "B"."""
     if len(tables) == 1:
         return tables[0]
     return pd.concat(dict(zip("AB", tables, strict=True)), names=["study"]).reset_index("study").reset_index(drop=True)

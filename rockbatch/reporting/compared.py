@@ -1,4 +1,4 @@
-"""The sections of the page of two studies."""
+"""The sections of a comparison of two studies."""
 
 import difflib
 import math
@@ -21,26 +21,38 @@ from rockbatch.results.labels import digits_that_tell
 from rockbatch.results.suite_statistics import NO_PEAK
 
 LEVEL = 0.02
-"""Relative difference of a response up to which neither study is better."""
+"""Largest relative difference of a response that makes neither study better."""
 INDEPENDENT = ("theta_max_over_alpha", "settlement_m", "base_tilt_rad", "ductility")
 """Responses that decide; drift and uplift go with the rotation."""
 BETTER = {
-    (True, False): "B is better", (False, True): "A is better", (True, True): "Neither is better throughout",
+    (True, False): "B is better",
+    (False, True): "A is better",
+    (True, True): "Neither is better throughout",
     (False, False): "Neither is better",
-}  # fmt: skip
+}
 """The better study, by whether a response of B is smaller, and whether one is larger."""
 MOST_VALUES = 6
 """Most values of one input that are shown."""
 PIER = ("alpha", "p", "mu", "gravity", "size_m", "mass_t", "top_m")
 BASE = (
-    "beta", "stiffness_kN_m", "eta", "yield_kN", "impact", "epsilon", "spring", "n", "kinematics", "flight", "flight_limit_mm",
+    "beta",
+    "stiffness_kN_m",
+    "eta",
+    "yield_kN",
+    "impact",
+    "epsilon",
+    "spring",
+    "n",
+    "kinematics",
+    "flight",
+    "flight_limit_mm",
     "restitution",
-)  # fmt: skip
+)
 NUMERICS = {"tolerance": "tolerance", "substeps": "steps per sample", "quiet_s": "time at rest after the record [s]"}
 
 
 def answer(pair: Pair) -> Markup:
-    """Report the better study, the difference and the governing records, from the runs that both have."""
+    """Name the better study, with the differences and governing records, over the runs that both have."""
     in_common = zip(pair.studies, pair.runs, strict=True)
     studies = [replace(study, runs=study.runs.loc[runs.index]) for study, runs in in_common]
     if studies[0].runs.empty:
@@ -49,15 +61,16 @@ def answer(pair: Pair) -> Markup:
     in_both = [worst_of_all(replace(study, runs=study.runs[stood]).worst) for study in studies]
     changed = _pairs(pair)
     return join(
-        tag("div", _better(studies, in_both, int(stood.sum())), class_="lead"), tag("p", changed) if changed else "",
+        tag("div", _better(studies, in_both, int(stood.sum())), class_="lead"),
+        tag("p", changed) if changed else "",
         _worst_of_both(studies, in_both, int(stood.sum())),
-    )  # fmt: skip
+    )
 
 
 def _better(studies: list[Finished], responses: list[dict[str, Worst]], stood: int) -> Markup:
-    """Name the study with fewer runs that do not end standing, or else the one with smaller worst responses.
+    """Name the study with fewer runs that do not end standing; if equal, the study with smaller worst responses.
 
-    ``responses`` are of the runs that end standing in both, ``stood`` of them.
+    ``responses`` are the worst of each study over the ``stood`` runs that end standing in both.
     """
     lost = [int(study.runs["status"].isin((*NO_PEAK, "failed")).sum()) for study in studies]
     if lost[0] != lost[1]:
@@ -80,11 +93,12 @@ def _better(studies: list[Finished], responses: list[dict[str, Worst]], stood: i
 
 
 def _change(first: float, second: float) -> float:
+    """Return the relative change; infinite from 0 to more, 0 from 0 to 0."""
     return second / first - 1.0 if first > 0.0 else math.inf if second > 0.0 else 0.0
 
 
 def _pairs(pair: Pair) -> str:
-    """Report in how many pairs of runs the rotation is smaller, and the greatest changes either way."""
+    """Report the number of pairs with a smaller and a larger rotation in B, and the range of B/A; empty without any ratio."""
     a, b = pair.runs
     first, second = (runs["theta_max_over_alpha"].where(runs["status"] == "ok").to_numpy(float) for runs in (a, b))
     comparable = (first > 0) & (second >= 0)
@@ -92,16 +106,16 @@ def _pairs(pair: Pair) -> str:
         return ""
     ratio, runs = second[comparable] / first[comparable], a[comparable]
     ends = [(float(ratio[place]), runs.iloc[place]) for place in (int(ratio.argmin()), int(ratio.argmax()))]
-    shown = [f"{value:.2g} times ({pair.named.label(run['record'])}, {pair.named.case_of(run)})" for value, run in ends]
+    shown = [f"{value:.2g} ({pair.named.label(run['record'])}, {pair.named.case_of(run)})" for value, run in ends]
     return (
         f"From A to B the rotation becomes smaller in {int((ratio < 1.0).sum())} of {counted(len(ratio), 'pair')} of runs"
         f"{'' if comparable.all() else f' ({int((~comparable).sum())} more have no ratio)'}, "
-        f"larger in {int((ratio > 1.0).sum())}; it changes to {shown[0]} at least and to {shown[1]} at most."
+        f"larger in {int((ratio > 1.0).sum())}. B/A ranges from {shown[0]} to {shown[1]}."
     )
 
 
 def _worst_of_both(studies: list[Finished], responses: list[dict[str, Worst]], stood: int) -> Markup:
-    """Return the worst responses of the runs that end standing in both, ``stood`` of them; empty without any."""
+    """Return a table of the worst responses over the ``stood`` runs that end standing in both; empty without any."""
     rows: list[list[object]] = []
     for name, response in RESPONSES.items():
         pair = [w.get(name) for w in responses]
@@ -123,7 +137,7 @@ def _worst_of_both(studies: list[Finished], responses: list[dict[str, Worst]], s
 
 
 def checks(pair: Pair) -> Markup:
-    """Report the answer of the checks of each study, and every check in every case."""
+    """Return each study's verdicts: the answer, then the scorecard."""
     parts: list[object] = []
     for name, study in zip(SIDES, pair.studies, strict=True):
         parts += [tag("h3", name), tag("div", verdicts.answer(study))]
@@ -133,7 +147,7 @@ def checks(pair: Pair) -> Markup:
 
 
 def inputs(pair: Pair) -> Markup:
-    """Return a row for each input that differs: pier, foundations, motions and numerics."""
+    """Return a table of the inputs that differ: pier, foundations, motions and numerics."""
     in_both = set.intersection(*({case["case"] for case in study.info["cases"]} for study in pair.studies))
     sides = [_inputs(study, in_both) for study in pair.studies]
     rows = []
@@ -147,7 +161,7 @@ def inputs(pair: Pair) -> Markup:
 
 
 def _inputs(study: Finished, compared: Collection[str]) -> dict[str, list[object]]:
-    """Return all values of every input, by its name; of cases only those that are ``compared``."""
+    """Return the distinct values of every input, by its name; base parameters only of the cases ``compared``."""
     info = study.info
     records = [record["record"] for record in info["records"]]
     vertical = sum(record["pga_v_g"] is not None for record in info["records"])
@@ -175,7 +189,7 @@ def _inputs(study: Finished, compared: Collection[str]) -> dict[str, list[object
 
 
 def _shown(values: Sequence[object], all_values: Iterable[object]) -> str:
-    """Format values with the digits that distinguish those of both studies."""
+    """Format one study's values with enough digits to distinguish ``all_values``; "none" without any."""
     digits = digits_that_tell(all_values, least=4)
     words = [f"{value:.{digits}g}" if isinstance(value, float | int) else str(value) for value in values]
     if len(words) > MOST_VALUES:
@@ -184,7 +198,7 @@ def _shown(values: Sequence[object], all_values: Iterable[object]) -> str:
 
 
 def figures(pair: Pair) -> Markup:
-    """Draw the peaks of both studies beside each other; of both directions, the worse one."""
+    """Draw the peaks of both studies side by side, those of the worse polarity."""
     named = pair.named
     if pair.runs[0].empty:
         return Markup("")
@@ -196,7 +210,7 @@ def figures(pair: Pair) -> Markup:
 
 
 def pairs(pair: Pair) -> Markup:
-    """Return a row for each pair of runs, the worst first."""
+    """Return a table with a row for each pair of runs, worst first."""
     a, b = pair.runs
     if a.empty:
         return Markup("")
@@ -206,11 +220,8 @@ def pairs(pair: Pair) -> Markup:
     worst["status"] = [max(pair_of_runs, key=rank) for pair_of_runs in zip(a["status"], b["status"], strict=True)]
     order = a.index.get_indexer(worst_first(worst, MOST_ROWS).index)
     names = [key for key in pair.keys if key in ("record", "case") or a[key].nunique() > 1]
-    more = [
-        column
-        for column in COLUMNS.values()
-        if column.suite and column.name != "theta_max_over_alpha" and column.name in a and column.name in b
-    ]
+    in_both = {*a.columns} & {*b.columns} - {"theta_max_over_alpha"}
+    more = [column for column in COLUMNS.values() if column.suite and column.name in in_both]
     heads = [*(Head(symbol(name)) for name in names), *(Head(side, THETA_FORMAT, group=THETA) for side in SIDES)]
     heads.append(Head("B / A", ".3f", group=THETA))
     heads += [Head(side, group=head(column).text, form=head(column).form) for column in more for side in SIDES]
@@ -227,7 +238,7 @@ def pairs(pair: Pair) -> Markup:
 
 
 def suites(pair: Pair) -> Markup:
-    """Return statistics over the runs that both have, since another suite would give other statistics."""
+    """Return statistics over the runs that both have: those of different suites are not comparable."""
     if pair.runs[0].empty:
         return Markup("")
     vertical = [any(record["pga_v_g"] is not None for record in study.info["records"]) for study in pair.studies]
@@ -242,7 +253,7 @@ def suites(pair: Pair) -> Markup:
 
 
 def only_in_one(pair: Pair) -> Markup:
-    """Return a row for each case that has runs without a counterpart; empty if all have one."""
+    """Return a table of the cases with unmatched runs; empty without any."""
     rows: list[list[object]] = []
     for name, study, runs in zip(SIDES, pair.studies, pair.only, strict=True):
         for _, group in runs.groupby(["series", "pier", "scale", "polarity", "with_vertical"], sort=False):
@@ -258,31 +269,26 @@ def _first(names: Sequence[str], most: int) -> str:
 
 
 def studies(pair: Pair) -> Markup:
-    """Describe both studies."""
+    """Describe both studies: responses, inputs and statics."""
     parts: list[object] = [
         tag("p", f"{counted(len(pair.runs[0]), 'pair')} of runs with the same ground motion and case name.")
     ]
     for name, study in zip(SIDES, pair.studies, strict=True):
         title = tag("h3", f"{name}: {study.study['title'] or ''} ", tag("code", study.directory))
-        parts += [
-            title,
-            responses(study),
-            studied.section(study, level="h4"),
-            tag("h4", "Statics"),
-            statics.section(study),
-        ]
-    return join(*parts, _other_motions(*pair.studies))
+        parts += [title, responses(study), studied.section(study, level="h4")]
+        parts += [tag("h4", "Statics"), statics.section(study)]
+    return join(*parts, _records_that_differ(*pair.studies))
 
 
-def _other_motions(a: Finished, b: Finished) -> Markup:
-    """List records of one name that are not the same motion."""
+def _records_that_differ(a: Finished, b: Finished) -> Markup:
+    """List records that have the same name in both studies but are different motions; empty without any."""
     keys = ("pga_g", "pga_v_g", "npts", "dt_s")
     shared = [name for name in a.records if name in b.records]
     differing = [name for name in shared if any(not _same(a.records[name][key], b.records[name][key]) for key in keys)]
     if not differing:
         return Markup("")
-    lead = tag("span", "Not the same motion in both", class_="alarm")
-    return tag("p", lead, f", though of one name: {_first(differing, 8)}.")
+    lead = tag("span", "Different motions under the same name", class_="alarm")
+    return tag("p", lead, f": {_first(differing, 8)}.")
 
 
 def _same(a: float | None, b: float | None) -> bool:
@@ -290,7 +296,7 @@ def _same(a: float | None, b: float | None) -> bool:
 
 
 def difference(pair: Pair) -> Markup:
-    """Show the lines in which the study files differ, and versions if they do."""
+    """Show a diff of the study files, and the versions if they differ."""
     a, b = (study.study["text"].splitlines() for study in pair.studies)
     lines = difflib.unified_diff(a, b, "A", "B", n=1, lineterm="")
     versions = [{"rockbatch": study.info["rockbatch"], **study.info["versions"]}.items() for study in pair.studies]

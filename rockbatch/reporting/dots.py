@@ -1,12 +1,12 @@
-"""Peaks as dots on one axis, a row for each record or foundation, with labels of the same size at any width.
+"""Draw peaks as dots on a common axis, a row for each record or foundation.
 
-Places along the axis are shares of the width, so that nothing but the axis stretches.
+Positions along the axis are shares of the width, so that only the axis stretches and labels keep their size.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,24 +15,25 @@ from rockbatch.common.lazy import pd
 from rockbatch.reporting.markup import Markup, escape, join, number, tag
 from rockbatch.reporting.svg import Entry, classes, key, marker, text
 from rockbatch.reporting.table import THETA, THETA_FORMAT
+from rockbatch.results.labelled import Row as Run
 from rockbatch.results.labelled import as_dicts
 from rockbatch.results.labels import Series
 
 FIRST, LAST = 1.5, 97.0
 """Ends of the axis [% of the width]."""
 MOST_LETTERS = 20
-"""Longest list of the names of foundations without a peak; if it is longer, their number stands instead."""
+"""Most characters of the list of foundations without a peak; a longer one is replaced by their number."""
 MIDDLE = 10
 """Middle of a row of 20 px [px]."""
 
 DOT = Look("dot", 1)
-"""Look of runs that are all alike."""
+"""Look of runs that foundations do not distinguish."""
 
 
 class Row(NamedTuple):
-    """A row: its label, whose ``end`` is never cut off, its tooltip, its runs in each column, and its role in the list.
+    """A row: its label, whose ``end`` is never cut off, its tooltip ``more``, and its runs in each column.
 
-    ``role`` is "rest" for the runs of all others together, and "folded" for one of these, shown in their place on request.
+    ``role`` is "rest" for the row of all other records together and "folded" for the rows that it unfolds to.
     """
 
     words: str
@@ -43,39 +44,31 @@ class Row(NamedTuple):
 
 
 class Limit(NamedTuple):
-    """A limit that a check sets: its description, and the rotation θ/α that it allows."""
+    """A limit of a check: its description, and the rotation θ/α it allows."""
 
     words: str
     theta: float
 
 
 class Marks(NamedTuple):
-    """Style of the marks of runs: by ``series``, or all alike if these are too many; and the tooltip of each."""
+    """Style of the marks of runs: by foundation in ``series``, or all alike if None; and a function for tooltips."""
 
     series: Sequence[Series] | None
-    describe: Callable[[dict[str, Any]], str]
+    describe: Callable[[Run], str]
     kind: str
-    """The thing that a mark stands for, if all are alike: "foundation"."""
+    """What a mark stands for, in the legend, if all are alike: "foundation"."""
 
 
 def draw(
     rows: Sequence[Row], columns: Sequence[str], top: float, marks: Marks, limits: Sequence[Sequence[Limit]] = ()
 ) -> Markup:
-    """Draw the legend, every row in every column, and the common axis, which ends at ``top`` [θ_max/α].
+    """Draw the legend, the rows in every column, and the common axis, which ends at ``top`` [θ_max/α].
 
     ``limits`` are those of each column.
     """
     limits = limits or [[] for _ in columns]
     ticks = Axis("", 0.0, top, about=4).ticks()
-    grids = [
-        [_line(_across(tick, top), "grid") for tick in ticks]
-        + [
-            _line(_across(limit.theta, top), classes(Look("limit", dash=place % DASHES)), tag("title", limit.words))
-            for place, limit in enumerate(of_column)
-            if limit.theta <= top
-        ]
-        for of_column in limits
-    ]
+    grids = [_grid(ticks, of_column, top) for of_column in limits]
     cells: list[Markup] = []
     if any(columns):
         cells.append(tag("span", class_="of"))
@@ -92,21 +85,36 @@ def draw(
     for _ in columns:
         cells += [tag("svg", *axis, class_="plot strip", aria_hidden="true"), tag("span")]
     drawn = tag(
-        "div", *cells, class_="dots", style=f"--n:{len(columns)}", tabindex="0", role="group",
+        "div",
+        *cells,
+        class_="dots",
+        style=f"--n:{len(columns)}",
+        tabindex="0",
+        role="group",
         aria_label="Peaks, a row each; arrow keys go through the values",
-    )  # fmt: skip
+    )
     entries = _legend([runs for row in rows for runs in row.runs], marks)
     return join(key([*entries, *_of_limits(limits, top)]), drawn)
 
 
+def _grid(ticks: Iterable[float], limits: Sequence[Limit], top: float) -> list[Markup]:
+    """Draw the grid lines of a column, then its limits within the axis."""
+    lines = [_line(_across(tick, top), "grid") for tick in ticks]
+    for place, limit in enumerate(limits):
+        if limit.theta <= top:
+            look = Look("limit", dash=place % DASHES)
+            lines.append(_line(_across(limit.theta, top), classes(look), tag("title", limit.words)))
+    return lines
+
+
 def _pga(runs: "Sequence[pd.DataFrame]") -> str | None:
-    """Return the peak ground acceleration of a row's motion [g], by which the script of the page sorts; None if unknown."""
+    """Return the largest PGA [g] of a row's motions, by which the page's script sorts; None if unknown."""
     values = [float(of_column["pga"].max()) for of_column in runs if len(of_column)]
     return f"{max(values):.4g}" if values and not math.isnan(max(values)) else None
 
 
 def _of_limits(limits: Sequence[Sequence[Limit]], top: float) -> list[Entry]:
-    """Return the legend's entry of each limit, once; with its value if it lies beyond the axis."""
+    """Return legend entries of the distinct limits, with the value of those beyond the axis."""
     entries: dict[str, Entry] = {}
     for place, limit in (numbered for of_column in limits for numbered in enumerate(of_column)):
         words = limit.words if limit.theta <= top else f"{limit.words}: beyond the axis, at θ/α = {limit.theta:.3g}"
@@ -123,6 +131,7 @@ def _points(look: Look) -> Mark:
 
 
 def _across(theta: float, top: float) -> float:
+    """Return the position of a rotation θ/α [% of the width]; the axis ends at ``top``."""
     return round(FIRST + (LAST - FIRST) * theta / top, 1)
 
 
@@ -133,7 +142,7 @@ def _line(
 
 
 def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Marks, words: str) -> Markup:
-    """Draw the peaks of a row in one column."""
+    """Draw the peaks of a row in one column; of coinciding ones of a foundation, the first."""
     peaks = runs["theta_max_over_alpha"].to_numpy(dtype=np.float64)
     order = np.argsort(-peaks, kind="stable")
     order = order[((runs["status"] == "ok").to_numpy() & ~np.isnan(peaks))[order]]
@@ -141,17 +150,22 @@ def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Mark
     series = runs["series"].to_numpy()[order].tolist() if marks.series else [None] * len(order)
     first: dict[tuple[object, float], int] = {}
     for foundation, theta, place in zip(series, thetas, order.tolist(), strict=True):
-        first.setdefault((foundation, _across(theta, top)), place)  # others would lie under it
+        first.setdefault((foundation, _across(theta, top)), place)  # others would be hidden beneath
     drawn = [_mark(run, x, marks) for (_, x), run in zip(first, as_dicts(runs.iloc[list(first.values())]), strict=True)]
     low, high = (number(theta, THETA_FORMAT) for theta in (thetas[-1:] + thetas[:1] or [math.nan, math.nan]))
     label = f"{words}: θmax/α {low} to {high}" if len(thetas) > 1 else f"{words}: θmax/α {high}"
     return tag(
-        "svg", *grid, *drawn, class_="plot strip marks", role="img", data_of=words,
+        "svg",
+        *grid,
+        *drawn,
+        class_="plot strip marks",
+        role="img",
+        data_of=words,
         aria_label=label if thetas else f"{words}: no peak",
-    )  # fmt: skip
+    )
 
 
-def _mark(run: dict[str, Any], x: float, marks: Marks) -> Markup:
+def _mark(run: Run, x: float, marks: Marks) -> Markup:
     place = None if marks.series is None else run["series"]
     series = None if marks.series is None else marks.series[run["series"]]
     return Markup(_template(series, place).format(x=x, said=escape(marks.describe(run))))
@@ -159,7 +173,7 @@ def _mark(run: dict[str, Any], x: float, marks: Marks) -> Markup:
 
 @cache
 def _template(series: Series | None, place: int | None) -> Markup:
-    """Return a mark with {x} where its position [% of the width] stands, and {said} for its tooltip: thousands are alike."""
+    """Return a mark's HTML with placeholders {x} for its position [%] and {said} for its tooltip: thousands are alike."""
     if series is None:
         return marker(DOT, "{x}%", MIDDLE, "{said}")
     if series.rigid:
@@ -173,7 +187,7 @@ def _rigid(series: Series) -> Look:
 
 
 def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
-    """Draw what had no peak: by the foundations' letters, or how many."""
+    """Return the signs of runs without a peak, by status, with their foundations' letters or, if too many, their number."""
     shown: list[Markup] = []
     statuses = set(runs["status"])
     for status, words in ENDED.items() if statuses != {"ok"} else ():
@@ -182,29 +196,33 @@ def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
             series = [] if marks.series is None else [marks.series[place] for place in dict.fromkeys(ended["series"])]
             names = ", ".join(strip.label if strip.rigid else strip.tick for strip in series)
             names = names if 0 < len(names) <= MOST_LETTERS else str(len(ended))
-            sign = tag("svg", marker(sign_of(status), 11, 7), class_="plot", viewBox="4 0 14 14", width=14, height=14,
-                       aria_hidden="true")  # fmt: skip
+            sign = tag(
+                "svg",
+                marker(sign_of(status), 11, 7),
+                class_="plot",
+                viewBox="4 0 14 14",
+                width=14,
+                height=14,
+                aria_hidden="true",
+            )
             class_ = "undecided" if status == "failed" else "alarm"
             shown.append(tag("span", sign, names, title=f"{len(ended)} × {words}", class_=class_, data_status=status))
     return tag("span", *shown, class_="ends")
 
 
 def _legend(drawn: "Sequence[pd.DataFrame]", marks: Marks) -> list[Entry]:
-    """Return the entries of cases and statuses; what each stands for is what the script of the page hides by it."""
+    """Return legend entries of the cases and statuses that are drawn; clicking one hides its runs."""
     present = {place for runs in drawn for place in runs["series"].unique().tolist()}
     if marks.series is None:
         entries = [Entry(f"a {marks.kind}", [_points(DOT)])]
     else:
-        series = marks.series
-        entries = [
-            Entry(one.keyed, [_rule(_rigid(one)) if one.rigid else _points(marks_of(one.index))], "case", str(place))
-            for place, one in sorted(
-                ((place, series[place]) for place in present), key=lambda of: (not of[1].rigid, of[1].index)
-            )
-        ]
+        series, entries = marks.series, []
+        for place in sorted(present, key=lambda place: (not series[place].rigid, series[place].index)):
+            case = series[place]
+            mark = _rule(_rigid(case)) if case.rigid else _points(marks_of(case.index))
+            entries.append(Entry(case.keyed, [mark], "case", str(place)))
     statuses = {status for runs in drawn for status in runs["status"].unique().tolist()}
-    return entries + [
-        Entry(words, [_points(sign_of(status))], "status", status)
-        for status, words in ENDED.items()
-        if status in statuses
-    ]
+    for status, words in ENDED.items():
+        if status in statuses:
+            entries.append(Entry(words, [_points(sign_of(status))], "status", status))
+    return entries

@@ -1,4 +1,4 @@
-"""Results of a command other than ``rockbatch run`` in a folder: NAME.json and its tables."""
+"""Results of an analysis in a folder: NAME.json and its tables."""
 
 import functools
 import hashlib
@@ -7,7 +7,6 @@ import warnings
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -16,23 +15,24 @@ from rockbatch.common.files import read_table, read_text, sha256_of
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, join, tag
+from rockbatch.results.labelled import Item
 from rockbatch.results.labels import quantity
 
 MOST_NAMES = 60
 
 _DAMAGE = (KeyError, IndexError, TypeError, ValueError, AttributeError, ArithmeticError)
-"""Exceptions that drawing raises if the file of an analysis does not hold what its command writes."""
+"""Exceptions raised while drawing an analysis whose files are damaged."""
 
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """Contents of a folder: its analyses, and ``path``, ``title``, ``notes``, ``text`` and ``sha256`` of the study."""
+    """A folder with its analyses, and its study's ``path``, ``title``, ``notes``, ``text`` and ``sha256``."""
 
     directory: Path
-    study: Mapping[str, Any]
+    study: Item
 
     def analysis(self, name: str) -> "FinishedAnalysis | None":
-        """Return the analysis in NAME.json; None if there is none for this state of the study."""
+        """Return the analysis in NAME.json; None if it is missing or of another version of the study."""
         return read(self.directory, name, self.study["sha256"])
 
 
@@ -41,10 +41,10 @@ class FinishedAnalysis:
     """A finished analysis: the contents of NAME.json, and its folder."""
 
     directory: Path
-    info: dict[str, Any]
+    info: Item
 
     def provenance(self) -> Markup:
-        """Return the ground motions and versions behind the analysis as HTML; empty if an earlier version did not note them."""
+        """Return the analysis's ground motions and package versions as HTML; empty if NAME.json has neither."""
         motions = [str(motion["label"]) for motion in self.info.get("under", ())]
         versions = {"rockbatch": self.info["rockbatch"], **self.info["versions"]} if "versions" in self.info else {}
         parts = []
@@ -57,7 +57,7 @@ class FinishedAnalysis:
         return tag("p", sentences, ".", class_="legend") if parts else Markup("")
 
     def table(self, name: str, columns: Collection[str]) -> "pd.DataFrame | None":
-        """Return one of its tables; None if NAME.json does not list it, or if it is damaged or lacks a column.
+        """Return a table of the analysis; None if NAME.json does not list it, or if it is empty, damaged or lacks a column.
 
         Warns with ``EditedTable`` if the table was changed after it was written.
         """
@@ -74,10 +74,9 @@ class FinishedAnalysis:
 
 
 def read(directory: Path, name: str, sha256: str) -> FinishedAnalysis | None:
-    """Return the analysis ``name`` in a folder.
+    """Return the analysis ``name`` of a folder; None if missing, damaged or of a study without the digest ``sha256``.
 
-    None if there is none, or if it belongs to another state of the study than the one with the digest ``sha256``; the
-    report then omits it. Warns with ``EditedTable`` if NAME.json was changed after it was written.
+    Warns with ``EditedTable`` if NAME.json was changed after it was written.
     """
     path = Path(directory) / f"{name}.json"
     try:
@@ -93,25 +92,25 @@ def read(directory: Path, name: str, sha256: str) -> FinishedAnalysis | None:
     return FinishedAnalysis(Path(directory), info) if of_study == sha256 else None
 
 
-def digest_of(info: Mapping[str, Any]) -> str:
-    """Return the digest of everything in NAME.json but its own ``sha256``."""
+def digest_of(info: Item) -> str:
+    """Return the SHA-256 of the contents of NAME.json except its own ``sha256``."""
     content = {key: value for key, value in info.items() if key != "sha256"}
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()
 
 
 def _warn_edited(path: Path) -> None:
-    """Warn of a file that was changed after it was written."""
-    message = f"{path}: not as it was written: it was edited, or is damaged; what can be read of it is shown"
+    """Warn that a file was changed after it was written."""
+    message = f"{path}: edited or damaged since it was written; its readable parts are shown"
     warnings.warn(message, EditedTable, stacklevel=3)
 
 
 def of_analysis(
     name: str, **tables: Collection[str]
 ) -> Callable[[Callable[..., Markup]], Callable[[Contents], Markup]]:
-    """Have a section drawn of the analysis ``name`` and these ``tables`` of it, by their columns; empty without one of them.
+    """Decorate ``drawn(analysis, *tables)`` as a section of the analysis ``name``; empty if it or a table is missing.
 
-    It raises ``InputError`` if NAME.json and its tables do not fit each other. Numbers of which a picture cannot be made, since
-    arithmetic on them overflows, do not fit either.
+    ``tables`` gives the columns each table needs. The section raises ``InputError`` if NAME.json and its tables are
+    inconsistent, or if arithmetic on their numbers overflows.
     """
 
     def section_of(drawn: Callable[..., Markup]) -> Callable[[Contents], Markup]:
@@ -119,11 +118,13 @@ def of_analysis(
         def section(contents: Contents) -> Markup:
             try:
                 analysis = contents.analysis(name)
-                found = [analysis and analysis.table(f"{table}.csv", columns) for table, columns in tables.items()]
-                if analysis is None or any(table is None for table in found):
+                read_tables = [
+                    analysis and analysis.table(f"{table}.csv", columns) for table, columns in tables.items()
+                ]
+                if analysis is None or any(table is None for table in read_tables):
                     return Markup("")
                 with np.errstate(divide="raise", over="raise", invalid="raise"):
-                    return drawn(analysis, *found)
+                    return drawn(analysis, *read_tables)
             except InputError:
                 raise
             except _DAMAGE as error:
@@ -136,18 +137,18 @@ def of_analysis(
 
 
 def answered(*paragraphs: str, remarks: Iterable[str] = ()) -> Markup:
-    """Return the paragraphs that answer what was analysed, and a line below for each remark on them."""
+    """Return paragraphs that state the result of an analysis, with a line for each remark below."""
     lines = (tag("p", tag("span", remark, class_="undecided")) for remark in remarks)
     return join(*(tag("p", paragraph, class_="lead") for paragraph in paragraphs), *lines)
 
 
 def sentence(said: str, left_open: Iterable[str] = ()) -> Markup:
-    """Return a sentence with what leaves it open at its end, marked."""
+    """Return a sentence followed by its reservations, marked as undecided."""
     return join(said, *(join("; ", tag("span", words, class_="undecided")) for words in left_open), ".")
 
 
-def named(values: Mapping[str, Any], shown: Sequence[str]) -> str:
-    """Describe a picture among the others by its values: "pads, β = 40"."""
+def named(values: Mapping[str, object], shown: Sequence[str]) -> str:
+    """Describe a panel by its case and the values of the keys ``shown``, without NaN: "pads, β = 40"."""
     words = [str(values["case"])]
     words += [quantity(name, values[name]) for name in shown if name != "case" and values[name] == values[name]]
     return ", ".join(words)

@@ -1,4 +1,4 @@
-"""Counts, names of quantities and heads of columns on the page."""
+"""Counts, headings and heads of columns on the page."""
 
 import re
 
@@ -9,23 +9,23 @@ from rockbatch.results.labels import symbol_of
 
 
 def counted(count: int, word: str) -> str:
-    """Return a number of things in words: "one run", "30 runs"."""
+    """Return a count with its noun: "one run", "30 runs"."""
     return f"{count:,} {word}s" if count != 1 else f"one {word}"
 
 
 def symbol(key: str) -> str:
-    """Return the head of a column that holds values of a study key: "p [rad/s]"."""
+    """Return symbol and unit of a study key for the head of a column: "p [rad/s]"."""
     letter, unit = symbol_of(key)
     return letter + (f" [{unit}]" if unit else "")
 
 
 def heading(words: str) -> Markup:
-    """Return words with their subscripts as HTML, such as that of "θ_max/α"."""
+    """Return words as HTML, with "_max" of "θ_max/α" as a subscript."""
     return Markup(re.sub(r"_([a-z0]+)", lambda match: tag("sub", match[1]), escape(words)))
 
 
 def head(column: Quantity) -> Head:
-    """Return the head of a column of peaks.csv, with its name in the file and its meaning."""
+    """Return the head of a column of peaks.csv, its tooltip with the column's name and meaning."""
     assert column.page is not None
     factor = f" × {column.page.factor}" if column.page.factor != 1 else ""
     return Head(heading(column.page.head), column.page.form, f"{column.name}{factor}: {column.meaning}")

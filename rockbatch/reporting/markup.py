@@ -1,4 +1,4 @@
-"""HTML that is escaped by construction: everything that is not :class:`Markup` is text."""
+"""HTML escaped by construction: whatever is not :class:`Markup` is text, and escaped."""
 
 import html
 import math
@@ -17,7 +17,7 @@ class Markup(str):
 
 
 def escape(content: object) -> str:
-    """Return ``content`` as HTML, legible; only :class:`Markup` goes through as it is."""
+    """Return ``content`` as HTML, with control characters made legible; :class:`Markup` stays as it is."""
     return content if isinstance(content, Markup) else _escaped(str(content))
 
 
@@ -27,21 +27,20 @@ def _escaped(text: str) -> str:
 
 
 _PLAIN = re.compile(r"[A-Za-z0-9_Α-ω\xa0 .,:;/()+−–-]*")
-"""Most texts: nothing in them is escaped."""
+"""Texts that need no escaping: most do not."""
 
 
 def join(*children: object, between: str = "") -> Markup:
-    """Return the children one after the other, escaped."""
+    """Concatenate the children, escaped, with ``between`` between them."""
     return Markup(between.join([escape(child) for child in children]))
 
 
 def tag(name: str, *children: object, **attributes: object) -> Markup:
-    """Return an element; ``class_`` becomes ``class``, ``aria_label`` ``aria-label``; None and False omit an attribute."""
-    written = [
-        _attribute(key) if value is True else f'{_attribute(key)}="{escape(str(value))}"'
-        for key, value in attributes.items()
-        if value is not None and value is not False
-    ]
+    """Return an HTML element; ``class_`` becomes ``class``, ``aria_label`` ``aria-label``; None and False omit an attribute."""
+    written = []
+    for key, value in attributes.items():
+        if value is not None and value is not False:
+            written.append(_attribute(key) if value is True else f'{_attribute(key)}="{escape(str(value))}"')
     return Markup(f"<{name}{''.join(written)}>{''.join(map(escape, children))}</{name}>")
 
 
@@ -51,14 +50,14 @@ def _attribute(key: str) -> str:
 
 
 def interval(low: str, high: str) -> Markup:
-    """Return two written numbers with a dash between that no line ends at."""
+    """Return "low – high" without a line break."""
     return Markup(f"{low}\u00a0–\u2060\u00a0{high}")
 
 
 def number(value: object, form: str = ".4g") -> str:
-    """Return a float in the given format, anything else as text; empty for None and NaN.
+    """Return a float in the format ``form``, anything else as text; "" for None and NaN.
 
-    Significant digits (".3g") are written without an exponent where that takes few zeros: "182,800", "0.00009".
+    Exponents are avoided where few zeros suffice: "182,800", "0.00009", but "1 × 10⁻⁷"; "-0.00" becomes "0.00".
     """
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
@@ -70,7 +69,7 @@ def number(value: object, form: str = ".4g") -> str:
 
 
 def _without_exponent(written: str) -> str:
-    """Return a written number in decimals, thousands of five digits apart, and powers of ten beyond 10⁻⁶ and 10⁹."""
+    """Return a formatted number in decimals, grouped by thousands from 10,000; as a power of ten below 10⁻⁶ and above 10⁹."""
     mantissa, _, exponent = written.partition("e")
     power = int(exponent or 0)
     if not -_FEWEST <= power <= _MOST:
@@ -84,14 +83,14 @@ def _without_exponent(written: str) -> str:
 
 _DECIMALS = frozenset(f".{digits}f" for digits in range(10))
 _LEAST_GROUPED = 9999.0
-"""Below which a number in a format of :data:`_DECIMALS` is written as it is: most cells of long tables are."""
+"""Below it a number formatted by :data:`_DECIMALS` needs no grouping, which saves time in long tables."""
 
 _FEWEST, _MOST = 6, 9
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 def paragraphs(*sentences: object) -> Markup:
-    """Return one paragraph for each sentence that is not empty."""
+    """Return a paragraph for each non-empty sentence."""
     return join(*(tag("p", sentence) for sentence in sentences if sentence))
 
 

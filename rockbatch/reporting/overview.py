@@ -1,7 +1,7 @@
-"""All peaks in a picture of a few rows, by record or by foundation, for any number of runs."""
+"""Draw all peaks in a few rows, by record or by foundation, for any number of runs."""
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from rockbatch.checks import wording
 from rockbatch.checks.responses import PEAKS
@@ -14,8 +14,11 @@ from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, figure, join, tag
 from rockbatch.reporting.table import THETA
-from rockbatch.results.figures import said_of
-from rockbatch.results.labelled import ceiling
+from rockbatch.results.figures import tooltip
+from rockbatch.results.labelled import Row, ceiling
+
+Group = TypeVar("Group", str, int)
+"""A record's name, or a foundation's place in the list of series."""
 
 MOST_ROWS = 14
 """Rows that fit on the first screen."""
@@ -23,18 +26,18 @@ MOST_COLUMNS = 3
 MOST_NAMED = 12
 """Most foundations that each have a mark of their own."""
 MOST_SERIES, MOST_FOUNDATIONS = 24, 300
-"""Most foundations without a picture of their own, and most of those in it."""
+"""Most foundations without a picture by foundation, and most rows of that picture."""
 MOST_MARKS = 3_000
-"""Most runs of which every record has a row, behind those on the first screen."""
+"""Most runs for which every record gets a row, folded behind those of the first screen."""
 SHOWN = ["record", "series", "polarity", "status", "theta_max_over_alpha", "theta_max_error", "pga"]
-"""Columns that the dots and their words are made of."""
+"""Columns needed by dots and their tooltips."""
 CAPTION = join("Largest rotation over slenderness, ", THETA, ", a row for each ")
 MOST_STRETCH = 2.0
-"""Largest factor on the axis, so that a limit far above all peaks does not crowd them at one end."""
+"""Largest factor by which a limit extends the axis: a limit far above all peaks would crowd them at one end."""
 
 
 def by_record(finished: Finished) -> Markup:
-    """Draw a row for each record with the worst runs, and one for all others, each of which has one on request; with limits."""
+    """Draw the peaks with a row for each of the worst records, a row for the others, which unfolds, and the checks' limits."""
     if finished.runs.empty:
         return Markup("")
     columns = _columns(finished)
@@ -44,18 +47,18 @@ def by_record(finished: Finished) -> Markup:
 def drawn_by_record(
     finished: Finished, columns: "Sequence[tuple[str, pd.DataFrame]]", limits: Sequence[Sequence[dots.Limit]] = ()
 ) -> Markup:
-    """Draw the runs of each column, with its words, in rows by their records."""
+    """Draw runs in rows by record; ``columns`` are (caption, runs), ``limits`` those of each column."""
     runs = pd.concat([of_column for _, of_column in columns]) if len(columns) > 1 else columns[0][1]
-    names = worst_first(runs, "record")
+    names = groups_worst_first(runs, "record")
     single = names if len(names) <= MOST_ROWS else names[: MOST_ROWS - 1]
     folded = names[len(single) :] if len(runs) <= MOST_MARKS else []
 
     def label(name: str) -> tuple[str, str, str]:
-        words, comma, end = finished.label(name).rpartition(", ")  # the direction always stays
+        words, comma, end = finished.label(name).rpartition(", ")  # the direction is never cut off
         return (words, comma + end, finished.named(name)) if words else (end, "", finished.named(name))
 
-    def description(run: dict[str, Any]) -> str:
-        words = said_of(finished.series[run["series"]], run, finished.both_directions)
+    def description(run: Row) -> str:
+        words = tooltip(finished.series[run["series"]], run, finished.both_directions)
         return f"{finished.label(run['record'])}\n{words}"
 
     rows = _rows(columns, "record", single, label, len(names), folded=folded)
@@ -69,18 +72,18 @@ def drawn_by_record(
 
 
 def _marks_in_words(finished: Finished) -> Iterator[str]:
-    """Yield sentences on peaks that are not the rocking of a pier that stands on one pivot at least."""
+    """Yield sentences on peaks that are not plain rocking: after flight, or mostly the lean of a yielded base."""
     stood = finished.runs[finished.runs["status"] == "ok"]
     if lifted := int(stood["flight_s"].notna().sum()):
         height = stood["flight_height_m"].max()
-        most = f", the lower one by {1000 * height:.3g} mm at most" if height == height else ""
-        yield f" In {counted(lifted, 'run')} both pivots left the ground on the way{most}; the pier was guided down."
+        most = f", the lower pivot by up to {1000 * height:.3g} mm" if height == height else ""
+        yield f" In {counted(lifted, 'run')} both pivots left the ground{most}; the pier was guided down."
     if leaning := int((stood["theta_max_is"] == LEANS).sum()):
-        yield f" In {counted(leaning, 'run')} the peak is mostly the lean of a base that has yielded, not rocking."
+        yield f" In {counted(leaning, 'run')} the peak is mostly the lean of a yielded base, not rocking."
 
 
 def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
-    """Return the limits of rotation checks as θ/α; empty if the piers of a column differ, since each has its own."""
+    """Return the limits of rotation checks as θ/α; empty if the column has several piers, whose limits differ."""
     if runs["pier"].nunique() != 1:
         return []
     cases = [finished.cases[places] for places in set(zip(runs["series"], runs["pier"], strict=True))]
@@ -93,29 +96,30 @@ def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
             continue
         limit = f"{wording.number(verdict.limit)} {verdict.unit}".rstrip()
         words = f"limit of {verdict.check}, {limit}{wording.at(verdict.at_m)}"
-        if verdict.statistic != "max":  # a mean, say, that single records may exceed
+        if verdict.statistic != "max":  # single records may exceed a mean, say
             words += f" ({STATISTICS[verdict.statistic].words})"
         cases_of.setdefault(dots.Limit(words, verdict.limit / most.value(cases[0])), set()).add(verdict.case)
-    return [
-        limit if of_limit == names else limit._replace(words=f"{limit.words} ({', '.join(sorted(of_limit))})")
-        for limit, of_limit in sorted(cases_of.items(), key=lambda item: item[0].theta)
-    ]
+    limits = []
+    for drawn, of_limit in sorted(cases_of.items(), key=lambda item: item[0].theta):
+        words = drawn.words if of_limit == names else f"{drawn.words} ({', '.join(sorted(of_limit))})"
+        limits.append(drawn._replace(words=words))
+    return limits
 
 
 def by_foundation(finished: Finished) -> Markup:
-    """Draw a row for each of the best of many foundations and one for the others; below, folded, a row for every one."""
+    """Draw the best of many foundations, a row each, and the others in one row; then all, folded; empty for few foundations."""
     if finished.runs.empty or finished.grouped["series"].nunique().max() <= MOST_SERIES:
         return Markup("")
     runs, columns = finished.runs, _columns(finished)
-    best = worst_first(runs, "series")[::-1]
+    best = groups_worst_first(runs, "series")[::-1]
     top, words = ceiling(runs), [words for words, _ in columns]
     every = sorted(best)[:MOST_FOUNDATIONS]
 
     def label(place: int) -> tuple[str, str, str]:
         return finished.series[place].label, "", finished.series[place].label
 
-    def description(run: dict[str, Any]) -> str:
-        return said_of(finished.series[run["series"]], run, True) + f", {finished.label(run['record'])}"
+    def description(run: Row) -> str:
+        return tooltip(finished.series[run["series"]], run, True) + f", {finished.label(run['record'])}"
 
     marks = dots.Marks(None, description, "record")
     order = "foundation, the best first: those that overturn, fly or fail the least often, then by their peaks"
@@ -129,16 +133,17 @@ def by_foundation(finished: Finished) -> Markup:
 
 
 def _columns(finished: Finished) -> "list[tuple[str, pd.DataFrame]]":
-    """Return the runs of each pier and scale, or all of them together if those are many."""
+    """Return captions and runs of each pier and scale; all runs in one column if there are many."""
     return list(finished.groups()) if finished.grouped.ngroups <= MOST_COLUMNS else [("", finished.runs)]
 
 
 def _all(finished: Finished) -> str:
+    """Return the end of the caption's sentence, saying whether all piers and scales share a column."""
     return "." if finished.grouped.ngroups <= MOST_COLUMNS else ", of all piers and scales."
 
 
-def worst_first(runs: "pd.DataFrame", by: str) -> list[Any]:
-    """Sort records or foundations by how many runs overturn, end in flight or fail, then by the largest rotation."""
+def groups_worst_first(runs: "pd.DataFrame", by: str) -> list[Any]:
+    """Return the distinct values of column ``by``, those with most runs that overturn, fly or fail, then rotate most, first."""
     groups = runs[by]
     ended = [(runs["status"] == status).groupby(groups).sum() for status in ("overturned", "flight", "failed")]
     stood = runs["theta_max_over_alpha"].where(runs["status"] == "ok").groupby(groups).max().fillna(0.0)
@@ -148,19 +153,19 @@ def worst_first(runs: "pd.DataFrame", by: str) -> list[Any]:
 def _rows(
     columns: "Sequence[tuple[str, pd.DataFrame]]",
     by: str,
-    single: Sequence[Any],
-    label: Callable[[Any], tuple[str, str, str]],
+    single: Sequence[Group],
+    label: Callable[[Group], tuple[str, str, str]],
     all_: int,
     always: bool = False,
-    folded: Sequence[Any] = (),
+    folded: Sequence[Group] = (),
 ) -> list[dots.Row]:
-    """Return a row for each record or foundation in ``single``, and one for those of ``all_`` that have none of their own.
+    """Return a row for each record or foundation in ``single``, one for the remaining of ``all_``, and ``folded`` rows.
 
-    Of those, ``folded`` ones have theirs on request.
+    Without remaining ones, their row is left out unless ``always``.
     """
     places = [(runs[SHOWN], runs.groupby(by).indices) for _, runs in columns]
 
-    def row(group: Any, role: str = "") -> dots.Row:
+    def row(group: Group, role: str = "") -> dots.Row:
         return dots.Row(*label(group), [runs.iloc[index.get(group, [])] for runs, index in places], role)
 
     rows = list(map(row, single))

@@ -1,8 +1,8 @@
-"""The pages: their sections, in order, one line each."""
+"""The pages of the report: a line for each section, in order."""
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rockbatch.common.analyses import doors, from_analysis
 from rockbatch.common.observers import from_observer, report_parts
@@ -26,7 +26,7 @@ from rockbatch.reporting.sections import (
     studied,
     target,
     verdicts,
-)  # fmt: skip
+)
 from rockbatch.reporting.sections.studied import in_a_line
 from rockbatch.reporting.templates import Section, document, render
 
@@ -36,27 +36,27 @@ class Part(NamedTuple):
 
     heading: str
     anchor: str
-    content: Callable[[Any], Markup]
-    """Function that returns what stands under the heading; empty if the section does not apply, which is then left out."""
+    content: Callable[..., Markup]
+    """Function that draws the section's body; the section is left out if it returns nothing."""
     folded: bool = False
     kind: type = Finished
-    """Argument of ``content``: the results of a run, or the contents of any folder."""
+    """Type of the argument of ``content``: results of a run, or contents of any folder."""
 
 
 def _template(name: str) -> Callable[[Contents], Markup]:
-    """Return the content of a section that is a template alone."""
+    """Return a function that renders a section made of a template alone."""
     return lambda contents: render(f"reporting/sections/{name}.html", contents=contents)
 
 
 def _of_analyses() -> Iterator[Part]:
-    """Yield the parts that the analyses bring, each loaded when it is drawn."""
+    """Yield the sections of all analyses; their modules load when a section is drawn."""
     for name, door in doors().items():
         for part in door.parts:
             yield Part(part.heading, part.anchor, partial(_of_analysis, name, part.function), kind=Contents)
 
 
 def _of_analysis(name: str, function: str, contents: Contents) -> Markup:
-    """Return a part that an analysis brings; without its files its modules are not loaded."""
+    """Draw a section of an analysis; return nothing, without loading its modules, if the folder has no files of it."""
     if not any((contents.directory / f"{name}.{kind}").exists() for kind in ("json", "csv")):
         return Markup("")
     content: Markup = from_analysis(name, function)(contents)
@@ -103,7 +103,7 @@ PARTS = tuple(_with_observers(_OWN))
 """Sections of one folder, from ``sections/``, in the order of the page: the answer first, then results, then inputs."""
 
 ALONE = Part("The study file", "study", _template("study"), kind=Contents)
-"""The section that stands at the end if the folder has analyses only."""
+"""Last section of a folder that has analyses only."""
 
 PARTS_OF_TWO = (
     Part("The answer", "answer", compared.answer),
@@ -116,22 +116,19 @@ PARTS_OF_TWO = (
     Part("What is compared", "studied", compared.studies, folded=True),
     Part("How the study files differ", "difference", compared.difference),
 )
-"""Sections of two folders, from ``compared.py``, in the order of the page."""
+"""Sections of a comparison, in the order of the page."""
 
 
 def sections(contents: Contents) -> list[Section]:
-    """Return the sections of one folder that apply."""
+    """Draw the sections of one folder, without empty ones."""
     parts = PARTS if isinstance(contents, Finished) else (*PARTS, ALONE)
-    drawn = [
-        Section(part.heading, part.anchor, part.content(contents), part.folded)
-        for part in parts
-        if isinstance(contents, part.kind)
-    ]
+    fitting = [part for part in parts if isinstance(contents, part.kind)]
+    drawn = (Section(part.heading, part.anchor, part.content(contents), part.folded) for part in fitting)
     return [section for section in drawn if section.content]
 
 
 def page(contents: Contents, whole: bool = False) -> str:
-    """Return the report of one folder as HTML; ``whole`` to print sections that are folded, too."""
+    """Return the report of one folder as HTML; with ``whole`` folded sections are unfolded and printed."""
     title = contents.study["title"] or "Rocking piers"
     if isinstance(contents, Finished):
         return document(title, in_a_line(contents), sections(contents), contents.info["rockbatch"], whole)

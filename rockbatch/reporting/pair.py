@@ -1,4 +1,4 @@
-"""Two studies side by side: runs of the same record, direction, scale and case are matched by name."""
+"""Match the runs of two studies: same record, polarity, scale and case by name."""
 
 from dataclasses import dataclass, replace
 
@@ -12,20 +12,20 @@ SIDES = ("A", "B")
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """Everything that the page of two studies can show, A first.
+    """Two studies, A and B, with their runs matched.
 
     Attributes
     ----------
     studies : tuple of Finished
         Results of both studies.
     runs : tuple of DataFrame
-        Runs of A and of B that belong together, row by row; those of B have A's places of series and pier.
+        Matched runs of A and of B, row by row; those of B have A's ``series`` and ``pier``.
     only : tuple of DataFrame
-        Runs that the other study lacks, or has more than once.
+        Runs without a unique counterpart in the other study.
     keys : list of str
         The matched columns.
     named : Finished
-        A, with series named after the matched keys only, since the others may differ in B.
+        A with series labelled by the matched keys only: others may differ in B.
     """
 
     studies: tuple[Finished, Finished]
@@ -42,19 +42,20 @@ def pair(a: Finished, b: Finished) -> Pair:
     if "" not in {*a.runs["with_vertical"], *b.runs["with_vertical"]}:
         keys.append("with_vertical")
 
-    def places(study: Finished, name: str) -> "pd.DataFrame":
+    def keyed_places(study: Finished, name: str) -> "pd.DataFrame":
         keyed = study.runs[keys].astype({key: object for key in in_both}).fillna({key: "" for key in in_both})
         keyed[name] = range(len(keyed))
         return keyed.drop_duplicates(keys, keep=False)
 
-    pairs = places(a, "a").merge(places(b, "b"), on=keys).sort_values("a", kind="stable")
+    pairs = keyed_places(a, "a").merge(keyed_places(b, "b"), on=keys).sort_values("a", kind="stable")
     first, second = a.runs.iloc[pairs["a"]], b.runs.iloc[pairs["b"]]
     shared = {name: first[name].to_numpy() for name in ("series", "pier", "with_vertical")}
     unmatched = a.runs.drop(index=first.index), b.runs.drop(index=second.index)
-    return Pair((a, b), (first, second.assign(**shared)), unmatched, keys, _named(a, keys))
+    return Pair((a, b), (first, second.assign(**shared)), unmatched, keys, _labelled_by(a, keys))
 
 
-def _named(study: Finished, keys: list[str]) -> Finished:
+def _labelled_by(study: Finished, keys: list[str]) -> Finished:
+    """Return the study with its series labelled by the varied values of ``keys`` only."""
     varied = [key for key in study.info["varied"] if key not in PIER_KEYS and key != "vertical"]
     series = []
     for (case, *values), place in study.places.items():

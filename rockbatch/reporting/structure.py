@@ -1,8 +1,6 @@
-"""The structure of a case: its pier and devices from run.json, and their numbers in words."""
+"""The pier, base and devices of a case, rebuilt from run.json, and devices in words."""
 
-from collections.abc import Mapping
 from dataclasses import fields, replace
-from typing import Any
 
 from rockbatch.common.errors import InputError
 from rockbatch.pier import (
@@ -20,13 +18,22 @@ from rockbatch.pier.bases import BASES
 from rockbatch.pier.bases import USUAL as OF_BASE
 from rockbatch.pier.plausibility import wrong_restraints
 from rockbatch.pier.sizes import USUAL as OF_PIER
+from rockbatch.quantities.cases import Case
 from rockbatch.results.labels import DEVICE_SYMBOLS, plain, unit_with_exponent
 from rockbatch.study.restraint_keys import KEYS_OF
 
 _PIER = (
-    "alpha", "p", "mu", "gravity", "mass_t", "top_m", "deck_over_columns", "deck_height_m", "flexural_period_s",
+    "alpha",
+    "p",
+    "mu",
+    "gravity",
+    "mass_t",
+    "top_m",
+    "deck_over_columns",
+    "deck_height_m",
+    "flexural_period_s",
     "initial_rotation_rad",
-)  # fmt: skip
+)
 _PREFERRED = {
     "brace": "brace_kN_m",
     "f": "force_kN",
@@ -39,10 +46,10 @@ _NAMED = {"stop": "lift stop", "deck_spring": "deck spring"}
 _OF_STOP = {"stiffness_kN_m": ("k", "kN/m")}
 
 
-def pier_of(case: Mapping[str, Any]) -> Pier | None:
-    """Return the pier of a case; None if its values are impossible, since run.json may come from anybody."""
+def pier_of(case: Case) -> Pier | None:
+    """Return the pier of a case; None for impossible values, since run.json is untrusted."""
     values = {name: case["pier"][name] for name in _PIER if case["pier"].get(name) is not None}
-    if "highest_m" in case["pier"]:  # the parts, whose highest point it may be, are not in run.json
+    if "highest_m" in case["pier"]:  # the deck may be the highest point; parts are not in run.json
         values.setdefault("deck_height_m", case["pier"]["highest_m"])
     try:
         return Pier(**values, confirm=tuple(OF_PIER))
@@ -50,37 +57,35 @@ def pier_of(case: Mapping[str, Any]) -> Pier | None:
         return None
 
 
-def restraints_of(case: Mapping[str, Any]) -> tuple[Restraint, ...]:
-    """Return the devices of a case; empty if their values are impossible."""
-    described, pier = case["parameters"].get("restraints"), pier_of(case)
-    if not isinstance(described, list) or pier is None:
+def restraints_of(case: Case) -> tuple[Restraint, ...]:
+    """Return the devices of a case; empty for impossible values."""
+    entries, pier = case["parameters"].get("restraints"), pier_of(case)
+    if not isinstance(entries, list) or pier is None:
         return ()
     try:
-        restraints = tuple(map(restraint_of, described))
+        restraints = tuple(map(restraint_of, entries))
         return () if wrong_restraints(pier, restraints) else restraints
     except (TypeError, ValueError):
         return ()
 
 
-def base_of(case: Mapping[str, Any], pier: Pier) -> Base | None:
-    """Return the base of a case with its devices; None if its values are impossible under ``pier``."""
+def base_of(case: Case, pier: Pier) -> Base | None:
+    """Return the base of a case with its devices; None for values that are impossible under ``pier``."""
     kind: type[Base] = BASES[case["base"]]
-    values, names = (
-        case["parameters"],
-        [field.name for field in fields(kind) if field.name not in ("restraints", "confirm")],
-    )
+    values = case["parameters"]
+    names = [field.name for field in fields(kind) if field.name not in ("restraints", "confirm")]
     try:
         base = kind(**{name: values[name] for name in names if values.get(name) is not None}, confirm=tuple(OF_BASE))
         base = replace(base, restraints=restraints_of(case))
     except (InputError, TypeError, ValueError):
         return None
-    # How the mass is spread, which a shaft that bends needs, is not in run.json
+    # Check as if the shaft were rigid: run.json lacks the mass distribution that an elastic one needs
     rigid = replace(base, shaft="rigid") if isinstance(base, RigidBase) else base
     return None if problems(pier, rigid) else base
 
 
-def in_words(pier: Pier, restraint: Restraint) -> str:
-    """Describe a device, in kN if the mass is known: "friction damper at each pivot, F = 450 kN"."""
+def device_in_words(pier: Pier, restraint: Restraint) -> str:
+    """Describe a device, in kN if the pier's mass is known: "friction damper at each pivot, F = 450 kN"."""
     kind = restraint.kind if isinstance(restraint, Damper) else restraint.what
     fields = fields_of(pier)
     values = {}
@@ -91,15 +96,17 @@ def in_words(pier: Pier, restraint: Restraint) -> str:
     power = values.pop("exponent", 1.0) if "coefficient_kN_s_m" in values else 1.0
     words = f"{kind} damper" if isinstance(restraint, Damper) else _NAMED.get(kind, kind)
     names = DEVICE_SYMBOLS | _OF_STOP if restraint.what in _NAMED else DEVICE_SYMBOLS
-    numbers = [_number(*names[key], value, power) for key, value in values.items() if value < float("inf")]
+    numbers = [_parameter(*names[key], value, power) for key, value in values.items() if value < float("inf")]
     return ", ".join([f"{words} {_place(restraint)}", *numbers])
 
 
-def _number(symbol: str, unit: str, value: float, power: float) -> str:
+def _parameter(symbol: str, unit: str, value: float, power: float) -> str:
+    """Return "C = 900 kN (s/m)^0.3" without line breaks; ``power`` is the exponent in the unit."""
     return f"{symbol} = {plain(value, 4)} {unit_with_exponent(unit, power)}".strip().replace(" ", "\u00a0")
 
 
 def _place(restraint: Restraint) -> str:
+    """Return where a device acts: "at each pivot", "0.4 m right of the axis", "on the left, 3 m high"."""
     if isinstance(restraint, DeckSpring):
         height = "" if restraint.height_m is None else f", {restraint.height_m:g} m high"
         return ("on both sides" if restraint.side == "both" else f"on the {restraint.side}") + height
@@ -109,8 +116,6 @@ def _place(restraint: Restraint) -> str:
         return "at the deck"
     if isinstance(restraint.at, str):
         return f"at the {restraint.at} pivot"
-    return (
-        "on the axis"
-        if restraint.at == 0
-        else f"{abs(restraint.at):g} m {'right' if restraint.at > 0 else 'left'} of the axis"
-    )
+    if restraint.at == 0:
+        return "on the axis"
+    return f"{abs(restraint.at):g} m {'right' if restraint.at > 0 else 'left'} of the axis"

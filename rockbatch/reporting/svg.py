@@ -1,11 +1,11 @@
-"""Figures drawn as inline SVG: text stays text, colours come from the style sheet, and curves are in tenths of a pixel."""
+"""Draw figures as inline SVG: text stays text, colours come from the style sheet, curves are in tenths of a pixel."""
 
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import singledispatch
 from itertools import repeat, starmap
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -29,7 +29,7 @@ from rockbatch.reporting.markup import Markup, join, tag
 
 FINE = 10  # steps per pixel of a curve's coordinates
 _FAR = 1e6
-"""Pixels: what lies beyond, as numbers in a table that somebody changed may, is not there."""
+"""Pixels: points beyond, from an edited table, say, are not drawn."""
 
 _OUTLINES = {
     "disc": "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0z",
@@ -50,7 +50,7 @@ _OUTLINES = {
 
 
 class Box(NamedTuple):
-    """A panel at its place in a picture: the rectangle between its axes [px]."""
+    """A panel and the rectangle between its axes in a picture [px]."""
 
     panel: Panel
     left: float
@@ -67,38 +67,45 @@ class Box(NamedTuple):
         return self.top + self.height
 
     def across(self, values: float | Array) -> Array:
-        """Return abscissae [px]."""
+        """Return the abscissae [px] of values on the x axis."""
         return self.left + self.width * self.panel.x.fraction(values)
 
     def down(self, values: float | Array) -> Array:
-        """Return ordinates [px], from the top of the picture."""
+        """Return the ordinates [px], from the top of the picture, of values on the y axis."""
         return self.foot - self.height * self.panel.y.fraction(values)
 
 
 def markers() -> Markup:
-    """Return the definitions of all markers, once for the page."""
+    """Return the definitions of all markers, which a page needs once."""
     paths = [tag("path", id=f"m-{name}", d=d) for name, d in _OUTLINES.items()]
     return tag("svg", tag("defs", *paths), width=0, height=0, class_="markers", aria_hidden="true")
 
 
 def drawn(figure: Figure) -> Markup:
-    """Draw a figure: its panels beside each other as room permits, or one picture if it is stacked or a single panel."""
+    """Draw a figure with its legend: panels side by side as room permits, or one picture if stacked or a single panel."""
     if figure.stacked or (len(figure.panels) == 1 and not figure.panels[0].caption):
         picture = _picture(figure.rows, figure.description, " alone")
         return join(picture, key_of(figure))
     width = max((panel.width for panel in figure.panels), default=0.0)
-    shown = [tag("figure", _caption(panel), _picture([[panel]], _described(figure, panel))) for panel in figure.panels]
-    # Pictures that the script reads values from take the keys themselves
+    shown = [
+        tag("figure", _caption(panel), _picture([[panel]], _description(figure, panel))) for panel in figure.panels
+    ]
+    # Panels from which the script reads values handle the arrow keys themselves
     keys = {} if any(panel.reads for panel in figure.panels) else {"tabindex": "0"}
     grid = tag(
-        "div", *shown, class_="panels", style=f"--w:{width:.0f}px", role="group", **keys,
+        "div",
+        *shown,
+        class_="panels",
+        style=f"--w:{width:.0f}px",
+        role="group",
+        **keys,
         aria_label=f"{figure.description}; arrow keys go through the values",
-    )  # fmt: skip
+    )
     return join(grid, key_of(figure))
 
 
 def sketch(figure: Figure) -> Markup:
-    """Draw a figure in its own size, with its caption if it has one."""
+    """Draw a figure of one panel in its own size, with its caption, if any."""
     (panel,) = figure.panels
     caption = tag("figcaption", panel.caption) if panel.caption else ""
     return tag("figure", caption, _picture([[panel]], figure.description), style=f"width:{panel.width:.0f}px")
@@ -109,12 +116,13 @@ def _caption(panel: Panel) -> Markup:
     return tag("figcaption", tag("span", panel.caption), note)
 
 
-def _described(figure: Figure, panel: Panel) -> str:
+def _description(figure: Figure, panel: Panel) -> str:
+    """Return the description of one panel of a figure."""
     return ", ".join(filter(None, (figure.description, panel.caption)))
 
 
 class Entry(NamedTuple):
-    """An entry of a legend: its words, its marks, and the data by which the script of the page hides what it stands for."""
+    """An entry of a legend: its words, its marks, and the attribute by which the page's script hides the marks' runs."""
 
     words: str
     marks: Sequence[Mark]
@@ -123,18 +131,18 @@ class Entry(NamedTuple):
 
 
 def key(legend: Sequence[Entry]) -> Markup:
-    """Return the legend of what each entry stands for; empty without entries."""
+    """Draw a legend; empty without entries."""
     entries = []
-    for one in legend:
-        drawn = map(_in_key, sorted(one.marks, key=lambda mark: isinstance(mark, Points)))
+    for entry in legend:
+        drawn = map(_in_key, sorted(entry.marks, key=lambda mark: isinstance(mark, Points)))
         sample = tag("svg", *drawn, class_="plot", viewBox="0 0 22 14", width=22, height=14, aria_hidden="true")
-        shown = {"data_of": one.kind or None, "data_value": one.value or None}
-        entries.append(tag("li", sample, tag("span", one.words), **shown))
+        words = tag("span", entry.words)
+        entries.append(tag("li", sample, words, data_of=entry.kind or None, data_value=entry.value or None))
     return tag("ul", *entries, class_="key") if entries else Markup("")
 
 
 def key_of(figure: Figure) -> Markup:
-    """Return the legend of a figure; empty without entries."""
+    """Draw the legend of a figure; empty without entries."""
     return key([*starmap(Entry, figure.legend.items())])
 
 
@@ -144,7 +152,7 @@ def _in_key(mark: Mark) -> Markup:
         return marker(mark.look, 11, 7)
     if isinstance(mark, Area | Span):
         return tag("rect", x=1, y=1, width=20, height=12, class_=classes(mark.look))
-    if mark.look.kind == "limit":  # with serifs, since a rigid base is a stroke, too
+    if mark.look.kind == "limit":  # with serifs, to differ from the stroke of a rigid base
         return tag("path", d="M11 0v14M7 0h8M7 14h8", class_=classes(mark.look))
     if isinstance(mark, Rule) and mark.axis == "x":
         return tag("line", x1=11, x2=11, y1=0, y2=14, class_=classes(mark.look))
@@ -152,10 +160,10 @@ def _in_key(mark: Mark) -> Markup:
 
 
 def timed(figure: Figure, whole: Axis) -> Markup:
-    """Draw panels against time below each other, as wide as there is room: curves are stretched, words keep their size.
+    """Draw panels against time below each other, as wide as the page: curves are stretched, words keep their size.
 
-    Beside the stretch of time that the panels show is the ``whole`` of it, to which the script changes: what only one of the two
-    views has is of class ``v0`` or ``v1``.
+    The script switches between the time span of the panels and the ``whole`` duration: elements of one view only have
+    class ``v0`` or ``v1``.
     """
     boxes, height = _boxes([[panel] for panel in figure.panels])
     views = list(dict.fromkeys([figure.panels[-1].x, whole]))
@@ -165,7 +173,7 @@ def timed(figure: Figure, whole: Axis) -> Markup:
 
 
 def _stretched(box: Box, views: Sequence[Axis]) -> Iterator[Markup]:
-    """Draw a panel as wide as the picture, in a picture of its own, and the words beside it."""
+    """Draw a panel as wide as the page in an SVG of its own, then its words, which are not stretched."""
     panel, rows = box.panel, box.panel.y.ticks()
     shown = Box(panel, 0.0, 0.0, panel.width, panel.height)
     ends = [shown.across(np.array([view.low, view.high])).tolist() for view in views]
@@ -181,9 +189,14 @@ def _stretched(box: Box, views: Sequence[Axis]) -> Iterator[Markup]:
     parts += [_draw(mark, inner) for mark in panel.marks if isinstance(mark, Rule)]
     sizes = [f"{first:.1f} 0 {last - first:.1f} {panel.height:g}" for first, last in ends]
     yield tag(
-        "svg", *parts, y=_short(box.top), height=_short(panel.height), viewBox=sizes[0], preserveAspectRatio="none",
+        "svg",
+        *parts,
+        y=_short(box.top),
+        height=_short(panel.height),
+        viewBox=sizes[0],
+        preserveAspectRatio="none",
         data_views="|".join(sizes) if len(sizes) > 1 else None,
-    )  # fmt: skip
+    )
     yield tag("path", d=f"M0 {box.top:.1f}V{box.foot:.1f}", class_="edge")
     yield tag("line", x1="0", x2="100%", y1=_short(box.foot), y2=_short(box.foot), class_="edge")
     yield text(-34.0, box.top - 9.0, *_lettered(panel.y.label), class_="q")
@@ -191,28 +204,31 @@ def _stretched(box: Box, views: Sequence[Axis]) -> Iterator[Markup]:
     for place, view in enumerate(views):
         words = [_beside(mark, view, box) for mark in panel.marks if isinstance(mark, Points | Words)]
         if panel.x.numbered:
-            words += [text(_share(view, at), box.foot + 13.0, tick, class_="m") for at, tick in view.ticks().items()]
+            words += [
+                text(_percentage(view, at), box.foot + 13.0, tick, class_="m") for at, tick in view.ticks().items()
+            ]
         yield tag("g", *words, class_=f"v{place}")
     if panel.x.label:
         yield text("50%", box.foot + 29.0, *_lettered(panel.x.label), class_="m q")
 
 
-def _share(x: Axis, at: float) -> str:
-    return f"{100.0 * float(x.fraction(at)):.2f}%"
+def _percentage(x: Axis, value: float) -> str:
+    """Return the position of ``value`` along an axis as a share of the width: "25.00%"."""
+    return f"{100.0 * float(x.fraction(value)):.2f}%"
 
 
 def _beside(mark: Points | Words, view: Axis, box: Box) -> Markup:
-    """Draw a marker, or words, at its share of the width; nothing outside the view."""
+    """Draw the first marker of points, or words, at its share of the width; nothing outside the view."""
     x, y = (float(mark.x), float(mark.y)) if isinstance(mark, Words) else (float(mark.x[0]), float(mark.y[0]))
     if not view.low <= x <= view.high:
         return Markup("")
     if isinstance(mark, Points):
-        return marker(mark.look, _share(view, x), float(box.down(y)))
-    return _words(mark, _share(view, x), float(box.down(y)))
+        return marker(mark.look, _percentage(view, x), float(box.down(y)))
+    return _words(mark, _percentage(view, x), float(box.down(y)))
 
 
 def _boxes(rows: Sequence[Sequence[Panel]]) -> tuple[list[Box], float]:
-    """Return the panels at their places in a picture, and its height."""
+    """Lay rows of panels out in a picture; return their boxes and its height [px]."""
     boxes, height, width = [], 0.0, max(sum(panel.width for panel in row) for row in rows)
     left = max(_room_left(row[0]) for row in rows)
     if not rows[0][0].framed:
@@ -226,7 +242,7 @@ def _boxes(rows: Sequence[Sequence[Panel]]) -> tuple[list[Box], float]:
 
 
 def _picture(rows: Sequence[Sequence[Panel]], description: str, more: str = "") -> Markup:
-    """Draw rows of panels as one picture."""
+    """Draw rows of panels as one picture; ``more`` adds to its classes."""
     boxes, height = _boxes(rows)
     content = [part for box in boxes for part in _panel(box, len(rows) > 1)]
     marks = [mark for box in boxes for mark in box.panel.marks]
@@ -237,17 +253,18 @@ def _picture(rows: Sequence[Sequence[Panel]], description: str, more: str = "") 
 
 
 def svg(width: float, height: float, *content: object, description: str, class_: str = "plot") -> Markup:
-    """Return a picture of that size [px]; ``description`` is for those who cannot see it."""
+    """Return an SVG element of this size [px]; screen readers read its ``description``."""
     return tag("svg", *content, class_=class_, role="img", aria_label=description, viewBox=f"0 0 {width:g} {height:g}")
 
 
 def _room_left(panel: Panel) -> float:
-    """Return the room for the numbers of the ordinate."""
+    """Return the width [px] of the numbers beside the ordinate."""
     longest = max(map(len, panel.y.ticks().values()), default=0) if panel.y.numbered else 0
     return 10.0 + 6.6 * max(longest, 2)
 
 
 def _panel(box: Box, captioned: bool) -> Iterator[Markup]:
+    """Draw the marks of a panel, areas behind its frame, the others before it, and its labels."""
     panel = box.panel
     behind = [mark for mark in panel.marks if isinstance(mark, Span | Area)]
     named = [mark for mark in panel.marks if isinstance(mark, Polyline) and mark.name and panel.reads]
@@ -268,7 +285,7 @@ def _panel(box: Box, captioned: bool) -> Iterator[Markup]:
 
 
 def _frame(box: Box) -> Markup:
-    """Draw the grid and the numbers beside it; no vertical lines at names."""
+    """Draw axes, grid and numbers; an axis of names has no grid lines."""
     x, y = box.panel.x, box.panel.y
     columns, rows = x.ticks(), y.ticks()
     lines = "".join(
@@ -283,24 +300,28 @@ def _frame(box: Box) -> Markup:
         parts += [text(box.left - 4, float(box.down(at)) + 4, words, class_="e") for at, words in rows.items()]
     if x.numbered:
         every = math.ceil(7.0 * max(map(len, columns.values()), default=1) * len(columns) / box.width) if x.names else 1
-        shown = list(columns.items())[::every]  # or names would overlap
+        shown = list(columns.items())[::every]  # every one would make names overlap
         parts += [text(float(box.across(at)), box.foot + 13, words, class_="m") for at, words in shown]
     return join(*parts)
 
 
 def _readable(box: Box, lines: Sequence[Markup]) -> Markup:
-    """Group lines so that the script can read values back."""
+    """Group lines with the axes' data, by which the script converts pixels to values."""
     x, y = box.panel.x, box.panel.y
     return tag(
-        "g", *lines, class_="axes", data_kind=box.panel.reads,
+        "g",
+        *lines,
+        class_="axes",
+        data_kind=box.panel.reads,
         data_box=f"{box.left:g} {box.top:g} {box.width:g} {box.height:g}",
-        data_x=f"{x.low:.6g} {x.high:.6g}", data_y=f"{y.low:.6g} {y.high:.6g}",
+        data_x=f"{x.low:.6g} {x.high:.6g}",
+        data_y=f"{y.low:.6g} {y.high:.6g}",
         data_names=f"{x.plain}|{y.plain}" if box.panel.reads == "plane" else None,
-    )  # fmt: skip
+    )
 
 
 def _lettered(label: str) -> Iterator[Markup]:
-    """Yield the parts of a label, with its subscripts lowered."""
+    """Yield the parts of a label, subscripts lowered."""
     raise_back = False
     for words, low in subscripts(label):
         if low:
@@ -311,7 +332,7 @@ def _lettered(label: str) -> Iterator[Markup]:
 
 
 def classes(look: Look) -> str:
-    """Return the classes of the style sheet that draw a look."""
+    """Return the CSS classes of a look."""
     colour = f"s{look.colour}" if look.colour else "ink" if look.kind in ("", "level", "filled") else ""
     return " ".join(filter(None, (look.kind, colour, f"d{look.dash}" * bool(look.dash), "open" * look.open)))
 
@@ -330,14 +351,20 @@ def marker(
         return text(x, y + 4, "?", tooltip, class_="m none")
     opacity = None if shade is None else f"{0.15 + 0.85 * shade:.2f}"
     return tag(
-        "use", tooltip, href=f"#m-{look.shape}", x=_short(x), y=_short(y), class_=classes(look), fill_opacity=opacity,
+        "use",
+        tooltip,
+        href=f"#m-{look.shape}",
+        x=_short(x),
+        y=_short(y),
+        class_=classes(look),
+        fill_opacity=opacity,
         data_case=case,
-    )  # fmt: skip
+    )
 
 
 @singledispatch
-def _draw(mark: Any, box: Box) -> Markup:
-    """Draw a mark."""
+def _draw(mark: object, box: Box) -> Markup:
+    """Draw a mark of a figure in its panel."""
     raise TypeError(f"{type(mark).__name__}: no mark of a figure")
 
 
@@ -345,7 +372,7 @@ def _draw(mark: Any, box: Box) -> Markup:
 def _(mark: Polyline, box: Box) -> Markup:
     x, y = mark.x, mark.y
     within = (box.panel.x.low <= x) & (x <= box.panel.x.high) & (box.panel.y.low <= y) & (y <= box.panel.y.high)
-    inside = np.where(within, y, np.nan)  # a pier that fell leaves the picture
+    inside = np.where(within, y, np.nan)  # the curve of an overturning pier leaves the panel
     return curve(box.across(x), box.down(inside), classes(mark.look), mark.name or None, mark.title)
 
 
@@ -364,6 +391,7 @@ def _(mark: Points, box: Box) -> Markup:
 
 
 def _error_bars(mark: Points, box: Box) -> Iterator[Markup]:
+    """Draw the positive errors of points as bars, clipped to the axis."""
     axis, errors = box.panel.y, np.zeros(len(mark.x)) if mark.error is None else mark.error
     for x, y, error in zip(mark.x, mark.y, errors, strict=True):
         if error > 0.0:
@@ -419,7 +447,7 @@ def curve(x: Array, y: Array, class_: str, name: str | None = None, title: str =
 
 
 def _relative(x: Array, y: Array) -> str:
-    """Return points as a path of whole steps, without repeated points and those on a straight line between two others."""
+    """Return SVG path data in whole steps, without points that repeat or lie on a line between two others."""
     drawn = (np.abs(x) < _FAR) & (np.abs(y) < _FAR)
     points = np.rint(FINE * np.column_stack([x[drawn], y[drawn]])).astype(np.int64)
     begins = (drawn & ~np.concatenate(([False], drawn[:-1])))[drawn]
@@ -432,10 +460,10 @@ def _relative(x: Array, y: Array) -> str:
 
 
 def _bends(points: npt.NDArray[np.int64], begins: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
-    """Return the places of the points without which the drawing would change by more than a step (Ramer, Douglas, Peucker).
+    """Return the indices of the points to keep, so that no curve moves by more than a step (Ramer, Douglas, Peucker).
 
-    A new piece begins at some. Turning points are kept, so that extremes are exact; between them the point farthest from its
-    chord, until none is far.
+    ``points`` has shape (n, 2); ``begins``, shape (n,), is True where a new curve starts. Turning points are kept, so that
+    extremes are exact; between them, points are added where they lie farthest from their chord, until none is over a step away.
     """
     places = np.flatnonzero(
         begins | np.concatenate(([False], np.any(np.diff(points, axis=0) != 0, axis=1)))[: len(points)]
@@ -444,7 +472,9 @@ def _bends(points: npt.NDArray[np.int64], begins: npt.NDArray[np.bool_]) -> npt.
     kept = begins | np.concatenate((begins[1:], [True]))[: len(points)]
     ways = np.sign(np.diff(points, axis=0))
     known = np.where((ways != 0) | begins[:-1, None], np.arange(len(ways))[:, None], 0)
-    ways = np.take_along_axis(ways, np.maximum.accumulate(known, axis=0), axis=0)  # a level stretch goes on as before
+    ways = np.take_along_axis(
+        ways, np.maximum.accumulate(known, axis=0), axis=0
+    )  # a level stretch keeps the direction before it
     kept[1:-1] |= np.any(ways[1:] * ways[:-1] < 0, axis=1)
     (x, y), inner = np.ascontiguousarray(points.T), np.flatnonzero(~kept)
     while len(inner):

@@ -1,36 +1,37 @@
 """Tables of the page."""
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import groupby
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rockbatch.reporting.markup import Markup, escape, join, number, tag
+from rockbatch.results.labelled import Item
 
 WHOLE = ".10g"  # all digits as given
 MOST_ROWS = 1000
 LEAST_COMMON = 3
-"""Rows from which on a column that says the same in all of them stands above the table."""
+"""A constant column is written above the table if the table has more rows than this."""
 MOST_OPEN = 60
-"""Rows of the longest table that is shown unfolded; longer ones are folded, and not printed."""
+"""Most rows of a table that is not folded; folded ones are not printed."""
 
 
 class Head(NamedTuple):
-    """Head of a column: its text, the format of its numbers, an explanation, and the head over several columns.
+    """Head of a column: its text, the format of its numbers, a tooltip, and a head over several columns.
 
-    ``value`` is the key of its values in the items of :func:`listed`, or a function of such an item. By a column with
-    ``filter`` the script of the page chooses rows.
+    ``value`` is the key of its cells in the items of :func:`listed`, or a function of an item. The page's script lets
+    readers select rows by a column with ``filter``.
     """
 
     text: str
     form: str = WHOLE
     note: str | None = None
     group: str = ""
-    value: str | Callable[[Any], object] = ""
+    value: str | Callable[[Item], object] = ""
     filter: bool = False
 
-    def value_in(self, item: Mapping[str, Any]) -> object:
-        """Return the value of an item, None without one."""
+    def value_in(self, item: Item) -> object:
+        """Return the cell of an item; None if the item lacks the key."""
         return item.get(self.value) if isinstance(self.value, str) else self.value(item)
 
 
@@ -44,13 +45,11 @@ def table(
     worst_of: int | None = None,
     open_: bool = False,
 ) -> Markup:
-    """Return a table in a container that scrolls if it is too wide. Columns without a value are left out.
+    """Return a table in a container that scrolls if too wide; columns without a value are left out.
 
-    Of a ``sortable`` one, which has many rows, columns that say the same in all of them stand in a line above it.
-    ``prose``: its cells hold text of several lines. ``worst_of`` is the number of rows of which these are the worst.
-
-    Of more than :data:`MOST_ROWS` rows the first are shown, and a sentence says so; more than :data:`MOST_OPEN` are folded unless
-    the table is ``open_``.
+    Constant columns of a ``sortable`` table stand in a line above it. ``prose`` cells hold several lines of text.
+    ``worst_of`` is the number of rows of which these are the worst. Only the first :data:`MOST_ROWS` rows are shown, with a
+    sentence that says so; tables of more than :data:`MOST_OPEN` are folded unless ``open_``.
     """
     whole = list(rows)
     rows, total = whole[:MOST_ROWS], worst_of or len(whole)
@@ -60,28 +59,15 @@ def table(
     numeric = {i for i in used if heads[i].form != WHOLE or any(isinstance(row[i], float | int) for row in rows)}
 
     classes = {i: "n" if i in numeric else None for i in used}
-    heading = (
-        tag(
-            "th",
-            _with_unit(heads[i].text),
-            class_=classes[i],
-            scope="col",
-            title=heads[i].note,
-            data_filter=heads[i].filter,
-        )
-        for i in used
-    )
-    top = [tag("tr", *heading)]
+    top = [tag("tr", *(_heading(heads[i], classes[i]) for i in used))]
     if any(heads[i].group for i in used):
         spans = [(spanning, len(list(group))) for spanning, group in groupby(used, key=lambda i: heads[i].group)]
         spanning = (tag("th", label, scope="colgroup" if label else None, colspan=wide) for label, wide in spans)
         top.insert(0, tag("tr", *spanning, class_="over"))
-    columns = [
-        _cells(
-            "td" if i else "th", [row[i] for row in rows], heads[i].form, class_=classes[i], scope=None if i else "row"
-        )
-        for i in used
-    ]
+    columns = []
+    for i in used:
+        kind, scope = ("td", None) if i else ("th", "row")
+        columns.append(_cells(kind, [row[i] for row in rows], heads[i].form, class_=classes[i], scope=scope))
     body = [tag("tr", *cells) for cells in zip(*columns, strict=True)]
     drawn = tag("table", tag("thead", *top), tag("tbody", *body), class_="sortable" if sortable else None)
     wide = tag(
@@ -96,27 +82,41 @@ def table(
     )
 
 
+def _heading(head: Head, class_: str | None) -> Markup:
+    text = _with_unit(head.text)
+    return tag("th", text, class_=class_, scope="col", title=head.note, data_filter=head.filter)
+
+
 def _with_unit(text: str) -> Markup:
-    """Return the text of a head, no line of which ends within its unit."""
+    """Return the text of a head as HTML, without line breaks inside its unit."""
     name, bracket, unit = escape(text).rpartition(" [")
     return Markup(f'{name} <span class="unit">[{unit}</span>') if bracket else Markup(unit)
 
 
 def _common(heads: Sequence[Head], values: Sequence[object], complete: bool) -> Markup:
-    """Return the line on columns that say the same in every row, of all if the table is ``complete``."""
-    words = [join(head.text, " ", value if isinstance(value, Markup) else number(value, head.form))
-             for head, value in zip(heads, values, strict=True)]  # fmt: skip
+    """Return a line with the values of constant columns; ``complete`` if the table shows every row."""
+    words = []
+    for head, value in zip(heads, values, strict=True):
+        words.append(join(head.text, " ", value if isinstance(value, Markup) else number(value, head.form)))
     rows = "In every row: " if complete else "In each of these rows: "
     return tag("p", rows, join(*words, between="; "), ".", class_="legend")
 
 
-def listed(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], **options: Any) -> Markup:
-    """Return a :func:`table` with a row for each item; ``head.value`` gives its cell under each head."""
-    return table(heads, ([head.value_in(item) for head in heads] for item in items), **options)
+def listed(
+    heads: Sequence[Head],
+    items: Iterable[Item],
+    *,
+    sortable: bool = False,
+    prose: bool = False,
+    name: str | None = None,
+) -> Markup:
+    """Return a :func:`table` with a row for each item, its cells given by ``head.value``."""
+    rows = ([head.value_in(item) for head in heads] for item in items)
+    return table(heads, rows, sortable=sortable, prose=prose, name=name)
 
 
 def _cells(kind: str, values: Iterable[object], form: str, **attributes: object) -> list[Markup]:
-    """Return the cells of a column, its numbers with their decimal points below each other."""
+    """Return the cells of a column as HTML, numbers aligned on the decimal point."""
     start, end = tag(kind, _HERE, **attributes).split(_HERE)
     shown = [_text(value, form) for value in values]
     if form.endswith("g"):  # decimals that differ from row to row
@@ -125,21 +125,19 @@ def _cells(kind: str, values: Iterable[object], form: str, **attributes: object)
 
 
 def _text(value: object, form: str) -> str:
-    """Return a value as HTML; a number has nothing to escape, and there are many."""
+    """Return a value as HTML, formatted by ``form``; numbers, which are many, need no escaping."""
     if isinstance(value, Markup):
         return value
     return number(value, form) if isinstance(value, float) else escape(number(value, form))
 
 
 def _aligned(values: Sequence[str]) -> list[str]:
-    """Return numbers with as much space behind them as the decimals of others take; words stay."""
+    """Pad numbers with spaces as wide as the decimals they lack; words stay as they are."""
     tails = [len(match[1] or "") if (match := _DECIMALS.fullmatch(value)) else None for value in values]
     most = max((tail for tail in tails if tail is not None), default=0)
-    spaces = ("\u2008" + "\u2007" * (most - 1), "\u2007")  # as wide as a point and digits, as wide as a digit
-    return [
-        value if tail is None or tail == most else value + (spaces[0] if tail == 0 else spaces[1] * (most - tail))
-        for value, tail in zip(values, tails, strict=True)
-    ]
+    digit, no_decimals = "\u2007", "\u2008" + "\u2007" * (most - 1)  # as wide as a digit, as a point and all decimals
+    padding = [no_decimals, *(digit * (most - tail) for tail in range(1, most)), ""] if most else [""]
+    return [value if tail is None else value + padding[tail] for value, tail in zip(values, tails, strict=True)]
 
 
 _DECIMALS = re.compile(r"-?[\d,]+(\.\d+)?")
@@ -147,19 +145,19 @@ _HERE = Markup("\0")
 
 
 def shown_of(shown: int, all_: int, chosen_by: str = "first") -> Markup:
-    """Return the sentence that not all rows are shown; empty if they are."""
+    """Return a sentence that only ``shown`` of ``all_`` rows are shown; empty if all are."""
     if shown >= all_:
         return Markup("")
     return tag("p", f"The {chosen_by} {shown:,} of {all_:,} rows are shown.", class_="muted")
 
 
 def alarm(words: str) -> Markup:
-    """Mark words that must not be missed: bold as well as coloured."""
+    """Return words in bold and colour, so that they are not missed."""
     return tag("span", words, class_="alarm")
 
 
 def sub(base: str, index: str, remainder: str = "") -> Markup:
-    """Return a symbol with its subscript: θ_max."""
+    """Return a symbol with a subscript as HTML, followed by ``remainder``: θ_max/α."""
     return join(base, tag("sub", index), remainder)
 
 

@@ -1,4 +1,4 @@
-"""Templates of the pages and their sections: HTML with values in it, all of which are escaped but :class:`Markup`."""
+"""Render templates of pages and sections; every value is escaped except :class:`Markup`."""
 
 import base64
 import hashlib
@@ -24,9 +24,10 @@ TOP = HERE.parent
 
 
 class Section(NamedTuple):
-    """A part of the page: its heading, its anchor (the ``id`` that links go to), and what stands under the heading.
+    """A section of the page: its heading, its anchor (the ``id`` that links go to) and its body.
 
-    A ``folded`` one is unfolded by its heading, and by a link to its anchor. ``badge`` stands beside its name in the list.
+    A ``folded`` section unfolds when a reader clicks its heading or a link to it. ``badge`` is a number beside its entry in
+    the list of sections.
     """
 
     heading: str
@@ -41,21 +42,28 @@ def document(
 ) -> str:
     """Return a page as HTML; sections without content are left out.
 
-    ``about`` stands below the title. On paper each page has the title and ``version``, that of the rockbatch that made the
-    results, and sections that are folded are left out, unless the page is to be printed ``whole``: then none is.
+    ``about`` stands below the title. Printed pages bear the title and ``version``, that of the rockbatch that computed the
+    results. Folded sections are not printed; with ``whole`` none is folded.
     """
     style, script = ((HERE / name).read_text(encoding="utf-8") for name in ("style.css", "script.js"))
     return render(
-        "reporting/page.html", title=title, about=about, sections=[section for section in sections if section.content],
-        version=f"rockbatch {version}", digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
-        markers=markers(), style=Markup(style), script=Markup(script), whole=whole,
-    )  # fmt: skip
+        "reporting/page.html",
+        title=title,
+        about=about,
+        sections=[section for section in sections if section.content],
+        version=f"rockbatch {version}",
+        digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
+        markers=markers(),
+        style=Markup(style),
+        script=Markup(script),
+        whole=whole,
+    )
 
 
 def render(template: str, **values: object) -> Markup:
-    """Return a template of this package as HTML; ``template`` is its path in rockbatch.
+    """Render ``template``, a path in rockbatch, with ``values``.
 
-    Raises ``KeyError`` if a value lacks what the template shows.
+    Raises ``KeyError`` if a value that the template uses is missing.
     """
     from jinja2 import UndefinedError
 
@@ -69,17 +77,20 @@ def render(template: str, **values: object) -> Markup:
 def _environment() -> "Environment":
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    made = Environment(
-        loader=FileSystemLoader(TOP), autoescape=True, undefined=StrictUndefined,
+    environment = Environment(
+        loader=FileSystemLoader(TOP),
+        autoescape=True,
+        undefined=StrictUndefined,
         finalize=lambda value: value if hasattr(value, "__html__") else escape(value),
-        trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
-    made.filters |= {"f": number, "css": css_string, "shell": shlex.join}
-    made.globals |= {"counted": counted, "THETA": THETA}
-    return made
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"f": number, "css": css_string, "shell": shlex.join}
+    environment.globals |= {"counted": counted, "THETA": THETA}
+    return environment
 
 
 def css_string(text: str) -> Markup:
-    """Return ``text`` as a string of a style sheet, which nothing in it can end."""
+    """Return ``text`` as a quoted CSS string, escaped so that it cannot end early."""
     written = (char if char.isalnum() or char in " .,()–" else f"\\{ord(char):x} " for char in legible(text))
     return Markup(f'"{"".join(written)}"')

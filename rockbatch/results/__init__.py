@@ -1,1 +1,1 @@
-"""Finished results: one outcome, its histories, tables and files, opened again. Never loads the compiler."""
+"""Finished results: write and read their tables, histories and run.json. Never loads the compiler."""

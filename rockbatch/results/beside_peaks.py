@@ -1,10 +1,10 @@
-"""Tables beside peaks.csv: of each run that was simulated, by the same names, and peaks.csv again for spreadsheets."""
+"""Tables beside peaks.csv with rows for each simulated run, and a copy of peaks.csv for spreadsheets."""
 
 import csv
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import csv_text, opened_text, read_table, replacing, write_whole
@@ -14,29 +14,30 @@ from rockbatch.pier import Pier
 from rockbatch.quantities.catalogue import TEXTS
 from rockbatch.quantities.rows import as_in_peaks, simulated, with_case
 from rockbatch.results.columns import PEAKS
+from rockbatch.results.labelled import Row
 from rockbatch.study import Study
 
 NAMING = ("record", "case", "polarity", "scale")
-"""Columns that name a run, with those of the varied keys."""
+"""Columns that identify a run, together with the varied keys."""
 
 SEMICOLONS = "peaks_semicolon.csv"
-"""peaks.csv as spreadsheets open it where numbers have a decimal comma."""
+"""peaks.csv for Excel with decimal commas."""
 
 LARGEST = "9,99E+307"
-"""Written for infinity, as the largest round number with which Excel computes."""
+"""Stands for infinity: the largest round number that Excel accepts."""
 
 
 class SimulatedRun(NamedTuple):
-    """A run that was simulated: its names and its peak as in peaks.csv, its motion before ``scale``, and its pier."""
+    """A simulated run: its identity and peak as in peaks.csv, its motion before ``scale`` is applied, and its pier."""
 
-    row: dict[str, Any]
+    row: Row
     motion: Motion
     scale: float
     pier: Pier
 
 
 def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[SimulatedRun]:
-    """Yield the runs of ``peaks``, without mirror images."""
+    """Yield the simulated runs of ``peaks``, without mirror images."""
     along = {motion.name: motion for motion in motions}
     cases = {case_key(case.name, case.columns, study.varied): case for case in study.cases}
     both = any(case.across_of for case in study.cases)
@@ -50,8 +51,8 @@ def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iter
         yield SimulatedRun(row, motion, float(row["scale"]), case.pier)
 
 
-def write(path: Path, table: Iterable[Mapping[str, Any]]) -> Path:
-    """Write rows, which have the same names, as a CSV; whole or not at all."""
+def write(path: Path, table: Iterable[Mapping[str, object]]) -> Path:
+    """Write rows with the same keys to a CSV, completely or not at all; return its path."""
     rows = list(table)
     write_whole(path, csv_text(list(rows[0]) if rows else list(NAMING), rows))
     return path
@@ -60,23 +61,20 @@ def write(path: Path, table: Iterable[Mapping[str, Any]]) -> Path:
 def read_beside(
     path: Path, varied: Sequence[str], columns: Iterable[str], texts: Collection[str] = ()
 ) -> "pd.DataFrame":
-    """Return such a table of a study that varies these keys; its ``columns``, but for ``texts``, are numbers.
-
-    Raises ``InputError`` if it is not as it was written.
-    """
+    """Read a table beside peaks.csv; raise ``InputError`` if a column is missing or, except for ``texts``, not numeric."""
     table = read_table(path)
     wrong = [f"column {name} is missing" for name in (*NAMING, *varied, *columns) if name not in table]
     numbers = [name for name in columns if name in table and name not in texts]
     wrong += [f"column {name} has texts" for name in numbers if not pd.api.types.is_numeric_dtype(table[name])]
     if wrong:
-        raise InputError(f"{path}: {wrong[0]}; it was changed since: start `rockbatch run` again")
+        raise InputError(f"{path}: {wrong[0]}: the file was changed; start `rockbatch run` again")
     return table
 
 
 def write_semicolons(directory: Path) -> Path:
-    """Write peaks.csv again with semicolons between cells and decimal commas.
+    """Write a copy of peaks.csv with semicolons and decimal commas; return its path.
 
-    The file begins with a byte order mark, by which Excel recognises UTF-8. Texts stay as they are.
+    The file begins with a byte order mark, by which Excel recognises UTF-8. Texts are unchanged.
     """
     path = directory / SEMICOLONS
     with (
@@ -88,18 +86,20 @@ def write_semicolons(directory: Path) -> Path:
         head = next(reader)
         writer.writerow(head)
         for row in reader:
-            writer.writerow([cell if name in TEXTS else _comma(cell) for name, cell in zip(head, row, strict=True)])
+            writer.writerow(
+                [cell if name in TEXTS else _with_comma(cell) for name, cell in zip(head, row, strict=True)]
+            )
     return path
 
 
-def _comma(cell: str) -> str:
-    """Return a number with a decimal comma; words, of a varied key, as they are."""
+def _with_comma(cell: str) -> str:
+    """Return a number with a decimal comma, infinity as :data:`LARGEST`, and words of a varied key unchanged."""
     try:
         return LARGEST if float(cell) == math.inf else cell.replace(".", ",")
     except ValueError:
         return cell
 
 
-def case_key(case: str, columns: Mapping[str, Any], varied: Sequence[str]) -> tuple[object, ...]:
-    """Return the key that distinguishes a case."""
+def case_key(case: str, columns: Mapping[str, object], varied: Sequence[str]) -> tuple[object, ...]:
+    """Return the key of a case: its name and its varied values as peaks.csv has them."""
     return (case, *(as_in_peaks(columns.get(name)) for name in varied))

@@ -3,7 +3,6 @@
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from rockbatch.checks.judging import judge
 from rockbatch.checks.rule_choices import implausible
@@ -17,6 +16,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.rows import with_case
 from rockbatch.results.columns import given_table
+from rockbatch.results.labelled import Item
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.run_json import INFO, describe_case
 from rockbatch.results.sections import SECTIONS, read_sections
@@ -38,24 +38,24 @@ def check(
     Parameters
     ----------
     results : path, opened results or DataFrame
-        A folder that ``rockbatch run`` has written, what :func:`rockbatch.open_results` made of it, or the table that
-        :func:`rockbatch.run` returned, or some rows of it, also as ``pandas.read_csv`` reads peaks.csv. A record of which a
-        table has no row is none of the suite.
+        A folder written by ``rockbatch run``, the results that :func:`rockbatch.open_results` returned, the table that
+        :func:`rockbatch.run` returned, some of its rows, or peaks.csv as read by ``pandas.read_csv``. Records without a row
+        in a table are not part of the suite.
     rules : path or iterable of Rule, optional
         A TOML file with [[check]] tables, or the rules themselves; by default the study's own.
     study : path or Study, optional
-        The study that a table comes from; folders know theirs.
+        The study that produced a table; folders contain theirs.
 
     Returns
     -------
     DataFrame
-        The rows of checks.csv, one for each case, scale and rule: see :class:`rockbatch.checks.Verdict`. Of a folder, first that
-        of the suite, without a case, if the study fits it to a target spectrum; a table alone has no spectra.
+        The rows of checks.csv, one for each case, scale and rule: see :class:`rockbatch.checks.Verdict`. For a folder whose study
+        fits the suite to a target spectrum, the first row judges the suite and has no case.
 
     Raises
     ------
     InputError
-        For mistakes in the rules, with their lines, for rules that do not fit the results, and for a table that lacks a column.
+        For mistakes in the rules, with line numbers, for rules that do not apply to the results, and for missing columns.
 
     Examples
     --------
@@ -92,14 +92,14 @@ def verdicts(
         of_suite = suite_verdicts(saved.info, with_case(table)["scale"])
     else:
         if study is None:
-            raise InputError("check: a table does not name its piers; give study = the study it was run from")
+            raise InputError('check: a table alone lacks its piers; pass its study: study = "pier.toml"')
         study = study if isinstance(study, Study) else load_study(study)
         own_rules, count = study.checks, study.count
         table, cases = given_table(results, study.varied), [describe_case(case) for case in study.cases]
     rules = own_rules if given_rules is None else given_rules
     if not (rules or of_suite):
-        raise InputError("no checks: the study has no [[check]]; add some, or give a file of rules")
-    if given_rules is not None:  # the study's own are held against its piers when it is read
+        raise InputError("no checks: the study has no [[check]]; add some, or pass a file of rules")
+    if given_rules is not None:  # the study's own rules are checked for plausibility when it is read
         wrong = [f"check {shown(rule.name)}: {problem}" for rule in given_rules for problem in implausible(rule, cases)]
         if wrong:
             raise InputError(*wrong)
@@ -107,6 +107,7 @@ def verdicts(
 
 
 def _rules_of(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:
+    """Load rules from a file, or check that they are rules; None for None."""
     if rules is None:
         return None
     if isinstance(rules, str | os.PathLike):
@@ -117,13 +118,13 @@ def _rules_of(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:
     raise InputError("rules: must be a file with [[check]] tables, or a list of Rule")
 
 
-def _own_checks(study: Mapping[str, Any], *, judged: bool) -> Checks:
-    """Return the checks of a study by its text and that of its file of checks, as in run.json; sound ones if ``judged``."""
+def _own_checks(study: Item, *, judged: bool) -> Checks:
+    """Parse the checks in run.json's copies of a study and its file of rules; raise ``InputError`` for mistakes if ``judged``."""
 
     def opened(path: Path) -> TomlFile:
         for check in study.get("checks", ()):
             return TomlFile.parse(Path(check["path"]), check["text"])
-        raise InputError(f"{INFO} does not keep {path}; run the study again, or give the file of rules")
+        raise InputError(f"{INFO} has no copy of {path}; run the study again, or pass the file of rules")
 
     file = TomlFile.parse(Path(study["path"]), study["text"])
     checks = read_checks(file, opened=opened)

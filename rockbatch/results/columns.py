@@ -1,6 +1,6 @@
-"""peaks.csv: its rows from finished runs, and its table with the types of its columns.
+"""peaks.csv: make its columns from finished runs, and give tables the right types.
 
-What its columns are is said by :mod:`rockbatch.quantities.catalogue`.
+:mod:`rockbatch.quantities.catalogue` defines the columns.
 """
 
 import math
@@ -20,15 +20,15 @@ from rockbatch.study import Case, Study
 
 PEAKS = "peaks.csv"
 JOURNAL = f"{PEAKS}.part"
-"""Finished runs of a table that is under way."""
+"""Finished runs of an unfinished table."""
 
 STATUSES = ("ok", "overturned", "flight", "failed")
 
 
 class StudyRun(NamedTuple):
-    """A run of a study: a record, what it is scaled and turned by, and a case; with its outcome once it is finished.
+    """A run of a study: record, polarity, scale and case, with its outcome once it is finished.
 
-    ``mirror_of`` is the polarity of the run whose mirror image it is, if that is in the same table.
+    ``mirror_of`` is the polarity of the simulated run of which this run is the mirror image; None if it is simulated itself.
     """
 
     record: Motion
@@ -40,12 +40,12 @@ class StudyRun(NamedTuple):
 
     @property
     def pier(self) -> Pier:
-        """The pier of its case."""
+        """The case's pier."""
         return self.case.pier
 
     @property
     def pga(self) -> float:
-        """Peak horizontal acceleration of its motion [m/s²], to the bit that of the scaled record."""
+        """Peak horizontal acceleration [m/s²], bitwise equal to that of the scaled record."""
         return self.record.pga * self.scale
 
 
@@ -56,9 +56,9 @@ _read_fields = attrgetter(*_FIELDS.values())
 
 
 def cells(runs: Sequence[StudyRun], requested: Container[str] = COLUMNS) -> dict[str, list[Any]]:
-    """Return the columns of peaks.csv of finished ``runs``, each shape (n,): their names, and their outcomes over α.
+    """Return the columns of peaks.csv of n finished ``runs``, lists of length n; rotations over α, None if not applicable.
 
-    Numbers that functions give are only those of ``requested`` columns. None where a column does not apply.
+    Columns computed by functions are left out unless ``requested``.
     """
     table: dict[str, list[Any]] = {
         "record": [run.record.name for run in runs],
@@ -80,61 +80,58 @@ def cells(runs: Sequence[StudyRun], requested: Container[str] = COLUMNS) -> dict
     return table
 
 
-def row(run: StudyRun) -> dict[str, Any]:
-    """Return the row of peaks.csv of a finished run."""
+def row(run: StudyRun) -> dict[str, object]:
+    """Return the row of a finished run in peaks.csv."""
     return {name: values[0] for name, values in cells([run]).items()}
 
 
-def unusable_rows(motions: MotionSet) -> list[dict[str, Any]]:
-    """Return a row for each file that could not be used, with the reason."""
-    return [
-        {
-            "record": file.name,
-            "status": "failed",
-            "reason": f"{file.source}: {file.reason}",
-            "failure": Failure.UNUSABLE.value,
-        }
-        for file in motions.unusable
-    ]
+def unusable_rows(motions: MotionSet) -> list[dict[str, object]]:
+    """Return a row of peaks.csv, with the reason, for each file that could not be used."""
+    status: dict[str, object] = {"status": "failed", "failure": Failure.UNUSABLE.value}
+    return [status | {"record": file.name, "reason": f"{file.source}: {file.reason}"} for file in motions.unusable]
 
 
 def columns(study: Study) -> list[str]:
-    """Return the columns of the table of ``study``: those that stay, its varied keys, more, and what it asks for."""
+    """Return the column names of ``study``'s peaks.csv in order: fixed, varied, trailing, then requested ones."""
     requested = [column for column in OPTIONAL if column.requested_by(study)]
     return [*names(FIXED), *study.varied, *names(TRAILING), *names(requested)]
 
 
 def units(study: Study) -> dict[str, str]:
-    """Return the units of the numbers in the table of ``study``, but for its varied keys; "1" is none."""
+    """Return the units of the numeric columns of ``study``'s peaks.csv except varied keys; "1" for dimensionless."""
     described = (COLUMNS[name] for name in columns(study) if name in COLUMNS)
     return {column.name: column.unit for column in described if column.kind != "text"}
 
 
-def as_table(rows: Iterable[Mapping[str, Any]], study: Study) -> "pd.DataFrame":
-    """Return the rows of peaks.csv as a DataFrame: NaN if a number does not apply, counts that can be missing."""
+def as_table(rows: Iterable[Mapping[str, object]], study: Study) -> "pd.DataFrame":
+    """Return rows of peaks.csv as a DataFrame: "" for missing texts, NaN for numbers, <NA> for counts."""
     return _typed(pd.DataFrame(list(rows), columns=columns(study)), study.varied)
 
 
-def read_cells(cells: Mapping[str, str]) -> dict[str, Any]:
-    """Return the cells of a row as numbers if they are numbers, None if empty."""
-    return {
-        name: text if name in TEXTS else None if text == "" else int(text) if name in COUNTS else _number(text)
-        for name, text in cells.items()
-    }
+def read_cells(cells: Mapping[str, str]) -> dict[str, float | str | None]:
+    """Convert the cells of a row of peaks.csv to numbers; texts stay, an empty number is None."""
+    return {name: _value(name, text) for name, text in cells.items()}
 
 
-def _number(text: str) -> float | str:
+def _value(name: str, text: str) -> float | str | None:
+    """Convert a cell of column ``name``; words of a varied key stay."""
+    if name in TEXTS:
+        return text
+    if text == "":
+        return None
+    if name in COUNTS:
+        return int(text)
     try:
         return float(text)
     except ValueError:  # a varied key such as kinematics
         return text
 
 
-def as_series(cells: Mapping[str, Any]) -> "pd.Series[Any]":
-    """Return a row on its own, as it stands in a table, with those columns on request that it has."""
+def as_series(cells: Mapping[str, object]) -> "pd.Series":
+    """Return a row of peaks.csv as a Series named after its record, with the optional columns that it has."""
     present = [column for column in OPTIONAL if cells.get(column.name) is not None]
     table = pd.DataFrame([cells], columns=names((*FIXED, *TRAILING, *present)))
-    return _typed(table, ()).iloc[0].rename(cells["record"])
+    return _typed(table, ()).iloc[0].rename(str(cells["record"]))
 
 
 NEEDED = (
@@ -149,13 +146,13 @@ NEEDED = (
     "chaotic",
     "may_overturn",
 )
-"""Columns without which a run would seem to have gone well."""
+"""Columns without which an unsuccessful run could pass for a good one."""
 
 
 def given_table(table: object, varied: Sequence[str]) -> "pd.DataFrame":
-    """Return rows of peaks.csv that a user has, as ``pandas.read_csv`` or a filter left them, typed as :func:`as_table` does.
+    """Return a user's rows of peaks.csv, filtered or from ``pandas.read_csv``, with "" for missing texts and numbers as floats.
 
-    Raises ``InputError`` if it is no table, lacks columns that are needed, has words in place of numbers, or a run twice.
+    Raises ``InputError`` if it is no DataFrame, lacks a column of :data:`NEEDED`, has words for numbers, or repeats a run.
     """
     if not isinstance(table, pd.DataFrame):
         raise InputError(f"expected the table that rockbatch.run returned, not {type(table).__name__}")
@@ -177,14 +174,15 @@ def given_table(table: object, varied: Sequence[str]) -> "pd.DataFrame":
     return rows
 
 
-def numbers_or_words(cells: "pd.Series[Any]") -> "pd.Series[Any]":
-    """Return the values of a varied key: numbers, or words such as "finite"; NaN if the key does not apply."""
+def numbers_or_words(cells: "pd.Series") -> "pd.Series":
+    """Convert the cells of a varied key to floats if all are numbers; else keep words such as "finite"; NaN for empty ones."""
     filled = cells.where(cells.notna() & (cells != ""))
     numbers = pd.to_numeric(filled, errors="coerce")
     return filled if (numbers.isna() & filled.notna()).any() else numbers.astype("float64")
 
 
 def _typed(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
+    """Give the columns of ``table``, in place, their types; those of varied keys stay."""
     texts = [name for name in table if name in TEXTS]
     table[texts] = table[texts].fillna("")
     for name in table.columns.difference([*TEXTS, *varied, *COUNTS]):

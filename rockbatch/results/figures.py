@@ -1,4 +1,4 @@
-"""Figures of finished results: peaks as in Palmeri & Makris (2007), Fig. 7, their distribution, and self-similar axes."""
+"""Figures of results: peaks as in Palmeri & Makris (2007), Fig. 7, their distribution, and peaks on self-similar axes."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -29,27 +29,25 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.rows import counts_as
-from rockbatch.results.labelled import Labelled, as_dicts, by_pga, ceiling, groups_of
+from rockbatch.results.labelled import Item, Labelled, Row, as_dicts, by_pga, ceiling, groups_of
 from rockbatch.results.labels import Series
 from rockbatch.results.suite_statistics import NO_PEAK, distribution, worst_records
 
 THETA = "θ_max/α"
 VISIBLE = 0.015
-"""Share of the axis: shorter error bars hide behind their marker."""
+"""Share of the axis below which an error bar hides behind its marker."""
 MOST_PANELS = 24
 SPREAD = 0.64
-"""Share of the distance of two foundations, over which the marks of different sides are spread."""
+"""Share of the distance between foundations over which the marks of different sides are spread."""
 OVER = "overturned, or ended by flight"
 _DRAWN = ["record", "series", "polarity", "side", "status", "theta_max_over_alpha", "theta_max_error"]
 
-Row = dict[str, Any]
-
 
 def peaks(runs: "pd.DataFrame", series: Sequence[Series], records: Mapping[str, tuple[str, str]], top: float) -> Figure:
-    """Return the peaks: a panel for each record, a marker for each foundation, the rigid base as a line.
+    """Return a figure of peaks: a panel for each record, a marker for each foundation, a line for rigid ground.
 
-    ``runs`` have a column ``side``, by which those of one foundation differ in their marks; ``records`` gives each record's
-    caption and note, and ``top`` is the end of the common axis, θ_max/α.
+    ``runs`` have a column ``side``, which distinguishes the marks of one foundation; ``records`` maps records to caption
+    and note; ``top`` is the end of the common axis, θ_max/α.
     """
     present = sorted((series[place] for place in runs["series"].unique()), key=lambda one: (not one.rigid, one.index))
     ticks = {one.index + 1.0: one.tick for one in present if not one.rigid}
@@ -65,20 +63,19 @@ def peaks(runs: "pd.DataFrame", series: Sequence[Series], records: Mapping[str, 
     for name, (caption, note) in records.items():
         by_mark = grouped(by_record[name], lambda run: (run["series"], run["side"]))
         order = sorted(by_mark, key=lambda key: (not series[key[0]].rigid, series[key[0]].index, key[1]))
-        marks = [mark for key in order for mark in _peaks_of(series[key[0]], key[1], sides, by_mark[key], top)]
+        marks = [mark for key in order for mark in _foundation_marks(series[key[0]], key[1], sides, by_mark[key], top)]
         panels.append(Panel(x, y, [*strip, *marks], caption, note, width, 110.0))
     return Figure(panels, "θmax/α of every foundation")
 
 
-def _peaks_of(one: Series, side: str, sides: list[str], runs: list[Row], top: float) -> Iterator[Mark]:
-    """Yield the marks of a foundation in a panel; a third side and more have their own colours."""
+def _foundation_marks(one: Series, side: str, sides: list[str], runs: list[Row], top: float) -> Iterator[Mark]:
+    """Yield the marks of one foundation and side in a panel; with three or more sides colours distinguish sides."""
     place, label = sides.index(side), one.keyed + (f" ({side})" if len(sides) > 1 else "")
-    titles = [said_of(one, run, len(sides) > 1) for run in runs]
-    at = 0.42 if one.rigid else one.index + 1 + SPREAD * ((place + 0.5) / len(sides) - 0.5)
-    x = np.full(len(runs), at)
-    theta, error = (
-        np.array([run[name] for run in runs], dtype=float) for name in ("theta_max_over_alpha", "theta_max_error")
-    )
+    titles = [tooltip(one, run, len(sides) > 1) for run in runs]
+    abscissa = 0.42 if one.rigid else one.index + 1 + SPREAD * ((place + 0.5) / len(sides) - 0.5)
+    x = np.full(len(runs), abscissa)
+    theta = np.array([run["theta_max_over_alpha"] for run in runs], dtype=float)
+    error = np.array([run["theta_max_error"] for run in runs], dtype=float)
     error = np.where(error > VISIBLE * top, error, 0.0)
     stood = np.array([run["status"] == "ok" for run in runs]) & ~np.isnan(theta)
     if one.rigid:
@@ -88,7 +85,7 @@ def _peaks_of(one: Series, side: str, sides: list[str], runs: list[Row], top: fl
         yield Rule("y", levels, look=look, label=label, title="; ".join(titles))
         for low, high in zip(theta - error, theta + error, strict=True):
             if high > low:
-                yield Polyline(np.full(2, at), np.array([low, high]), look=Look("bar"))
+                yield Polyline(np.full(2, abscissa), np.array([low, high]), look=Look("bar"))
     else:
         look = marks_of(one.index, place == 1) if len(sides) < 3 else marks_of(place)
         titles_of = [title for title, stands in zip(titles, stood, strict=True) if stands]
@@ -97,12 +94,12 @@ def _peaks_of(one: Series, side: str, sides: list[str], runs: list[Row], top: fl
         ended = [i for i, run in enumerate(runs) if run["status"] == status]
         if ended:
             height = 0.05 if status == "failed" else 1.09
-            yield Points(x[ended], np.full(len(ended), height * top), None, [titles[i] for i in ended],
-                         look=sign_of(status), label=words)  # fmt: skip
+            y, of_ended = np.full(len(ended), height * top), [titles[i] for i in ended]
+            yield Points(x[ended], y, None, of_ended, look=sign_of(status), label=words)
 
 
-def said_of(series: Series, run: Row, several_sides: bool) -> str:
-    """Return the tooltip of a marker: "2: η = 3.5: 0.0617 ± 3e-07"."""
+def tooltip(series: Series, run: Row, several_sides: bool) -> str:
+    """Return the tooltip of a run's marker: "2: η = 3.5: 0.0617 ± 3e-07", or its status instead of numbers."""
     name = series.label + (f" ({run['polarity']})" if several_sides else "")
     if run["status"] != "ok":
         return f"{name}: {run['status']}"
@@ -110,9 +107,9 @@ def said_of(series: Series, run: Row, several_sides: bool) -> str:
     return f"{name}: {run['theta_max_over_alpha']:.4f}" + (f" ± {error:.0e}" if error == error else "")
 
 
-def peaks_of_all(results: Labelled, info: Mapping[str, Any]) -> Figure:
-    """Return the peaks of all piers, scales and directions in one figure, of many records those with the worst runs."""
-    runs = _some(results.runs)
+def peaks_of_all(results: Labelled, info: Item) -> Figure:
+    """Return a figure of the peaks of all piers, scales and polarities, for the :data:`MOST_PANELS` worst records."""
+    runs = _nonempty(results.runs)
     sides = [runs.loc[of_group.index, []].assign(side=words) for words, of_group in groups_of(runs, results.piers)]
     side = pd.concat(sides)["side"]
     if runs["polarity"].nunique() > 1:
@@ -126,28 +123,30 @@ def peaks_of_all(results: Labelled, info: Mapping[str, Any]) -> Figure:
     return Figure(figure.panels, figure.description, info["study"]["title"] + more)
 
 
-def _some(runs: "pd.DataFrame") -> "pd.DataFrame":
-    """Return the runs; raise ``InputError`` without any."""
+def _nonempty(runs: "pd.DataFrame") -> "pd.DataFrame":
+    """Return ``runs``; raise ``InputError`` if there are none."""
     if runs.empty:
-        raise InputError("there are no runs to plot: no record could be used, as the column reason of peaks.csv says")
+        raise InputError("no runs to plot: no record could be used; see the column reason of peaks.csv")
     return runs
 
 
 def distributions(groups: "Sequence[tuple[str, pd.DataFrame]]", series: Sequence[Series], count: str) -> Figure:
-    """Return the distribution of the peaks: a panel for each of the groups of runs, with their captions, and a curve for each
-    foundation; ``count`` is what counts as one record."""
+    """Return a figure of the peaks' distributions, a panel for each of ``groups`` and a curve for each foundation.
+
+    ``groups`` are captions and runs; ``count`` is the unit of counting, "station" or "component".
+    """
     eventful = any(runs["status"].isin(NO_PEAK).any() for _, runs in groups)
-    return Figure(
-        [_distribution(words, runs, series, count, eventful) for words, runs in groups], "Distribution of θmax/α"
-    )
+    panels = [_distribution(words, runs, series, count, eventful) for words, runs in groups]
+    return Figure(panels, "Distribution of θmax/α")
 
 
 def distributions_of_all(results: Labelled, count: str) -> Figure:
-    """Return the distributions of all piers and scales."""
-    return distributions(list(groups_of(_some(results.runs), results.piers)), results.series, count)
+    """Return a figure of the distributions of all piers and scales."""
+    return distributions(list(groups_of(_nonempty(results.runs), results.piers)), results.series, count)
 
 
 def _distribution(words: str, runs: "pd.DataFrame", series: Sequence[Series], count: str, eventful: bool) -> Panel:
+    """Return a panel with the distribution of each foundation's peaks; ``eventful`` adds a band for runs without a peak."""
     values, status = runs["theta_max_over_alpha"].to_numpy(np.float64), runs["status"].to_numpy(object)
     counted_as = counts_as(Rows(runs), count)[0]
     top = 1.04 * float(np.nanmax(values[status == "ok"], initial=0.0)) or 1.0
@@ -163,13 +162,9 @@ def _distribution(words: str, runs: "pd.DataFrame", series: Sequence[Series], co
         marks.append(Polyline(x, y, foundation.label, look=look, label=foundation.label))
         if reached < 1.0 and np.isin(status[rows], NO_PEAK).any():
             note = f"{foundation.label}: {100 * (1 - reached):.0f} % {OVER}"
-            middle = np.full(2, 0.5 * (top + right))
+            middle, centre = np.full(2, 0.5 * (top + right)), np.array([0.5 * (1.0 + reached)])
             marks.append(Polyline(middle, np.array([reached, 1.0]), look=look))
-            marks.append(
-                Points(
-                    middle[:1], np.array([0.5 * (1.0 + reached)]), titles=[note], look=sign_of("overturned"), label=OVER
-                )
-            )
+            marks.append(Points(middle[:1], centre, titles=[note], look=sign_of("overturned"), label=OVER))
     axes = Axis(THETA, 0.0, right, last=top), Axis("share of the records", 0.0, 1.0)
     return Panel(*axes, marks, words or "all runs")
 
@@ -191,29 +186,27 @@ def self_similar(results: Labelled, info: Mapping[str, Any]) -> Figure:
 
 
 def _scattered(runs: "pd.DataFrame", tone: Axis) -> Iterator[Mark]:
-    """Yield the runs of one foundation: those that moved, those that did not, and those without a peak."""
+    """Yield the points of one foundation: runs that rocked, runs that did not, and runs without a peak."""
     theta, stood = runs["theta_max_over_alpha"], runs["status"] == "ok"
     kinds = [(stood & (theta > 0), Look(), ""), (stood & ~(theta > 0), Look("faint", open=True), "did not move")]
     kinds += [(runs["status"] == status, sign_of(status), words) for status, words in ENDED.items()]
     for chosen, look, label in kinds:
-        x, y, values = (
-            runs.loc[chosen, name].to_numpy(float) for name in ("frequency", "intensity", "theta_max_over_alpha")
-        )
+        columns = ("frequency", "intensity", "theta_max_over_alpha")
+        x, y, values = (runs.loc[chosen, name].to_numpy(float) for name in columns)
         if len(x):
             yield Points(x, y, look=look, label=label, shade=None if label else (tone, values))
 
 
-def _with_groups(runs: "pd.DataFrame", results: Labelled, info: Mapping[str, Any]) -> "pd.DataFrame":
-    """Return the runs with ω_g/p (``frequency``) and PGA/(g tan α) (``intensity``), of those under ground that moves.
+def _with_self_similar_axes(runs: "pd.DataFrame", results: Labelled, info: Item) -> "pd.DataFrame":
+    """Return the runs with ω_g/p (``frequency``) and PGA/(g tan α) (``intensity``); those with zero PGV are left out.
 
-    Those across the axis of a pier are left out: run.json has the PGV of components along it.
+    Runs across the axis of a pier are left out, too: run.json has only the PGV along it.
     """
     along = [not results.cases[place].get("across_of") for place in zip(runs["series"], runs["pier"], strict=True)]
     runs = runs[along]
     piers = [results.cases[place]["pier"] for place in zip(runs["series"], runs["pier"], strict=True)]
     pgv = runs["record"].map({record["record"]: record["pgv_m_s"] for record in info["records"]}).replace(0.0, math.nan)
     size = [pier["gravity"] / pier["p"] for pier in piers]
-    table = runs.assign(
-        frequency=size * runs["pga"] / (runs["scale"] * pgv), intensity=runs["pga"] / np.tan(runs["alpha"])
-    )
-    return _some(table[table["frequency"] > 0])
+    frequency, intensity = size * runs["pga"] / (runs["scale"] * pgv), runs["pga"] / np.tan(runs["alpha"])
+    table = runs.assign(frequency=frequency, intensity=intensity)
+    return _nonempty(table[table["frequency"] > 0])

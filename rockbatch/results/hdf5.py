@@ -1,8 +1,8 @@
-"""The only access to HDF5 files, which may be untrusted: data in the file itself, in shapes that fit into it.
+"""Read untrusted HDF5 files: only data stored in the file itself, in sizes that the file can hold.
 
-HDF5 can lead elsewhere: links into other files, datasets whose bytes are in other files (external storage) or in other
-datasets (virtual ones), and sizes without bytes behind them. All these raise ``ValueError`` here. h5py's own lookups take
-four times as long as those of its lower level.
+HDF5 allows links into other files, datasets stored in other files (external) or composed of other datasets (virtual), and
+sizes without bytes. All these raise ``ValueError`` here. The low-level API of h5py is used since its lookups are four times
+as fast.
 """
 
 from typing import Any
@@ -12,33 +12,34 @@ import numpy as np
 from rockbatch.common.lazy import h5py
 
 MOST_OF_A_TEXT = 10_000_000
-"""Characters of a text that is kept in an attribute: the study's is the longest."""
+"""Most characters of an attribute; the longest is the study's text."""
 
 
 def group_in(group: "h5py.Group", name: str) -> "h5py.Group":
-    """Return a group that lies in ``group`` itself."""
+    """Return the subgroup ``name`` of ``group``; raise ``ValueError`` if missing or a link to elsewhere."""
     member = _member(group, name)
     if not isinstance(member, h5py.h5g.GroupID):
-        raise ValueError(f"{name} is no group")
+        raise ValueError(f"{name} is not a group")
     return h5py.Group(member)
 
 
 def array_in(
     group: "h5py.Group", name: str, kind: str, length: int | None = None, *, finite: bool = True
-) -> "np.ndarray[Any, Any]":
-    """Return a dataset of one dimension that lies in ``group``, with its bytes: numbers of ``kind`` "f" or "i", or texts "S".
+) -> "np.ndarray":
+    """Return the one-dimensional dataset ``name`` of ``group``: floats, integers or texts for ``kind`` "f", "i" or "S".
 
-    Texts come as ``str``. ``length`` is the number of values that there have to be; ``finite`` ones unless they may be infinite.
+    Raises ``ValueError`` if it is missing, stored elsewhere, of another kind or ``length``, or has infinite values that
+    ``finite`` excludes. Texts are returned as ``str``.
     """
     member = _member(group, name)
     if not isinstance(member, h5py.h5d.DatasetID) or member.rank != 1 or (dtype := member.dtype).kind != kind:
-        raise ValueError(f"{name} is no list of {'texts' if kind == 'S' else 'numbers'}")
-    made = member.get_create_plist()
-    if made.get_external_count() or made.get_layout() in (h5py.h5d.VIRTUAL, h5py.h5d.CHUNKED):
-        raise ValueError(f"the bytes of {name} are not where `rockbatch` writes them")
+        raise ValueError(f"{name} is not a list of {'texts' if kind == 'S' else 'numbers'}")
+    layout = member.get_create_plist()
+    if layout.get_external_count() or layout.get_layout() in (h5py.h5d.VIRTUAL, h5py.h5d.CHUNKED):
+        raise ValueError(f"{name} is not stored as `rockbatch` stores it")
     (size,) = member.shape
     if member.get_storage_size() != size * dtype.itemsize or size * dtype.itemsize > _size(group):
-        raise ValueError(f"{name} has {size} values, and no room for them in the file")
+        raise ValueError(f"{name} claims {size} values, more than the file holds")
     if length is not None and size != length:
         raise ValueError(f"{name} has {size} values instead of {length}")
     if kind == "S":
@@ -51,12 +52,12 @@ def array_in(
 
 
 def attributes_of(item: "h5py.Group") -> dict[str, Any]:
-    """Return the attributes of a group, as Python's own numbers and texts."""
+    """Return the attributes of a group by name, as Python numbers and texts."""
     return {name: attribute(item, name) for name in item.attrs}
 
 
 def attribute(item: "h5py.Group", name: str) -> Any:
-    """Return one attribute, as Python's own number or text; None if it is missing."""
+    """Return an attribute as a Python number or text; None if missing; raise ``ValueError`` if it is anything else."""
     encoded = _encoded(name)
     if not h5py.h5a.exists(item.id, encoded):
         return None
@@ -74,6 +75,7 @@ def attribute(item: "h5py.Group", name: str) -> Any:
 
 
 def _member(group: "h5py.Group", name: str) -> "h5py.h5g.GroupID | h5py.h5d.DatasetID":
+    """Return the object ``name`` of a group by a hard link; raise ``ValueError`` for other links."""
     encoded = _encoded(name)
     if not group.id.links.exists(encoded):
         raise ValueError(f"{name} is missing")

@@ -1,4 +1,4 @@
-"""``histories.h5``: the histories of a study's runs in HDF5. Opened with h5py only when it is written or read.
+"""``histories.h5``: the histories of a study's runs in HDF5; h5py is loaded only to write or read it.
 
 ::
 
@@ -7,15 +7,15 @@
     /runs/000000        attributes: record, case, polarity, scale, status
           varied        attributes: values of the study's varied keys
           pier, base    attributes: their parameters, as in rockbatch.pier; SI, angles in radians
-          t, theta, …   the columns of Response.history, shape (n,), those of springs if it stands on them
+          t, theta, …   the columns of Response.history, shape (n,); those of springs for piers on springs
           events        t, kind, pivot, before, after: the columns of Response.events
           restraints    elongation and force of each damper and tendon, if any: Response.restraints
-          ledger        the terms of the energy ledger, where it was asked for
-          forces        what is sized, the columns of Response.forces, where it was asked for
-          impacts       with them, the columns of Response.impacts
+          ledger        the terms of the energy ledger, if requested
+          forces        the columns of Response.forces, if requested
+          impacts       the columns of Response.impacts, with forces
 
-Every dataset of numbers has an attribute ``unit``; "1" is none. In front lies a block of HDF5's own for users, with the digest of
-what follows: HDF5 may take the process with it on a damaged file.
+Every numeric dataset has an attribute ``unit``; "1" is dimensionless. The file begins with an HDF5 user block that holds the
+digest of the rest, which is checked first: HDF5 can crash the process on a damaged file.
 """
 
 import hashlib
@@ -52,19 +52,20 @@ from rockbatch.pier.sizes import USUAL as PIERS
 from rockbatch.quantities.demands import FORCES
 from rockbatch.results.columns import StudyRun
 from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in
+from rockbatch.results.labelled import Item
 
 HISTORIES = "histories.h5"
-"""File of the histories that were kept, beside peaks.csv."""
+"""File of the kept histories, beside peaks.csv."""
 
 FORMAT = "rockbatch histories"
 
 BLOCK = 512
-"""Bytes in front of what is HDF5."""
+"""Size of the user block before the HDF5 data [bytes]."""
 
 MARK = b"rockbatch histories: HDF5 from byte 512 on, of sha256 "
 
 MARGIN = 10_000_000
-"""Bytes of the disk that stay free."""
+"""Free disk space that writing leaves [bytes]."""
 
 UNITS = {
     "t": "s",
@@ -82,47 +83,47 @@ UNITS = {
     "ag_v": "m/s^2",
     "deflection": "m",
 }
-"""Units of the columns of a history, in their order."""
+"""Units of the columns of a history, in order."""
 
 OF_SPRINGS = ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right")
-"""Columns of a history that only piers on ground that gives have."""
+"""Columns of a history of piers on springs or a footing only."""
 
 OF_TWO_SPRINGS = ("z_left", "z_right")
-"""And of these those that a footing lacks."""
+"""Those of :data:`OF_SPRINGS` that piers on a footing lack."""
 
 
 def columns_of(base: Base | type[Base], bends: bool) -> list[str]:
-    """Return the columns of a history that have numbers, of a pier on ``base`` whose shaft ``bends`` or not."""
+    """Return the columns of a history that apply to a pier on ``base`` whose shaft ``bends`` or not."""
     lacking = () if base.two_springs else OF_TWO_SPRINGS if base.on_springs else OF_SPRINGS
     return [name for name in UNITS if name not in lacking and (bends or name != "deflection")]
 
 
 LEDGER = "energy_input_J_kg"
-"""A column of every run with an energy ledger."""
+"""Column of peaks.csv that is filled for runs with an energy ledger."""
 
 BYTES_OF_A_DATASET = 2500.0
-"""Bytes of a dataset in HDF5 beside its numbers, with its share of the groups."""
+"""Overhead of a dataset in HDF5, including its share of the groups [bytes]."""
 
 BYTES_OF_AN_EVENT = 56.0
-"""In the table of events: three numbers and two words."""
+"""Size of an event in the file [bytes]: three numbers and two words."""
 
 _EVENTS = {"t": "f", "kind": "S", "pivot": "S", "before": "i", "after": "i"}
 _IMPACTS = {"t": "f", "pivot": "S"} | dict.fromkeys(IMPACT_UNITS, "f")
 _BESIDE = {"restraints": (), "ledger": TERMS, "forces": tuple(FORCE_UNITS)}
-"""Tables at the rows of the history that a run may have, by their group, with their columns; () for whatever is there."""
+"""Optional tables with a row for each row of the history: their columns by HDF5 group, () for those present."""
 
 _ALL_UNITS = UNITS | FORCE_UNITS | IMPACT_UNITS | dict.fromkeys(TERMS, "J/kg")
 _OF_RUN = ("record", "case", "polarity", "scale", "status")
 _DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, OverflowError)
-"""Exceptions of h5py for parts that are missing or broken."""
+"""Exceptions raised while reading a damaged file."""
 
 
 class _NotTheseError(InputError):
-    """A sound file that has no histories, or those of another run."""
+    """The file is intact but has no histories, or those of another run."""
 
 
-def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) -> None:
-    """Write ``responses`` to ``path`` one by one, whole or not at all; ``info`` is that of ``run.json``.
+def write(path: Path, responses: Iterable[Response], info: Item) -> None:
+    """Write ``responses`` to ``path`` one by one, completely or not at all; ``info`` is the content of ``run.json``.
 
     Raises ``InputError`` if the disk is full.
     """
@@ -135,13 +136,13 @@ def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) ->
             runs = file.create_group("runs")
             for number, response in enumerate(responses):
                 _check_room(path, response)
-                _write(runs.create_group(_name(number)), response)
-                file.flush()  # raises what HDF5 could not write, which it forgets when it closes a dataset
+                _write(runs.create_group(_group_name(number)), response)
+                file.flush()  # HDF5 reports failed writes here, but not when it closes a dataset
         seal(temporary)
 
 
 def seal(path: Path) -> None:
-    """Write the digest of a histories file into its first block."""
+    """Write the digest of a histories file into its user block."""
     with opened(path, "r+b") as file:
         digest = _digest(file)
         file.seek(0)
@@ -154,7 +155,7 @@ def _digest(file: io.FileIO) -> bytes:
 
 
 def _check_room(path: Path, response: Response) -> None:
-    """Raise ``InputError`` before the disk is full, which HDF5 does not survive: it may take the process with it at exit."""
+    """Raise ``InputError`` if ``response`` would fill the disk: HDF5 may crash at exit after a failed write."""
     tables = (getattr(response, name) for name in ("history", "events", "impacts", *_BESIDE))
     needed = MARGIN + sum(int(table.memory_usage().sum()) for table in tables if table is not None)
     free = disk_usage(path.parent).free
@@ -165,18 +166,16 @@ def _check_room(path: Path, response: Response) -> None:
         )
 
 
-def _name(number: int) -> str:
+def _group_name(number: int) -> str:
     return f"{number:06d}"
 
 
 def _write(group: "h5py.Group", response: Response) -> None:
+    """Write a response into its group."""
     _set(group, {name: getattr(response, name) for name in _OF_RUN})
     _set(group.create_group("varied"), response.columns)
-    parts = response.pier.parts
-    _set(
-        group.create_group("pier"),
-        asdict(response.pier) | {"parts": json.dumps(parts) if parts else None, "confirm": None},
-    )
+    parts = json.dumps(response.pier.parts) if response.pier.parts else None
+    _set(group.create_group("pier"), asdict(response.pier) | {"parts": parts, "confirm": None})
     base = {"name": response.base.name} | asdict(response.base) | {"confirm": None}
     base["restraints"] = json.dumps([asdict(device) for device in response.base.restraints])
     _set(group.create_group("base"), base)
@@ -191,37 +190,36 @@ def _write(group: "h5py.Group", response: Response) -> None:
 
 def _write_all(group: "h5py.Group", table: "pd.DataFrame", columns: Iterable[str]) -> None:
     """Write columns of a table: texts, or numbers with their unit."""
+    is_devices = group.name.endswith("restraints")
     for name in columns:
         if name in ("kind", "pivot"):
             group[name] = np.array(table[name], dtype="S16")
         else:
-            unit = (
-                ("N/kg" if name.endswith("force") else "m")
-                if group.name.endswith("restraints")
-                else _ALL_UNITS.get(name, "1")
-            )
+            of_device = "N/kg" if name.endswith("force") else "m"
+            unit = of_device if is_devices else _ALL_UNITS.get(name, "1")
             group.create_dataset(name, data=table[name].to_numpy()).attrs["unit"] = unit
 
 
-def _set(group: "h5py.Group", values: Mapping[str, Any]) -> None:
+def _set(group: "h5py.Group", values: Mapping[str, object]) -> None:
+    """Set the attributes of a group; None is left out."""
     for name, value in values.items():
         if value is not None:
             group.attrs[name] = _legible(value) if isinstance(value, str) else value
 
 
 def _legible(text: str) -> str:
-    """Return ``text`` without what HDF5 cannot hold, NUL and bytes of a file's name that are not Unicode, as escapes."""
+    """Escape the characters that HDF5 cannot store: NUL, and bytes of file names that are not Unicode."""
     return text.encode(errors="backslashreplace").decode().replace("\0", "\\x00")
 
 
 class Responses(Sequence[Response]):
-    """The responses in a ``histories.h5``, each read when it is asked for; none without a file.
+    """The responses in a ``histories.h5``, each read on access; empty without a file.
 
-    Using them raises ``InputError`` where the file is damaged, is something else, or does not belong to the run that
-    ``info``, its ``run.json``, tells of. Each response gets its row of ``peaks``, where those are given.
+    Access raises ``InputError`` if the file is damaged, is something else, or does not belong to ``info``, the content of
+    ``run.json``. Each response gets its row of ``peaks``, if given.
     """
 
-    def __init__(self, path: Path, info: Mapping[str, Any], peaks: "pd.DataFrame | None" = None) -> None:
+    def __init__(self, path: Path, info: Item, peaks: "pd.DataFrame | None" = None) -> None:
         self.path = path
         self._info = info
         self._peaks = peaks
@@ -229,14 +227,14 @@ class Responses(Sequence[Response]):
 
     @cached_property
     def runs(self) -> "pd.DataFrame":
-        """Names of the runs, a row for each: record, case, polarity, scale, status, and the values of varied keys.
+        """Table of the runs: record, case, polarity, scale, status and varied keys, NaN if a key does not apply.
 
-        Values are NaN where the key does not apply. No history is read for it.
+        No history is read for it.
         """
         rows = []
         if self.path.exists() or self.path.is_symlink():
             with self._opened() as runs:
-                groups = [group_in(runs, _name(number)) for number in range(len(runs))]
+                groups = [group_in(runs, _group_name(number)) for number in range(len(runs))]
                 rows = [_run(group) | attributes_of(group_in(group, "varied")) for group in groups]
         return pd.DataFrame(rows, columns=[*_OF_RUN, *self._info["varied"]])
 
@@ -250,19 +248,19 @@ class Responses(Sequence[Response]):
     def __getitem__(self, which: int | slice) -> Response | list[Response]:
         if isinstance(which, slice):
             return [self[number] for number in range(*which.indices(len(self)))]
-        number = range(len(self))[which]  # IndexError as of any sequence
+        number = range(len(self))[which]  # raises IndexError, as any sequence
         (response,) = self.without_rows([number])
         return response if self._peaks is None else replace(response, row=_row_of(response, self._peaks))
 
     def without_rows(self, numbers: Iterable[int]) -> Iterator[Response]:
-        """Yield the responses of these ``numbers``, without their rows of ``peaks``; the file is opened once."""
+        """Yield the responses with these ``numbers`` without their rows of ``peaks``; the file is opened once."""
         with self._opened() as runs:
             for number in numbers:
-                yield _read(group_in(runs, _name(number)))
+                yield _read(group_in(runs, _group_name(number)))
 
     @contextmanager
     def _opened(self) -> Iterator["h5py.Group"]:
-        """Yield the group of runs; errors on the way become ``InputError``."""
+        """Yield the group of runs; turn errors of reading into ``InputError``."""
         with opened(self.path) as plain:
             self._check_digest(plain)
             try:
@@ -275,7 +273,7 @@ class Responses(Sequence[Response]):
                 raise InputError(f"{self.path}: damaged ({error}); start `rockbatch run` again") from error
 
     def _check_digest(self, plain: io.FileIO) -> None:
-        """Raise ``InputError`` where bytes were changed; what has no digest is read as it is."""
+        """Raise ``InputError`` if bytes were changed; accept a file without a digest."""
         if (state := state_of(os.fstat(plain.fileno()))) != self._intact:
             head = plain.read(BLOCK)
             if head.startswith(MARK) and head[len(MARK) :].rstrip(b"\0") != _digest(plain):
@@ -284,6 +282,7 @@ class Responses(Sequence[Response]):
             plain.seek(0)
 
     def _check(self, file: "h5py.File") -> None:
+        """Raise ``InputError`` unless the file holds the histories of the run in ``info``."""
         if attribute(file, "format") != FORMAT:
             raise _NotTheseError(f"{self.path}: not the histories of a study; start `rockbatch run` again")
         created = attribute(file, "created")
@@ -295,6 +294,7 @@ class Responses(Sequence[Response]):
 
 
 def _read(group: "h5py.Group") -> Response:
+    """Read a response from its group; raise ``ValueError`` for inconsistent data."""
     base = attributes_of(group_in(group, "base"))
     kind = BASES[base.pop("name")]
     if "restraints" in base:
@@ -317,7 +317,7 @@ def _read(group: "h5py.Group") -> Response:
     for name, columns in _BESIDE.items():
         if name in group:
             datasets = group_in(group, name)
-            # Earlier versions had no base moment
+            # Files of earlier versions lack the base moment
             present = [column for column in columns or datasets if column in datasets or column != "base_moment"]
             tables[name] = _table(datasets, dict.fromkeys(present, "f"), len(t))
             tables[name].insert(0, "t", t)
@@ -335,26 +335,24 @@ def _read(group: "h5py.Group") -> Response:
 
 
 def _table(group: "h5py.Group", kinds: Mapping[str, str], rows: int | None = None) -> "pd.DataFrame":
-    """Return a table of columns of these kinds; with as many rows as its time has, unless ``rows`` are given."""
+    """Read columns by their kinds into a table of ``rows``, by default as many as the group's ``t`` has."""
     rows = len(array_in(group, "t", "f")) if rows is None else rows
-    return pd.DataFrame({
-        name: array_in(group, name, kind, rows, finite=name != "friction") for name, kind in kinds.items()
-    })  # fmt: skip
+    columns = {name: array_in(group, name, kind, rows, finite=name != "friction") for name, kind in kinds.items()}
+    return pd.DataFrame(columns)
 
 
-def _row_of(response: Response, peaks: "pd.DataFrame") -> "pd.Series[Any] | None":
-    """Return the row of a response: that with its names, whose numbers have ten digits there; None without one."""
+def _row_of(response: Response, peaks: "pd.DataFrame") -> "pd.Series | None":
+    """Return the row of ``peaks`` with the response's identity, numbers compared to ten digits; None without one."""
     names = {name: getattr(response, name) for name in ("record", "case", "polarity", "scale")} | response.columns
     matches = np.ones(len(peaks), dtype=bool)
     for name, value in names.items():
-        matches &= (peaks[name] == (float(f"{value:.10g}") if isinstance(value, float) else value)).to_numpy(
-            bool, na_value=False
-        )
+        stored = float(f"{value:.10g}") if isinstance(value, float) else value
+        matches &= (peaks[name] == stored).to_numpy(bool, na_value=False)
     return peaks.iloc[int(matches.argmax())].rename(response.record) if matches.any() else None
 
 
 def _run(group: "h5py.Group") -> dict[str, Any]:
-    """Return the names of a run; they are texts, but for the scale, which is a number."""
+    """Return the identity and status of a run; raise ``ValueError`` unless ``scale`` is a float and the rest are texts."""
     names = {name: attribute(group, name) for name in _OF_RUN}
     for name, value in names.items():
         if not isinstance(value, float if name == "scale" else str):
@@ -362,9 +360,10 @@ def _run(group: "h5py.Group") -> dict[str, Any]:
     return names
 
 
-def history_bytes(run: StudyRun, row: "Mapping[str, Any] | pd.Series") -> float:
-    """Return the bytes that the history of a run takes on disk, up to a third too many: eight for each number of each sample
-    and side of an event.
+def history_bytes(run: StudyRun, row: "Item | pd.Series") -> float:
+    """Estimate the size of a run's history on disk [bytes], at most a third too large.
+
+    Each column takes eight bytes for each sample and for each side of an event.
     """
     pier, base = run.case.pier, run.case.base
     columns = len(columns_of(base, base.bends))
@@ -373,14 +372,14 @@ def history_bytes(run: StudyRun, row: "Mapping[str, Any] | pd.Series") -> float:
         columns += len(TERMS)
     if has_value(row, FORCES):
         columns += len(FORCE_UNITS)
-    # springs that yield in every cycle change their branch, both of them, twice a period of the vibration
+    # Both springs, if they yield in every cycle, change their branch twice a period of the vibration
     reversals = 2.0 * vertical_frequency(pier, base) / math.pi if base.ratchets else 0.0  # a second
     events = row["impacts"] + row["separations"] + reversals * row["t_end_s"]
     rows = row["t_end_s"] / run.record.dt + 2.0 * events
     return columns * (BYTES_OF_A_DATASET + 8.0 * rows) + BYTES_OF_AN_EVENT * events
 
 
-def has_value(row: "Mapping[str, Any] | pd.Series", column: str) -> bool:
-    """Return whether the row has a number there: it was requested, and the run is not very long."""
+def has_value(row: "Item | pd.Series", column: str) -> bool:
+    """Return whether a row has a number in an optional column: False if not requested, or if the run was too long for it."""
     value = row.get(column)
     return value is not None and value == value

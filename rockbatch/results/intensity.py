@@ -1,4 +1,4 @@
-"""Intensity measures of each run's motion, as a rocking pier sees them, and how well they order the peaks."""
+"""Intensity measures of each run's motion, scaled for a rocking pier, and how well they order the peaks."""
 
 import math
 from collections.abc import Sequence
@@ -19,28 +19,28 @@ MEANING = {
     "uniform_s": "uniform duration: all the time that the acceleration exceeds g tan α [s]",
     "cav_m_s": "cumulative absolute velocity, ∫|a| dt [m/s]",
 }
-"""Measures by their columns; beside them ``sa_Ts_g`` is the spectral acceleration [g] at T seconds, 5 % damped, and
-``sa_Ts_rotd100_g`` and the like are those of the station's pair of horizontal components, empty without one."""
+"""Measures by column. In addition, ``sa_Ts_g`` is the 5 % damped spectral acceleration [g] at T seconds, and
+``sa_Ts_rotd100_g`` and the like are of the station's pair of horizontal components, empty without a pair."""
 
 LEAST_RUNS = 3
-"""With values, for a rank correlation or a line."""
+"""Fewest runs with values for a rank correlation or a regression line."""
 
 Array = npt.NDArray[np.float64]
 
 
 class Order(NamedTuple):
-    """The order in which a measure puts the peaks of a case at one scale.
+    """How well a measure orders the peaks of a case at one scale.
 
     Attributes
     ----------
     runs, without_peak : int
-        Runs that count, and those of them that overturned, or were ended by flight: they rank above all others.
+        Numbers of runs that count, and of those that overturned or stopped in flight, which rank above all others.
     rank_correlation : float
-        Spearman's ρ of the measure and θ_max; NaN with fewer than three runs, or where all are alike.
+        Spearman's ρ of the measure and θ_max; NaN with fewer than three runs, or if all are equal.
     fitted : int
-        Runs that stood and moved, by which the line ln θ_max = a + b ln(measure) is drawn, with least squares.
+        Number of runs that stood and rocked, to which ln θ_max = a + b ln(measure) is fitted by least squares.
     slope, dispersion : float
-        b, and the standard deviation of ln θ_max about the line; NaN with fewer than three.
+        b, and the standard deviation of ln θ_max about the line; NaN with fewer than three runs.
     """
 
     runs: int
@@ -52,7 +52,7 @@ class Order(NamedTuple):
 
 
 def order_of(measure: Array, theta: Array, status: Sequence[str]) -> Order:
-    """Return how well ``measure`` orders ``theta``, shape (n,), of runs with that ``status``; failed ones do not count."""
+    """Return how well ``measure`` orders the peaks ``theta``, both shape (n,); failed runs by ``status`` are left out."""
     kinds = np.asarray(status, dtype=object)
     overturned = np.isin(kinds, NO_PEAK)
     peaks = np.where(overturned, math.inf, theta)
@@ -64,7 +64,7 @@ def order_of(measure: Array, theta: Array, status: Sequence[str]) -> Order:
 
 
 def _spearman(x: Array, y: Array) -> float:
-    """Return Spearman's rank correlation: that of the ranks, of which equal values share the mean."""
+    """Return Spearman's rank correlation, equal values sharing their mean rank; NaN for few or equal values."""
     if len(x) < LEAST_RUNS:
         return math.nan
     of_x, of_y = _ranks(x), _ranks(y)
@@ -74,12 +74,13 @@ def _spearman(x: Array, y: Array) -> float:
 
 
 def _ranks(values: Array) -> Array:
+    """Return ranks from 1, equal values sharing their mean rank."""
     _, places, counts = np.unique(values, return_inverse=True, return_counts=True)
     return np.asarray((np.cumsum(counts) - 0.5 * (counts - 1))[places], dtype=np.float64)
 
 
 def _line(x: Array, y: Array) -> tuple[float, float]:
-    """Return the slope of the line of least squares, and the standard deviation about it, by n − 2."""
+    """Return the slope of the least-squares line and the standard deviation about it (n − 2); NaN for few or equal x."""
     if len(x) < LEAST_RUNS or np.ptp(x) == 0:
         return math.nan, math.nan
     slope, intercept = np.polyfit(x, y, 1)
@@ -88,20 +89,13 @@ def _line(x: Array, y: Array) -> tuple[float, float]:
 
 
 def orders(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
-    """Return a row for each case, scale and measure of intensity.csv: names, ``measure``, and the fields of :class:`Order`."""
+    """Return a row for each case, scale and measure of intensity.csv: keys, ``measure``, and the fields of :class:`Order`."""
     keys = ["case", *varied, "scale"]
-    rows = [
-        {
-            **dict(zip(keys, key, strict=True)),
-            "measure": name,
-            **order_of(
-                group[name].to_numpy(dtype=np.float64),
-                group["theta_max_over_alpha"].to_numpy(dtype=np.float64),
-                group["status"].to_list(),
-            )._asdict(),
-        }
-        for key, group in table.groupby(keys, sort=False, dropna=False)
-        for name in map(str, table)
-        if name in MEANING or name.startswith("sa_")
-    ]
+    measures = [name for name in map(str, table) if name in MEANING or name.startswith("sa_")]
+    rows = []
+    for key, group in table.groupby(keys, sort=False, dropna=False):
+        theta, status = group["theta_max_over_alpha"].to_numpy(dtype=np.float64), group["status"].to_list()
+        for name in measures:
+            order = order_of(group[name].to_numpy(dtype=np.float64), theta, status)
+            rows.append((*key, name, *order))
     return pd.DataFrame(rows, columns=[*keys, "measure", *Order._fields])

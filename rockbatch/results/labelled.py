@@ -1,4 +1,4 @@
-"""Runs of finished results with their foundation, pier and ground motion: what figures and the report are made of."""
+"""Label the runs of finished results with their foundation, pier and ground motion, for figures and the report."""
 
 import math
 import tomllib
@@ -12,29 +12,36 @@ import numpy as np
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.cases import Case
 from rockbatch.quantities.rows import as_in_peaks, simulated, with_case
 from rockbatch.results.labels import Key, Series, digits_that_tell, named, quantity
 from rockbatch.study import PIER_KEYS
 
+Item = Mapping[str, Any]
+"""An object of run.json: the whole, or one of its entries."""
+
+Row = dict[str, Any]
+"""A row of a table, by column names."""
+
 
 @dataclass(frozen=True, eq=False)
 class Labelled:
-    """Runs and what tells them apart.
+    """Runs with labels that distinguish them.
 
     Attributes
     ----------
     runs : DataFrame
-        The simulated rows of ``peaks.csv``, without mirror images, with further columns: ``series`` and ``pier``, places in
-        the lists below; ``alpha`` [rad]; ``pga`` [g], that of the scaled motion; ``with_vertical``, "" unless the study
-        has both.
+        The simulated rows of ``peaks.csv``, without mirror images, with further columns: ``series`` and ``pier``, indices
+        into the lists below; ``alpha`` [rad]; ``pga`` of the scaled motion [g]; ``with_vertical``, "" unless the study ran
+        with and without the vertical component.
     series : list of Series
         The foundations.
     piers : list of str
         Descriptions of the varied values of each pier; [""] if none varies.
     places, pier_places : dict
-        Place of each foundation in ``series``, and of the varied values of each pier in ``piers``.
+        Index of each foundation in ``series``, and of each pier's varied values in ``piers``.
     cases : dict
-        Entries of run.json for each foundation and pier that have runs, by their places.
+        Entries of run.json by the indices (series, pier) of their runs.
     """
 
     runs: "pd.DataFrame"
@@ -42,21 +49,21 @@ class Labelled:
     piers: list[str]
     places: dict[Key, int]
     pier_places: dict[Key, int]
-    cases: dict[tuple[int, int], dict[str, Any]]
+    cases: dict[tuple[int, int], Case]
 
     @cached_property
     def many_scales(self) -> bool:
-        """Return whether motions of several scales were run."""
+        """Return whether several scales were run."""
         return bool(self.runs["scale"].nunique() > 1)
 
     def named_case(
-        self, case: str, columns: Mapping[str, Any], varied: Sequence[str], scale: float | None = None
+        self, case: str, columns: Mapping[str, object], varied: Sequence[str], scale: float | None = None
     ) -> str:
-        """Return the short name of a case on its pier, and the ``scale`` of its motions, if it is given and there are several.
+        """Return the label of a case and its pier, with the ``scale`` of its motions if given and if there are several.
 
         ``columns`` maps the ``varied`` keys to values.
         """
-        key, pier = foundation(case, columns, varied), pier_of(columns, varied)
+        key, pier = foundation_key(case, columns, varied), pier_key(columns, varied)
         if key in self.places and pier in self.pier_places:
             words = [self.series[self.places[key]].label, self.piers[self.pier_places[pier]]]
         else:  # without a run
@@ -65,19 +72,19 @@ class Labelled:
         return ", ".join(filter(None, (*words, scaled)))
 
 
-def labelled(peaks: "pd.DataFrame", info: Mapping[str, Any], directory: Path) -> Labelled:
-    """Return the runs of peaks.csv with their places among the foundations and piers of run.json.
+def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
+    """Label the simulated runs of peaks.csv with the foundations and piers of ``info``, which is run.json.
 
     Raises ``InputError`` if the two do not belong together.
     """
     varied = info["varied"]
-    grouped: dict[Key, list[dict[str, Any]]] = {}
-    entries: dict[tuple[Key, Key], dict[str, Any]] = {}
+    grouped: dict[Key, list[Case]] = {}
+    entries: dict[tuple[Key, Key], Case] = {}
     for case in info["cases"]:
-        key = foundation(case["case"], case["columns"], varied)
+        key = foundation_key(case["case"], case["columns"], varied)
         grouped.setdefault(key, []).append(case)
-        entries[key, pier_of(case["columns"], varied)] = case
-    given = _given(info["study"]["text"])
+        entries[key, pier_key(case["columns"], varied)] = case
+    given = _keys_given(info["study"]["text"])
     given |= {case["case"]: given.get(case["across_of"], set()) for case in info["cases"] if case.get("across_of")}
     series = named(grouped, [key for key in varied if _of_foundation(key)], given)
     places = {key: place for place, key in enumerate(series)}
@@ -86,10 +93,10 @@ def labelled(peaks: "pd.DataFrame", info: Mapping[str, Any], directory: Path) ->
     kinds = runs.groupby(["case", *varied], sort=False, dropna=False).ngroup() if len(runs) else runs["scale"]
     piers: dict[Key, int] = {}
     facts: dict[int, tuple[int, int, float]] = {}
-    cases: dict[tuple[int, int], dict[str, Any]] = {}
+    cases: dict[tuple[int, int], Case] = {}
     unknown = set()
     for row in as_dicts(runs.assign(kind=kinds).drop_duplicates("kind")):
-        pair = foundation(row["case"], row, varied), pier_of(row, varied)
+        pair = foundation_key(row["case"], row, varied), pier_key(row, varied)
         if pair not in entries:
             unknown.add(str(row["case"]))
             continue
@@ -106,7 +113,9 @@ def labelled(peaks: "pd.DataFrame", info: Mapping[str, Any], directory: Path) ->
     pga = {record["record"]: record["pga_g"] for record in info["records"]}
     runs["pga"] = runs["record"].map(pga).astype("float64") * runs["scale"]
     if across := {case["case"] for case in info["cases"] if case.get("across_of")}:
-        runs["pga"] = runs["pga"].where(~runs["case"].isin(across), runs["pga_g"])  # of the other component
+        runs["pga"] = runs["pga"].where(
+            ~runs["case"].isin(across), runs["pga_g"]
+        )  # run.json has that of the other component
     runs["with_vertical"] = _with_vertical(runs)
     keys = [key for key in varied if key in PIER_KEYS]
     digits = [digits_that_tell(values) for values in zip(*piers, strict=True)]
@@ -115,8 +124,10 @@ def labelled(peaks: "pd.DataFrame", info: Mapping[str, Any], directory: Path) ->
 
 
 def groups_of(runs: "pd.DataFrame", piers: Sequence[str]) -> "Iterator[tuple[str, pd.DataFrame]]":
-    """Yield the runs of each scale, pier and vertical component, with the words that identify them; one group at a time, as
-    together they are a second table."""
+    """Yield a description and the runs of each scale, pier and vertical component.
+
+    A generator, since all groups together take as much memory as ``runs``.
+    """
     rows: dict[Any, Any] = runs.groupby(["scale", "pier", "with_vertical"]).indices
     scaled = runs["scale"].nunique() > 1
     for group in sorted(rows):
@@ -128,20 +139,20 @@ def groups_of(runs: "pd.DataFrame", piers: Sequence[str]) -> "Iterator[tuple[str
 
 
 def ceiling(runs: "pd.DataFrame") -> float:
-    """Return the top of the axis [θ_max/α] that holds all of ``runs`` that stood."""
+    """Return the top of a θ_max/α axis for the runs that end standing, with their errors and a margin; 1 without a peak."""
     stood = runs[runs["status"] == "ok"]
     highest = (stood["theta_max_over_alpha"] + stood["theta_max_error"].fillna(0)).max()
     return 1.1 * float(highest) if highest > 0 else 1.0
 
 
-def by_pga(names: Iterable[str], info: Mapping[str, Any]) -> list[str]:
-    """Return ``names`` of records in order of peak ground acceleration, the weakest first."""
+def by_pga(names: Iterable[str], info: Item) -> list[str]:
+    """Sort the record ``names`` by peak ground acceleration, weakest first, unknown ones last."""
     pga = {record["record"]: record["pga_g"] for record in info["records"]}
     return sorted(names, key=lambda name: (pga.get(name, math.inf), name))
 
 
-def _given(text: str) -> dict[str, set[str]]:
-    """Return the keys that a study's text gives for each case, by the case's name; empty if the text is no study."""
+def _keys_given(text: str) -> dict[str, set[str]]:
+    """Return the keys of each [[case]] in a study's text, by case name; empty if the text cannot be parsed."""
     try:
         cases = tomllib.loads(text).get("case", [])
         return {str(case.get("name", case.get("base"))): set(case) for case in cases}
@@ -149,19 +160,17 @@ def _given(text: str) -> dict[str, set[str]]:
         return {}
 
 
-def as_dicts(runs: "pd.DataFrame") -> list[dict[str, Any]]:
-    """Return the rows of ``runs``, each as a mapping from column names to values."""
-    columns = {
-        str(name): column.tolist()
-        if isinstance(column.dtype, np.dtype) and column.dtype.kind in "fib"
-        else column.to_numpy(object, na_value=math.nan).tolist()
-        for name, column in runs.items()
-    }
+def as_dicts(runs: "pd.DataFrame") -> list[Row]:
+    """Return the rows of ``runs`` as dictionaries by column name; missing values are NaN."""
+    columns = {}
+    for name, column in runs.items():
+        is_plain = isinstance(column.dtype, np.dtype) and column.dtype.kind in "fib"
+        columns[str(name)] = (column if is_plain else column.to_numpy(object, na_value=math.nan)).tolist()
     return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
-def foundation(case: str, columns: Mapping[str, Any], varied: Sequence[str]) -> Key:
-    """Return the key that identifies a foundation; ``columns`` maps varied keys to values."""
+def foundation_key(case: str, columns: Mapping[str, object], varied: Sequence[str]) -> Key:
+    """Return the key of a foundation: case and varied values except the pier's; ``columns`` maps varied keys to values."""
     return (case, *(as_in_peaks(columns.get(key)) for key in varied if _of_foundation(key)))
 
 
@@ -169,13 +178,13 @@ def _of_foundation(key: str) -> bool:
     return key not in PIER_KEYS and key != "vertical"
 
 
-def pier_of(columns: Mapping[str, Any], varied: Sequence[str]) -> Key:
-    """Return the key that identifies a pier; ``columns`` maps varied keys to values."""
+def pier_key(columns: Mapping[str, object], varied: Sequence[str]) -> Key:
+    """Return the key of a pier: its varied values; ``columns`` maps varied keys to values."""
     return tuple(as_in_peaks(columns.get(key)) for key in varied if key in PIER_KEYS)
 
 
 def _with_vertical(runs: "pd.DataFrame") -> "pd.Series[str] | str":
-    """Return words for each run if the study was run with and without the vertical component; else ""."""
+    """Return "with vertical" or "without vertical" for each run; "" if the study ran only one of them."""
     if "vertical" not in runs or runs["vertical"].nunique() < 2:
         return ""
     yes = runs["vertical"].astype(str).str.lower().isin(["true", "1", "1.0", "yes", "with"])

@@ -1,12 +1,11 @@
-"""Names of foundations and piers, by what distinguishes them."""
+"""Labels of foundations and piers, made of the values that distinguish them."""
 
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from rockbatch.pier.restraints import what_of
-from rockbatch.quantities.cases import devices
+from rockbatch.quantities.cases import Case, devices
 from rockbatch.study import PIER_KEYS
 
 SYMBOLS = {
@@ -36,48 +35,76 @@ SYMBOLS = {
     "flexural_period_s": ("flexural period", "s"),
     "area_m2": ("area", "m²"),
 }
+"""Symbols and units of the keys of a study."""
 DEVICE_SYMBOLS = {
-    "f": ("f", ""), "force_kN": ("F", "kN"), "yield_mm": ("uy", "mm"), "nu": ("ν", ""), "coefficient_kN_s_m": ("C", "kN (s/m)^a"),
-    "exponent": ("a", ""), "psi": ("ψ", ""), "prestress_kN": ("P0", "kN"), "lambda": ("λ", ""),
-    "stiffness_kN_m": ("kt", "kN/m"), "yield_kN": ("Ty", "kN"), "gap_mm": ("gap", "mm"), "restitution": ("e", ""),
-    "brace": ("λb", ""), "brace_kN_m": ("kb", "kN/m"),
-}  # fmt: skip
-"""Symbols and units of the keys of devices, whose varied values have names such as damper_1_force_kN. The a of a unit is the
-device's exponent."""
+    "f": ("f", ""),
+    "force_kN": ("F", "kN"),
+    "yield_mm": ("uy", "mm"),
+    "nu": ("ν", ""),
+    "coefficient_kN_s_m": ("C", "kN (s/m)^a"),
+    "exponent": ("a", ""),
+    "psi": ("ψ", ""),
+    "prestress_kN": ("P0", "kN"),
+    "lambda": ("λ", ""),
+    "stiffness_kN_m": ("kt", "kN/m"),
+    "yield_kN": ("Ty", "kN"),
+    "gap_mm": ("gap", "mm"),
+    "restitution": ("e", ""),
+    "brace": ("λb", ""),
+    "brace_kN_m": ("kb", "kN/m"),
+}
+"""Symbols and units of the keys of devices, which are varied under names such as damper_1_force_kN; a in a unit is the device's
+exponent."""
 _OF_DEVICE = re.compile(r"(damper|tendon|stop|deck_spring)_(\d+)_(.+)")
 
 BASE_KEYS = (
-    "beta", "stiffness_kN_m", "eta", "yield_kN", "impact", "epsilon", "zeta", "spring", "n", "kinematics", "flight",
-    "restitution", "flight_limit_mm", "friction", "area_m2",
-)  # fmt: skip
+    "beta",
+    "stiffness_kN_m",
+    "eta",
+    "yield_kN",
+    "impact",
+    "epsilon",
+    "zeta",
+    "spring",
+    "n",
+    "kinematics",
+    "flight",
+    "restitution",
+    "flight_limit_mm",
+    "friction",
+    "area_m2",
+)
 SAME = {"beta": "stiffness_kN_m", "eta": "yield_kN"}
-"""Equivalent keys, without and with units: a foundation is described by the one that its study gives."""
+"""Equivalent keys, without and with units: labels use the one that the study gives."""
 
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 Key = tuple[object, ...]
-"""Identity of a foundation: the case, and its varied values in the order of the study."""
+"""Identity of a foundation: case and varied values in the order of the study; of a pier: varied values."""
 
 
 @dataclass(frozen=True)
 class Series:
-    """One foundation: a marker in the figures, or a line where it is rigid ground alone; a column in the tables."""
+    """A foundation in figures: a marker, or a line for rigid ground without devices.
+
+    ``tick`` is its short label on axes; ``index`` counts the rigid foundations, or the others, from 0.
+    """
 
     label: str
     tick: str
     rigid: bool
-    index: int  # among those of its kind, rigid or not
+    index: int
 
     @property
     def keyed(self) -> str:
-        """Return the label for a legend, behind the tick if it does not begin with it."""
+        """Return the label for a legend, preceded by the tick unless it begins with it: "a – pads: β = 40"."""
         return self.label if self.rigid or self.label.split(":")[0] == self.tick else f"{self.tick} – {self.label}"
 
 
-def quantity(key: str, value: object, digits: int = 10, case: Mapping[str, Any] | None = None) -> str:
-    """Describe a value in words that stay on one line: "β = 40", "Fy = 45,000 kN", "kinematics finite".
+def quantity(key: str, value: object, digits: int = 10, case: Case | None = None) -> str:
+    """Describe a value of a study key without line breaks: "β = 40", "Fy = 45,000 kN", "kinematics finite".
 
-    ``case``, one of run.json, has the exponent of a viscous damper: "C = 900 kN (s/m)^0.3".
+    ``case``, from run.json, supplies the exponent in a viscous damper's unit: "C = 900 kN (s/m)^0.3".
     """
     symbol, unit = symbol_of(key)
     if not isinstance(value, float | int):
@@ -88,7 +115,7 @@ def quantity(key: str, value: object, digits: int = 10, case: Mapping[str, Any] 
 
 
 def symbol_of(key: str) -> tuple[str, str]:
-    """Return symbol and unit of a key of a study, those of further devices with their number: "C", "damper 2: C"."""
+    """Return symbol and unit of a study key, numbered from the second device of a kind: "C", "damper 2: C"."""
     if key in SYMBOLS or not (device := _OF_DEVICE.fullmatch(key)):
         return SYMBOLS.get(key, (key, ""))
     kind, number, of_device = device.groups()
@@ -97,18 +124,18 @@ def symbol_of(key: str) -> tuple[str, str]:
 
 
 def unit_with_exponent(unit: str, exponent: float) -> str:
-    """Return a unit with the number that its exponent a stands for: "kN (s/m)^0.3", and "kN s/m" for 1."""
+    """Return a unit with its exponent a replaced by a number: "kN (s/m)^0.3"; "kN s/m" for 1."""
     return unit.replace("(s/m)^a", "s/m" if exponent == 1.0 else f"(s/m)^{exponent:g}")
 
 
-def _exponent(case: Mapping[str, Any], kind: str, number: int) -> float:
-    """Return the exponent of the ``number``-th device of a kind in a case of run.json; 1 for a kind without one."""
+def _exponent(case: Case, kind: str, number: int) -> float:
+    """Return the exponent of the ``number``-th device of a kind in a case of run.json; 1 if it has none."""
     of_kind = [device for device in devices(case) if what_of(device) == kind]
     return next((device.get("exponent") for device in of_kind[number - 1 :]), None) or 1.0
 
 
 def plain(value: float, digits: int) -> str:
-    """Format a number in the unit in which it was given, without an "e": "45,000", "2.5 × 10⁶"."""
+    """Format a number as given, without an "e": "45,000", "2.5 × 10⁶"; ``digits`` significant, integer digits in full."""
     whole = len(str(int(abs(value))))
     if whole <= 6:
         written = f"{value:.{max(digits, whole)}g}"
@@ -118,38 +145,36 @@ def plain(value: float, digits: int) -> str:
 
 
 def digits_that_tell(values: Iterable[object], least: int = 3) -> int:
-    """Return the number of significant digits, at least ``least``, that distinguishes all different numbers."""
+    """Return the fewest significant digits, from ``least`` to 10, that distinguish all numbers among ``values``."""
     numbers = {value for value in values if isinstance(value, float | int)}
     return next((n for n in range(least, 10) if len({f"{value:.{n}g}" for value in numbers}) == len(numbers)), 10)
 
 
 def named(
-    cases: Mapping[Key, Sequence[dict[str, Any]]], varied: Sequence[str], given: Mapping[str, Collection[str]]
+    cases: Mapping[Key, Sequence[Case]], varied: Sequence[str], given: Mapping[str, Collection[str]]
 ) -> dict[Key, Series]:
-    """Return a series for each foundation, named after what distinguishes it from the others.
+    """Return a series for each foundation, labelled by the values that distinguish it from the others.
 
-    ``cases`` are those of run.json, one for each pier on which the foundation was run; ``given`` holds the keys that the
-    study gives for each case, by its name.
+    ``cases`` maps each foundation to its entries in run.json, one for each pier; ``given`` maps case names to the keys that
+    the study gives.
     """
     constants = {key: _constants(of_foundation, given.get(str(key[0]), ())) for key, of_foundation in cases.items()}
     # The rocking block itself, drawn as a line to compare others with: on rigid ground and without devices
+    firsts = {key: entries[0] for key, entries in cases.items()}
     rigid = {
-        key for key, (case, *_) in cases.items() if case["base"] == "rigid" and not case["parameters"].get("restraints")
+        key for key, case in firsts.items() if case["base"] == "rigid" and not case["parameters"].get("restraints")
     }
     if 1 < len(cases) == len(rigid):
-        rigid = set()  # nothing to compare with: they are foundations like others
+        rigid = set()  # without others to compare with, they get markers
     shown = dict.fromkeys((*BASE_KEYS, *varied))
-    # Supports are compared with supports: rigid ground has no values of theirs
-    kinds = {key: (key in rigid, case["base"] == "rigid") for key, (case, *_) in cases.items()}
+    # Supports are compared with supports only: rigid ground lacks their keys
+    kinds = {key: (key in rigid, case["base"] == "rigid") for key, case in firsts.items()}
     values = {kind: [constants[key] for key in cases if kinds[key] == kind] for kind in kinds.values()}
-    differing = {
-        kind: [name for name in shown if len({str(constants_of.get(name)) for constants_of in of_kind}) > 1]
-        for kind, of_kind in values.items()
-    }
+    differing = {kind: _differing(shown, of_kind) for kind, of_kind in values.items()}
     digits = {name: digits_that_tell(constants_of.get(name) for constants_of in constants.values()) for name in shown}
     names = [key[0] for key in cases if key not in rigid]
     short = len(set(names)) == len(names) and all(len(str(name)) <= 3 for name in names)
-    alone = len({key[0] for key in cases}) == 1  # a name that all share tells nothing apart
+    alone = len({key[0] for key in cases}) == 1  # a name that all share distinguishes nothing
     series: dict[Key, Series] = {}
     count = {True: 0, False: 0}
     for key in cases:
@@ -164,15 +189,17 @@ def named(
     return series
 
 
-def _constants(cases: Sequence[dict[str, Any]], given: Collection[str]) -> dict[str, object]:
-    """Return the values that a foundation keeps on every pier, without the keys that repeat a ``given`` one in other units.
+def _differing(names: Iterable[str], values: Sequence[Mapping[str, object]]) -> list[str]:
+    """Return the ``names`` whose values are not all equal."""
+    return [name for name in names if len({str(of_foundation.get(name)) for of_foundation in values}) > 1]
 
-    β of a given stiffness, for example, follows the pier.
+
+def _constants(cases: Sequence[Case], given: Collection[str]) -> dict[str, object]:
+    """Return the parameters of a foundation that are equal on every pier, without equivalents of ``given`` keys.
+
+    With the stiffness given, for example, β depends on the pier and is left out.
     """
     first, *further = [case["parameters"] | case["columns"] for case in cases]
     omitted = {free if unit in given else unit for free, unit in SAME.items()}.union(PIER_KEYS)
-    return {
-        key: value
-        for key, value in first.items()
-        if key not in omitted and value is not None and all(values.get(key) == value for values in further)
-    }
+    kept = {key: value for key, value in first.items() if key not in omitted and value is not None}
+    return {key: value for key, value in kept.items() if all(values.get(key) == value for values in further)}

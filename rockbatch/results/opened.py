@@ -1,4 +1,4 @@
-"""Finished results, opened again: peaks, what was run, and histories."""
+"""Open finished results: peaks, inputs and histories."""
 
 import os
 from collections.abc import Iterable
@@ -32,41 +32,40 @@ MOST_CANDIDATES = 8
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Results(Shown, Saved):
-    """The results in a folder: ``directory``, ``info`` (run.json), ``peaks``, and the histories that were kept."""
+    """The results in a folder: ``directory``, ``info`` (run.json), ``peaks`` and kept histories."""
 
     @cached_property
     def responses(self) -> Responses:
-        """The runs whose histories were kept, each read when it is asked for; none if the study asked for none."""
+        """The runs with kept histories, each read on access; empty if none were kept."""
         return Responses(self.directory / HISTORIES, self.info, self.peaks)
 
     @cached_property
     def intensity(self) -> "pd.DataFrame":
-        """``intensity.csv``: measures of each run's motion, where the study asks for them ([output] intensity = true)."""
+        """``intensity.csv``: measures of each run's motion; ``InputError`` unless [output] intensity = true."""
         return read_table(self._beside(INTENSITY, "[output] intensity = true"))
 
     @cached_property
     def intensity_order(self) -> "pd.DataFrame":
-        """The order in which each measure puts the peaks, a row for each case, scale and measure:
+        """How well each measure orders the peaks, a row for each case, scale and measure; see
         :class:`rockbatch.results.intensity.Order`."""
         return orders(self.intensity, self.info["varied"])
 
     @cached_property
     def shocks(self) -> "pd.DataFrame":
-        """``shocks.csv``: what each shock does, where some motions are sequences ([[motions.sequence]])."""
+        """``shocks.csv``: the response to each shock; ``InputError`` without a [[motions.sequence]]."""
         return read_shocks(self._beside(SHOCKS, "a [[motions.sequence]]"), self.info["varied"])
 
     @cached_property
     def sections(self) -> "pd.DataFrame":
-        """``sections.csv``: forces in sections of the shaft, where the study asks for them ([output] sections = 5)."""
+        """``sections.csv``: forces in sections of the shaft; ``InputError`` without [output] sections."""
         return read_sections(self._beside(SECTIONS, "[output] sections = 5"), self.info["varied"])
 
     def plot_cdf(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
-        """Draw the distribution of θ_max/α over the records, a panel for each pier and scale, a curve for each case: a matplotlib
-        Figure, ``width_mm`` wide or in the place of ``ax``.
+        """Draw the distribution of θ_max/α over the records as a matplotlib Figure.
 
-        A station counts as one record, with the worst of its components, unless the study counts them apart. Records under
-        which the pier overturned, or that were ended by flight, are what a curve lacks of 1 at its right end, where a cross
-        says so.
+        It has a panel for each pier and scale and a curve for each case, and is ``width_mm`` wide or replaces ``ax``. A
+        station counts as one record, with the worst of its components, unless the study counts components. Records under
+        which the pier overturned or a run stopped in flight reduce the curve's end below 1; a cross marks the gap.
         """
         from rockbatch.common.figures.paper import drawn
         from rockbatch.results.figures import distributions_of_all
@@ -76,7 +75,7 @@ class Results(Shown, Saved):
     def _beside(self, name: str, key: str) -> Path:
         path = self.directory / name
         if not path.exists():
-            raise InputError(f"{path}: not there; write {key} in the study, and start `rockbatch run` again")
+            raise InputError(f"{path}: not there; add {key} to the study and start `rockbatch run` again")
         return path
 
     def response(self, record: str | None = None, case: str | None = None, **more: float | str) -> Response:
@@ -85,27 +84,26 @@ class Results(Shown, Saved):
         Parameters
         ----------
         record, case : str, optional
-            Of which ground motion and case, or how the name of one of them begins; whatever the kept histories leave no
-            choice about can be left out.
+            Names of ground motion and case, or unique beginnings of them; optional where only one is left to choose.
         **more
-            Its ``polarity``, ``scale`` and values of the study's varied keys, where these differ.
+            Its ``polarity``, ``scale`` and values of the study's varied keys, if several are left.
 
         Raises
         ------
         InputError
-            If there is none, or more than one; with those that there are.
+            If no history fits, or more than one does; the message lists the choices.
         """
         wanted = {name: value for name, value in {"record": record, "case": case, **more}.items() if value is not None}
         index = self.responses.runs
         if index.empty:
             raise InputError(
-                f'{self.directory}: no histories; write [output] histories = "worst" or "all" in the study, and '
+                f'{self.directory}: no histories; add [output] histories = "worst" or "all" to the study and '
                 "start `rockbatch run` again"
             )
         keys = [name for name in index.columns if name != "status"]
         strange = [name for name in wanted if name not in keys]
         if strange:
-            raise InputError(*(f"{name}: does not distinguish runs; choose by {', '.join(keys)}" for name in strange))
+            raise InputError(*(f"{name}: not a key of runs; choose by {', '.join(keys)}" for name in strange))
         fitting = index
         for name, value in wanted.items():
             remaining = fitting[fitting[name] == value]
@@ -113,7 +111,7 @@ class Results(Shown, Saved):
                 begun = fitting[fitting[name].str.startswith(str(value))]
                 remaining = begun if begun[name].nunique() == 1 else remaining
             if remaining.empty:
-                raise InputError(self._none(name, value, fitting))
+                raise InputError(self._no_history(name, value, fitting))
             fitting = remaining
         if len(fitting) > 1:
             raise InputError(
@@ -131,16 +129,16 @@ class Results(Shown, Saved):
 
     @checked
     def plot(self, width_mm: float = 160.0, axes: str = "records", ax: "Axes | None" = None) -> "Figure":
-        """Draw the peaks of every run, a matplotlib Figure: ``results.plot().savefig("peaks.pdf")``.
+        """Draw the peaks of every run as a matplotlib Figure: ``results.plot().savefig("peaks.pdf")``.
 
-        It is ``width_mm`` wide, or in the place of ``ax``, matplotlib Axes of your own: in them if the figure has one panel, in
-        a subfigure that replaces them if it has several.
+        It is ``width_mm`` wide or replaces ``ax``, your own matplotlib Axes: drawn in them if the figure has one panel, in
+        a subfigure in their place if it has several.
 
-        With ``axes="records"`` as the paper's Fig. 7: a panel for each record, θ_max/α over the foundations, lines for the rigid
-        base; other piers, scales and directions have open marks, or colours of their own. With ``axes="self-similar"`` a panel
-        for each foundation, and in it each run of every pier, record and scale at PGA/(g tan α) over ω_g/p with
-        ω_g = PGA/PGV, in the tone of its θ_max/α: on these axes slender blocks of all sizes and slendernesses are one
-        (Dimitrakopoulos & DeJong 2012). Raises ``InputError`` for others.
+        ``axes="records"`` follows the paper's Fig. 7: a panel for each record, θ_max/α over the foundations, lines for rigid
+        ground; open marks or colours distinguish piers, scales and directions. ``axes="self-similar"`` has a panel for each
+        foundation and a point for each run at PGA/(g tan α) over ω_g/p, with ω_g = PGA/PGV, shaded by θ_max/α: on these axes
+        slender blocks of all sizes and slendernesses coincide (Dimitrakopoulos & DeJong 2012). Raises ``InputError`` for
+        other ``axes``.
         """
         from rockbatch.common.figures.paper import drawn
         from rockbatch.results.figures import peaks_of_all, self_similar
@@ -171,18 +169,11 @@ class Results(Shown, Saved):
 
     def _beneath(self) -> "pd.DataFrame":
         """See :class:`Shown`."""
-        columns = [
-            "record",
-            "case",
-            *self.info["varied"],
-            "status",
-            "theta_max_over_alpha",
-            "theta_max_error",
-            "settlement_m",
-        ]
-        return simulated(self.peaks)[columns]
+        results = ["status", "theta_max_over_alpha", "theta_max_error", "settlement_m"]
+        return simulated(self.peaks)[["record", "case", *self.info["varied"], *results]]
 
-    def _none(self, name: str, value: float | str, among: "pd.DataFrame") -> str:
+    def _no_history(self, name: str, value: float | str, among: "pd.DataFrame") -> str:
+        """Return the message that no history ``among`` these has this value, with the nearest one or the choices."""
         values = among[name].dropna().unique().tolist()
         nearest = closest(value, map(str, values)) if isinstance(value, str) else None
         hint = f"there are {_listed(map(shown, values))}" if values else "it applies to none of them"
@@ -198,12 +189,12 @@ def open_results(directory: str | os.PathLike[str]) -> Results:
     Raises
     ------
     InputError
-        With all that is wrong, if peaks.csv or run.json is missing or damaged.
+        With every fault, if peaks.csv or run.json is missing or damaged.
 
     Warns
     -----
     MissingColumns
-        Where an earlier version wrote them, without columns that it did not have yet.
+        If an earlier version wrote them, without columns that are new.
 
     Examples
     --------
@@ -223,12 +214,10 @@ def open_results(directory: str | os.PathLike[str]) -> Results:
 
 
 def _candidates(fitting: "pd.DataFrame", criteria: dict[str, float | str]) -> str:
-    """Return the runs that fit, by the values that distinguish them."""
+    """List runs by the values that distinguish them, apart from the ``criteria`` already used."""
     apart = [name for name in fitting.columns if name not in ("status", *criteria) and fitting[name].nunique() > 1]
-    runs = fitting[apart].to_dict("records")
-    return _listed(
-        ", ".join(f"{name} = {shown(value)}" for name, value in run.items() if value == value) for run in runs
-    )
+    runs = [{name: value for name, value in run.items() if value == value} for run in fitting[apart].to_dict("records")]
+    return _listed(", ".join(f"{name} = {shown(value)}" for name, value in run.items()) for run in runs)
 
 
 def _listed(candidates: Iterable[str]) -> str:

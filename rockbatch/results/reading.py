@@ -1,10 +1,10 @@
-"""Folders of results read back: ``peaks.csv`` and ``run.json``, held against each other."""
+"""Read a folder of results: ``peaks.csv`` and ``run.json``, each checked, then against each other."""
 
 import csv
 import json
 import math
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,12 +17,13 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.version import __version__
 from rockbatch.quantities.catalogue import COUNTS, FACTS, FIXED, TEXTS, TRAILING, UNBOUNDED, names
 from rockbatch.results.columns import PEAKS, STATUSES, numbers_or_words
+from rockbatch.results.labelled import Item
 from rockbatch.results.run_json import INFO, SHAPE
 from rockbatch.results.shape import unfit
 
 MOST_PROBLEMS = 20
 MOST_COUNT = 1 << 53
-"""Up to which a float holds every whole number."""
+"""Largest integer below which floats hold every integer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,10 +37,10 @@ class Saved:
     info : dict
         ``run.json``.
     peaks : DataFrame
-        ``peaks.csv`` with the types that ``rockbatch.run`` returns: texts that are "" where they do not apply, numbers
-        that are NaN, counts that can be missing; varied keys are numbers or texts.
+        ``peaks.csv`` with the types that ``rockbatch.run`` returns: missing texts are "", missing numbers NaN, missing
+        counts <NA>; varied keys are numbers or texts.
     missing : tuple of str
-        Columns that an earlier version did not write yet: empty in ``peaks``.
+        New columns, which the version that wrote the folder lacked: empty in ``peaks``.
     """
 
     directory: Path
@@ -49,7 +50,7 @@ class Saved:
 
     @property
     def missing_in_words(self) -> str:
-        """The columns that ``peaks.csv`` lacks, in a sentence without its subject; empty if it has all."""
+        """A predicate about the columns that ``peaks.csv`` lacks, "has no column x, …"; empty if it has all."""
         if not self.missing:
             return ""
         several = len(self.missing) > 1
@@ -62,22 +63,22 @@ class Saved:
 
 @checked
 def read_saved(directory: Path) -> Saved:
-    """Read what ``rockbatch run`` wrote into ``directory``.
+    """Read the results that ``rockbatch run`` wrote into ``directory``.
 
-    Raises ``InputError``, with all that is wrong at once, where a file is missing or damaged. Warns of ``MissingColumns``,
-    and of an ``EditedTable``.
+    Raises ``InputError`` with every fault if a file is missing or damaged. Warns with ``MissingColumns`` for results of an
+    earlier version, and with ``EditedTable`` for a table changed since.
     """
     directory = Path(directory)
     if directory.exists() and not directory.is_dir():
         folder = directory.parent if (directory.parent / INFO).exists() else Path("reports") / directory.stem
-        raise InputError(f"{directory}: a file, not a folder of results; write the folder, such as {folder}")
+        raise InputError(f"{directory}: a file, not a folder of results; give the folder, such as {folder}")
     problems: list[Problem | str] = []
     info: dict[str, Any] = {}
-    with _noting(problems):
+    with _collecting_problems(problems):
         info = _read_info(directory / INFO)
-    with _noting(problems):
+    with _collecting_problems(problems):
         peaks = _read_peaks(directory / PEAKS, info.get("varied", []))
-    refuse([*problems, *_of_another_version(directory)] if problems else [])
+    refuse([*problems, *_other_version(directory)] if problems else [])
     if unknown := {name for case in info["cases"] for name in case["columns"]} - set(info["varied"]):
         raise InputError(
             f"{directory / INFO}: cases vary {', '.join(sorted(unknown))}, which varied does not list; start `rockbatch run` "
@@ -91,7 +92,7 @@ def read_saved(directory: Path) -> Saved:
                 "different runs, or are damaged; start `rockbatch run` again"
             )
     if differs := edited(directory, info):
-        warnings.warn(f"{directory / PEAKS}: {differs}; what it says now is shown", EditedTable, stacklevel=2)
+        warnings.warn(f"{directory / PEAKS}: {differs}; its present values are shown", EditedTable, stacklevel=2)
     missing = tuple(name for name in names(TRAILING) if name not in peaks)
     for name in missing:
         peaks[name] = "" if name in TEXTS else math.nan
@@ -101,21 +102,20 @@ def read_saved(directory: Path) -> Saved:
     return saved
 
 
-def _of_another_version(directory: Path) -> list[str]:
-    """Return a sentence about the version that wrote a folder which cannot be read; none if it was this one, or is not known."""
+def _other_version(directory: Path) -> list[str]:
+    """Return a sentence on the version that wrote a folder; empty if it was this one or is unknown."""
     try:
-        wrote = str(json.loads(read_text(directory / INFO))["rockbatch"])
+        version = str(json.loads(read_text(directory / INFO))["rockbatch"])
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return []
-    if wrote == __version__:
+    if version == __version__:
         return []
-    return [
-        f"{directory}: written by rockbatch {legible(wrote[:40])}, and this is {__version__}: read it with that version"
-    ]
+    writer = legible(version[:40])
+    return [f"{directory}: written by rockbatch {writer}, but this is {__version__}: read it with that version"]
 
 
-def edited(directory: Path, info: Mapping[str, Any]) -> str:
-    """Return why ``peaks.csv`` is not the one that ``info`` was written with; empty if it is."""
+def edited(directory: Path, info: Item) -> str:
+    """Return words if the digest of ``peaks.csv`` differs from that in ``info``; empty if equal or unknown."""
     noted = info.get("peaks")
     if noted is None or sha256_of(directory / PEAKS) == noted["sha256"]:
         return ""
@@ -123,8 +123,8 @@ def edited(directory: Path, info: Mapping[str, Any]) -> str:
 
 
 @contextmanager
-def _noting(problems: list[Problem | str]) -> Iterator[None]:
-    """Add the problems of an ``InputError`` to those of the other file."""
+def _collecting_problems(problems: list[Problem | str]) -> Iterator[None]:
+    """Append the problems of an ``InputError`` to ``problems`` instead of raising it."""
     try:
         yield
     except InputError as error:
@@ -132,8 +132,8 @@ def _noting(problems: list[Problem | str]) -> Iterator[None]:
 
 
 @contextmanager
-def _naming_damage(path: Path, line: str, kind: str, *damages: type[Exception]) -> Iterator[None]:
-    """Raise ``InputError`` for a file that is missing, or damaged so that it is no ``kind``."""
+def _as_input_error(path: Path, line: str, kind: str, *damages: type[Exception]) -> Iterator[None]:
+    """Turn ``FileNotFoundError`` and ``damages`` into an ``InputError`` that the file is missing or not ``kind``."""
     try:
         yield
     except FileNotFoundError:
@@ -146,7 +146,8 @@ def _naming_damage(path: Path, line: str, kind: str, *damages: type[Exception]) 
 
 
 def _read_info(path: Path) -> dict[str, Any]:
-    with _naming_damage(path, ":1", "JSON", ValueError, RecursionError):
+    """Read run.json; raise ``InputError`` with every part that does not fit :data:`SHAPE`."""
+    with _as_input_error(path, ":1", "JSON", ValueError, RecursionError):
         info: Any = _legible(json.loads(read_text(path)))
     misfits = list(unfit(info, SHAPE, MOST_PROBLEMS))
     missing = [problem.place for problem in misfits if problem.missing and problem.place in SHAPE]
@@ -158,7 +159,7 @@ def _read_info(path: Path) -> dict[str, Any]:
 
 
 def _legible(value: Any) -> Any:
-    """Return ``value`` of JSON with its texts made legible; line breaks stay."""
+    """Return a JSON value with control characters in its texts escaped, except line breaks and tabs."""
     if isinstance(value, str):
         return legible(value, keep="\t\r\n")
     if isinstance(value, list):
@@ -167,7 +168,8 @@ def _legible(value: Any) -> Any:
 
 
 def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
-    with _naming_damage(path, ":1", "a table", UnicodeDecodeError, csv.Error), opened_text(path) as file:
+    """Read peaks.csv with the types of its columns; raise ``InputError`` with every bad cell and its line."""
+    with _as_input_error(path, ":1", "a table", UnicodeDecodeError, csv.Error), opened_text(path) as file:
         head = next(csv.reader(file), [])
     if missing := [name for name in (*names(FIXED), *varied) if name not in head]:
         raise InputError(f"{path}:1: has no column {', '.join(missing)}; start `rockbatch run` again")
@@ -177,17 +179,19 @@ def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
     texts = [name for name in head if name in TEXTS or name in varied or name == "vertical"]
     numbers = [name for name in head if name not in texts]
     try:
-        # A record may be called "NA": only an empty number is missing
+        # Only an empty number is missing: a record may be called "NA"
         with opened(path) as file, warnings.catch_warnings():
-            warnings.simplefilter("error", pd.errors.ParserWarning)  # of a row with more cells, the last would be lost
+            warnings.simplefilter("error", pd.errors.ParserWarning)  # pandas would drop surplus cells of a row
+            empty, types = (
+                {name: [""] for name in numbers},
+                dict.fromkeys(texts, "str") | dict.fromkeys(numbers, "float64"),
+            )
             table = pd.read_csv(
-                file, keep_default_na=False, na_values={name: [""] for name in numbers}, encoding="utf-8",
-                index_col=False, dtype={**dict.fromkeys(texts, "str"), **dict.fromkeys(numbers, "float64")},
-            )  # fmt: skip
+                file, keep_default_na=False, na_values=empty, encoding="utf-8", index_col=False, dtype=types
+            )
         for name in table.columns.intersection(list(COUNTS)):
-            if (table[name].abs() > MOST_COUNT).any() or (
-                name in FACTS and not table[name].isin([0, 1, math.nan]).all()
-            ):
+            wrong_fact = name in FACTS and not table[name].isin([0, 1, math.nan]).all()
+            if wrong_fact or (table[name].abs() > MOST_COUNT).any():
                 raise ValueError(f"{name} is out of range")
             table[name] = table[name].astype("Int64")
         finite = [name for name in numbers if name not in UNBOUNDED]
@@ -208,7 +212,7 @@ def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
 
 
 def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[str]:
-    """Return every row of another length and every cell that should be a number and is not, with its line."""
+    """Return a message with its line for each wrong row length, number, status and missing scale."""
     bad: list[str] = []
     try:
         with opened_text(path) as file:
@@ -220,10 +224,9 @@ def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[
                     bad.append(f"{place}: {len(cells)} cells: expected {len(head)}, as in the first line")
                     continue
                 row = dict(zip(head, cells, strict=True))
+                wrong = [name for name in numbers if not _is_number(row[name], name)]
                 bad += [
-                    f'{place}: {name} = "{row[name][:80]}": expected {_expected(name)} or nothing'
-                    for name in numbers
-                    if not _is_number(row[name], name)
+                    f'{place}: {name} = "{row[name][:80]}": expected {_expected(name)} or nothing' for name in wrong
                 ]
                 if row["status"] not in STATUSES:
                     bad.append(f'{place}: status = "{row["status"][:80]}": expected {", ".join(STATUSES)}')
@@ -237,14 +240,14 @@ def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[
 
 
 def _expected(name: str) -> str:
-    """Return what a filled cell of a column holds, in words."""
+    """Return the values that a column allows, in words."""
     if name in FACTS:
         return "0, 1"
     return "a whole number" if name in COUNTS else "a number"
 
 
 def _is_number(text: str, name: str) -> bool:
-    """Return whether a cell of column ``name`` is a number as it takes them, or empty."""
+    """Return whether a cell is empty or a number that column ``name`` allows."""
     try:
         value = float(text or 0)
     except ValueError:

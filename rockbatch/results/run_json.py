@@ -4,10 +4,9 @@ import hashlib
 import json
 import math
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -23,38 +22,62 @@ from rockbatch.pier.bases import BASES, BOUNDS, WORDS
 from rockbatch.pier.free_rocking import FreeRocking
 from rockbatch.pier.statics import COMPARED
 from rockbatch.results.columns import PEAKS, units
+from rockbatch.results.labelled import Item, Row
 from rockbatch.results.shape import Maybe
 from rockbatch.study import Case, Study
 
 INFO = "run.json"
 FROM_PYTHON = "from Python)"
-"""End of a word of the command that stands for what no file holds: "(study from Python)"."""
+"""End of a placeholder in the command for an argument without a file: "(study from Python)"."""
 
 _NUMBER = (float, None)
 _VALUES = {str: (float, str)}
 _NUMBERS_OF_BASE = (*BOUNDS, "beta", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN")
-_RESTRAINT = {
-    parameter.name: Maybe(_NUMBER)
-    for parameter in (*fields(Damper), *fields(Tendon), *fields(Stop), *fields(DeckSpring))
-    if parameter.name != "confirm"
-} | {
+_OF_DEVICES = [field.name for kind in (Damper, Tendon, Stop, DeckSpring) for field in fields(kind)]
+_RESTRAINT = {name: Maybe(_NUMBER) for name in _OF_DEVICES if name != "confirm"} | {
     "kind": Maybe(str),
     "at": Maybe((float, str)),
     "side": Maybe(str),
 }
+_OPTIONAL_OF_PIER = (
+    "mass_t",
+    "top_m",
+    "highest_m",
+    "deck_height_m",
+    "deck_over_columns",
+    "flexural_period_s",
+    "shaft_share",
+)
 _OF_FILE = {"name": str, "source": str, "reason": str, "station": Maybe(str), "named": Maybe(bool)}
 _SPECTRA = {
-    "damping": float, "period_s": [float], "sa_g": [[float]], "mean_sa_g": Maybe([_NUMBER]),
+    "damping": float,
+    "period_s": [float],
+    "sa_g": [[float]],
+    "mean_sa_g": Maybe([_NUMBER]),
     "target_sa_g": Maybe([_NUMBER]),
-}  # fmt: skip
+}
 _TARGET = {
-    "spectrum": str, "range_s": [float], "factors": ("each", "suite", "both", "none"), "pairs": tuple(PAIRS),
-    "alone": int, "at_least": float, "required": Maybe(bool), "period_s": [float], "sa_g": [float], "mean_sa_g": [float],
-    "components_sa_g": Maybe([float]), "remarks": Maybe([str]), "code": Maybe(str), "stations": Maybe(int), "events": Maybe(int),
+    "spectrum": str,
+    "range_s": [float],
+    "factors": ("each", "suite", "both", "none"),
+    "pairs": tuple(PAIRS),
+    "alone": int,
+    "at_least": float,
+    "required": Maybe(bool),
+    "period_s": [float],
+    "sa_g": [float],
+    "mean_sa_g": [float],
+    "components_sa_g": Maybe([float]),
+    "remarks": Maybe([str]),
+    "code": Maybe(str),
+    "stations": Maybe(int),
+    "events": Maybe(int),
     "defined_to_s": Maybe(float),
-} | {
-    name: Maybe([float]) for name in ("record_factors", "family_factors", "zero_sa_g", "rocking_s")
-}  # fmt: skip
+    "record_factors": Maybe([float]),
+    "family_factors": Maybe([float]),
+    "zero_sa_g": Maybe([float]),
+    "rocking_s": Maybe([float]),
+}
 
 SHAPE = {
     "rockbatch": str,
@@ -71,18 +94,7 @@ SHAPE = {
             "case": str,
             "columns": _VALUES,
             "pier": dict.fromkeys(("alpha", "p", "mu", "gravity", "size_m", "half_width_m", "height_m"), float)
-            | {
-                name: Maybe(_NUMBER)
-                for name in (
-                    "mass_t",
-                    "top_m",
-                    "highest_m",
-                    "deck_height_m",
-                    "deck_over_columns",
-                    "flexural_period_s",
-                    "shaft_share",
-                )
-            },
+            | dict.fromkeys(_OPTIONAL_OF_PIER, Maybe(_NUMBER)),
             "base": tuple(BASES),
             "parameters": {name: Maybe(_NUMBER) for name in _NUMBERS_OF_BASE}
             | {name: Maybe((str, None)) for name in WORDS}
@@ -94,8 +106,8 @@ SHAPE = {
         {"record": str, "source": str, "vertical_source": (str, None), "notes": [str], "npts": int}
         | dict.fromkeys(("dt_s", "duration_s", "pga_g"), float)
         | dict.fromkeys(("pga_v_g", "pgv_m_s", "pgd_m"), _NUMBER)
-        | {name: Maybe(_NUMBER) for name in ("arias_m_s", "d5_95_s", "azimuth_deg", "magnitude", "distance_km")}
-        | {name: Maybe(_NUMBER) for name in ("pulse_period_s",)}
+        | dict.fromkeys(("arias_m_s", "d5_95_s", "azimuth_deg", "magnitude", "distance_km"), Maybe(_NUMBER))
+        | {"pulse_period_s": Maybe(_NUMBER)}
         | {name: Maybe((str, None)) for name in ("label", "event", "station", "station_name", "direction")}
         | {
             "factor": Maybe(float),
@@ -118,22 +130,22 @@ SHAPE = {
     "count": Maybe(("station", "component")),
     "left_out": Maybe([_OF_FILE]),
 }
-"""The part of run.json that programs read; the rest is for people."""
+"""Shape of the entries of run.json that programs read; the rest is for people."""
 
 VERSIONS_OF = ("numba", "numpy", "pandas", "obspy", "h5py")
-"""Packages whose versions are kept with results."""
+"""Packages whose versions are recorded with results."""
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of Python and of the packages that numbers depend on, and the commit of a checkout."""
-    from importlib.metadata import version  # 20 ms that nobody needs who reads results
+    """Return the versions of Python and the packages that results depend on, and the commit of a checkout."""
+    from importlib.metadata import version  # takes 20 ms, not needed to read results
 
     packages = {name: version(name) for name in VERSIONS_OF}
     return {"python": platform.python_version(), **packages} | ({"commit": commit()} if commit() else {})
 
 
-def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
-    """Return the entries of a study and its motions in run.json."""
+def describe(study: Study, motions: MotionSet) -> Row:
+    """Return the entries of run.json on a study and its motions."""
     gravity = study.cases[0].pier.gravity
     target = study.motions.target if isinstance(study.motions.target, SpectrumTarget) else None
     compared = target is not None and target.factors == "none"
@@ -159,21 +171,21 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
     }
 
 
-def _not_used(file: Unusable) -> dict[str, Any]:
-    """Return the entry of a file that is not used; the samples of one that is held back are not in it."""
+def _not_used(file: Unusable) -> Row:
+    """Return the entry of a file that is not used, without its samples, if it was held back."""
     entry = {name: value for name, value in vars(file).items() if name != "motion"}
     return entry | {"lacks": list(file.lacks), "kind": file.kind.__name__}
 
 
 def describe_study(study: Study) -> dict[str, str]:
-    """Return the name and the text of a study, with its digest, by which results are known as its own."""
+    """Return path, title, notes and text of a study, and the digest that identifies its results."""
     sha256 = hashlib.sha256(study.text.encode()).hexdigest()
     named = {"path": str(study.path), "title": study.title, "notes": study.notes}
     return named | {"text": study.text, "sha256": sha256}
 
 
 def is_of(directory: Path, sha256: str, records: Sequence[str] | None = None) -> bool:
-    """Return whether a folder holds results of the study with this digest, and of these ``records`` if they are given."""
+    """Return whether a folder has results of the study with digest ``sha256``, of exactly ``records`` if given."""
     try:
         info = json.loads(read_text(directory / INFO))
         alike = records is None or [record["record"] for record in info["records"]] == records
@@ -184,20 +196,21 @@ def is_of(directory: Path, sha256: str, records: Sequence[str] | None = None) ->
 
 
 def _is_pulse(motion: Motion, study: Study) -> bool:
-    """Return whether a motion is a pulse of the study, or a sequence of pulses, which no target scales."""
+    """Return whether a motion is a pulse of the study, or a sequence of pulses: targets do not scale these."""
     names = [shock.name for shock in motion.shocks] or [motion.name]
     return {pulse.name for pulse in study.motions.pulses}.issuperset(names)
 
 
 def _rocking(study: Study, target: SpectrumTarget) -> dict[str, list[float]]:
-    """Return the least and the greatest period of free rocking at 0.1 α [s] of the piers, for a code's conditions."""
+    """Return the shortest and longest free-rocking period at 0.1 α [s], for a code's conditions; empty if not needed."""
     kinds = [(case.pier, case.base) for case in study.cases] if target.code else []
-    found = [period for i, kind in enumerate(kinds) if kind not in kinds[:i] for period in _period_at(*kind)]
-    return {"rocking_s": [float(f"{period:.5g}") for period in (min(found), max(found))]} if found else {}
+    distinct = [kind for i, kind in enumerate(kinds) if kind not in kinds[:i]]
+    periods = [period for kind in distinct for period in _period_at(*kind)]
+    return {"rocking_s": [float(f"{period:.5g}") for period in (min(periods), max(periods))]} if periods else {}
 
 
 def _period_at(pier: Pier, base: Base) -> list[float]:
-    """Return the period of free rocking at :data:`rockbatch.pier.statics.COMPARED` of α [s], if the pier has one."""
+    """Return the free-rocking period [s] at :data:`rockbatch.pier.statics.COMPARED` of α; empty if it overturns there."""
     free, amplitude = FreeRocking(pier, base), COMPARED * pier.alpha
     if free.turn.unstable is not None and free.turn.unstable <= amplitude:
         return []
@@ -205,15 +218,15 @@ def _period_at(pier: Pier, base: Base) -> list[float]:
     return [period] if math.isfinite(period) else []
 
 
-def _vertical_target(study: Study, motions: MotionSet, gravity: float) -> dict[str, Any]:
-    """Return the spectrum that vertical components are fitted to, and their mean; nothing without one."""
+def _vertical_target(study: Study, motions: MotionSet, gravity: float) -> Row:
+    """Return the entry of the vertical target spectrum; empty without one."""
     target = study.motions.vertical_target
     if not isinstance(target, SpectrumTarget):
         return {}
     return {"vertical_target": target.run_json_entry(verticals(motions.motions), gravity)}
 
 
-def describe_case(case: Case) -> dict[str, Any]:
+def describe_case(case: Case) -> Row:
     """Return the entry of a case in run.json."""
     pier = case.pier
     return {
@@ -226,8 +239,8 @@ def describe_case(case: Case) -> dict[str, Any]:
     }
 
 
-def write_info(directory: Path, info: Mapping[str, Any]) -> None:
-    """Write run.json into ``directory``, whole or not at all: a line for each entry, and for each case, record or file of one."""
+def write_info(directory: Path, info: Item) -> None:
+    """Write run.json completely or not at all: a line for each entry and each item of lists of objects."""
     with replacing(directory / INFO) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
         for number, (name, value) in enumerate(info.items()):
             file.write(("{" if number == 0 else ",") + f"\n {_json(name)}: ")
@@ -240,5 +253,5 @@ def write_info(directory: Path, info: Mapping[str, Any]) -> None:
         file.write("\n}\n")
 
 
-def _json(value: Any) -> str:
+def _json(value: object) -> str:
     return json.dumps(value, ensure_ascii=False)

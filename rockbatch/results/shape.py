@@ -1,31 +1,38 @@
-"""Shapes that untrusted JSON must have before it is used.
+"""Check untrusted JSON against the shape that it must have.
 
-A shape is a type (``str``, ``bool``, ``int``, ``float`` for any finite number), a tuple of shapes of which one has to fit
-(``None`` among them), ``[shape]`` for a list of such, ``{str: shape}`` for an object with any keys, or an object of the keys
-that are required, or optional if the shape is :class:`Maybe`. Other keys are not looked at.
+A shape is a type (``str``, ``bool``, ``int``, ``float`` for any finite number), a tuple of alternatives (``None`` or texts among
+them), ``[shape]`` for a list, ``{str: shape}`` for an object with any keys, or an object with the shapes of its keys, which
+are optional if :class:`Maybe`. Further keys are ignored.
 """
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from itertools import islice
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 MOST = 1e30
-"""Bound of all numbers of results; arithmetic beyond it overflows."""
+"""Largest number allowed; arithmetic with larger ones may overflow."""
 
-_WORDS = {str: "a text", bool: "true or false", int: "a whole number", float: "a number", None: "null"}
+_WORDS: dict[object, str] = {
+    str: "a text",
+    bool: "true or false",
+    int: "a whole number",
+    float: "a number",
+    None: "null",
+}
 
 
 @dataclass(frozen=True)
 class Maybe:
-    """The shape of a key that can be missing."""
+    """The shape of a key that may be missing."""
 
-    shape: Any
+    shape: object
 
 
 class Misfit(NamedTuple):
-    """A part that does not fit: its place, and what was expected there; ``str`` says both."""
+    """A part that does not fit: its place and the expected shape in words; ``str`` combines them."""
 
     place: str
     expected: str
@@ -36,17 +43,18 @@ class Misfit(NamedTuple):
         return f"{place} is missing" if self.missing else f"{place}: expected {self.expected}"
 
 
-def unfit(value: Any, shape: Any, most: int | None = None) -> Iterator[Misfit]:
-    """Return the first ``most`` parts of ``value`` that do not fit; none if all of it does."""
+def unfit(value: object, shape: object, most: int | None = None) -> Iterator[Misfit]:
+    """Yield the parts of ``value`` that do not fit, at most ``most``."""
     return islice(_unfit(value, shape, ""), most)
 
 
-def fits(value: Any, shape: Any) -> bool:
-    """Return True if all of ``value`` fits."""
+def fits(value: object, shape: object) -> bool:
+    """Return whether all of ``value`` fits ``shape``."""
     return next(unfit(value, shape), None) is None
 
 
-def _unfit(value: Any, shape: Any, place: str) -> Iterator[Misfit]:
+def _unfit(value: object, shape: object, place: str) -> Iterator[Misfit]:
+    """Yield the parts of ``value`` that do not fit; ``place`` is its path, "" for the whole."""
     if isinstance(shape, dict):
         yield from _unfit_object(value, shape, place)
     elif isinstance(shape, list):
@@ -56,15 +64,13 @@ def _unfit(value: Any, shape: Any, place: str) -> Iterator[Misfit]:
         for number, item in enumerate(value):
             yield from _unfit(item, shape[0], f"{place}[{number}]")
     elif isinstance(shape, tuple):
-        if not any(
-            fits(value, choice) if isinstance(choice, list | dict) else _is_a(value, choice) for choice in shape
-        ):
+        if not any(map(partial(fits, value), shape)):
             yield Misfit(place, " or ".join(map(_words, shape)))
     elif not _is_a(value, shape):
         yield Misfit(place, _words(shape))
 
 
-def _unfit_object(value: Any, shape: dict[Any, Any], place: str) -> Iterator[Misfit]:
+def _unfit_object(value: object, shape: dict[object, object], place: str) -> Iterator[Misfit]:
     if not isinstance(value, dict):
         yield Misfit(place, "an object")
         return
@@ -75,14 +81,17 @@ def _unfit_object(value: Any, shape: dict[Any, Any], place: str) -> Iterator[Mis
     for key, expected in shape.items():
         if key in value:
             expected = expected.shape if isinstance(expected, Maybe) else expected
-            if not _soon(value[key], expected):
-                yield from _unfit(value[key], expected, f"{place}.{key}" if place else key)
+            if not _fits_at_once(value[key], expected):
+                yield from _unfit(value[key], expected, f"{place}.{key}" if place else str(key))
         elif not isinstance(expected, Maybe):
-            yield Misfit(f"{place}.{key}" if place else key, "", missing=True)
+            yield Misfit(f"{place}.{key}" if place else str(key), "", missing=True)
 
 
-def _soon(value: Any, shape: Any) -> bool:
-    """Return True if the single ``value`` fits ``kind``; fast, since there are millions."""
+def _fits_at_once(value: object, shape: object) -> bool:
+    """Return True for a float or str that fits ``shape``; False leaves the decision to :func:`_unfit`.
+
+    A shortcut, since files may hold millions of numbers.
+    """
     if type(shape) is tuple:
         shape = shape[0]
     if shape is float:
@@ -90,17 +99,21 @@ def _soon(value: Any, shape: Any) -> bool:
     return shape is str and type(value) is str
 
 
-def _is_a(value: Any, kind: Any) -> bool:
-    if kind is None or kind is bool or kind is str:
-        return value is None if kind is None else isinstance(value, kind)
+def _is_a(value: object, kind: object) -> bool:
+    """Return whether ``value`` is None, of type ``kind``, or equal to the text ``kind``."""
+    if kind is None:
+        return value is None
+    if kind is bool or kind is str:
+        return isinstance(value, bool if kind is bool else str)
     if isinstance(kind, str):
-        return bool(value == kind)
+        return value == kind
     if isinstance(value, bool) or not isinstance(value, int if kind is int else int | float):
         return False
     return abs(value) < MOST and math.isfinite(value)
 
 
-def _words(shape: Any) -> str:
+def _words(shape: object) -> str:
+    """Return a shape in words: "a list", "a number", or a text in quotation marks."""
     if isinstance(shape, list | dict):
         return "a list" if isinstance(shape, list) else "an object"
     return f'"{shape}"' if isinstance(shape, str) else _WORDS[shape]

@@ -38,10 +38,9 @@ def shock_rows(motion: Motion, pier: Pier, outcomes: Sequence[ShockOutcome]) -> 
         first, last = round(shock.start / motion.dt), round(shock.end / motion.dt)
         pga = float(abs(motion.horizontal[first : last + 1]).max()) / pier.gravity
         alpha = pier.alpha
-        values = (
-            place, shock.name, shock.start, shock.end, pga, outcome.status, outcome.theta_max / alpha,
-            outcome.theta_max_error / alpha, outcome.t_max, outcome.theta_res / alpha, outcome.settlement, outcome.moving / alpha,
-        )  # fmt: skip
+        rotation = outcome.theta_max / alpha, outcome.theta_max_error / alpha, outcome.t_max
+        rest = outcome.theta_res / alpha, outcome.settlement, outcome.moving / alpha
+        values = place, shock.name, shock.start, shock.end, pga, outcome.status, *rotation, *rest
         rows.append(dict(zip(MEANING, values, strict=True)))
     return rows
 

@@ -1,8 +1,7 @@
-"""Response spectra of the ground motions of a study."""
+"""Figure of the response spectra of a study's ground motions."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,13 +18,14 @@ from rockbatch.common.figures.description import (
     line_of,
     log_spanning,
 )
+from rockbatch.results.labelled import Item
 
 LABELLED = COLOURS
-"""Most records whose spectra are labelled one by one; larger suites show their spread."""
+"""Most records whose spectra are labelled; larger suites show percentiles instead."""
 
 
-def drawable(spectra: Mapping[str, Any]) -> bool:
-    """Return whether periods rise, and every spectrum has a value for each; run.json may come from anybody."""
+def drawable(spectra: Item) -> bool:
+    """Return whether periods rise and every spectrum has a value for each: run.json is untrusted."""
     periods, more = spectra["period_s"], [spectra[name] for name in ("mean_sa_g", "target_sa_g") if name in spectra]
     shown = [*spectra["sa_g"], *more]
     rising = len(periods) > 1 and all(a < b for a, b in pairwise([0.0, *periods]))
@@ -34,19 +34,17 @@ def drawable(spectra: Mapping[str, Any]) -> bool:
     return rising and fitting and all(value is None or value >= 0 for value in values)
 
 
-def response_spectra(
-    spectra: Mapping[str, Any], names: Sequence[str], fitted: tuple[float, float] | None = None
-) -> Figure:
-    """Return pseudo-spectral acceleration [g] over the period [s], both logarithmic.
+def response_spectra(spectra: Item, names: Sequence[str], fitted: tuple[float, float] | None = None) -> Figure:
+    """Return a figure of pseudo-spectral acceleration [g] over period [s], both logarithmic.
 
-    ``spectra`` is that of run.json: ``damping``, ``period_s``, ``sa_g`` in the order of ``names``, and optionally
+    ``spectra``, from run.json, has ``damping``, ``period_s``, ``sa_g`` in the order of ``names`` and, optionally,
     ``target_sa_g``, to which the suite's ``mean_sa_g`` is ``fitted`` between two periods [s].
     """
     periods, values = np.array(spectra["period_s"], dtype=float), np.array(spectra["sa_g"], dtype=float)
     target = np.array(spectra.get("target_sa_g", ()), dtype=float)
     shown = np.concatenate((values[values > 0], target[target > 0]))
     top = float(shown.max(initial=1e-3))
-    low = max(float(shown.min(initial=top)), 1e-4 * top)  # a record of nearly zeros must not flatten the rest
+    low = max(float(shown.min(initial=top)), 1e-4 * top)  # nearly zero records must not flatten the rest
     y = log_spanning("SA [g]", np.array([low, top]), margin=0.2)
     few = len(names) <= LABELLED
     marks: list[Mark] = [] if fitted is None else [Span("x", *fitted, look=Look("band"))]

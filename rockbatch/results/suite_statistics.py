@@ -1,4 +1,4 @@
-"""Statistics of a suite of runs: mean, quantiles and distribution of those that stood, numbers of those that did not."""
+"""Statistics of a suite: mean, quantiles and distribution over records, and numbers of records without a peak."""
 
 import math
 from collections.abc import Sequence
@@ -12,18 +12,18 @@ from rockbatch.common.lazy import pd
 from rockbatch.quantities.statistics import Values, quantiles
 
 NO_PEAK = ("overturned", "flight")
-"""Outcomes without a largest rotation: they count as larger than any."""
+"""Statuses without a largest rotation: they count as infinite."""
 
 
 def worst_records(runs: "pd.DataFrame", most: int) -> list[str]:
-    """Return the records with the worst runs, ``most`` of them at most: those without a largest rotation first."""
+    """Return the ``most`` worst records: those with a run without a peak first, then by decreasing rotation."""
     badness = runs["theta_max_over_alpha"].where(~runs["status"].isin(NO_PEAK), math.inf)
     worst = badness.groupby(runs["record"]).max().sort_values(ascending=False, kind="stable")
     return list(worst.index[:most])
 
 
 def reasons_of_failure(runs: "pd.DataFrame") -> dict[str, int]:
-    """Return how many runs failed for each of the two most frequent reasons, without what follows a colon in these."""
+    """Return the counts of the two most frequent reasons of failed runs, each cut at its first colon or semicolon."""
     failed = runs.loc[runs["status"] == "failed", "reason"].astype(str)
     counts = failed.str.split("[:;]", n=1).str[0].value_counts()
     return {str(reason): int(times) for reason, times in counts.head(2).items()}
@@ -33,9 +33,9 @@ def reasons_of_failure(runs: "pd.DataFrame") -> dict[str, int]:
 class Statistics:
     """Statistics of one quantity over the records of a case.
 
-    ``count`` records have an outcome, ``standing`` of them a value; ``mean`` is over those, NaN without any. ``low``,
-    ``median`` and ``high`` are the 16, 50 and 84 % quantiles of all ``count``, ``largest`` the greatest: infinite
-    where they fall on records under which the pier overturned or that were ended by flight.
+    ``count`` records have an outcome, ``standing`` of them a finite value, whose ``mean`` is NaN without any. ``low``,
+    ``median`` and ``high`` are the 16, 50 and 84 % quantiles over all ``count``, ``largest`` the maximum; infinite where
+    they fall on a record under which the pier overturned or a run stopped in flight.
     """
 
     count: int
@@ -51,8 +51,8 @@ class Statistics:
 
 
 class Records(NamedTuple):
-    """Runs as records: the worst magnitude of each, infinite where the pier overturned or flew, NaN where it is unknown;
-    of which of them that is so; and the group to which each belongs, in whose order they are. Shapes (n,)."""
+    """Records, shapes (n,): the worst magnitude of each, infinite if it overturned or flew, NaN if unknown; flags of these
+    outcomes; and its group, in whose order the records are."""
 
     worst: Values
     overturned: npt.NDArray[np.bool_]
@@ -62,7 +62,7 @@ class Records(NamedTuple):
 
     @property
     def known(self) -> npt.NDArray[np.bool_]:
-        """True for each that has an outcome to which the quantity applies."""
+        """True for records with an outcome to which the quantity applies."""
         return ~self.failed & ~np.isnan(self.worst)
 
 
@@ -72,11 +72,11 @@ def records(
     counted_as: Sequence[str] | None = None,
     group: npt.NDArray[np.int64] | None = None,
 ) -> Records:
-    """Return the records of runs with ``values``, shape (n,), of which the magnitude counts, and the ``status`` of each.
+    """Combine runs with ``values``, shape (n,), whose magnitudes count, and ``status`` into records.
 
-    Runs of one ``group`` that are ``counted_as`` one record count once, with the worst of them: overturned before flight
-    before any value. Where one of them failed and none is worse than any value, the record is unknown. By default every run
-    is a record, and all are of group 0.
+    Runs of one ``group`` that are ``counted_as`` the same record count once, with the worst of them: overturned, then
+    flight, then the largest value. If one of them failed and none overturned or flew, the record is unknown. By default
+    every run is a record of group 0.
     """
     kinds = np.asarray(status, dtype=object)
     no_peak = np.isin(kinds, NO_PEAK)
@@ -100,14 +100,14 @@ def records(
 
 
 def suite(values: Values, status: Sequence[str], counted_as: Sequence[str] | None = None) -> Statistics:
-    """Return statistics of the magnitudes of ``values``, shape (n,), over their :func:`records`; NaN does not apply."""
+    """Return statistics of the magnitudes of ``values``, shape (n,), over their :func:`records`; NaN is left out."""
     return suites(values, status, counted_as, np.zeros(len(values), dtype=np.int64), 1)[0]
 
 
 def suites(
     values: Values, status: Sequence[str], counted_as: Sequence[str] | None, group: npt.NDArray[np.int64], groups: int
 ) -> list[Statistics]:
-    """Return the statistics of each of ``groups`` groups of runs; ``group``, shape (n,), is the place of that of each run."""
+    """Return the statistics of each of ``groups`` groups; ``group``, shape (n,), is the index of each run's group."""
     data = records(values, status, counted_as, group)
     worst, group_of = data.worst[data.known], data.group[data.known]
     ordered = worst[np.lexsort((worst, group_of))]
@@ -119,10 +119,8 @@ def suites(
     mean = np.where(standing > 0, total / np.maximum(standing, 1), math.nan)
     fractiles = [quantiles(ordered, first, n, q) for q in (0.16, 0.5, 0.84, 1.0)]
     counts = [np.bincount(data.group[ended], minlength=groups) for ended in (data.overturned, data.flight, data.failed)]
-    return [
-        Statistics(*row)
-        for row in zip(*(column.tolist() for column in (n, standing, mean, *fractiles, *counts)), strict=True)
-    ]
+    columns = [column.tolist() for column in (n, standing, mean, *fractiles, *counts)]
+    return [Statistics(*row) for row in zip(*columns, strict=True)]
 
 
 def distribution(
@@ -130,8 +128,8 @@ def distribution(
 ) -> tuple[Values, Values]:
     """Return the empirical distribution of the magnitudes of ``values``, shape (n,), over their :func:`records`.
 
-    That is the value of each record that stood, in order, and the share of all records with an outcome that do not exceed it:
-    those under which the pier overturned, or that were ended by flight, exceed all of them.
+    The first array holds the values of the standing records, sorted; the second the share of all records with an outcome
+    that do not exceed each. Records that overturned or stopped in flight exceed every value.
     """
     data = records(values, status, counted_as)
     worst = np.sort(data.worst[data.known])

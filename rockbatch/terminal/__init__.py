@@ -1,1 +1,1 @@
-"""What all commands share: the streams, messages and progress on the terminal, and arguments."""
+"""Shared by all commands: output streams, messages, progress and arguments."""

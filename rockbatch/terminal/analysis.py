@@ -1,19 +1,32 @@
-"""Arguments and printing that the commands of analyses share."""
+"""Arguments and printing shared by the commands of analyses."""
 
 import argparse
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TypedDict
 
+from rockbatch.batch.listening import Listener
+from rockbatch.batch.threads import Engine
 from rockbatch.reporting.markup import number
 from rockbatch.reporting.table import Head
+from rockbatch.results.labelled import Item
 from rockbatch.terminal.messages import Terminal
 from rockbatch.terminal.options import engine, folder
 from rockbatch.terminal.streams import in_width, say
 from rockbatch.workflow.analysis import Analysis
 
 
-def analysis_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Return the arguments of every analysis: its folder, its engine, and the listener for its messages."""
+class AnalysisArguments(TypedDict):
+    """Arguments that every analysis takes."""
+
+    out: Path
+    jobs: Engine
+    fresh: bool
+    progress: Listener
+
+
+def analysis_arguments(arguments: argparse.Namespace) -> AnalysisArguments:
+    """Return the folder, engine and listener of an analysis, by the names of its parameters."""
     return {"out": folder(arguments), "jobs": engine(arguments), "fresh": arguments.fresh, "progress": Terminal()}
 
 
@@ -23,11 +36,11 @@ def print_files(analysis: Analysis) -> None:
         say(str(path))
 
 
-def in_lines(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], names: int = 1) -> str:
-    """Return a table for the terminal, with the heads and cells of the page's (:func:`rockbatch.reporting.table.listed`).
+def in_lines(heads: Sequence[Head], items: Iterable[Item], names: int = 1) -> str:
+    """Return a table as text, with the heads and cells of :func:`rockbatch.reporting.table.listed`.
 
-    The first ``names`` columns name a row; others without a value are left out. A head over several columns stands above the
-    first of them.
+    The first ``names`` columns identify a row; other columns are left out if empty. A head over several columns is printed
+    above the first of them.
     """
     rows = [[cell(head, item) for head in heads] for item in items]
     used = [place for place in range(len(heads)) if place < names or any(row[place] for row in rows)]
@@ -39,6 +52,6 @@ def in_lines(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], names: i
     return in_width(lines[0], lines[1:], names)
 
 
-def cell(head: Head, item: Mapping[str, Any]) -> str:
-    """Return a value of an item as the terminal shows it."""
+def cell(head: Head, item: Item) -> str:
+    """Return the cell of an item as plain text; "" for None and NaN."""
     return number(head.value_in(item), head.form).replace("\u00a0", " ").replace("\u2060", "")

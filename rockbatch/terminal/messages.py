@@ -1,4 +1,4 @@
-"""Messages of a batch on the terminal, and its progress."""
+"""Print messages and progress of a batch."""
 
 import io
 import os
@@ -16,23 +16,22 @@ SECONDS_BETWEEN_LINES = 2.0
 
 
 class Terminal(Listener):
-    """Listener that prints on stderr what it hears of a batch."""
+    """Listener that prints the messages and progress of a batch on stderr."""
 
     def __init__(self) -> None:
         self._bars = Bars()
 
     def motions(self, motion_set: MotionSet) -> None:
-        """Print which files are not used and why, and how many are left out."""
+        """Print files that are not used, repeated records, missing vertical components, and the number of files left out."""
         for file in motion_set.unusable:
             say(f"not used: {file.source}: {file.reason}")
-        for first, repeat in _twice(motion_set):
+        for first, repeat in _repeated(motion_set):
             say(f"{first} and {repeat} have the same samples: checks count them once, curves twice; leave one out")
         if lacking := [motion.named for motion in motion_set.motions if motion.lacks_vertical]:
             say(f"no vertical: {'; '.join(lacking)}")
         if motion_set.left_out:
-            say(
-                f"{count(len(motion_set.left_out), 'file')} left out: `rockbatch motions FOLDER` lists them and says why"
-            )
+            files = count(len(motion_set.left_out), "file")
+            say(f"{files} left out: `rockbatch motions FOLDER` lists them with reasons")
 
     def say(self, text: str) -> None:
         """See :class:`Listener`."""
@@ -41,9 +40,9 @@ class Terminal(Listener):
 
     @contextmanager
     def progress(self, total: int) -> Iterator[Advance]:
-        """Return a bar with the time remaining on a terminal, and plain lines elsewhere; see :class:`Listener`."""
+        """Show a bar with the time remaining in a terminal, plain lines elsewhere; see :class:`Listener`."""
         stream = sys.stderr or io.StringIO()
-        # A terminal that a program makes may have no size
+        # A pseudo-terminal may have size 0
         if not (stream.isatty() and min(os.get_terminal_size(stream.fileno())) > 0):
             yield _lines(total, stream)
             return
@@ -58,15 +57,15 @@ class Terminal(Listener):
             yield guarded
 
 
-def _twice(motions: MotionSet) -> list[tuple[str, str]]:
-    """Return the names of motions with the same samples: the first, and each that repeats it."""
+def _repeated(motions: MotionSet) -> list[tuple[str, str]]:
+    """Return pairs of names of motions with the same samples: the first, and one that repeats it."""
     first: dict[tuple[float, bytes], str] = {}
     names = [(first.setdefault((m.dt, m.horizontal.tobytes()), m.name), m.name) for m in motions.motions]
     return [(name, repeat) for name, repeat in names if name != repeat]
 
 
 def _lines(total: int, stream: TextIO) -> Advance:
-    """Return a function that prints a line now and then: how many runs are finished, and the time remaining."""
+    """Return a function that prints finished runs and time remaining, at most every :data:`SECONDS_BETWEEN_LINES`."""
     started = printed = time.monotonic()
     done = 0
 

@@ -1,4 +1,4 @@
-"""Arguments of several commands: the folder of the results, and the engine that carries out the runs."""
+"""Values of arguments shared by several commands: the results' folder, and the engine for runs."""
 
 import argparse
 from pathlib import Path
@@ -8,12 +8,12 @@ from rockbatch.batch.threads import Engine, Threads, cores
 
 
 def folder(arguments: argparse.Namespace) -> Path:
-    """Return the folder of the results."""
+    """Return --out, or by default reports/STUDY."""
     return arguments.out or Path("reports") / arguments.study.stem
 
 
 def engine(arguments: argparse.Namespace) -> Engine:
-    """Return the engine that carries out the runs; a context."""
+    """Return the engine of --engine, --scheduler and --jobs, a context; by default a thread for each processor."""
     if arguments.engine == "dask" or arguments.scheduler:
         return Dask(arguments.scheduler, arguments.jobs)
     return Threads(arguments.jobs or cores())

@@ -1,7 +1,7 @@
-"""Output to the terminal.
+"""Print to the terminal.
 
-Text may come from untrusted files: control characters are escaped (:func:`rockbatch.common.files.legible`). A stream that fails
-or cannot encode a letter, stops nothing: the results are on disk.
+Text may come from untrusted files, so control characters are escaped (:func:`rockbatch.common.files.legible`). A stream that
+fails, or cannot encode a character, does not stop a command: results are on disk.
 """
 
 import errno
@@ -17,23 +17,23 @@ from typing import TextIO
 from rockbatch.common.files import legible
 
 _COLOURS = re.compile(r"(\x1b\[(?:0|31|32|33)m)")
-"""Colours of verdicts, by their ANSI numbers."""
+"""ANSI escape sequences of the colours of verdicts."""
 
 WIDTH = 100
-"""Letters of a line of prose where the output goes to no terminal, and the most on one."""
+"""Characters in a line of prose: the number outside a terminal, and the maximum in one."""
 
 _lost: dict[TextIO, OSError] = {}
 
 
 def open_missing() -> None:
-    """Open a stdout and a stderr if the program is started without: files that are opened later must not take their places."""
+    """Open stdout and stderr on the null device if missing, so that files opened later do not take their descriptors."""
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
 
 
 def say(text: str) -> None:
-    """Print a message on stderr, apart from the output of a command."""
+    """Print a message on stderr, separate from the output of a command."""
     tell(sys.stderr, text)
 
 
@@ -43,7 +43,7 @@ def show(text: str) -> None:
 
 
 def tell(stream: TextIO | None, text: str) -> None:
-    """Print ``text`` to a stream, as far as it can be written."""
+    """Print ``text`` to a stream, with escapes for characters it cannot encode; give the stream up if it fails."""
     if stream is None or stream in _lost:
         return
     terminal = stream.isatty()
@@ -57,16 +57,16 @@ def tell(stream: TextIO | None, text: str) -> None:
 
 
 def give_up(stream: TextIO, error: OSError) -> None:
-    """Write nothing more to a stream that has failed: a pipe that its reader closed, a full disk."""
+    """Stop writing to a stream that failed: a pipe closed by its reader, or a full disk."""
     _lost[stream] = error
-    with suppress(OSError, ValueError):  # what is left in its buffer must not fail once more when it is closed
+    with suppress(OSError, ValueError):  # its remaining buffer must not fail again on closing
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
     if stream is sys.stdout and error.errno != errno.EPIPE:
-        tell(sys.stderr, f"the output cannot be printed ({error.strerror}); all else is still done")
+        tell(sys.stderr, f"the output cannot be printed ({error.strerror}); the command goes on")
 
 
 def is_lost(stream: TextIO) -> bool:
-    """Return whether something could not be printed there, and forget it."""
+    """Return whether a stream has failed, and reset that."""
     return _lost.pop(stream, None) is not None
 
 
@@ -80,31 +80,31 @@ def shown(text: str, instead: str) -> str:
 
 
 def coloured(text: str, colour: str | None) -> str:
-    """Return ``text`` in a colour, by its number, if stdout is a terminal and colours are not declined (NO_COLOR, TERM=dumb)."""
+    """Return ``text`` in an ANSI colour if stdout is a terminal that accepts colours (no NO_COLOR, TERM=dumb)."""
     plain = "NO_COLOR" in os.environ or os.environ.get("TERM") == "dumb" or not sys.stdout.isatty()
     return text if plain or colour is None else f"\x1b[{colour}m{text}\x1b[0m"
 
 
 def width() -> int | None:
-    """Return the number of columns of the terminal; None if stdout is none."""
+    """Return the number of columns of the terminal; None if stdout is not a terminal."""
     return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
 
 
 def filled(text: str, first: int = 0, rest: int = 2) -> str:
-    """Return prose in lines of the terminal's width, the first indented by ``first`` columns, all others by ``rest``."""
+    """Wrap prose to the terminal's width, the first line indented by ``first`` columns, the others by ``rest``."""
     lines = _in_lines(text, min(WIDTH, width() or WIDTH), " " * first, " " * rest)
     return shown(lines, lines.encode("ascii", "replace").decode())
 
 
 def _in_lines(text: str, most: int, first: str, rest: str) -> str:
-    """Return prose in lines of at most so many letters, if its words are not longer: these stay whole, for who copies a path."""
+    """Wrap prose to lines of at most ``most`` characters; longer words, such as paths, stay whole."""
     return textwrap.fill(
         text, most, initial_indent=first, subsequent_indent=rest, break_long_words=False, break_on_hyphens=False
     )
 
 
 def _wrapped(text: str, most: int) -> str:
-    """Return text whose lines are no longer than ``most``, so that the terminal breaks no word; further lines are indented."""
+    """Wrap lines longer than ``most`` at words, continuation lines indented by two more columns."""
     lines = []
     for line in text.split("\n"):
         indent = " " * (len(line) - len(line.lstrip(" ")))
@@ -114,12 +114,10 @@ def _wrapped(text: str, most: int) -> str:
 
 
 def aligned(lines: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> list[str]:
-    """Return lines of cells as text, in columns of equal width: those at ``left`` flush left, the others right."""
+    """Return lines of cells as text in columns, those at ``left`` flush left, the others flush right."""
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    return [
-        "  ".join(cell.ljust(w) if i in left else cell.rjust(w) for i, (cell, w) in enumerate(zip(line, widths, strict=True)))
-        for line in lines
-    ]  # fmt: skip
+    pads = [str.ljust if i in left else str.rjust for i in range(len(widths))]
+    return ["  ".join(pad(cell, w) for pad, cell, w in zip(pads, line, widths, strict=True)) for line in lines]
 
 
 def in_width(
@@ -131,27 +129,26 @@ def in_width(
 ) -> str:
     """Return a table as text: ``rows`` of cells below their heads.
 
-    The first ``names`` columns, which name a row, and those at ``left`` are flush left, all others right. On a terminal,
-    columns that do not fit stand below the others, beside the names again; these take at most half of its width. Elsewhere a line
-    has ``most`` letters.
+    The first ``names`` columns, which identify a row, and those at ``left`` are flush left, the others flush right. Columns
+    beyond the terminal's width follow in a further table, with the names repeated; names take at most half of the width.
+    Outside a terminal a line has up to ``most`` characters.
     """
     edge, left = width() or most, {*range(names), *left}
-    lines = [
-        [*(shortened(cell, edge // (2 * names)) for cell in line[:names]), *line[names:]] for line in (head, *rows)
-    ]
+    room = edge // (2 * names)
+    lines = [[*(shortened(cell, room) for cell in line[:names]), *line[names:]] for line in (head, *rows)]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     blocks = [list(range(names))]
     for place in range(names, len(head)):
         if len(blocks[-1]) > names and sum(widths[i] + 2 for i in blocks[-1]) + widths[place] > edge:
             blocks.append(list(range(names)))
         blocks[-1].append(place)
-    tables = [
-        aligned([[line[i] for i in block] for line in lines], [block.index(i) for i in block if i in left])
-        for block in blocks
-    ]
+    tables = []
+    for block in blocks:
+        flush_left = [block.index(i) for i in block if i in left]
+        tables.append(aligned([[line[i] for i in block] for line in lines], flush_left))
     return "\n\n".join("\n".join(line.rstrip() for line in table) for table in tables)
 
 
 def shortened(text: str, room: int) -> str:
-    """Return ``text`` with its middle left out if it is longer than ``room``; names differ at their ends."""
+    """Replace the middle of ``text`` by "…" if it is longer than ``room``; names differ at their ends."""
     return text if len(text) <= room else f"{text[: room // 4]}…{text[room // 4 + 1 - room :]}"

@@ -1,1 +1,1 @@
-"""From a study to its results in a folder, judged and reported; and analyses, likewise."""
+"""Run studies and analyses: results in a folder, checked and reported."""

@@ -1,4 +1,4 @@
-"""Results of an analysis and its folder: the tables, and NAME.json, which describes them."""
+"""Run an analysis, and write its tables and NAME.json, which describes them."""
 
 import json
 import os
@@ -45,18 +45,18 @@ Spec = TypeVar("Spec")
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Analysis(Shown):
-    """Results of an analysis: each table is an attribute with the name of its CSV file, None if the analysis has none.
+    """Results of an analysis; each table is an attribute named after its CSV file, None if the analysis has none.
 
     Attributes
     ----------
     study : Study
         The study that was analysed.
     info : dict
-        NAME.json: what was done, and its cost.
+        The content of NAME.json: settings, runs and cost.
     unusable : tuple of Unusable
-        Files of the study that are no usable records, and why.
+        Files of the study that could not be used, with reasons.
     files : tuple of Path
-        Paths written; empty if none were.
+        Paths written; empty without a folder.
     """
 
     NAME: ClassVar[str]
@@ -69,13 +69,13 @@ class Analysis(Shown):
 
     @classmethod
     def refuse_irregular(cls, directory: Path) -> None:
-        """Raise ``InputError`` if no regular file stands where one of this analysis is to be written."""
+        """Raise ``InputError`` if something other than a regular file is where the analysis will write one."""
         names = (*(f"{name}.csv" for name in cls.TABLES), f"{cls.NAME}.json", REPORT)
         refuse_irregular(*(directory / name for name in names))
 
     @property
     def tables(self) -> "dict[str, pd.DataFrame]":
-        """Return the tables that the analysis has, by their names."""
+        """Return the tables of the analysis by name."""
         return {name: table for name in self.TABLES if (table := getattr(self, name)) is not None}
 
     def _facts(self) -> tuple[str, dict[str, str]]:
@@ -93,7 +93,7 @@ class Analysis(Shown):
         return self.tables.get(self.NAME)
 
     def save(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
-        """Write what the command leaves in ``folder``: the tables, NAME.json and the report; return their paths.
+        """Write the tables, NAME.json and the report into ``folder``; return their paths.
 
         Raises ``InputError`` if the disk is full, or if another process is writing into the folder.
         """
@@ -110,33 +110,40 @@ class Analysis(Shown):
 
 
 class AnalysisFolder:
-    """Folder of an analysis: its tables, and NAME.json, which describes them; and what carries out its runs.
+    """Folder of an analysis, its tables and NAME.json, with the engine and listener for its runs.
 
-    ``info`` is the content of NAME.json: what was done, in which ``files`` it is, and of which runs, by their digests; the
-    analysis adds its own. It is written as soon as a table is, so that a later command takes the table as it is if this one is
-    killed. A ``temporary`` folder has no report. ``suite`` are the ground motions that were read.
+    ``info`` is the content of NAME.json: versions, study, ``files`` written and the digests of their runs, to which the
+    analysis adds its own entries. It is written after each table, so that a later command can keep the table if this one is
+    killed. A ``temporary`` folder gets no report. ``suite`` holds the ground motions once read.
     """
 
     def __init__(
-        self, directory: Path, name: str, study: Study, *, fresh: bool = False, listener: Listener | None = None,
-        engine: Engine | None = None, temporary: bool = False,
-    ) -> None:  # fmt: skip
+        self,
+        directory: Path,
+        name: str,
+        study: Study,
+        *,
+        fresh: bool = False,
+        listener: Listener | None = None,
+        engine: Engine | None = None,
+        temporary: bool = False,
+    ) -> None:
         self.directory, self.study, self.fresh, self.temporary = directory, study, fresh, temporary
         self.listener, self.engine, self.suite = listener or Listener(), engine or Threads(1), MotionSet()
         self.path = directory / f"{name}.json"
         self.info: dict[str, Any] = {"rockbatch": __version__, "versions": versions(), "study": describe_study(study)}
         self.info |= {"files": [], "digests": {}}
-        self._earlier = {} if fresh else _earlier(self.path)
+        self._earlier = {} if fresh else _earlier_digests(self.path)
 
     def read_motions(self, study: Study) -> MotionSet:
-        """Return the ground motions of ``study``; announce them, and note them for the report to name."""
+        """Read the ground motions of ``study``, announce them to the listener, and note them in ``info``."""
         self.suite = ground_motions(study)
         self.listener.motions(self.suite)
         labels = self.suite.labels
-        self.info["under"] = [
-            {"record": m.name, "label": labels[m.name], "vertical": m.pga_vertical is not None}
-            for m in self.suite.motions
-        ]
+        self.info["under"] = under = []
+        for motion in self.suite.motions:
+            vertical = motion.pga_vertical is not None
+            under.append({"record": motion.name, "label": labels[motion.name], "vertical": vertical})
         return self.suite
 
     def execute_runs(
@@ -148,7 +155,7 @@ class AnalysisFolder:
         cases: Sequence[Case],
         row: RowOf,
     ) -> None:
-        """Write the ``row`` of each of ``runs`` into ``file``, unless it holds them already; ``cases`` need all their kernels."""
+        """Carry out ``runs`` and write the ``row`` of each into ``file``, unless it holds them; ``cases`` cover their kernels."""
         if self.has(file, digest):
             self.keep(file, digest)
             return
@@ -160,20 +167,19 @@ class AnalysisFolder:
             self.keep(file, digest)
 
     def has(self, file: str, digest: Mapping[str, str]) -> bool:
-        """Return whether ``file`` holds the runs with that digest already; raises ``InputError`` if it was edited."""
+        """Return whether ``file`` already holds the runs with ``digest``; raise ``InputError`` if it was edited."""
         path, earlier = self.directory / file, self._earlier.get(file)
         if not (isinstance(earlier, dict) and earlier.get("runs") == digest and is_plain(path)):
             return False
         if earlier.get("sha256") != sha256_of(path):
             raise InputError(
-                f"{path}: not as it was written; nothing is run: keep it as a copy elsewhere if it was edited, and start "
-                "over with --fresh"
+                f"{path}: edited or damaged; nothing was run: move it away if you edited it, and start over with --fresh"
             )
         return True
 
     @contextmanager
     def journal(self, file: str, columns: Sequence[str], digest: Mapping[str, str]) -> Iterator[Journal]:
-        """Yield the journal of the runs in ``file``; report what is in it already, and what stays in it after Ctrl-C."""
+        """Open the journal of the runs in ``file``; report the finished runs in it, at the start and after Ctrl-C."""
         with Journal(self.directory / f"{file}.part", columns, digest, self.fresh, tell=self.listener.say) as journal:
             if len(journal):
                 self.listener.say(f"{count(len(journal), 'run')} are finished already (--fresh starts over)")
@@ -186,29 +192,29 @@ class AnalysisFolder:
                 raise
 
     def keep(self, file: str, digest: Mapping[str, str] | None = None) -> None:
-        """Note that ``file`` is finished, and which runs it holds."""
+        """Note in NAME.json that ``file`` is finished, and the digests of its runs."""
         self.info["files"].append(file)
         noted = self.info["digests"].get(file, {}) if digest is None else {"runs": dict(digest)}
         self.info["digests"] = self.info["digests"] | {file: noted | {"sha256": sha256_of(self.directory / file)}}
         self._write_info()
 
     def keep_table(self, file: str, table: "pd.DataFrame") -> None:
-        """Write ``table`` as CSV, as the journal writes its rows, whole or not at all, and note it."""
+        """Write ``table`` as a CSV, formatted as by the journal, completely or not at all, and note it in NAME.json."""
         rows = ({str(name): value for name, value in row.items()} for row in table.to_dict("records"))
         write_whole(self.directory / file, csv_text(list(table.columns), rows))
         self.keep(file)
 
     def drop(self, file: str) -> None:
-        """Remove a table that an earlier analysis had, and this one has not."""
+        """Remove a table of an earlier analysis that this one does not have."""
         remove(self.directory / file)
 
-    def tables(self, names: Sequence[str]) -> dict[str, Any]:
-        """Return the tables NAME.csv as the disk has them; None for those that this analysis does not have."""
+    def tables(self, names: Sequence[str]) -> "dict[str, pd.DataFrame | None]":
+        """Read the tables NAME.csv of the analysis; None for those it does not have."""
         files = self.info["files"]
         return {name: read_table(self.directory / f"{name}.csv") if f"{name}.csv" in files else None for name in names}
 
     def end(self, **cost: object) -> tuple[Path, ...]:
-        """Note what the analysis cost, and write the report; return all files that stay."""
+        """Add ``cost`` to NAME.json and write the report; return the paths of all files, none for a temporary folder."""
         self.info |= cost
         self._write_info()
         if self.temporary:
@@ -233,11 +239,11 @@ def run_analysis(
     progress: Progress,
     takes_both_axes: Callable[[Spec], bool] = lambda spec: False,
 ) -> A:
-    """Return an analysis of ``study``: ``work`` writes its tables into ``out``, and returns its other attributes.
+    """Run an analysis of ``study``: ``work`` writes its tables into ``out``, and returns its other attributes.
 
-    ``read`` returns the settings of the study that ``work`` takes. Cases across the axis of others are taken if
-    ``takes_both_axes`` with these settings. Without ``out`` the folder is a temporary one, removed with
-    all that is in it. The others as for :func:`rockbatch.run`.
+    ``read`` extracts the settings that ``work`` takes from the study. Cases across the pier's axis are left out unless
+    ``takes_both_axes`` returns True for these settings. Without ``out``, a temporary folder is used and removed. Other
+    parameters as in :func:`rockbatch.run`.
     """
     started = time.monotonic()
     loaded, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
@@ -258,8 +264,8 @@ def run_analysis(
         return kind(study=results.study, info=results.info, unusable=unusable, files=files, **content)
 
 
-def _earlier(path: Path) -> dict[str, Any]:
-    """Return the digests of the runs in each file, and of the file, as an earlier analysis has noted them."""
+def _earlier_digests(path: Path) -> dict[str, Any]:
+    """Return the digests in an earlier NAME.json, of each file and its runs; empty if it cannot be read."""
     try:
         return dict(json.loads(read_text(path))["digests"])
     except (OSError, ValueError, KeyError, TypeError, RecursionError):

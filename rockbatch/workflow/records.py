@@ -1,4 +1,4 @@
-"""The page of a folder of records: each with its measures, its trace and its spectrum, those to look at first."""
+"""The page of a folder of records: measures, trace and spectrum of each, doubtful ones first."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,12 +14,12 @@ from rockbatch.reporting.table import MOST_ROWS, Head, table
 from rockbatch.reporting.templates import Section, document
 
 _NAMED = ("event", "station_name", "record")
-"""Columns that stand in one cell, the name of the record."""
+"""Columns that are combined in one cell, the name of the record."""
 
 COLUMNS = {
     "record": Head("record", note="station_name, event, and record: the name of the stronger component"),
-    "use": Head("use", note="use: what becomes of it", filter=True),
-    "check": Head("to check", note="check: what is doubtful about it; the reasons are below"),
+    "use": Head("use", note="use: whether and how the record is used", filter=True),
+    "check": Head("to check", note="check: doubts; reasons are below"),
     "acceleration": Head("acceleration", note="of the stronger component, on its own scale"),
     "sa": Head("SA", note="response spectrum, 5 % damped, 0.05 to 5 s"),
     "pga_h_g": Head("PGA [g]", ".3f", "pga_h_g: of the stronger horizontal component"),
@@ -28,7 +28,7 @@ COLUMNS = {
     "pgv_h_m_s": Head("PGV [m/s]", ".3f", "pgv_h_m_s: of the stronger component"),
     "d5_95_s": Head("D5–95 [s]", ".1f", "d5_95_s: significant duration, from 5 to 95 % of the Arias intensity"),
     "pulse_period_s": Head(
-        "pulse [s]", ".1f", "pulse_period_s: by PEER's list, else of a component that is pulse-like by Baker (2007)"
+        "pulse [s]", ".1f", "pulse_period_s: from PEER's list, else for a component that is pulse-like by Baker (2007)"
     ),
     "magnitude": Head("M", note="magnitude"),
     "distance_km": Head("R [km]", "g", "distance_km"),
@@ -36,31 +36,31 @@ COLUMNS = {
     "dt_s": Head("dt [s]", "g", "dt_s"),
     "duration_s": Head("length [s]", ".1f", "duration_s: from the first to the last sample"),
 }
-"""Heads of the columns of :mod:`rockbatch.motions.ranking`, and of the pictures."""
+"""Heads of the columns: those of :mod:`rockbatch.motions.ranking`, and pictures."""
 
 
 def write_records(path: Path, motions: MotionSet, title: str, about: str) -> None:
-    """Write the page of what was read into ``path``, or to stdout, as ``rockbatch motions --html`` does."""
+    """Write the page of ``motions`` to ``path``; "-" is stdout."""
     write_output(path, page(motions, title, about))
 
 
 def page(motions: MotionSet, title: str, about: str) -> str:
-    """Return the page as HTML: ``about`` below its title, the records, then the reasons of files that are not used."""
+    """Return the page as HTML: ``about`` below the title, the records, then files that are not used, with reasons."""
     records = ranked_records(motions)
-    remarks = [
-        [tag("span", motion.named, class_="named"), finding.text] for motion in motions for finding in motion.findings
-    ]
+    findings = [(motion.named, finding.text) for motion in motions for finding in motion.findings]
+    remarks = [[tag("span", name, class_="named"), text] for name, text in findings]
+    doubts = table([Head("record"), Head("why")], remarks, prose=True) if remarks else Markup("")
     sections = [
         Section("Records", "records", scorecard(records) if records else tag("p", "No record was found.")),
         Section("Not used", "unusable", _reasons(motions.unusable, "Not used"), badge=len(motions.unusable)),
-        Section("Look at these", "check", table([Head("record"), Head("why")], remarks, prose=True) if remarks else Markup("")),
+        Section("Look at these", "check", doubts),
         Section("Left out", "left_out", _reasons(motions.left_out, "Left out"), folded=True),
-    ]  # fmt: skip
+    ]
     return document(title, about, sections)
 
 
 def scorecard(records: Sequence[RankedRecord]) -> Markup:
-    """Return the table of records, which the script of the page sorts and filters."""
+    """Return a table of the records, which readers can sort and filter."""
     shown = records[:MOST_ROWS]
     read = [record for record in shown if record.motions]
     drawn = dict(zip(map(id, read), spectra([record.motions[0] for record in read]), strict=True))
@@ -72,8 +72,8 @@ def scorecard(records: Sequence[RankedRecord]) -> Markup:
         rows.append([cells.get(name) for name in COLUMNS])
     legend = tag(
         "p",
-        "PGV, dt, length and D5–95 are those of the stronger component, which is drawn. Spectra are 5 % damped, from 0.05 to "
-        "5 s, all on one logarithmic scale of three decades; lines are powers of ten of g.",
+        "PGV, dt, length and D5–95 are of the stronger component, which is drawn. Spectra are 5 % damped, from 0.05 to 5 s, on a "
+        "common logarithmic scale of three decades; lines are powers of ten of g.",
         class_="legend",
     )
     return join(
@@ -82,19 +82,20 @@ def scorecard(records: Sequence[RankedRecord]) -> Markup:
 
 
 def _name(record: RankedRecord) -> Markup:
-    """Return station and event of a record above its name in tables, with its files as a note."""
+    """Return station, event and table name of a record; its files are the tooltip."""
     event, station, name = (record.values[column] for column in _NAMED)
     first, *others = filter(None, (station, event, name))
     return tag("span", first, *(tag("small", " ", words) for words in others), class_="named", title=record.files)
 
 
 def _use(record: RankedRecord) -> Markup:
-    """Return what becomes of a record, with the reasons as a note."""
+    """Return how a record is used; the reasons are the tooltip."""
     marked = {Use.HELD_BACK: "undecided", Use.NOT_READ: "fail"}.get(record.use)
     return tag("span", record.use.value, class_=marked, title="\n".join(record.reasons) or None)
 
 
 def _reasons(files: Sequence[Unusable | LeftOut], name: str) -> Markup:
+    """Return a table of files and reasons; empty without files."""
     rows = [
         [tag("span", file.name, class_="named"), tag("span", file.source, class_="path"), file.reason] for file in files
     ]

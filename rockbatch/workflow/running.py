@@ -1,4 +1,4 @@
-"""From a study to its results: in memory, or in a folder, judged and reported."""
+"""Run a study: return its table, or write its results into a folder, checked and reported."""
 
 import os
 import time
@@ -33,20 +33,20 @@ from rockbatch.study.suite import ground_motions
 
 @dataclass(frozen=True, eq=False)
 class FinishedBatch:
-    """Results that were written into a folder, judged and reported.
+    """Results written into a folder, checked and reported.
 
     Attributes
     ----------
     saved : Saved
         ``peaks.csv`` and ``run.json``.
     motions : MotionSet
-        What the study was run under, and what of it could not be used.
+        The study's ground motions, and the files that could not be used.
     verdicts : list of Verdict
-        Those of the study's checks, and of its target spectrum; empty where it has neither.
+        Verdicts on the study's checks and its target spectrum; empty if it has neither.
     files : tuple of Path
-        Table, run.json, histories, checks and report, those that were written.
+        Paths of the table, run.json, and histories, checks and report if written.
     without : InputError or None
-        Why histories that the study asks for are not there.
+        The reason why requested histories are missing; None if none are.
     """
 
     saved: Saved
@@ -58,41 +58,46 @@ class FinishedBatch:
 
 @checked
 def run(
-    study: str | os.PathLike[str] | Study, out: str | os.PathLike[str] | None = None, *, motions: Motions = None,
-    jobs: int | Engine | None = None, fresh: bool = False, progress: Progress = None,
-) -> "pd.DataFrame":  # fmt: skip
+    study: str | os.PathLike[str] | Study,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    motions: Motions = None,
+    jobs: int | Engine | None = None,
+    fresh: bool = False,
+    progress: Progress = None,
+) -> "pd.DataFrame":
     """Run every record of a study in every case.
 
     Parameters
     ----------
     study : path or Study
-        A study file, or one that is loaded.
+        A study file, or a loaded study.
     out : path, optional
-        Folder for the results of ``rockbatch run``: ``peaks.csv``, ``run.json``, the histories and checks that the study asks
-        for, and ``report.html``. Runs that an earlier process finished there are kept; an interrupted one is
-        continued. Without it nothing is kept on disk, and there are no histories.
+        Folder for the results of ``rockbatch run``: ``peaks.csv``, ``run.json``, the study's histories and checks, and
+        ``report.html``. Runs finished there earlier are kept, so that an interrupted batch continues. Without ``out``
+        nothing is written, and no histories are kept.
     motions : path, MotionSet, Motion or list of Motion, optional
-        What replaces all motions of the study: a file or folder, or motions.
+        Replacement for all motions of the study: a file, a folder, or motions.
     jobs : int or Engine, optional
         Number of threads, all processors by default; or a cluster, :class:`rockbatch.batch.dask.Dask`. The table does not
         depend on it.
     fresh : bool
-        Whether to start over, instead of going on with what is finished in ``out``.
+        Whether to start over instead of keeping the finished runs in ``out``.
     progress : bool or function of two ints, optional
-        True for a bar, in a notebook too; False for none; by default one where stderr is a terminal. Or what is called with
-        the number of things that are done, and of all: first of the runs, then of the histories that are kept.
+        True for a progress bar, also in notebooks; False for none; by default a bar if stderr is a terminal. A function is
+        called with the numbers of finished items and of all: first of runs, then of kept histories.
 
     Returns
     -------
     DataFrame, shape (rows of peaks.csv, columns)
-        Row by row, by name, as in ``peaks.csv``: lengths in m, times in s, rotations over α; with ``out`` to the ten digits
-        that are on disk.
+        The rows and columns of ``peaks.csv``: lengths in m, times in s, rotations over α; with ``out`` to the ten digits
+        on disk.
 
     Raises
     ------
     InputError
-        With every mistake in the study; for a folder with finished runs of another state of the study, and for one
-        into which another process is writing; where histories that the study asks for are too long to be kept.
+        With every mistake in the study; if ``out`` has finished runs of another version of the study, or another process is
+        writing into it; if requested histories are too long to keep.
 
     Examples
     --------
@@ -112,18 +117,17 @@ def run(
         return _in_memory(loaded, engine, listener)
     command = ["run", str(loaded.path) if loaded.in_file else f"(study {FROM_PYTHON}", "--out", os.fspath(out)]
     if motions is not None:
-        command += [
-            "--motions",
-            os.fspath(motions) if isinstance(motions, str | os.PathLike) else f"(motions {FROM_PYTHON}",
-        ]
+        path = os.fspath(motions) if isinstance(motions, str | os.PathLike) else f"(motions {FROM_PYTHON}"
+        command += ["--motions", path]
     finished = run_into(Path(out), loaded, engine, listener, command=command, fresh=fresh)
-    assert finished is not None  # no share is asked for
+    assert finished is not None  # None only for a share
     if finished.without:
         raise finished.without
     return finished.saved.peaks
 
 
 def _in_memory(study: Study, engine: Engine, listener: Listener) -> "pd.DataFrame":
+    """Carry out a study without a folder; return its table."""
     motions = ground_motions(study)
     listener.motions(motions)
     runs, rows = Plan(study, motions), InMemory(columns(study))
@@ -143,10 +147,10 @@ def run_into(
     share: tuple[int, int] | None = None,
     records: Collection[str] = (),
 ) -> FinishedBatch | None:
-    """Carry out what is not finished in ``directory`` yet, and write the results; return what is in it, None after a share.
+    """Carry out the unfinished runs of ``study`` and write its results into ``directory``; return them, None for a share.
 
-    ``command`` are the words after ``rockbatch`` that do it again, for run.json. Of a ``share``, (i, n), the i-th of n shares
-    alone is carried out, and left in its journal. All histories of ``records`` are kept, beside those that the study asks for.
+    ``command`` holds the words after ``rockbatch`` that repeat it, for run.json. With ``share`` (i, n) only the i-th of n
+    shares is carried out, and stays in its journal. All histories of ``records`` are kept in addition to the study's.
     Raises ``InputError`` as :func:`run`.
     """
     started = time.monotonic()
@@ -155,18 +159,18 @@ def run_into(
     with batch.journal(fresh) as journal:
         cost = None if fresh or len(journal) else cost_of_finished(directory, batch.info)
         if cost is not None:
-            state = f"{batch.described} are finished in {directory}"
+            state = f"{batch.run_count} are finished in {directory}"
             listener.say(f"{state}; nothing is left to run (--fresh runs them again)")
-            if not records and (finished := _as_it_is(batch)):
+            if not records and (finished := _unchanged(batch)):
                 return finished
-            return _judged_and_reported(batch, finish(batch, journal, cost, records))
+            return _check_and_report(batch, finish(batch, journal, cost, records))
         replaced = None if fresh or share else to_be_replaced(directory, study)
         if replaced:
             listener.say(f"{replaced}, will be replaced")
         of_share = f"; share {share[0]} of {share[1]} is {{}}" if share else ""
         with engine:
             every = count(len(to_simulate(batch.runs, requested)), "run")
-            listener.say(f"{batch.described} on {engine}{of_share.format(every)}")
+            listener.say(f"{batch.run_count} on {engine}{of_share.format(every)}")
             cost = execute(batch, requested, journal, engine)
         if share:
             listener.say(
@@ -174,16 +178,16 @@ def run_into(
             )
             return None
         cost |= {"peaks": write_peaks(batch, journal), "wall_s": round(time.monotonic() - started, 3)}
-        return _judged_and_reported(batch, finish(batch, journal, cost, records))
+        return _check_and_report(batch, finish(batch, journal, cost, records))
 
 
 def merge(
     directory: Path, study: Study, shares: Iterable[Path], listener: Listener, command: Sequence[str]
 ) -> FinishedBatch:
-    """Join the journals in the folders ``shares``, and write the results into ``directory``.
+    """Join the journals in the folders ``shares`` and write the results into ``directory``.
 
-    ``command`` as in :func:`run_into`. Raises ``InputError`` with all that is wrong or missing in the
-    shares; joined rows stay, so that the rest can be carried out there.
+    ``command`` as in :func:`run_into`. Raises ``InputError`` with everything wrong or missing in the shares; joined rows
+    stay in ``directory``, so that the rest can be carried out there.
     """
     batch = prepare(directory, study, listener, command, later=(CHECKS, REPORT))
     with batch.journal() as journal:
@@ -192,7 +196,7 @@ def merge(
             try:
                 journal.add_from(share / JOURNAL)
             except FileNotFoundError:
-                problems.append(f"{share / JOURNAL}: not there; give folders that `rockbatch run --shard` has written")
+                problems.append(f"{share / JOURNAL}: not there; give folders written by `rockbatch run --shard`")
             except InputError as error:
                 problems += error.messages
         missing = [number for number in range(len(batch.runs)) if number not in journal]
@@ -204,44 +208,42 @@ def merge(
         if problems:
             raise InputError(*problems)
         cost = {"peaks": write_peaks(batch, journal), "jobs": 0, "wall_s": 0.0, "kept": batch.info["runs"]}
-        return _judged_and_reported(batch, finish(batch, journal, cost))
+        return _check_and_report(batch, finish(batch, journal, cost))
 
 
-def _judged_and_reported(batch: Batch, written: Written) -> FinishedBatch:
-    """Write the verdicts of a batch, if it has any, and its report."""
+def _check_and_report(batch: Batch, written: Written) -> FinishedBatch:
+    """Write the verdicts of a batch, if any, and its report; return all results."""
     study, directory, saved = batch.study, batch.directory, written.saved
-    with announced_if_slow(batch.listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
-        judged = _judged(saved, study)
+    with announced_if_slow(batch.listener, f"applying {len(study.checks)} checks to {len(study.cases)} cases"):
+        judged = _verdicts(saved, study)
         checks = [write_verdicts(directory, judged)] if judged else []
     with announced_if_slow(batch.listener, f"writing {REPORT}"):
         report = write_report(directory, saved=saved)
     return FinishedBatch(saved, batch.motions, judged, (*written.files, *checks, report), written.without)
 
 
-def _as_it_is(batch: Batch) -> FinishedBatch | None:
-    """Return what is in the folder of a finished ``batch`` if nothing would change by finishing it again; else None."""
+def _unchanged(batch: Batch) -> FinishedBatch | None:
+    """Return the results in the folder of a finished ``batch`` if writing them again would change nothing; else None."""
     if not (written := unchanged(batch)):
         return None
-    judged = _judged(written.saved, batch.study)
+    judged = _verdicts(written.saved, batch.study)
     more = [batch.directory / name for name in (*([CHECKS] if judged else []), REPORT)]
-    return (
-        FinishedBatch(written.saved, batch.motions, judged, (*written.files, *more), None)
-        if all(map(is_plain, more))
-        else None
-    )
+    if not all(map(is_plain, more)):
+        return None
+    return FinishedBatch(written.saved, batch.motions, judged, (*written.files, *more), None)
 
 
-def _judged(saved: Saved, study: Study) -> list[Verdict]:
-    """Return the verdicts of the study's checks and of its target spectrum, if it has them."""
+def _verdicts(saved: Saved, study: Study) -> list[Verdict]:
+    """Return the verdicts on the study's checks and its target spectrum; empty if it has neither."""
     return verdicts(saved) if study.checks or suite_verdicts(saved.info, ()) else []
 
 
 def _ranges(numbers: Sequence[int], most: int = 5) -> str:
-    """Return numbers, counted from 1, as ranges: "1 to 12, 17"."""
+    """Return rising indices as ranges of numbers from 1, at most ``most`` of them: "1 to 12, 17"."""
     starts = [i for i, number in enumerate(numbers) if i == 0 or number != numbers[i - 1] + 1]
     ends = [i - 1 for i in starts[1:]] + [len(numbers) - 1]
-    ranges = [
-        f"{numbers[a] + 1} to {numbers[b] + 1}" if b > a else str(numbers[a] + 1)
-        for a, b in zip(starts, ends, strict=True)
-    ]
+    ranges = []
+    for start, end in zip(starts, ends, strict=True):
+        first, last = numbers[start] + 1, numbers[end] + 1
+        ranges.append(f"{first} to {last}" if last > first else str(first))
     return ", ".join(ranges[:most]) + (", …" if len(ranges) > most else "")

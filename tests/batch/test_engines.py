@@ -379,7 +379,7 @@ class FullWorkers:
 
 @pytest.mark.parametrize(
     ("pause", "said"),
-    [(True, "no worker for 0.2 s: those that are there have paused"), (False, "workers died [5-9] times in 0")],
+    [(True, "no worker for 0.2 s: all have paused"), (False, "workers died [5-9] times in 0")],
 )
 def test_workers_without_memory_are_not_waited_for_for_ever(monkeypatch, pause, said):
     import distributed

@@ -111,7 +111,7 @@ def test_nothing_is_written(study, tmp_path, monkeypatch, capsys):
     assert sorted(tmp_path.rglob("*")) == before
     told = capsys.readouterr().out
     assert "= 15 runs" in told
-    assert "on 1 thread, as 15 of them took" in told
+    assert "on 1 thread, measured on 15 of them" in told
 
 
 def test_runs_that_are_tried_are_spread_and_not_too_many_steps(monkeypatch):

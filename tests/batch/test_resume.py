@@ -184,7 +184,7 @@ def test_an_interrupt_says_what_is_kept_and_the_same_command_goes_on(study, tmp_
     assert (out / "peaks.csv").read_bytes() == undisturbed
     assert json.loads((out / "run.json").read_text())["kept"] == kept // 2
     assert main(["report", str(out)]) == 0
-    assert f"{kept // 2} runs had been finished before" in (out / "report.html").read_text(encoding="utf-8")
+    assert f"{kept // 2} runs had been finished earlier" in (out / "report.html").read_text(encoding="utf-8")
 
 
 @unix
@@ -327,13 +327,13 @@ def test_a_changed_table_is_reported_kept_and_replaced_only_on_request(study, tm
             f"{out / 'peaks.csv'}: not as `rockbatch run` wrote it, with {RUNS} rows: it was edited, or is damaged"
             in told
         )
-        assert "keep it as a copy elsewhere if it was edited, and run the study again with --fresh" in told
+        assert "move it away if you edited it, and run the study again with --fresh" in told
         assert (out / "peaks.csv").read_text(encoding="utf-8") == changed
         assert (out / "report.html").read_bytes() == report
     assert (
         main(["report", str(out), "--out", str(tmp_path / "page.html")]) == 0
     )  # its words are shown, and that is told
-    assert "it was edited, or is damaged; what it says now is shown" in capsys.readouterr().err
+    assert "it was edited, or is damaged; its present values are shown" in capsys.readouterr().err
     assert main([*command, "--fresh"]) == 0
     assert (out / "peaks.csv").read_bytes() == undisturbed
 

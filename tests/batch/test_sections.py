@@ -59,7 +59,7 @@ def test_a_study_that_asks_has_the_sections_of_every_run_and_checks_of_them(tmp_
     study_of(tmp_path, cases=[RIGID, PADS], motions=text["motions"])
     main(["run", str(path), "--out", str(out)])
     assert not (out / SECTIONS).exists()
-    with pytest.raises(rb.InputError, match=r"sections.csv: not there; write \[output\] sections = 5"):
+    with pytest.raises(rb.InputError, match=r"sections.csv: not there; add \[output\] sections = 5"):
         _ = rb.open_results(out).sections
 
 

@@ -167,7 +167,7 @@ def test_the_table_goes_when_the_study_has_no_sequence_any_more(tmp_path):
     text = study_text(pulses=[SINE], cases=[RIGID], output={"histories": "none"})
     rb.run(write_study(tmp_path, text), out=out, fresh=True)
     assert not (out / SHOCKS).exists()
-    with pytest.raises(rb.InputError, match=r"shocks.csv: not there; write a \[\[motions.sequence\]\]"):
+    with pytest.raises(rb.InputError, match=r"shocks.csv: not there; add a \[\[motions.sequence\]\]"):
         _ = rb.open_results(out).shocks
 
 

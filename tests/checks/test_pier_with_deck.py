@@ -10,7 +10,7 @@ from report_page import Page
 from studies import write_study
 
 import rockbatch as rb
-from rockbatch.batch.preparing import described
+from rockbatch.batch.preparing import run_count
 from rockbatch.commands.cli import main
 from rockbatch.study.suite import ground_motions
 
@@ -92,7 +92,7 @@ def test_the_report_names_station_component_value_unit_and_margin(out):
 
 def test_every_place_counts_ten_records_of_five_stations(out, capsys):
     study = rb.load_study(STUDY)
-    assert described(study, ground_motions(study)).startswith("10 records of 5 stations × 3 cases = 30 runs")
+    assert run_count(study, ground_motions(study)).startswith("10 records of 5 stations × 3 cases = 30 runs")
     assert main(["motions", "--all", str(STUDY.parents[1] / "motions" / "near_fault")]) == 0
     shown = capsys.readouterr()
     head, *lines = shown.out.splitlines()

@@ -16,7 +16,7 @@ TABLE = pd.DataFrame([{name: "x" for name in NAMING} | {"beta": 40.0, "height_m"
 @pytest.mark.parametrize("name", [*NAMING, "beta", *COLUMNS])
 def test_every_column_has_to_be_there(tmp_path, name):
     TABLE.drop(columns=name).to_csv(tmp_path / "of.csv", index=False)
-    with pytest.raises(InputError, match=f"of.csv: column {name} is missing; it was changed since"):
+    with pytest.raises(InputError, match=f"of.csv: column {name} is missing: the file was changed"):
         read_beside(tmp_path / "of.csv", ["beta"], COLUMNS, ["words"])
 
 

@@ -36,7 +36,7 @@ def test_who_names_a_file_of_a_folder_is_told_the_folder(tmp_path):
         (folder / name).write_text("{}", encoding="utf-8")
     with pytest.raises(rb.InputError) as refused:
         rb.open_results(folder / "peaks.csv")
-    assert str(refused.value).endswith(f"write the folder, such as {folder}")
+    assert str(refused.value).endswith(f"give the folder, such as {folder}")
 
 
 @pytest.fixture(scope="module")
@@ -433,7 +433,7 @@ def test_a_folder_of_another_version_that_cannot_be_read_names_it(foreign, wrong
         peaks = foreign / "peaks.csv"
         peaks.write_text(peaks.read_text(encoding="utf-8").replace(",ok,", ",leaning,", 1), encoding="utf-8")
     (foreign / "run.json").write_text(json.dumps(info), encoding="utf-8")
-    ending = f"\n{foreign}: written by rockbatch 9.1\\x1b, and this is {rb.__version__}: read it with that version"
+    ending = f"\n{foreign}: written by rockbatch 9.1\\x1b, but this is {rb.__version__}: read it with that version"
     assert told(foreign).endswith(ending)
     assert told(foreign, "check").endswith(ending)
 

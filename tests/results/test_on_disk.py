@@ -437,7 +437,7 @@ def test_a_response_is_found_by_whatever_distinguishes_it_from_the_others(result
         ({"record": "weak", "case": "rigid", "alpha": 0.3}, r"no history with alpha = 0\.3; there are 0\.2; 0\.25"),
         (
             {"polarity": "+", "beta": 50},
-            "beta: does not distinguish runs; choose by record, case, polarity, scale, alpha, spring",
+            "beta: not a key of runs; choose by record, case, polarity, scale, alpha, spring",
         ),
         (
             {"record": "weak", "case": "rigid", "alpha": 0.2},
@@ -469,7 +469,7 @@ def test_without_histories_it_says_how_to_get_them(tmp_path):
     assert keep_histories(*carried_out(tmp_path, STUDY.replace('histories = "all"', 'histories = "none"'))) is None
     results = rb.open_results(tmp_path)
     assert len(results.responses) == 0
-    with pytest.raises(rb.InputError, match="no histories; write \\[output\\] histories"):
+    with pytest.raises(rb.InputError, match="no histories; add \\[output\\] histories"):
         results.history("weak", "rigid")
 
 

@@ -11,7 +11,7 @@ import rockbatch as rb
 from rockbatch.common.figures.description import ENDED, Look, Points, Polyline, Rule, Span, line_of
 from rockbatch.common.units import GRAVITY
 from rockbatch.results import figures
-from rockbatch.results.figures import OVER, distributions, peaks_of_all, said_of
+from rockbatch.results.figures import OVER, distributions, peaks_of_all, tooltip
 from rockbatch.results.labelled import groups_of, labelled
 
 STUDY = study_text(
@@ -265,9 +265,9 @@ def test_rigid_bases_beyond_the_first_have_dashes_of_their_own(results):
 def test_the_tooltip_of_a_marker_has_value_error_and_side_or_how_the_run_ended(results):
     one = own(results).series[-1]
     run = {"status": "ok", "theta_max_over_alpha": 0.06166, "theta_max_error": 3.2e-7, "polarity": "-"}
-    assert said_of(one, run, False) == f"{one.label}: 0.0617 ± 3e-07"
-    assert said_of(one, run | {"theta_max_error": math.nan}, True) == f"{one.label} (-): 0.0617"
-    assert said_of(one, run | {"status": "flight"}, True) == f"{one.label} (-): flight"
+    assert tooltip(one, run, False) == f"{one.label}: 0.0617 ± 3e-07"
+    assert tooltip(one, run | {"theta_max_error": math.nan}, True) == f"{one.label} (-): 0.0617"
+    assert tooltip(one, run | {"status": "flight"}, True) == f"{one.label} (-): flight"
 
 
 def test_on_self_similar_axes_a_run_that_did_not_move_is_none_that_stood_or_fell(results):

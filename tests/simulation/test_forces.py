@@ -146,7 +146,7 @@ def test_a_list_of_frictions_is_a_case_each_and_those_that_slide_are_named(tmp_p
     assert page.headings.index("Forces") > page.headings.index("Every run")
     slides = (results.peaks["friction_demand"] > results.peaks["friction"]).sum()
     assert slides == 1
-    assert "1 run asks more friction than the interface has: the pier would slide" in told
+    assert "1 run demands more friction than the interface has: the pier would slide" in told
     assert "one run of 3: the friction demand is greater" in page.text
     assert "The pier would slide there, which the model does not follow" in page.text
     head, *rows = page.tables["forces"]

@@ -73,7 +73,7 @@ def test_the_terminal_and_the_report_say_so(tmp_path, capsys):
     pulses = (SINE, SINE | {"name": "strong", "amplitude_g": 2.5, "period_s": 1.0})
     study = write_study(tmp_path, study_text(pier={"alpha": 0.4, "p": 1.0}, pulses=pulses, cases=(case,)))
     assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 0
-    assert "1 run rotates further than linearised kinematics holds" in capsys.readouterr().err
+    assert "1 run rotates too far for linearised kinematics" in capsys.readouterr().err
     page = Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8"))
     assert "one run of 2: rotations too large for linearised kinematics" in page.text.replace("\u00a0", " ")
     assert page.text.count("linearised kinematics") == 2  # in the sentence, and in the remarks below the table

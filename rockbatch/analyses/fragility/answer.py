@@ -62,9 +62,8 @@ def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
     case = f" for {label(curve)}, the lowest of {len(curves)} cases" if len(curves) > 1 else ""
     if curve["median"] is not None:
         said = f"has a median of {_median(info, curve)}{case}"
-        said += (
-            ", whose intervals overlap" if any(_overlap(curve, each) for each in curves if each is not curve) else ""
-        )
+        overlaps = any(_overlap(curve, each) for each in curves if each is not curve)
+        said += " (difference not significant)" if overlaps else ""
     elif not total:
         said = "is decided by no run" + (f" in any of {len(curves)} cases" if case else "")
     elif _withstood(decided, curve):

@@ -342,7 +342,7 @@ def _about_undecided(curve: Curve) -> str:
         f"no curve ({fit.reason})" if isinstance(fit, NoCurve) else f"a median of {fit.median:.4g}"
         for fit in curve.readings
     )
-    remark += f"; they count for nothing here: as beyond the limit they would give {beyond}, as within it {within}"
+    remark += f"; they are left out: if beyond the limit they would give {beyond}, if within it {within}"
     return f"says little: {remark}" if curve.inconclusive else remark
 
 

@@ -1,4 +1,4 @@
-"""Intensity measures of the motions, and how well each of them orders the peaks, case by case."""
+"""Intensity measures of the motions, and how well each orders the peaks of a case."""
 
 import math
 
@@ -20,18 +20,18 @@ SYMBOLS = {
 
 
 def section(finished: Finished) -> Markup:
-    """Report the measure that orders the peaks best in each case; empty if the study does not ask for measures."""
+    """Return tables of rank correlations and dispersions of each measure; empty without intensity.csv."""
     path = finished.directory / INTENSITY
     measures = read_table(path) if path.exists() else None
     if measures is None or measures.empty:
         return Markup("")
-    ranks, dispersions = _order(finished, orders(measures, finished.info["varied"]))
+    ranks, dispersions = _tables(finished, orders(measures, finished.info["varied"]))
     return render(
         "observers/intensity/section.html", ranks=ranks, dispersions=dispersions, file=INTENSITY, least=LEAST_RUNS
     )
 
 
-def _order(finished: Finished, order: "pd.DataFrame") -> tuple[Markup, Markup]:
+def _tables(finished: Finished, order: "pd.DataFrame") -> tuple[Markup, Markup]:
     """Return a table of rank correlations and one of dispersions, with a row for each case and scale."""
     varied = finished.info["varied"]
     many_scales = order["scale"].nunique() > 1

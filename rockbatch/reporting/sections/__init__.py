@@ -1,1 +1,1 @@
-"""The sections of the report, each a function ``section(contents)``; their order is that of page.py."""
+"""Sections of the report, each a function ``section(contents)``; page.py has their order."""

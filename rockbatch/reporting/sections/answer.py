@@ -1,10 +1,9 @@
-"""The first screen: which cases pass, every check in every case, runs without a result, and every peak in one picture."""
+"""The first screen: the verdict of each case, the scorecard, runs without a result, and a picture of all peaks."""
 
 from collections import Counter
 from collections.abc import Collection, Iterator
 from decimal import ROUND_UP, Decimal
 from itertools import compress
-from typing import Any
 
 import numpy as np
 
@@ -22,41 +21,46 @@ from rockbatch.reporting.markup import Markup, join, number, paragraphs, tag
 from rockbatch.reporting.overview import by_record
 from rockbatch.reporting.sections import verdicts
 from rockbatch.reporting.table import Head, alarm, table
-from rockbatch.results.labelled import as_dicts
+from rockbatch.results.labelled import Row, as_dicts
 from rockbatch.results.suite_statistics import reasons_of_failure
 
 LEAST_ERROR = 1e-6
-"""Of α: smaller errors are given as this."""
+"""Smallest error [α] that is stated; smaller ones are rounded up to it."""
 DEVICES = {
-    "damper": ("stroke_m", "stroke"), "tendon": ("yield_m", "plastic elongation"), "stop": ("deflection_m", "deflection"),
+    "damper": ("stroke_m", "stroke"),
+    "tendon": ("yield_m", "plastic elongation"),
+    "stop": ("deflection_m", "deflection"),
     "deck_spring": ("deflection_m", "deflection"),
-}  # fmt: skip
-"""Column of each kind of device of which the table has the greatest value beside the force, and its words."""
+}
+"""Deformation shown beside the force of each kind of device: its column and its name."""
 
 
 def section(finished: Finished) -> Markup:
-    """Return the first screen; every check and every run follow further down."""
+    """Return the first screen: the answer, runs without a result, scorecard or greatest responses, and the peaks by record."""
     weak = weak_supports(finished.info["cases"])
     checked = any(verdict.case for verdict in finished.verdicts)
     card = verdicts.scorecard(finished) if checked else responses(finished)
     return join(
-        tag("div", alarm(weak)) if weak else "", tag("div", verdicts.answer(finished), class_="lead"),
-        paragraphs(*_without_a_result(finished)), card, tag("p", *_notes(finished, checked), class_="legend"),
+        tag("div", alarm(weak)) if weak else "",
+        tag("div", verdicts.answer(finished), class_="lead"),
+        paragraphs(*_without_a_result(finished)),
+        card,
+        tag("p", *_notes(finished, checked), class_="legend"),
         by_record(finished),
-    )  # fmt: skip
+    )
 
 
 def responses_beside_checks(finished: Finished) -> Markup:
-    """Return the greatest responses of each case, whatever is checked; empty without checks, since they are the answer then."""
+    """Return the greatest responses of each case; empty without checks, since the first screen shows them then."""
     if not any(verdict.case for verdict in finished.verdicts):
         return Markup("")
     return join(responses(finished), tag("p", _standing(finished), class_="legend"))
 
 
 def responses(finished: Finished) -> Markup:
-    """Return a row for each case with its greatest responses among the runs that end standing, each with its record.
+    """Return a table of each case's greatest responses over the runs that end standing, with their records as tooltips.
 
-    The best first: those with the fewest runs that do not, then by their rotation.
+    Cases with the fewest other runs come first, then those with the smallest rotation.
     """
     if finished.runs.empty:
         return Markup("")
@@ -65,7 +69,7 @@ def responses(finished: Finished) -> Markup:
     present = [name for name in RESPONSES if name in heights]
     devices = [kind for kind, (column, _) in DEVICES.items() if f"{kind}_{column}" in finished.runs]
     places = [worst.place for worst in finished.worst]
-    run_at = dict(zip(places, as_dicts(finished.runs.iloc[places]), strict=True))  # one by one takes a millisecond each
+    run_at = dict(zip(places, as_dicts(finished.runs.iloc[places]), strict=True))  # row by row takes a millisecond each
     places_of_runs = list(zip(finished.runs["series"].tolist(), finished.runs["pier"].tolist(), strict=True))
     planned = Counter(places_of_runs)
     fallen = Counter(compress(places_of_runs, (~standing(finished.runs)).tolist()))
@@ -73,19 +77,17 @@ def responses(finished: Finished) -> Markup:
     for series, pier in sorted(planned, key=lambda place: (fallen[place], _rotation(by_case.get(place, [])))):
         by_demand = {worst.demand: worst for worst in by_case.get((series, pier), [])}
         name = finished.series[series].label + (f", {finished.piers[pier]}" if finished.piers[pier] else "")
-        cells: list[object] = [
-            _response(finished, by_demand[demand], run_at[by_demand[demand].place], heights[demand])
-            if demand in by_demand
-            else "–"
-            for demand in present
-        ]
+        cells: list[object] = []
+        for demand in present:
+            worst = by_demand.get(demand)
+            cells.append(_response(finished, worst, run_at[worst.place], heights[demand]) if worst else "–")
         if devices:
             runs = finished.runs[(finished.runs["series"] == series) & (finished.runs["pier"] == pier)]
-            cells += [cell for kind in devices for cell in _of_devices(finished, runs, kind)]
+            cells += [cell for kind in devices for cell in _device_demands(finished, runs, kind)]
         place = series, pier
         rows.append([name, *cells, f"{fallen[place]:,} of {planned[place]:,}" if fallen[place] else "none"])
     heads = [Head("case"), *(_head(name, heights[name]) for name in present)]
-    heads += [head for kind in devices for head in _heads_of(finished, kind)]
+    heads += [head for kind in devices for head in _device_heads(finished, kind)]
     if fallen:
         return table([*heads, Head(LOST)], rows, name="Greatest responses")
     return table(heads, [row[:-1] for row in rows], name="Greatest responses")
@@ -103,14 +105,14 @@ def _head(name: str, heights: Collection[float]) -> Head:
     return Head(RESPONSES[name].head(heights), ".3g", DEMANDS[name].words)
 
 
-def _response(finished: Finished, worst: Worst, run: dict[str, Any], heights: Collection[float]) -> Markup:
-    """Return a greatest response, with the value in all its units and its record as a note."""
-    said = f"{in_words(worst)}: {finished.place_of(run)}, t = {number(float(run['t_max_s']))} s"
+def _response(finished: Finished, worst: Worst, run: Row, heights: Collection[float]) -> Markup:
+    """Return a greatest response; its tooltip has the value in all units, its record and its time."""
+    title = f"{in_words(worst)}: {finished.place_of(run)}, t = {number(float(run['t_max_s']))} s"
     value = number(worst.value * RESPONSES[worst.demand].factor, "#.3g")
-    return tag("span", value + worst.place_among(heights), title=said)
+    return tag("span", value + worst.place_among(heights), title=title)
 
 
-def _heads_of(finished: Finished, kind: str) -> list[Head]:
+def _device_heads(finished: Finished, kind: str) -> list[Head]:
     words = DEVICES[kind][1]
     name = kind.replace("_", " ")
     unit = "kN" if _weighed(finished.runs, kind) else "of the weight"
@@ -118,11 +120,12 @@ def _heads_of(finished: Finished, kind: str) -> list[Head]:
 
 
 def _weighed(runs: "pd.DataFrame", kind: str) -> bool:
+    """Return whether forces of these devices are known in kN."""
     return f"{kind}_force_kN" in runs and bool(runs[f"{kind}_force_kN"].notna().any())
 
 
-def _of_devices(finished: Finished, runs: "pd.DataFrame", kind: str) -> list[object]:
-    """Return the greatest force, and stroke, yield or deflection [mm], of devices of a kind among runs that end standing."""
+def _device_demands(finished: Finished, runs: "pd.DataFrame", kind: str) -> list[object]:
+    """Return the greatest force and deformation [mm] of a kind of device over the runs that end standing; "–" for none."""
     stood = runs[runs["status"] == "ok"]
     force = f"{kind}_force_kN" if _weighed(finished.runs, kind) else f"{kind}_force_over_weight"
     cells: list[object] = []
@@ -137,44 +140,37 @@ def _of_devices(finished: Finished, runs: "pd.DataFrame", kind: str) -> list[obj
 
 
 def _without_a_result(finished: Finished) -> Iterator[Markup]:
-    """Yield sentences on runs that did not end standing, and on files that could not be used."""
+    """Yield sentences on runs that overturned, flew, failed or are missing, and on files that could not be used."""
     runs = finished.runs
     if runs.empty:
         yield alarm("No ground motion could be used: there are no results.")
-    ended = (
-        ("overturned", "The pier overturns in {}", "t_end_s"),
-        ("flight", "In {} both pivots leave the ground, and the analysis stops there", "flight_s"),
-    )
-    for status, words, time in ended:
-        of_status = runs[runs["status"] == status]
-        if len(of_status):
-            first = of_status.sort_values(time, kind="stable").iloc[0] if time in of_status else of_status.iloc[0]
-            place = finished.place_of(first)
-            said = words.format(
-                f"{len(of_status):,} of {counted(len(runs), 'run')}"
-                if status == "overturned"
-                else counted(len(of_status), "run")
-            )
-            yield join(alarm(said), f"{': ' if len(of_status) == 1 else ', among them '}{place}.")
+    overturned, flown = (runs[runs["status"] == status] for status in ("overturned", "flight"))
+    share = f"{len(overturned):,} of {counted(len(runs), 'run')}"
+    stops = f"In {counted(len(flown), 'run')} both pivots leave the ground, and the analysis stops there"
+    for ended, words, time in (
+        (overturned, f"The pier overturns in {share}", "t_end_s"),
+        (flown, stops, "flight_s"),
+    ):
+        if len(ended):
+            first = (ended.sort_values(time, kind="stable") if time in ended else ended).iloc[0]
+            yield join(alarm(words), f"{': ' if len(ended) == 1 else ', among them '}{finished.place_of(first)}.")
     failed, unread = int((runs["status"] == "failed").sum()), len(finished.info["unusable"])
-    lost = [
-        f"{counted(n, noun)} {state}"
-        for n, noun, state in (
-            (unread, "file", "could not be used"), (failed, "run", "failed"), (finished.not_run, "run", NOT_RUN)
-        )
-        if n
-    ]  # fmt: skip
+    counts = (unread, "file", "could not be used"), (failed, "run", "failed"), (finished.not_run, "run", NOT_RUN)
+    lost = [f"{counted(n, noun)} {state}" for n, noun, state in counts if n]
     if lost:
         reasons = "; ".join(f"{count} ×: {reason}" for reason, count in reasons_of_failure(runs).items())
         words = " and ".join(lost)
         yield join(
-            alarm(words[0].upper() + words[1:]), f" ({reasons})" if reasons else "", "; see ",
-            tag("a", "Not used", href="#unusable"), ".",
-        )  # fmt: skip
+            alarm(words[0].upper() + words[1:]),
+            f" ({reasons})" if reasons else "",
+            "; see ",
+            tag("a", "Not used", href="#unusable"),
+            ".",
+        )
 
 
 def _notes(finished: Finished, checked: bool) -> Iterator[object]:
-    """Yield what belongs to the scorecard: what a value is, the error of peaks, and where remarks are."""
+    """Yield the notes below the table: the meaning of its values, the error of peaks, and a link to remarks."""
     if not checked:
         yield _standing(finished)
         yield "θ/α = 1: the pier alone stands on its edge on rigid ground. "
@@ -199,13 +195,13 @@ def _notes(finished: Finished, checked: bool) -> Iterator[object]:
 
 
 def _standing(finished: Finished) -> str:
-    """Return of which runs the greatest values are."""
+    """Return a sentence that names the runs whose greatest values are shown."""
     standing = finished.of_all(int((finished.runs["status"] == "ok").sum()), "end standing")
-    return f"Greatest values of {standing}; the record of each is its note. "
+    return f"Largest value over {standing}; hover for the record. "
 
 
 def _error(finished: Finished) -> str:
-    """Report the largest error of the peaks, or that none was estimated; a chaotic peak has none."""
+    """Return a sentence on the largest error of rotations, or that none was estimated; "" if no run ended standing."""
     numerics = finished.info["numerics"]
     errors = finished.runs.loc[finished.runs["status"] == "ok", "theta_max_error"]
     largest, lacking = errors.max(), int(errors.isna().sum())
@@ -213,7 +209,7 @@ def _error(finished: Finished) -> str:
         error = Decimal(repr(max(float(largest), LEAST_ERROR)))
         error = error.quantize(Decimal(1).scaleb(error.adjusted()), ROUND_UP)
         allowed = Decimal(repr(float(numerics["tolerance"])))
-        unknown = f"; of {counted(lacking, 'run')} it is not known" if lacking else ""
+        unknown = f"; unknown in {counted(lacking, 'run')}" if lacking else ""
         return f"Error of rotations: at most {error:f} α ({allowed:f} α allowed){unknown}."
     if numerics.get("substeps"):
         steps = counted(numerics["substeps"], "step")

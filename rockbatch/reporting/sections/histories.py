@@ -1,12 +1,12 @@
-"""Histories: a picture for each motion, with every case that was kept under it, loops at its foot."""
+"""Histories: a picture for each motion with its cases, hysteresis loops below."""
 
 import shlex
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import accumulate
-from typing import Any
+from typing import NamedTuple
 
-from rockbatch.common.figures.description import COLOURS, DASHES, Figure, Look, marks_of
+from rockbatch.common.figures.description import COLOURS, DASHES, Axis, Figure, Look, marks_of
 from rockbatch.common.grouping import grouped
 from rockbatch.outcome.figures import PEAK, Drawn, reduced, together
 from rockbatch.outcome.response import Response
@@ -15,18 +15,33 @@ from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.svg import drawn, key_of, timed
 from rockbatch.reporting.templates import render
 from rockbatch.results.histories_file import Responses
-from rockbatch.results.labelled import as_dicts
+from rockbatch.results.labelled import Row, as_dicts
 from rockbatch.results.labels import Series
 from rockbatch.results.run_json import FROM_PYTHON
 
 MOST_HISTORIES = 40
-"""Most histories of a page, but for the last of its pictures."""
+"""Number of histories at which no further picture is begun."""
 MOST_TOGETHER = 7
-"""Most foundations in one picture, beside the rigid base: their colours differ."""
+"""Most foundations in one picture, beside rigid ground: as many as there are colours."""
 
-Row = dict[str, Any]
 MOTION = ("record", "polarity", "scale", "pier")
-"""Columns that are alike for the runs of one picture."""
+"""Columns that identify a picture: equal for all of its runs."""
+
+
+class Picture(NamedTuple):
+    """The drawings of one motion, and what its caption depends on."""
+
+    title: str
+    cut: Axis | None
+    """Axis of the time shown, None if it is the ``whole``."""
+    whole: Axis
+    key: Markup
+    curves: Markup
+    loops: Markup
+    springs: bool
+    devices: bool
+    left_out: int
+    """Number of cases that are not drawn."""
 
 
 def section(finished: Finished) -> Markup:
@@ -39,8 +54,8 @@ def section(finished: Finished) -> Markup:
     return render("reporting/sections/histories.html", pictures=_pictures(finished), command=command)
 
 
-def _pictures(finished: Finished) -> list[dict[str, Any]]:
-    """Draw a picture for each motion, the worst first, or for the worst of many; with what its caption depends on."""
+def _pictures(finished: Finished) -> list[Picture]:
+    """Draw a picture for each motion, worst first; of many motions, for the worst ones."""
     responses = finished.responses
     rows = _rows_of(finished, responses)
     pictures = []
@@ -51,28 +66,31 @@ def _pictures(finished: Finished) -> list[dict[str, Any]]:
             responses.without_rows(places) if isinstance(responses, Responses) else map(responses.__getitem__, places)
         )
         runs = [_drawn(finished.series[row["series"]], response) for row, response in zip(shown, chosen, strict=True)]
-        pictures.append(_picture(_title(finished, shown[0]), runs) | {"left_out": len(numbers) - len(shown)})
+        pictures.append(_picture(_title(finished, shown[0]), runs, len(numbers) - len(shown)))
     return pictures
 
 
-def _picture(title: str, runs: Sequence[Drawn]) -> dict[str, Any]:
+def _picture(title: str, runs: Sequence[Drawn], left_out: int) -> Picture:
+    """Draw the curves and loops of ``runs`` under one motion."""
     figure, whole = together(runs, title)
-    loops = [
-        replace(panel, caption=f"{run.name}, {panel.caption}")
-        for run in runs
-        for panel in (*run.history.springs, *run.history.devices)
-    ]
+    panels = [(run.name, panel) for run in runs for panel in (*run.history.springs, *run.history.devices)]
+    loops = [replace(panel, caption=f"{name}, {panel.caption}") for name, panel in panels]
     x = figure.panels[-1].x
-    return {
-        "title": title, "cut": x if x != whole else None, "whole": whole,
-        "curves": timed(figure, whole), "key": key_of(figure),
-        "loops": drawn(Figure(loops, f"Force against deflection under {title}")) if loops else "",
-        "springs": any(run.history.springs for run in runs), "devices": any(run.history.devices for run in runs),
-    }  # fmt: skip
+    return Picture(
+        title,
+        cut=x if x != whole else None,
+        whole=whole,
+        key=key_of(figure),
+        curves=timed(figure, whole),
+        loops=drawn(Figure(loops, f"Force against deflection under {title}")) if loops else Markup(""),
+        springs=any(run.history.springs for run in runs),
+        devices=any(run.history.devices for run in runs),
+        left_out=left_out,
+    )
 
 
 def _drawn(series: Series, response: Response) -> Drawn:
-    """Return a run in the colour and with the mark that its foundation has everywhere on the page."""
+    """Return a run with the colour and mark that its foundation has throughout the page."""
     mark = PEAK if series.rigid else marks_of(series.index)
     rounds = series.index if series.rigid else series.index // COLOURS
     look = Look("rigid" if series.rigid else "curve", mark.colour, dash=rounds % DASHES)
@@ -81,7 +99,7 @@ def _drawn(series: Series, response: Response) -> Drawn:
 
 
 def _rows_of(finished: Finished, responses: Sequence[Response]) -> list[Row]:
-    """Return the runs that have histories, without reading these."""
+    """Return the rows of the runs that have histories, without reading the histories."""
     if isinstance(responses, Responses):
         runs = as_dicts(responses.runs)
     else:
@@ -95,7 +113,10 @@ def _rows_of(finished: Finished, responses: Sequence[Response]) -> list[Row]:
 
 
 def _motions(finished: Finished, rows: Sequence[Row]) -> list[list[int]]:
-    """Return the numbers of the runs under each motion, the worst first; of many the motions that are worst for some case."""
+    """Return the indices into ``rows`` of each motion's runs, worst motion first.
+
+    Of more than :data:`MOST_HISTORIES` only motions that are the worst for some case.
+    """
     runs = finished.runs[finished.runs["record"].isin({row["record"] for row in rows})]
     ordered = map(_key, as_dicts(worst_first(runs, len(runs))[[*MOTION, "series"]]))
     rank = {key: place for place, key in enumerate(dict.fromkeys(ordered))}
@@ -110,17 +131,18 @@ def _motions(finished: Finished, rows: Sequence[Row]) -> list[list[int]]:
 
 
 def _key(row: Row) -> tuple[object, ...]:
-    """Return what identifies a run, its foundation last; the scale with the digits of peaks.csv."""
+    """Return the key of a run: its motion, with the scale rounded as in peaks.csv, then its foundation."""
     return row["record"], row["polarity"], float(f"{row['scale']:.10g}"), row["pier"], row["series"]
 
 
 def _shown(finished: Finished, rows: Sequence[Row]) -> list[Row]:
-    """Return the runs of one picture, in the order of the foundations: of many the rigid ones and the worst."""
+    """Return the runs to draw, in the order of foundations: those on rigid ground and the worst :data:`MOST_TOGETHER` others."""
     rigid = [row for row in rows if finished.series[row["series"]].rigid]
     others = [row for row in rows if row not in rigid][:MOST_TOGETHER]
     return sorted(rigid + others, key=lambda row: (row not in rigid, finished.series[row["series"]].index))
 
 
 def _title(finished: Finished, run: Row) -> str:
+    """Return the name of a run's motion and pier: "Kobe, TAK000, scaled by 2, reversed"."""
     also = [f"scaled by {run['scale']:g}" if run["scale"] != 1 else "", "reversed" if run["polarity"] == "-" else ""]
     return ", ".join(filter(None, [finished.named(run["record"]), *also, finished.piers[run["pier"]]]))

@@ -1,20 +1,16 @@
-"""The ground motions: response spectra, intensity measures, sources, and those that could not be used."""
-
-from collections.abc import Mapping
-from typing import Any
+"""The ground motions: response spectra, measures, sources, and files that could not be used."""
 
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, figure, join, tag
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import MOST_ROWS, Head, listed, table
-from rockbatch.results.labelled import as_dicts
+from rockbatch.results.labelled import Item, as_dicts
 from rockbatch.results.spectra_figure import drawable, response_spectra
 
-Record = Mapping[str, Any]
 COLUMNS = (
     Head("event", value="event"),
     Head("station", value="station_name"),
-    Head("code", note="column station of peaks.csv: components of one count as one record", value="station"),
+    Head("code", note="column station of peaks.csv: components of a station count as one record", value="station"),
     Head("PGA [g]", ".3f", value="pga_g"),
     Head("PGV [m/s]", ".3f", value="pgv_m_s"),
     Head("PGD [m]", ".3f", value="pgd_m"),
@@ -25,30 +21,37 @@ COLUMNS = (
     Head("points", value="npts"),
     Head("length [s]", ".2f", "duration_s: from the first to the last sample", value="duration_s"),
     Head(
-        "processed", note="whether its agency has corrected it; empty: the file does not say",
+        "processed",
+        note="whether its agency has corrected it; empty if the file does not say",
         value=lambda record: {True: "yes", False: "no"}.get(record.get("processed", "")),
     ),
     Head(
-        "to check", note="what is odd about it; the notes below say more",
+        "to check",
+        note="apparent faults; see the notes below",
         value=lambda record: ", ".join(finding["what"] for finding in record.get("findings", [])) or None,
     ),
     Head("azimuth [°]", note="degrees clockwise from north", value="azimuth_deg"),
     Head("M", note="magnitude", value="magnitude"),
     Head("distance [km]", value="distance_km"),
-    Head("factor", ".4g", "what brought the record to the study's target", value="factor"),
-    Head("vertical factor", ".4g", "vertical_factor: that of the vertical component, if it has its own", value="vertical_factor"),
+    Head("factor", ".4g", "scale factor to the study's target", value="factor"),
+    Head(
+        "vertical factor",
+        ".4g",
+        "vertical_factor: scale factor of the vertical component, if different",
+        value="vertical_factor",
+    ),
     Head(
         "pulse [s]",
         ".2f",
-        "pulse_period_s: of a record that is pulse-like by Baker (2007), before it is scaled",
+        "pulse_period_s: pulse period if the unscaled record is pulse-like by Baker (2007)",
         value="pulse_period_s",
     ),
-)  # fmt: skip
-"""Columns of the table of ground motions; those of a name hold that value of run.json."""
+)
+"""Columns of the table of ground motions; a ``value`` that is a name is a key of run.json's records."""
 
 
 def section(finished: Finished) -> Markup:
-    """Describe the ground motions that could be used, in a table like the paper's Table 1, the weakest first."""
+    """Return spectra, table and sources of the usable ground motions, weakest first; empty without any."""
     if not finished.info["records"]:
         return Markup("")
     caption = "before the study's scale."
@@ -67,16 +70,22 @@ def section(finished: Finished) -> Markup:
         name,
         Head("horizontal from", value=lambda record: _path(record["source"])),
         Head("vertical from", value=lambda record: _path(record["vertical_source"])),
-        Head("what was done", value=_processing),
+        Head("processing", value=_processing),
     ]
     return join(
-        picture, listed(heads, records, sortable=True, name="Ground motions"), no_vertical,
-        tag("details", tag("summary", "Files, and what was done to them"), listed(sources, records, prose=True, name="Sources")),
-    )  # fmt: skip
+        picture,
+        listed(heads, records, sortable=True, name="Ground motions"),
+        no_vertical,
+        tag(
+            "details",
+            tag("summary", "Files and their processing"),
+            listed(sources, records, prose=True, name="Sources"),
+        ),
+    )
 
 
 def spectra(finished: Finished, caption: str, fitted: tuple[float, float] | None = None) -> Markup:
-    """Draw the response spectra; empty if run.json has none that fit its records, as for very large suites."""
+    """Draw the response spectra; empty if run.json has none or they do not match its records, as in very large suites."""
     records, shown = finished.info["records"], finished.info.get("spectra")
     if not shown or len(shown["sa_g"]) != len(records) or not drawable(shown):
         return Markup("")
@@ -89,12 +98,12 @@ def _path(source: str | None) -> object:
     return source and tag("span", source, class_="path")
 
 
-def _processing(record: Record) -> object:
+def _processing(record: Item) -> object:
     return tag("ul", *(tag("li", note) for note in record["notes"])) if record["notes"] else ""
 
 
 def unusable(finished: Finished) -> Markup:
-    """List files and runs that gave no result, and files and records that were left out on purpose, with reasons."""
+    """List files and runs without a result, then files and records left out on purpose, with reasons; empty without any."""
     rows = [[entry["name"], "", entry["source"], entry["reason"]] for entry in finished.info["unusable"]]
     failed = finished.runs[finished.runs["status"] == "failed"]
     most = max(MOST_ROWS - len(rows), 0)

@@ -1,7 +1,7 @@
-"""Every run in a table, the worst first."""
+"""A table of every run, worst first."""
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import creeps
@@ -13,35 +13,41 @@ from rockbatch.reporting.markup import Markup, join, number, tag
 from rockbatch.reporting.table import MOST_ROWS, THETA_FORMAT, Head, alarm, table
 from rockbatch.reporting.templates import render
 from rockbatch.results.columns import PEAKS
-from rockbatch.results.labelled import as_dicts
+from rockbatch.results.labelled import Row, as_dicts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 REMARKS = ("reason", "note")
-"""Columns of texts, which stand below the table."""
+"""Columns of texts, which are listed below the table."""
 LAST_DIGIT = 1e-5
-"""Of θ_max/α in the table."""
+"""Resolution of θ_max/α in the table."""
 MOST_OPEN_REMARKS, MOST_REMARKS = 6, 200
 
 
 def section(finished: Finished) -> Markup:
-    """Return every run in a table."""
+    """Return the table of every run, with remarks on its reliability; empty without runs."""
     runs = finished.runs
     if runs.empty:
         return Markup("")
     gap = (runs["settlement_m"] - runs[OTHER_LAW]).abs() if OTHER_LAW in runs else None
     widest = None if gap is None or gap.isna().all() else runs.iloc[int(gap.argmax())]
     return render(
-        "reporting/sections/peaks.html", file=PEAKS, runs=runs, finished=finished, table=_every_run(finished), widest=widest,
-        far=int(Rows(runs).facts("beyond_linearised").sum()), one_law=gap is None,
+        "reporting/sections/peaks.html",
+        file=PEAKS,
+        runs=runs,
+        finished=finished,
+        table=_every_run(finished),
+        widest=widest,
+        far=int(Rows(runs).facts("beyond_linearised").sum()),
+        one_law=gap is None,
         ratchets=any(map(creeps, finished.info["cases"])),
         range=[] if widest is None else sorted(1000 * widest[name] for name in ("settlement_m", OTHER_LAW)),
-    )  # fmt: skip
+    )
 
 
-def outcome(run: "dict[str, Any] | None", worst: float = math.nan) -> object:
-    """Return θ_max/α of a run, or how it ended instead."""
+def outcome(run: Row | None, worst: float = math.nan) -> object:
+    """Return θ_max/α of a run, bold if it equals ``worst``, or its status if it did not end standing; "" for None."""
     if run is None:
         return ""
     status, theta, flight = run["status"], float(run["theta_max_over_alpha"]), run["flight_s"]
@@ -53,13 +59,13 @@ def outcome(run: "dict[str, Any] | None", worst: float = math.nan) -> object:
     shown = tag("strong", value) if theta == worst else value
     marks = []
     if flight == flight:
-        marks.append(tag("sup", "f", title=f"both pivots in the air first at {number(flight)} s"))
+        marks.append(tag("sup", "f", title=f"both pivots off the ground, first at {number(flight)} s"))
     if leans := run["theta_max_is"]:
-        marks.append(tag("sup", "\u2009", leans, title="mostly the lean of a base that has yielded; see its note"))
+        marks.append(tag("sup", "\u2009", leans, title="mostly the lean of a yielded base; see its note"))
     return join(shown, *marks) if marks or isinstance(shown, Markup) else theta
 
 
-def at_least(run: dict[str, Any]) -> Markup:
+def at_least(run: Row) -> Markup:
     """Return the lower bound of θ_max/α of a run that failed after its motion: "≥ 0.31240"; empty if it has none."""
     error = run[IN_MOTION_ERROR]
     if run["status"] != "failed" or error != error:
@@ -68,7 +74,7 @@ def at_least(run: dict[str, Any]) -> Markup:
 
 
 def _every_run(finished: Finished) -> Markup:
-    """Return the rows of ``peaks.csv``, the worst first; remarks stand below the table, each once."""
+    """Return the rows of ``peaks.csv``, worst first, with distinct remarks numbered below the table."""
     runs, varied = finished.runs, finished.info["varied"]
     # Shown only if they vary
     also = {"polarity": finished.both_directions, "scale": finished.many_scales}
@@ -78,24 +84,21 @@ def _every_run(finished: Finished) -> Markup:
     if runs["with_vertical"].nunique() > 1:
         names["with_vertical"] = Head("vertical component", filter=True)
     columns = {column.name: head(column) for column in report_columns() if column.source and column.name in runs}
-    columns |= {
-        name: Head(name)
-        for name in map(str, finished.saved.peaks)
-        if name not in COLUMNS and name not in ("vertical", *varied)
-    }
-    columns.pop(OTHER_LAW, None)  # the other end of the range of settlement
+    known = {*COLUMNS, *varied, "vertical"}
+    columns |= {name: Head(name) for name in map(str, finished.saved.peaks) if name not in known}
+    columns.pop(OTHER_LAW, None)  # shown in the column of settlement, as a range
     columns["status"] = columns["status"]._replace(filter=True)
     remarks: dict[str, int] = {}
     texts = [name for name in REMARKS if columns.pop(name, None)]
 
-    def cell(run: dict[str, Any], name: str) -> object:
+    def cell(run: Row, name: str) -> object:
         if name == "settlement_m":
             return _settlement(run)
         if name == "theta_max_error":
             return _rounded_up(run[name])
         return (name == "theta_max_over_alpha" and at_least(run)) or _cell(name, run[name])
 
-    def cells(run: dict[str, Any]) -> list[object]:
+    def cells(run: Row) -> list[object]:
         own = [remarks.setdefault(run[name], len(remarks) + 1) for name in texts if run[name]]
         return [*(run[name] for name in names), *(cell(run, name) for name in columns), " ".join(map(str, own))]
 
@@ -105,12 +108,12 @@ def _every_run(finished: Finished) -> Markup:
 
 
 def _rounded_up(error: float) -> float | None:
-    """Return an error in the digits that peaks are shown with, never less than it is."""
+    """Round an error up to the digits of the peaks in the table; None for NaN."""
     return math.ceil(error / LAST_DIGIT) * LAST_DIGIT if error == error else None
 
 
 def _remarks(texts: "Sequence[str]") -> Markup:
-    """Return the numbered list of what the table says of single runs; folded if it is long."""
+    """Return the numbered list of remarks, folded if long; empty without any."""
     if not texts:
         return Markup("")
     listed = tag("ol", *(tag("li", words) for words in texts[:MOST_REMARKS]), class_="remarks")
@@ -120,22 +123,22 @@ def _remarks(texts: "Sequence[str]") -> Markup:
 
 
 def every_run(
-    finished: Finished, heads: "Sequence[Head]", cells: "Callable[[dict[str, Any]], Sequence[object]]", name: str
+    finished: Finished, heads: "Sequence[Head]", cells: "Callable[[Row], Sequence[object]]", name: str
 ) -> Markup:
-    """Return a table with a row for each run, the worst first; ``cells`` returns those behind the record."""
+    """Return a table with a row for each run, worst first; ``cells`` returns a run's cells after its record."""
     runs = worst_first(finished.runs, MOST_ROWS)
     rows = ([finished.shown(run["record"]), *cells(run)] for run in as_dicts(runs))
     return table(heads, rows, sortable=True, name=name, worst_of=len(finished.runs))
 
 
-def _cell(name: str, value: Any) -> object:
+def _cell(name: str, value: "float | str | None") -> object:
     if name == "status":
-        return alarm(value) if value != "ok" else value
+        return alarm(str(value)) if value != "ok" else value
     return value if isinstance(value, str) else on_scale(name, value)
 
 
-def _settlement(run: dict[str, Any]) -> object:
-    """Return the settlement [mm] of a run; by two spring laws, the range between both."""
+def _settlement(run: Row) -> object:
+    """Return the settlement [mm] of a run, as a range if it was computed by two spring laws."""
     by_law, by_other = (on_scale(name, run.get(name)) for name in ("settlement_m", OTHER_LAW))
     if by_law is None or by_other is None:
         return by_law
@@ -145,7 +148,7 @@ def _settlement(run: dict[str, Any]) -> object:
 
 
 def on_scale(name: str, value: float | None) -> float | None:
-    """Return a number of column ``name`` in the unit of the page; None for NaN and None."""
+    """Convert a value of column ``name`` to the unit of the page; None for NaN and None."""
     column = COLUMNS.get(name)
     factor = column.page.factor if column and column.page else 1
     return None if value is None or value != value else factor * float(value)

@@ -2,19 +2,18 @@
 
 import math
 from fnmatch import fnmatchcase
-from typing import Any
 
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import symbol
 from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.reporting.sections.peaks import outcome
 from rockbatch.reporting.table import THETA, THETA_FORMAT, Head, table
-from rockbatch.results.labelled import as_dicts
+from rockbatch.results.labelled import Row, as_dicts
 from rockbatch.results.suite_statistics import NO_PEAK
 
 
 def section(finished: Finished) -> Markup:
-    """Compare with the references of the study: every run that matches a record pattern, case and columns; empty without any."""
+    """Compare runs with the study's references, matched by record pattern, case and columns; empty without references."""
     runs, references = finished.runs, finished.info["references"]
     if not references:
         return Markup("")
@@ -38,7 +37,9 @@ def section(finished: Finished) -> Markup:
     return table(heads, rows, name="Compared with published values")
 
 
-def _fits(run: dict[str, Any], reference: dict[str, Any]) -> bool:
+def _fits(run: Row, reference: Row) -> bool:
+    """Return whether a run matches a reference's record pattern and columns; numbers within 1e-9 of their size."""
+
     def equal(ours: object, theirs: object) -> bool:
         if isinstance(ours, float) and isinstance(theirs, float | int):
             return math.isclose(ours, theirs, rel_tol=1e-9)

@@ -1,4 +1,4 @@
-"""Statistics of the suite in each case: mean, median, percentiles, and the number of runs without a peak."""
+"""Statistics of the suite in each case: mean, median, percentiles, and numbers of records without a peak."""
 
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
@@ -18,21 +18,21 @@ from rockbatch.reporting.table import MOST_ROWS, Head, alarm, shown_of, table
 from rockbatch.results.suite_statistics import Statistics, suites
 
 Row = tuple[Hashable, ...]
-"""Values that tell a row of the tables from others."""
+"""Values of the key columns that identify a row of the tables."""
 
 RECORDS = {
     "station": "A record is a station, as in the checks: the worst of its components and polarities counts.",
     "component": "A record is a horizontal component, with the worse of its polarities.",
 }
 WORDS = (
-    " One under which the pier overturned, or that was ended by flight, has no largest value and counts as larger than any (∞) "
-    "in the median, the percentiles and the maximum; the mean is then that of the records that stood, with their number. One "
-    "with a failed run is unknown and counts in its own column only. Percentiles are linear between the records in order."
+    " A record under which the pier overturned or a run stopped in flight counts as infinite (∞) in the median, percentiles and "
+    "maximum; the mean is over the standing records (n given). A record with a failed run is unknown and counts in its own "
+    "column only. Percentiles are interpolated linearly between the ordered records."
 )
 
 
 def section(finished: Finished) -> Markup:
-    """Return tables of every quantity, a row for each case; with and without the vertical component side by side."""
+    """Return a table for each quantity, a row for each case, with and without the vertical component side by side."""
     if finished.runs.empty:
         return Markup("")
     runs, keys = finished.runs, ["scale", "pier", "series"]
@@ -43,7 +43,7 @@ def section(finished: Finished) -> Markup:
 
 
 def rows_of(finished: Finished, runs: "pd.DataFrame", keys: list[str]) -> tuple[dict[Row, list[str]], list[Head]]:
-    """Return the texts of the first cells of each row, and their heads; ``keys`` are columns of ``runs`` that tell rows apart."""
+    """Return the first cells of each row by its values of ``keys``, columns of ``runs``, and the heads of these cells."""
     many_scales = runs["scale"].nunique() > 1
     columns: dict[str, tuple[str, Callable[[Any], str]]] = {
         "series": ("case", lambda place: finished.series[place].label),
@@ -64,11 +64,11 @@ def tables(
     heads: Sequence[Head],
     count: str,
 ) -> Markup:
-    """Return a table for each quantity that has values.
+    """Return a heading and a table for each quantity that has values.
 
-    ``sides`` are the runs of every side that is compared, by the words for it, empty of one alone. ``names`` has the texts of the
-    first cells of each row, under ``heads``, by its values of ``keys``; other runs do not count. ``count`` says what is one
-    record, one of :data:`rockbatch.checks.rules.COUNTS`.
+    ``sides`` are the runs to compare, by their caption ("" for a single side). ``names`` has the first cells of each row,
+    under ``heads``, by its values of ``keys``; runs of no row are left out. ``count`` is the unit of counting, one of
+    :data:`rockbatch.checks.rules.COUNTS`.
     """
     drawn = [tag("p", RECORDS[count] + WORDS)]
     index = pd.MultiIndex.from_tuples(list(names), names=keys)
@@ -86,16 +86,13 @@ def tables(
             has_value = np.bincount(rows, ~np.isnan(values), len(names)) > 0
             of_rows = suites(values, runs["status"].to_list(), records, rows, len(names))
             of_sides.append([suite if any_ else None for suite, any_ in zip(of_rows, has_value, strict=True)])
-        cells = [
-            [*words, *(_cell(suite, name, form) for name in _COLUMNS for suite in cells_of_sides)]
-            for words, *cells_of_sides in zip(names.values(), *of_sides, strict=True)
-            if any(cells_of_sides)
-        ]
+        cells: list[list[object]] = []
+        for words, *row_of_sides in zip(names.values(), *of_sides, strict=True):
+            if any(row_of_sides):
+                cells.append([*words, *(_cell(suite, name, form) for name in _COLUMNS for suite in row_of_sides)])
         if cells:
-            drawn += [
-                tag("h3", title),
-                table([*heads, *_heads(list(sides), form)], cells, name=f"Suite: {column.suite.heading}"),
-            ]
+            all_heads = [*heads, *_heads(list(sides), form)]
+            drawn += [tag("h3", title), table(all_heads, cells, name=f"Suite: {column.suite.heading}")]
     return join(*drawn)
 
 
@@ -103,8 +100,8 @@ _COLUMNS = {
     "count": ("n", "records with an outcome"),
     "mean": ("mean", "of the records that stood"),
     "median": ("median", None),
-    "low": ("16 %", "value that 16 % of the records do not exceed"),
-    "high": ("84 %", "value that 84 % of the records do not exceed"),
+    "low": ("16 %", "16th percentile over the records"),
+    "high": ("84 %", "84th percentile over the records"),
     "largest": ("maximum", None),
     "overturned": ("overturned", "records under which the pier overturned"),
     "flight": ("flight", "records with a run that ended when both pivots left the ground"),
@@ -121,6 +118,7 @@ def _heads(sides: Sequence[str], form: str) -> list[Head]:
 
 
 def _cell(s: Statistics | None, name: str, form: str) -> object:
+    """Return the cell of statistic ``name``; None without statistics, "∞" in bold if infinite."""
     if s is None:
         return None
     value = getattr(s, name)

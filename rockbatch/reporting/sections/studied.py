@@ -1,12 +1,10 @@
-"""The study in words and units: the pier, its foundations and the ground motions."""
+"""The study in words and units: pier, foundations and ground motions."""
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
 from rockbatch.checks.coverage import stations_of
 from rockbatch.pier.figures import devices, sketches
-from rockbatch.quantities.cases import top
+from rockbatch.quantities.cases import Case, top
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted, symbol
 from rockbatch.reporting.markup import Markup, join
@@ -14,6 +12,7 @@ from rockbatch.reporting.structure import pier_of, restraints_of
 from rockbatch.reporting.svg import sketch
 from rockbatch.reporting.table import Head, sub, table
 from rockbatch.reporting.templates import render
+from rockbatch.results.labelled import Row
 from rockbatch.results.labels import plain
 from rockbatch.study import PIER_KEYS
 
@@ -27,17 +26,15 @@ GIVEN = {
     "deck_inertia_t_m2": ("its rotary inertia", "t m²"),
     "top_m": ("drift read at", "m"),
 }
-"""Keys of [pier] that are quoted, with their words and units."""
+"""Keys of [pier] that the page quotes, with their names and units."""
 
 IN_A_LINE = {"height_m": "m high", "width_m": "m wide", "mass_t": "t", "deck_mass_t": "t of deck"}
-"""Keys of [pier] that tell piers apart at a glance."""
+"""Keys of [pier] in the line below the title, with their units."""
 MOST_VALUES = 3
-
-Case = Mapping[str, Any]
 
 
 def section(finished: Finished, level: str = "h3") -> Markup:
-    """Describe the pier, the foundations and the records; ``level`` is that of the headings within."""
+    """Describe piers, foundations and records; ``level`` is the tag of its subheadings."""
     cases, records = finished.info["cases"], finished.info["records"]
     factors = [float(record.get("factor", 1.0)) for record in records]
     ends = dict.fromkeys(f"{factor:.4g}" for factor in (min(factors, default=1.0), max(factors, default=1.0)))
@@ -57,33 +54,37 @@ def section(finished: Finished, level: str = "h3") -> Markup:
         piers.setdefault(key, case["pier"] | {"top_m": drift_at})
     names_across = {case["case"] for case in cases if case.get("across_of")}
     return render(
-        "reporting/sections/studied.html", finished=finished, records=records, level=level, span=span, plain=plain,
-        degrees=math.degrees, along=list(along.values()), across=list(across.values()),
-        foundations_along=sum(key[0] not in names_across for key in finished.places), given=_numbers_of(finished.pier_as_given),
-        drawn=_drawn(finished), vertical=_vertical(finished),
+        "reporting/sections/studied.html",
+        finished=finished,
+        records=records,
+        level=level,
+        span=span,
+        plain=plain,
+        degrees=math.degrees,
+        along=list(along.values()),
+        across=list(across.values()),
+        foundations_along=sum(key[0] not in names_across for key in finished.places),
+        given=_numbers_of(finished.pier_as_given),
+        drawn=_drawn(finished),
+        vertical=_vertical(finished),
         scales=sorted(finished.runs["scale"].unique().astype(float)) if len(finished.runs) else [],
         scaled="as recorded" if as_recorded else f"scaled to the target by {' to '.join(ends)}",
         foundations=_foundations(finished),
         springs=any(case["base"] != "rigid" for case in cases),
-    )  # fmt: skip
+    )
 
 
 def in_a_line(finished: Finished) -> str:
-    """Return pier, suite and runs in a line, which stands below the title."""
+    """Return the line below the title: "20 m high, 4 m wide · 11 stations, 22 components (…) · 44 runs, all end standing"."""
     highest = {case["pier"].get("highest_m") for case in finished.info["cases"]}
     of_parts = {"height_m": highest.pop()} if "part" in finished.pier_as_given and len(highest) == 1 else {}
     given = finished.pier_as_given | of_parts
-    sizes = [
-        f"{plain(float(given[key]), 6)} {words}"
-        for key, words in IN_A_LINE.items()
-        if isinstance(given.get(key), int | float) and not isinstance(given[key], bool)
-    ]
-    shaft = {key: value for key, value in (("α", "alpha"), ("p", "p")) if not sizes}
-    for symbol_, key in shaft.items():
+    numbers = {key: given[key] for key in IN_A_LINE if type(given.get(key)) in (int, float)}
+    sizes = [f"{plain(float(value), 6)} {IN_A_LINE[key]}" for key, value in numbers.items()]
+    for symbol_, key, unit in () if sizes else (("α", "alpha", ""), ("p", "p", " rad/s")):
         values = dict.fromkeys(plain(case["pier"][key], 4) for case in finished.info["cases"])
-        sizes += (
-            [f"{symbol_} = {', '.join(values)}{' rad/s' if key == 'p' else ''}"] if len(values) <= MOST_VALUES else []
-        )
+        if len(values) <= MOST_VALUES:
+            sizes.append(f"{symbol_} = {', '.join(values)}{unit}")
     stations, records = stations_of(finished.info), finished.info["records"]
     of_all = "" if len(stations.used) == stations.total or not stations.known else f" of {stations.total}"
     suite = f"{len(stations.used)}{of_all} {'station' if stations.total == 1 else 'stations'}"
@@ -91,15 +92,14 @@ def in_a_line(finished: Finished) -> str:
     motions = f"{counted(axes * len(records), 'component')} ({_vertical(finished)})"
     runs, stood = len(finished.runs), int((finished.runs["status"] == "ok").sum())
     ended = "all end standing" if stood == runs and not finished.not_run else f"{stood:,} end standing"
-    return " · ".join(
-        filter(None, (", ".join(sizes), f"{suite}, {motions}", f"{counted(runs + finished.not_run, 'run')}, {ended}"))
-    )
+    parts = (", ".join(sizes), f"{suite}, {motions}", f"{counted(runs + finished.not_run, 'run')}, {ended}")
+    return " · ".join(filter(None, parts))
 
 
 def _drawn(finished: Finished) -> list[Markup]:
-    """Draw each pier with its devices."""
+    """Draw each distinct pier with its devices, captioned with its cases if there are several."""
     has_deck = "deck_mass_t" in finished.pier_as_given
-    shown: dict[tuple[object, ...], tuple[dict[str, Any], list[str]]] = {}
+    shown: dict[tuple[object, ...], tuple[Row, list[str]]] = {}
     for case in finished.info["cases"]:
         pier = pier_of(case)
         places = devices(pier, restraints_of(case)) if pier else ()
@@ -112,23 +112,22 @@ def _drawn(finished: Finished) -> list[Markup]:
     return [sketch(figure) for figure in sketches(piers, {case["base"] for case in finished.info["cases"]})]
 
 
-def _numbers_of(pier: Mapping[str, Any]) -> list[str]:
-    """Return the numbers of the pier in the units of the study file; those that vary are in the tables."""
+def _numbers_of(pier: Row) -> list[str]:
+    """Return the constants of [pier] as given: "height 20 m"; varied keys are left out."""
     parts = pier.get("part", ())
     words = GIVEN | ({"mass_t": ("shaft", "t")} if "deck_mass_t" in pier else {})
-    numbers = [
-        f"{words[key][0]} {plain(value, 6)} {words[key][1]}".strip()
-        for key, value in pier.items()
-        if key in words and isinstance(value, int | float)
-    ]
-    return numbers + [
-        f"a part of {part['mass_t']:g} t at {part['height_m']:g} m"
-        for part in (parts if isinstance(parts, list) else ())
-        if isinstance(part, dict) and all(isinstance(part.get(key), int | float) for key in ("mass_t", "height_m"))
-    ]
+    numbers = []
+    for key, value in pier.items():
+        if key in words and isinstance(value, int | float):
+            numbers.append(f"{words[key][0]} {plain(value, 6)} {words[key][1]}".strip())
+    tables = [part for part in parts if isinstance(part, dict)] if isinstance(parts, list) else []
+    values = [(part.get("mass_t"), part.get("height_m")) for part in tables]
+    known = [pair for pair in values if all(isinstance(value, int | float) for value in pair)]
+    return numbers + [f"a part of {mass:g} t at {height:g} m" for mass, height in known]
 
 
 def _vertical(finished: Finished) -> str:
+    """Return which motions have a vertical component, in words."""
     records = finished.info["records"]
     if finished.runs["with_vertical"].nunique() > 1:
         return "with and without the vertical component"
@@ -139,21 +138,17 @@ def _vertical(finished: Finished) -> str:
 
 
 def _foundations(finished: Finished) -> Markup:
-    """Describe the bases of the piers: parameters, and the deflections that follow from them."""
+    """Return a table of the bases: parameters, and the deflections [mm] that follow from them."""
     varied_pier = [key for key in finished.info["varied"] if key in PIER_KEYS]
     heads = [Head("case"), *(Head(symbol(key)) for key in varied_pier), Head("base")]
     weighed = {"stiffness_kN_m": "stiffness of a support", "yield_kN": "force at which a support yields"}
-    in_kilonewtons = {
-        key: note for key, note in weighed.items() if any(key in case["parameters"] for case in finished.info["cases"])
-    }
+    present = {key for case in finished.info["cases"] for key in case["parameters"]}
+    in_kilonewtons = {key: note for key, note in weighed.items() if key in present}
     heads += [
         Head("β", ".5g", note="vertical over rocking frequency parameter"),
-        Head("η", ".5g", note="yield over static deflection: capacity of a support over its static load"),
+        Head("η", ".5g", note="yield over static deflection: a support's capacity over its static load"),
         *(Head(symbol(key), ",.0f", note) for key, note in in_kilonewtons.items()),
-        Head(
-            "impact",
-            note="landing: an impulse at the landing pivot, by ε; housner: Housner's e on the angular velocity",
-        ),
+        Head("impact", note="landing: impulse at the landing pivot, by ε; housner: factor e on the angular velocity"),
         Head("ε", note="restitution of the landing pivot's velocity"),
         Head("ζ", note="damping of the supports, as a share of critical damping of the vertical vibration"),
         Head("spring"),

@@ -1,4 +1,4 @@
-"""Verdicts: the answer in a sentence, every check in every case, and the demands of the checks."""
+"""Verdicts: the answer in sentences, the scorecard, and every verdict with its numbers."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -20,14 +20,14 @@ from rockbatch.reporting.table import MOST_ROWS, Head, table
 BASIS = {"code": "code clause", "literature": "literature", "judgement": "engineering judgement"}
 SAID = {PASS: "passes:", FAIL: "fails:", NOT_DECIDED: "not decided:", DOES_NOT_APPLY: "does not apply"}
 MOST_COLUMNS = 7
-"""Checks that the scorecard shows though they pass in every case."""
+"""Most columns of the scorecard, unless more checks fail or are undecided."""
 MOST_DRAWN = 200
-"""Cases of a scorecard that a reader can unfold."""
+"""Most cases that a reader can unfold in the scorecard."""
 CLASSES = {PASS: "pass", FAIL: "fail", NOT_DECIDED: "undecided", DOES_NOT_APPLY: "muted"}
 
 
 def section(finished: Finished) -> Markup:
-    """Return what the checks ask, and, folded, every verdict with its numbers; empty without checks."""
+    """Return the checks' requirements and, folded, every verdict with its numbers; empty without checks."""
     verdicts = finished.verdicts
     if not verdicts:
         return Markup("")
@@ -39,22 +39,26 @@ def section(finished: Finished) -> Markup:
 
 
 def mark(verdict: str, words: str) -> Markup:
-    """Put a verdict's sign before ``words``, in its colour; screen readers read the sign's name."""
+    """Return ``words`` after a verdict's sign, in its colour; screen readers read the sign's name."""
     sign = tag("span", wording.SIGNS[verdict], role="img", aria_label=SAID[verdict])
     return tag("span", sign, f"\u00a0{words}" if words else "", class_=CLASSES[verdict])
 
 
 def answer(finished: Finished) -> Markup:
-    """Report which cases pass, fail, or are not decided or not checked, and how many stations are behind it."""
+    """Return which cases pass, fail, are not decided or not checked, and the number of stations."""
     lines = answered(
-        finished.verdicts, finished.worst_at_scales, _namer(finished), lambda row: finished.label(row.record), finished.suites,
+        finished.verdicts,
+        finished.worst_at_scales,
+        _namer(finished),
+        lambda row: finished.label(row.record),
+        finished.suites,
         stations_of(finished.info),
-    )  # fmt: skip
+    )
     listed = tag("ul", *map(_line, lines), class_="answer") if lines else ""
     if any(verdict.case for verdict in finished.verdicts):
         return join(listed)
-    hint = join(tag("code", "rockbatch check"), " judges finished results by rules.")
-    return join(listed, "No limits were set: no response passes or fails. ", hint)
+    command = tag("code", "rockbatch check DIR --rules FILE")
+    return join(listed, "No limits were set, so nothing was checked. Add some: ", command, ".")
 
 
 def _line(line: Line) -> Markup:
@@ -70,22 +74,16 @@ def _namer(finished: Finished) -> Callable[[Verdict | CaseRuns], str]:
 
 
 def scorecard(finished: Finished) -> Markup:
-    """Return a row for each case and a column for each check: demand, its share of the limit, and a bar up to twice that."""
+    """Return a table of demand, share of the limit and a bar (full at twice the limit), by case and check."""
     card = of_verdicts(finished.verdicts, _namer(finished), finished.suites, finished.worst_at_scales)
     columns = card.open_columns(MOST_COLUMNS)
     shown = MOST_CASES if len(card.rows) <= MOST_CASES else OPEN_CASES
     folded = len(card.columns) - len(columns)
     asked = wording.requirements(finished.verdicts)
-    heads = [
-        tag(
-            "th",
-            column.check,
-            tag("small", ", ".join(filter(None, (column.at, column.limit)))),
-            scope="col",
-            title="; ".join(asked[column.check]),
-        )
-        for column in (card.columns[i] for i in columns)
-    ]
+    heads = []
+    for column in (card.columns[i] for i in columns):
+        small = tag("small", ", ".join(filter(None, (column.at, column.limit))))
+        heads.append(tag("th", column.check, small, scope="col", title="; ".join(asked[column.check])))
     more = [tag("th", scope="col")] if folded else []
     best = card.rows[:MOST_DRAWN]
     rows = [_row(finished, card, row, columns, "folded" if place >= shown else None) for place, row in enumerate(best)]
@@ -100,20 +98,20 @@ def scorecard(finished: Finished) -> Markup:
 
 
 def statistics_in_words(finished: Finished) -> str:
-    """Return which statistic of the suite each check is about, and what the bars show."""
-    by_statistic = grouped(
-        dict.fromkeys((v.statistic, v.check) for v in finished.verdicts if v.case and not v.is_ban and v.statistic),
-        lambda pair: pair[0],
+    """Return a sentence on the statistic that each check uses, and on the bars; empty without a statistic."""
+    with_statistic = (v for v in finished.verdicts if v.case and not v.is_ban and v.statistic)
+    checks_of: dict[str, dict[str, None]] = {}
+    for verdict in with_statistic:
+        checks_of.setdefault(verdict.statistic, {})[verdict.check] = None
+    over = wording.records_of(finished.verdicts)
+    values = "; ".join(
+        f"{STATISTICS[name].words} over {over} ({', '.join(checks)})" for name, checks in checks_of.items()
     )
-    words = [
-        f"{STATISTICS[name].words} over {wording.records_of(finished.verdicts)} ({', '.join(check for _, check in pairs)})"
-        for name, pairs in by_statistic.items()
-    ]
-    values = "; ".join(words)
     return f"{values[0].upper()}{values[1:]}. The mark on a bar is the limit." if values else ""
 
 
 def _row(finished: Finished, card: Card, row: Row, columns: Sequence[int], class_: str | None) -> Markup:
+    """Return the row of a case; checks without a column are counted as "3 more" if passed."""
     cells = [_cell(finished, card.columns[i], row.cells[i]) for i in columns]
     others = [cell for i, cell in enumerate(row.cells) if i not in columns]
     if others:
@@ -123,7 +121,7 @@ def _row(finished: Finished, card: Card, row: Row, columns: Sequence[int], class
 
 
 def _cell(finished: Finished, column: Column, cell: Cell | None) -> Markup:
-    """Return a cell: value, sign and share of the limit, the bar, and, on paper, the record that governs."""
+    """Return a cell: value, sign, share of the limit, bar and, on paper, the governing record."""
     check = " ".join(filter(None, (column.check, column.at, column.limit)))
     if cell is None or cell.verdict.verdict == DOES_NOT_APPLY:
         return tag("td", tag("span", "–", aria_label="does not apply"), class_="na", data_check=check)
@@ -132,13 +130,18 @@ def _cell(finished: Finished, column: Column, cell: Cell | None) -> Markup:
     bar = tag("span", class_="bar", style=f"--share:{100 * share:.0f}%") if share is not None else ""
     record = tag("small", finished.label(verdict.record), class_="governs") if verdict.record else ""
     return tag(
-        "td", tag("span", tag("strong", cell.value), mark(verdict.verdict, cell.percent), class_="top"), bar, record,
-        class_=CLASSES[verdict.verdict], title=_said(finished, verdict), data_check=check,
-    )  # fmt: skip
+        "td",
+        tag("span", tag("strong", cell.value), mark(verdict.verdict, cell.percent), class_="top"),
+        bar,
+        record,
+        class_=CLASSES[verdict.verdict],
+        title=_tooltip(finished, verdict),
+        data_check=check,
+    )
 
 
-def _said(finished: Finished, verdict: Verdict) -> str:
-    """Return what a cell says: the demand against the limit, its bounds, the record that governs, and remarks."""
+def _tooltip(finished: Finished, verdict: Verdict) -> str:
+    """Return requirement, demand against limit, bounds, governing record and remarks, a line each."""
     between = f"between {_between(verdict)}" if _between(verdict) else ""
     record = f"{finished.label(verdict.record)} ({verdict.polarity})" if verdict.record else ""
     against = "" if verdict.is_ban or math.isnan(verdict.value) else wording.against(verdict)
@@ -147,20 +150,21 @@ def _said(finished: Finished, verdict: Verdict) -> str:
 
 
 def _requirements(verdicts: Sequence[Verdict]) -> Markup:
+    """Return a table of each check's requirement and reason, and notes on counting."""
     asked = wording.requirements(verdicts)
     firsts = {name: of_check[0] for name, of_check in grouped(verdicts, wording.name_of).items()}
     rows = [[name, "; ".join(asked[name]), BASIS.get(row.basis, row.basis), row.reason] for name, row in firsts.items()]
     rests = {row.statistic: wording.unchecked(row) for row in firsts.values()}
-    heads = map(Head, ("check", "asks", "limit from", "reason"))
+    heads = map(Head, ("check", "requirement", "limit from", "reason"))
     sentences = (f"{name}: {words}." for name, words in rests.items() if words)
-    drawn = table([*heads], rows, prose=True, name="What the checks ask")
+    drawn = table([*heads], rows, prose=True, name="Requirements")
     notes = [*wording.Notes(verdicts).common(), *wording.counting(verdicts), *sentences]
     return join(drawn, tag("p", " ".join(notes), class_="legend"))
 
 
 def _every(finished: Finished, verdicts: Sequence[Verdict], notes: wording.Notes) -> Markup:
-    """Return a row for each verdict: its numbers with their unit, the governing run, and remarks."""
-    bounds = "bounds left by errors, by the other spring law and by runs without an outcome"
+    """Return a table with a row for each verdict: its numbers, governing run and remarks."""
+    bounds = "bounds due to errors, the other spring law and runs without an outcome"
     heads = [
         Head("check"),
         Head("case"),
@@ -170,24 +174,22 @@ def _every(finished: Finished, verdicts: Sequence[Verdict], notes: wording.Notes
         Head("limit"),
         Head("margin", note="distance to the limit; negative beyond it"),
         Head("unit"),
-        Head(wording.records_of(verdicts), note="that count"),
-        Head(
-            "governing run", note="station, component and polarity, and what that run demands; of a mean, the largest"
-        ),
+        Head(wording.records_of(verdicts), note="number counted"),
+        Head("governing run", note="station, component, polarity and demand of that run; for a mean, of the largest"),
         Head("note"),
     ]
     case_of = _namer(finished)
-    rows = [
-        [
-            wording.name_of(row), case_of(row), mark(row.verdict, row.verdict), wording.demanded(row), _between(row),
-            "" if math.isnan(row.value) else wording.limit(row), wording.margin(row), row.unit, row.records or None,
-            wording.governing(row), "; ".join(filter(None, (row.counted, notes.about(row)))),
-        ]
-        for row in verdicts[:MOST_ROWS]
-    ]  # fmt: skip
+    rows: list[list[object]] = []
+    for row in verdicts[:MOST_ROWS]:
+        limit = "" if math.isnan(row.value) else wording.limit(row)
+        numbers = wording.demanded(row), _between(row), limit, wording.margin(row), row.unit, row.records or None
+        remarks = "; ".join(filter(None, (row.counted, notes.about(row))))
+        verdict = mark(row.verdict, row.verdict)
+        rows.append([wording.name_of(row), case_of(row), verdict, *numbers, wording.governing(row), remarks])
     return table(heads, rows, sortable=True, prose=True, name="Verdicts", worst_of=len(verdicts))
 
 
 def _between(verdict: Verdict) -> str:
+    """Return the bounds of a demand, "0.1 – 0.2"; empty if equal, or for a check that bans something."""
     low, high = ("∞" if math.isinf(value) else number(value) for value in (verdict.low, verdict.high))
     return f"{low} – {high}" if low != high and not verdict.is_ban else ""

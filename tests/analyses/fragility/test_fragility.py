@@ -217,11 +217,11 @@ def test_an_edited_or_damaged_analysis_is_reported(tmp_path, stripes):
     of_another = whole.replace('"sha256": "', '"sha256": "0')
     for text, shown in ((other, True), (of_another, False), (whole[:-100], False), ("\xf4" + whole, False)):
         path.write_text(text, encoding="latin-1")
-        with pytest.warns(EditedTable, match=r"fragility\.json: not as it was written"):
+        with pytest.warns(EditedTable, match=r"fragility\.json: edited or damaged since it was written"):
             assert (section(Contents(out, study)) != "") == shown
     path.write_text(whole, encoding="utf-8")
     assert section(Contents(out, study)) != ""
     points_csv.write_text(points_csv.read_text(encoding="utf-8").replace("0", "1", 1), encoding="utf-8")
     found = finished_analysis.read(out, "fragility", study["sha256"])
-    with pytest.warns(EditedTable, match=r"fragility\.csv: not as it was written"):
+    with pytest.warns(EditedTable, match=r"fragility\.csv: edited or damaged since it was written"):
         assert found.table("fragility.csv", ()) is not None
