@@ -17,6 +17,7 @@ from rockbatch.common.observers import parts, tables
 from rockbatch.results.beside_peaks import write
 from rockbatch.results.columns import PEAKS, unusable_rows
 from rockbatch.results.histories_file import HISTORIES
+from rockbatch.results.labelled import Row
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.run_json import INFO, write_info
 from rockbatch.study import Study
@@ -79,7 +80,7 @@ def finish(batch: Batch, journal: Journal, cost: Row, records: Collection[str] =
     return Written(saved, tuple(path for path in files if path), refusal)
 
 
-def _of_peaks(study: Study) -> dict[str, Callable[..., Iterable[dict[str, Any]]]]:
+def _of_peaks(study: Study) -> dict[str, Callable[..., Iterable[Row]]]:
     """Return the functions of observers that make a table beside peaks.csv of finished peaks, by its name."""
     return {table: rows for requested, rows in parts("observe.TABLE_OF_PEAKS") if (table := requested(study))}
 
@@ -89,8 +90,8 @@ def _beside_peaks(batch: Batch) -> list[str]:
     return [*_of_peaks(batch.study), *(observer.table for observer in batch.observers)]
 
 
-def _tables(batch: Batch, saved: Results, journal: Journal) -> Iterator[tuple[str, Iterable[dict[str, Any]]]]:
-    """Yield name and rows of the tables beside the peaks, and take away those of another time."""
+def _tables(batch: Batch, saved: Results, journal: Journal) -> Iterator[tuple[str, Iterable[Row]]]:
+    """Yield name and rows of the tables beside peaks.csv, after removing those no longer requested."""
     for name in set(tables()).difference(_beside_peaks(batch)):
         remove(batch.directory / name)
     for name, rows in _of_peaks(batch.study).items():

@@ -24,6 +24,7 @@ from rockbatch.motions import MotionSet
 from rockbatch.results.beside_peaks import SEMICOLONS
 from rockbatch.results.columns import JOURNAL, PEAKS, columns
 from rockbatch.results.histories_file import HISTORIES
+from rockbatch.results.labelled import Row
 from rockbatch.results.reading import edited
 from rockbatch.results.run_json import INFO, describe, versions
 from rockbatch.simulation.observing import Observer

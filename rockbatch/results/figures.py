@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -169,9 +168,9 @@ def _distribution(words: str, runs: "pd.DataFrame", series: Sequence[Series], co
     return Panel(*axes, marks, words or "all runs")
 
 
-def self_similar(results: Labelled, info: Mapping[str, Any]) -> Figure:
+def self_similar(results: Labelled, info: Item) -> Figure:
     """Return the runs at PGA/(g tan α) over ω_g/p, a panel for each foundation, their θ_max/α as tone."""
-    runs = _with_groups(_some(results.runs), results, info)
+    runs = _with_self_similar_axes(_nonempty(results.runs), results, info)
     theta = runs["theta_max_over_alpha"][(runs["status"] == "ok") & (runs["theta_max_over_alpha"] > 0)]
     low = float(theta.min()) if len(theta) else 0.1
     tone = Axis(THETA, low, max(float(theta.max()), 1.001 * low) if len(theta) else 1.0, log=True)
