@@ -75,7 +75,8 @@ def test_numbers_of_other_types_become_those_of_python(number):
 
 def test_a_word_for_a_base_is_answered_with_the_bases_there_are():
     with pytest.raises(
-        rb.InputError, match=r"^foundation = 'rigid': must be a RigidBase, an ElasticBase or a YieldingBase$"
+        rb.InputError,
+        match=r"^foundation = 'rigid': must be a RigidBase, an ElasticBase, a YieldingBase or a FootingBase$",
     ):
         rb.simulate(PIER, "rigid", MOTION)
     with pytest.raises(rb.InputError, match=re.escape("such as RigidBase(…)")):

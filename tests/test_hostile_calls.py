@@ -38,6 +38,13 @@ CALLS = {  # what is called, and arguments that it takes
     "ElasticBase.from_stiffness": (rb.ElasticBase.from_stiffness, {"pier": PIER, "stiffness_kN_m": 2e6}),
     "YieldingBase": (rb.YieldingBase, {"beta": 40.0, "eta": 2.5}),
     "YieldingBase.from_stiffness": (rb.YieldingBase.from_stiffness, {"pier": PIER, "stiffness_kN_m": 2e6, "eta": 2.5}),
+    "FootingBase": (rb.FootingBase, {"beta": 40.0}),
+    "FootingBase.from_stiffness": (
+        rb.FootingBase.from_stiffness, {"pier": PIER, "stiffness_MN_m3": 60.0, "length_m": 12.0},
+    ),
+    "FootingBase.from_soil": (
+        rb.FootingBase.from_soil, {"pier": PIER, "shear_modulus_MPa": 60.0, "poisson": 0.3, "length_m": 12.0},
+    ),
     "pulse": (rb.pulse, {"shape": "sine", "name": "s", "amplitude": 3.0, "period": 1.0, "dt": 0.01, "duration": 2.0}),
     "Motion": (rb.Motion, {"name": "s", "dt": 0.01, "horizontal": [0.0, 1.0]}),
     "Motion.from_array": (rb.Motion.from_array, {"values": [0.0, 1.0], "dt": 0.01, "unit": "g"}),

@@ -10,7 +10,7 @@ from check_samples import ELASTIC, PADS, PIER, RIGID, case, in_sections, judged,
 
 from rockbatch.checks import Rule, judge
 from rockbatch.common.errors import InputError
-from rockbatch.pier import Damper, DeckSpring, RigidBase, Stop, Tendon
+from rockbatch.pier import Damper, DeckSpring, FootingBase, RigidBase, Stop, Tendon
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import DEMANDS
 
@@ -39,8 +39,10 @@ DEVICES = {
     "damper_travel_m": 1.5, "damper_work_J_kg": 0.5, "damper_work_kJ": 0.5 * 3000, "damper_half_cycles": 20,
     "tendon_strain_over_yield": 0.7,
 }  # fmt: skip
+BED = {"bed_force_over_weight": 1.7, "bed_pressure_MPa": 0.8, "yielding_half_cycles": 6, "bed_work_J_kg": 0.02}
+EDGES = {"settlement_left_m": 0.01, "settlement_right_m": 0.025}
 FLIGHTS = {"flights": 2, "flight_duration_s": 0.05, "flight_height_m": 0.002}
-ROW |= FORCES | DEVICES | FLIGHTS | {"flight_s": 1.2, "theta_rocking_over_alpha": 0.25}
+ROW |= FORCES | DEVICES | FLIGHTS | BED | EDGES | {"flight_s": 1.2, "theta_rocking_over_alpha": 0.25}
 TIED = case(
     base=replace(
         PADS, restraints=(Damper("viscous", nu=0.1), Tendon(psi=0.1, strength=0.5), Stop(0.1, 20.0), DeckSpring(0.2))
@@ -66,14 +68,18 @@ BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
     "stop_deflection_mm": (20.0, 0.0), "deck_spring_force_kN": (0.2 * 3000 * 9.81, 0.0),
     "deck_spring_deflection_mm": (30.0, 0.0), "section_shear_kN": (3000.0, 0.0), "section_moment_kNm": (40000.0, 0.0),
     "section_axial_kN": (30000.0, 0.0), "section_tension_kN": (200.0, 0.0), "deflection_max_m": (0.07, 0.0002),
-    "deflection_max_mm": (70.0, 0.2),
+    "deflection_max_mm": (70.0, 0.2), **{name: (value, 0.0) for name, value in BED.items()},
+    "edge_settlement_m": (0.025, 0.0), "edge_settlement_mm": (25.0, 0.0), "safety_factor": (3.0, 0.0),
 }  # fmt: skip
+ON_FOOTING = {*BED, "edge_settlement_m", "edge_settlement_mm", "safety_factor"}
+"""Demands that only a footing has."""
 
 
 @pytest.mark.parametrize("demand", DEMANDS)
 def test_every_demand_is_what_a_hand_computes_from_the_row(demand):
     value, error = BY_HAND[demand]
     one = case(base=RigidBase(shaft="elastic")) if demand.startswith("deflection_max") else TIED
+    one = case(base=FootingBase(50.0, safety_factor=3.0)) if demand in ON_FOOTING else one
     found = judged(runs([0.3], **ROW), one=one, demand=demand, at_most=1000.0)
     assert (found.low, found.value, found.high) == tuple(map(pytest.approx, (value - error, value, value + error)))
 
@@ -138,11 +144,11 @@ def test_a_demand_that_a_base_does_not_have_does_not_apply():
     found = judge(rules, table, [RIGID, ELASTIC, case()], sections=sections)
     springs = {"theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m", "settlement_m",
                "toe_settlement_m", "static_deflection_m", "stiffness_kN_m"}  # fmt: skip
-    yielding, bending = {"eta", "ductility", "yield_kN"}, {"deflection_max_m", "deflection_max_mm"}
+    yielding, others = {"eta", "ductility", "yield_kN"}, ON_FOOTING | {"deflection_max_m", "deflection_max_mm"}
     assert len(found) == 3 * len(demands)
     for each in found:
         missing = yielding | springs if each.case == "rigid" else yielding if each.case == "elastic" else set()
-        assert (each.verdict == "does not apply") == (each.demand in missing | bending), each.demand
+        assert (each.verdict == "does not apply") == (each.demand in missing | others), each.demand
 
 
 def test_a_check_of_drift_takes_that_of_a_shaft_that_bends_and_not_its_rotation():
@@ -233,7 +239,7 @@ def test_a_force_of_a_pier_that_nobody_has_weighed_does_not_apply():
     one = TIED | {"pier": {key: value for key, value in TIED["pier"].items() if key != "mass_t"}}
     table = runs([0.3], **FORCES | DEVICES)
     _, sections = in_sections(table, "section_shear_kN")
-    demands = [name for name, demand in DEMANDS.items() if demand.weighed]
+    demands = [name for name, demand in DEMANDS.items() if demand.weighed and name not in ON_FOOTING]
     rules = [Rule(name, name, 100.0, **in_sections(table, name)[0]) for name in demands]
     found = {(each.verdict, each.note) for each in judge(rules, table, [one], sections=sections)}
     assert found == {("does not apply", "the study does not state the pier's mass")}

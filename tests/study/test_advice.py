@@ -239,7 +239,7 @@ TOLD = [  # what stands in the study, what is written instead or too, what the a
     ("force_kN = 350.0", "force_N = 350000", "did you mean force_kN?", "write"),
     ('statistic = "mean"', 'statistic = ["mean"]', "expected one value, not a list", "?"),
     ("width_m = 4.0", "slenderness = 7.5", "write alpha = atan(width/height), in radians", "degrees"),
-    ("width_m = 4.0", "depth_m = 4.0", "write one of", "did you mean"),
+    ("width_m = 4.0", "thickness_m = 4.0", "write one of", "did you mean"),
     ("width_m = 4.0", "alfa = 0.13", "did you mean alpha?", "write one of"),
     ("width_m = 4.0", "width_m = 4.0\ndamping = 0.05", "damping: unknown key; write one of", "?"),
     ("width_m = 4.0", 'width_m = 4.0\nunit = "m"', "units stand in the names of keys; leave it out", "[motions]"),

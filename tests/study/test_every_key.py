@@ -74,6 +74,12 @@ def stepped(uncompiled, tables):
     return [response.row.drop(["record", "case"]).to_csv()]
 
 
+def based(tables):
+    """Return pier and base of the first case, of which tests of footings simulate the runs."""
+    one = rb.Study.from_dict(tables).cases[0]
+    return [repr((one.pier, one.base))]
+
+
 def rows(tables):
     """Return the rows, with their names."""
     return [rb.run(rb.Study.from_dict(tables), jobs=1, progress=False).to_csv()]
@@ -327,6 +333,9 @@ SHAKEN = recorded(vertical=True, scale=10.0)
 ONE_EVENT = recorded("one event") | {"check": [CHECK | {"statistic": "en1998-2"}], "suite": {}}
 TINY = {"motions": {"pulse": [SINE | {"period_s": 0.4, "duration_s": 0.4}]}}
 YIELDING = study(case=SOFT | {"base": "yielding", "eta": 2.5, "spring": "bouc-wen"}) | TINY
+FOOT = {"name": "r", "base": "footing", "width_m": 4.0, "length_m": 8.0}
+SOIL = FOOT | {"shear_modulus_MPa": 60.0, "poisson": 0.45, "bearing_MPa": 1.5, "embedment_m": 1.0}
+ON_CLAY, RADIATING = study(case=SOIL), study(case=SOIL | {"radiation": True, "density_t_m3": 1.9})
 BENDING = study(case=ROCK | {"shaft": "elastic"}) | TINY | {"pier": PIERS["deck"] | {"flexural_period_s": 0.5}}
 UNWEIGHED = {"alpha": 0.2, "p": 1.0}
 IN_SECTION = study(
@@ -368,6 +377,13 @@ USES: dict[str, dict[str, Use]] = {
         **uses(study(case={"name": "r", "base": "rigid"}), ("case", 0), {"restitution": 0.8, "friction": 0.05, "area_m2": 8.0}),
         **uses(study(case=SOFT), ("case", 0), {"beta": 45.0, "epsilon": 0.2, "zeta": 0.06, "impact": "housner"}),
         **uses(study(), ("case", 0), {"contact_stiffness_kN_m": 5e6}),
+        **uses(ON_CLAY, ("case", 0), {
+            "width_m": 5.0, "length_m": 9.0, "shear_modulus_MPa": 70.0, "poisson": 0.3, "bearing_MPa": 2.0, "embedment_m": 1.5,
+            "formula": "pais-kausel", "strips": 8,
+        }, based),
+        **uses(RADIATING, ("case", 0), {"radiation": False, "density_t_m3": 1.7}, based),
+        **uses(study(case=FOOT | {"stiffness_MN_m3": 60.0}), ("case", 0), {"stiffness_MN_m3": 80.0, "safety_factor": 3.0}, based),
+        **uses(study(case=FOOT | {"young_GPa": 0.03, "depth_m": 0.5}), ("case", 0), {"young_GPa": 0.04, "depth_m": 0.4}, based),
         **uses(study(case=PADS), ("case", 0), {"stiffness_kN_m": 3.5e5}),
         **uses(SHAKEN | {"case": [SOFT | {"flight": "guided"}]}, ("case", 0), {"flight_limit_mm": 0.2}),
         **uses(SHAKEN | {"case": [SOFT]}, ("case", 0), {"flight": "stop"}),
@@ -819,7 +835,7 @@ def test_a_check_of_devices_that_no_case_has_asks_for_no_output_of_theirs():
 @pytest.mark.parametrize("key", [key for key in REFERENCE if key not in OF_REFERENCE])
 def test_a_key_of_a_reference_is_refused_where_no_case_has_its_value(key):
     kind = REFERENCE[key].example
-    value = json.loads(kind) if kind[0] in '"[0123456789' else kind
+    value = json.loads(kind) if kind[0] in '"[0123456789tf' else kind
     value = value[0] if isinstance(value, list) else value
     value = 0.9 * value if isinstance(value, float) else value  # not what the case has
     published = {"record": "*", "case": "r", "theta_max_over_alpha": 0.1, "source": "a paper", key: value}

@@ -3,7 +3,6 @@
 import math
 import re
 import tomllib
-from dataclasses import astuple
 from itertools import chain
 from pathlib import Path
 
@@ -21,6 +20,7 @@ from rockbatch.study.cases import BASE_KEYS, CASE
 from rockbatch.study.load import NUMERICS, REFERENCE, TOP
 from rockbatch.study.motions import FEMA, MOTIONS
 from rockbatch.study.motions import PULSE as PULSE_KEYS
+from rockbatch.study.output import OUTPUT
 from rockbatch.study.piers import PIER as PIER_KEYS
 from rockbatch.study.restraint_keys import DEVICES
 from rockbatch.toml.reader import MOST_REPORTED
@@ -64,9 +64,9 @@ def test_a_study_without_options_has_the_documented_defaults(tmp_path):
     assert study.title == "study"
     assert study.notes == ""
     periods = (0.5, 1.0, 2.0, 4.0)
-    assert astuple(study.output) == (
-        *("worst", 20.0, False, False, False, 0.1, False, False, periods, (), False, None, (), False, 10.0),
-    )
+    given = {"histories": "worst", "histories_MB": 20.0, "least_normal_share": 0.1, "sa_periods_s": periods}
+    given |= {"least_stroke_mm": 10.0, "sa_pairs": (), "sections_m": (), "sections": None}
+    assert study.output.keys == dict.fromkeys(OUTPUT, False) | given
     assert study.numerics == Numerics(tolerance=1e-4, substeps=None, quiet_s=2.0)
     motions = study.motions
     assert (motions.vertical, motions.polarity, motions.scale) == (True, ("+",), (1.0,))
