@@ -6,6 +6,7 @@ checks, docs/columns.md and the list in configs/checks/stepping_pier.toml follow
 """
 
 from collections.abc import Iterable
+from dataclasses import replace
 from itertools import groupby
 from typing import Any
 
@@ -74,7 +75,7 @@ def _displacements(name: str, lever: Lever) -> tuple[Limit, Limit]:
 
 
 def _top_drift(run: Run) -> float:
-    """Return the greatest drift [m]: of a shaft that bends as its own run has it."""
+    """Return the greatest drift [m], by the rotation of a rigid shaft, or as recorded for one that bends."""
     bent = run.outcome.top_drift_max
     return run.pier.top * run.outcome.theta_max if bent is None else bent
 
@@ -83,12 +84,13 @@ def _bent_as_well(limit: Limit) -> Limit:
     """Return a limit on drift that also holds for a shaft that bends, which drifts by more than it rotates."""
     bent = largest(("top_drift_m",), THOUSAND if limit.unit == "mm" else ONE, "top_drift_error_m")
 
-    def either(rigid: Evaluate | None) -> Evaluate | None:
-        return rigid and (lambda runs, case: (bent if bends(case) else rigid)(runs, case))
+    def bent_or(rigid: Evaluate | None) -> Evaluate | None:
+        if rigid is None:
+            return None
+        return lambda runs, case: bent(runs, case) if bends(case) else rigid(runs, case)
 
-    return limit._replace(
-        evaluate=either(limit.evaluate), reached=either(limit.reached), words="greatest drift", height=top
-    )
+    evaluate, reached = bent_or(limit.evaluate), bent_or(limit.reached)
+    return limit._replace(evaluate=evaluate, reached=reached, words="greatest drift", height=top)
 
 
 def _settlement(runs: Rows, case: Case) -> Estimated:
@@ -100,17 +102,23 @@ _BY_OTHER_LAW = {name: values for found in parts("quantities.BY_OTHER_LAW") for 
 _SETTLEMENTS = (
     Limit(ceiling=WIDER, evaluate=_settlement, other_law=_BY_OTHER_LAW.get("settlement_m")),
     Limit(
-        "toe_settlement_m", ceiling=WIDER, words="settlement of the support that settles more", evaluate=toe_settlement,
+        "toe_settlement_m",
+        ceiling=WIDER,
+        words="settlement of the support that settles more",
+        evaluate=toe_settlement,
         other_law=_BY_OTHER_LAW.get("toe_settlement_m"),
     ),
-)  # fmt: skip
+)
 _TILTS = (
     Limit(ceiling=Ceiling(alpha, OVERTURNS), evaluate=tilt(ONE)),
     Limit(
-        "differential_settlement_m", "m", ceiling=Ceiling(product(width, alpha), OVERTURNS),
-        words="settlement of one support against the other", evaluate=tilt(width),
+        "differential_settlement_m",
+        "m",
+        ceiling=Ceiling(product(width, alpha), OVERTURNS),
+        words="settlement of one support against the other",
+        evaluate=tilt(width),
     ),
-)  # fmt: skip
+)
 
 FIXED = (
     Quantity("record", "ground motion, named after its file or channel", kind="text", page=ReportFormat("record")),
@@ -127,7 +135,7 @@ FIXED = (
     Quantity(
         "theta_max_over_alpha", "greatest rotation over α", "theta_max",
         more="; the run continues until nothing later can exceed it", page=ReportFormat("θ_max/α", ".5f"), over_alpha=True,
-        suite=OfSuite("Largest rotation θ_max/α", ".4f"),
+        directed=True, suite=OfSuite("Largest rotation θ_max/α", ".4f"),
         error="theta_max_error",
         limits=(
             rotation("theta_max", "theta_max_over_alpha", "", ONE),
@@ -143,7 +151,7 @@ FIXED = (
     Quantity("t_max_s", "time of the greatest rotation", "t_max", "s", ReportFormat("at t [s]", ".2f")),
     Quantity(
         "theta_res_over_alpha", "residual rotation over α", "theta_res", more=", at rest on the deformed base",
-        page=ReportFormat("θ_res/α", ".5f"), over_alpha=True, bases=TILTS, stood=True,
+        page=ReportFormat("θ_res/α", ".5f"), over_alpha=True, bases=TILTS, stood=True, directed=True,
         suite=OfSuite("Residual rotation |θ_res|/α", ".5f"), error="theta_res_error",
         limits=(
             rotation("theta_res", "theta_res_over_alpha", "", ONE),
@@ -184,7 +192,7 @@ TRAILING = (
     Quantity(
         "base_tilt_rad", "residual tilt of the base", "base_tilt", "rad",
         ReportFormat("base tilt [mrad]", ".3f", 1000, "theta_res_over_alpha"), bases=SPRINGS, stood=True,
-        limits=_TILTS,
+        limits=_TILTS, directed=True,
     ),
     Quantity(
         "ductility_left", _DUCTILITY.format("each"), "ductility_left",
@@ -235,13 +243,14 @@ TRAILING = (
         "top_drift_m", "greatest drift, at the height `drift_height_m`",
         _top_drift, "m", ReportFormat("drift [mm]", ".1f", 1000, "t_max_s"),
         ": that height times the greatest rotation; of a shaft that bends its greatest horizontal way",
-        limits=tuple(_bent_as_well(limit) for limit in _displacements("top_drift", top)),
+        limits=tuple(_bent_as_well(limit) for limit in _displacements("top_drift", top)), directed=True,
     ),
     Quantity(
         "heel_uplift_m", "greatest rise of the heel above the toe",
         lambda run: 2.0 * run.pier.half_width * run.outcome.theta_max, "m",
         ReportFormat("heel uplift [mm]", ".1f", 1000, "top_drift_m"),
         ": the width between the pivots times the greatest rotation", limits=_displacements("heel_uplift", width),
+        directed=True,
     ),
     Quantity(
         "pga_g", "peak horizontal acceleration of the scaled motion, over g",
@@ -311,6 +320,7 @@ def _of_observers(group: str) -> list[Quantity]:
 
 
 def _bends(study: Any) -> bool:
+    """Return whether the shaft of a case bends."""
     return any(case.base.bends for case in study.cases)
 
 
@@ -318,7 +328,7 @@ _OF_BENDING = (
     Quantity(
         "deflection_max_m", "greatest deflection of the shaft's top, across the shaft", "deflection_max", "m",
         ReportFormat("deflection [mm]", ".1f", 1000, "drift_height_m"), bases=BENDING, error="deflection_error_m",
-        limits=LENGTHS, requested=_bends,
+        limits=LENGTHS, requested=_bends, directed=True,
     ),
     Quantity(
         "deflection_error_m", "estimated error of it: the change when the step was halved; empty with a fixed step",
@@ -355,7 +365,7 @@ OPTIONAL = (
 """Quantities at the end of a table, on request of the study, in the order in which they came to it."""
 
 COLUMNS = {quantity.name: quantity for quantity in (*FIXED, *TRAILING, *OPTIONAL)}
-"""All of them, by name, in the order of the file."""
+"""All quantities by name, in the order of the file."""
 
 TEXTS = tuple(quantity.name for quantity in COLUMNS.values() if quantity.kind == "text")
 FACTS = tuple(quantity.name for quantity in COLUMNS.values() if quantity.kind == "fact")
@@ -384,8 +394,9 @@ _OTHERS = (
 )  # fmt: skip
 """Demands that are no column of peaks.csv: events, and properties of the foundation."""
 
+_DIRECTED = {name for names in parts("quantities.DIRECTED") for name in names}
 DEMANDS: dict[str, Demand] = {
-    demand.name: demand
+    demand.name: replace(demand, directed=True) if demand.name in _DIRECTED else demand
     for demand in (
         *(demand for quantity in COLUMNS.values() for demand in quantity.demands()),
         *_OTHERS,
@@ -394,20 +405,11 @@ DEMANDS: dict[str, Demand] = {
 }
 """Demands by the name that a rule gives them; signs are dropped."""
 
-DIRECTED = (
-    "theta_max_over_alpha", "theta_max_rad", "theta_res_over_alpha", "theta_res_rad", "base_tilt_rad",
-    "differential_settlement_m", "top_drift_m", "top_drift_mm", "heel_uplift_m", "heel_uplift_mm", "deflection_max_m",
-    "deflection_max_mm",
-    *(name for directed in parts("quantities.DIRECTED") for name in directed),
-)  # fmt: skip
-"""Demands that an axis of the pier has by itself, so that those of two axes add up. Of others, such as settlements, axial forces
-and counts, which have the weight or the whole pier in them on either axis, the greater counts."""
-
 BROUGHT = {
     key: [quantity.name for quantity in COLUMNS.values() if quantity.needs == key]
     for key in dict.fromkeys(quantity.needs for quantity in COLUMNS.values() if quantity.needs and quantity.limits)
 }
-"""By keys of [output], the columns that each brings."""
+"""Columns that each key of [output] adds."""
 
 
 def names(table: Iterable[Quantity]) -> list[str]:
@@ -416,7 +418,7 @@ def names(table: Iterable[Quantity]) -> list[str]:
 
 
 def in_words(name: str, value: Any) -> str:
-    """Return a value of a column as the report writes it, in the page's unit; empty if it has none."""
+    """Return a value of a column as text, in the report's unit and format; empty for None, NaN, or a column without one."""
     page = COLUMNS[name].page
     if value is None or value != value or page is None:
         return ""
@@ -424,7 +426,7 @@ def in_words(name: str, value: Any) -> str:
 
 
 def report_columns(shown: str = "peaks") -> list[Quantity]:
-    """Return the columns in the report's tables of ``shown``, in their order: beside each other what is read together."""
+    """Return the columns of the report's tables of peaks or forces (``shown``), each behind the column that it belongs to."""
     order: list[str] = []
     for quantity in COLUMNS.values():
         if quantity.page and quantity.page.table == shown:
@@ -445,18 +447,22 @@ def as_markdown() -> str:
 
 def listed() -> dict[str, list[str]]:
     """Return the names of all demands, grouped by what they depend on: the list in the example of checks."""
+    return grouped(DEMANDS, _dependence)
 
-    def group(name: str) -> str:
-        demand = DEMANDS[name]
-        return (
-            "yes or no, 1 or 0" if demand.event
-            else "of the foundation, and not of a run" if demand.per_case
-            else "in the section at the height at_m, with [output] sections" if demand.needs == "sections"
-            else f"with [output] {demand.needs} = true" if demand.needs
-            else f"of a {demand.device}" if demand.device
-            else "of a shaft that bends" if demand.bases == BENDING
-            else "of a footing" if demand.bases == FOOTING and not demand.per_case
-            else "of every run"
-        )  # fmt: skip
 
-    return grouped(DEMANDS, group)
+def _dependence(name: str) -> str:
+    """Return the heading of a demand in the list: the key of [output], device or base on which it depends."""
+    demand = DEMANDS[name]
+    if demand.event:
+        return "yes or no, 1 or 0"
+    if demand.per_case:
+        return "of the foundation, and not of a run"
+    if demand.needs == "sections":
+        return "in the section at the height at_m, with [output] sections"
+    if demand.needs:
+        return f"with [output] {demand.needs} = true"
+    if demand.device:
+        return f"of a {demand.device}"
+    if demand.bases == FOOTING:
+        return "of a footing"
+    return "of a shaft that bends" if demand.bases == BENDING else "of every run"

@@ -7,9 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
-from rockbatch.checks.rule_choices import implausible, unmet
+from rockbatch.checks.rule_choices import Available, implausible, unmet
 from rockbatch.checks.rule_files import SUITE, read_checks
 from rockbatch.checks.rules import CHECK, Rule
 from rockbatch.common.analyses import doors
@@ -29,22 +28,31 @@ from rockbatch.study.output import OUTPUT, Output
 from rockbatch.study.piers import PART, PIER, read_piers
 from rockbatch.study.restraint_keys import DEVICES
 from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Reference
-from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
-from rockbatch.study.target import TARGET, VERTICAL_TARGET
+from rockbatch.study.tables import as_toml, changed, plain_table, without_lost_cases
+from rockbatch.study.target_keys import TARGET, VERTICAL_TARGET
 from rockbatch.toml.kinds import choice, count, not_negative, positive, text, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
-TOP = Section((), "", {
-    "title": Key(text, '"Pier 4, longitudinal"', "Heading of the report and its tables; default: the file's name."),
-    "notes": Key(text, '"Soil class C."', "Free text for the report. Blank lines separate paragraphs."),
-}, also=names({
-    "pier": "geometry structure column body", "motions": "groundmotion groundmotions records earthquakes accelerograms input",
-    "case": "foundation foundations base bases support supports loadcase",
-    "numerics": "analysis solver settings options integration numerical", "output": "results",
-    "check": "limit limits criteria acceptance rule rules verification",
-}))  # fmt: skip
+TOP = Section(
+    (),
+    "",
+    {
+        "title": Key(text, '"Pier 4, longitudinal"', "Heading of the report and its tables; default: the file's name."),
+        "notes": Key(text, '"Soil class C."', "Free text for the report. Blank lines separate paragraphs."),
+    },
+    also=names(
+        {
+            "pier": "geometry structure column body",
+            "motions": "groundmotion groundmotions records earthquakes accelerograms input",
+            "case": "foundation foundations base bases support supports loadcase",
+            "numerics": "analysis solver settings options integration numerical",
+            "output": "results",
+            "check": "limit limits criteria acceptance rule rules verification",
+        }
+    ),
+)
 _ROUNDING = f"must be {LEAST_TOLERANCE:g} or above, because rounding alone makes as much"
 NUMERICS = Section(("numerics",), "How exact the results are.", {
     "tolerance": Key(within(Bounds(LEAST_TOLERANCE, MOST, why=_ROUNDING)), "1e-4",
@@ -69,26 +77,46 @@ NUMERICS = Section(("numerics",), "How exact the results are.", {
 _OF_TABLES = "|".join(rf"^{what}_[1-9][0-9]*_({'|'.join(keys)})$" for what, keys in {"part": PART, **DEVICES}.items())
 """Keys of tables in a list, by their numbers: "damper_1_f"."""
 
-REFERENCE = Section(("reference",), (
-    "A published value to print beside the results. Keys that the study varies tell the case from its siblings."
-), {
-    "record": Key(text, '"*LGP*"', "Names of the records, as a pattern with * and ?.", required=True),
-    "case": Key(text, '"rigid"', "Name of the case.", required=True),
-    "theta_max_over_alpha": Key(positive, "0.114", "The published θ_max/α.", required=True),
-    "source": Key(text, '"Palmeri & Makris (2007)"', "Where it was published.", required=True),
-    **{
-        name: Key(key.kind, key.example, "The value that the case has, where the study varies this key.")
-        for name, key in {**PIER, **BASE_KEYS}.items() if name != "confirm"
+REFERENCE = Section(
+    ("reference",),
+    ("A published value to print beside the results. Keys that the study varies tell the case from its siblings."),
+    {
+        "record": Key(text, '"*LGP*"', "Names of the records, as a pattern with * and ?.", required=True),
+        "case": Key(text, '"rigid"', "Name of the case.", required=True),
+        "theta_max_over_alpha": Key(positive, "0.114", "The published θ_max/α.", required=True),
+        "source": Key(text, '"Palmeri & Makris (2007)"', "Where it was published.", required=True),
+        **{
+            name: Key(key.kind, key.example, "The value that the case has, where the study varies this key.")
+            for name, key in {**PIER, **BASE_KEYS}.items()
+            if name != "confirm"
+        },
     },
-}, many=True, free=_OF_TABLES)  # fmt: skip
+    many=True,
+    free=_OF_TABLES,
+)
 OF_REFERENCE = ("record", "case", "theta_max_over_alpha", "source")
 """Keys of a reference itself; the others tell its case from its siblings."""
 
 SECTIONS = (
-    TOP, PIER, PART, MOTIONS, SELECT, TARGET, VERTICAL_TARGET, PULSE, FEMA, SEQUENCE, CASE, *DEVICES.values(), NUMERICS, OUTPUT,
-    SUITE, CHECK, REFERENCE,
-)  # fmt: skip
-"""Tables that are read with the study, outer ones before inner; those of analyses are read by their own commands."""
+    TOP,
+    PIER,
+    PART,
+    MOTIONS,
+    SELECT,
+    TARGET,
+    VERTICAL_TARGET,
+    PULSE,
+    FEMA,
+    SEQUENCE,
+    CASE,
+    *DEVICES.values(),
+    NUMERICS,
+    OUTPUT,
+    SUITE,
+    CHECK,
+    REFERENCE,
+)
+"""Tables that are read with the study, outer ones before inner; the commands of analyses read their own."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -143,27 +171,27 @@ class Study(Shown):
         ``path`` is what messages and results call it; paths in the study are relative to its folder. No such file is needed.
         ``motions`` as for :func:`load_study`.
         """
-        return _checked(TomlFile.parse(Path(path), text, SECTIONS), motions)
+        return _checked_study(TomlFile.parse(Path(path), text, SECTIONS), motions)
 
     @classmethod
     @checked
     def from_dict(
-        cls, tables: Mapping[str, Any], path: str | os.PathLike[str] = "study.toml", *, motions: Motions = None
+        cls, tables: Mapping[str, object], path: str | os.PathLike[str] = "study.toml", *, motions: Motions = None
     ) -> "Study":
         """Check a study of the tables and keys of a study file, such as ``{"pier": {"alpha": 0.13, "p": 0.38}, "case": […]}``.
 
         Mistakes are reported as those of a file, by table and key. ``path`` and ``motions`` as for :meth:`from_toml`.
         """
-        return _checked(TomlFile.parse(Path(path), as_toml(plain(tables)), SECTIONS, lined=False), motions)
+        return _checked_study(TomlFile.parse(Path(path), as_toml(plain_table(tables)), SECTIONS, lined=False), motions)
 
     @checked
-    def with_(self, *, motions: Motions | Mapping[str, Any] = None, **tables: Any) -> "Study":
+    def with_(self, *, motions: Motions | Mapping[str, object] = None, **tables: object) -> "Study":
         """Return a changed study, checked again with everything in it.
 
         Parameters
         ----------
         motions : path, MotionSet, Motion, list of Motion, or dict, optional
-            What replaces all motions of the study, or changes of [motions].
+            Motions that replace all those of the study, or changes of [motions].
         **tables
             Changes by the names of tables and keys at the top: a dict changes a table key by key, and None takes a key, a table
             or all tables of a name away. Of tables that have names, ``case="pads"`` and ``case=["rock", "pads"]`` keep these,
@@ -178,10 +206,10 @@ class Study(Shown):
         changes = tables | ({"motions": motions} if isinstance(motions, Mapping) else {})
         override = self.motions.override if motions is None or isinstance(motions, Mapping) else motions
         if not changes:
-            return _checked(self.file(), override)
+            return _checked_study(self.file(), override)
         before = tomllib.loads(self.text)
         after = without_lost_cases(before, changed(before, changes))
-        return _checked(TomlFile.parse(self.path, as_toml(after), SECTIONS, lined=False), override)
+        return _checked_study(TomlFile.parse(self.path, as_toml(after), SECTIONS, lined=False), override)
 
     @property
     def in_file(self) -> bool:
@@ -192,7 +220,7 @@ class Study(Shown):
             return False
 
     def file(self) -> TomlFile:
-        """Return the text, parsed again, for the tables of analyses."""
+        """Return the study parsed again, for reading the tables of analyses."""
         return TomlFile.parse(self.path, self.text, SECTIONS, lined=self.lined)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
@@ -223,8 +251,8 @@ def load_study(path: str | os.PathLike[str], *, motions: Motions = None) -> Stud
     path : path-like
         A TOML file; paths in it are relative to its folder.
     motions : path, MotionSet, Motion or list of Motion, optional
-        What replaces all motions of the study: a file or folder, or motions, which are then selected and scaled as the study
-        says; the keys of [motions] by which files are read do not matter to these.
+        Replacement for all motions of the study: a file or folder, or motions, which are then selected and scaled as the
+        study says; the keys of [motions] about reading files do not apply to these.
 
     Returns
     -------
@@ -243,10 +271,11 @@ def load_study(path: str | os.PathLike[str], *, motions: Motions = None) -> Stud
     >>> study.title, [case.name for case in study.cases]
     ('Pier 4', ['rigid', 'pads'])
     """
-    return _checked(TomlFile.read(Path(path), SECTIONS), motions)
+    return _checked_study(TomlFile.read(Path(path), SECTIONS), motions)
 
 
-def _checked(file: TomlFile, motions: Motions) -> Study:
+def _checked_study(file: TomlFile, motions: Motions) -> Study:
+    """Return the study in ``file``, with ``motions`` instead of its own unless None. Raises ``InputError`` with all mistakes."""
     of_analyses = (name for door in doors().values() for name in door.tables)  # read by their own commands
     others = dict.fromkeys((*(section.at[0] for section in SECTIONS[1:]), *of_analyses))
     top = Table(file, (), "", file.data).read(TOP, other=others)
@@ -271,7 +300,7 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
     for kind, complain in parts("study.COMPLAINS"):
         complain(file, output.of(kind), [pier for pier, _ in piers], any(case.base.bends for case in cases))
     along = along_the_axis(cases)
-    checks = read_checks(file, partial(_unfit, along, motion_spec, output, bool(piers)) if along else None)
+    checks = read_checks(file, partial(_problems_of_rule, along, motion_spec, output, bool(piers)) if along else None)
     output = output.also({key for rule in checks.rules for key in DEMANDS[rule.demand].brings})
     file.finish()
     return Study(
@@ -293,36 +322,33 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
 
 
 def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) -> Study:
-    """Return a study, a file or one that is loaded, perhaps with other ``motions``."""
+    """Return a study, loaded from a file unless it is one, with ``motions`` instead of its own unless None."""
     if not isinstance(study, Study):
         return load_study(study, motions=motions)
     return study if motions is None else study.with_(motions=motions)
 
 
-def _unfit(
+def _problems_of_rule(
     cases: Sequence[Case], motions: MotionSpec, output: Output, known_piers: bool, rule: Rule
 ) -> Iterator[Problem]:
-    """Return the choices of a check that the study lacks, and limits that are implausible for its piers, if these are known."""
-    yield from unmet(
-        rule,
+    """Yield problems of a check: choices that the study lacks, and implausible limits if its piers are known."""
+    available = Available(
         cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
         other_law=True,  # a check that takes it brings it
-        output=[key for key in BROUGHT if output.has(key) or not _brings(key, cases)],
+        output=[key for key in BROUGHT if output.has(key) or not _adds_columns(key, cases)],
         sections=_heights(cases, output) if known_piers else {rule.at_m or 0.0},
     )
+    yield from unmet(rule, available)
     if not known_piers:
         return
-    rows = [
-        {
-            "case": case.name,
-            "base": case.base.name,
-            "pier": described(case.pier),
-            "parameters": case.base.parameters(case.pier),
-        }
-        for case in cases
-    ]
-    yield from implausible(rule, rows)
+    yield from implausible(rule, [_as_in_run_json(case) for case in cases])
+
+
+def _as_in_run_json(case: Case) -> dict[str, object]:
+    """Return the entries of a case in run.json that a limit is compared with."""
+    pier, base = case.pier, case.base
+    return {"case": case.name, "base": base.name, "pier": described(pier), "parameters": base.parameters(pier)}
 
 
 def _heights(cases: Sequence[Case], output: Output) -> set[float]:
@@ -332,6 +358,7 @@ def _heights(cases: Sequence[Case], output: Output) -> set[float]:
 
 
 def _numerics(file: TomlFile) -> Numerics:
+    """Return [numerics]; a fixed number of substeps has no tolerance."""
     table = file.table("numerics")
     read = table.read(NUMERICS) if table else {}
     if "substeps" in read:
@@ -339,17 +366,18 @@ def _numerics(file: TomlFile) -> Numerics:
     return Numerics(**read)
 
 
-def _brings(key: str, cases: Sequence[Case]) -> bool:
-    """Return whether a key of [output] brings columns of these cases: those of devices need the device."""
-    return any(COLUMNS[name].device in _kinds(cases) for name in BROUGHT[key])
+def _adds_columns(key: str, cases: Sequence[Case]) -> bool:
+    """Return whether a key of [output] adds a column for these cases; a column of a device needs the device."""
+    return any(COLUMNS[name].device in _device_kinds(cases) for name in BROUGHT[key])
 
 
-def _kinds(cases: Sequence[Case]) -> set[str]:
-    """Return the kinds of devices in these cases, and "" of columns that need none."""
+def _device_kinds(cases: Sequence[Case]) -> set[str]:
+    """Return the kinds of devices in these cases, and "", the kind of columns that need no device."""
     return {"", *(kind for case in cases for device in case.base.restraints for kind in device.kinds)}
 
 
 def _references(file: TomlFile, cases: Sequence[Case], varied: Iterable[str]) -> tuple[Reference, ...]:
+    """Return the references; note values of ``varied`` keys that no case of the name has."""
     named = [table.data.get("name", table.data.get("base")) for table in file.tables("case", title="name")]
     names = choice(*dict.fromkeys(name for name in named if isinstance(name, str)))
     of_parts = {name: Key(not_negative, "0.0") for name in varied if name not in REFERENCE}

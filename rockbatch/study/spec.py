@@ -1,4 +1,4 @@
-"""Parts of a study, once checked."""
+"""Parts of a checked study."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
@@ -36,11 +36,18 @@ class PulseSpec:
     nu: float | None = None
 
     def motion(self, gravity: float) -> Motion:
-        """Return the motion. Raises ``InputError`` for impossible values; implausible ones are noted by the study."""
+        """Return the motion, with ``gravity`` in m/s². Raises ``InputError`` for impossible values, but not for unusual ones."""
         return pulse(
-            self.shape, name=self.name, amplitude=self.amplitude_g * gravity, period=self.period_s, dt=self.dt_s,
-            duration=self.duration_s, gamma=self.gamma, nu=self.nu, confirm=("amplitude", "dt"),
-        )  # fmt: skip
+            self.shape,
+            name=self.name,
+            amplitude=self.amplitude_g * gravity,
+            period=self.period_s,
+            dt=self.dt_s,
+            duration=self.duration_s,
+            gamma=self.gamma,
+            nu=self.nu,
+            confirm=("amplitude", "dt"),
+        )
 
 
 @dataclass(frozen=True)
@@ -48,7 +55,7 @@ class MotionSpec:
     """[motions]: which ground motions are used, and how. :data:`rockbatch.study.motions.MOTIONS` says what each key means.
 
     ``paths`` are files and folders that exist, ``azimuths`` the directions [degrees from north] that horizontal pairs are turned
-    to, none: as recorded, and ``target`` what records are scaled to, with ``scale`` on top; pulses have their own amplitude.
+    to, as recorded if empty, and ``target`` what records are scaled to, with ``scale`` on top; pulses have their own amplitude.
     ``vertical_target`` is what vertical components are scaled to on their own, with ``vertical_scale`` on top.
     ``override`` are motions from Python or a path that take the place of all sources.
     """
@@ -87,12 +94,12 @@ class MotionSpec:
 
     @property
     def simulated(self) -> str:
-        """The one polarity that is simulated: pier and foundation are symmetric, so the other gives the mirror image."""
+        """The polarity that is simulated, "+" if both are asked for; the other is its mirror image, as the pier is symmetric."""
         return "+" if "+" in self.polarity else "-"
 
 
 LEAST_TOLERANCE = 1e-12
-"""On θ_max/α: rounding alone makes as much, and step halving would never converge."""
+"""Least tolerance on θ_max/α: rounding errors are as large, and step halving would never converge."""
 
 
 @dataclass(frozen=True)
@@ -106,9 +113,9 @@ class Numerics:
 
 @dataclass(frozen=True)
 class Case:
-    """One pier on one base. ``columns`` holds the values of those varied keys that apply to it.
+    """One pier on one base. ``columns`` has the values of the varied keys that apply to it.
 
-    ``across_of`` is the name of the case whose pier this is across its axis, with the same ``columns``; empty along it.
+    ``across_of`` is empty, or the name of the case along the axis of the same pier, if this one is across it.
     """
 
     name: str
@@ -118,7 +125,7 @@ class Case:
     across_of: str = ""
 
     def with_columns(self, varied: Iterable[str]) -> "Case":
-        """Return the case with those of its columns that are ``varied``."""
+        """Return the case with no other columns than those of ``varied`` keys."""
         return replace(self, columns={name: self.columns[name] for name in varied if name in self.columns})
 
 

@@ -481,7 +481,8 @@ def test_checks_csv_gives_the_verdicts_back(tmp_path):
 
 def test_a_text_of_checks_csv_is_what_it_was_and_cannot_command_a_terminal_or_a_spreadsheet(tmp_path):
     write_verdicts(
-        tmp_path, [verdict("pads", "pass", check="=1+1", note="two; parts"), verdict("pads", "pass", check="drift")]
+        tmp_path,
+        [verdict("pads", "pass", check="=1+1", remarks=("two", "parts")), verdict("pads", "pass", check="drift")],
     )
     path = tmp_path / "checks.csv"
     assert "'=1+1" in path.read_text(encoding="utf-8")
