@@ -279,24 +279,3 @@ def test_a_failed_run_counts_as_wrong(benchmark):
     predicted, observed = np.array([1.0, 0.0, np.nan, np.nan]), np.array([1.0, 0.0, 1.0, 0.0])
     assert module.share_right(predicted, observed) == 0.5
     assert module.counted(predicted, observed) == "1 1 0 0 (2 failed)"
-
-
-@pytest.mark.parametrize(
-    ("safety", "theta", "moment"),
-    [
-        (np.inf, 0.5e-3, 1.0 / 3.0 * 0.5e-3 / (2 * 0.005 / 6.0)),  # in full contact, K B²θ/12
-        (np.inf, 0.05, 1.0 - 2.0 / 3.0 * np.sqrt(2 * 0.005 / (6.0 * 0.05))),  # in part, W (B/2 − a/3)
-        (3.0, 10.0, 1.0 - 1.0 / 3.0),  # beyond yield at all of it, W (B/2) (1 − W/Q)
-    ],
-)
-def test_the_bed_of_strips_has_the_moments_of_closed_forms(benchmark, safety, theta, moment):
-    """Moments over W B/2 of a footing 6 m wide that settles 5 mm, pushed monotonically; 31 strips err by 1 % of it."""
-    pivots = benchmark("footing_pivots")
-    half, stiffness = 3.0, 9.81 / 0.005
-    model = (half, 0.0, 1.0, stiffness, safety * 9.81, 0.0)
-    low, high = -2.0 * half * theta - 1.0, half * theta
-    for _ in range(100):
-        v = 0.5 * (low + high)
-        up, turning = pivots._rates.py_func((v, theta, 0.0, 0.0), np.zeros(31), 0.0, model)
-        low, high = (v, high) if up > 0.0 else (low, v)
-    assert -turning / (9.81 * half) == pytest.approx(moment, abs=0.01)

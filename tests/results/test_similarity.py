@@ -16,7 +16,7 @@ LENGTH, TIME = 8.0, 2.0
 SPEED, ACCELERATION = LENGTH / TIME, LENGTH / TIME**2
 UNITS = {
     "1": 1.0, "rad": 1.0, "standard_gravity": 1.0, "s": TIME, "1/s": 1.0 / TIME, "m": LENGTH, "m/s": SPEED, "m/s^2": ACCELERATION,
-    "m^2/s^2": SPEED**2, "J/kg": SPEED**2, "kJ": SPEED**2, "kN": ACCELERATION, "kN*s": SPEED, "kN*m": ACCELERATION * LENGTH,
+    "m^2/s^2": SPEED**2, "J/kg": SPEED**2, "kJ": SPEED**2, "kN": ACCELERATION, "kN*s": SPEED, "kN*m": ACCELERATION * LENGTH, "MPa": ACCELERATION / LENGTH**2,
 }  # fmt: skip
 TIMES = 0.01 * np.arange(500)
 HORIZONTAL = 4.0 * np.sin(2.1 * TIMES) + 2.0 * np.sin(9.0 * TIMES)
@@ -31,6 +31,8 @@ BASES = {
     "yielding": rb.YieldingBase(30.0, eta=2.2, epsilon=0.1),
     "damped": rb.YieldingBase(30.0, eta=2.2, zeta=0.1, spring="epp"),
     "yielding with devices": rb.YieldingBase(30.0, eta=2.2, epsilon=0.1, restraints=DEVICES[:3]),
+    "footing": rb.FootingBase(60.0, 2.5, length_m=5.0),
+    "footing, finite, with devices": rb.FootingBase(60.0, 2.5, kinematics="finite", length_m=5.0, restraints=DEVICES[:2]),
 }
 OTHERWISE = {"note", "damper_half_cycles"}
 """Words that name a time, and a count of strokes above a length that the user sets."""
@@ -51,8 +53,8 @@ def in_units(base, length, time):
 
     g, sizes = 9.81 * length / time**2, ("width_m", "height_m", "top_m", "mass_t")
     pier = rb.Pier.rectangle(4.0 * length, 18.0 * length, g, mass_t=500.0, top_m=20.0 * length, confirm=sizes)
-    areas = {"area_m2": 2.0 * length**2} if base.on_springs else {}
-    return pier, dataclasses.replace(base, restraints=tuple(map(with_lengths, base.restraints)), **areas)
+    areas = {"area_m2": 2.0 * length**2} if isinstance(base, rb.ElasticBase | rb.YieldingBase) else {}
+    return pier, dataclasses.replace(with_lengths(base), restraints=tuple(map(with_lengths, base.restraints)), **areas)
 
 
 def row(base, length, time):
