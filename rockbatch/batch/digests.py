@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
+from rockbatch.batch.observers import observers_of
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.simulation import core_digest
 from rockbatch.study import Study
@@ -12,8 +13,8 @@ from rockbatch.study import Study
 SHOW = ("commands", "terminal", "reporting", "__init__.py", "__main__.py", "common/version.py")
 """Packages and modules that only display rows; all others influence rows or the choice of runs."""
 
-OF_ANALYSES = ("command.py", "section.py")
-"""Modules of analyses that only display rows."""
+OF_SLICES = ("command.py", "section.py", "figure.py")
+"""Modules of analyses and observers that only display rows."""
 
 _TOP = Path(__file__).parents[1]
 
@@ -35,11 +36,7 @@ def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
         motions.motions,
         cases=study.cases,
         scales=(study.motions.polarity, study.motions.scale),
-        numerics=(
-            study.numerics,
-            *(getattr(study.output, key) for key in ("both_laws", "ledger", "forces", "rocking", "least_normal_share")),
-            study.output.least_stroke,
-        ),
+        numerics=(study.numerics, observers_of(study.output)),
     )
 
 
@@ -48,7 +45,7 @@ def sources() -> Iterator[Path]:
     for path in sorted(_TOP.rglob("*.py")):
         module = path.relative_to(_TOP)
         shows = module.parts[0] in SHOW or module.as_posix() in SHOW
-        if not shows and not (module.parts[0] == "analyses" and module.name in OF_ANALYSES):
+        if not shows and not (module.parts[0] in ("analyses", "observers") and module.name in OF_SLICES):
             yield path
 
 

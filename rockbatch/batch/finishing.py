@@ -1,7 +1,7 @@
 """Write the results of finished runs into a folder: peaks.csv, run.json, histories and further tables."""
 
 import json
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,14 +13,14 @@ from rockbatch.batch.preparing import OUTPUTS, Batch
 from rockbatch.batch.threads import cores
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import is_plain, remove
-from rockbatch.common.observers import tables
+from rockbatch.common.observers import parts, tables
 from rockbatch.results.beside_peaks import write
 from rockbatch.results.columns import PEAKS, unusable_rows
 from rockbatch.results.histories_file import HISTORIES
-from rockbatch.results.intensity import INTENSITY, intensities
 from rockbatch.results.labelled import Row
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.run_json import INFO, write_info
+from rockbatch.study import Study
 
 _OF_COMMAND = ("created", "command", "machine", "jobs", "wall_s", "kept", "peaks")
 """Entries of run.json about the command instead of its results."""
@@ -80,18 +80,22 @@ def finish(batch: Batch, journal: Journal, cost: Row, records: Collection[str] =
     return Written(saved, tuple(path for path in files if path), refusal)
 
 
+def _of_peaks(study: Study) -> dict[str, Callable[..., Iterable[Row]]]:
+    """Return functions of observers that compute a table beside peaks.csv from finished peaks, by file name."""
+    return {table: rows for requested, rows in parts("observe.TABLE_OF_PEAKS") if (table := requested(study))}
+
+
 def _beside_peaks(batch: Batch) -> list[str]:
-    """Return the file names of the tables beside peaks.csv: of intensity measures and of observers."""
-    of_motions = [INTENSITY] if batch.study.output.intensity else []
-    return [*of_motions, *(observer.table for observer in batch.observers)]
+    """Return the file names of the tables beside peaks.csv."""
+    return [*_of_peaks(batch.study), *(observer.table for observer in batch.observers)]
 
 
 def _tables(batch: Batch, saved: Results, journal: Journal) -> Iterator[tuple[str, Iterable[Row]]]:
     """Yield file name and rows of the tables beside peaks.csv, after removing those no longer requested."""
-    for name in {INTENSITY, *tables()}.difference(_beside_peaks(batch)):
+    for name in set(tables()).difference(_beside_peaks(batch)):
         remove(batch.directory / name)
-    if batch.study.output.intensity:
-        yield INTENSITY, intensities(saved.peaks, batch.study, batch.motions.motions)
+    for name, rows in _of_peaks(batch.study).items():
+        yield name, rows(saved.peaks, batch.study, batch.motions.motions)
     jobs = min(int(saved.info["jobs"]) or cores(), cores())
     yield from rows_beside(batch.observers, batch.study, batch.runs, saved.peaks, journal, jobs, batch.listener).items()
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from rockbatch.common.observers import OBSERVERS, from_observer
+from rockbatch.common.observers import parts
 from rockbatch.motions import Motion
 from rockbatch.simulation.observing import Observer
 from rockbatch.study import Output
@@ -20,5 +20,5 @@ def observers_beside(output: Output, motions: Iterable[Motion]) -> tuple[Observe
 
 
 def _requested(output: Output) -> list[Observer]:
-    requested = (from_observer(name, "observe.requested")(output) for name in OBSERVERS)
+    requested = (requested(output) for requested in parts("observe.requested"))
     return [observer for observer in requested if observer is not None]

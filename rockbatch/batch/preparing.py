@@ -24,7 +24,6 @@ from rockbatch.motions import MotionSet
 from rockbatch.results.beside_peaks import SEMICOLONS
 from rockbatch.results.columns import JOURNAL, PEAKS, columns
 from rockbatch.results.histories_file import HISTORIES
-from rockbatch.results.intensity import INTENSITY
 from rockbatch.results.labelled import Row
 from rockbatch.results.reading import edited
 from rockbatch.results.run_json import INFO, describe, versions
@@ -32,7 +31,7 @@ from rockbatch.simulation.observing import Observer
 from rockbatch.study import Study
 from rockbatch.study.suite import ground_motions
 
-OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, *tables(), SEMICOLONS)
+OUTPUTS = (PEAKS, INFO, HISTORIES, *tables(), SEMICOLONS)
 """Files that a batch may write into its folder."""
 
 

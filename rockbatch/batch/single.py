@@ -10,7 +10,7 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError, Problem, refuse
 from rockbatch.motions import Motion
 from rockbatch.motions.plausible import unlikely_samples
-from rockbatch.outcome.outcome import Outcome
+from rockbatch.outcome.outcome import LEAST_NORMAL_SHARE, Outcome
 from rockbatch.outcome.response import Response
 from rockbatch.pier import NO_SECTIONS, Base, Pier, problems, unlikely_devices
 from rockbatch.pier.sections import section_heights
@@ -24,8 +24,8 @@ from rockbatch.simulation.models import least_substeps
 from rockbatch.simulation.observing import Observer, observed
 from rockbatch.simulation.recording import Recording, recorded
 from rockbatch.simulation.runs import Run, run_fixed
-from rockbatch.study import Case, Numerics
-from rockbatch.study.spec import LEAST_NORMAL_SHARE, LEAST_TOLERANCE, Output
+from rockbatch.study import Case, Numerics, Output
+from rockbatch.study.spec import LEAST_TOLERANCE
 
 
 class Steps(TypedDict, total=False):
@@ -116,14 +116,10 @@ def simulate(
     if sections:
         section_heights(pier, sections)
     name, outcome, quiet_s = case or foundation.name, _outcome(run, numerics, wait), numerics.quiet_s
-    output = Output(
-        ledger=ledger,
-        forces=forces,
-        least_normal_share=least_normal_share,
-        devices_work=devices_work,
-        sections=sections if isinstance(sections, int) else None,
-        sections_m=() if isinstance(sections, int) else tuple(sections),
-    )
+    heights = {"sections": sections} if isinstance(sections, int) else {"sections_m": tuple(sections)}
+    asked = {"ledger": ledger, "forces": forces, "devices_work": devices_work, **heights}
+    asked |= {"least_normal_share": least_normal_share} if forces else {}
+    output = Output.with_keys(**{key: value for key, value in asked.items() if value})
     observers = (*observers_of(output), *observers_beside(output, [motion]))
     kept = HistoriesOfRun(name, observers, foundation.remembers)
     (outcome,) = observed([run], [outcome], (*observers, kept), quiet_s, error=numerics.substeps is None, wait=wait)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rockbatch.checks import wording
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, File, Stations
@@ -41,7 +41,7 @@ def answer(
     runs: Sequence[CaseRuns] = (),
     stations: Stations = ALL_STATIONS,
 ) -> list[Line]:
-    """Return the lines of the answer; none is green that says nothing of a case or of a station.
+    """Return the lines of the answer; a line passes only if every case is checked and every station used.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def answer(
     passing = every.passing([name for name in meeting if name not in {*free, *doubted}])
     lines = [
         passing,
-        _doubted(every.passing(doubted), below),
+        _line_under_failing_suite(every.passing(doubted), below),
         every.without_limit(free),
         every.failing(failing),
         every.undecided(open_, failing),
@@ -80,21 +80,21 @@ def answer(
     missing = missing_stations(stations)
     # It qualifies what passes; what fails does so without these stations, too
     lines = [missing, *lines] if meeting else [*lines, missing]
-    return [*_below(below), *filter(None, lines)]
+    return [*_lines_on_suite(below), *filter(None, lines)]
 
 
 def _is_low(below: Sequence[Verdict]) -> bool:
-    """Return whether the mean spectrum of a suite is too low, and not only other conditions on it are not met."""
+    """Return whether one of the failing verdicts on a suite is that its mean spectrum is too low."""
     return any(verdict.demand == MEAN_OVER_TARGET for verdict in below)
 
 
-def _below(verdicts: Sequence[Verdict]) -> list[Line]:
-    """Return the line on a suite that fails these checks of its own; none if it fails none."""
-    said = (
-        f"{wording.name_of(verdict)}: {', '.join(filter(None, (wording.against(verdict), verdict.note)))}."
-        for verdict in verdicts
-    )
-    details = [*dict.fromkeys(said)]  # most conditions are the same at every scale
+def _lines_on_suite(verdicts: Sequence[Verdict]) -> list[Line]:
+    """Return the line on a suite that fails these checks of its own; nothing without any."""
+    sentences: dict[str, None] = {}  # most conditions are the same at every scale
+    for verdict in verdicts:
+        parts = filter(None, (wording.against(verdict), verdict.note))
+        sentences[f"{wording.name_of(verdict)}: {', '.join(parts)}."] = None
+    details = [*sentences]
     more = [f"and {len(details) - MOST_CHECKS} more."] if len(details) > MOST_CHECKS else []
     text = (
         "The suite is below its target" if _is_low(verdicts) else "The suite does not conform to the code of its target"
@@ -102,8 +102,8 @@ def _below(verdicts: Sequence[Verdict]) -> list[Line]:
     return [Line(FAIL, text, "", (*details[:MOST_CHECKS], *more))] if details else []
 
 
-def _doubted(line: Line | None, below: Sequence[Verdict]) -> Line | None:
-    """Return the line on cases that pass under a suite that fails: nothing passes."""
+def _line_under_failing_suite(line: Line | None, below: Sequence[Verdict]) -> Line | None:
+    """Return the line on cases that pass, as undecided because their suite fails; None for None."""
     if line is None:
         return None
     suite = "a suite below its target" if _is_low(below) else "a suite that does not conform to the code of its target"
@@ -120,7 +120,7 @@ def missing_stations(stations: Stations) -> Line | None:
     text = f"{_listed(names, ', ')} could not be used"
     if stations.known:
         text = f"{len(stations.used)} of {stations.total} stations; {text}"
-    reasons = grouped(stations.unusable, lambda name: _why(stations.unusable[name][0]))
+    reasons = grouped(stations.unusable, lambda name: _reason_of_file(stations.unusable[name][0]))
     details = [f"{_listed(of_reason, ', ')}: {reason}." for reason, of_reason in reasons.items()]
     more = [f"and {len(details) - MOST_CHECKS} more."] if len(details) > MOST_CHECKS else []
     keys = [*whole, *(file["name"] for files in parts.values() for file in files)]
@@ -131,35 +131,37 @@ def missing_stations(stations: Stations) -> Line | None:
     return Line(NOT_DECIDED, text, "", (*details[:MOST_CHECKS], *more, remedy))
 
 
-def _why(file: File) -> str:
-    """Return the name of a file, unless that is in the reason, and why it could not be used."""
+def _reason_of_file(file: File) -> str:
+    """Return the reason why a file could not be used, after the file's name unless the reason has it."""
     source, reason = str(file["source"]).split(", ")[0].rpartition("/")[2], str(file["reason"]).rstrip(".")
     return reason if str(file["name"]) in reason or source in reason else f"{source}: {reason}"
 
 
-def _wholly_or_in_part(stations: Mapping[str, Sequence[Any]], used: Collection[str]) -> list[str]:
-    """Return the names of stations, then those that are ``used`` but for some files, with the number of these."""
+def _wholly_or_in_part(stations: Mapping[str, Sequence[File]], used: Collection[str]) -> list[str]:
+    """Return the names of stations that are not ``used``, then "2 files of WTMC" for those that are, without these files."""
     parts = [f"{len(files)} file{'s' * (len(files) > 1)} of {name}" for name, files in stations.items() if name in used]
     return [name for name in stations if name not in used] + parts
 
 
 def without_limits(cases: Mapping[str, Sequence[Verdict]], worst: Sequence[Worst]) -> dict[str, list[Worst]]:
-    """Return the responses that govern a case and that none of its checks bounds, by the names of cases that have any.
+    """Return the governing responses that no check bounds, by the names of cases with such responses.
 
     ``worst`` are those of every case at each scale, as a case of verdicts is of one.
     """
     by_case = grouped(
         worst, lambda response: (*_key(of_pier(response.case)[0], response.case["columns"]), response.scale)
     )
-    of_cases = {
-        name: unlimited(by_case.get((*_key(of_case[0].case, of_case[0].columns), of_case[0].scale), []), of_case)
-        for name, of_case in cases.items()
-    }
-    return {name: responses for name, responses in of_cases.items() if responses}
+    free: dict[str, list[Worst]] = {}
+    for name, verdicts in cases.items():
+        case = verdicts[0]
+        responses = by_case.get((*_key(case.case, case.columns), case.scale), [])
+        if without_limit := unlimited(responses, verdicts):
+            free[name] = without_limit
+    return free
 
 
 def _key(case: object, columns: Mapping[str, float | str]) -> tuple[object, ...]:
-    """Return the key that distinguishes cases, with the ten digits of the files."""
+    """Return the key that distinguishes cases, with numbers rounded to ten digits, as files have them."""
     values = ((name, value if isinstance(value, str) else f"{value:.9g}") for name, value in columns.items())
     return str(case), *sorted(values)
 
@@ -185,11 +187,12 @@ class _Cases:
         return [name for name in self.every if not self._of([name], FAIL, NOT_DECIDED) and not self._passes(name)]
 
     def _passes(self, name: str) -> bool:
+        """Return whether a check of the case passes, and not only because no run ends standing."""
         runs = self.runs.get(name)
         return bool(self._of([name], PASS)) and (runs is None or sum(runs.ended.values()) < runs.runs)
 
     def passing(self, names: Sequence[str]) -> Line | None:
-        """Return the line on cases that pass every check."""
+        """Return the line on cases that pass every check, undecided if other cases or stations are left; None for no case."""
         if not names:
             return None
         ratios = [judged for judged in self._of(names) if math.isfinite(judged.ratio) and not judged.is_ban]
@@ -229,22 +232,22 @@ class _Cases:
         )
 
     def _cut_short(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return which of these cases have runs that do not end standing, in a sentence."""
+        """Return a sentence on those of the cases with runs that do not end standing; nothing without any."""
         ended = [name for name in names if name in self.runs and self.runs[name].ended]
         return (f"Not every run ends standing: {self._with_ends(ended)}.",) if ended else ()
 
     def _omitted(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return what checks leave out that these cases pass, a sentence each."""
+        """Return a sentence for each omission in the demands of checks that these cases pass."""
         passed = [(name, verdict.check) for verdict in self._of(names, PASS) for name in verdict.omitted]
         checks = grouped(passed, lambda pair: pair[0])
-        return tuple(
-            f"{', '.join(dict.fromkeys(check for _, check in checks[name]))}: {omission.remark}."
-            for name, omission in OMISSIONS.items()
-            if name in checks
-        )
+        sentences = []
+        for name in (name for name in OMISSIONS if name in checks):
+            listed = ", ".join(dict.fromkeys(check for _, check in checks[name]))
+            sentences.append(f"{listed}: {OMISSIONS[name].remark}.")
+        return tuple(sentences)
 
     def _left_out(self) -> tuple[str, ...]:
-        """Return the stations that are left out by name, in a sentence."""
+        """Return a sentence on stations that are left out by name; nothing without any."""
         names = _wholly_or_in_part(self.stations.left_out, self.stations.used)
         return (f"Left out by name: {_listed(names, ', ')}.",) if names else ()
 
@@ -260,7 +263,7 @@ class _Cases:
         return Line(NOT_DECIDED, _capital(text), _few(list(free)), details)
 
     def failing(self, names: Sequence[str]) -> Line | None:
-        """Return the line on cases that fail a check, with the one that is nearest to passing."""
+        """Return the line on cases that fail a check, with the case that is nearest to passing."""
         if not names:
             return None
         near = min((max(self._of([name], FAIL), key=_excess) for name in names), key=_excess)
@@ -275,22 +278,22 @@ class _Cases:
         )
 
     def undecided(self, names: Sequence[str], failing: Sequence[str]) -> Line | None:
-        """Return the line on cases that are not decided, and why; in cases that fail anyway it does not matter."""
+        """Return the line on undecided cases, with the reasons; open checks of ``failing`` cases are only listed."""
         idle = ", ".join(dict.fromkeys(verdict.check for verdict in self._of(failing, NOT_DECIDED)))
         if not names:
             return Line(NOT_DECIDED, "Left undecided", f"{idle}, in cases that fail anyway", ()) if idle else None
         verdicts = self._of(names, NOT_DECIDED)
-        details = self._open(verdicts)
+        details = self._reasons_without_bound(verdicts)
         others = [verdict for verdict in verdicts if not verdict.left_open]
-        details += [self._doubt(verdict) for verdict in others[:MOST_CHECKS]]
+        details += [self._reason_of_verdict(verdict) for verdict in others[:MOST_CHECKS]]
         if len(others) > MOST_CHECKS:
             details.append(f"and {len(others) - MOST_CHECKS} more.")
         if idle:
             details.append(f"{idle}: not decided in cases that fail anyway.")
         return Line(NOT_DECIDED, _capital(f"{self._among(names)} cannot be decided"), _few(names), tuple(details))
 
-    def _open(self, verdicts: Sequence[Verdict]) -> list[str]:
-        """Return a sentence for each thing that checks leave out, so that their demands have no upper bound."""
+    def _reasons_without_bound(self, verdicts: Sequence[Verdict]) -> list[str]:
+        """Return a sentence for each omission that leaves demands without an upper bound."""
         by_cause = grouped((verdict for verdict in verdicts if verdict.left_open), lambda verdict: verdict.left_open)
         sentences = []
         for name, of_cause in by_cause.items():
@@ -300,7 +303,8 @@ class _Cases:
             sentences.append(f"{checks}{place}: {OMISSIONS[name].remark}.")
         return sentences
 
-    def _doubt(self, verdict: Verdict) -> str:
+    def _reason_of_verdict(self, verdict: Verdict) -> str:
+        """Return a sentence on why a check is not decided, with its limit and the run that leaves it open."""
         case = f" in {self.case_of(verdict)}" if len(self.every) > 1 else ""
         is_open = wording.is_left_open(verdict)
         limit = (
@@ -310,11 +314,12 @@ class _Cases:
         return ", ".join(filter(None, (f"{verdict.check}{case}: {verdict.note}", limit, cause))) + "."
 
     def _of(self, names: Sequence[str], *kinds: str) -> list[Verdict]:
-        """Return the verdicts of these cases, all or those of some kinds."""
+        """Return the verdicts of these cases: "pass" and other ``kinds``, or all if none is given."""
         verdicts = (verdict for name in names for verdict in self.verdicts.get(name, ()))
         return [verdict for verdict in verdicts if not kinds or verdict.verdict in kinds]
 
     def _among(self, cases: Collection[str]) -> str:
+        """Return the number of cases among all: "2 of 6 cases", "both cases", "the only case"."""
         total = len(self.every)
         if len(cases) == total:
             return {1: "the only case", 2: "both cases"}.get(total, f"all {total} cases")
@@ -322,19 +327,21 @@ class _Cases:
 
 
 def _excess(verdict: Verdict) -> float:
-    """Return the ratio by which a check exceeds its limit; infinite for events that must not occur."""
+    """Return the ratio by which a check exceeds its limit; infinite for events that must not occur, and without a ratio."""
     return math.inf if verdict.is_ban or math.isnan(verdict.ratio) else verdict.ratio
 
 
 def _capital(words: str) -> str:
+    """Return words with a capital first letter."""
     return words[0].upper() + words[1:]
 
 
 def _few(names: Sequence[str]) -> str:
-    """Return a few names; none of many, which the scorecard lists."""
+    """Return up to :data:`MOST_NAMES` names; empty for more, which the scorecard lists."""
     return "; ".join(names) if len(names) <= MOST_NAMES else ""
 
 
 def _listed(names: Sequence[str], comma: str = "; ", most: int = MOST_FILES) -> str:
+    """Return up to ``most`` names with ``comma`` between them, and the number of the others."""
     more = len(names) - most
     return comma.join(names[:most]) + (f"{comma}and {more} more" if more > 0 else "")

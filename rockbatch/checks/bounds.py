@@ -11,8 +11,9 @@ from rockbatch.checks.omissions import omissions, open_landings
 from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.quantities.arrays import Rows, Texts
 from rockbatch.quantities.cases import Case, bends, creeps
-from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.demands import Demand
+from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.rows import NOT_RUN
 from rockbatch.quantities.statistics import Values
 
@@ -49,8 +50,10 @@ class Demanded(NamedTuple):
 
 
 _COMBINED: dict[str, Callable[[Values, Values], Values]] = {
-    "greater": np.maximum, "srss": np.hypot, "100_30": lambda x, y: np.maximum(x + 0.3 * y, 0.3 * x + y),
-}  # fmt: skip
+    "greater": np.maximum,
+    "srss": np.hypot,
+    "100_30": lambda x, y: np.maximum(x + 0.3 * y, 0.3 * x + y),
+}
 
 
 def on_both_axes(axes: Sequence[Bounds], how: str) -> Bounds:
@@ -85,9 +88,9 @@ def governing(runs: Bounds, counting: npt.NDArray[np.bool_], *, by_bound: bool) 
 
 
 def lacking(counting: npt.NDArray[np.bool_], counted_as: Texts) -> dict[str, tuple[int, int]]:
-    """Return records with fewer runs than the others, or than were planned: their runs that count, and of how many.
+    """Return the numbers of runs that count and of runs expected, for each record of which some runs do not count.
 
-    Their worst direction may be the one that is missing.
+    The worst direction of such a record may be a missing one.
     """
     planned, remaining = Counter(counted_as), Counter(counted_as[counting])
     usual = max(Counter(planned.values()).items(), key=lambda item: (item[1], item[0]))[0] if planned else 0
@@ -96,14 +99,14 @@ def lacking(counting: npt.NDArray[np.bool_], counted_as: Texts) -> dict[str, tup
 
 
 def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
-    """Return the demand of a rule in the runs of a case, with its bounds and what is remarkable about it."""
+    """Return the demand of a rule in the runs of a case, with its bounds, chaotic runs and omissions."""
     demand = DEMANDS[rule.demand]
     value, error = demand.evaluate(runs, case)
     status = runs.texts("status")
     counting, own = np.ones(len(runs), dtype=bool), value
     if demand.event:
         open_ = runs.facts("may_overturn") & (rule.demand == "overturned")
-        if rule.demand != "failed":  # what a run that was cut short would have come to is open
+        if rule.demand != "failed":  # the event might have followed in a run that was cut short
             open_ |= (status == "failed") | (status == "flight")
         bounds = Bounds(value, value, np.where(open_, 1.0, value), False)
         return Demanded(bounds, counting, own, None, np.zeros(len(runs), dtype=bool), [])
@@ -113,7 +116,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
     low = np.where(wild, value / SCATTER, np.maximum(value - margin, 0.0))
     high = np.where(wild, value * SCATTER, value + margin)
     by_other = None
-    if demand.other_law and OTHER_LAW in runs and creeps(case):  # the worse counts
+    if demand.other_law and OTHER_LAW in runs and creeps(case):  # the worse law counts
         by_other = demand.other_law(runs, case)
         high = np.where(np.isnan(by_other) & rule.other_law, np.inf, np.fmax(high, by_other))
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
@@ -128,12 +131,12 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
             unknown |= ended
         elif kind == "left out":
             counting &= ~ended
-    missing = np.isnan(value)  # as the residual of a run that was cut short
+    missing = np.isnan(value)  # such as the residual of a run that was cut short
     unknown |= missing
-    # A peak or a count is at least what it was when the run was cut short; what has not settled is nothing
+    # A peak or a count is at least its value when the run was cut short; the value of an unsettled run bounds nothing
     nothing = missing | (unknown & (status == "failed"))
     low = np.where(nothing, 0.0, low)
-    if demand.reached:  # before a run failed
+    if demand.reached:  # a peak until the motion ended, before the run failed
         reached, error = demand.reached(runs, case)
         known = unknown & (status == "failed") & ~np.isnan(error)
         low, estimated = np.where(known, np.maximum(reached - error, 0.0), low), estimated or bool(known.any())
@@ -157,11 +160,9 @@ def _chaotic(demand: Demand, runs: Rows, error: Values) -> npt.NDArray[np.bool_]
 
 def counted(rule: Rule, suites: Iterable[Rows]) -> str:
     """Return the number of runs that did not go through, and how they count: "1 overturned (infinite), 2 flight (unknown)"."""
-    numbers = Counter(
-        NOT_RUN if missing else status
-        for runs in suites
-        for status, missing in zip(runs.texts("status"), runs.missing, strict=True)
-    )
+    numbers: Counter[str] = Counter()
+    for runs in suites:
+        numbers.update(np.where(runs.missing, NOT_RUN, runs.texts("status")).tolist())
     parts = []
     for name in (*USUAL, NOT_RUN):
         if n := numbers[name]:

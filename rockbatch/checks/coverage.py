@@ -14,7 +14,7 @@ from rockbatch.quantities.rows import NOT_RUN, rows_of_cases
 ENDED = {"overturned": "overturned", "flight": "ended by flight", "failed": "failed", NOT_RUN: NOT_RUN}
 """Words for runs that do not end standing."""
 
-File = Mapping[str, Any]
+File = Mapping[str, object]
 """Entry of run.json on a file that was not used."""
 
 
@@ -29,7 +29,7 @@ class CaseRuns(NamedTuple):
 
     @property
     def in_words(self) -> str:
-        """How many runs do not end standing: "2 of 10 runs overturned, 1 failed"; empty if all do."""
+        """Number of runs that do not end standing, in words: "2 of 10 runs overturned, 1 failed"; empty for 0."""
         counts = [f"{n} {ENDED[status]}" for status, n in self.ended.items()]
         if not counts:
             return ""
@@ -38,7 +38,7 @@ class CaseRuns(NamedTuple):
 
 
 class Stations(NamedTuple):
-    """Stations with a ground motion, files that could not be used by their stations, and stations that are left out by name."""
+    """Stations with a ground motion, and by station the files that could not be used and those left out by name."""
 
     used: Sequence[str] = ()
     unusable: Mapping[str, Sequence[File]] = {}
@@ -87,7 +87,7 @@ def runs_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], records: int) -> 
 
 
 def stations_of(info: Mapping[str, Any]) -> Stations:
-    """Return the stations of the suite in run.json; a record or a file of which it is not known is its own."""
+    """Return the stations of the suite in run.json (``info``); a record or file without a known station is one by itself."""
     used = [str(record.get("station") or record["record"]) for record in info["records"]]
 
     def station(file: File) -> str:

@@ -33,47 +33,42 @@ ENDINGS = {
     "flight": Ending("has a run that flight ended", "have runs that flight ended", "flight"),
     "failed": Ending("has a run that failed or is missing", "have runs that failed or are missing", "failed"),
 }
-"""Statuses of runs that do not end standing, and that of one that stands, and would not under a motion a hair stronger."""
+"""Statuses of runs that do not end standing, and :data:`MAY_OVERTURN` for runs that overturn if the motion is a hair stronger."""
 _SAYS_ALL = "asce7-16"
-"""Statistic that says of every ending how many records may have it."""
+"""Statistic whose code says how many records may have each ending."""
 
 
 def left_open(judged: Sequence[tuple[Rule, Verdict]], suites: Sequence[Rows]) -> list[Verdict]:
-    """Return the verdicts on a case at one scale, none of its records passing by runs about whose end no check says anything.
+    """Return the verdicts on a case at one scale; passes become undecided if an ending of its runs is in no check.
 
-    ``suites`` are its runs, of one or both axes of its pier. What belongs to the case, and not to its runs, stays as it is.
+    ``suites`` are its runs, on one or both axes of its pier. Verdicts on properties of the case stay.
     """
     applying = [rule for rule, verdict in judged if verdict.verdict != DOES_NOT_APPLY]
-    ended = {
-        name: [_ended(suite, name) for suite in suites]
-        for name, kind in ENDINGS.items()
-        if not _allowed(kind.event, applying)
-    }
+    unchecked = [name for name, ending in ENDINGS.items() if not _allowed(ending.event, applying)]
+    ended = {name: [_ended(suite, name) for suite in suites] for name in unchecked}
+    verdicts = [verdict for _, verdict in judged]
     if not any(runs.any() for of_status in ended.values() for runs in of_status):
-        return [verdict for _, verdict in judged]
-    return [
-        replace(
-            verdict, verdict=NOT_DECIDED, note="; ".join(filter(None, (_reason(verdict, suites, ended), verdict.note)))
-        )
-        if verdict.verdict == PASS and verdict.statistic
-        else verdict
-        for _, verdict in judged
-    ]
+        return verdicts
+    for i, verdict in enumerate(verdicts):
+        if verdict.verdict == PASS and verdict.statistic:
+            remarks = (_reason(verdict, suites, ended), *verdict.remarks)
+            verdicts[i] = replace(verdict, verdict=NOT_DECIDED, remarks=remarks)
+    return verdicts
 
 
 def _ended(suite: Rows, ending: str) -> npt.NDArray[np.bool_]:
-    """Return True for each run that ended so, shape (n,)."""
+    """Return True for each run with this ending of :data:`ENDINGS`, shape (n,)."""
     status = suite.texts("status")
     return suite.facts("may_overturn") & (status != "overturned") if ending == MAY_OVERTURN else status == ending
 
 
 def _allowed(event: str, rules: Sequence[Rule]) -> bool:
-    """Return whether a check says how many records may end so."""
+    """Return whether one of the rules limits the number of records with this event."""
     return any(rule.demand == event or (rule.statistic == _SAYS_ALL and DEMANDS[rule.demand].per_run) for rule in rules)
 
 
 def _reason(verdict: Verdict, suites: Sequence[Rows], ended: Mapping[str, Sequence[npt.NDArray[np.bool_]]]) -> str:
-    """Return how many records end in each such way, and the check to write."""
+    """Return the number of records with each of these endings, and the check to write."""
     names = [counts_as(suite, verdict.count)[0] for suite in suites]
     total = len({*np.concatenate(names)})
     parts = list(_numbers(ended, names))
@@ -89,8 +84,8 @@ def _reason(verdict: Verdict, suites: Sequence[Rows], ended: Mapping[str, Sequen
 def _numbers(
     ended: Mapping[str, Sequence[npt.NDArray[np.bool_]]], names: Sequence[npt.NDArray[np.object_]]
 ) -> Iterator[tuple[str, int]]:
-    """Yield each ending with the number of records with such runs, if there are any."""
+    """Yield each ending that occurs with the number of records that have such runs."""
     for name, of_suites in ended.items():
-        records = {record for runs, of_runs in zip(of_suites, names, strict=True) for record in of_runs[runs]}
+        records = {*np.concatenate([of_runs[runs] for runs, of_runs in zip(of_suites, names, strict=True)])}
         if records:
             yield name, len(records)

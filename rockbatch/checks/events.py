@@ -8,7 +8,7 @@ from rockbatch.quantities.arrays import Texts
 
 
 class OfEvent(NamedTuple):
-    """The earthquake with the most records of a suite: its name, their number, that of all, and of those of no known event."""
+    """The earthquake with the most records of a suite: its name and their number; the number of all, and of unknown events."""
 
     event: str
     records: int
@@ -16,19 +16,22 @@ class OfEvent(NamedTuple):
     unknown: int
 
     @property
-    def in_words(self) -> str:
-        """How many records are of it, if more than one: "3 of 8 stations are of one event, Kaikoura 2016"."""
+    def remarks(self) -> list[str]:
+        """Remarks on records of one event: "3 of 8 stations are of one event, Kaikoura 2016"; and on unknown events."""
         parts = []
         if self.records > 1:
             parts.append(f"{self.records} of {self.total} stations are of one event, {self.event}")
         if 0 < self.unknown < self.total:
             parts.append(f"of {self.unknown} of {self.total} stations the event is not known")
-        return "; ".join(parts)
+        return parts
 
 
 def largest_event(records: Texts, counted_as: Texts, events: Mapping[str, str]) -> OfEvent | None:
-    """Return the earthquake of most records by the names of runs' ``records``, those that they are ``counted_as`` and the
-    ``events`` of components, shape (n,); None if none is known."""
+    """Return the earthquake with the most records; None if none is known.
+
+    ``records`` and ``counted_as`` have the component of each run and the record under which it counts, shape (n,); ``events``
+    are those of components.
+    """
     event_of: dict[str, str] = {}
     for record, counted in zip(records, counted_as, strict=True):
         event_of[counted] = event_of.get(counted) or events.get(record, "")

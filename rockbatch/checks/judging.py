@@ -1,10 +1,10 @@
 """Evaluation of rules on results: pass, fail or not decided."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from rockbatch.checks.bounds import (
 from rockbatch.checks.endings import left_open
 from rockbatch.checks.events import OfEvent, largest_event
 from rockbatch.checks.omissions import OMISSIONS
-from rockbatch.checks.rule_choices import FAR, chooses, has_section, limit_key, unmet
+from rockbatch.checks.rule_choices import FAR, Available, chooses, has_section, limit_key, unmet
 from rockbatch.checks.rules import Rule
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
@@ -30,8 +30,9 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
-from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS, OTHER_LAW
+from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.quantities.demands import OF_SECTIONS
+from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.rows import complete, counts_as, rows_of_cases, simulated, with_case
 from rockbatch.quantities.statistics import STATISTICS, Values
 
@@ -43,7 +44,7 @@ PLANAR = "each axis of the pier is a planar model of its own"
 
 
 class Axis(NamedTuple):
-    """A case, along the axis of its pier or across it, with its runs at one scale; the same records on both."""
+    """A case, along or across the axis of its pier, with its runs at one scale; both axes have the same records."""
 
     case: Case
     suite: Rows
@@ -88,17 +89,14 @@ def judge(
         raise InputError("there is no run to check")
     with_mirrors, scales = Rows(runs), [float(scale) for scale in runs["scale"].unique()]
     stations = records or dict(zip(with_mirrors.texts("record"), with_mirrors.texts("station"), strict=True))
-    available: dict[str, Any] = {"scales": scales}
-    available["other_law"] = OTHER_LAW in runs or not any(map(creeps, cases))
-    kinds = {"", *(COLUMNS[name].device for name in runs if name in COLUMNS)}  # of devices; others bring no columns
-    available["output"] = [
-        key
-        for key, columns in BROUGHT.items()
-        if any(name in runs for name in columns) or not any(COLUMNS[name].device in kinds for name in columns)
-    ]
-    available["sections"] = set() if sections is None else set(sections["height_m"])
-    available["cases"] = list(dict.fromkeys(str(case["case"]) for case in cases if not case.get("across_of")))
-    wrong = [f"check {shown(rule.name)}: {problem}" for rule in rules for problem in unmet(rule, **available)]
+    available = Available(
+        cases=list(dict.fromkeys(str(case["case"]) for case in cases if not case.get("across_of"))),
+        scales=scales,
+        other_law=OTHER_LAW in runs or not any(map(creeps, cases)),
+        output=[key for key, columns in BROUGHT.items() if _has_columns(runs, columns)],
+        sections=set() if sections is None else set(sections["height_m"]),
+    )
+    wrong = [f"check {shown(rule.name)}: {problem}" for rule in rules for problem in unmet(rule, available)]
     if wrong:
         raise InputError(*wrong)
     runs = simulated(runs)
@@ -114,10 +112,10 @@ def judge(
     for _, of_axes in groupby(rows_of_cases(runs, cases), lambda pair: of_pier(pair[0])):
         pier = list(of_axes)
         for scale in scales:
-            axes = [
-                Axis(case, complete(table.at(rows[scale_of[rows] == scale]), stations, polarities))
-                for case, rows in pier
-            ]
+            axes = []
+            for case, rows in pier:
+                at_scale = table.at(rows[scale_of[rows] == scale])
+                axes.append(Axis(case, complete(at_scale, stations, polarities)))
             judged = []
             for rule in rules:
                 if chooses(rule, str(axes[0].case["case"]), scale):
@@ -128,7 +126,7 @@ def judge(
 
 
 def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", rule: Rule) -> Rows:
-    """Return runs with their rows of sections.csv at the height of the rule beside them; NaN if one has none."""
+    """Return runs with the columns of sections.csv at the height of the rule; NaN for a run without that section."""
     keys = [name for name in sections if name not in OF_SECTIONS]
     its = sections[[has_section(rule, [height]) for height in sections["height_m"]]]
     if its.duplicated(keys).any():
@@ -136,55 +134,82 @@ def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", rule: Rule) -> Ro
     return Rows(runs.merge(its, how="left", on=keys))
 
 
+def _has_columns(runs: "pd.DataFrame", columns: Collection[str]) -> bool:
+    """Return whether results have one of the ``columns`` of a key of [output], or no device that they are about."""
+    devices = {"", *(COLUMNS[name].device for name in runs if name in COLUMNS)}  # other devices have no columns here
+    return any(name in runs for name in columns) or not any(COLUMNS[name].device in devices for name in columns)
+
+
 def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str, events: Mapping[str, str]) -> Verdict:
-    demand, case, absent = DEMANDS[rule.demand], axes[0].case, [_absent(rule, axis) for axis in axes]
-    unknown: dict[str, Any] = dict.fromkeys(("value", "low", "high", "ratio", "margin"), math.nan)
-    of_suite: dict[str, Any] = {"statistic": "", "runs": 0, "counted": "", "count": ""}
-    if not demand.per_case:
-        suites = [axis.suite for axis in axes]
-        statistic, number = rule.statistic or "max", sum(map(len, suites))
-        count = "station" if STATISTICS[statistic].code else count
-        of_suite = {"statistic": statistic, "runs": number, "counted": counted(rule, suites), "count": count}
-    height = demand.height(case) if demand.height else rule.at_m
+    """Return the verdict of a rule on a pier at one scale, on one or both ``axes``."""
+    absent = [_absent(rule, axis) for axis in axes]
     applying = [axis for axis, reason in zip(axes, absent, strict=True) if not reason]
-    none = Verdict(
+    none = _not_applying(rule, axes, scale, count, rule.on_both_axes if len(applying) > 1 else "")
+    if not applying:
+        return replace(none, remarks=(absent[0],))
+    per_case = DEMANDS[rule.demand].per_case
+    verdict = _of_case(rule, applying, none) if per_case else _of_suite(rule, applying, none, events)
+    if len(axes) == 1 or verdict.verdict == DOES_NOT_APPLY:
+        return verdict
+    alone = [f"{_place(axis)} {reason}" for axis, reason in zip(axes, absent, strict=True) if reason]
+    return replace(verdict, remarks=(*verdict.remarks, *alone, PLANAR))
+
+
+def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, combined: str) -> Verdict:
+    """Return the verdict of a rule without its numbers, as if it did not apply; ``combined`` says how both axes are."""
+    demand, case = DEMANDS[rule.demand], axes[0].case
+    height = demand.height(case) if demand.height else rule.at_m
+    statistic, suites = "", []
+    if not demand.per_case:
+        statistic, suites = rule.statistic or "max", [axis.suite for axis in axes]
+        count = "station" if STATISTICS[statistic].code else count
+    return Verdict(
         check=rule.name,
         case=str(case["case"]),
         columns=dict(case["columns"]),
         scale=scale,
-        **{name: getattr(rule, name) for name in ("demand", "sense", "limit", "basis", "reason", "counting")},
-        words=rule.words_at(height) + (f", {rule.on_both_axes}" if len(applying) > 1 else ""),
-        **of_suite,
-        **unknown,
+        demand=rule.demand,
+        statistic=statistic,
+        words=", ".join(filter(None, (rule.words_at(height), combined))),
         records=0,
+        runs=sum(map(len, suites)),
+        value=math.nan,
+        low=math.nan,
+        high=math.nan,
+        sense=rule.sense,
+        limit=rule.limit,
+        ratio=math.nan,
+        margin=math.nan,
         verdict=DOES_NOT_APPLY,
-        note=absent[0],
+        basis=rule.basis,
+        reason=rule.reason,
+        counting=rule.counting,
+        counted=counted(rule, suites),
+        remarks=(),
+        count="" if demand.per_case else count,
         unit="" if rule.statistic == "count" else demand.unit,
         at_m=math.nan if height is None else height,
+        axes=combined,
     )
-    if not applying:
-        return none
-    if not demand.per_case:
-        verdict = _of_suite(rule, applying, none, events)
-    else:
-        worst = max if rule.sense == "at most" else min
-        value = worst(float(demand.evaluate(axis.suite, axis.case).value[0]) for axis in applying)
-        if math.isnan(value):
-            return replace(none, note=NOT_WEIGHED)
-        decided, note = _decide(rule, value, value)
-        verdict = replace(none, **_bounded(rule, value, value, value), verdict=decided, note=note)
-    if len(axes) == 1:
-        return verdict
-    alone = [f"{_place(axis)} {reason}" for axis, reason in zip(axes, absent, strict=True) if reason]
-    return replace(verdict, note="; ".join(filter(None, (verdict.note, *alone, PLANAR))))
+
+
+def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
+    """Return the verdict on a property of the case, the worse of both axes; ``none`` is the verdict without its numbers."""
+    worse = max if rule.sense == "at most" else min
+    value = worse(float(DEMANDS[rule.demand].evaluate(axis.suite, axis.case).value[0]) for axis in axes)
+    if math.isnan(value):
+        return replace(none, remarks=(NOT_WEIGHED,))
+    decided, _ = _decide(rule, value, value)
+    return replace(_with_numbers(none, value, value, value), verdict=decided)
 
 
 def _place(axis: Axis) -> str:
+    """Return "along the axis" or "across the axis"."""
     return "across the axis" if axis.case.get("across_of") else "along the axis"
 
 
 def _absent(rule: Rule, axis: Axis) -> str:
-    """Return why the demand of a rule does not apply on an axis; empty if it does."""
+    """Return the reason why the demand of a rule does not apply on an axis; empty if it does."""
     demand, (case, suite) = DEMANDS[rule.demand], axis
     if not demand.applies_to(case):
         return f"a {case['base']} base has no {rule.demand}"
@@ -201,16 +226,17 @@ def _absent(rule: Rule, axis: Axis) -> str:
     return ""
 
 
-def _bounded(rule: Rule, value: float, low: float, high: float) -> dict[str, Any]:
-    """Return a value and its bounds, with its ratio and margin to the limit."""
-    numerator, denominator, margin = value, rule.limit, rule.limit - value
-    if rule.sense == "at least":
-        numerator, denominator, margin = rule.limit, value, value - rule.limit
+def _with_numbers(verdict: Verdict, value: float, low: float, high: float) -> Verdict:
+    """Return the verdict with a value and its bounds, and with their ratio to the limit and margin; NaN for a value of NaN."""
+    limit = verdict.limit
+    numerator, denominator, margin = value, limit, limit - value
+    if verdict.sense == "at least":
+        numerator, denominator, margin = limit, value, value - limit
     if math.isnan(value):
         ratio = margin = math.nan
     else:
         ratio = numerator / denominator if denominator else 0.0 if numerator == 0 else math.inf
-    return {"value": value, "low": low, "high": high, "ratio": ratio, "margin": margin}
+    return replace(verdict, value=value, low=low, high=high, ratio=ratio, margin=margin)
 
 
 def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[str, str]) -> Verdict:
@@ -233,33 +259,33 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
     omitted = [name for name in OMISSIONS if name in left_out]
     open_by = math.isinf(high) and not all(OMISSIONS[name].decides for name in omitted)
     deciding = governing(runs, counting, by_bound=verdict == NOT_DECIDED and low <= rule.limit < high)
-    notes = [
+    laws = [_laws(its, axis.suite, deciding) for its, axis in zip(of_axes, axes, strict=True)]
+    remarks = [
         few or ("" if verdict != NOT_DECIDED or open_by else _between(low, high)),
         *(OMISSIONS[name].remark for name in omitted),
         _far(rule, value) if verdict == PASS else "",
         _on_each([its.bounds for its in of_axes], axes, deciding),
         statistic.remark(bounds.high) if statistic.remark and n else "",
         unknown,
-        of_event.in_words if of_event else "",
+        *(of_event.remarks if of_event else ()),
         "" if none.count == "component" else _directions(lacking(counting, counted_as)),
-        *dict.fromkeys(_laws(its, axis.suite, deciding) for its, axis in zip(of_axes, axes, strict=True)),
+        *dict.fromkeys(remark for of_axis in laws for remark in of_axis),
         "" if bounds.estimated or DEMANDS[rule.demand].event else "no error estimate",
         *dict.fromkeys(_chaotic(int(its.chaotic.sum())) for its in of_axes),
     ]
-    run: dict[str, Any] = {}
-    if deciding is not None:
-        run = {name: suite.texts(name)[deciding] for name in ("station", "record", "polarity")}
-        run["governing"] = float(runs.value[deciding])
-    return replace(
-        none,
-        **_bounded(rule, value, low, high),
-        **run,
+    judged = replace(
+        _with_numbers(none, value, low, high),
         records=n,
         verdict=verdict,
         count=count,
-        note="; ".join(filter(None, notes)),
+        remarks=tuple(filter(None, remarks)),
         omits=", ".join(omitted),
     )
+    if deciding is None:
+        return judged
+    station, record, polarity = (suite.texts(name)[deciding] for name in ("station", "record", "polarity"))
+    governs = float(runs.value[deciding])
+    return replace(judged, station=station, record=record, polarity=polarity, governing=governs)
 
 
 def _on_each(bounds: Sequence[Bounds], axes: Sequence[Axis], deciding: int | None) -> str:
@@ -270,27 +296,27 @@ def _on_each(bounds: Sequence[Bounds], axes: Sequence[Axis], deciding: int | Non
 
 
 def _far(rule: Rule, value: float) -> str:
-    """Return the remark that no run comes near the limit, as where its unit is wrong; empty where one does or it is confirmed."""
+    """Return the remark that no run comes near the limit, probably for a wrong unit; empty if one does or it is confirmed."""
     key = limit_key(rule)
     if rule.statistic == "count" or key in rule.confirm or not 0.0 < FAR * value < rule.limit:
         return ""
-    return f"{value:.4g} is below {1 / FAR:g} of the limit; check its unit, or write confirm = [{shown(key)}]"
+    return f"{value:.4g} is below {1 / FAR:g} of the limit: check its unit, or write confirm = [{shown(key)}]"
 
 
-def _laws(demanded: Demanded, suite: Rows, deciding: int | None) -> str:
-    """Return the remark that the worse of two spring laws counts, with the demands of the run ``deciding`` by both."""
+def _laws(demanded: Demanded, suite: Rows, deciding: int | None) -> list[str]:
+    """Return remarks that the worse of two spring laws counts, with the demands of the run ``deciding``; none of one law."""
     by_other = demanded.by_other
     if by_other is None:
-        return ""
-    remark = "the worse of two spring laws counts"
+        return []
+    remarks = ["the worse of two spring laws counts"]
     if deciding is not None and np.isfinite(by_other[deciding]):
-        remark += f": {demanded.own[deciding]:.4g} by that of the case, {by_other[deciding]:.4g} by the other"
+        remarks[0] += f": {demanded.own[deciding]:.4g} by that of the case, {by_other[deciding]:.4g} by the other"
     missing = int((np.isnan(by_other) & (suite.texts("status") == "ok")).sum())
-    return remark + (f"; by the other {missing} of the runs did not go through" if missing else "")
+    return [*remarks, f"by the other {missing} of the runs did not go through"] if missing else remarks
 
 
 def _chaotic(runs: int) -> str:
-    """Return the remark on this number of runs that claim no error because their results are chaotic."""
+    """Return the remark on this number of chaotic runs, which have no error estimate; empty for 0."""
     if not runs:
         return ""
     words = "1 run is chaotic, and is" if runs == 1 else f"{runs} runs are chaotic, and are"
@@ -298,7 +324,7 @@ def _chaotic(runs: int) -> str:
 
 
 def _directions(records: Mapping[str, tuple[int, int]]) -> str:
-    """Return the remark on records whose worst direction may be one that does not count."""
+    """Return the remark on records of which some runs do not count, with the numbers of runs; empty for none."""
     if not records:
         return ""
     names = [f"{name} ({used} of {total})" for name, (used, total) in records.items()]
@@ -307,7 +333,7 @@ def _directions(records: Mapping[str, tuple[int, int]]) -> str:
 
 
 def _of_bounds(rule: Rule, bounds: Bounds) -> tuple[float, float, float]:
-    """Return the statistic of the demands of all records, and its bounds."""
+    """Return the statistic of the demands of all records, and its bounds; NaN without a record."""
     interval = STATISTICS[rule.statistic or "max"].interval
     value, low, high = (_statistic(rule, values) for values in bounds[:3])
     if interval is not None and len(bounds.value):
@@ -316,6 +342,7 @@ def _of_bounds(rule: Rule, bounds: Bounds) -> tuple[float, float, float]:
 
 
 def _statistic(rule: Rule, values: Values) -> float:
+    """Return the statistic of values, shape (n,), or the number of those above the threshold; NaN for n = 0."""
     if len(values) == 0:
         return math.nan
     statistic = STATISTICS[rule.statistic or "max"]
@@ -323,7 +350,7 @@ def _statistic(rule: Rule, values: Values) -> float:
 
 
 def _decide(rule: Rule, low: float, high: float, unmet: str = "") -> tuple[str, str]:
-    """Return the verdict on a demand within these bounds, and the ``unmet`` condition on the records; with one nothing passes."""
+    """Return the verdict on a demand within these bounds, and ``unmet`` unless it passes; with an unmet condition it cannot."""
     within, beyond = high <= rule.limit, low > rule.limit
     if rule.sense == "at least":
         within, beyond = low >= rule.limit, high < rule.limit
@@ -335,12 +362,12 @@ def _decide(rule: Rule, low: float, high: float, unmet: str = "") -> tuple[str, 
 
 
 def _between(low: float, high: float) -> str:
-    """Return the remark that a limit is within the bounds of its demand."""
+    """Return the bounds of a demand in words: "between 0.2 and any value"."""
     return f"between {low:.4g} and {'any value' if math.isinf(high) else f'{high:.4g}'}"
 
 
 def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> str:
-    """Return the condition on the number of records that they do not meet, with who sets it; empty if they meet all."""
+    """Return the condition on the number of records that is not met, and whose condition it is; empty if all are met."""
     statistic = STATISTICS[rule.statistic or "max"]
     least, authority = statistic.least, statistic.code or (f"the {statistic.words}" if statistic.least > 1 else "")
     if rule.least is not None:

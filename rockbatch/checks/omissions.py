@@ -24,7 +24,7 @@ FACTORS = "1.6 to 2.9"
 
 
 class Omission(NamedTuple):
-    """Words on a force that leaves something out; ``decides`` is False if the rest says nothing of its upper bound."""
+    """Remark on an omission; ``decides`` is False if the demand without the omitted part has no upper bound."""
 
     remark: str
     decides: bool = True
@@ -56,9 +56,9 @@ OMISSIONS = {
 
 
 def open_landings(demand: Demand, runs: Rows, case: Case) -> npt.NDArray[np.bool_]:
-    """Return True for each run with landings by impulse that enter the demand, shape (n,): it is a lower bound.
+    """Return True for each run of which landings by impulse are missing in the demand, shape (n,): a lower bound.
 
-    A run without impacts, of a pier that never lifted off or never came back, leaves nothing out.
+    A run without impacts, whose pier never lifted off or never came back, misses none.
     """
     if not (demand.landing and lands_by_impulse(case)):
         return np.zeros(len(runs), dtype=bool)
@@ -66,7 +66,7 @@ def open_landings(demand: Demand, runs: Rows, case: Case) -> npt.NDArray[np.bool
 
 
 def omissions(demand: Demand, runs: Rows, case: Case) -> list[str]:
-    """Return what the demand leaves out in these runs of a case, by the names of :data:`OMISSIONS`."""
+    """Return the names in :data:`OMISSIONS` of the parts that the demand leaves out in these runs of a case."""
     if demand.landing and bends(case):
         return [MODES]
     omitted = []

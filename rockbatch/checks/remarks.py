@@ -1,4 +1,4 @@
-"""Remarks on the supports of a study's cases that a reader needs before the results: one sentence each, with the cases."""
+"""Remarks on the supports of a study's cases, shown before the results: one sentence each, with the cases."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -20,11 +20,11 @@ def weak_supports(cases: Sequence[Case]) -> str:
     weak = [cases[i] for i in shares]
     load = "weight and prestress" if any(map(_prestress, weak)) else "weight"
     named = _named(weak, cases)
-    return f"{named}: the supports yield before the pier can step, lift-off is not reached: one bears {borne} % of the {load}"
+    return f"{named}: one support cannot carry the full {load} ({borne} %): it yields before the pier lifts off"
 
 
 def pulled_supports(cases: Sequence[Case]) -> str:
-    """Return a sentence on cases whose impacts ask a support for a pull; empty for none."""
+    """Return a sentence on cases whose impacts need a support to pull; empty for none."""
     pulled = [case for case in cases if asks_tension(case)]
     if not pulled:
         return ""
@@ -39,12 +39,9 @@ def undamped_settlement(worst: Sequence[Worst]) -> str:
 
     ``worst`` are the worst responses of all cases.
     """
-    settled = [response.case for response in worst if response.demand == "settlement_m"]
-    undamped = [
-        response.case
-        for response in worst
-        if response.demand == "settlement_m" and response.value > 0.0 and not _is_damped(response.case)
-    ]
+    settlements = [response for response in worst if response.demand == "settlement_m"]
+    settled = [response.case for response in settlements]
+    undamped = [response.case for response in settlements if response.value > 0.0 and not _is_damped(response.case)]
     if not undamped:
         return ""
     return (
@@ -70,7 +67,7 @@ def _is_damped(case: Case) -> bool:
 
 
 def _named(cases: Iterable[Case], among: Sequence[Case]) -> str:
-    """Return the names of ``cases``, with their varied values where other cases ``among`` all have the same name."""
+    """Return the names of ``cases``, with varied values if further cases of the name are ``among`` all; a number for many."""
     names = []
     every = grouped(among, lambda case: str(case["case"]))
     for name, of_name in grouped(cases, lambda case: str(case["case"])).items():
@@ -81,4 +78,5 @@ def _named(cases: Iterable[Case], among: Sequence[Case]) -> str:
 
 
 def _written(value: float | str) -> str:
+    """Return a varied value as text."""
     return value if isinstance(value, str) else f"{value:g}"

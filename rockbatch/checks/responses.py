@@ -9,23 +9,23 @@ import numpy.typing as npt
 
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, Verdict
 from rockbatch.checks.wording import at
-from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, bends
-from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
+from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.quantity import SETTLING
 from rockbatch.quantities.rows import rows_of_cases
 
 PEAKS = frozenset(name for name, demand in DEMANDS.items() if demand.reached)
-"""Demands that are the greatest rotation times a length of the case."""
+"""Demands that are the greatest rotation times a length of the case, known until a motion ends."""
 DRIFTS = frozenset(("top_drift_m", "top_drift_mm"))
 TILTS = frozenset(("theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m"))
 _SETTLED = frozenset(("settlement_m", "toe_settlement_m"))
 
 
 class Response(NamedTuple):
-    """Name of a response, the demands whose limits bound it, too, and its unit in tables with the factor to it."""
+    """Name of a response, the demands whose limits bound it as well, its unit in tables and the factor to it."""
 
     words: str
     bounded_by: frozenset[str]
@@ -47,17 +47,17 @@ RESPONSES = {
     "heel_uplift_m": Response("uplift of the heel", PEAKS),
     "ductility": Response("ductility", frozenset(("ductility",)), "", 1.0),
 }
-"""By their demands, in the order of the answer. The settlement of the toe is that of the pier and its tilt, and on springs the
-residual rotation follows from the tilt."""
+"""Responses by their demands, in the order of the answer. The settlement of the toe is that of the pier and its tilt, and on
+springs the residual rotation follows from the tilt."""
 
 LOST = "runs that do not end standing"
-"""Head of their number beside the responses, which are of the others."""
+"""Heading of the number of such runs, beside the responses of the others."""
 
 PERMANENT = ("settlement_m", "base_tilt_rad")
-"""Responses that only supports that yield have."""
+"""Responses of yielding supports only."""
 
 ROUNDING = 1e-9
-"""Settlement [m] or tilt [rad] that is rounding."""
+"""Settlement [m] or tilt [rad] below which a value is rounding error."""
 
 _HELD = 1e-4
 """Least residual rotation over α on rigid ground that counts."""
@@ -75,12 +75,12 @@ class Worst(NamedTuple):
 
     @property
     def height(self) -> float:
-        """Height at which it is read [m]; NaN of what is read at none."""
+        """Height at which the demand is read [m]; NaN of one without a height."""
         lever = DEMANDS[self.demand].height
         return math.nan if lever is None else lever(self.case)
 
     def place_among(self, heights: Collection[float]) -> str:
-        """Return its height in words where responses are read at several ``heights``; of one the head of their column says it."""
+        """Return its height in words if ``heights`` are several; empty for one, which the head of the column has."""
         return at(self.height) if len(heights) > 1 else ""
 
     @property
@@ -118,7 +118,7 @@ def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], *, at_each_scale
 
 
 def _greatest(rows: Rows, case: Case) -> Iterator[tuple[str, float, int]]:
-    """Yield the demand of each response that a case has, its greatest value in these rows, and the place of that in the table."""
+    """Yield the demand of each response of a case, its greatest value in these rows, and the place of the row in the table."""
     for name in RESPONSES if len(rows) else ():
         if not DEMANDS[name].applies_to(case) or (name == "theta_res_rad" and case["base"] != "rigid"):
             continue
@@ -132,11 +132,13 @@ def _greatest(rows: Rows, case: Case) -> Iterator[tuple[str, float, int]]:
 
 
 def heights_of(worst: Iterable[Worst]) -> dict[str, set[float]]:
-    """Return the heights at which responses are read [m], those of all cases, by their demands; empty for those read at none."""
-    return {
-        name: {peak.height for peak in of_demand if not math.isnan(peak.height)}
-        for name, of_demand in grouped(worst, lambda peak: peak.demand).items()
-    }
+    """Return by demand the heights of all cases at which it is read [m]; empty for a demand without a height."""
+    heights: dict[str, set[float]] = {}
+    for peak in worst:
+        of_demand = heights.setdefault(peak.demand, set())
+        if not math.isnan(peak.height):
+            of_demand.add(peak.height)
+    return heights
 
 
 def worst_of_all(worst: Iterable[Worst]) -> dict[str, Worst]:
@@ -149,7 +151,7 @@ def worst_of_all(worst: Iterable[Worst]) -> dict[str, Worst]:
 
 
 def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst]:
-    """Return the responses of a case that govern its design, and that no check bounds.
+    """Return the responses that govern the design of a case and that no check bounds.
 
     Rotation always governs, and stands for drift and uplift; the drift of a shaft that bends governs beside it; settlement, tilt
     and ductility do where a support yields, the residual rotation where dampers hold the pier at one on rigid ground.
@@ -158,18 +160,15 @@ def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst
     checked = {verdict.demand for verdict in verdicts if verdict.verdict != DOES_NOT_APPLY}
     yielded = any(peak.demand == "ductility" and peak.value > 1.0 for peak in worst)
     governing = ["theta_max_over_alpha", *(("settlement_m", "base_tilt_rad", "ductility") if yielded else ())]
-    governing += [
-        peak.demand
-        for peak in worst
-        if peak.demand == "theta_res_rad" and peak.value > _HELD * peak.case["pier"]["alpha"]
-    ]
+    residual = (peak for peak in worst if peak.demand == "theta_res_rad")
+    governing += [peak.demand for peak in residual if peak.value > _HELD * peak.case["pier"]["alpha"]]
     free = [peak for peak in worst if peak.demand in governing and not checked & RESPONSES[peak.demand].bounded_by]
     bent = [peak for peak in worst if peak.demand == "top_drift_m" and bends(peak.case) and not checked & DRIFTS]
     return free + bent
 
 
 def in_words(worst: Worst) -> str:
-    """Return the value with its units: "1.49 m (1486 mm)"."""
+    """Return the value of a response with its units: "1.49 m (1486 mm)"; a range if two spring laws were run."""
     value, pier = worst.value, worst.case["pier"]
     if worst.demand == "theta_max_over_alpha":
         theta = value * float(pier["alpha"])
@@ -185,4 +184,5 @@ def in_words(worst: Worst) -> str:
 
 
 def _millimetres(metres: float) -> str:
+    """Return a length in mm, to whole mm from 0.1 m on, else with three significant digits."""
     return f"{1000 * metres:,.0f}" if metres >= 0.1 else f"{1000 * metres:.3g}"

@@ -3,6 +3,7 @@
 import fnmatch
 import math
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 from rockbatch.checks.rules import Rule
 from rockbatch.common.errors import MissingKey, Problem, UnknownKey, Unusual
@@ -14,18 +15,18 @@ from rockbatch.quantities.cases import Case, weight
 from rockbatch.quantities.catalogue import DEMANDS
 
 FAR = 100.0
-"""How many times a limit may be what is limited, or the reverse; beyond it a wrong unit is likelier."""
+"""Greatest plausible ratio of a limit to its demand, or the reverse; beyond it a wrong unit is likelier."""
 
 LEAST_SHARE = 1e-4
 """Least limit on a force over the pier's weight."""
 
 LEAST_MM = 1.0
-"""Limit of a length [mm] below which metres are likelier meant."""
+"""Limit of a length [mm] below which it is more probably in metres."""
 
 
 def is_about(rule: Rule, case: str) -> bool:
     """Return whether the rule is about the case of this name."""
-    return not rule.case or any(_fits(case, pattern) for pattern in rule.case)
+    return not rule.case or any(_matches(case, pattern) for pattern in rule.case)
 
 
 def chooses(rule: Rule, case: str, scale: float) -> bool:
@@ -33,21 +34,25 @@ def chooses(rule: Rule, case: str, scale: float) -> bool:
     return is_about(rule, case) and (not rule.scale or any(math.isclose(scale, factor) for factor in rule.scale))
 
 
-def unmet(
-    rule: Rule,
-    *,
-    cases: Collection[str],
-    scales: Collection[float],
-    other_law: bool,
-    output: Collection[str],
-    sections: Collection[float] = (),
-) -> Iterator[Problem]:
-    """Return a problem for each choice of the rule that the study lacks.
+class Available(NamedTuple):
+    """Choices that a study offers to rules.
 
-    ``output`` are the keys of [output] whose columns are there, ``sections`` the heights [m] of sections of any pier.
+    ``cases`` are names, ``output`` the keys of [output] whose columns it has, ``sections`` the heights [m] of sections of any
+    pier; ``other_law`` is True if it has the settlement by the other spring law.
     """
+
+    cases: Collection[str]
+    scales: Collection[float]
+    other_law: bool
+    output: Collection[str]
+    sections: Collection[float] = ()
+
+
+def unmet(rule: Rule, available: Available) -> Iterator[Problem]:
+    """Yield a problem for each choice of the rule that is not ``available``."""
+    cases, scales = available.cases, available.scales
     for pattern in rule.case:
-        if not any(_fits(name, pattern) for name in cases):
+        if not any(_matches(name, pattern) for name in cases):
             nearest = closest(pattern, cases)
             instead = f"did you mean {shown(nearest)}?" if nearest else f"there is {', '.join(map(shown, cases))}"
             yield Problem("case", pattern, f"there is no such case; {instead}", kind=UnknownKey)
@@ -55,7 +60,7 @@ def unmet(
         if not any(math.isclose(scale, factor) for factor in scales):
             text = f"the motions are scaled by {', '.join(f'{factor:g}' for factor in scales)} only"
             yield Problem("scale", scale, text, kind=UnknownKey)
-    if rule.other_law and not other_law:
+    if rule.other_law and not available.other_law:
         text = (
             "there is no settlement by the other law; write both_laws = true under [output] of the study and run it, or leave "
             "other_law out"
@@ -63,18 +68,19 @@ def unmet(
         yield Problem("other_law", None, text, kind=MissingKey)
     needs = DEMANDS[rule.demand].needs
     if needs == "sections":
-        yield from _no_section(rule, sections)
-    elif needs and needs not in output:
+        yield from _no_section(rule, available.sections)
+    elif needs and needs not in available.output:
         text = f"there is no column of {needs}; write {needs} = true under [output] of the study and run it"
         yield Problem("demand", rule.demand, text, kind=MissingKey)
 
 
 def has_section(rule: Rule, sections: Iterable[float]) -> bool:
-    """Return whether a section at one of these heights [m] is the one that the rule is about."""
+    """Return whether one of these heights [m] is that of the rule, up to rounding."""
     return any(math.isclose(height, rule.at_m or 0.0, rel_tol=1e-6, abs_tol=1e-9) for height in sections)
 
 
 def _no_section(rule: Rule, sections: Collection[float]) -> Iterator[Problem]:
+    """Yield the problem of a rule whose section is not there, or that there are none at all."""
     if not sections:
         text = (
             "there are no forces in sections; write sections = 5 under [output] of the study and check the folder that it is "
@@ -86,15 +92,16 @@ def _no_section(rule: Rule, sections: Collection[float]) -> Iterator[Problem]:
         yield Problem("at_m", rule.at_m, text, kind=UnknownKey)
 
 
-def _fits(name: str, pattern: str) -> bool:
+def _matches(name: str, pattern: str) -> bool:
+    """Return whether a name is ``pattern``, which may have brackets of its own, or matches it as a glob."""
     return name == pattern or fnmatch.fnmatchcase(name, pattern)
 
 
 def implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
-    """Yield what is odd about a limit that says nothing about the pier, probably for a wrong unit.
+    """Yield the problem of a limit that is too far from possible values to decide anything, unless it is confirmed.
 
-    It is refused unless confirmed. ``cases`` are as in run.json, with ``case``, ``base``, ``pier`` and ``parameters`` at least; a
-    limit is implausible if it is so for all that the rule is about.
+    ``cases`` are as in run.json, with ``case``, ``base``, ``pier`` and ``parameters`` at least; a limit is implausible if it is
+    so for all cases that the rule is about.
     """
     key = "above" if rule.statistic == "count" else limit_key(rule)
     demand, value = DEMANDS[rule.demand], rule.above if rule.statistic == "count" else rule.limit
@@ -120,19 +127,16 @@ def implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
 
 
 def limit_key(rule: Rule) -> str:
-    """Return the key of its limit: at_most or at_least."""
+    """Return the key of the rule's limit: "at_most" or "at_least"."""
     return rule.sense.replace(" ", "_")
 
 
 def _far_from(name: str, value: float, cases: Sequence[Case]) -> str:
-    """Return that a limit is far from the parameter of every case, or as a force from the weight; empty if it is not."""
+    """Return a message about a limit far from the parameter of every case, or from the weight; empty if it is near one."""
     demand = DEMANDS[name]
     if demand.per_case:
-        sizes, least, most = (
-            [float(demand.evaluate(Rows(pd.DataFrame()), case).value[0]) for case in cases],
-            1 / FAR,
-            FAR,
-        )
+        no_runs = Rows(pd.DataFrame())
+        sizes, least, most = [float(demand.evaluate(no_runs, case).value[0]) for case in cases], 1 / FAR, FAR
         words = "is {:.4g} here, {:.2g} times the limit, so that it decides nothing"
     elif demand.unit == "kN":
         sizes, least, most = [weight(case) for case in cases if "mass_t" in case["pier"]], LEAST_SHARE, FAR
@@ -140,9 +144,8 @@ def _far_from(name: str, value: float, cases: Sequence[Case]) -> str:
     else:
         return ""
 
-    if not sizes or any(
-        not least * size > value and not value > most * size for size in sizes
-    ):  # a size may be unknown
+    # Negated, so that an unknown size, NaN, counts as near
+    if not sizes or any(not least * size > value and not value > most * size for size in sizes):
         return ""
     nearest = min(sizes, key=lambda size: abs(math.log(size / value)))
     return f"{name} {words.format(nearest, nearest / value)}"

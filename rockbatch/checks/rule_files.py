@@ -1,48 +1,65 @@
 """Rules from TOML: the tables [[check]] of a study file or of a file of rules."""
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rockbatch.checks.rules import AXES, BOTH_AXES, CHECK, COUNT, COUNTS, PER_EVENT, Rule
 from rockbatch.common.errors import InputError, Problem
 from rockbatch.common.showing import shown
-from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
-from rockbatch.toml.kinds import choice, count, text
+from rockbatch.toml.kinds import KeyValues, choice, count, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Key, Section
 
-SUITE = Section(("suite",), "What holds for every check that does not say otherwise, and where more of them are.", {
-    "count": Key(choice(*COUNTS), '"component"', f"{COUNT}.", default=COUNTS[0]),
-    "per_event": Key(count, "4", f"{PER_EVENT}; no limit if it is not given."),
-    "both_axes": Key(choice(*BOTH_AXES), '"srss"', f"{AXES}; demands that do not add up have the greater.", default="greater"),
-    "checks": Key(text, '"checks.toml"',
-        "A file of checks, relative to this one, that hold beside those written here; its text is kept in run.json."),
-}, also=names({"checks": "file rules"}))  # fmt: skip
+SUITE = Section(
+    ("suite",),
+    "What holds for every check that does not say otherwise, and where more of them are.",
+    {
+        "count": Key(choice(*COUNTS), '"component"', f"{COUNT}.", default=COUNTS[0]),
+        "per_event": Key(count, "4", f"{PER_EVENT}; no limit if it is not given."),
+        "both_axes": Key(
+            choice(*BOTH_AXES), '"srss"', f"{AXES}; demands that do not add up have the greater.", default="greater"
+        ),
+        "checks": Key(
+            text,
+            '"checks.toml"',
+            "A file of checks, relative to this one, that hold beside those written here; its text is kept in run.json.",
+        ),
+    },
+    also=names({"checks": "file rules"}),
+)
 
-TOP = Section((), "", {
-    "title": Key(text, '"Checks of a stepping pier"', "Heading of the report and its tables; default: the file's name."),
-    "notes": Key(text, '"Limits as agreed."', "Free text for the report. Blank lines separate paragraphs."),
-})  # fmt: skip
+TOP = Section(
+    (),
+    "",
+    {
+        "title": Key(
+            text, '"Checks of a stepping pier"', "Heading of the report and its tables; default: the file's name."
+        ),
+        "notes": Key(text, '"Limits as agreed."', "Free text for the report. Blank lines separate paragraphs."),
+    },
+)
 
 
 SECTIONS = (TOP, SUITE, CHECK)
 """Tables of a file of checks."""
 
 
-def _read(path: Path) -> TomlFile:
+def _opened(path: Path) -> TomlFile:
+    """Return a file of checks, parsed. Raises ``InputError`` if it cannot be read."""
     return TomlFile.read(path, SECTIONS)
 
 
 def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
-    """Return the rules of a file: its [[check]] tables; a study file will do, whose other tables are ignored.
+    """Return the rules of the [[check]] tables of a file; other tables of a study file are ignored.
 
     Raises ``InputError`` with every mistake and its line.
     """
-    file = _read(Path(path))
+    file = _opened(Path(path))
     if "pier" not in file.data:
         Table(file, (), "", file.data).read(TOP, other=("check", "suite"))
     checks = read_checks(file)
@@ -53,7 +70,7 @@ def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
 
 
 class Checks(NamedTuple):
-    """The rules of a file with those of the file that its [suite] names, what counts as one record, and that file."""
+    """The rules of a file and of the file that its [suite] names; the way of counting records; and the second file, if any."""
 
     rules: tuple[Rule, ...]
     counted: str
@@ -63,11 +80,11 @@ class Checks(NamedTuple):
 def read_checks(
     file: TomlFile,
     unmet: Callable[[Rule], Iterable[Problem]] | None = None,
-    opened: Callable[[Path], TomlFile] = _read,
+    opened: Callable[[Path], TomlFile] = _opened,
 ) -> Checks:
     """Read [suite] and [[check]] of ``file``, and [[check]] of the file that [suite] names; mistakes are noted in ``file``.
 
-    ``unmet`` returns the choices of a rule that the study lacks, as :func:`rockbatch.checks.rule_choices.unmet` does; ``opened``
+    ``unmet`` returns problems of choices that the study lacks, as :func:`rockbatch.checks.rule_choices.unmet` does; ``opened``
     opens the file that [suite] names, or raises ``InputError``.
     """
     suite = file.table("suite")
@@ -93,9 +110,9 @@ def read_checks(
 
 
 def _rules(
-    file: TomlFile, unmet: Callable[[Rule], Iterable[Problem]] | None, usual: Mapping[str, Any], names: set[str]
+    file: TomlFile, unmet: Callable[[Rule], Iterable[Problem]] | None, usual: KeyValues, names: set[str]
 ) -> list[Rule]:
-    """Return the rules of usable [[check]] tables, with the ``usual`` keys that they do not give; their names join ``names``."""
+    """Return the rules of the [[check]] tables without mistakes, with ``usual`` values of keys; add their names to ``names``."""
     rules: list[Rule] = []
     for table in file.tables("check", title="name"):
         before = len(file.problems)
@@ -106,8 +123,9 @@ def _rules(
         if name is not None:
             names.add(name)
         if file.is_sound_since(before):
-            applying = {"count"} if "demand" in read and not DEMANDS[read["demand"]].per_case else set()
-            applying |= {"both_axes"} if read.get("demand") in DIRECTED else set()
+            demand = DEMANDS.get(read.get("demand", ""))
+            applying = {"count"} if demand and not demand.per_case else set()
+            applying |= {"both_axes"} if demand and demand.directed else set()
             applying |= {"per_event"} if STATISTICS[read.get("statistic", "max")].code else set()
             read = {name: value for name, value in usual.items() if name in applying} | read
             try:

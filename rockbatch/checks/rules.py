@@ -1,12 +1,13 @@
 """Rules: a demand, its statistic over the suite, a limit, and the source of the limit."""
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import Contradiction, Problem, WrongType, refuse
 from rockbatch.common.showing import shown
-from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.toml.kinds import Choice, KindError, boolean, choice, count, not_negative, number, positive, text
 from rockbatch.toml.meant import names
@@ -14,16 +15,16 @@ from rockbatch.toml.section import Key, Section
 
 BASES = ("code", "literature", "judgement")
 COUNTING = ("infinite", "unknown", "value", "left out")
-"""Ways in which a run counts that did not go through to its end:
+"""Ways of counting a run that did not go through to its end:
 
 infinite
     Worse than any limit.
 unknown
-    Anything from what is known up to infinity: a peak or a count is at least what it was when the pier overturned or flew.
+    Any value from the known one up to infinity: a peak or a count is at least its value when the pier overturned or flew.
 value
-    What the table has, as if the run had gone through; unknown where it has nothing.
+    The value in the table, as if the run had gone through; unknown if it has none.
 left out
-    Not at all; the verdict says how many.
+    Not counted; the verdict has the number of such runs.
 """
 COUNTS = ("station", "component")
 """Ways to count records:
@@ -44,7 +45,7 @@ srss
     The greater of one with 0.3 of the other.
 """
 EITHER, LESSER = "on either axis", "the lesser of both axes"
-"""Words for events, and for properties of a case of which more is better."""
+"""Ways to combine events, and properties of a case of which more is better."""
 CONFIRMED = ("at_most", "at_least", "above")
 USUAL = {"overturned": "infinite", "flight": "unknown", "failed": "unknown"}
 
@@ -94,7 +95,7 @@ class Rule:
         Height of the section that a demand such as section_moment_kNm is about [m].
     both_axes : "greater", "srss", "100_30" or None
         How the demands of a record combine on both axes of a pier, one of :data:`BOTH_AXES`, in cases with ``other_width_m``;
-        "greater" unless given, and of demands that do not add up (:data:`rockbatch.quantities.catalogue.DIRECTED`).
+        "greater" unless given, and of demands that do not add up (:attr:`rockbatch.quantities.demands.Demand.directed`).
     confirm : tuple of str
         Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.checks.rule_choices`).
 
@@ -135,7 +136,7 @@ class Rule:
 
     @property
     def limit(self) -> float:
-        """The limit, whichever way it bounds."""
+        """The value of at_most or at_least; NaN without one."""
         return float(next((limit for limit in (self.at_most, self.at_least) if limit is not None), math.nan))
 
     @property
@@ -144,13 +145,13 @@ class Rule:
         return "at most" if self.at_most is not None else "at least"
 
     def counts(self, status: str) -> str:
-        """Return how a run of this status counts, one of :data:`COUNTING`."""
+        """Return the way of counting a run with this status, one of :data:`COUNTING`; the usual one unless the rule gives it."""
         usual = "infinite" if self.statistic == "asce7-16" else USUAL[status]
         return getattr(self, status) or usual
 
     @property
     def on_both_axes(self) -> str:
-        """Return how demands on both axes combine in words: "SRSS of both axes"; of a demand of the case, the worse counts."""
+        """Way to combine the demands on both axes, in words: "SRSS of both axes"; for a property of the case, the worse."""
         if DEMANDS[self.demand].event:
             return EITHER
         return BOTH_AXES[self.both_axes or "greater"] if self.sense == "at most" else LESSER
@@ -166,7 +167,7 @@ class Rule:
         return self.words_at(self.at_m)
 
     def words_at(self, height: float | None) -> str:
-        """Return that name with the height at which the demand is read [m], if it is read at one."""
+        """Return :attr:`words` with the height at which the demand is read [m], without one for None."""
         demand = DEMANDS[self.demand]
         if demand.per_case:
             return self.demand
@@ -182,7 +183,7 @@ class Rule:
 
     @property
     def counting(self) -> str:
-        """Ways in which runs count that do not go through, in words; empty if the demand is about nothing else."""
+        """Ways of counting runs that do not go through, in words; empty for events and properties of the case."""
         if not DEMANDS[self.demand].per_run:
             return ""
         kinds = dict.fromkeys(self.counts(status) for status in USUAL)
@@ -192,7 +193,7 @@ class Rule:
 
 
 def is_ban(demand: str, statistic: str, limit: float) -> bool:
-    """Return whether a check with these asks that an event happens under no record."""
+    """Return whether a check with these asks that an event (``demand``) happens under no record."""
     return demand in DEMANDS and DEMANDS[demand].event and statistic == "max" and 0 <= limit < 1
 
 
@@ -203,73 +204,146 @@ COUNT = (
 PER_EVENT = "Greatest number of stations of one event with which anything passes by a code's statistic"
 AXES = "How the demands of a record on both axes of a pier combine, in cases with `other_width_m`"
 _CALLED = {
-    "demand": names({
-        ("heel_uplift_m", "heel_uplift_mm"): "uplift heeluplift",
-        ("theta_max_rad", "theta_max_over_alpha"): "rotation maxrotation peakrotation thetamax theta",
-        ("theta_res_rad", "theta_res_over_alpha"): "residualrotation residual thetares",
-        ("top_drift_m", "top_drift_mm"): "displacement topdisplacement", "friction_demand": "sliding slip",
-        "overturned": "overturning overturn collapse toppling",
-    }),
-    "statistic": names({
-        "mean": "average avg", "max": "maximum envelope worst largest peak", "median": "p50", "count": "number",
-        "p84": "84th 84 84percentile percentile84 84thpercentile", "p84_lognormal": "lognormal",
-        "p84_95": "tolerance", ("en1998-1", "en1998-2"): "ec8 eurocode8 en1998",
-        "asce7-16": "asce7", "aashto": "aashtolrfd lrfd", "nzs1170.5": "nzs",
-    }),
-    "basis": names({
-        "code": "standard norm", "literature": "paper book", "judgement": "judgment engineeringjudgement expert",
-    }),
-}  # fmt: skip
+    "demand": names(
+        {
+            ("heel_uplift_m", "heel_uplift_mm"): "uplift heeluplift",
+            ("theta_max_rad", "theta_max_over_alpha"): "rotation maxrotation peakrotation thetamax theta",
+            ("theta_res_rad", "theta_res_over_alpha"): "residualrotation residual thetares",
+            ("top_drift_m", "top_drift_mm"): "displacement topdisplacement",
+            "friction_demand": "sliding slip",
+            "overturned": "overturning overturn collapse toppling",
+        }
+    ),
+    "statistic": names(
+        {
+            "mean": "average avg",
+            "max": "maximum envelope worst largest peak",
+            "median": "p50",
+            "count": "number",
+            "p84": "84th 84 84percentile percentile84 84thpercentile",
+            "p84_lognormal": "lognormal",
+            "p84_95": "tolerance",
+            ("en1998-1", "en1998-2"): "ec8 eurocode8 en1998",
+            "asce7-16": "asce7",
+            "aashto": "aashtolrfd lrfd",
+            "nzs1170.5": "nzs",
+        }
+    ),
+    "basis": names(
+        {
+            "code": "standard norm",
+            "literature": "paper book",
+            "judgement": "judgment engineeringjudgement expert",
+        }
+    ),
+}
 _DEMAND = Choice(tuple(DEMANDS), called=_CALLED["demand"], listed_by="rockbatch check --list")
 
-CHECK = Section(("check",), (
-    "A design check: a demand, how it is summed up over the records, and a limit. `rockbatch check` holds results against it."
-), {
-    "name": Key(text, '"overturning margin"', "Its name in the table of verdicts.", required=True),
-    "demand": Key(_DEMAND, '"theta_max_over_alpha"', "What is looked at.", required=True),
-    "at_m": Key(not_negative, "7.5",
-        "Height above the pivots of the section that the demand is about, one of those of `sections` or `sections_m`."),
-    "statistic": Key(choice(*STATISTICS, called=_CALLED["statistic"]), '"mean"',
-        'How the records are summed up; "max" if it is not given.'),
-    "above": Key(not_negative, "0.5",
-        'With statistic = "count": the value that a record has to exceed to count; 0 for events if it is not given.'),
-    "least": Key(count, "7", "Number of records below which nothing passes; what the statistic asks for if it is not given."),
-    "count": Key(choice(*COUNTS), '"component"',
-        f"{COUNT}; what `[suite]` says if it is not given. A code's statistic counts stations."),
-    "per_event": Key(count, "4", f"{PER_EVENT}; what `[suite]` says if it is not given."),
-    "both_axes": Key(choice(*BOTH_AXES), '"srss"',
-        f'{AXES}: "greater", the greater; "srss", the root of the sum of squares; "100_30", one with 0.3 of the other. What '
-        "`[suite]` says if it is not given."),
-    "at_most": Key(number, "0.5", "The limit."),
-    "at_least": Key(number, "2.0", "The limit, for what belongs to the foundation, where more is better."),
-    "basis": Key(choice(*BASES, called=_CALLED["basis"]), '"code"', "Where the limit comes from."),
-    "reason": Key(text, '"EN 1998-2, 7.6.2"', "Clause, source, or why, in words.", required=True),
-    "case": Key(text, '["soft", "stiff*"]',
-        "Names of the cases to check, or patterns with * and ?; all if it is not given.", many=True),
-    "scale": Key(positive, "1.0",
-        "Scales of the motions to check, each a suite of its own; all if it is not given.", many=True),
-    "overturned": Key(choice(*COUNTING), '"infinite"',
-        'How an overturned run counts: "infinite", beyond any limit; "unknown", any value from the known one upwards; '
-        '"value", as the table has it; "left out". "infinite" if it is not given.'),
-    "flight": Key(choice(*COUNTING), '"unknown"', 'How a run counts that was ended by flight; "unknown" if it is not given.'),
-    "failed": Key(choice(*COUNTING), '"unknown"',
-        'How a run counts that has not settled, or was not run; "unknown" if it is not given.'),
-    "other_law": Key(boolean, "true",
-        "Whether nothing passes without the settlement by the other spring law; where both were run the worse counts."),
-    "confirm": Key(choice(*CONFIRMED), '["at_most"]',
-        "Keys of this check that are right though such a limit decides nothing.", many=True),
-}, many=True, homes=(Rule,), also=names({
-    "at_most": "limit max maximum threshold allowable value lessthan", "at_least": "min minimum greaterthan",
-    "demand": "quantity edp measure response parameter variable", "statistic": "stat aggregate",
-    "reason": "source reference clause comment note notes description why", "name": "id label title",
-}), instead=names({
-    "the unit stands in the name of the demand, as in heel_uplift_mm; leave it out": "unit units",
-    "both polarities of a study are mirror images, of which each run counts once; leave it out": "polarity polarities sign",
-}))  # fmt: skip
+CHECK = Section(
+    ("check",),
+    (
+        "A design check: a demand, how it is summed up over the records, and a limit. `rockbatch check` holds results against it."
+    ),
+    {
+        "name": Key(text, '"overturning margin"', "Its name in the table of verdicts.", required=True),
+        "demand": Key(_DEMAND, '"theta_max_over_alpha"', "What is looked at.", required=True),
+        "at_m": Key(
+            not_negative,
+            "7.5",
+            "Height above the pivots of the section that the demand is about, one of those of `sections` or `sections_m`.",
+        ),
+        "statistic": Key(
+            choice(*STATISTICS, called=_CALLED["statistic"]),
+            '"mean"',
+            'How the records are summed up; "max" if it is not given.',
+        ),
+        "above": Key(
+            not_negative,
+            "0.5",
+            'With statistic = "count": the value that a record has to exceed to count; 0 for events if it is not given.',
+        ),
+        "least": Key(
+            count, "7", "Number of records below which nothing passes; what the statistic asks for if it is not given."
+        ),
+        "count": Key(
+            choice(*COUNTS),
+            '"component"',
+            f"{COUNT}; what `[suite]` says if it is not given. A code's statistic counts stations.",
+        ),
+        "per_event": Key(count, "4", f"{PER_EVENT}; what `[suite]` says if it is not given."),
+        "both_axes": Key(
+            choice(*BOTH_AXES),
+            '"srss"',
+            f'{AXES}: "greater", the greater; "srss", the root of the sum of squares; "100_30", one with 0.3 of the other. What '
+            "`[suite]` says if it is not given.",
+        ),
+        "at_most": Key(number, "0.5", "The limit."),
+        "at_least": Key(number, "2.0", "The limit, for what belongs to the foundation, where more is better."),
+        "basis": Key(choice(*BASES, called=_CALLED["basis"]), '"code"', "Where the limit comes from."),
+        "reason": Key(text, '"EN 1998-2, 7.6.2"', "Clause, source, or why, in words.", required=True),
+        "case": Key(
+            text,
+            '["soft", "stiff*"]',
+            "Names of the cases to check, or patterns with * and ?; all if it is not given.",
+            many=True,
+        ),
+        "scale": Key(
+            positive,
+            "1.0",
+            "Scales of the motions to check, each a suite of its own; all if it is not given.",
+            many=True,
+        ),
+        "overturned": Key(
+            choice(*COUNTING),
+            '"infinite"',
+            'How an overturned run counts: "infinite", beyond any limit; "unknown", any value from the known one upwards; '
+            '"value", as the table has it; "left out". "infinite" if it is not given.',
+        ),
+        "flight": Key(
+            choice(*COUNTING), '"unknown"', 'How a run counts that was ended by flight; "unknown" if it is not given.'
+        ),
+        "failed": Key(
+            choice(*COUNTING),
+            '"unknown"',
+            'How a run counts that has not settled, or was not run; "unknown" if it is not given.',
+        ),
+        "other_law": Key(
+            boolean,
+            "true",
+            "Whether nothing passes without the settlement by the other spring law; where both were run the worse counts.",
+        ),
+        "confirm": Key(
+            choice(*CONFIRMED),
+            '["at_most"]',
+            "Keys of this check that are right though such a limit decides nothing.",
+            many=True,
+        ),
+    },
+    many=True,
+    homes=(Rule,),
+    also=names(
+        {
+            "at_most": "limit max maximum threshold allowable value lessthan",
+            "at_least": "min minimum greaterthan",
+            "demand": "quantity edp measure response parameter variable",
+            "statistic": "stat aggregate",
+            "reason": "source reference clause comment note notes description why",
+            "name": "id label title",
+        }
+    ),
+    instead=names(
+        {
+            "the unit stands in the name of the demand, as in heel_uplift_mm; leave it out": "unit units",
+            "both polarities of a study are mirror images, of which each run counts once; leave it out": "polarity "
+            "polarities sign",
+        }
+    ),
+)
 """A [[check]]; :class:`Rule` says what its keys mean."""
 
 
 def _unknown_words(rule: Rule) -> list[Problem]:
+    """Return the problem of each attribute that is not one of the words that its key allows."""
     wrong = []
     for name, key in CHECK.items():
         value = getattr(rule, name)
@@ -284,80 +358,77 @@ def _unknown_words(rule: Rule) -> list[Problem]:
 
 
 def _misfits(rule: Rule) -> list[Problem]:
-    """Return what the attributes of a rule say about each other, each problem at the first of them that is wrong."""
-    demand, statistic = DEMANDS[rule.demand], STATISTICS[rule.statistic or "max"]
-    two_limits = rule.at_most is not None and rule.at_least is not None
-    neither = rule.at_most is None and rule.at_least is None
-    wrong_way = not demand.per_case and rule.at_most is None and not neither
-    least = {"eta": 2.0, "yield_kN": 4e4, "stiffness_kN_m": 2e6}.get(rule.demand)
-    example = "at_most = 0.5" if least is None else f"at_least = {least:.10g}"
-    counts = rule.statistic == "count"
-    with_other_law = " and ".join(name for name, candidate in DEMANDS.items() if candidate.other_law)
-    rules = [
-        (two_limits, "at_least", "at_least: given beside at_most; keep one, and write the other as a check of its own"),
-        (neither, example.split()[0], f"{example.split()[0]} is missing, the limit; write for example {example}"),
-        (
-            wrong_way,
-            "at_least",
-            f"at_least = {rule.limit:g}: more of {rule.demand} is worse; write at_most = {rule.limit:g}",
-        ),
-        (
-            not (neither or wrong_way or math.isfinite(rule.limit)),
-            rule.sense.replace(" ", "_"),
-            f"{rule.sense.replace(' ', '_')} = {rule.limit:g}: must be a finite number",
-        ),
-        (rule.above is not None and not counts, "above", 'above: is for statistic = "count"; leave it out'),
-        (
-            counts and rule.above is None and not (demand.event or demand.per_case),
-            "above",
-            "above is missing, what a record has to exceed to count; write for example above = 0.5",
-        ),
-        (
-            rule.least is not None and rule.least < statistic.least,
-            "least",
-            f"least = {rule.least}: {statistic.code or 'a statistic'} asks for {statistic.least}; leave it out",
-        ),
-        (
-            rule.count == "component" and statistic.code != "",
+    """Return the contradictions between the attributes of a rule, each at one of these."""
+    wrong = (*_wrong_limit(rule), *_wrong_threshold(rule), *_wrong_for_code(rule), *_wrong_for_demand(rule))
+    problems = [Problem(key, None, text, kind=Contradiction, named=False) for key, text in wrong]
+    demand, code = DEMANDS[rule.demand], rule.statistic == "asce7-16"
+    without_effect: list[tuple[bool, Iterable[str], str]] = [
+        (demand.per_case, ("statistic", "least", "count"), f"{rule.demand} is the same for all records"),
+        (not demand.per_run, USUAL, f"says nothing about {rule.demand}"),
+        (demand.per_run and code, USUAL, "is unacceptable by ASCE 7-16"),
+    ]
+    for applies, attributes, reason in without_effect:
+        given = [name for name in attributes if getattr(rule, name) is not None] if applies else []
+        problems += [Problem(name, None, f"{reason}; leave it out", kind=Contradiction) for name in given]
+    return problems
+
+
+def _wrong_limit(rule: Rule) -> Iterator[tuple[str, str]]:
+    """Yield problems of the limit, each with its attribute: none, two, on the wrong side, or not finite."""
+    key = rule.sense.replace(" ", "_")
+    if rule.at_most is not None and rule.at_least is not None:
+        yield "at_least", "at_least: given beside at_most; keep one, and write the other as a check of its own"
+    if rule.at_most is None and rule.at_least is None:
+        least = {"eta": 2.0, "yield_kN": 4e4, "stiffness_kN_m": 2e6}.get(rule.demand)
+        key, example = ("at_most", 0.5) if least is None else ("at_least", least)
+        yield key, f"{key} is missing, the limit; write for example {key} = {example:.10g}"
+    elif rule.at_most is None and not DEMANDS[rule.demand].per_case:
+        limit = rule.limit
+        yield "at_least", f"at_least = {limit:g}: more of {rule.demand} is worse; write at_most = {limit:g}"
+    elif not math.isfinite(rule.limit):
+        yield key, f"{key} = {rule.limit:g}: must be a finite number"
+
+
+def _wrong_threshold(rule: Rule) -> Iterator[tuple[str, str]]:
+    """Yield the problem of a threshold that is missing beside "count", or given beside another statistic."""
+    demand = DEMANDS[rule.demand]
+    if rule.above is not None and rule.statistic != "count":
+        yield "above", 'above: is for statistic = "count"; leave it out'
+    if rule.above is None and rule.statistic == "count" and not (demand.event or demand.per_case):
+        yield "above", "above is missing, what a record has to exceed to count; write for example above = 0.5"
+
+
+def _wrong_for_code(rule: Rule) -> Iterator[tuple[str, str]]:
+    """Yield contradictions to what the statistic, or its code, asks of the records, each with its attribute."""
+    statistic = STATISTICS[rule.statistic or "max"]
+    if rule.least is not None and rule.least < statistic.least:
+        asks = f"{statistic.code or 'a statistic'} asks for {statistic.least}"
+        yield "least", f"least = {rule.least}: {asks}; leave it out"
+    if rule.count == "component" and statistic.code:
+        yield (
             "count",
             f'count = "component": {statistic.code} asks for {statistic.least} motions, and the components of a station are '
             'one; write count = "station" in this check, or a statistic of no code, such as "mean"',
-        ),
-        (
-            rule.per_event is not None and not statistic.code,
-            "per_event",
-            "per_event: is for a code's statistic; leave it out",
-        ),
-        (
-            demand.event and statistic.code != "",
-            "statistic",
-            f'statistic = "{rule.statistic}": is for quantities, and {rule.demand} is yes or no; write "max" or "count"',
-        ),
-        (
-            demand.needs == "sections" and rule.at_m is None,
-            "at_m",
-            "at_m is missing, the height of the section [m]; write for example at_m = 7.5",
-        ),
-        (
-            demand.needs != "sections" and rule.at_m is not None,
-            "at_m",
-            "at_m: is for demands in a section, such as section_moment_kNm; leave it out",
-        ),
-        (
-            rule.both_axes not in (None, "greater") and rule.demand not in DIRECTED,
+        )
+    if rule.per_event is not None and not statistic.code:
+        yield "per_event", "per_event: is for a code's statistic; leave it out"
+    if DEMANDS[rule.demand].event and statistic.code:
+        text = f'statistic = "{rule.statistic}": is for quantities, and {rule.demand} is yes or no'
+        yield "statistic", f'{text}; write "max" or "count"'
+
+
+def _wrong_for_demand(rule: Rule) -> Iterator[tuple[str, str]]:
+    """Yield attributes that do not apply to the demand, or are missing for it, each with the problem."""
+    demand = DEMANDS[rule.demand]
+    if demand.needs == "sections" and rule.at_m is None:
+        yield "at_m", "at_m is missing, the height of the section [m]; write for example at_m = 7.5"
+    if demand.needs != "sections" and rule.at_m is not None:
+        yield "at_m", "at_m: is for demands in a section, such as section_moment_kNm; leave it out"
+    if rule.both_axes not in (None, "greater") and not demand.directed:
+        yield (
             "both_axes",
             f"both_axes: {rule.demand} does not add up over the axes, and the greater counts; leave it out",
-        ),
-        (rule.other_law and demand.other_law is None, "other_law", f"other_law: is for {with_other_law}; leave it out"),
-    ]
-    without_place = [  # attributes that say nothing about such a demand or statistic
-        (demand.per_case, ("statistic", "least", "count"), f"{rule.demand} is the same for all records"),
-        (not demand.per_run, USUAL, f"says nothing about {rule.demand}"),
-        (demand.per_run and rule.statistic == "asce7-16", USUAL, "is unacceptable by ASCE 7-16"),
-    ]
-    return [Problem(key, None, text, kind=Contradiction, named=False) for applies, key, text in rules if applies] + [
-        Problem(name, None, f"{reason}; leave it out", kind=Contradiction)
-        for applies, names, reason in without_place
-        for name in names
-        if applies and getattr(rule, name) is not None
-    ]
+        )
+    if rule.other_law and demand.other_law is None:
+        with_other_law = " and ".join(name for name, candidate in DEMANDS.items() if candidate.other_law)
+        yield "other_law", f"other_law: is for {with_other_law}; leave it out"

@@ -1,4 +1,4 @@
-"""The scorecard: cases by checks, each with its demand over the limit, as page and terminal show it."""
+"""The scorecard: a table of cases by checks, with demands over limits, for page and terminal."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -13,7 +13,7 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, V
 from rockbatch.common.grouping import grouped
 
 MOST_CASES, OPEN_CASES = 12, 6
-"""Cases that are all shown, and of more those that are shown first."""
+"""Greatest number of cases that are all shown, and number shown first of more."""
 SMALL = {"m": ("mm", 1e3), "rad": ("mrad", 1e3), "m/s": ("mm/s", 1e3)}
 """Units in which limits below one are written, and factors to them."""
 VERBS = {PASS: "passes", FAIL: "fails"}
@@ -22,7 +22,7 @@ _ORDER = (PASS, NOT_DECIDED, FAIL, DOES_NOT_APPLY)
 
 
 ROUNDING = 1e-6
-"""Of a limit: smaller demands are shown as zero."""
+"""Share of a limit below which demands are shown as zero."""
 
 
 class Column(NamedTuple):
@@ -46,7 +46,7 @@ class Cell(NamedTuple):
 
 
 class Row(NamedTuple):
-    """A case: its name, the verdict on it, and a cell for each column, None where the check says nothing of it.
+    """A case: its name, the verdict on it, and a cell for each column, None for a check that is not about it.
 
     The verdict is the worst of its checks; "does not apply" where none does, or where they pass though no run ends standing;
     "not decided" where they pass, but responses that govern have no limit: ``unlimited``, in words, or under a ``failing_suite``,
@@ -65,7 +65,7 @@ class Row(NamedTuple):
 
     @property
     def in_words(self) -> str:
-        """Return what becomes of the case: "fails 2 checks", "passes 5 checks", "2 checks not decided", "not checked"."""
+        """The verdict on the case in words: "fails 2 checks", "passes 5 checks", "2 checks not decided", "not checked"."""
         if self.verdict == DOES_NOT_APPLY:
             return "not checked" if not self.count(PASS) else "no run ends standing"
         if self.unlimited:
@@ -78,13 +78,13 @@ class Row(NamedTuple):
 
 
 class Scorecard(NamedTuple):
-    """Columns with the worst check first, and rows with the case first that is nearest to passing, or farthest from failing."""
+    """Columns, the worst check first, and rows, the best case first."""
 
     columns: list[Column]
     rows: list[Row]
 
     def open_columns(self, most: int) -> list[int]:
-        """Return the places of columns to show: those in which something fails or is open, then others up to ``most``."""
+        """Return the indices of columns to show: all with a failing or undecided cell, and further ones up to ``most``."""
         in_columns = zip(*(row.cells for row in self.rows), strict=True)
         telling = sum(
             any(cell and cell.verdict.verdict in (FAIL, NOT_DECIDED) for cell in cells) for cells in in_columns
@@ -130,24 +130,25 @@ def scorecard(
 
 
 def _under_failing_suite(verdict: Verdict) -> Verdict:
-    """Return a verdict as a suite that fails its own check leaves it: nothing passes."""
+    """Return the verdict under a suite that fails its own check: a pass becomes undecided."""
     return replace(verdict, verdict=NOT_DECIDED) if verdict.verdict == PASS else verdict
 
 
 def _worst(verdicts: Sequence[Verdict]) -> str:
-    """Return the verdict on a case: it passes if a check does and no other fails or is open."""
+    """Return the verdict on a case: that of the worst of its checks, "does not apply" only if none applies."""
     kinds = {verdict.verdict for verdict in verdicts}
     return next(kind for kind in (FAIL, NOT_DECIDED, PASS, DOES_NOT_APPLY) if kind in kinds)
 
 
 def _badness(verdict: Verdict) -> tuple[int, float]:
-    """Return by how much a verdict is worse than others: what fails, then what is open, then by the share of the limit."""
+    """Return a sort key that grows with badness: passes, undecided, fails, and within each the share of the limit."""
     kind = (DOES_NOT_APPLY, PASS, NOT_DECIDED, FAIL).index(verdict.verdict)
     ratio = -1.0 if math.isnan(verdict.ratio) else math.inf if verdict.is_ban and kind == 3 else verdict.ratio
     return max(kind, 1), -1.0 if kind == 0 or (verdict.is_ban and kind == 1) else ratio
 
 
 def _column(verdicts: Sequence[Verdict]) -> Column:
+    """Return the column of one check, with its limit in the unit that suits its size."""
     first, heights = verdicts[0], {verdict.at_m for verdict in verdicts if not math.isnan(verdict.at_m)}
     if first.is_ban:
         return Column(first.check, "none", 1.0)
@@ -158,6 +159,7 @@ def _column(verdicts: Sequence[Verdict]) -> Column:
 
 
 def _cell(verdict: Verdict, column: Column) -> Cell:
+    """Return a verdict in a column; without numbers if it does not apply or its value is NaN."""
     if verdict.verdict == DOES_NOT_APPLY or math.isnan(verdict.value):
         return Cell(verdict, "", "")
     if verdict.is_ban:
@@ -169,5 +171,5 @@ def _cell(verdict: Verdict, column: Column) -> Cell:
 
 
 def _number(value: float, limit: float = math.nan) -> str:
-    """Return a value in three significant digits, or those that tell it from its limit; zero for what is rounding beside it."""
+    """Return a value with three significant digits, or as many as differ from its limit; "0" below rounding of that."""
     return "0" if abs(value) < ROUNDING * abs(limit) else wording.number(value, limit, 3)

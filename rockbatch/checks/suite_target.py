@@ -1,4 +1,4 @@
-"""The check that a target spectrum makes of a suite: its mean over the target, and what the code of the spectrum asks besides.
+"""The check of a suite by its target spectrum: its mean over the target, and further conditions of the spectrum's code.
 
 Each condition is a verdict without a case, at each scale at which the suite is run. What a code does not ask has none.
 """
@@ -16,7 +16,7 @@ UNRECORDED = ("pulse", "still")
 """Sources of motions that no target scales."""
 VERTICALS = "suite_verticals"
 OF_STUDY = (MEAN_OVER_TARGET, VERTICALS)
-"""Demands that the study makes by its targets, and no code."""
+"""Demands on a suite by the targets of the study, not by a code."""
 
 _ROUNDING = 1e-4  # relative: run.json has five digits of either spectrum
 Target = Mapping[str, Any]
@@ -62,7 +62,7 @@ CODES = {
 
 
 class Condition(NamedTuple):
-    """A condition on a suite: its demand and words, the value and the limit with its sense, unit, and a remark."""
+    """A condition on a suite: its demand and words, the value and the limit with its sense, unit, and remarks."""
 
     demand: str
     words: str
@@ -70,36 +70,36 @@ class Condition(NamedTuple):
     sense: str
     limit: float
     unit: str = ""
-    note: str = ""
+    remarks: tuple[str, ...] = ()
     scaled: bool = False
-    """Whether its value is that at the scale."""
+    """Whether its value depends on the scale."""
 
 
 def suite_verdicts(info: Mapping[str, Any], scales: Iterable[float]) -> list[Verdict]:
-    """Return what becomes of every condition on the suite, at each of the ``scales``, as run.json (``info``) has its targets.
+    """Return the verdict on every condition on the suite, at each of the ``scales``, by the targets in run.json (``info``).
 
-    There is none on a target that is only compared, and on a suite without a record that is fitted.
+    There is none for a target that is only compared, and for a suite without a fitted record.
     """
     targets = {name: info.get(key) for key, name in NAMES.items()}
-    return [
-        _verdict(name, condition, scale, target)
-        for name, target in targets.items()
-        if target is not None and target.get("required", target["factors"] != "none") and any(target["mean_sa_g"])
-        for scale in sorted(set(scales)) or [1.0]
-        for condition in (
-            _share(target, scale),
-            *(_verticals(info) if name == NAMES["vertical_target"] else _conditions(target, scale)),
-        )
-    ]
+    verdicts: list[Verdict] = []
+    at_scales = sorted(set(scales)) or [1.0]
+    for name, target in targets.items():
+        if target is None or not target.get("required", target["factors"] != "none") or not any(target["mean_sa_g"]):
+            continue
+        for scale in at_scales:
+            of_code = _verticals(info) if name == NAMES["vertical_target"] else _conditions(target, scale)
+            verdicts += [_verdict(name, condition, scale, target) for condition in (_share(target, scale), *of_code)]
+    return verdicts
 
 
 def _share(target: Target, scale: float) -> Condition:
+    """Return the condition on the least ratio of the mean spectrum to the target."""
     least, period = least_over_target(target)
     value, limit = scale * least, float(target["at_least"])
     if math.isclose(value, limit, rel_tol=_ROUNDING):
         value = limit
     words = "mean spectrum of the suite over its target"
-    return Condition(MEAN_OVER_TARGET, words, value, "at least", limit, "", f"least at T = {period:.3g} s", True)
+    return Condition(MEAN_OVER_TARGET, words, value, "at least", limit, "", (f"least at T = {period:.3g} s",), True)
 
 
 def _verticals(info: Mapping[str, Any]) -> Iterator[Condition]:
@@ -120,13 +120,13 @@ def _conditions(target: Target, scale: float) -> Iterator[Condition]:
         return
     stations, events = int(target["stations"]), int(target.get("events", 0))
     of_events = f"of {events} event{'s' * (events > 1)}" if events else "of some the event is not known"
-    yield Condition("suite_stations", "stations", stations, "at least", code.stations, note=of_events)
+    yield Condition("suite_stations", "stations", stations, "at least", code.stations, remarks=(of_events,))
     if code.pairs:
         paired = stations - int(target["alone"]) if target["pairs"] == code.pairs else 0
-        note = (
-            "" if target["pairs"] == code.pairs else f'pairs = "{target["pairs"]}", and the code\'s is "{code.pairs}"'
-        )
-        yield Condition("suite_pairs", "stations with the measure of a pair", paired, "at least", stations, note=note)
+        other = f'pairs = "{target["pairs"]}", and the code\'s is "{code.pairs}"'
+        remarks = () if target["pairs"] == code.pairs else (other,)
+        words = "stations with the measure of a pair"
+        yield Condition("suite_pairs", words, paired, "at least", stations, remarks=remarks)
     yield from _periods(target, code)
     at_zero, mean = _two(target, "zero_sa_g")
     if code.zero and at_zero > 0.0:
@@ -149,7 +149,7 @@ def _factors(kind: str, target: Target, bounds: tuple[float, ...], scale: float)
 
 
 def _two(target: Target, name: str) -> tuple[float, float]:
-    """Return two numbers of a target; NaN if they are not there."""
+    """Return a pair of numbers of a target; NaN if it has none of this name."""
     values = target.get(name, ())
     return (float(values[0]), float(values[1])) if len(values) == 2 else (math.nan, math.nan)
 
@@ -173,15 +173,16 @@ def _periods(target: Target, code: Code) -> Iterator[Condition]:
         ),
         ("suite_longest_period", "longest period of the range", high, "at least", asked, code.longest, longest),
     ):
-        note = f"{times:g} times {period:.3g} s, a pier's period of rocking at 0.1 α"
+        remarks = [f"{times:g} times {period:.3g} s, a pier's period of rocking at 0.1 α"]
         if sense == "at least" and asked < code.longest * longest:
-            note = f"where the spectrum ends; {note}"
-        yield Condition(
-            demand, words, value, sense, limit, "s", note if period == period else "no pier has a period of rocking"
-        )
+            remarks.insert(0, "where the spectrum ends")
+        if math.isnan(period):
+            remarks = ["no pier has a period of rocking"]
+        yield Condition(demand, words, value, sense, limit, "s", tuple(remarks))
 
 
 def _verdict(name: str, condition: Condition, scale: float, target: Target) -> Verdict:
+    """Return the verdict on a condition; not decided if its limit is NaN."""
     value, limit = float(condition.value), float(condition.limit)
     more = condition.sense == "at least"
     met = value >= limit if more else value <= limit
@@ -213,12 +214,12 @@ def _verdict(name: str, condition: Condition, scale: float, target: Target) -> V
         reason=reason,
         counting="",
         counted="",
-        note="; ".join(filter(None, (condition.note, at_scale))),
+        remarks=(*condition.remarks, at_scale) if at_scale else condition.remarks,
         unit=condition.unit,
     )
 
 
 def least_over_target(target: Target) -> tuple[float, float]:
-    """Return the least ratio of the mean spectrum to the target, and its period [s]."""
+    """Return the least ratio of the mean spectrum to the target, and its period [s]; 0 and NaN without values."""
     rows = zip(target["period_s"], target["sa_g"], target["mean_sa_g"], strict=False)
     return min(((mean / sa, period) for period, sa, mean in rows if sa > 0.0), default=(0.0, math.nan))

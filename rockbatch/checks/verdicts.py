@@ -19,6 +19,8 @@ from rockbatch.quantities.statistics import STATISTICS
 PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY = "pass", "fail", "not decided", "does not apply"
 CHECKS = "checks.csv"
 """File of the verdicts, beside peaks.csv."""
+SEPARATOR = "; "
+"""Between the remarks in the column ``note`` of checks.csv."""
 MEAN_OVER_TARGET = "mean_over_target"
 """Demand of the verdict on the mean spectrum of the suite."""
 _CONDITIONS = ("stations", "pairs", "shortest_period", "longest_period", "zero_period", "verticals")
@@ -59,8 +61,8 @@ class Verdict:
         Where the limit comes from.
     counting, counted : str
         How runs that ended early count, and their number; empty without any.
-    note : str
-        Reason of an undecided verdict, and remarks.
+    remarks : tuple of str
+        Reason of an undecided verdict, and remarks, none with :data:`SEPARATOR` in it; the column ``note`` has them all.
     count : str
         The way to count records, one of :data:`rockbatch.checks.rules.COUNTS`; empty for a demand of the case.
     unit : str
@@ -73,6 +75,8 @@ class Verdict:
         Height above the pivots at which the demand is read [m]: of drift, or of a section; NaN of others.
     omits : str
         What the demand leaves out, the gravest first: names of :data:`rockbatch.checks.omissions.OMISSIONS`; empty for nothing.
+    axes : str
+        How the demands on both axes of a pier combine, in words; empty on one axis.
     """
 
     check: str
@@ -96,7 +100,7 @@ class Verdict:
     reason: str
     counting: str
     counted: str
-    note: str
+    remarks: tuple[str, ...]
     count: str = ""
     unit: str = ""
     station: str = ""
@@ -105,33 +109,45 @@ class Verdict:
     governing: float = math.nan
     at_m: float = math.nan
     omits: str = ""
+    axes: str = ""
+
+    @property
+    def note(self) -> str:
+        """Return the remarks in one line."""
+        return SEPARATOR.join(self.remarks)
 
     @property
     def omitted(self) -> list[str]:
-        """Return the names of what the demand leaves out, the gravest first."""
+        """Return the names of :data:`rockbatch.checks.omissions.OMISSIONS` in the demand, the gravest first."""
         return self.omits.split(", ") if self.omits else []
 
     @property
     def left_open(self) -> str:
-        """Return the name of what leaves the upper bound of the demand open; empty if nothing does."""
+        """Return the name of the first omission without which the demand has no upper bound; empty if there is none."""
         return next((name for name in self.omitted if not OMISSIONS[name].decides), "")
 
     @property
     def is_lower_bound(self) -> bool:
-        """True if the demand may be anything above its value, and is no less."""
+        """True if the demand is at least its value, without an upper bound."""
         return math.isinf(self.high) and math.isfinite(self.value) and MODES not in self.omitted
 
     @property
     def is_ban(self) -> bool:
-        """True if it asks that an event happens under no record, so that its numbers say no more than yes or no."""
+        """True if the check asks that an event happens under no record, so that its demand is yes or no."""
         return is_ban(self.demand, self.statistic, self.limit)
 
 
-_KINDS: dict[str, Any] = {field.name: field.type for field in fields(Verdict)}
+_COLUMNS = {"remarks": "note"}
+"""Columns of checks.csv that have other names than their fields."""
+_KINDS: dict[str, Any] = {_COLUMNS.get(field.name, field.name): field.type for field in fields(Verdict)}
+"""Types of the columns, by name."""
 _WORDS: dict[str, Collection[str]] = {
-    "verdict": (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY), "sense": ("at most", "at least"), "statistic": ("", *STATISTICS),
-    "demand": (*DEMANDS, *OF_SUITE), "count": ("", *COUNTS),
-}  # fmt: skip
+    "verdict": (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY),
+    "sense": ("at most", "at least"),
+    "statistic": ("", *STATISTICS),
+    "demand": (*DEMANDS, *OF_SUITE),
+    "count": ("", *COUNTS),
+}
 """Columns of words that readers look up."""
 _LATER = {field.name for field in fields(Verdict) if field.default is not MISSING}
 """Columns that an earlier version did not write yet."""
@@ -143,12 +159,15 @@ def as_table(verdicts: Iterable[Verdict]) -> "pd.DataFrame":
     return pd.DataFrame(rows, columns=columns)
 
 
-def _table(verdicts: Iterable[Verdict]) -> tuple[list[str], list[dict[str, Any]]]:
+def _table(verdicts: Iterable[Verdict]) -> tuple[list[str], list[dict[str, object]]]:
     """Return columns and rows of checks.csv."""
-    rows = [vars(verdict) for verdict in verdicts]
-    varied = dict.fromkeys(name for row in rows for name in row["columns"])
+    rows: list[dict[str, object]] = []
+    varied: dict[str, None] = {}
+    for verdict in verdicts:
+        rows.append(vars(verdict) | {"note": verdict.note} | verdict.columns)
+        varied |= dict.fromkeys(verdict.columns)
     first, last = ("check", "case"), [name for name in _KINDS if name not in ("check", "case", "columns")]
-    return [*first, *varied, *last], [row | row["columns"] for row in rows]
+    return [*first, *varied, *last], rows
 
 
 def write_verdicts(directory: Path, verdicts: Iterable[Verdict]) -> Path:
@@ -161,7 +180,7 @@ def write_verdicts(directory: Path, verdicts: Iterable[Verdict]) -> Path:
 def read_verdicts(directory: Path) -> list[Verdict]:
     """Read checks.csv in ``directory``; empty without one, ``InputError`` if it is damaged."""
     path = Path(directory) / CHECKS
-    plain = functools.cache(lambda cell: legible(csv_plain(cell)))  # most cells stand there many times
+    plain = functools.cache(lambda cell: legible(csv_plain(cell)))  # most cells occur many times
     try:
         with opened_text(path) as file:
             return [_from_row({name: plain(cell) for name, cell in row.items()}) for row in csv.DictReader(file)]
@@ -174,11 +193,12 @@ def read_verdicts(directory: Path) -> list[Verdict]:
 
 
 def _from_row(row: Mapping[str, str]) -> Verdict:
-    values: dict[str, Any] = {
-        name: kind(row[name] or ("nan" if kind is float else ""))
-        for name, kind in _KINDS.items()
-        if name != "columns" and (name in row or name not in _LATER)
-    }
+    """Return the verdict in a row of checks.csv. Raises ``KeyError`` or ``ValueError`` for a damaged one."""
+    values: dict[str, Any] = {}
+    for name, kind in _KINDS.items():
+        if name not in ("columns", "note") and (name in row or name not in _LATER):
+            values[name] = kind(row[name] or ("nan" if kind is float else ""))
+    values["remarks"] = tuple(row["note"].split(SEPARATOR)) if row["note"] else ()
     for name, words in _WORDS.items():
         if values.get(name, "") not in words:
             raise ValueError(f"{name} = {values[name]!r}")
@@ -188,6 +208,7 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
 
 
 def _value(text: str) -> float | str:
+    """Return the value of a varied key, a number if it is one. Raises ``ValueError`` for NaN or an infinite one."""
     try:
         number = float(text)
     except ValueError:

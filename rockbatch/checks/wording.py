@@ -4,7 +4,6 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
-from rockbatch.checks.rules import BOTH_AXES, EITHER, LESSER
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
 from rockbatch.quantities.catalogue import DEMANDS
@@ -13,34 +12,32 @@ from rockbatch.quantities.statistics import STATISTICS
 WAYS = (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY)
 SIGNS = {PASS: "✓", FAIL: "✗", NOT_DECIDED: "?", DOES_NOT_APPLY: "–"}
 SUITE = "the suite"
-"""Stands for the case in a verdict on the suite."""
+"""Name of the case in a verdict on the suite."""
 REPEATED = 3
 MOST = 30
-"""Verdicts that are all printed; more are summed up, and the worst of them printed."""
+"""Greatest number of verdicts that are all printed; of more only the worst are, below their counts."""
 
 
 def name_of(verdict: Verdict) -> str:
-    """Return the name of its check; of a condition on the suite beside its mean spectrum, with the condition."""
+    """Return the name of the check, followed by the condition for a condition of a code on the suite."""
     if verdict.case or verdict.demand == MEAN_OVER_TARGET:
         return verdict.check
     return f"{verdict.check} ({verdict.words})"
 
 
 def worst_first(verdicts: Iterable[Verdict]) -> list[Verdict]:
-    """Return the verdicts that fail, that on the suite first, then by their ratio; then those that are not decided; no others."""
-    places = {FAIL: 0, NOT_DECIDED: 1}
-    return sorted(
-        (verdict for verdict in verdicts if verdict.verdict in places),
-        key=lambda verdict: (
-            places[verdict.verdict],
-            bool(verdict.case),
-            -verdict.ratio if verdict.ratio == verdict.ratio else math.inf,
-        ),
-    )
+    """Return failing verdicts, those on the suite first, then undecided ones, each by falling ratio; no others."""
+    order = (FAIL, NOT_DECIDED)
+
+    def key(verdict: Verdict) -> tuple[int, bool, float]:
+        ratio = math.inf if math.isnan(verdict.ratio) else -verdict.ratio
+        return order.index(verdict.verdict), bool(verdict.case), ratio
+
+    return sorted((verdict for verdict in verdicts if verdict.verdict in order), key=key)
 
 
 def scaled(verdicts: Iterable[Verdict]) -> bool:
-    """Return whether cases were run at several scales, so that a verdict has to say which."""
+    """Return whether cases were run at several scales, so that each verdict needs its scale in words."""
     return len({verdict.scale for verdict in verdicts if verdict.case}) > 1
 
 
@@ -56,7 +53,7 @@ def count_by_check(verdicts: Iterable[Verdict]) -> dict[str, dict[str, int]]:
 
 
 def number(value: float, neighbour: float = math.nan, least: int = 4) -> str:
-    """Return a value in ``least`` significant digits, in more if it would look the same as a limit that it is not."""
+    """Return a value with ``least`` significant digits, or as many as show that it differs from its ``neighbour``."""
     if not math.isfinite(value):
         return "∞" if value > 0 else "-∞"
     digits = next((n for n in range(least, 10) if value == neighbour or f"{value:.{n}g}" != f"{neighbour:.{n}g}"), 10)
@@ -92,7 +89,7 @@ def limit(verdict: Verdict, signs: Sequence[str] = ("≤", "≥")) -> str:
 
 
 def ratio(verdict: Verdict) -> str:
-    """Return demand over limit; beside 1 with as many digits as show the side."""
+    """Return demand over limit, with more digits near 1; empty for NaN and for a ban."""
     if math.isnan(verdict.ratio) or verdict.is_ban:
         return ""
     if math.isinf(verdict.ratio):
@@ -122,33 +119,33 @@ def margin(verdict: Verdict) -> str:
 class Notes:
     """Remarks on verdicts, each stated once for all verdicts to which it applies.
 
-    A part of a note is common if it holds for every verdict of some checks, and for :data:`REPEATED` verdicts or more.
+    A remark is common if it holds for every verdict of some checks, and for :data:`REPEATED` verdicts or more.
     """
 
     def __init__(self, verdicts: Iterable[Verdict]) -> None:
         applied = [verdict for verdict in verdicts if verdict.verdict != DOES_NOT_APPLY]
         counts: dict[str, Counter[str]] = {}
         for verdict in applied:
-            for part in verdict.note.split("; ") if verdict.note else ():
-                counts.setdefault(part, Counter())[verdict.check] += 1
+            for remark in verdict.remarks:
+                counts.setdefault(remark, Counter())[verdict.check] += 1
         every = Counter(verdict.check for verdict in applied)
-        whole = {part: [check for check in n if n[check] == every[check]] for part, n in counts.items()}
-        self._common = {
-            part: checks for part, checks in whole.items() if sum(every[check] for check in checks) >= REPEATED
-        }
+        self._common: dict[str, list[str]] = {}
+        for remark, n in counts.items():
+            checks = [check for check in n if n[check] == every[check]]
+            if sum(every[check] for check in checks) >= REPEATED:
+                self._common[remark] = checks
         self._counting: dict[str, dict[str, None]] = {}
         for verdict in applied:
             if verdict.counting:
                 self._counting.setdefault(verdict.counting, {})[verdict.check] = None
 
     def about(self, verdict: Verdict) -> str:
-        """Return the remark on this verdict alone."""
-        parts = verdict.note.split("; ") if verdict.note else []
-        return "; ".join(part for part in parts if verdict.check not in self._common.get(part, ()))
+        """Return the remarks on this verdict that are not common; empty without any."""
+        return "; ".join(remark for remark in verdict.remarks if verdict.check not in self._common.get(remark, ()))
 
     def common(self) -> list[str]:
-        """Return remarks on all verdicts of some checks, and how incomplete runs count: a sentence each."""
-        notes = [f"{', '.join(checks)}: {part}." for part, checks in self._common.items()]
+        """Return the common remarks with their checks, and how runs that do not end standing count: a sentence each."""
+        notes = [f"{', '.join(checks)}: {remark}." for remark, checks in self._common.items()]
         sentences = [
             f"{', '.join(checks)}: runs that do not end standing count so: {kind}."
             for kind, checks in self._counting.items()
@@ -157,7 +154,7 @@ class Notes:
 
 
 def records_of(verdicts: Iterable[Verdict]) -> str:
-    """Return the name of the records that count: "stations", "components", or "records" if both occur."""
+    """Return what is counted: "stations", "components", or "records" if both or neither occur."""
     kinds = {verdict.count for verdict in verdicts} - {""}
     return f"{kinds.pop()}s" if len(kinds) == 1 else "records"
 
@@ -174,7 +171,7 @@ def is_left_open(verdict: Verdict) -> bool:
 
 
 def governing(verdict: Verdict) -> str:
-    """Return the run that governs, has the largest of several demands or leaves the demand open, with its own demand."""
+    """Return the run that governs, has the largest demand or leaves it open, with its own demand; empty without one."""
     if not verdict.record:
         return ""
     left_open = is_left_open(verdict)
@@ -188,16 +185,17 @@ def governing(verdict: Verdict) -> str:
 
 
 def _unit_of_demand(verdict: Verdict) -> str:
+    """Return the unit of one record's demand, also if the verdict counts records."""
     return DEMANDS[verdict.demand].unit if verdict.demand in DEMANDS else verdict.unit
 
 
 def at(height: float) -> str:
-    """Return the place of what is read at a height [m], to follow its name or its value: " at 72 m"; empty for NaN."""
+    """Return " at 72 m" for a height [m], to follow a name or a value; empty for NaN."""
     return "" if math.isnan(height) else f" at {height:.5g}\u00a0m"
 
 
 def requirements(verdicts: Iterable[Verdict]) -> dict[str, list[str]]:
-    """Return the requirements of each check: several where piers differ in the height at which its demand is read."""
+    """Return the requirements of each check by name, one for each height at which its demand is read."""
     asked = {name: list(dict.fromkeys(map(requirement, same))) for name, same in grouped(verdicts, name_of).items()}
     return {
         name: words
@@ -217,21 +215,20 @@ def requirement(verdict: Verdict) -> str:
 
 
 def unchecked(verdict: Verdict) -> str:
-    """Return the basis of a code's statistic, which was not compared with the clause itself; empty for other statistics."""
+    """Return on what a code's statistic rests, as the clause itself could not be checked; empty for other statistics."""
     return STATISTICS[verdict.statistic].unchecked if verdict.statistic in STATISTICS else ""
 
 
 def both_axes(verdicts: Iterable[Verdict]) -> str:
     """Return how the checks combine the two axes of a pier, in a sentence; empty if none does."""
-    said = ((verdict.check, verdict.words.rpartition(", ")[2]) for verdict in verdicts)
-    ways = {check: way for check, way in said if way in (*BOTH_AXES.values(), EITHER, LESSER)}
+    ways = {verdict.check: verdict.axes for verdict in verdicts if verdict.axes}
     by_way = grouped(ways, ways.__getitem__)
     listed = "; ".join(f"{way} ({', '.join(names)})" for way, names in by_way.items())
     return f"Two planar models of each pier, one for each axis, combined: {listed}." if listed else ""
 
 
 def counting(verdicts: Iterable[Verdict]) -> list[str]:
-    """Return what a record of the suites is, a sentence for each way to count."""
+    """Return a sentence for each way of counting records that the verdicts use: by station, by component."""
     sentences = {
         "station": "A record is a station: its components, angles and polarities are its directions, and the worst counts.",
         "component": "A record is a horizontal component, with the worse of its polarities: those of one station count apart.",

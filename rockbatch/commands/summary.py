@@ -11,7 +11,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.outcome.outcome import LEANS, Failure
 from rockbatch.pier.laws import steady
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.catalogue import IN_MOTION, IN_MOTION_ERROR
+from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.quantities.rows import with_case
 from rockbatch.results.labelled import Item
 from rockbatch.study import PIER_KEYS, Study

@@ -1,19 +1,30 @@
 """The observers, and the way by which what lies below them finds each without importing it."""
 
 from importlib import import_module
-from typing import Any
+from importlib.util import find_spec
+from typing import Any, NamedTuple
 
 OBSERVERS = (
     "other_law",
     "rocking",
     "energy_balance",
+    "shocks",
     "forces",
     "devices_work",
-    "shocks",
     "half_cycles",
     "sections",
+    "intensity",
 )
 """Each has its folder ``rockbatch/observers/NAME``; in the order in which they add to a run."""
+
+
+class ReportPart(NamedTuple):
+    """A part of the report, ``section.section`` of the observer: its heading, its anchor, and the anchor of that before it."""
+
+    heading: str
+    anchor: str
+    behind: str
+    folded: bool = False
 
 
 def from_observer(name: str, function: str) -> Any:
@@ -24,5 +35,22 @@ def from_observer(name: str, function: str) -> Any:
 
 def tables() -> list[str]:
     """Return the files beside peaks.csv that observers may write."""
-    homes = (import_module(f"rockbatch.observers.{name}") for name in OBSERVERS)
-    return [home.TABLE for home in homes if hasattr(home, "TABLE")]
+    return [table for _, table in _of_packages("TABLE")]
+
+
+def report_parts() -> list[tuple[str, ReportPart]]:
+    """Return the parts of the report that observers bring, with the observers' names."""
+    return _of_packages("REPORT")
+
+
+def _of_packages(name: str) -> list[tuple[str, Any]]:
+    homes = [(observer, import_module(f"rockbatch.observers.{observer}")) for observer in OBSERVERS]
+    return [(observer, getattr(home, name)) for observer, home in homes if hasattr(home, name)]
+
+
+def parts(name: str) -> list[Any]:
+    """Return what observers name so, such as "study.OUTPUT", in their order; of those that have it."""
+    module, _, attribute = name.partition(".")
+    homes = [f"rockbatch.observers.{observer}.{module}" for observer in OBSERVERS]
+    modules = [import_module(home) for home in homes if find_spec(home)]
+    return [getattr(home, attribute) for home in modules if hasattr(home, attribute)]

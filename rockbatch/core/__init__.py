@@ -1,13 +1,13 @@
-"""The physics, in numbers only: floats and arrays in SI units, compiled by Numba.
+"""The physics: floats and arrays in SI units, compiled by Numba.
 
-Nothing here knows of files, units or tables. The scalar functions (springs, equations, impact, events) take and
-return plain numbers and tuples and allocate nothing, so that any integrator or target can share them.
+The core knows no files, units or tables. Its scalar functions (springs, equations, impact, events) take and return
+plain numbers and tuples and allocate nothing, so that any integrator or target can share them.
 """
 
 from contextlib import suppress
 
 LEAST_MEMORY = 600_000_000
-"""Address space [bytes] below which the compiler ends the process without a word."""
+"""Address space [bytes] below which the compiler ends the process without a message."""
 
 with suppress(ImportError):  # Windows has no such limits
     import resource

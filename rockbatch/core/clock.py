@@ -1,4 +1,4 @@
-"""Numbers that every run keeps while it is under way, whatever its system: time, ground, peak, windows, counts, flights."""
+"""State of every run, whatever its system: time, ground, peak, windows, counts of events, flights."""
 
 import math
 from typing import NamedTuple
@@ -10,34 +10,35 @@ from rockbatch.core.roots import hermite, largest_within, turning_point
 from rockbatch.core.types import NOT_FINITE, OVERTURNED, SURVIVED, Ground
 
 ON_ITS_SIDE = 0.5 * math.pi
+"""Rotation [rad] at which a pier lies on its side."""
 
 WINDOWS = 32
-"""Parts of a run, equal in time, in each of which its greatest |θ| at a sample is kept: its trajectory in short."""
+"""Equal windows of a run whose greatest |θ| at samples summarise its trajectory."""
 
 UNSET = -1.0
-"""Of a time or a number of a sample that is not known yet."""
+"""Value of a time or a sample that is not known yet."""
 
 CALM, STANDS, EVENTFUL = 0.0, 1.0, 2.0
-"""Step status of a lane after a pass: calm; the sub-step stands, but an extreme or a reversal is to be taken in;
-it may not stand, and has to be taken event by event."""
+"""Step status of a lane after a pass: calm; the sub-step stands, but may contain an extreme or a reversal to record; or it
+has to be repeated event by event."""
 
 
 class Timing(NamedTuple):
-    """Request of a run: its motion, its steps, and for how long it goes on."""
+    """Request of a run: its motion, its steps and its length."""
 
     dt: float  # sampling interval [s]
     substeps: float  # steps to a sampling interval
     quiet_samples: float  # of the free-vibration tail after the record
-    first_row: float  # where among the rows of the ground the motion begins
-    npts: float  # and how many it has
-    patience: float  # samples that the run goes on at most while, by its energy, the pier could still turn further
+    first_row: float  # first row of the motion in the ground
+    npts: float  # samples of the motion
+    patience: float  # most further samples while, by its energy, the pier could still exceed its peak
 
 
 TIMING = tuple((name, float) for name in Timing._fields)
 
 
 class Clock(NamedTuple):
-    """The run that a lane holds, and its time."""
+    """Number and time of the run in a lane."""
 
     number: float  # of the run
     first_row: float  # of its motion among the ground's rows
@@ -46,7 +47,7 @@ class Clock(NamedTuple):
     dt: float  # sampling interval [s]
     step: float  # dt/substeps [s]
     sample: float  # number of the last sample
-    due: float  # number of the sample at which more is due than the next step
+    due: float  # number of the next sample at which windows, peaks or the end have to be checked
     alpha: float  # slenderness [rad]
 
 
@@ -79,14 +80,14 @@ class Tally(NamedTuple):
 
 
 class StepStatus(NamedTuple):
-    """Outcome of the pass, and what it has to know of the sub-step before."""
+    """Outcome of the pass over a sub-step, and of the event functions at its start."""
 
     kind: float  # CALM, STANDS or EVENTFUL
-    watched: float  # above 0 unless that ended with all event functions clear of zero
+    watched: float  # above 0 unless the sub-step before ended with all event functions clear of zero
 
 
 class Clearances(NamedTuple):
-    """Heights of both pivots above where they would land [m], and their rates [m/s]."""
+    """Heights of both pivots above their landing places [m], and their rates [m/s]."""
 
     left: float
     right: float
@@ -95,12 +96,12 @@ class Clearances(NamedTuple):
 
 
 COMMON = {"clock": Clock, "ground": Ground, "peak": Peak, "tally": Tally, "step_status": StepStatus}
-"""Parts of every table of lanes; the ground is that at the last sample."""
+"""Parts of every table of lanes; the ground is at the last sample."""
 
 
 @kernel
 def fallen(theta):
-    """Return OVERTURNED once the pier lies on its side, NOT_FINITE for what no pier turns within a step, else SURVIVED."""
+    """Return OVERTURNED from |θ| = π/2 [rad] on, NOT_FINITE from π on or if ``theta`` is NaN, else SURVIVED."""
     if abs(theta) < ON_ITS_SIDE:
         return SURVIVED
     return OVERTURNED if abs(theta) < 2.0 * ON_ITS_SIDE else NOT_FINITE
@@ -125,10 +126,10 @@ def start_clock(lanes, i, number, run):
 
 @inlined
 def read_ground(lanes, i, ground):
-    """Read the ground at the last sample; zero after the record."""
+    """Copy accelerations and slopes at the last sample of lane ``i`` into ``lanes.ground``; zeros after the record."""
     at, sample = lanes.ground, lanes.clock.sample[i]
     moves = sample < lanes.clock.npts[i]
-    # By way of a signed integer, for which processors have an instruction; unsigned: no index from the end is looked for
+    # Conversion to a signed integer is one instruction; an unsigned index needs no check for counting from the end
     row = np.uintp(np.intp(lanes.clock.first_row[i] + (sample if moves else 0.0)))
     horizontal, horizontal_slope = ground[row, 0], ground[row, 1]
     vertical, vertical_slope = ground[row, 2], ground[row, 3]
@@ -138,7 +139,7 @@ def read_ground(lanes, i, ground):
 
 @inlined
 def ground_at(lanes, i, x):
-    """Return the ground ``x`` [s] after the last sample."""
+    """Return the Ground ``x`` [s] after the last sample."""
     at = lanes.ground
     a_slope, c_slope = at.horizontal_slope[i], at.vertical_slope[i]
     return Ground(at.horizontal[i] + x * a_slope, a_slope, at.vertical[i] + x * c_slope, c_slope)
@@ -146,16 +147,16 @@ def ground_at(lanes, i, x):
 
 @kernel
 def ground_rests(lanes, i):
-    """Return whether the ground is at rest from the last sample on, for good."""
+    """Return True if the ground remains at rest from the last sample on."""
     over = lanes.clock.sample[i] >= lanes.clock.npts[i] - 1.0
     return over and lanes.ground.horizontal[i] == 0.0 and lanes.ground.vertical[i] == 0.0
 
 
 @shared
 def window_of(sample, samples):
-    """Return the window of a run of ``samples`` in which ``sample`` lies, and the sample with which the next one begins.
+    """Return the window of a run of ``samples`` that contains ``sample``, and the first sample of the next one.
 
-    The last window lasts to the end of the run, however long it is waited for.
+    The last window extends to the end of the run: its next sample is inf.
     """
     window = min(int(sample * WINDOWS / max(samples, 1.0)), WINDOWS - 1)
     begin_next = float(math.ceil((window + 1) * samples / WINDOWS)) if window < WINDOWS - 1 else math.inf
@@ -164,13 +165,13 @@ def window_of(sample, samples):
 
 @kernel
 def close_window(lanes, i, results):
-    """Write the greatest |θ| of the present window."""
+    """Write the greatest |θ| of the present window to the results."""
     results[int(lanes.clock.number[i])].extremes[int(lanes.peak.window[i])] = lanes.peak.in_window[i]
 
 
 @kernel
 def turn_window(lanes, i, theta, results):
-    """Begin the next window at a sample with which the present one is over."""
+    """Write the present window and begin the next one if the sample belongs to it."""
     peak, sample = lanes.peak, lanes.clock.sample[i]
     if sample >= peak.next_window[i]:
         close_window(lanes, i, results)
@@ -180,30 +181,31 @@ def turn_window(lanes, i, theta, results):
 
 @kernel
 def note_motion_over(lanes, i, results):
-    """Write the greatest |θ| so far if this is the record's last sample."""
+    """Write the greatest |θ| so far to the results if this is the record's last sample."""
     if lanes.clock.sample[i] == lanes.clock.npts[i] - 1.0:
         results[int(lanes.clock.number[i])].theta_in_motion = lanes.peak.theta[i]
 
 
 @inlined
 def motion_due(lanes, i):
-    """Return the record's last sample, infinite from there on."""
+    """Return the record's last sample; inf from there on."""
     last = lanes.clock.npts[i] - 1.0
     return last if lanes.clock.sample[i] < last else math.inf
 
 
 @kernel
 def peak_decided(lanes, i):
-    """Return whether it has been decided that nothing can exceed the peak, and nothing has."""
+    """Return True if the peak was decided to be final and has not been exceeded since."""
     decided_at = lanes.peak.decided_at[i]
     return decided_at >= 0.0 and lanes.peak.time[i] <= decided_at * lanes.clock.dt[i]
 
 
 @kernel
 def include_peak(lanes, i, part, start, done):
-    """Bring the peak up to that of a Part which begins ``done`` [s] after ``start``.
+    """Raise the peak of lane ``i`` to that of a Part.
 
-    ``start`` [s] of the sub-step is since the last sample. Times are added up as those of events are.
+    The Part begins ``done`` [s] after the sub-step, and that ``start`` [s] after the last sample; the times are added in the
+    same order as those of events, to give the same bits.
     """
     y, end = part.start.y, part.end
     at, peak = largest_within(y.theta, y.omega, end.theta, end.omega, part.length, lanes.peak.theta[i])
@@ -214,9 +216,9 @@ def include_peak(lanes, i, part, start, done):
 
 @inlined
 def peak_at_end(lanes, i, tilt, substep):
-    """Bring the peak of lane ``i`` up to the ``tilt`` = |θ| at the end of its sub-step."""
+    """Raise the peak of lane ``i`` to the ``tilt`` = |θ| at the end of its sub-step."""
     clock, peak = lanes.clock, lanes.peak
-    # None is negative: a choice between a new number and the very one that is there would be a store under a mask, a slow one
+    # abs changes nothing, but keeps the compiler from a slow masked store of the number that is there already
     theta, time = abs(peak.theta[i]), abs(peak.time[i])
     peak.theta[i] = max(theta, tilt)
     peak.time[i] = clock.sample[i] * clock.dt[i] + (substep + 1.0) * clock.step[i] if tilt > theta else time
@@ -224,9 +226,9 @@ def peak_at_end(lanes, i, tilt, substep):
 
 @kernel
 def include_height(lanes, i, start, end, h):
-    """Bring the height of flight up to that of the lower pivot in a smooth part of ``h`` [s] between two Clearances.
+    """Raise the flight height to that of the lower pivot in a smooth part of ``h`` [s] between two Clearances.
 
-    The lower of two cubics is highest at an end, where the lower one turns, or where they meet.
+    The lower of two cubics is highest at an end, at its own maximum, or where both intersect.
     """
     if h == 0.0:
         return
@@ -235,7 +237,7 @@ def include_height(lanes, i, start, end, h):
     highest = max(min(left, right), min(left_end, right_end))
     gap, gap_end = left - right, left_end - right_end
     meet = h * gap / (gap - gap_end) if gap * gap_end < 0.0 else 0.0
-    for _ in range(4):  # the way from chord to cubic, Newton's
+    for _ in range(4):  # from the intersection of the chords to that of the cubics, by chord slopes
         value = hermite(gap, left_rate - right_rate, gap_end, left_end_rate - right_end_rate, h, meet)
         meet = min(max(meet - value * h / (gap_end - gap), 0.0), h) if gap * gap_end < 0.0 else 0.0
     for x in (
@@ -253,7 +255,7 @@ def include_height(lanes, i, start, end, h):
 
 @kernel
 def note_flight(lanes, i, flies, t):
-    """Begin or end a flight at ``t`` [s], if the pier flies or no longer does."""
+    """Begin or end a flight at ``t`` [s] if ``flies`` has changed."""
     tally = lanes.tally
     began = tally.airborne[i]
     if flies and math.isnan(began):

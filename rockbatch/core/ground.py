@@ -1,4 +1,4 @@
-"""The ground under a run: a row for each sample, linear between them."""
+"""Ground acceleration: a row for each sample, linear in between."""
 
 import numpy as np
 
@@ -19,15 +19,13 @@ def ground_rows(horizontal, vertical, dt):
     for column, samples in ((0, horizontal), (2, vertical)):
         if len(samples):
             rows[:, column] = samples
-            with np.errstate(over="ignore"):  # a run through such a spike ends as not finite, and says so
+            with np.errstate(over="ignore"):  # a run through such a spike ends as NOT_FINITE
                 rows[:, column + 1] = np.diff(samples, append=0.0) / dt
     return rows
 
 
 @inlined
 def later(ground, x):
-    """Return the ground ``x`` [s] later, as long as it is linear in time."""
-    return Ground(
-        ground.horizontal + x * ground.horizontal_slope, ground.horizontal_slope,
-        ground.vertical + x * ground.vertical_slope, ground.vertical_slope,
-    )  # fmt: skip
+    """Return the Ground ``x`` [s] later, within the same sampling interval."""
+    a_slope, c_slope = ground.horizontal_slope, ground.vertical_slope
+    return Ground(ground.horizontal + x * a_slope, a_slope, ground.vertical + x * c_slope, c_slope)

@@ -1,4 +1,4 @@
-"""Rows of a history: time, kind, state and contacts, and what devices are at that moment."""
+"""Rows of a history: time, kind, state, contacts, and the states and pull of devices."""
 
 from typing import NamedTuple
 
@@ -8,19 +8,19 @@ from rockbatch.core.devices.pull import under_devices
 from rockbatch.core.kernel import inlined, kernel
 
 MOMENT = ("t", "kind")
-"""Columns before those of state and contact; behind them, of devices: their states x, and the force and moment of all."""
+"""Columns before those of state and contact; after them follow the devices' states x, and their total force and moment."""
 
 
 class History(NamedTuple):
-    """Rows that each run writes."""
+    """Buffers of the rows that each run writes."""
 
-    rows: np.ndarray  # shape (runs, rows, columns); of no runs nothing is written, nor counted
-    written: np.ndarray  # shape (runs,): how many, also of those that found no room
-    every_step: bool  # steps between samples, too, and both sides of all events of devices
+    rows: np.ndarray  # shape (runs, rows, columns); with 0 runs nothing is written or counted
+    written: np.ndarray  # shape (runs,): numbers of rows, with those beyond the buffer
+    every_step: bool  # also steps between samples, and both sides of all events of devices
 
 
 def history_of(rows, runs, every_step=False):
-    """Return the History of so many ``runs`` that is written into ``rows``."""
+    """Return the History of ``runs`` runs that is written into ``rows``."""
     return History(rows, np.zeros(runs, np.int64), bool(every_step))
 
 
@@ -34,6 +34,7 @@ class Stamp(NamedTuple):
 
 @inlined
 def _write_devices(line, at, m, devices, now, ground):
+    """Write the devices' states and pull into ``line`` from column ``at``; nothing without devices."""
     if devices is None:
         return
     under, _, _ = under_devices(m, devices, now, devices.x, ground)
@@ -44,7 +45,7 @@ def _write_devices(line, at, m, devices, now, ground):
 
 @kernel
 def write(history, stamp, m, devices, now, ground):
-    """Write a row of the Moment ``now`` with this ``stamp``, if there is room for it."""
+    """Write a row of the Moment ``now``; one beyond the buffer is only counted."""
     if history.rows.shape[0] == 0:
         return
     number, t, y, contact = stamp.number, stamp.t, now.y, now.contact
@@ -53,7 +54,7 @@ def write(history, stamp, m, devices, now, ground):
     if row >= rows.shape[0]:
         return
     line, at = rows[row], len(MOMENT)
-    line[0] = max(t, rows[row - 1, 0]) if row > 0 else t  # sums of parts are rounded, time does not go back
+    line[0] = max(t, rows[row - 1, 0]) if row > 0 else t  # sums are rounded; times must not decrease
     line[1] = stamp.kind
     for j in range(len(y)):
         line[at + j] = y[j]
@@ -65,5 +66,5 @@ def write(history, stamp, m, devices, now, ground):
 
 @inlined
 def take_back(history, number):
-    """Take the last row of run ``number`` back."""
+    """Remove the last row of run ``number``."""
     history.written[number] = max(history.written[number] - 1, 0)

@@ -1,8 +1,8 @@
-"""Files of machine code in the user's cache folder: one for each kernel, named by all that it was compiled from.
+"""Files of machine code in the user's cache folder: one for each kernel, named by a digest of its sources.
 
-A file begins with the digest of its identity and contents. One that is cut, damaged or of something else does not match and
-counts as missing, and so does one that another user could have written: what is unpickled runs as code. Files are written
-under another name and renamed, so that processes that compile at the same time do not disturb each other.
+A file begins with the digest of its identity and contents. A truncated, damaged or foreign file does not match and counts as
+missing, and so does one that another user could have written, since unpickling runs code. Files are written under another
+name and renamed, so that processes that compile at the same time do not disturb each other.
 """
 
 import contextlib
@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 MOST_BYTES = 500_000_000
-"""Size of the whole cache: beyond it, the kernels that were used longest ago are dropped."""
+"""Greatest size of the cache: beyond it the least recently used kernels are dropped."""
 UNUSED_DAYS = 60
-"""Kernels that nobody used for so long are dropped: mostly those of older versions."""
+"""Days without use after which a kernel is dropped: mostly those of older versions."""
 
 _DAY = 86_400.0
 _SUFFIX, _UNFINISHED = ".kernel", ".unfinished"
@@ -28,15 +28,15 @@ _PLAIN_ONLY = sum(getattr(os, flag, 0) for flag in ("O_NOFOLLOW", "O_NONBLOCK", 
 
 
 class KernelFile(NamedTuple):
-    """A file of the cache, or one that a process which ended has left unfinished."""
+    """A file of the cache, or an unfinished one of a process that ended."""
 
     path: Path
     size: int  # [bytes]
-    used: float  # when it was last used, in seconds of the clock: exact to a day
+    used: float  # time of last use [s since the epoch], exact to a day
 
 
 class _State:
-    """Why this process could not keep a kernel, and whether that was reported."""
+    """Reason that this process could not keep a kernel, and whether it was reported."""
 
     reason = ""
     reported = False
@@ -45,7 +45,7 @@ class _State:
 def folder() -> Path:
     """Return the cache folder: ROCKBATCH_CACHE, or ``rockbatch`` in the user's cache folder; it may not exist yet.
 
-    Raises ``OSError`` where there is no home folder.
+    Raises ``OSError`` without a home folder.
     """
     try:
         if chosen := os.environ.get("ROCKBATCH_CACHE"):
@@ -57,7 +57,7 @@ def folder() -> Path:
 
 
 def read(name: str, identity: str) -> bytes | None:
-    """Return what was kept for ``identity``, all of it as it was written; None if there is no such file."""
+    """Return the content kept for ``identity``; None if there is no such file, or it is damaged or not trusted."""
     try:
         path = _trusted(folder()) / f"{name}{_SUFFIX}"
         with open(os.open(path, os.O_RDONLY | _PLAIN_ONLY), "rb") as file:
@@ -77,7 +77,7 @@ def read(name: str, identity: str) -> bytes | None:
 
 
 def keep(name: str, identity: str, content: bytes) -> None:
-    """Keep ``content`` for :func:`read`, and drop what has become too old or too much; :func:`unreported` says if that fails."""
+    """Write ``content`` for :func:`read`, and drop old kernels; a failure is reported by :func:`unreported`."""
     try:
         path = _made() / f"{name}{_SUFFIX}"
         _replace(path, _head(identity, content) + content)
@@ -87,7 +87,7 @@ def keep(name: str, identity: str, content: bytes) -> None:
 
 
 def usable() -> bool:
-    """Return whether this process can keep kernels, and find those that others have kept."""
+    """Return True if this process can write to the cache folder, which is made if need be."""
     try:
         return os.access(_made(), os.W_OK)
     except OSError:
@@ -95,7 +95,7 @@ def usable() -> bool:
 
 
 def unreported() -> str:
-    """Return why kernels of this process were not kept, the first time that it is asked after a failure; else nothing."""
+    """Return why kernels of this process were not kept, once after a failure; else ""."""
     if _State.reported or not _State.reason:
         return ""
     _State.reported = True
@@ -106,7 +106,7 @@ def unreported() -> str:
 
 
 def files() -> list[KernelFile]:
-    """Return the files of the cache, those used longest ago first."""
+    """Return the files of the cache, least recently used first; empty without a folder."""
     found = []
     with contextlib.suppress(FileNotFoundError):
         for entry in os.scandir(folder()):
@@ -118,7 +118,7 @@ def files() -> list[KernelFile]:
 
 
 def clear() -> list[KernelFile]:
-    """Remove all kernels, and nothing else that is in the folder; return what was removed."""
+    """Remove all kernels, but no other files in the folder; return the removed ones."""
     removed = files()
     for file in removed:
         file.path.unlink(missing_ok=True)
@@ -126,18 +126,19 @@ def clear() -> list[KernelFile]:
 
 
 def _head(identity: str, content: bytes) -> bytes:
+    """Return the first bytes of a file: a mark and the digest of identity and content."""
     digest = hashlib.sha256(hashlib.sha256(identity.encode()).digest())
     digest.update(content)
     return _MAGIC + digest.digest()
 
 
 def _others_write(status: os.stat_result) -> bool:
-    """Return whether another user may have written this; root may write anything, and Windows answers by other means."""
+    """Return True if another user than this one and root may have written the file; False on Windows."""
     return hasattr(os, "geteuid") and (status.st_uid not in (os.geteuid(), 0) or bool(status.st_mode & _OTHERS))
 
 
 def _trusted(home: Path) -> Path:
-    """Return the folder; raise ``PermissionError`` if others than this user, and root, may write into it."""
+    """Return ``home``; raise ``PermissionError`` if others than this user and root may write into it."""
     if _others_write(os.stat(home)):
         remedy = "others may write into this folder; `chmod go-w` ends that if it is yours"
         raise PermissionError(errno.EPERM, remedy, str(home))
@@ -145,13 +146,14 @@ def _trusted(home: Path) -> Path:
 
 
 def _made() -> Path:
-    """Return the folder, made if need be, as :func:`_trusted` does."""
+    """Return the cache folder, which is made if need be; raise ``PermissionError`` as :func:`_trusted`."""
     home = folder()
     home.mkdir(mode=0o700, parents=True, exist_ok=True)
     return _trusted(home)
 
 
 def _replace(path: Path, content: bytes) -> None:
+    """Write a file under a temporary name, and rename it to ``path``."""
     handle, unfinished = tempfile.mkstemp(_UNFINISHED, f"{path.stem}-", path.parent)
     try:
         with open(handle, "wb") as file:
@@ -164,7 +166,7 @@ def _replace(path: Path, content: bytes) -> None:
 
 
 def _drop_old(newest: Path) -> None:
-    """Remove what was not used for long or is left unfinished, and beyond MOST_BYTES what was used longest ago."""
+    """Remove files unused for UNUSED_DAYS, unfinished ones after a day, and beyond MOST_BYTES the least recently used."""
     every, now = files(), time.time()
     total = sum(file.size for file in every)
     for file in every:

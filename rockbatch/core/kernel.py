@@ -1,4 +1,4 @@
-"""Decorators that compile kernels: one for building blocks, one for entries, one for hooks that systems implement."""
+"""Decorators that compile kernels: building blocks, entries from Python, and hooks that systems implement."""
 
 import functools
 import hashlib
@@ -7,7 +7,7 @@ import pickle
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import llvmlite
 import numba
@@ -15,11 +15,15 @@ import numpy as np
 from numba.core.caching import _Cache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult
+from numba.core.compiler_machinery import PassManager
 from numba.core.registry import CPUDispatcher
 from numba.core.serialize import dumps
+from numba.core.typing import Signature
 from numba.extending import overload, register_jitable
 
 from rockbatch.core import kept
+
+Function = TypeVar("Function", bound=Callable[..., object])
 
 _CORE = Path(__file__).parent
 
@@ -27,7 +31,7 @@ _CORE = Path(__file__).parent
 def core_digest(folder: Path = _CORE) -> str:
     """Return the digest of all kernel sources and of the compiler's version.
 
-    A kernel is made of many functions of many files: after a change in any of them, none that was compiled before is used.
+    A kernel consists of functions of many files: after a change in any of them, no kernel on disk is used any more.
     """
     digest = hashlib.sha256(numba.__version__.encode())
     for source in sorted(folder.rglob("*.py")):
@@ -36,18 +40,18 @@ def core_digest(folder: Path = _CORE) -> str:
 
 
 _DIGEST = core_digest()
-"""As the sources are that this process loads."""
+"""Digest of the sources that this process has loaded."""
 
 _OPTIONS: dict[str, Any] = {
     "error_model": "numpy",  # a division by zero gives inf, as in every array library, and costs no branch
-    "nogil": True,  # runs go side by side in threads
-    "no_cfunc_wrapper": True,  # none is handed to a library in C
-    "_nrt": False,  # kernels allocate nothing, and need not count who else holds their arrays
+    "nogil": True,  # runs execute side by side in threads
+    "no_cfunc_wrapper": True,  # no kernel is passed to a library in C
+    "_nrt": False,  # kernels allocate nothing, and need no reference counts
 }
 
 
 class _NoEnvironment:
-    """Take the environment of a library that is not loaded."""
+    """Ignore the environment of a library that is not loaded."""
 
     @staticmethod
     def set_env(*_: object) -> None:
@@ -55,7 +59,7 @@ class _NoEnvironment:
 
 
 class _PartLibrary(JITCodeLibrary):
-    """Library of a building block: optimised, to be linked into its callers, and never turned into machine code by itself."""
+    """Library of a building block: optimised and linked into its callers, without machine code of its own."""
 
     codegen = _NoEnvironment
 
@@ -68,27 +72,36 @@ class _PartLibrary(JITCodeLibrary):
 
 
 class _OnlyPartLibrary(_PartLibrary):
-    """Library of a building block with one caller: optimised there only, with what is around it."""
+    """Library of a building block with one caller: optimised only as a part of it."""
 
     def _optimize_final_module(self) -> None:
         pass
 
 
 _UNUSED = {
-    "WithLifting", "InlineClosureLikes", "RewriteDynamicRaises", "MakeFunctionToJitFunction", "InlineInlinables",
-    "FindLiterallyCalls", "LiteralUnroll", "InlineOverloads", "NopythonRewrites", "DumpParforDiagnostics",
-}  # fmt: skip
-"""Numba's passes over what no building block has: closures, blocks of ``with``, array expressions, loops over literals."""
+    "WithLifting",
+    "InlineClosureLikes",
+    "RewriteDynamicRaises",
+    "MakeFunctionToJitFunction",
+    "InlineInlinables",
+    "FindLiterallyCalls",
+    "LiteralUnroll",
+    "InlineOverloads",
+    "NopythonRewrites",
+    "DumpParforDiagnostics",
+}
+"""Numba's passes for features that no building block uses: closures, ``with``, array expressions, loops over literals."""
 
 
 class _PartCompiler(Compiler):
-    """Compiler of a building block, whose machine code nobody calls: making it took a quarter of all compilation."""
+    """Compiler of a building block, without its unused machine code, which took a quarter of all compilation."""
 
     library = _PartLibrary
 
-    def define_pipelines(self) -> list[Any]:
+    def define_pipelines(self) -> list[PassManager]:
+        """Return Numba's pipelines without :data:`_UNUSED` passes, compiling into :attr:`library`."""
         self.state.library = self.library(self.state.targetctx.codegen(), self.state.func_id.func_qualname)
-        pipelines: list[Any] = super().define_pipelines()
+        pipelines: list[PassManager] = super().define_pipelines()
         for pipeline in pipelines:
             pipeline.passes[:] = [step for step in pipeline.passes if step[0].__name__ not in _UNUSED]
             pipeline.finalize()
@@ -105,14 +118,16 @@ _PART: dict[str, Any] = {"no_cpython_wrapper": True, "pipeline_class": _PartComp
 
 
 class _Guarded(CPUDispatcher):
-    """Dispatcher of a building block that Python calls through a kernel made for it: as it is, a call would end the process."""
+    """Dispatcher of a building block, which Python calls through an entry of its own: a direct call would crash."""
 
-    def __call__(self, *arguments: Any) -> Any:
+    def __call__(self, *arguments: object) -> object:
         return _entry_to(self)(*arguments)
 
 
 @functools.cache
-def _entry_to(block: Any) -> Any:
+def _entry_to(block: CPUDispatcher) -> Callable[..., object]:
+    """Return a kernel that calls a building block, and that Python can call."""
+
     @numba.njit(**_OPTIONS)
     def call(*arguments):
         return block(*arguments)
@@ -121,62 +136,64 @@ def _entry_to(block: Any) -> Any:
 
 
 def _guarded(dispatcher: Any) -> Any:
+    """Return the dispatcher of a building block, safe to call from Python."""
     if not numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
         dispatcher.__class__ = _Guarded
     return dispatcher
 
 
-def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile a building block; it is linked into the entries that use it."""
+def kernel(function: Function) -> Function:
+    """Compile a building block, which is linked into the entries that use it."""
     return _guarded(numba.njit(**_OPTIONS | _PART)(function))
 
 
-def inlined(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile a building block that becomes part of its callers: loops over it can be turned into vector code."""
+def inlined(function: Function) -> Function:
+    """Compile a building block that is inlined into its callers, so that loops over it can be vectorised."""
     return _guarded(numba.njit(forceinline=True, **_OPTIONS | _PART)(function))
 
 
-def inlined_once(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile a building block that becomes part of its only caller, and is optimised there only."""
+def inlined_once(function: Function) -> Function:
+    """Compile a building block that is inlined into its only caller, and optimised only there."""
     return _guarded(numba.njit(forceinline=True, **_OPTIONS | _PART | {"pipeline_class": _OnlyPartCompiler})(function))
 
 
-def summing(function: Callable[..., Any]) -> Callable[..., Any]:
+def summing(function: Function) -> Function:
     """Compile a building block that sums over an array in any order, as vector instructions do: the last digits depend on it."""
     return _guarded(numba.njit(fastmath={"reassoc", "nsz", "contract"}, **_OPTIONS | _PART)(function))
 
 
-def shared(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Let kernels use a function that Python calls too, uncompiled: few calls are not worth a compilation each process."""
-    decorated: Callable[..., Any] = register_jitable(**_OPTIONS)(function)
+def shared(function: Function) -> Function:
+    """Let kernels use a function that Python calls uncompiled, since few calls are not worth a compilation in each process."""
+    decorated: Function = register_jitable(**_OPTIONS)(function)
     return decorated
 
 
 _SWITCHES = ("OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "ENABLE_AVX", "USING_SVML", "BOUNDSCHECK", "DEBUGINFO_DEFAULT")
-"""Settings of Numba that change machine code."""
+"""Settings of Numba that change the machine code."""
 
 
 class _Kept(_Cache):
-    """Machine code of an entry on disk, found by its content: by any copy of the sources, at any place (:mod:`kept`)."""
+    """Machine code of an entry on disk, found by a digest of the sources, wherever these are (:mod:`kept`)."""
 
-    def __init__(self, function: Callable[..., Any]):
+    def __init__(self, function: Callable[..., object]):
         if function.__closure__:
             raise TypeError(f"{function.__qualname__}: the machine code of a closure cannot be kept: give it arguments")
         self._function, self._enabled = function, True
         self._sources = _DIGEST, self._own_digest()
 
     def _own_digest(self) -> str:
-        """Return the digest of the function's own file, which need not be in the core."""
+        """Return the digest of the function's own file, which may be outside of the core."""
         return hashlib.sha256(Path(inspect.getfile(self._function)).read_bytes()).hexdigest()
 
-    def _identity(self, signature: Any, codegen: Any) -> str:
-        """Return all that the machine code of a signature depends on, in words that are the same in every process."""
+    def _identity(self, signature: Signature, codegen: Any) -> str:
+        """Return a text of everything that the machine code of a signature depends on, the same in every process."""
         function = self._function
         compiler = (sys.version, numba.__version__, llvmlite.__version__, np.__version__, *codegen.magic_tuple())
         switches = [str(getattr(numba.config, name, "")) for name in _SWITCHES]
         return repr((self._sources, compiler, switches, function.__module__, function.__qualname__, str(signature)))
 
     def _name(self, identity: str) -> str:
+        """Return the name of the file, without its suffix."""
         return f"{self._function.__name__}-{hashlib.sha256(identity.encode()).hexdigest()[:40]}"
 
     @property
@@ -184,19 +201,19 @@ class _Kept(_Cache):
         """See ``_Cache``."""
         return str(kept.folder())
 
-    def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """See ``_Cache``."""
+    def load_overload(self, sig: Signature, target_context: Any) -> CompileResult | None:
+        """Return the machine code kept for a signature; None if there is none."""
         target_context.refresh()
         identity = self._identity(sig, target_context.codegen())
         content = kept.read(self._name(identity), identity) if self._enabled else None
         if content is None:
             return None
         signature, parts = pickle.loads(content)
-        # Types of the same name may differ: named tuples of two modules
+        # The texts of two signatures may be equal though they differ, by named tuples of the same name in two modules
         return CompileResult._rebuild(target_context, *parts) if signature == sig else None
 
-    def save_overload(self, sig: Any, data: Any) -> None:
-        """See ``_Cache``; what was compiled from sources that were changed after they were loaded is not kept."""
+    def save_overload(self, sig: Signature, data: Any) -> None:
+        """See ``_Cache``; nothing is kept if the sources have changed since they were loaded."""
         changed = (core_digest(), self._own_digest()) != self._sources
         if changed or data.library.has_dynamic_globals or not self._enabled:
             return
@@ -212,49 +229,49 @@ class _Kept(_Cache):
         self._enabled = False
 
     def flush(self) -> None:
-        """See ``_Cache``: nothing is held back."""
+        """See ``_Cache``: there is nothing to flush."""
 
 
-def entry(function: Callable[..., Any]) -> Callable[..., Any]:
+def entry(function: Function) -> Function:
     """Compile a function that Python calls, and keep the machine code on disk."""
     dispatcher: Any = numba.njit(**_OPTIONS)(function)
     if not numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
         dispatcher._cache = _Kept(function)
-    compiled: Callable[..., Any] = dispatcher
+    compiled: Function = dispatcher
     return compiled
 
 
-def hook(stub: Callable[..., Any]) -> Any:
-    """Let each system implement a function; the type of the first argument chooses the implementation when compiled.
+def hook(stub: Callable[..., object]) -> Any:
+    """Return a function that each system implements; the type of its first argument selects the implementation.
 
-    ``stub`` has the arguments and says what the function does; ``@stub.of(Model)`` registers the implementation for systems
-    described by the named tuple ``Model``, or for ``type(None)``: nothing. A driver that calls it knows no system by name, and
-    its machine code is that of the implementation written out. Implementations become part of their callers, so that loops
-    over lanes can be turned into vector code.
+    ``stub`` has the arguments and the docstring; ``@stub.of(Model)`` registers the implementation for systems described by the
+    named tuple ``Model``, or for ``type(None)``. The selection is made in compilation, so that a driver that calls a hook knows
+    no system by name and costs nothing more. Implementations are inlined, so that loops over lanes can be vectorised.
     """
     return _hook(stub, None)
 
 
-def optional_hook(default: Callable[..., Any]) -> Any:
-    """Let systems implement a function as those of :func:`hook`; ``default`` serves the others."""
+def optional_hook(default: Callable[..., object]) -> Any:
+    """Return a function as :func:`hook`; ``default`` is used for systems without an implementation."""
     return _hook(default, default)
 
 
-def _hook(stub: Callable[..., Any], default: Any) -> Any:
-    implementations: dict[type, Callable[..., Any]] = {}
+def _hook(stub: Callable[..., object], default: Callable[..., object] | None) -> Any:
+    implementations: dict[type, Callable[..., object] | None] = {}
 
     @functools.wraps(stub)
-    def call(system: Any, *rest: Any) -> Any:
-        return implementations.get(type(system), default)(system, *rest)
+    def call(system: object, *rest: object) -> object:
+        implementation = implementations.get(type(system), default)
+        assert implementation is not None, f"{stub.__name__} is not implemented for {type(system).__name__}"
+        return implementation(system, *rest)
 
-    def choose(system: Any, *rest: Any) -> Any:
-        described_by = (
-            type(None) if isinstance(system, numba.types.NoneType) else getattr(system, "instance_class", object)
-        )
-        return implementations.get(described_by, default)
+    def choose(system: object, *rest: object) -> Callable[..., object] | None:
+        if isinstance(system, numba.types.NoneType):
+            return implementations.get(type(None), default)
+        return implementations.get(getattr(system, "instance_class", object), default)
 
-    def of(described_by: type) -> Callable[[Callable[..., Any]], Any]:
-        def register(implementation: Callable[..., Any]) -> Any:
+    def of(described_by: type) -> Callable[[Function], Any]:
+        def register(implementation: Function) -> Any:
             implementations[described_by] = implementation
             return call
 

@@ -1,16 +1,16 @@
-"""Powers by products where the exponent is a whole number, which loops over lanes can take for several at once."""
+"""Powers with whole exponents as products, which the compiler can vectorise."""
 
 from rockbatch.core.kernel import inlined
 
 LARGEST_WHOLE = 10
-"""Exponents up to here that are whole numbers need no pow."""
+"""Greatest whole exponent that is computed by products."""
 
 
 @inlined
 def power(x, n):
-    """Return xⁿ for x ≥ 0, by the type of n: None is the paper's 5, a whole number up to 10 is a product of squares.
+    """Return xⁿ for x ≥ 0: n = None stands for 5; an int up to 10 is a product of squares; a float calls pow.
 
-    Neither costs a call to pow, which would keep a loop over lanes from being turned into vector instructions.
+    A call to pow would keep a loop over lanes from being vectorised.
     """
     if n is None:
         square = x * x

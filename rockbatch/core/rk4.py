@@ -1,4 +1,4 @@
-"""The classical Runge–Kutta step of order 4, of any system, with or without devices."""
+"""The classical Runge–Kutta step of order 4, for any system, with or without devices."""
 
 from rockbatch.core.devices.pull import (
     FOURTH,
@@ -19,7 +19,7 @@ from rockbatch.core.types import Moment
 
 @hook
 def rates_with(devices, m, now, ground, place):
-    """Return the rates of ``now`` and the pier under its devices, whose states' rates in their stage go to their ``place``."""
+    """Return the rates of ``now``, and the pier under its devices; write the rates of their staged states to ``place``."""
 
 
 @rates_with.of(type(None))
@@ -35,7 +35,7 @@ def _rates_under_devices(devices, m, now, ground, place):
 
 @inlined
 def rk4(m, devices, start, h):
-    """Return the state ``h`` [s] after the Instant ``start``; the devices' states then are in ``devices.end``."""
+    """Return the state ``h`` [s] after the Instant ``start``; write the devices' states then to ``devices.end``."""
     half = 0.5 * h
     y, k1, contact, supports, ground = start
     middle, end = later(ground, half), later(ground, h)

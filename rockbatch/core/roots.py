@@ -4,19 +4,19 @@ import math
 
 from rockbatch.core.kernel import inlined, kernel
 
-TRIALS = 60  # a handful is enough
-CLOSE = 1e-12  # of a step: how well the time of an event is known
-NEAR = 1e-4  # of a step: a trial that came so near to its event shows its time as well, by the cubic through it
-SHOWN = 1e-12  # of what an event function does in a step: a lower hump before a dip is no more than rounding
-BISECT_AFTER = 8  # trials, from which every other one halves the interval
+TRIALS = 60  # greatest number of trials; a few are usual
+CLOSE = 1e-12  # tolerance on the time of an event, as a share of the step
+NEAR = 1e-4  # distance of a trial from its event, as a share of the step, within which a cubic is as exact as another trial
+SHOWN = 1e-12  # height of a hump before a dip, over the change in the step, that is more than rounding
+BISECT_AFTER = 8  # trials after which every other one bisects
 
 NO_ACCELERATION = 1e-12
-"""Of g: what the balance of a pier at rest leaves as rounding; it must not decide which way a pivot goes."""
+"""Acceleration over g that is rounding in the balance of a pier at rest; it must not decide how a pivot moves."""
 
 
 @inlined
 def surely(velocity, acceleration, rest):
-    """Return a velocity whose sign is certain: where it is nothing but rounding, the acceleration decides where it goes."""
+    """Return ``velocity``; if it is at most ``rest``, hence rounding, ±``rest`` by the sign of ``acceleration``, or 0."""
     if abs(velocity) > rest:
         return velocity
     return rest if acceleration > 0.0 else (-rest if acceleration < 0.0 else 0.0)
@@ -24,7 +24,7 @@ def surely(velocity, acceleration, rest):
 
 @kernel
 def hermite(f0, d0, f1, d1, h, x):
-    """Evaluate the cubic through values f0, f1 with slopes d0, d1 at the ends of a step ``h``, at ``x`` within it."""
+    """Return the value at ``x`` of the cubic with values f0, f1 and slopes d0, d1 at the ends of a step ``h``."""
     s = x / h
     difference = f1 - f0
     a = h * d0 - difference
@@ -34,9 +34,9 @@ def hermite(f0, d0, f1, d1, h, x):
 
 @kernel
 def turning_point(f0, d0, f1, d1, h):
-    """Return the time in the step at which the Hermite cubic turns, when the slopes d0 and d1 differ in sign.
+    """Return the time in the step at which the Hermite cubic has an extremum; the slopes d0 and d1 differ in sign, or d0 = 0.
 
-    The slope is a quadratic with values d0 and d1 at the ends: exactly one root lies between; one at most beside d0 = 0.
+    The slope is a quadratic with values d0 and d1 at the ends: exactly one root lies between; beside d0 = 0 at most one.
     """
     mean = (f1 - f0) / h
     curve = 3.0 * (d0 + d1 - 2.0 * mean)  # slope(s) = d0 + 2 c s + curve s²
@@ -44,17 +44,17 @@ def turning_point(f0, d0, f1, d1, h):
     discriminant = max(c * c - curve * d0, 0.0)
     q = -(c + math.copysign(math.sqrt(discriminant), c))
     s = d0 / q if q != 0.0 else 0.5
-    if d0 == 0.0 or not 0.0 <= s <= 1.0:  # a start without slope is not meant
+    if d0 == 0.0 or not 0.0 <= s <= 1.0:  # not the extremum at the start itself
         s = q / curve if curve != 0.0 else 0.5
     return h * min(max(s, 0.0), 1.0)
 
 
 @kernel
 def _root(f0, d0, f1, d1, h, start, end):
-    """Return the zero in [start, end] of the cubic, positive at ``start`` and not at ``end``: Newton, halving where it leaps out.
+    """Return the zero in [start, end] of the cubic, positive at ``start`` and not at ``end``, by Newton's method with bisection.
 
-    It starts from the chord's zero where [start, end] is all of the step. What a further trial would change is about
-    the square of what the last one did, times half the curvature over the slope.
+    It starts from the chord's zero if [start, end] is the whole step. The next change is about the square of the last one
+    times half the curvature over the slope, which is the criterion of convergence.
     """
     difference = f1 - f0
     c1 = h * d0
@@ -83,13 +83,13 @@ def _root(f0, d0, f1, d1, h, start, end):
 
 @inlined
 def excess(d0, d1, h):
-    """Bound by how much a Hermite cubic with slopes d0 and d1 goes beyond its ends: |s (1 − s)²| ≤ 4/27."""
+    """Return a bound on the overshoot of a Hermite cubic with slopes d0 and d1 beyond its ends: |s (1 − s)²| ≤ 4/27."""
     return 4.0 / 27.0 * h * (abs(d0) + abs(d1))
 
 
 @inlined
 def inner_points(f0, d0, f1, d1, h):
-    """Return the inner two of the four Bézier points of a Hermite cubic, which runs between the least and the greatest of all."""
+    """Return the inner two of the four Bézier points of a Hermite cubic, whose least and greatest bound it."""
     third = h * (1.0 / 3.0)
     return f0 + third * d0, f1 - third * d1
 
@@ -112,10 +112,10 @@ def _extremes(f0, d0, f1, d1, h):
 
 @inlined
 def falls(f0, d0, f1, d1, h):
-    """Return when, in [0, h], an event function falls through zero, by the cubic through both ends; −1 if never.
+    """Return the time in [0, h] at which an event function falls through zero, by the cubic through both ends; −1 if never.
 
-    One that starts on its own surface, or a rounding below it, counts once it has left it. Where the cubic does
-    not show that it has, half of the time is the guess. One that falls and rises again within the step has fallen.
+    One that starts at zero, or a rounding below it, has to rise first; if the cubic does not show that it did, h/2 is
+    returned as a trial. A function that falls and rises again within the step has fallen.
     """
     early, late = inner_points(f0, d0, f1, d1, h)
     if f0 >= 0.0 and min(early, late, f1) > 0.0:
@@ -125,7 +125,7 @@ def falls(f0, d0, f1, d1, h):
 
 @kernel
 def _falls(f0, d0, f1, d1, h):
-    """Return what :func:`falls` does, of an event function that a bound does not keep above zero."""
+    """Return the result of :func:`falls` for an event function that the Bézier points do not keep above zero."""
     if f0 > 0.0 and f1 <= 0.0:
         return _root(f0, d0, f1, d1, h, 0.0, h)
     if f0 > 0.0:
@@ -149,7 +149,7 @@ def _falls(f0, d0, f1, d1, h):
 
 @kernel
 def largest_within(f0, d0, f1, d1, h, best):
-    """Return the greatest |f| so far, and the time in this step at which it is attained; −1 if ``best`` stands."""
+    """Return the time in this step of the greatest |f|, −1 if it does not exceed ``best``; and the greatest |f| so far."""
     x_best = -1.0
     if max(abs(f0), abs(f1)) + excess(d0, d1, h) <= best:  # no point of the cubic lies beyond this bound
         return x_best, best
@@ -191,7 +191,7 @@ def summit_within(f0, d0, f1, d1, h):
 
 @kernel
 def lowest_within(f0, d0, f1, d1, h, best):
-    """Return the least f so far, with the minimum inside this step if there is one."""
+    """Return the least of ``best``, a minimum inside this step, and the value at its end."""
     if d0 < 0.0 and d1 > 0.0 and min(inner_points(f0, d0, f1, d1, h)) < best:
         best = min(best, hermite(f0, d0, f1, d1, h, turning_point(f0, d0, f1, d1, h)))
     return min(best, f1)

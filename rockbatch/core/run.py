@@ -1,7 +1,7 @@
 """The driver of all runs: fixed steps of Runge–Kutta 4, side by side, with events located inside the step.
 
-It knows no pier by name (``system``). All lanes march in step: a vector pass takes each a sub-step further, and one in which
-something may happen takes that sub-step once more, event by event, in scalar code. Runs that end make room for others.
+It knows no kind of pier (``system``). All lanes advance together: a vector pass integrates each over a sub-step, and a lane in
+which an event may occur repeats it event by event, in scalar code. A run that ends frees its lane for another.
 """
 
 import math
@@ -26,8 +26,8 @@ from rockbatch.core.clock import (
     start_clock,
     turn_window,
 )
-from rockbatch.core.devices.events import after_contact, device_event, start_devices
-from rockbatch.core.devices.pull import Devices, loaded, resolved
+from rockbatch.core.devices.events import device_event, reset_device_modes, start_devices
+from rockbatch.core.devices.pull import Devices, loaded, step_resolving_devices
 from rockbatch.core.devices.use import take_in
 from rockbatch.core.history import History, Stamp, history_of, take_back, write
 from rockbatch.core.kernel import entry, hook, inlined, inlined_once, kernel
@@ -73,24 +73,24 @@ from rockbatch.core.types import (
 )
 
 EVENTS_IN_A_SAMPLE = 20_000
-"""More than any decaying sequence of impacts needs."""
+"""Greatest number of events in a sample; decaying sequences of impacts need fewer."""
 
 NO_ROWS = np.zeros((0, 0, 1))
 
 RESULT = np.dtype([*record(Result).descr, ("extremes", "f8", WINDOWS)])
-"""As Result has it, and the greatest |θ| [rad] at a sample in each window of the run, NaN where it has none."""
+"""Result, and the greatest |θ| [rad] at samples in each window of the run, NaN in those not reached."""
 
 
 class Settings(NamedTuple):
     """Settings of all runs of a call."""
 
     substeps: int  # steps to a sampling interval
-    locate: bool  # events inside the step; without, they take place at its end: first order, for comparison only
+    locate: bool  # events are located inside the step; False moves them to its end (first order, for comparison only)
     recording: bool  # histories are written
 
 
 class Context(NamedTuple):
-    """All that the runs of a call share; for what becomes part of the driver: a call copies it, a hundred numbers."""
+    """Arguments shared by the runs of a call. Only inlined functions take it, since a call copies a hundred numbers."""
 
     traits: tuple  # of their System
     lanes: np.record
@@ -104,7 +104,7 @@ class Context(NamedTuple):
 
 @inlined
 def _commit(devices, lanes, i, k_end, which):
-    """Let the devices' states go on from the end of a step, and the next step from its rates but for an event."""
+    """Set the devices' states to the end of a step; the next step takes its rates unless an event intervenes."""
     if devices is None:
         return
     put(lanes.rates, i, k_end)
@@ -116,7 +116,7 @@ def _commit(devices, lanes, i, k_end, which):
 
 @kernel
 def _strongest(lanes, i, ground):
-    """Return the strongest horizontal acceleration [m/s²] that the ground has or may still have."""
+    """Return the greatest |horizontal acceleration| [m/s²] of the whole motion; 0 once the ground is at rest."""
     strongest = 0.0
     if ground_rests(lanes, i):
         return strongest
@@ -127,15 +127,15 @@ def _strongest(lanes, i, ground):
 
 
 @inlined_once
-def _in_flight(context, i, m, y):
-    """Return the status of a pier that has left the ground with both pivots."""
+def _flight_status(context, i, m, y):
+    """Return the status of a pier with both pivots in the air: SURVIVED if flights are guided."""
     lanes = context.lanes
     if m.guided != 0.0:
         return SURVIVED
     if peak_decided(lanes, i):
-        return LATE_FLIGHT  # what flies is undamped vibration
+        return LATE_FLIGHT  # undamped vibration, which does not change the results
     beyond = abs(y.theta) - lanes.clock.alpha[i]
-    # else the ground may yet turn it back
+    # A pier beyond α falls if no later ground acceleration can turn it back
     strongest = _strongest(lanes, i, context.ground)
     falling = beyond >= 0.0 and y.theta * y.omega > 0.0 and m.gravity * math.tan(beyond) >= strongest
     return OVERTURNED if falling else FLIGHT
@@ -143,7 +143,7 @@ def _in_flight(context, i, m, y):
 
 @kernel
 def _count(lanes, i, event, t):
-    """Count an event, a Transition at ``t`` [s]."""
+    """Add an event, a Transition at ``t`` [s], to the counts and times of lane ``i``."""
     tally, landed = lanes.tally, event.kind in (IMPACT_LEFT, IMPACT_RIGHT, IMPACT_BOTH, REST)
     tally.impacts[i] += event.impacts
     tally.uplifts[i] += event.uplifts
@@ -159,7 +159,7 @@ def _count(lanes, i, event, t):
 
 @kernel
 def _too_many_events(lanes, i):
-    """Return whether one event more is one too many in this sample."""
+    """Count an event in this sample; return True if it exceeds EVENTS_IN_A_SAMPLE."""
     tally, sample = lanes.tally, lanes.clock.sample[i]
     tally.events[i] = tally.events[i] + 1.0 if tally.counted[i] == sample else 1.0
     tally.counted[i] = sample
@@ -168,7 +168,7 @@ def _too_many_events(lanes, i):
 
 @inlined
 def _is_zero(y):
-    """Return whether a state is that of a pier at rest."""
+    """Return True if all variables of a state are 0."""
     zero = True
     for j in range(len(y)):
         zero = zero and y[j] == 0.0
@@ -177,7 +177,7 @@ def _is_zero(y):
 
 @inlined_once
 def _apply_event(context, i, m, now, which, x):
-    """Apply event ``which``, ``x`` [s] after the sample, to lane ``i``: status, and the Moment after it."""
+    """Apply event ``which``, ``x`` [s] after the sample, to lane ``i``; return status and the Moment after it."""
     lanes, devices, history = context.lanes, context.devices, context.history
     here, dt, number = ground_at(lanes, i, x), lanes.clock.dt[i], int(lanes.clock.number[i])
     t = lanes.clock.sample[i] * dt + x
@@ -191,21 +191,21 @@ def _apply_event(context, i, m, now, which, x):
     write(history, Stamp(number, t, BEFORE_EVENT), m, devices, now, here)
     event = transition(loaded(devices, m, now, here), devices, now, which, here, dt)
     after = event.now
-    if event.kind not in (LIFT_OFF, TAKE_OFF):  # these have chosen the devices' directions and modes
-        after_contact(m, devices, after, here)
+    if event.kind not in (LIFT_OFF, TAKE_OFF):  # these set the devices' directions and modes themselves
+        reset_device_modes(m, devices, after, here)
         after = released(loaded(devices, m, after, here), after, here)
-    if event.kind == LIFT_OFF and _is_zero(now.y):  # nothing jumps, nor has it moved since the last row
+    if event.kind == LIFT_OFF and _is_zero(now.y):  # the row before equals the last one
         take_back(history, number)
     write(history, Stamp(number, t, event.kind), m, devices, after, here)
     _count(lanes, i, event, t)
     flies = airborne(m, after.contact)
     note_flight(lanes, i, flies, t)
-    return (_in_flight(context, i, m, after.y) if flies else SURVIVED), after
+    return (_flight_status(context, i, m, after.y) if flies else SURVIVED), after
 
 
 @inlined
 def _clear_of_zero(functions):
-    """Return whether all event functions of a pier are clear of zero, or a velocity leaves it."""
+    """Return True if all event functions of a pier are above zero, those of the laws at least rising."""
     clear = min(functions.values[0], functions.values[1]) > 0.0
     for j in (2, 3):
         clear = clear and (functions.values[j] > 0.0 or functions.slopes[j] > 0.0)
@@ -214,7 +214,7 @@ def _clear_of_zero(functions):
 
 @inlined_once
 def _step_by_events(context, i, devices, substep):
-    """Take lane ``i`` through a sub-step event by event: status (SURVIVED while it goes on), and time [s]."""
+    """Integrate lane ``i`` over a sub-step event by event; return status, SURVIVED unless it ends, and time [s]."""
     traits, lanes, history, marks = context.traits, context.lanes, context.history, context.marks
     h, start, dt = lanes.clock.step[i], substep * lanes.clock.step[i], lanes.clock.dt[i]
     t_sample, number = lanes.clock.sample[i] * dt, int(lanes.clock.number[i])
@@ -224,7 +224,7 @@ def _step_by_events(context, i, devices, substep):
         here, left = ground_at(lanes, i, start + done), h - done
         k, under = start_rates(m, devices, now, here, get(lanes.rates, i, now.y))
         at_start = Instant(now.y, k, now.contact, now.supports, here)
-        most = longest_step(m, at_start, min(left, resolved(under, devices, at_start, h, dt)))
+        most = longest_step(m, at_start, min(left, step_resolving_devices(under, devices, at_start, h, dt)))
         used, which, end, k_end = first_event(under, devices, marks, at_start, most, context.settings.locate)
         part, now = Part(now, end, used), Moment(end, now.contact, now.supports)
         include_peak(lanes, i, part, start, done)
@@ -248,7 +248,7 @@ def _step_by_events(context, i, devices, substep):
 
 @inlined_once
 def _start_lane(context, i, number, run):
-    """Start the ``run`` with this ``number`` in lane ``i``: its status."""
+    """Start the ``run`` with ``number`` in lane ``i``; return its status."""
     traits, lanes, devices = context.traits, context.lanes, context.devices
     start_clock(lanes, i, number, run)
     read_ground(lanes, i, context.ground)
@@ -264,7 +264,7 @@ def _start_lane(context, i, number, run):
 
 @kernel
 def _finish(traits, lanes, i, status, t, rows, results):
-    """Write what the run in lane ``i`` has come to, with the number of ``rows`` of each history."""
+    """Write the results of the run in lane ``i``, which ends at ``t`` [s]; ``rows`` are the lengths of the histories."""
     close_window(lanes, i, results)
     peak, tally = lanes.peak, lanes.tally
     note_flight(lanes, i, False, t)
@@ -281,7 +281,7 @@ def _finish(traits, lanes, i, status, t, rows, results):
 
 @hook
 def _accept_step(devices, context, i, substep):
-    """Return whether the sub-step of lane ``i`` stands as the pass took it, and take in what the pass could not."""
+    """Return True if the sub-step of lane ``i`` stands as the pass integrated it; then record its peak and extremes."""
 
 
 @_accept_step.of(Devices)
@@ -308,8 +308,8 @@ class Turn(NamedTuple):
 
 
 @inlined
-def _to_samples(lanes, count, ground):
-    """Bring all lanes to the next sample; return how many have more due there than the next step."""
+def _advance_to_samples(lanes, count, ground):
+    """Advance all lanes to the next sample; return how many have something due there."""
     clock, peak, due = lanes.clock, lanes.peak, 0
     for i in range(count):
         clock.sample[i] += 1.0
@@ -321,8 +321,8 @@ def _to_samples(lanes, count, ground):
 
 
 @inlined_once
-def _at_sample(context, i):
-    """Do what is due at the sample that lane ``i`` has come to: its status, RUNNING while it goes on."""
+def _update_at_sample(context, i):
+    """Update windows and peaks if due at the sample of lane ``i``; return its status, RUNNING unless it ends."""
     lanes, clock, peak = context.lanes, context.lanes.clock, context.lanes.peak
     theta = lanes.now.theta[i]
     if clock.sample[i] < clock.due[i]:
@@ -337,12 +337,12 @@ def _at_sample(context, i):
 
 @hook
 def _pass(devices, context, count, substep):
-    """Take all lanes a sub-step further; return how many are not calm."""
+    """Integrate all lanes over a sub-step; return how many are not calm."""
 
 
 @_pass.of(Devices)
 def _pass_with_devices(devices, context, count, substep):
-    context.lanes.step_status.kind[0] = EVENTFUL  # a lane with devices is taken event by event
+    context.lanes.step_status.kind[0] = EVENTFUL  # a lane with devices is integrated event by event
     return count
 
 
@@ -357,7 +357,7 @@ def _pass_alone(devices, context, count, substep):
 
 @kernel
 def _write_now(context, count, kind, steps):
-    """Write a row of each lane as it is now, so many ``steps`` after its sample."""
+    """Write a row of the present state of each lane, ``steps`` steps after its sample."""
     lanes, clock = context.lanes, context.lanes.clock
     for i in range(count):
         m, now = pier_in(context.traits, lanes, i)
@@ -368,7 +368,7 @@ def _write_now(context, count, kind, steps):
 
 @entry
 def _march(traits, runs, ground, settings, devices, marks, history, stop, memory, results):
-    """Take all ``runs`` to their ends; ``results`` of those that are stopped stay as they are."""
+    """Integrate all ``runs`` to their ends; ``results`` of stopped runs remain unchanged."""
     lanes, cells = memory[0][0], memory[1]
     context = Context(traits, lanes, devices, marks, settings, ground, history, results)
     waiting, count = ZERO, ZERO
@@ -397,12 +397,12 @@ def _march(traits, runs, ground, settings, devices, marks, history, stop, memory
                     move(cells, count, i)
             if history.every_step and substep < settings.substeps - 1:
                 _write_now(context, count, STEP, substep + 1.0)
-        due = _to_samples(lanes, count, ground)
+        due = _advance_to_samples(lanes, count, ground)
         if settings.recording:
             _write_now(context, count, SAMPLE, 0.0)
         i = ZERO if due > 0 else count
         while i < count:
-            status = _at_sample(context, i)
+            status = _update_at_sample(context, i)
             if status == RUNNING:
                 i += 1
             else:
@@ -413,34 +413,34 @@ def _march(traits, runs, ground, settings, devices, marks, history, stop, memory
 
 
 def march(system, lines, ground, stop, substeps, locate=True, every_step=False, history=NO_ROWS, devices=None):
-    """Take runs of piers of one system to their ends, as many at a time as there are lanes, or one with devices.
+    """Integrate runs of one system to their ends, side by side in lanes; only a single run may have devices.
 
     Parameters
     ----------
     system : System
-        Of all their piers.
+        The system of all runs.
     lines : sequence of system.line
     ground : ndarray, shape (rows, 4)
-        Of :func:`rockbatch.core.ground.ground_rows`, of all their motions.
+        Rows of all motions, by :func:`rockbatch.core.ground.ground_rows`.
     stop : ndarray of one uint8
-        Ends them within a sample when another thread sets it.
+        Ends the runs within a sample when another thread sets it.
     substeps : int
-        Steps to a sampling interval, of all of them.
+        Steps to a sampling interval of all runs.
     locate : bool
         Locate events inside the step. Without, they take place at its end (first order; for comparison only).
     every_step : bool
         Also write the steps between samples, and both sides of all events of devices.
     history : ndarray, shape (runs, rows, columns)
-        Filled with each run's samples and both sides of its events, as far as it goes (``history``).
+        Filled with each run's samples and both sides of its events, as far as it has room (``history``).
     devices : Devices or None
-        Of a single run.
+        Devices of a single run.
 
     Returns
     -------
     recarray, shape (runs,)
-        Result's fields and ``extremes``. The status of those that were stopped is RUNNING.
+        Result's fields and ``extremes``. The status of stopped runs is RUNNING.
     """
-    # A compiled function hands out nothing: making a tuple runs Python code, where Ctrl-C may strike.
+    # The compiled function returns nothing: making a tuple would run Python code, which Ctrl-C may interrupt
     runs = np.array(lines, record(system.line)).view(np.recarray)
     results = np.recarray(len(runs), RESULT)
     for name in RESULT.names:

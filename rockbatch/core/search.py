@@ -1,4 +1,4 @@
-"""The first event in a sub-step: the earliest zero crossing of all event functions, by cubics and ever closer trials."""
+"""The first event in a sub-step: the earliest zero crossing of all event functions, by cubics and trial steps."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ from rockbatch.core.types import NO_EVENT, OF_PIER, Instant, Moment
 
 
 class Marks(NamedTuple):
-    """Event functions at the latest moment before the event, at the earliest after it, and at the trial."""
+    """Event functions at the lower and the upper end of the bracket of the event, and at the trial."""
 
     early: EventFunctions
     late: EventFunctions
@@ -24,13 +24,14 @@ class Marks(NamedTuple):
 
 
 def marks_for(elements):
-    """Return Marks for the event functions of a pier with so many ``elements``."""
+    """Return Marks for the event functions of a pier with ``elements`` devices."""
     size = OF_PIER + PER_DEVICE * elements
     return Marks(*(EventFunctions(np.zeros(size), np.zeros(size)) for _ in Marks._fields))
 
 
 @kernel
 def _copy(functions, to):
+    """Copy values and slopes of event functions."""
     for i in range(len(functions.values)):
         to.values[i] = functions.values[i]
     for i in range(len(functions.slopes)):
@@ -39,7 +40,7 @@ def _copy(functions, to):
 
 @kernel
 def _earliest(early, late, h):
-    """Return which event function falls through zero first within ``h`` [s], NO_EVENT for none; and when."""
+    """Return the number of the first event function to fall through zero within ``h`` [s], and its time; NO_EVENT and ``h``."""
     which, first = NO_EVENT, h
     for i in range(len(early.values)):
         at = falls(early.values[i], early.slopes[i], late.values[i], late.slopes[i], h)
@@ -50,7 +51,7 @@ def _earliest(early, late, h):
 
 @inlined
 def _evaluate(m, devices, now, place, h, functions):
-    """Write all event functions of the Instant ``now`` at one ``place`` of a step; ``m`` is the pier under its devices."""
+    """Write all event functions of the Instant ``now`` at a ``place`` of a step; ``m`` is the pier under its devices."""
     f, d = event_functions(m, devices, now)
     values, slopes = functions.values, functions.slopes
     values[0], values[1], values[2], values[3] = f.left, f.right, f.left_law, f.right_law
@@ -60,8 +61,8 @@ def _evaluate(m, devices, now, place, h, functions):
 
 
 @kernel
-def _try(m, devices, start, x):
-    """Take a step over ``x`` [s]: the Instant at its end, and the pier under its devices there."""
+def _trial_step(m, devices, start, x):
+    """Return the Instant at the end of a step of ``x`` [s], and the pier under its devices there."""
     end, there = rk4(m, devices, start, x), later(start.ground, x)
     k_end, under = rates_with(devices, m, Moment(end, start.contact, start.supports), there, END)
     return Instant(end, k_end, start.contact, start.supports, there), under
@@ -69,7 +70,7 @@ def _try(m, devices, start, x):
 
 @inlined
 def nearby(m, start, end, t, x):
-    """Return the state at ``x`` [s] and its rates, by a cubic: it is so near to the Instant ``end`` of a step over ``t``."""
+    """Return state and rates at ``x`` [s], close to the end of a step from ``start`` to ``end`` over ``t`` [s], by a cubic."""
     away = (x - t) / t
     back = along(end.y, start.y, -1.0)
     bend = along(along(start.k, end.k, 2.0), back, -3.0 / t)
@@ -82,7 +83,7 @@ def nearby(m, start, end, t, x):
 
 @kernel
 def _first_below(values):
-    """Return the number of the first event function that is not above zero, NO_EVENT for none."""
+    """Return the number of the first event function ≤ 0, NO_EVENT for none."""
     for i in range(len(values)):
         if values[i] <= 0.0:
             return i
@@ -91,9 +92,9 @@ def _first_below(values):
 
 @kernel
 def _narrow(marks, a, t, b):
-    """Narrow the interval [a, b] of the first event by a trial at ``t``: a, b, which function falls first, and when after a.
+    """Return the bracket [a, b] of the first event narrowed by a trial at ``t``, its function, and its time after a.
 
-    There is none if no function falls on the way to a trial at ``b``.
+    The function is NO_EVENT if none falls before a trial at ``b``.
     """
     which, at = _earliest(marks.early, marks.now, t - a)
     if which != NO_EVENT:
@@ -108,9 +109,9 @@ def _narrow(marks, a, t, b):
 
 @inlined
 def start_rates(m, devices, now, ground, at_end):
-    """Return the rates at the start of a sub-step, and the pier under its devices, whose states' rates are written.
+    """Return the rates at the start of a sub-step, and the pier under its devices; write the rates of the devices' states.
 
-    A sub-step that goes on from the end of the last one begins with the rates ``at_end``.
+    A sub-step that continues from the end of the last one takes the rates ``at_end``.
     """
     if devices is not None and goes_on(devices):
         return at_end, pulled_at_end(m, devices)
@@ -120,14 +121,14 @@ def start_rates(m, devices, now, ground, at_end):
 
 @inlined_once
 def first_event(m, devices, marks, start, h, locate):
-    """Take a step of ``h`` [s] from the Instant ``start``, or to the first event before its end.
+    """Integrate from the Instant ``start`` over ``h`` [s], or to the first event before that.
 
-    ``m`` is the pier under its devices at the start.
-    Without ``locate`` events take place at the end of the step: first order, for comparison only.
+    ``m`` is the pier under its devices at the start. Without ``locate`` events take place at the end of the step, which is of
+    first order and for comparison only.
 
     Returns
     -------
-    The time that it took [s]; the number of the event function that fell, NO_EVENT for none; the state then, and its rates.
+    The length of the step [s]; the number of the event function that fell, NO_EVENT for none; the state then, and its rates.
     """
     if devices is not None and goes_on(devices):
         _copy(marks.now, marks.early)
@@ -135,7 +136,7 @@ def first_event(m, devices, marks, start, h, locate):
         _evaluate(m, devices, start, START, h, marks.early)
     a, b, t, which, last = 0.0, h, h, NO_EVENT, False
     for trial in range(TRIALS + 1):
-        now, under = _try(m, devices, start, t)
+        now, under = _trial_step(m, devices, start, t)
         if last and which != NO_EVENT:
             return t, which, now.y, now.k
         _evaluate(under, devices, now, END, h, marks.now)

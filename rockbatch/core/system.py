@@ -1,8 +1,8 @@
-"""Hooks by which the driver calls a system: each pier implements them in its own package (``springs``, ``block``).
+"""Hooks by which the driver calls a system: each kind of pier implements them (``springs``, ``block``, ``flexure``).
 
 The first group takes a model ``m`` (Springs, Block), the second the traits that kernels are compiled for, and a lane of a
-table. ``contact`` and ``supports`` hold what is constant between events; ``devices`` are None where there are none. Optional
-ones do here what a system needs least: nothing decays, all lanes are taken event by event, nothing more is written.
+table. ``contact`` and ``supports`` are constant between events; ``devices`` are None without any. Optional hooks have a default
+for systems that do not need them: nothing decays, all lanes are integrated event by event, no further results.
 """
 
 from typing import NamedTuple
@@ -39,19 +39,19 @@ def rates(m, y, contact, ground):
 
 @optional_hook
 def share(m, h):
-    """Return the share that remains after ``h`` [s] of what decays in closed form."""
+    """Return the factor after ``h`` [s] of variables that decay in closed form."""
     return 1.0
 
 
 @optional_hook
 def stage(m, y, start, contact, remaining):
-    """Return a stage ``y`` of a step from ``start``, with the share ``remaining`` of what decays in closed form."""
+    """Return the stage ``y`` of a step from ``start``, with decaying variables set to ``remaining`` times their start."""
     return y
 
 
 @optional_hook
 def end_step(m, y, start, contact, remaining):
-    """Return the end ``y`` of a step from ``start``, on what constrains it."""
+    """Return the end ``y`` of a step from ``start``, projected onto its constraints."""
     return y
 
 
@@ -62,7 +62,7 @@ def ground_power(m, y, contact, ground):
 
 @optional_hook
 def shift(m, contact):
-    """Return by how far devices are right of their offsets from the middle of the base [m]."""
+    """Return the shift of devices to the right of their offsets from the middle of the base [m]."""
     return 0.0
 
 
@@ -78,19 +78,19 @@ def transition(m, devices, now, which, ground, dt):
 
 @optional_hook
 def released(m, now, ground):
-    """Return the Moment ``now`` behind an impact of a pier under its devices, in the air if the ground would have to hold it."""
+    """Return the Moment ``now`` after an impact; in the air if the ground would have to pull the pier down."""
     return now
 
 
 @optional_hook
 def longest_step(m, start, h):
-    """Return the length [s], ``h`` at most, of a sub-step from the Instant ``start`` in which event functions show all events."""
+    """Return a step [s] from the Instant ``start``, at most ``h``, in which event functions show all events."""
     return h
 
 
 @optional_hook
 def airborne(m, contact):
-    """Return whether both pivots are in the air."""
+    """Return True if both pivots are in the air."""
     return contact.left == 0.0 and contact.right == 0.0
 
 
@@ -101,7 +101,7 @@ def pier_in(traits, lanes, i):
 
 @hook
 def begin(traits, lanes, i, run):
-    """Put what only this system has of a ``run`` into lane ``i``, whose clock and ground are set, and set its deadline."""
+    """Set model, initial state and deadline of a ``run`` in lane ``i``, whose clock and ground are set."""
 
 
 @optional_hook
@@ -113,10 +113,10 @@ def lanes_in_pass(traits, count):
 
 @optional_hook
 def one_pass(traits, lanes, count, substep, settings):
-    """Take the first ``count`` lanes through a sub-step, from ``now`` to ``end``.
+    """Integrate the first ``count`` lanes over a sub-step, from ``now`` to ``end``, and set their ``step_status``.
 
-    One that is calm goes on from the end, its extremes brought up to it. Of others ``step_status`` says whether their sub-step
-    stands (STANDS) or has to be taken event by event (EVENTFUL).
+    A CALM lane is advanced, with its extremes. Otherwise the sub-step stands (STANDS), or has to be repeated event by event
+    (EVENTFUL).
     """
     for i in range(count):
         lanes.step_status.kind[i] = EVENTFUL
@@ -124,19 +124,19 @@ def one_pass(traits, lanes, count, substep, settings):
 
 @optional_hook
 def take_in_step(traits, lanes, i, substep, history):
-    """Take in what the pass could not, of a sub-step of lane ``i`` that stands, and let the lane go on from its end."""
+    """Advance lane ``i`` to the end of a sub-step that stands, with extremes and reversals that the pass left out."""
 
 
 @hook
 def take_in_part(traits, lanes, i, m, part, after):
-    """Bring lane ``i`` up to the Moment ``after`` a Part and its event, with all extremes and changes that the system keeps."""
+    """Advance lane ``i`` to the Moment ``after`` a Part and its event, with all extremes that the system keeps."""
 
 
 @hook
 def status_at_sample(traits, lanes, i, devices):
-    """Return how the run in lane ``i`` has ended, RUNNING if it goes on; and the number of the next sample to look at it."""
+    """Return the status of the run in lane ``i``, RUNNING unless it ends, and the next sample at which to check it."""
 
 
 @optional_hook
 def finish(traits, lanes, i, t, result):
-    """Write what only this system has of the run in lane ``i`` into its ``result``."""
+    """Write the system's own results of lane ``i`` into ``result``."""

@@ -1,7 +1,7 @@
-"""Named tuples of numbers, in records and side by side in lanes: get, put, move, and sums of them.
+"""Named tuples of numbers in records and in lanes: get, put, move, and linear combinations.
 
-A table of lanes is one record. Each of its fields holds one number for each lane, so that what a loop over lanes touches lies
-side by side and at constant distances: the compiler can take several lanes with one instruction.
+A table of lanes is one record, in which each field holds one number for each lane: a loop over lanes reads contiguous memory,
+and the compiler can process several lanes with one instruction.
 """
 
 from collections.abc import Mapping
@@ -18,14 +18,14 @@ from rockbatch.core.kernel import kernel
 LANES = 16
 """Runs that a table holds side by side."""
 
-ZERO = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
+ZERO = np.int64(0)  # typed: with a literal 0 every callee would be compiled twice
 
 _CODES = {float: "f8", int: "i8"}
 _DOUBLE = ir.DoubleType()
 
 
 def record(kind: type[NamedTuple]) -> np.dtype:
-    """Return the dtype of one ``kind``: a field for each of its own."""
+    """Return the dtype of a record with the fields of ``kind``."""
     return np.dtype([(name, _CODES[hint]) for name, hint in get_type_hints(kind).items()])
 
 
@@ -49,7 +49,7 @@ def table(lanes: np.dtype) -> tuple[np.recarray, np.ndarray]:
 
 @kernel
 def move(cells, i, j):
-    """Copy what is in lane ``i`` to lane ``j``."""
+    """Copy lane ``i`` to lane ``j``."""
     for k in range(len(cells)):
         cells[k, j] = cells[k, i]
 
@@ -102,7 +102,7 @@ def _get(typing_context, part, i, kind):
 
 @intrinsic
 def _taken(typing_context, line, kind):
-    """Return the named tuple ``kind`` of fields that a record has."""
+    """Return the named tuple ``kind`` from fields of a record."""
     fields = kind.instance_class._fields
     result = types.NamedUniTuple(types.float64, len(fields), kind.instance_class)
 
@@ -129,7 +129,7 @@ def _put(typing_context, part, i, value):
 
 @intrinsic
 def _with_pull(typing_context, m, pull):
-    """Return a named tuple with ``pull`` in the place of its own, of another type perhaps."""
+    """Return ``m`` with its field ``pull`` replaced, possibly by another type."""
     place = m.fields.index("pull")
     result = types.NamedTuple([*m.types[:place], pull, *m.types[place + 1 :]], m.instance_class)
 

@@ -1,6 +1,6 @@
-"""Sine and cosine by arithmetic alone, which the lanes' passes can take for several angles at once (docs/pages/lanes.md).
+"""Sine and cosine by arithmetic alone, which the compiler can vectorise (docs/pages/lanes.md).
 
-A call of the machine's ``sin`` would end the compiler's attempt to turn a loop into vector instructions.
+A call of the machine's ``sin`` would keep a loop over lanes scalar.
 """
 
 import math
@@ -29,10 +29,10 @@ def _interpolated(series, nodes):
 
 
 def _coefficients(first):
-    """Return the coefficients of the polynomial of degree 5 in z that is next to Σ (−z)ᵏ/(2k + first)!, 0 ≤ z ≤ (π/4)².
+    """Return the coefficients of a polynomial of degree 5 that approximates Σ (−z)ᵏ/(2k + first)! for 0 ≤ z ≤ (π/4)².
 
-    Through its values at Chebyshev's nodes, which lie so that the error is next to the least; rounded to 20 bits, they
-    are the same on every machine.
+    It interpolates at Chebyshev nodes, which nearly minimise the error; rounded to 20 bits, they are the same on every
+    machine.
     """
     series = [Fraction((-1) ** k, math.factorial(2 * k + first)) for k in range(16)]
     middle = 0.5 * QUARTER * QUARTER
@@ -46,13 +46,13 @@ _COSINE = _coefficients(4)  # (cos r − 1 + r²/2)/r⁴
 
 @inlined
 def _polynomial(c, z):
-    """Return Σ c[k] zᵏ of six coefficients, two by two: half as long a chain for a processor to wait for as one by one."""
+    """Return Σ c[k] zᵏ of six coefficients in pairs, a dependency chain half as long as Horner's."""
     square = z * z
     return (c[0] + z * c[1]) + square * ((c[2] + z * c[3]) + square * (c[4] + z * c[5]))
 
 
 FLAT = 0.75
-"""Angle [rad], next to π/4, up to which :func:`flat_sine_and_cosine` is what :func:`sine_and_cosine` is, to the bit."""
+"""Angle [rad], just below π/4, up to which :func:`flat_sine_and_cosine` equals :func:`sine_and_cosine` bitwise."""
 
 
 @inlined
@@ -64,11 +64,11 @@ def flat_sine_and_cosine(angle):
 
 @inlined
 def sine_and_cosine(angle):
-    """Return sine and cosine of ``angle`` [rad], wrong by 1.02 units in the last place at most where |angle| ≤ 3π/4.
+    """Return sine and cosine of ``angle`` [rad], with an error of at most 1.02 units in the last place for |angle| ≤ 3π/4.
 
-    Where |angle| exceeds π/4, its distance r = π/2 − |angle| from the right angle, in two parts, takes its place, and
-    sine and cosine change theirs. Sine is odd and cosine even to the bit. Beyond 3π/4, where no pier stands any more,
-    the error grows, to 3·10⁻¹⁰ at π and 2·10⁻⁵ at 3π/2, and then as polynomials do.
+    For |angle| > π/4 the polynomials are evaluated at r = π/2 − |angle|, in two parts, and sine and cosine are exchanged.
+    Sine is odd and cosine even to the bit. Beyond 3π/4, where no pier stands any more, the error grows to 3·10⁻¹⁰ at π and
+    2·10⁻⁵ at 3π/2.
     """
     size = abs(angle)
     steep = size > QUARTER

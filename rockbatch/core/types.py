@@ -1,9 +1,9 @@
-"""Codes that all systems share, the ground under them, the pull of devices on them, and what a run comes to."""
+"""Codes and named tuples that all systems share: ground, pull of devices, moments, transitions, results."""
 
 from typing import NamedTuple
 
-# Codes that lanes and histories hold, and those that select a pivot, are floats like all else there: an integer would
-# have kernels compiled once more for each type.
+# Codes in lanes and histories, and those of pivots, are floats like all numbers there: kernels would be compiled again for
+# integers.
 
 # Status of a run
 RUNNING = -1  # not yet over
@@ -12,10 +12,10 @@ OVERTURNED = 1
 FLIGHT = 2
 CHATTER = 3
 NOT_FINITE = 4
-UNDECIDED = 5  # left alone, the pier has stayed where it may yet overturn
-GROWING = 6  # left alone, it leans further and further
+UNDECIDED = 5  # after the record the pier stayed at a rotation from which it may still overturn
+GROWING = 6  # after the record it leaned further and further
 RESTLESS = 7  # survived, but by its energy later extremes could exceed the peak
-LATE_FLIGHT = 8  # survived, and flew when nothing that comes later could exceed the peak
+LATE_FLIGHT = 8  # survived, and flew when nothing could exceed the peak any more
 
 # Kinds of rows in a history: a sample, the end of a step between samples, or the two sides of an event
 SAMPLE = 0.0
@@ -40,7 +40,7 @@ LEFT = -1.0
 RIGHT = 1.0
 NEITHER = 0.0
 
-# Event functions, by their place among those of a pier; those of devices follow
+# Indices of the event functions of a pier; those of devices follow
 CONTACT_LEFT = 0
 CONTACT_RIGHT = 1
 LAW_LEFT = 2
@@ -66,15 +66,15 @@ class Ground(NamedTuple):
 
 
 class Moment(NamedTuple):
-    """A pier at one moment: what changes in a step, and what is constant between events."""
+    """State of a pier at one moment, and its contacts and supports, which are constant between events."""
 
     y: tuple  # state
     contact: tuple
-    supports: tuple | None  # where supports without their pivots wait; None on rigid ground
+    supports: tuple | None  # positions of supports without their pivots; None on rigid ground
 
 
 class Instant(NamedTuple):
-    """A Moment with the rates of its state and the ground: all that a step starts from, and that event functions depend on."""
+    """A Moment with the rates of its state and the ground: the arguments of a step and of event functions."""
 
     y: tuple
     k: tuple  # rates
@@ -87,7 +87,7 @@ class Part(NamedTuple):
     """A smooth part of a sub-step, to an event or to its end."""
 
     start: Moment
-    end: tuple  # state, before what the event changes
+    end: tuple  # state before the event
     length: float  # [s]
 
 
@@ -96,13 +96,13 @@ class Transition(NamedTuple):
 
     now: Moment  # after it
     kind: float  # in a history
-    impacts: float  # that count
+    impacts: float  # number of impacts to count
     uplifts: float
-    remaining: float  # time until rest [s], of an infinite sequence of ever lower bounces, which are summed up; else 0
+    remaining: float  # duration [s] of an infinite sequence of bounces that is summed up; else 0
 
 
 class Signals(NamedTuple):
-    """Event functions of a pier, or their slopes: positive until something happens at a pivot."""
+    """Event functions of a pier, or their slopes: positive until an event at a pivot."""
 
     left: float
     right: float
@@ -111,7 +111,7 @@ class Signals(NamedTuple):
 
 
 class Result(NamedTuple):
-    """Result of a run; SI units, per unit mass. NaN or 0 where a system does not have it."""
+    """Result of a run; SI units, per unit mass. NaN or 0 for results that a system does not have."""
 
     status: int
     t_end: float
@@ -133,12 +133,12 @@ class Result(NamedTuple):
     dissipated_left: float  # plastic work
     dissipated_right: float
     t_read: float  # when residuals are read
-    drift_left: float  # by how much each support has moved over the periods that follow, per second; NaN if unknown
+    drift_left: float  # mean velocity of each support between both readings; NaN if unknown
     drift_right: float
     v_end: float  # [m]
     theta_end: float  # [rad]
     deflection_max: float  # greatest deflection of the top of a shaft that bends [m]
-    drift_max: float  # and greatest horizontal way of that top
+    drift_max: float  # greatest horizontal displacement of that top
     bed_tilt: float  # tilt of the plastic set of a footing's bed at the end [rad]
     lean: float  # rotation at which the pier rests on it [rad]
     settled: float  # by which the middle of the foot is then deeper than at the start [m]

@@ -1,30 +1,28 @@
-"""Errors of demands on the design: by which share of itself halving the step still changed one of them at most."""
+"""Errors of design demands: the greatest relative change by halving the step."""
 
 import math
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Pier
 
 FLOOR = 0.01
-"""Share of a quantity's scale below which it governs no design: an error is a share of no less than that."""
-
+"""Share of a quantity's scale below which it governs no design; changes are relative to at least that."""
 
 LEAST = 1e-8
-"""Least error of demands on devices and in sections that is claimed, as a share: two runs may agree by chance better than either
-is right."""
+"""Least relative error that is claimed for devices and sections: two runs may agree better than either is right."""
 
 
 class Sized(NamedTuple):
-    """Fields that make one quantity, such as those of both pivots, and its scale, one of :func:`scales_of`."""
+    """Fields of one quantity, such as those of both pivots, and the name of its scale in :func:`scales_of`."""
 
     fields: tuple[str, ...]
     scale: str
 
 
 def scales_of(pier: Pier) -> Mapping[str, float]:
-    """Return the scales of quantities: the weight, friction tan α, and a pier that leans by α."""
+    """Return the scales of quantities by name: of the weight, of friction tan α, and of a pier that leans by α; per unit mass."""
     gap = 2.0 * pier.half_width * pier.alpha
     return {
         "force": pier.gravity,
@@ -38,8 +36,8 @@ def scales_of(pier: Pier) -> Mapping[str, float]:
     }
 
 
-def greatest_change(quantities: Mapping[str, Sized], fine: Any, coarse: Any, pier: Pier) -> tuple[str, float]:
-    """Return the name of the quantity that differs most between ``fine`` and ``coarse``, and the difference as a share of it."""
+def greatest_change(quantities: Mapping[str, Sized], fine: object, coarse: object, pier: Pier) -> tuple[str, float]:
+    """Return the name and relative change of the quantity that changes most from ``coarse`` to ``fine``; None counts as 0."""
     scales = scales_of(pier)
     changes = {}
     for name, (fields, scale) in quantities.items():
@@ -51,26 +49,23 @@ def greatest_change(quantities: Mapping[str, Sized], fine: Any, coarse: Any, pie
 
 
 OF_DEVICES = {
-    field.replace("_", " "): Sized((field,), scale)
-    for field, scale in {
-        "damper_force": "share",
-        "damper_stroke": "gap",
-        "damper_speed": "speed",
-        "damper_energy": "energy",
-        "tendon_force": "share",
-        "tendon_yield": "gap",
-        "stop_force": "share",
-        "stop_depth": "gap",
-        "stop_energy": "energy",
-        "deck_spring_force": "share",
-        "deck_spring_depth": "gap",
-        "deck_spring_energy": "energy",
-    }.items()
-}  # fmt: skip
+    "damper force": Sized(("damper_force",), "share"),
+    "damper stroke": Sized(("damper_stroke",), "gap"),
+    "damper speed": Sized(("damper_speed",), "speed"),
+    "damper energy": Sized(("damper_energy",), "energy"),
+    "tendon force": Sized(("tendon_force",), "share"),
+    "tendon yield": Sized(("tendon_yield",), "gap"),
+    "stop force": Sized(("stop_force",), "share"),
+    "stop depth": Sized(("stop_depth",), "gap"),
+    "stop energy": Sized(("stop_energy",), "energy"),
+    "deck spring force": Sized(("deck_spring_force",), "share"),
+    "deck spring depth": Sized(("deck_spring_depth",), "gap"),
+    "deck spring energy": Sized(("deck_spring_energy",), "energy"),
+}
 
 
 def change_of_devices(fine: Outcome, coarse: Outcome, pier: Pier) -> float | None:
-    """Return the error of the demands on devices; None without any."""
+    """Return the greatest relative change of the devices' demands, at least :data:`LEAST`; None without devices."""
     if fine.damper_force is fine.tendon_force is fine.stop_force is fine.deck_spring_force is None:
         return None
     return max(greatest_change(OF_DEVICES, fine, coarse, pier)[1], LEAST)

@@ -1,4 +1,4 @@
-"""Work of devices along a run: cumulative travel, energy and half cycles of each damper, and the strain of each tendon."""
+"""Work of devices in a run: cumulative travel, energy and half cycles of each damper, and strain of each tendon."""
 
 import math
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ class Courses(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Work of each device; shape (devices,) each, NaN of ``strain`` where a device is no tendon that yields."""
+    """Work of each device; shape (devices,) each, ``strain`` NaN for all but tendons that can yield."""
 
     travel: Samples  # [m]
     lost: Samples  # [J/kg]
@@ -37,7 +37,7 @@ class Work(NamedTuple):
 
 
 def rainflow(course: Sequence[float] | Samples) -> tuple[Samples, Samples]:
-    """Return the ranges of a ``course``, and of how many half cycles each is: rainflow counting of ASTM E1049-85, 5.4.4."""
+    """Return the ranges of a ``course`` and their half cycles, 1 or 2, by rainflow counting (ASTM E1049-85, 5.4.4)."""
     values = np.asarray(course, dtype=np.float64)
     values = values[np.concatenate([[True], np.diff(values) != 0.0])]
     steps = np.diff(values)
@@ -51,7 +51,7 @@ def rainflow(course: Sequence[float] | Samples) -> tuple[Samples, Samples]:
     for value in values[turns].tolist():
         points.append(value)
         while len(points) >= 3 and abs(points[-1] - points[-2]) >= (width := abs(points[-2] - points[-3])):
-            if len(points) == 3:  # it has the starting point
+            if len(points) == 3:  # the range contains the starting point: half a cycle
                 count(width, 1)
                 del points[0]
             else:
@@ -63,7 +63,7 @@ def rainflow(course: Sequence[float] | Samples) -> tuple[Samples, Samples]:
 
 
 def with_turns(t: Samples, way: Samples, speed: Samples) -> Samples:
-    """Return the ``way`` of a device at times ``t`` with the extremes between them of the cubics by its ``speed``."""
+    """Return the ``way`` [m] with the extremes between the times ``t`` inserted, by cubic Hermite interpolation."""
     h = np.diff(t)
     rows = np.flatnonzero((h > 0.0) & (speed[:-1] * speed[1:] < 0.0))
     h, start, travel = h[rows], way[rows], way[rows + 1] - way[rows]
@@ -79,7 +79,7 @@ def with_turns(t: Samples, way: Samples, speed: Samples) -> Samples:
 
 
 def work_of(pier: Pier, base: Base, courses: Courses, least_stroke: float) -> Work:
-    """Return the work of all devices; half cycles count from ``least_stroke`` [m] up, from end to end.
+    """Return the work of all devices; half cycles are counted if their range is at least ``least_stroke`` [m].
 
     Travel and half cycles of a damper are its own, without its brace.
     """
@@ -102,7 +102,7 @@ def work_of(pier: Pier, base: Base, courses: Courses, least_stroke: float) -> Wo
 
 
 def greatest_of(pier: Pier, base: Base, work: Work) -> DeviceWork:
-    """Return the greatest of the ``work`` of dampers and tendons."""
+    """Return the greatest ``work`` of any damper, and strain of any tendon; None for either if there is none."""
     dampers = np.array([isinstance(device, Damper) for device in base.restraints for _ in places(pier, device)])
     strains = work.strain[np.isfinite(work.strain)]
     strain = float(strains.max()) if len(strains) else None
@@ -121,7 +121,10 @@ OF_WORK = {
 
 
 def with_work(outcome: Outcome, fine: DeviceWork, coarse: DeviceWork | None, pier: Pier, chance: float) -> Outcome:
-    """Return ``outcome`` with the work of its devices; their error is ``chance`` times the change from that of twice the step."""
+    """Return ``outcome`` with the ``fine`` work of its devices.
+
+    Its ``devices_error`` becomes at least ``chance`` times the change from ``coarse``, by twice the step; unchanged without it.
+    """
     if coarse is None or outcome.devices_error is None:
         return outcome.changed(device_work=fine)
     change = max(greatest_change(OF_WORK, fine, coarse, pier)[1], LEAST)

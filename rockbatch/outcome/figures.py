@@ -1,4 +1,4 @@
-"""Figures of runs: histories as in the paper's Fig. 5, thinned to the resolution of the picture, and loops."""
+"""Figures of runs: histories as in the paper's Fig. 5, thinned to the resolution of the figure, and loops."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -31,38 +31,38 @@ Response = Any
 
 QUANTITIES = ("θ/α", "θ̇/(αp)", "E/M [J/kg]", "ü_g/g")
 GROUND = 3
-"""Place of the ground acceleration among the quantities: it is the same for all piers."""
+"""Index of the ground acceleration in :data:`QUANTITIES`: it is the same for all piers."""
 HEIGHTS = (94.0, 60.0, 60.0, 60.0)
 WIDTH = 320.0
 """Width of the figure of one run [px]; loops are half as wide."""
 LOOPS = 112.0
 ON_PAGE = {0: 200.0, 1: 110.0, GROUND: 90.0}
-"""Quantities of :func:`together`, with the height of their panels [px]."""
+"""Indices of the quantities of :func:`together`, with the heights of their panels [px]."""
 ACROSS = 900.0
 """Width of :func:`together` [px]."""
 SEPARATE = ("separation", "lift-off")
 MOST_DEVICES = 3
-"""Most dampers and tendons of a run whose loops are drawn."""
+"""Greatest number of devices of a run whose loops are drawn."""
 MOST_LANES = 4
-"""Most piers whose events are drawn together, each in its own lane."""
+"""Greatest number of piers whose events are drawn together, each in its own lane."""
 LOADED = 1e-3
-"""Share of the largest force below which a spring is not loaded."""
+"""Share of the largest force up to which a spring counts as unloaded."""
 OVER = 1.5
-"""Rotation over α beyond which the picture of a pier that overturns ends."""
+"""Rotation over α at which the curve of an overturning pier is cut."""
 MOVES = 0.02
-"""Share of the largest rotation, and of α if it overturns, by which a pier that is not at rest is away from it."""
+"""Share of the largest rotation, or of α if that is smaller, from which a pier counts as moving."""
 CUT = 0.9
-"""Share of the time above which the stretch in which piers move is not worth a cut."""
+"""Share of the record above which the stretch in which piers move is not cut out of it."""
 
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """The drawn parts of a :class:`Response`, without the response itself, since many are in memory at once.
+    """The curves and events of a :class:`Response` that are drawn, thinned, since many are in memory at once.
 
     Attributes
     ----------
     curves : list
-        Abscissae [s] and ordinates of each of :data:`QUANTITIES`, with every extremum that a pixel can show.
+        Abscissae [s] and ordinates of each of :data:`QUANTITIES`, with every extremum that a pixel resolves.
     impacts, separations, flights : ndarray
         Times of the events [s]; of impacts and separations only those that can be distinguished.
     peak : tuple of float
@@ -70,9 +70,9 @@ class History:
     end : tuple of float
         Time and θ/α at the end.
     moving : tuple of float
-        The first and the last time at which the pier is away from its rest by more than :data:`MOVES` of its peak [s].
+        First and last time [s] at which the pier is away from rest by more than :data:`MOVES`.
     band : float
-        |θ/α| up to which a weakly rocking pier keeps both supports: THEORY.md, eq. 10. Zero on the rigid base.
+        |θ/α| up to which both supports of a weakly rocking pier stay loaded (THEORY.md, eq. 10); 0 on the rigid base.
     springs, devices : tuple of Panel
         Force against deflection of both springs; force against elongation of the first dampers and tendons.
     """
@@ -91,14 +91,14 @@ class History:
 
     @property
     def outcome(self) -> str:
-        """Return the largest rotation over α, or how the run ended instead, with its time."""
+        """Return the largest |θ|/α with its time as text, or how the run ended early."""
         if self.status in OUTCOMES:
             return f"{OUTCOMES[self.status]} at {self.end[0]:.1f} s"
         return f"{abs(self.peak[1]):.4f} at {self.peak[0]:.1f} s"
 
 
 OUTCOMES = {"overturned": "overturned", "flight": "left the ground"}
-"""Statuses of runs that end before their largest rotation, in words."""
+"""Statuses of runs that end early, as text."""
 
 
 PEAK = Look("peak", shape="dot")
@@ -106,9 +106,9 @@ PEAK = Look("peak", shape="dot")
 
 
 class Drawn(NamedTuple):
-    """A history among others: its ``label`` in the legend, its ``name`` where values are read, and its style.
+    """A history in a figure: its ``label`` in the legend, its ``name`` where values are read, and its style.
 
-    ``look`` is that of its curves, ``mark`` that of its largest rotation.
+    ``look`` styles its curves, ``mark`` its largest rotation.
     """
 
     history: History
@@ -119,7 +119,7 @@ class Drawn(NamedTuple):
 
 
 def reduced(response: Response, look: Look, pixels: int = 900, most_devices: int | None = MOST_DEVICES) -> History:
-    """Return the response thinned for drawing, the stretch in which it moves ``pixels`` wide; its loops have this ``look``."""
+    """Return the response thinned to ``pixels`` while the pier moves; loops, of ``most_devices`` or all, in ``look``."""
     pier, t = response.pier, response.t
     theta = response.theta / pier.alpha
     ground = response.history["ag_h"].to_numpy(dtype=np.float64) / pier.gravity
@@ -148,7 +148,7 @@ def reduced(response: Response, look: Look, pixels: int = 900, most_devices: int
 
 
 def _moving(t: Array, theta: Array) -> tuple[float, float]:
-    """Return when the pier first leaves its rest, and when it has come to that at which it stays."""
+    """Return the times [s] at which the pier first leaves 0 and last leaves its final rotation; the ends if it never moves."""
     least = MOVES * min(float(np.nanmax(np.abs(theta))), 1.0)
     left, away = np.abs(theta) > least, np.abs(theta - theta[-1]) > least
     if not left.any() or not away.any():
@@ -157,7 +157,7 @@ def _moving(t: Array, theta: Array) -> tuple[float, float]:
 
 
 def _thinned(t: Array, y: Array, moving: tuple[float, float], pixels: int) -> tuple[Array, Array]:
-    """Return a history thinned to ``pixels`` while the pier moves, and outside as if these were the whole of it."""
+    """Return a history thinned to ``pixels`` while the pier moves, and to ``pixels`` per whole record outside."""
     first, last = np.searchsorted(t, moving)
     parts = []
     for part in (slice(0, first), slice(first, last + 1), slice(last + 1, len(t))):
@@ -169,7 +169,7 @@ def _thinned(t: Array, y: Array, moving: tuple[float, float], pixels: int) -> tu
 
 
 def together(runs: Sequence[Drawn], record: str) -> tuple[Figure, Axis]:
-    """Return the histories of piers under one motion while any of them moves, and the time of the whole record."""
+    """Return a figure of piers under one motion while any of them moves, and a time axis of the whole record."""
     end = max(run.history.end[0] for run in runs) or 1.0
     low, high = min(run.history.moving[0] for run in runs), max(run.history.moving[1] for run in runs)
     margin = 0.03 * (high - low)
@@ -181,7 +181,7 @@ def together(runs: Sequence[Drawn], record: str) -> tuple[Figure, Axis]:
 
 
 def of_one(response: Response, title: str) -> Figure:
-    """Return the figure of a response alone, as fine as it is printed, over its loops."""
+    """Return the figure of a single response at the resolution of print, with its loops below."""
     look = Look("curve", int(response.base.on_springs))
     own = reduced(response, look, 2000, None)
     runs, heights, shown = [Drawn(own, "", "", look, PEAK)], dict(enumerate(HEIGHTS)), (0.0, own.end[0] or 1.0)
@@ -189,24 +189,32 @@ def of_one(response: Response, title: str) -> Figure:
 
 
 def history(
-    runs: Sequence[Drawn], heights: Mapping[int, float], shown: tuple[float, float], width: float,
-    record: str, title: str = "", loops: Sequence[Panel] = (),
-) -> Figure:  # fmt: skip
-    """Return a panel for each quantity against time: every run's, and the ground's acceleration once; ``loops`` below."""
+    runs: Sequence[Drawn],
+    heights: Mapping[int, float],
+    shown: tuple[float, float],
+    width: float,
+    record: str,
+    title: str = "",
+    loops: Sequence[Panel] = (),
+) -> Figure:
+    """Return a figure with a panel per quantity of ``heights`` [px] against time ``shown`` [s], and ``loops`` below.
+
+    The ground acceleration is drawn once, of the run in which the pier moves longest.
+    """
     panels = []
     for row, height in heights.items():
         last = row == max(heights)
-        drawn = [max(runs, key=lambda run: np.ptp(run.history.moving))] if row == GROUND else runs
+        if row == GROUND:
+            drawn = [max(runs, key=lambda run: np.ptp(run.history.moving))._replace(name="", look=Look("curve"))]
+        else:
+            drawn = list(runs)
         y = _scale([run.history for run in drawn], row)
-        marks: list[Mark] = [
-            Polyline(
-                *run.history.curves[row],
-                y.plain if row == GROUND else f"{y.plain} {run.name}".strip(),
-                look=Look("curve") if row == GROUND else run.look,
-                label=_entry(run) if row == 0 else "",
+        marks = list[Mark]()
+        for run in drawn:
+            label = _entry(run) if row == 0 else ""
+            marks.append(
+                Polyline(*run.history.curves[row], f"{y.plain} {run.name}".strip(), look=run.look, label=label)
             )
-            for run in drawn
-        ]
         if row == 0:
             marks += _events(runs, y, shown)
         x = Axis("t [s]" if last else "", *shown, about=8, numbered=last)
@@ -216,7 +224,7 @@ def history(
 
 
 def _scale(histories: Sequence[History], row: int) -> Axis:
-    """Return one scale for all, not stretched by piers that overturned."""
+    """Return an axis for all ``histories`` of a quantity, from those that stood unless none did."""
     stood = [one for one in histories if one.status == "ok"] or histories
     bands = [np.array([-one.band, one.band]) for one in stood[:1]] if row == 0 and len(histories) == 1 else []
     # Strokes of events stand beyond the curves
@@ -230,12 +238,12 @@ def _lane(runs: int) -> float:
 
 
 def _entry(run: Drawn) -> str:
-    """Return a run's entry in the legend, with what it came to; none without a label."""
+    """Return a run's legend entry with its largest rotation or ending; "" without a label."""
     return f"{run.label}: {run.history.outcome}" if run.label else ""
 
 
 def _standing(one: History, row: int) -> Array:
-    """Return a quantity until the pier overturns, since later values would hide how it rocked."""
+    """Return the values of a quantity until |θ|/α exceeds :data:`OVER`, since later ones would hide the rocking."""
     t, theta = one.curves[0]
     beyond = np.flatnonzero(np.abs(theta) > OVER)
     times, values = one.curves[row]
@@ -243,7 +251,7 @@ def _standing(one: History, row: int) -> Array:
 
 
 def _events(runs: Sequence[Drawn], y: Axis, shown: tuple[float, float]) -> Iterator[Mark]:
-    """Yield impacts at the foot, separations at the top, flights across, peaks, the largest with its value, and ends."""
+    """Yield marks: impacts at the foot, separations at the top, flights, peaks, the largest with its value, and early ends."""
     if len(runs) == 1 and (band := runs[0].history.band):
         yield Span("y", max(-band, y.low), min(band, y.high), look=Look("band"), label="both supports loaded")
     lane = _lane(len(runs))
@@ -259,45 +267,46 @@ def _events(runs: Sequence[Drawn], y: Axis, shown: tuple[float, float]) -> Itera
         yield Rule("x", flights, look=Look("flown"), label="both pivots off the ground")
     stood = [run for run in runs if run.history.status == "ok" and run.history.peak[1] != 0]
     for run in stood:
-        yield Points(*_at(run.history.peak, y), look=run.mark, label=_entry(run))
+        yield Points(*_clipped(run.history.peak, y), look=run.mark, label=_entry(run))
     if stood:
         worst = max((run.history.peak for run in stood), key=lambda peak: abs(peak[1]))
         side = -1 if worst[0] > 0.25 * shown[0] + 0.75 * shown[1] else 1
         yield Words(worst[0], float(np.clip(worst[1], y.low, y.high)), f"{abs(worst[1]):.4f}", side, look=Look("peak"))
     for run in runs:
         if run.history.status in OUTCOMES:
-            yield Points(*_at(run.history.end, y), look=sign_of(run.history.status), label=OUTCOMES[run.history.status])
+            yield Points(
+                *_clipped(run.history.end, y), look=sign_of(run.history.status), label=OUTCOMES[run.history.status]
+            )
 
 
-def _at(point: tuple[float, float], y: Axis) -> tuple[Array, Array]:
-    """Return a point for a marker, at the edge of the panel if it lies beyond."""
+def _clipped(point: tuple[float, float], y: Axis) -> tuple[Array, Array]:
+    """Return a point as arrays, moved to the edge of the panel if it lies beyond."""
     return np.full(1, point[0]), np.full(1, np.clip(point[1], y.low, y.high))
 
 
 def _band(response: Response) -> float:
+    """Return |θ|/α up to which both supports stay loaded; 0 on the rigid base."""
     base, pier = response.base, response.pier
     sine = (1 + pier.mu) / (pier.mu * base.beta**2 * math.sin(pier.alpha))
     return math.asin(min(sine, 1)) / pier.alpha
 
 
 def _springs(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
-    """Return force against deflection of both springs, while they are loaded: over those at yield if they can yield."""
+    """Return panels of force against deflection of both springs while loaded, normalised if they yield; () on rigid ground."""
     base, pier, sides = response.base, response.pier, ("left", "right")
     if not base.on_springs:
         return ()
     if not base.two_springs:
         return _bed(response, look, pixels)
-    names = ("v/δ_y", "F/F_y") if base.yields else ("v [mm]", "F/(M g)")
-    unit = yield_deflection(pier, base) if base.yields else 1e-3
-    forces = [response.z_left, response.z_right] if base.yields else [
-        response.history[f"force_{side}"].to_numpy(dtype=np.float64) / pier.gravity for side in sides
-    ]  # fmt: skip
     # A viscoelastic spring recovers while its pivot is in the air, far above: it is loaded while the support bears
     borne = [response.history[f"force_{side}"].to_numpy(dtype=np.float64) for side in sides]
+    names = ("v/δ_y", "F/F_y") if base.yields else ("v [mm]", "F/(M g)")
+    unit = yield_deflection(pier, base) if base.yields else 1e-3
+    forces = [response.z_left, response.z_right] if base.yields else [load / pier.gravity for load in borne]
     least = LOADED * max(float(np.abs(force).max(initial=0.0)) for force in borne)
     forces = [np.where(load < -least, force, np.nan) for load, force in zip(borne, forces, strict=True)]
     v = [response.history[f"v_{side}"].to_numpy(dtype=np.float64) / unit for side in sides]
-    # As in the paper, the axis ends where the spring unloads: a lifted pivot may be far above
+    # As in the paper, the axis ends where the spring unloads, since a lifted pivot may be far above
     loaded = np.concatenate([own[~np.isnan(force)] for own, force in zip(v, forces, strict=True)])
     low, high = (float(loaded.min()), float(loaded.max())) if len(loaded) else (-1.0, 0.0)
     margin = 0.08 * (high - low) + 0.01
@@ -327,14 +336,14 @@ def _bed(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
 
 
 def _devices(response: Response) -> list[str]:
-    """Return the names of dampers and tendons; a pair at both pivots counts as one."""
+    """Return the names of the devices; a pair at both pivots has one name."""
     columns = () if response.restraints is None else response.restraints
     names = (str(name).removesuffix(" force") for name in columns if str(name).endswith(" force"))
     return list(dict.fromkeys(name.removesuffix(" left").removesuffix(" right") for name in names))
 
 
 def _device(response: Response, name: str, look: Look, pixels: int) -> Panel:
-    """Return force against elongation [mm] of a device, in kN if the mass is known; of a pair, the right one behind."""
+    """Return a panel of force against elongation [mm] of a device, in kN if the mass is known; a pair's right one behind."""
     table, pier = response.restraints, response.pier
     assert table is not None
     sides = [side for side in (" right", " left", "") if f"{name}{side} force" in table]
@@ -342,10 +351,9 @@ def _device(response: Response, name: str, look: Look, pixels: int) -> Panel:
     elongations = [1000.0 * table[f"{name}{side} elongation"].to_numpy(dtype=np.float64) for side in sides]
     forces = [factor * table[f"{name}{side} force"].to_numpy(dtype=np.float64) for side in sides]
     looks = {" right": replace(look, kind="right")}
-    marks = [
-        Polyline(*without_repeats(u, force, pixels), f"{unit}{side}", look=looks.get(side, look),
-                 label=f"at the{side} pivot" if side else "")
-        for side, u, force in zip(sides, elongations, forces, strict=True)
-    ]  # fmt: skip
+    marks = []
+    for side, u, force in zip(sides, elongations, forces, strict=True):
+        label, style = f"at the{side} pivot" if side else "", looks.get(side, look)
+        marks.append(Polyline(*without_repeats(u, force, pixels), f"{unit}{side}", look=style, label=label))
     axes = spanning("elongation [mm]", *elongations, about=3), spanning(unit, *forces)
     return Panel(*axes, marks, name, width=WIDTH / 2, height=LOOPS, reads="plane")

@@ -1,6 +1,6 @@
-"""Half cycles of rocking: when the pier passes through upright, how fast, and how far it turns in between.
+"""Half cycles of rocking: times and angular velocities at the passages through upright, and amplitudes in between.
 
-The first is the way from the start of the run, such as a release, to the first impact.
+The first half cycle is from the start of the run, such as a release, to the first impact.
 """
 
 import math
@@ -13,24 +13,29 @@ from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier
 
 Rows = npt.NDArray[np.intp]
-"""Places of rows in a history."""
+"""Indices of rows in a history."""
 
 HALVINGS = 50
-"""Of the interval between two rows in which the pier passes through upright."""
+"""Bisections of the interval between two rows in which the pier passes through upright."""
 
 COLUMNS = ("t", "omega_before", "omega_after", "amplitude", "t_amplitude", "apparent_restitution")
 
 HALF_CYCLE_COLUMNS = (
-    "t_s", "omega_before_rad_s", "omega_after_rad_s", "amplitude_rad", "t_amplitude_s", "apparent_restitution",
-)  # fmt: skip
+    "t_s",
+    "omega_before_rad_s",
+    "omega_after_rad_s",
+    "amplitude_rad",
+    "t_amplitude_s",
+    "apparent_restitution",
+)
 """The same in files, with their units."""
 
 
 class HalfCycles(NamedTuple):
-    """Half cycles of a run, each from an impact to the next; that of row 0 begins with the run, no impact. Shape (n,) each.
+    """Half cycles of a run, each from an impact to the next; the first begins with the run. Shape (n,) each.
 
-    ``t`` [s] is when they begin, with the angular velocities before and after that [rad/s], NaN in row 0; ``amplitude`` [rad]
-    the greatest |θ| of each, at ``t_amplitude`` [s], NaN where the run ended on the way there.
+    ``t`` [s] is the beginning, with the angular velocities before and after it [rad/s], NaN for the first; ``amplitude`` [rad]
+    is the greatest |θ|, at ``t_amplitude`` [s], both NaN if the run ended before it.
     """
 
     t: Samples
@@ -49,10 +54,10 @@ class Path(NamedTuple):
 
 
 def half_cycles(path: Path, landed: Rows | None) -> HalfCycles:
-    """Return the half cycles of a run, whose ``path`` has both sides of every event.
+    """Return the half cycles of a run, whose ``path`` has a row before and after every event.
 
-    ``landed``, shape (k,), are the rows after impacts, those before being the ones before these; None on springs, where the pier
-    lands before it is upright, and each passage through θ = 0 counts instead.
+    ``landed``, shape (k,), are the rows after impacts, each next to the row before it; None on springs, where the pier lands
+    before it is upright, and half cycles begin at θ = 0 instead.
     """
     if landed is None:
         before, after, t, omega = _through_upright(path)
@@ -64,17 +69,14 @@ def half_cycles(path: Path, landed: Rows | None) -> HalfCycles:
     starts = np.concatenate([[0], after])
     peaks = [_peak(path, int(first), int(end)) for first, end in zip(starts, ends, strict=True)]
     amplitude, times = np.array(peaks).reshape(-1, 2).T
-    nothing = [math.nan]
-    return HalfCycles(
-        np.concatenate([path.t[:1], t]), np.concatenate([nothing, rates[0]]), np.concatenate([nothing, rates[1]]),
-        amplitude, times,
-    )  # fmt: skip
+    omega_before, omega_after = (np.concatenate([[math.nan], rate]) for rate in rates)
+    return HalfCycles(np.concatenate([path.t[:1], t]), omega_before, omega_after, amplitude, times)
 
 
 def apparent_restitution(pier: Pier, amplitude: Samples) -> Samples:
-    """Return the factor on the angular velocity of a block on rigid ground by which each amplitude would follow from the last.
+    """Return the restitution of a block on rigid ground by which each amplitude [rad] would follow from the previous one.
 
-    √(E(θ_n)/E(θ_n−1)), E(θ) = cos(α − θ) − cos α, which is the work against the weight over M g R0; NaN of the first.
+    √(E(θ_n)/E(θ_n−1)), E(θ) = cos(α − θ) − cos α, the work against the weight over M g R0; NaN for the first.
     """
     alpha = pier.alpha
     work = 2.0 * np.sin(alpha - 0.5 * amplitude) * np.sin(0.5 * amplitude)  # cos(α − θ) − cos α, to its last digit
@@ -97,7 +99,7 @@ def _through_upright(path: Path) -> tuple[Rows, Rows, Samples, Samples]:
 
 
 def _cubic(path: Path, before: Rows, after: Rows, h: Samples, s: Samples) -> tuple[Samples, Samples]:
-    """Return θ and its rate by the cubic Hermite polynomial between two rows, at the share ``s``."""
+    """Return θ [rad] and its rate [rad/s] by cubic Hermite polynomials between two rows ``h`` [s] apart, at shares ``s``."""
     start, travel = path.theta[before], path.theta[after] - path.theta[before]
     first, last = h * path.omega[before] - travel, travel - h * path.omega[after]
     value = start + s * travel + s * (1.0 - s) * ((1.0 - s) * first + s * last)
@@ -120,7 +122,7 @@ def _peak(path: Path, first: int, end: int) -> tuple[float, float]:
         a, b = h * float(omega[i]), h * float(omega[i + 1])
         square, linear = 3.0 * (a + b - 2.0 * travel), 2.0 * (3.0 * travel - 2.0 * a - b)
         larger = -0.5 * (linear + math.copysign(math.sqrt(linear * linear - 4.0 * square * a), linear))
-        # One of both is between 0 and 1, unless the rate only grazes 0 at an end
+        # One of the two roots is between 0 and 1, unless the rate only touches 0 at an end
         for s in (larger / square if square else math.inf, a / larger if larger else math.inf):
             if not 0.0 < s < 1.0:
                 continue

@@ -7,22 +7,22 @@ from enum import StrEnum
 from typing import Any, NamedTuple
 
 RELEASED = "theta_max is the rotation from which the pier was let go, beyond which it has not turned"
-"""A note on a run whose greatest rotation says nothing that was not given."""
+"""Note on a run whose greatest rotation is its initial one."""
 
 LEANS = "lean"
-"""``theta_max_is`` of a peak at which the pier hardly rocks, on a base that has yielded."""
+"""Value of ``theta_max_is`` if the peak is mostly the lean of a base that has yielded."""
 
 
 class Failure(StrEnum):
     """Kind of failure of a run; its ``reason`` describes it."""
 
     CONTACTS = "contacts"  # too many contact events within one sample
-    BLEW_UP = "blew up"  # the integration came to infinity
-    UNDECIDED = "undecided"  # left alone after the record, the pier may yet overturn
-    RATCHETS = "ratchets"  # left alone after the record, its springs ratchet
+    BLEW_UP = "blew up"  # the integration diverged
+    UNDECIDED = "undecided"  # the pier may still overturn in the rest after the record
+    RATCHETS = "ratchets"  # its springs ratchet in the rest after the record
     NOT_SETTLED = "not settled"  # the results did not converge when the step was halved
     LARGE_STEP = "large step"  # refused: a fixed step too large for the springs
-    MANY_STEPS = "many steps"  # refused: it would take too long
+    MANY_STEPS = "many steps"  # refused: it would take too many steps
     UNUSABLE = "unusable"  # its record cannot be used
 
 
@@ -41,46 +41,50 @@ TERMS = (
 """Terms of the energy ledger, in the order in which the core returns them."""
 
 
+LEAST_NORMAL_SHARE = 0.1
+"""Of the weight: the normal force below which shear keys, not friction, bear the base shear."""
+
+
 @dataclass(frozen=True)
 class PeakForces:
-    """Demands of a run on the design, until it ends or the pier leans beyond α for good; SI units, per unit mass of the pier.
+    """Design demands of a run until it ends or the pier leans beyond α for good; SI units, per unit mass of the pier.
 
-    Magnitudes; ``None`` where it does not apply (THEORY.md, Results of a run).
+    Magnitudes; ``None`` if a demand does not apply (THEORY.md, Results of a run).
 
     Attributes
     ----------
     base_shear, normal_force : float
         Greatest V/M, and N/M of all supports, without the impulses of impacts [m/s²].
     base_moment : float
-        Greatest moment over M about the middle of the base, of supports, dampers and tendons, likewise [m²/s²].
+        Greatest moment over M about the middle of the base, of supports, dampers and tendons, without impulses [m²/s²].
     friction_demand : float
         Greatest |V|/N while N is above a share of the weight.
     pivot_left, pivot_right : float
         Greatest force of each support over half the weight.
     heel_gap_left, heel_gap_right : float
-        Greatest height of each pivot above where its support waits [m].
+        Greatest gap between each pivot and its support [m].
     heel_speed_left, heel_speed_right : float
-        Greatest speed at which these open or close [m/s].
+        Greatest speed at which each gap opens or closes [m/s].
     deck_acceleration : float
         Greatest absolute horizontal acceleration of the deck [m/s²].
     omega_over_p : float
         Greatest |θ̇|/p.
     landing_velocity, impulse : float or None
-        Of the hardest impact: speed of the pivot that lands, and vertical impulse over M [m/s].
+        Speed of the landing pivot, and vertical impulse over M, at the hardest impact [m/s].
     impact_friction_demand : float or None
         Greatest horizontal over vertical impulse of an impact.
     first_uplift, uplift_ground : float or None
-        When a pivot first lifts [s], and magnitude of the horizontal ground acceleration then [m/s²].
+        Time of the first uplift [s], and magnitude of the horizontal ground acceleration then [m/s²].
     key_shear : float or None
-        Greatest V/M while N is below that share: shear keys bear it [m/s²].
+        Greatest V/M while N is below the share of ``friction_demand``, which shear keys carry [m/s²].
     flight_longest : float or None
-        The longest flight that was followed [s].
+        Longest flight that was followed [s].
     error : float or None
-        Four times the share of itself by which halving the step still changed one of them at most; ``None`` with a fixed step.
+        Four times the greatest relative change of a demand by halving the step; ``None`` with a fixed step.
     landing_force : float or None
         Greatest force of a foot over M at the hardest impact, estimated by a contact stiffness of the base [m/s²].
     slides : bool or None
-        True if the greatest friction demand, of impacts too, exceeds the friction of the interface; ``None`` without a limit.
+        True if the greatest friction demand, impacts included, exceeds the interface's friction; ``None`` if it is not given.
     """
 
     base_shear: float
@@ -107,7 +111,7 @@ class PeakForces:
     slides: bool | None = None
 
     def mirrored(self) -> "PeakForces":
-        """Return the demands of the mirror image."""
+        """Return the demands of the mirror image: left and right exchanged."""
         return replace(
             self,
             pivot_left=self.pivot_right,
@@ -121,16 +125,16 @@ class PeakForces:
 
 @dataclass(frozen=True)
 class DeviceWork:
-    """Work of the devices of a run, until it ends; ``None`` without such a device.
+    """Work of the devices until the end of a run; ``None`` without such a device.
 
     Attributes
     ----------
     damper_travel, damper_work : float or None
-        Greatest cumulative travel [m], and greatest energy [J/kg], of any one damper.
+        Greatest cumulative travel [m] and greatest energy [J/kg] of a single damper.
     damper_half_cycles : int or None
-        Half cycles of the damper that has most of them, from the least stroke that counts up.
+        Greatest number of half cycles of a single damper, of at least the study's least stroke.
     tendon_strain : float or None
-        Greatest strain of a tendon over its yield strain; of tendons that yield.
+        Greatest strain over yield strain of the tendons that can yield.
     """
 
     damper_travel: float | None = None
@@ -187,23 +191,23 @@ class BedDemands:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Results of a run. SI units, angles in radians; ``None`` where it does not apply.
+    """Results of a run. SI units, angles in radians; ``None`` if a result does not apply.
 
     Attributes
     ----------
     status : str
         "ok", "overturned", "flight" (the run was stopped by it) or "failed".
     reason : str
-        Why it failed, or what made it fly, in words for people; empty otherwise.
+        Reason that it failed or left the ground, for people; empty otherwise.
     failure : Failure or None
         The kind of failure of a run that failed.
     note : str
         Remarks on a valid run for people, e.g. counts that did not converge; empty otherwise.
     chaotic : bool or None
-        True if a change of the motion or of the step that no record resolves changes the peak or the residuals beyond the
-        tolerance; ``None`` if that is not known, with a fixed step and of a run that failed.
+        True if a change of the motion or of the step below any record's resolution changes the peak or the residuals beyond
+        the tolerance; ``None`` with a fixed step and for a run that failed.
     may_overturn : bool or None
-        True if the run did not overturn, and does under a motion 10⁻⁸ stronger or weaker; ``None`` likewise.
+        True if the run did not overturn, but does under a motion 10⁻⁸ stronger or weaker; ``None`` as for ``chaotic``.
     beyond_linearised : bool or None
         True if the peak is too large for the linearised kinematics of its base; ``None`` with finite rotations.
     theta_max, t_max : float
@@ -211,66 +215,65 @@ class Outcome:
     theta_max_in_motion : float
         Greatest rotation |θ| until the record's last sample, or the end of a run that ended before it [rad].
     change_in_motion : float or None
-        By how much halving the step still changed that [rad], where it has converged.
+        Change of that by halving the step [rad], if it has converged.
     theta_max_is : str
-        "lean" where ``theta_max`` is mostly the lean of a base that has yielded; empty where the pier rocks.
+        "lean" if ``theta_max`` is mostly the lean of a base that has yielded; empty if the pier rocks.
     theta_rocking, theta_lean : float or None
-        Greatest rotation about where the pier would rest on its base as it then was, and where it would at ``t_max`` [rad, to
-        the side of the peak]; if asked for.
+        Greatest rotation about the rest position on the base as deformed then, and that rest position at ``t_max`` [rad,
+        positive to the side of the peak]; if requested.
     theta_max_error, theta_res_error, settlement_error : float or None
-        Estimated errors of ``theta_max`` and ``theta_res`` [rad], and of ``settlement`` on yielding springs [m]; those of
-        residuals with their drift while they were read. ``None`` with a fixed step, or if the result is chaotic.
+        Estimated errors of ``theta_max`` and ``theta_res`` [rad], and of ``settlement`` on yielding springs [m]; errors of
+        residuals include their drift while they were read. ``None`` with a fixed step, or if the result is chaotic.
     theta_res, base_tilt : float or None
         Residual rotation, static on the deformed base, and tilt of the base itself [rad].
     settlement : float or None
         Mean plastic settlement of the supports since the start [m].
     t_read : float or None
-        When residual rotation, tilt and settlement of a yielding base were read [s] (THEORY.md, Results of a run).
+        Time at which residual rotation, tilt and settlement of a yielding base were read [s] (THEORY.md, Results of a run).
     settlement_drift, theta_res_drift : float or None
-        How fast they went on changing then [m/s, rad/s].
+        Their rates of change then [m/s, rad/s].
     impacts, separations : int
         Counts; on the rigid base a separation is a lift-off from rest.
     t_flight : float or None
         First time at which neither pivot was in contact [s].
     flights : int
-        How often both pivots left the ground; that which ended a run counts.
+        Number of flights, in which both pivots leave the ground, with the one that ended the run.
     flight_duration, flight_height : float
-        Of the flights that were followed: how long both pivots were in the air, all together [s], and how high the lower one
-        was at most [m]; 0 without.
+        Total duration of the flights that were followed [s], and greatest height of the lower pivot in them [m]; 0 without.
     t_end : float
         End of the run [s].
     ductility_left, ductility_right : float or None
-        Yield demand: greatest deflection of each support over its yield deflection.
+        Greatest deflection of each support over its yield deflection.
     dissipated_left, dissipated_right : float or None
         Plastic work in each spring [J/kg].
     substeps : int
         Steps per sample.
     settlement_other_law : float or None
-        Settlement [m] of Bouc–Wen springs by the elastic–perfectly plastic law, if asked for.
+        Settlement [m] of Bouc–Wen springs by the elastic–perfectly plastic law, if requested.
     damper_force, damper_stroke, damper_speed, damper_energy : float or None
-        Of dampers: greatest force over M g, elongation [m] and speed [m/s] of any; energy of all [J/kg].
+        Greatest force over M g, elongation [m] and speed [m/s] of any damper; total energy [J/kg].
     tendon_force, tendon_yield, tendon_slack : float or None
-        Of tendons: greatest force over M g and plastic elongation [m] of any; how often they went slack.
+        Greatest force over M g and plastic elongation [m] of any tendon; number of times that tendons went slack.
     stop_force, stop_depth, stop_blows, stop_energy : float or None
-        Of stops: greatest force over M g and deflection [m] of any; how often they were met; energy that all took [J/kg].
+        Greatest force over M g and deflection [m] of any stop; number of blows; total energy [J/kg].
     deck_spring_force, deck_spring_depth, deck_spring_blows, deck_spring_energy : float or None
-        Of deck springs, likewise.
+        The same of deck springs.
     devices_error : float or None
-        Estimated error of these demands but counts, as a share of the one whose error is the largest or of 1 % of its scale.
+        Greatest relative error of these demands except counts; relative to at least 1 % of each demand's scale.
     deflection_max, top_drift_max : float or None
-        Of a shaft that bends: greatest deflection of its top across it, and greatest horizontal way of its top [m].
+        Greatest transverse deflection and horizontal displacement of the top of an elastic shaft [m].
     deflection_max_error, top_drift_max_error : float or None
         Their estimated errors [m].
     energies : mapping of str to float, or None
-        Energy ledger at the end [J/kg], and the greatest ``remainder`` on the way, if asked for.
+        Energy ledger at the end [J/kg], and the greatest ``remainder`` during the run, if requested.
     forces : PeakForces or None
-        Its demands on the design, if asked for.
+        Design demands, if requested.
     device_work : DeviceWork or None
-        The work of its devices, if asked for.
+        Work of the devices, if requested.
     bed : BedDemands or None
-        The demands on the bed of a footing.
+        Demands on the bed of a footing.
     tables : mapping
-        Rows of tables beside peaks.csv by their files, if asked for; none of a mirror image.
+        Rows of tables beside peaks.csv by file, if requested; empty for a mirror image.
     """
 
     status: str
@@ -339,35 +342,38 @@ class Outcome:
 
     @property
     def was_run(self) -> bool:
-        """True unless the run was refused with a reason: it would blow up or take too long."""
+        """True unless the run was refused, since it would diverge or take too long."""
         return not math.isnan(self.theta_max)
 
     @property
     def theta_max_in_motion_error(self) -> float | None:
-        """Estimated error of ``theta_max_in_motion`` [rad]: that of ``theta_max`` if they are the same, none if that has none.
+        """Estimated error of ``theta_max_in_motion`` [rad]; None if it is not known.
 
-        A run that overturned or failed after its motion has one, too.
+        It is that of ``theta_max`` if the pier stood and both are the same, or ``theta_max`` has none; otherwise
+        ``change_in_motion``, which a run that overturned or failed after its motion has, too.
         """
         stood = self.status in ("ok", "flight")
         same = self.theta_max_error is None or self.theta_max == self.theta_max_in_motion
         return self.theta_max_error if stood and same else self.change_in_motion
 
-    def changed(self, **fields: Any) -> "Outcome":
+    def changed(self, **fields: object) -> "Outcome":
         """Return the outcome with other ``fields``, in a tenth of the time of ``dataclasses.replace``."""
+        if unknown := fields.keys() - vars(self).keys():
+            raise TypeError(f"Outcome has no field {min(unknown)!r}")
         copy = object.__new__(Outcome)
         vars(copy).update(vars(self), **fields)
         return copy
 
-    def noted(self, *remarks: str, **fields: Any) -> "Outcome":
-        """Return the outcome with those ``remarks`` that are not empty behind its note, and other ``fields``."""
+    def noted(self, *remarks: str, **fields: object) -> "Outcome":
+        """Return the outcome with the non-empty ``remarks`` appended to its note, and other ``fields``."""
         return self.changed(note="; ".join(filter(None, (self.note, *remarks))), **fields)
 
-    def with_table(self, file: str, rows: Any) -> "Outcome":
-        """Return the outcome with the rows of a table beside peaks.csv."""
+    def with_table(self, file: str, rows: object) -> "Outcome":
+        """Return the outcome with the ``rows`` of the table ``file`` beside peaks.csv."""
         return self.changed(tables={**self.tables, file: rows})
 
     def mirrored(self) -> "Outcome":
-        """Return the outcome under the reversed horizontal motion, of a symmetric pier on a symmetric foundation."""
+        """Return the outcome under the reversed horizontal motion, for a symmetric pier; its ``tables`` are empty."""
         return self.changed(
             theta_res=_reversed(self.theta_res),
             base_tilt=_reversed(self.base_tilt),
@@ -385,8 +391,8 @@ class Outcome:
 class Section(NamedTuple):
     """Greatest forces in a section; SI units, per unit mass of the pier, axial forces positive in compression.
 
-    ``error`` is four times the share of itself by which halving the step still changed shear, moment or an axial extreme at most;
-    None with a fixed step.
+    ``error`` is four times the greatest relative change of shear, moment or an axial extreme by halving the step; None with a
+    fixed step.
     """
 
     height: float  # above the pivots [m]
@@ -400,7 +406,7 @@ class Section(NamedTuple):
 
 @dataclass(frozen=True)
 class ShockOutcome:
-    """Effects of a shock; SI units, angles in radians, NaN where it does not apply.
+    """Effects of a shock; SI units, angles in radians, NaN if one does not apply.
 
     Attributes
     ----------
@@ -409,12 +415,12 @@ class ShockOutcome:
     theta_max, t_max : float
         Greatest rotation |θ| from its first sample until the next shock begins, or the run ends, and its time.
     theta_max_error : float
-        By how much halving the step still changed it; NaN with a fixed step.
+        Its change by halving the step; NaN with a fixed step.
     theta_res : float
-        Rotation at which the pier would rest when the next shock begins, static on the deformed base; with dampers or tendons
-        the middle of the extremes of θ in the last quarter of the pause. Behind the last shock a pause counts, too.
+        Static rest rotation on the deformed base when the next shock begins; with dampers or tendons the middle of the
+        extremes of θ in the last quarter of the pause. The last shock has a pause, too.
     settlement : float
-        Mean settlement of the supports since the start, at the same time.
+        Mean settlement of the supports since the start, at that time.
     moving : float
         Half the range of θ in the last quarter of the pause.
     """
@@ -429,4 +435,4 @@ class ShockOutcome:
 
 
 def _reversed(angle: float | None) -> float | None:
-    return None if angle is None else 0.0 - angle  # never a negative zero
+    return None if angle is None else 0.0 - angle  # unlike -angle never a negative zero, which would be written as -0

@@ -31,13 +31,13 @@ FORCE_UNITS = {
     "heel_speed_right": "m/s",
     "deck_acceleration": "m/s^2",
 }
-"""Columns of the table of forces, but for the time, with their units."""
+"""Columns of the table of forces except the time, with their units."""
 
 IMPACT_UNITS = {"t": "s", "landing_velocity": "m/s", "impulse_horizontal": "m/s", "impulse_vertical": "m/s"}
-"""Columns of the table of impacts, but for the pivot, with their units."""
+"""Columns of the table of impacts except the pivot, with their units."""
 
 EVENT_TYPES = {"t": "float64", "kind": "str", "pivot": "str", "before": "int64", "after": "int64"}
-"""Columns of the table of events."""
+"""Columns of the table of events, with their types."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -53,7 +53,7 @@ class Response(Shown):
     pier : Pier
         The block.
     base : RigidBase, ElasticBase or YieldingBase
-        What it stands on.
+        The base under it.
     status : str
         "ok", "overturned", "flight" (the run was stopped by it) or "failed".
     history : DataFrame, one row per instant
@@ -68,12 +68,12 @@ class Response(Shown):
         ``t`` [s], ``kind`` ("separation", "impact", …), ``pivot`` ("left", "right"), and the places in ``history`` of
         the rows ``before`` and ``after`` it, alike where nothing jumps.
     ledger : DataFrame or None
-        Energies [J/kg] at the rows of ``history``, where they were asked for: stored ``kinetic``, ``potential``,
+        Energies [J/kg] at the rows of ``history``, if requested: stored ``kinetic``, ``potential``,
         ``elastic``, relative to the start; summed since, ``input``, ``plastic``, ``impact``, ``p_delta`` (first-order
         kinematics), ``constraint`` (finite kinematics), ``damping`` (dashpots of the supports, dampers); and the ``remainder``
         of their balance, the integrator's error.
     forces : DataFrame or None
-        What is sized, at the rows of ``history``, where it was asked for (THEORY.md, Forces): ``base_shear`` V/M, to the right on
+        Design forces at the rows of ``history``, if requested (THEORY.md, Forces): ``base_shear`` V/M, to the right on
         the pier, ``normal_force`` N/M [m/s²], ``base_moment`` over M about the middle of the base, of supports, dampers and
         tendons [m²/s²], positive as the right support bears more, ``friction`` |V|/N, ``pivot_…``, the supports'
         forces over half the weight, ``heel_gap_…`` [m], ``heel_speed_…`` [m/s], opening, ``deck_acceleration`` [m/s²].
@@ -88,15 +88,15 @@ class Response(Shown):
         Elongation [m] and force [N/kg], positive in tension, of every damper and tendon at the rows of ``history``, such as
         ``damper 1 left force``; ``None`` without.
     row : Series or None
-        What the run came to: its row of ``peaks.csv``, by the names and in the units of its columns; NaN, or "", where one
-        does not apply.
+        The run's row of ``peaks.csv``, by the names and in the units of its columns; NaN or "" where a column does not
+        apply.
     shocks : DataFrame or None
-        What each shock of a sequence does, in the columns of ``shocks.csv`` that are not names of the run; ``None`` for a
-        motion that is none.
+        Effects of each shock of a sequence, in the columns of ``shocks.csv`` that do not name the run; ``None`` for a
+        motion that is not a sequence.
 
     sections : DataFrame or None
-        Where it was asked for, the greatest forces in sections of the shaft, a row for each, in the columns of
-        ``sections.csv`` that are not names of the run. ``None`` in responses of a folder, whose ``sections`` has all runs.
+        Greatest forces in sections of the shaft, if requested, a row for each, in the columns of ``sections.csv`` that do not
+        name the run. ``None`` in responses of a folder, whose ``sections`` has all runs.
 
     Examples
     --------
@@ -132,27 +132,27 @@ class Response(Shown):
 
     @property
     def theta_max(self) -> float:
-        """Greatest rotation |θ| until the end of the run [rad]; NaN where nothing was run."""
+        """Greatest rotation |θ| until the end of the run [rad]; NaN if nothing was run."""
         return self.pier.alpha * self._number("theta_max_over_alpha")
 
     @property
     def theta_max_error(self) -> float:
-        """Estimated error of ``theta_max`` [rad]; NaN with a fixed step, and where the pier did not stand."""
+        """Estimated error of ``theta_max`` [rad]; NaN with a fixed step, or if the pier did not stand."""
         return self.pier.alpha * self._number("theta_max_error")
 
     @property
     def theta_res(self) -> float:
-        """Residual rotation [rad]; NaN on a rigid base without dampers that hold a tilt, and where the pier did not stand."""
+        """Residual rotation [rad]; NaN on a rigid base without dampers that hold a tilt, or if the pier did not stand."""
         return self.pier.alpha * self._number("theta_res_over_alpha")
 
     @property
     def settlement(self) -> float:
-        """Mean settlement of the supports [m]; NaN on the rigid base, and where the pier did not stand."""
+        """Mean settlement of the supports [m]; NaN on the rigid base, or if the pier did not stand."""
         return self._number("settlement_m")
 
     @property
     def reason(self) -> str:
-        """Why the run failed, or what made the pier fly; empty otherwise."""
+        """Reason that the run failed, or that the pier left the ground; empty otherwise."""
         return str(self._of_row()["reason"])
 
     @property
@@ -197,12 +197,12 @@ class Response(Shown):
 
     @property
     def half_cycles(self) -> "pd.DataFrame":
-        """Half cycles of rocking: row 0 from the start of the run, such as a release, and one for each impact, to the next.
+        """Half cycles of rocking: row 0 from the start of the run to the first impact, then one row from each impact on.
 
-        ``t`` [s], of its beginning; ``omega_before``, ``omega_after`` [rad/s], the angular velocity on both sides of the impact
-        there, NaN in row 0, which begins with none; ``amplitude`` [rad], the greatest |θ| until the next impact, and
-        ``t_amplitude`` [s], NaN where the run ends before; ``apparent_restitution``, by which a block on rigid ground that does
-        not move would come from the amplitude before to this one. On springs a half cycle begins as the pier passes through
+        ``t`` [s], its beginning; ``omega_before``, ``omega_after`` [rad/s], the angular velocity before and after the impact
+        there, NaN in row 0, which begins without one; ``amplitude`` [rad], the greatest |θ| until the next impact, and
+        ``t_amplitude`` [s], NaN if the run ends before it; ``apparent_restitution``, the restitution that would give this
+        amplitude after the previous one on rigid ground at rest. On springs a half cycle begins as the pier passes through
         θ = 0, where its velocity does not jump.
 
         Examples
@@ -225,11 +225,11 @@ class Response(Shown):
         )
 
     def device_work(self, least_stroke_m: float = 0.01) -> "pd.DataFrame":
-        """Return the work of every damper and tendon, a row each, from the samples and events of the history.
+        """Return the work of every damper and tendon, a row each, from the rows of the history; raise ``InputError`` without any.
 
-        ``travel_m``, its cumulative travel, a damper's without its brace; ``energy_J_kg``, the work on it, per unit mass of the
-        pier, and ``energy_kJ``, NaN if the mass is not known; ``half_cycles`` of ``least_stroke_m`` or more from end to end, by
-        rainflow counting (ASTM E1049-85); ``strain_over_yield``, of a tendon that yields, the greatest, else NaN.
+        ``travel_m``, cumulative travel, of a damper without its brace; ``energy_J_kg``, work per unit mass of the pier, and
+        ``energy_kJ``, NaN if the mass is not known; ``half_cycles`` with a range of at least ``least_stroke_m``, by rainflow
+        counting (ASTM E1049-85); ``strain_over_yield``, the greatest of a tendon that can yield, else NaN.
 
         Examples
         --------
@@ -254,8 +254,8 @@ class Response(Shown):
         return pd.DataFrame(table, index=pd.Index(names, name="device"))
 
     def plot(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
-        """Draw rotation, angular velocity, energy and ground motion against time, events as strokes, and the loops of supports,
-        dampers and tendons: a matplotlib Figure, ``width_mm`` wide or in the place of ``ax``,
+        """Return a matplotlib Figure of rotation, angular velocity, energy, ground motion and events against time, and of the
+        loops of supports, dampers and tendons, ``width_mm`` wide or in the place of ``ax``:
         ``response.plot().savefig("pier.pdf")``."""
         from rockbatch.common.figures.paper import drawn
         from rockbatch.outcome.figures import of_one
@@ -293,6 +293,7 @@ class Response(Shown):
         return f"{self.record} × {self.scale:g}{sign}, {self.case}: {self.status}"
 
     def _of_row(self) -> "pd.Series[Any]":
+        """Return the row of peaks.csv; raise ``InputError`` if the response has histories only."""
         if self.row is None:
             raise InputError(
                 f"{self._title}: these are histories alone; take them from `open_results(...).response(...)`"

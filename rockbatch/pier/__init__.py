@@ -1,4 +1,4 @@
-"""The pier and its base: a rigid block on four kinds of base (Palmeri & Makris 2007)."""
+"""The pier and its base: a rigid block on rigid ground, elastic or yielding springs, or a footing."""
 
 from rockbatch.pier.bases import LEAST_ETA as LEAST_ETA
 from rockbatch.pier.bases import MOST_NEGLECTED as MOST_NEGLECTED

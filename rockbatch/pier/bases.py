@@ -1,6 +1,6 @@
 """Bases of a pier: rigid, elastic and yielding (Palmeri & Makris 2007).
 
-What is impossible about a pier on a base is in :mod:`rockbatch.pier.possible`.
+Impossible combinations of a pier and a base are checked in :mod:`rockbatch.pier.possible`.
 """
 
 import math
@@ -24,7 +24,7 @@ from rockbatch.pier.soil import FORMULAS, Formula, Soil, bed_stiffness, radiated
 from rockbatch.pier.supports import beta_of, eta_of, unlikely_supports
 
 LEAST_ETA = 1.000001
-"""Least η: closer to 1, Bouc–Wen and hardening springs would have to sink without end to carry the weight."""
+"""Least η: closer to 1, Bouc–Wen and hardening springs would sink without bound to carry the weight."""
 
 MOST_EXPONENT = 1000.0
 """Greatest n of Bouc–Wen springs: their corner is as sharp as that of elastic–perfectly plastic ones, which have none."""
@@ -82,9 +82,12 @@ BOUNDS = {
 """Possible values of the fields of bases; the least β and η depend on the pier and on tendons, too (`possible.py`)."""
 
 WORDS: dict[str, tuple[str, ...]] = {
-    "kinematics": get_args(Kinematics), "flight": get_args(Flight), "spring": tuple(LAWS), "shaft": get_args(Shaft),
+    "kinematics": get_args(Kinematics),
+    "flight": get_args(Flight),
+    "spring": tuple(LAWS),
+    "shaft": get_args(Shaft),
     "impact": get_args(Impact),
-}  # fmt: skip
+}
 """Possible words of the fields of bases."""
 
 USUAL = {
@@ -98,7 +101,7 @@ USUAL = {
 
 
 def wrong_blow(flexural_impact: str) -> str:
-    """Return why this is no rule of a blow on a shaft that bends; empty if it is."""
+    """Return why ``flexural_impact`` is not a rule of impacts on an elastic shaft; "" for "momentum", the only one."""
     if flexural_impact == "momentum":
         return ""
     if flexural_impact == "rate":
@@ -110,10 +113,10 @@ def wrong_blow(flexural_impact: str) -> str:
 
 
 class _Traits(InNotebook):
-    """Properties of a base, asked for by name and not by its class; each class gives those that differ."""
+    """Properties of a base that code asks for instead of its class; each class overrides those that differ."""
 
     on_springs: ClassVar[bool]
-    """True if the ground gives: springs or a bed; a literal of each class, by which type checkers know the class."""
+    """True if the ground deforms: springs or a bed; a literal in each class, by which type checkers narrow unions of bases."""
 
     two_springs: ClassVar[bool] = False
     """True if these are two springs under the pivots."""
@@ -135,12 +138,9 @@ class _Traits(InNotebook):
     def _check(self) -> None:
         """Raise ``InputError`` with every field that is impossible, or unusual and not confirmed."""
         values = {attribute.name: getattr(self, attribute.name) for attribute in fields(self)}  # type: ignore[arg-type]
-        wrong = [
-            problem
-            for name, bounds in BOUNDS.items()
-            if name in values
-            for problem in bounds.problems(name, values[name])
-        ]
+        wrong = []
+        for name in filter(values.__contains__, BOUNDS):
+            wrong += BOUNDS[name].problems(name, values[name])
         for name, words in WORDS.items():
             if name in values and values[name] not in words:
                 wrong.append(Problem(name, values[name], f"must be {' or '.join(map(shown, words))}", kind=WrongType))
@@ -148,41 +148,41 @@ class _Traits(InNotebook):
         refuse(wrong or unusual(USUAL, self.confirm, **{name: values[name] for name in USUAL if name in values}))
 
     def _wrong_together(self) -> list[Problem]:
-        """Return which fields cannot be together."""
+        """Return a problem for each contradiction between fields."""
         return []
 
     @property
     def flies(self) -> bool:
-        """Return whether a run goes on while both pivots are in the air."""
+        """Return True if a run continues while both pivots are in the air."""
         return self.flight == "guided"
 
     @property
     def has_exponent(self) -> bool:
-        """Return whether the springs' law has an exponent n."""
+        """Return True if the springs' law has an exponent n."""
         return False
 
     @property
     def has_epsilon(self) -> bool:
-        """Return whether impacts have a restitution ε of the landing pivot."""
+        """Return True if impacts have a restitution ε of the landing pivot."""
         return False
 
     @property
     def asks_tension(self) -> bool:
-        """Return whether impacts ask a support for a pull, which one without tension cannot give."""
+        """Return True if impacts need tension from a support, which it does not have."""
         return False
 
     @property
     def ratchets(self) -> bool:
-        """Return whether the springs settle cyclically under vibration (ratcheting)."""
+        """Return True if the springs settle cyclically under vibration (ratcheting)."""
         return False
 
     @property
     def has_residual(self) -> bool:
-        """Return whether the pier may rest at a tilt: on springs that yielded, or held by friction or hysteretic dampers."""
+        """Return True if the pier may come to rest tilted: on yielding springs, or with friction or hysteretic dampers."""
         return self.yields or holds_a_tilt(self.restraints)
 
     def by_other_law(self) -> Self:
-        """Return the same base with its springs by the other law if its own ratchets; else itself."""
+        """Return the base with its springs by the other law if its own law ratchets; otherwise itself."""
         return self
 
 
@@ -227,7 +227,7 @@ class RigidBase(_Traits):
     """β of ground that does not give: the limit of springs."""
 
     def __post_init__(self, flexural_impact: str | None) -> None:
-        """Check the fields, and take the only rule of a blow that there is, with a remark."""
+        """Check the fields; warn if ``flexural_impact`` is given, which has no effect any more."""
         self._check()
         if flexural_impact is None:
             return
@@ -238,13 +238,13 @@ class RigidBase(_Traits):
 
     @property
     def bends(self) -> bool:  # type: ignore[override]
-        """Return whether the shaft bends."""
+        """Return True if the shaft is elastic."""
         return self.shaft == "elastic"
 
-    def parameters(self, pier: Pier) -> dict[str, Any]:
+    def parameters(self, pier: Pier) -> dict[str, object]:
         """Return this base under ``pier`` by the keys of run.json."""
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
-        values: dict[str, Any] = {"restitution": of_frame if self.restitution is None else self.restitution}
+        values: dict[str, object] = {"restitution": of_frame if self.restitution is None else self.restitution}
         values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
         if self.bends:
             values |= {name: getattr(self, name) for name in ("shaft", "flexural_damping")}
@@ -315,7 +315,7 @@ class ElasticBase(_Traits):
 
     def _wrong_together(self) -> list[Problem]:
         wrong = BETA.problems("beta", self.beta)
-        given: dict[str, Any] = {"epsilon": self.epsilon} if self.epsilon != 0 else {}
+        given: dict[str, object] = {"epsilon": self.epsilon} if self.epsilon != 0 else {}
         text = f'has no effect with impact = "{self.impact}"; leave it out' if self.impact not in WITH_EPSILON else ""
         if self.zeta is not None:
             given |= {"impact": self.impact} if self.impact != "landing" else {}
@@ -324,30 +324,30 @@ class ElasticBase(_Traits):
 
     @property
     def reference_eta(self) -> float:
-        """Return η, by which the springs' forces and deflections are measured: 1, the static ones, of elastic springs."""
+        """Return 1: forces and deflections of elastic springs are measured by their static ones."""
         return 1.0
 
     @property
     def first_loading(self) -> Curve:
-        """Return the curve of the springs' first loading, over the force and deflection by which they are measured."""
+        """Return the curve of the springs' first loading, over static force and deflection."""
         return Straight(math.inf)
 
     @property
     def has_epsilon(self) -> bool:
-        """Return whether ``epsilon`` applies: not to damped supports, nor to impacts by Housner's e."""
+        """Return True if ``epsilon`` applies: not to damped supports, nor to impacts by Housner's e."""
         return self.zeta is None and self.impact in WITH_EPSILON
 
     @property
     def asks_tension(self) -> bool:
-        """Return whether impacts ask a support for a pull: those by Housner's e do."""
+        """Return True for impacts by Housner's e, which need tension from a support."""
         return self.impact in ASKING_TENSION
 
-    def parameters(self, pier: Pier) -> dict[str, Any]:
+    def parameters(self, pier: Pier) -> dict[str, object]:
         """Return these springs under ``pier`` by the keys of run.json."""
-        landing: dict[str, Any] = {"impact": self.impact} if self.zeta is None else {"zeta": self.zeta}
+        landing: dict[str, object] = {"impact": self.impact} if self.zeta is None else {"zeta": self.zeta}
         if self.has_epsilon:
             landing["epsilon"] = self.epsilon
-        values: dict[str, Any] = {"beta": self.beta, **landing, "kinematics": self.kinematics}
+        values: dict[str, object] = {"beta": self.beta, **landing, "kinematics": self.kinematics}
         values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
         values |= {"omega_v": vertical_frequency(pier, self), "delta_s_m": static_deflection(pier, self)}
         values |= in_kilonewtons(pier, self)
@@ -397,7 +397,7 @@ class YieldingBase(ElasticBase):
 
     @property
     def reference_eta(self) -> float:
-        """Return η, by which the springs' forces and deflections are measured."""
+        """Return η: forces and deflections of yielding springs are measured by those at yield."""
         return self.eta
 
     @property
@@ -407,24 +407,24 @@ class YieldingBase(ElasticBase):
 
     @property
     def first_loading(self) -> Curve:
-        """Return the curve of the springs' first loading."""
+        """Return the curve of the springs' first loading, over force and deflection at yield."""
         return self.law.first_loading(self.n)
 
     @property
     def has_exponent(self) -> bool:
-        """Return whether ``n`` applies to these springs."""
+        """Return True if the law of these springs has the exponent ``n``."""
         return self.law.has_exponent
 
     @property
     def ratchets(self) -> bool:
-        """Return whether these springs settle cyclically under vibration (ratcheting)."""
+        """Return True if these springs settle cyclically under vibration (ratcheting)."""
         return self.law.creep is not None
 
     def by_other_law(self) -> Self:
-        """Return these springs by the other law, elastic–perfectly plastic for Bouc–Wen; themselves if they do not ratchet."""
+        """Return the base with elastic–perfectly plastic springs for Bouc–Wen ones; itself if its law does not ratchet."""
         return self if self.law.creep is None else replace(self, spring=self.law.creep.other)
 
-    def parameters(self, pier: Pier) -> dict[str, Any]:
+    def parameters(self, pier: Pier) -> dict[str, object]:
         """Return these springs under ``pier`` by the keys of run.json."""
         values = super().parameters(pier) | {"eta": self.eta, "spring": self.spring}
         if self.has_exponent:
@@ -547,11 +547,7 @@ class FootingBase(_Traits):
         Raises ``InputError`` if the pier has no mass, or for values that are impossible, or unusual and not confirmed.
         """
         area = 2.0 * pier.half_width * length_m
-        wrong = [
-            p
-            for name, value in (("stiffness_MN_m3", stiffness_MN_m3), ("length_m", length_m))
-            for p in POSITIVE.problems(name, value)
-        ]
+        wrong = POSITIVE.problems("stiffness_MN_m3", stiffness_MN_m3) + POSITIVE.problems("length_m", length_m)
         wrong += [] if bearing_MPa is None else POSITIVE.problems("bearing_MPa", bearing_MPa)
         if pier.mass_t is None:
             text = "is missing: MPa and MN/m³ are of a pier whose mass is known"
@@ -568,9 +564,17 @@ class FootingBase(_Traits):
     @classmethod
     @checked
     def from_soil(
-        cls, pier: Pier, shear_modulus_MPa: float, poisson: float, *, length_m: float, embedment_m: float = 0.0,
-        formula: Formula = "gazetas", density_t_m3: float | None = None, **rest: Any,
-    ) -> Self:  # fmt: skip
+        cls,
+        pier: Pier,
+        shear_modulus_MPa: float,
+        poisson: float,
+        *,
+        length_m: float,
+        embedment_m: float = 0.0,
+        formula: Formula = "gazetas",
+        density_t_m3: float | None = None,
+        **rest: Any,
+    ) -> Self:
         """Return a footing from G [MPa] and ν of the soil: its bed has the rocking stiffness of the ``formula``.
 
         With ``density_t_m3`` radiation damping joins ``zeta``. ``rest`` as in :meth:`from_stiffness`.
@@ -605,13 +609,13 @@ IMPULSIVE = (RigidBase.name,)
 
 
 def _interface(base: Base) -> dict[str, float]:
-    """Return friction and area of the interface by the keys of run.json, if they are known."""
+    """Return friction and area of the interface by the keys of run.json; those not given are left out."""
     values = {"friction": base.friction, "area_m2": base.area_m2}
     return {name: value for name, value in values.items() if value is not None}
 
 
 def in_kilonewtons(pier: Pier, base: Base) -> dict[str, float]:
-    """Return K = β² p² M/2 [kN/m] and F_y = η M g/2 [kN] by the keys of a study; empty for a pier without mass or springs."""
+    """Return K = β² p² M/2 [kN/m] and F_y = η M g/2 [kN] by study key; empty without a mass, or without two springs."""
     if pier.mass_t is None or not base.two_springs:
         return {}
     values = {"stiffness_kN_m": 0.5 * pier.mass_t * vertical_frequency(pier, base) ** 2}

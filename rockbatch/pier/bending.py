@@ -1,4 +1,4 @@
-"""The mode in which a shaft bends, fixed at its foot (THEORY.md, A shaft that bends)."""
+"""The flexural mode of a shaft fixed at its foot (THEORY.md, A shaft that bends)."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 class Mode(NamedTuple):
-    """Integrals of the mode's shape φ, 1 at the top, over the mass of a pier, per unit mass."""
+    """Integrals of the mode shape φ, 1 at the top, over the mass of a pier, per unit mass."""
 
     first: float  # μ1 = ∫φ dm/M
     second: float  # μ2 = ∫φ² dm/M
@@ -24,14 +24,14 @@ class Mode(NamedTuple):
 
 
 def problems(pier: Pier) -> list[Problem]:
-    """Return why the shaft of ``pier`` cannot bend; empty if it can."""
+    """Return a problem for each reason that the shaft of ``pier`` cannot be taken as elastic; empty if it can."""
     lacking = "flexural_period_s is missing, the period of the pier fixed at its base; write it in [pier]"
     texts = [*([lacking] if pier.flexural_period_s is None else []), *unknown_masses(pier)]
     return [Problem("shaft", "elastic", text) for text in texts]
 
 
 def mode_of(pier: Pier) -> Mode:
-    """Return the mode of ``pier``: the line to which a force at its highest point bends a uniform shaft."""
+    """Return the mode of ``pier``: the deflection of a uniform cantilever under a force at its highest point."""
     top, sums = pier.highest, np.zeros(3)
     parts = parts_of(pier)
     for part in parts:
@@ -43,17 +43,17 @@ def mode_of(pier: Pier) -> Mode:
 
 
 def shape_at(pier: Pier, height: float) -> float:
-    """Return the share of the top's deflection at ``height`` [m]."""
+    """Return the mode shape at ``height`` [m]: its deflection over that of the highest point."""
     return float(_shape(np.array(height / pier.highest)))
 
 
 def _shape(ratio: "np.ndarray") -> "np.ndarray":
-    """Return the deflection over that of the highest point, at a height over its own; drift may be read above it."""
+    """Return φ at a ``ratio`` of heights, 1 at the highest point; the tangent continues above it, where drift may be read."""
     return np.where(ratio <= 1.0, 0.5 * ratio**2 * (3.0 - ratio), 1.5 * ratio - 0.5)
 
 
 def _points(part: Part) -> tuple["np.ndarray", "np.ndarray"]:
-    """Return heights [m] and masses [t] that stand for a part in integrals of the mode."""
+    """Return quadrature points of a part: heights [m] and masses [t]."""
     length = part.length_m or 0.0
     if length == 0.0:
         return np.array([part.height_m]), np.array([part.mass_t])

@@ -1,4 +1,4 @@
-"""The pier: a rigid block, with what it carries, and the rocking frame as its equivalent block."""
+"""The pier: a rigid block with its deck, and the rocking frame as an equivalent block."""
 
 import math
 from collections.abc import Collection, Iterable, Sequence
@@ -25,7 +25,7 @@ from rockbatch.pier.sizes import (
 )
 
 ROUNDING = 1e-9
-"""Share of a height that is rounding."""
+"""Relative difference of heights that is rounding."""
 
 
 @checked
@@ -190,7 +190,7 @@ class Pier(InNotebook):
         for n, part in enumerate(parts, 1):
             wrong += part_problems(n, part)
         if not parts:
-            wrong.append(Problem("parts", None, "there are none; a pier has one at least", kind=MissingKey))
+            wrong.append(Problem("parts", None, "there are none; a pier has at least one", kind=MissingKey))
         refuse(wrong)
         mass = math.fsum(part.mass_t for part in parts)
         height = math.fsum(part.mass_t * part.height_m for part in parts) / mass
@@ -332,7 +332,7 @@ class Pier(InNotebook):
 
     @property
     def _column_share(self) -> float:
-        """Return R0 of a column over that of the equivalent block of its frame; 1 if it is no frame."""
+        """Return R0 of a column over R0 of the frame's equivalent block; 1 for a single pier."""
         ratio = self.deck_over_columns
         return 1.0 if ratio is None else (1 + ratio) / (1 + 2 * ratio)
 
@@ -369,9 +369,9 @@ class Pier(InNotebook):
 
     @property
     def shaft_share(self) -> float:
-        """Return the share of the mass that is the shaft's, or the columns', and not that of what they carry at their end.
+        """Return the share of the mass in the shaft or the columns, without the deck on top.
 
-        Of parts the deck is what has no length, and is not below the end of those that have one.
+        Among parts, the deck is the point masses at or above the highest upper end of those with a length.
         """
         if self.parts is None:
             return share_of_shaft(self.alpha, self.mu, self.deck_over_columns)
@@ -387,9 +387,9 @@ class Pier(InNotebook):
 
 
 def share_of_shaft(alpha: float, mu: float, deck_over_columns: float | None = None) -> float:
-    """Return :attr:`Pier.shaft_share` of a pier without parts, as that of a uniform shaft under a mass, or of a frame.
+    """Return :attr:`Pier.shaft_share` of a pier without parts: of a uniform shaft with a mass on top, or of a frame.
 
-    With r times that mass the shaft has M h²/I0 = μ cos²α = 3 + 12/(r² + 4r).
+    If the shaft has r times the mass on top, M h²/I0 = μ cos²α = 3 + 12/(r² + 4r).
     """
     if deck_over_columns is not None:
         return 1.0 / (1.0 + deck_over_columns)
@@ -401,7 +401,7 @@ def share_of_shaft(alpha: float, mu: float, deck_over_columns: float | None = No
 
 
 def unlikely_mass(pier: Pier, confirm: Collection[str], name: str = "mass_t") -> list[Problem]:
-    """Return what is odd about the mass of a pier for its size, if it is known; empty if ``name`` is in ``confirm``.
+    """Return the problem of an implausible density of a pier; empty without a mass, or if ``name`` is in ``confirm``.
 
     ``name`` is the mass, or "width_m" if the parts of the pier give its mass.
     """
@@ -417,13 +417,11 @@ def unlikely_mass(pier: Pier, confirm: Collection[str], name: str = "mass_t") ->
 
 
 def described(pier: Pier) -> dict[str, float]:
-    """Return a pier by the names and units of run.json; mass, γ, deck, period, shaft only if it has them, θ0 unless it is 0.
+    """Return a pier by the keys of run.json; mass, γ, deck, period and shaft only if given, θ0 unless it is 0.
 
     ``top_m`` is the height at which drift is read, whether it was given or not.
     """
-    optional = ("mass_t", "deck_over_columns", "deck_height_m", "flexural_period_s")
-    given = {name: getattr(pier, name) for name in optional}
-    return {
+    values = {
         "alpha": pier.alpha,
         "p": pier.p,
         "mu": pier.mu,
@@ -433,7 +431,12 @@ def described(pier: Pier) -> dict[str, float]:
         "height_m": pier.height,
         "highest_m": pier.highest,
         "top_m": pier.top,
-        **{name: value for name, value in given.items() if value is not None},
-        **({} if pier.parts is None else {"shaft_share": pier.shaft_share}),
-        **({"initial_rotation_rad": pier.initial_rotation_rad} if pier.initial_rotation_rad else {}),
     }
+    for name in ("mass_t", "deck_over_columns", "deck_height_m", "flexural_period_s"):
+        if (value := getattr(pier, name)) is not None:
+            values[name] = value
+    if pier.parts is not None:
+        values["shaft_share"] = pier.shaft_share
+    if pier.initial_rotation_rad:
+        values["initial_rotation_rad"] = pier.initial_rotation_rad
+    return values

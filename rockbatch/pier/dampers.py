@@ -3,29 +3,39 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal, Self
+from typing import ClassVar, Literal, Self, Unpack
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import Contradiction, Problem, WrongType
 from rockbatch.common.showing import shown
 from rockbatch.common.units import POSITIVE
 from rockbatch.pier.block import Pier
-from rockbatch.pier.devices import FIRMEST, LEAST_FORCE, SOFTEST, Device, Doubt, if_finite, over_weight, wrong_words
+from rockbatch.pier.devices import (
+    FIRMEST,
+    LEAST_FORCE,
+    SOFTEST,
+    Device,
+    Doubt,
+    Placing,
+    if_finite,
+    over_weight,
+    wrong_words,
+)
 
 DamperKind = Literal["friction", "viscous", "hysteretic"]
 
 DAMPERS = {"friction": ("f",), "hysteretic": ("f", "yield_m"), "viscous": ("nu", "exponent")}
-"""By kind of damper, the fields that count."""
+"""Names of the fields that each kind of damper uses."""
 
 SPEED = 0.1
-"""Speed of a viscous damper [m/s] at which it has less than the pier's weight; heels of piers that step reach 0.1 to 1 m/s."""
+"""Speed [m/s] at which a viscous damper should have less than the pier's weight; heels of rocking piers reach 0.1 to 1 m/s."""
 
 THINNEST, WIDEST = 2.5e-5, 0.5
 """Yield deflection of a hysteretic damper [m]; steel ones have 1 to 20 mm."""
 
 QUICKEST = 1e4
-"""Rate [1/s] at which a damper on a brace relaxes, about that force which it has at SPEED: beyond it the brace might as well be
-rigid, and takes steps without number."""
+"""Relaxation rate [1/s] of a damper on a brace, linearised about its force at SPEED, above which the brace is as good as rigid
+and needs too many steps."""
 
 
 @checked
@@ -49,8 +59,8 @@ class Damper(Device):
         Offset from the centre of the base [m], positive to the right; None: one at each pivot. "deck": a horizontal one between
         the deck, at ``Pier.deck``, and a structure next to it that moves with the ground; not of friction.
     brace : float
-        λ = k b²/(M g R0) of the stiffness k of what the damper hangs on, in series with it; infinite if that is rigid. Of a
-        viscous damper whose exponent is 1 at most, or a hysteretic one.
+        λ = k b²/(M g R0) of the stiffness k of a brace in series with the damper; infinite if it is rigid. For viscous dampers
+        with an exponent of at most 1, and hysteretic ones.
     confirm : sequence of str
         "f", "nu", "yield_m" or "brace", if the value is right though unusual.
 
@@ -77,22 +87,22 @@ class Damper(Device):
 
     @classmethod
     @checked
-    def friction(cls, pier: Pier, force_kN: float, **rest: Any) -> Self:
+    def friction(cls, pier: Pier, force_kN: float, **rest: Unpack[Placing]) -> Self:
         """Return a friction damper of the force F_d [kN] under ``pier``; ``rest``: ``at`` and ``confirm``.
 
-        Here and in the other constructors from kN, raises ``InputError`` if the mass of the pier is not known, or for values that
-        cannot be.
+        Here and in the other constructors from kN, raises ``InputError`` if the mass of the pier is not known, or for
+        impossible values.
         """
         return cls("friction", **over_weight(pier, force_kN=force_kN), **rest)._usual_under(pier)
 
     @classmethod
     @checked
     def hysteretic(
-        cls, pier: Pier, force_kN: float, yield_mm: float, *, brace_kN_m: float = math.inf, **rest: Any
+        cls, pier: Pier, force_kN: float, yield_mm: float, *, brace_kN_m: float = math.inf, **rest: Unpack[Placing]
     ) -> Self:
         """Return a hysteretic damper of the yield force F_d [kN] and deflection u_y [mm]; otherwise as :meth:`friction`.
 
-        ``brace_kN_m`` is the stiffness of the brace on which it hangs.
+        ``brace_kN_m`` is the stiffness of a brace in series.
         """
         values = {"force_kN": force_kN, "yield_mm": yield_mm} | if_finite(brace_kN_m=brace_kN_m)
         return cls("hysteretic", **over_weight(pier, **values), **rest)._usual_under(pier)
@@ -100,7 +110,13 @@ class Damper(Device):
     @classmethod
     @checked
     def viscous(
-        cls, pier: Pier, coefficient_kN_s_m: float, exponent: float = 1.0, *, brace_kN_m: float = math.inf, **rest: Any
+        cls,
+        pier: Pier,
+        coefficient_kN_s_m: float,
+        exponent: float = 1.0,
+        *,
+        brace_kN_m: float = math.inf,
+        **rest: Unpack[Placing],
     ) -> Self:
         """Return a viscous damper of C [kN (s/m)^a] and the exponent a, on a brace of the stiffness ``brace_kN_m``.
 
@@ -122,7 +138,7 @@ class Damper(Device):
         wrong = _wrong_place(self)
         if self.kind not in DAMPERS:
             wrong.append(Problem("kind", self.kind, f"must be {' or '.join(map(shown, DAMPERS))}", kind=WrongType))
-        return wrong + super()._wrong() + _of_other_kinds(self) + _wrong_brace(self)
+        return wrong + super()._wrong() + _unused_fields(self) + _wrong_brace(self)
 
     def doubts(self, pier: Pier) -> Iterator[Doubt]:
         if self.kind == "viscous":
@@ -143,6 +159,7 @@ class Damper(Device):
         yield from self._brace_doubts(pier)
 
     def _brace_doubts(self, pier: Pier) -> Iterator[Doubt]:
+        """Yield the doubt about a brace that is too stiff, too soft, or of no effect."""
         if self.brace == math.inf:
             return
         stiffness = self.brace * pier.gravity * pier.size / pier.half_width**2
@@ -168,7 +185,8 @@ def _wrong_place(damper: Damper) -> list[Problem]:
     return wrong_words(damper.at, "left", "right", "deck")
 
 
-def _of_other_kinds(damper: Damper) -> list[Problem]:
+def _unused_fields(damper: Damper) -> list[Problem]:
+    """Return a problem for each given field that only other kinds of damper use."""
     own = DAMPERS.get(damper.kind, ())
     others = {name for names in DAMPERS.values() for name in names if own and name not in own}
     given = {name: value for name in sorted(others) if (value := getattr(damper, name)) != getattr(Damper, name)}

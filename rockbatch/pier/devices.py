@@ -1,9 +1,9 @@
-"""What all devices between a pier and the ground share: where they are checked, and their values in kN."""
+"""Base class of the devices between a pier and the ground, their bounds, and their fields from values in kN."""
 
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import ClassVar, NamedTuple, Self, TypedDict
 
 from rockbatch.common.errors import Problem, Unusual, WrongType, placed, refuse
 from rockbatch.common.showing import InNotebook, shown
@@ -21,32 +21,39 @@ BOUNDS = {
     "gap_m": Bounds(0.0, MOST, why="must be 0 or above"),
     "restitution": Bounds(0.1, 1.0, why="must be within 0.1 and 1, the speed after a blow over that before"),
 }
-"""Values of devices. Beyond ten times the weight a wrong unit is likelier than the device; fluid dampers have
-exponents of 0.15 to 1, and one of 0 is friction."""
+"""Possible values of devices. Forces above ten times the weight suggest a wrong unit; fluid dampers have exponents of
+0.15 to 1, and an exponent of 0 is friction."""
 
 FIRMEST = {"stop": 1e-4, "deck_spring": 1e-3, "damper": 1e-3}
 """Least deflection under the weight of the whole pier [m] of a stop, deck spring or damper's brace: a steel block of a
 metre gives way by a tenth of a millimetre, abutments and braces by 5 to 500 mm."""
 
 LEAST_FORCE = 1e-3
-"""Force over the weight below which a damper, at 1 m/s if it is viscous, or a tendon might as well not be there."""
+"""Force over the weight below which a damper (at 1 m/s if viscous) or a tendon has no noticeable effect."""
 
 SOFTEST = {"tendon": 0.01, "stop": 0.05, "deck_spring": 0.05, "damper": 0.05}
-"""Least force of a device, or of a damper's brace, that yields by as much as a rotation of α asks, over the weight."""
+"""Least force over the weight of a device, or of a damper's brace, at its deflection under a rotation of α."""
 
 
 class Doubt(NamedTuple):
-    """A value of the field ``name`` that is probably wrong, and what it would mean."""
+    """A value of the field ``name`` that is probably wrong, with its physical ``meaning``."""
 
     name: str
     meaning: str
 
 
+class Placing(TypedDict, total=False):
+    """Keywords of all constructors of dampers and stops from values in kN."""
+
+    at: float | str | None
+    confirm: Sequence[str]
+
+
 class Device(InNotebook, ABC):
-    """A device between the pier and the ground; each class says what is wrong about it, and what is odd under a pier."""
+    """A device between the pier and the ground; each class checks its own fields, and their plausibility under a pier."""
 
     what: ClassVar[str]
-    """Name of its table in a study."""
+    """Name of the device's table in a study."""
 
     confirm: Sequence[str]
 
@@ -60,28 +67,27 @@ class Device(InNotebook, ABC):
 
     @abstractmethod
     def _measured(self) -> Sequence[str]:
-        """Return its fields with numbers that count."""
+        """Return the names of the fields that are used and have :data:`BOUNDS`."""
 
     def _wrong(self) -> list[Problem]:
-        """Return what is impossible about it under any pier."""
-        return [
-            problem
-            for name in self._measured()
-            for problem in BOUNDS[name].problems(name.replace("lam", "lambda"), getattr(self, name))
-        ]
+        """Return a problem for each field that is impossible under any pier."""
+        wrong = []
+        for name in self._measured():
+            wrong += BOUNDS[name].problems(name.replace("lam", "lambda"), getattr(self, name))
+        return wrong
 
     @abstractmethod
     def doubts(self, pier: Pier) -> Iterator[Doubt]:
-        """Yield what is odd about it under ``pier``, confirmed or not."""
+        """Yield each implausible value under ``pier``, whether confirmed or not."""
 
     def _usual_under(self, pier: Pier) -> Self:
-        """Return it, made from values in kN under ``pier``; raise ``InputError`` if one is unusual and not confirmed."""
+        """Return the device itself; raise ``InputError`` if a value is implausible under ``pier`` and not confirmed."""
         refuse(unlikely_devices(pier, (self,)))
         return self
 
 
 def wrong_words(place: float | str | None, *words: str) -> list[Problem]:
-    """Return what is wrong about a place that is a word, none of these; empty if nothing is."""
+    """Return the problem of a ``place`` that is a word other than ``words``; empty for numbers and None."""
     if not isinstance(place, str) or place in words:
         return []
     text = f"must be {', '.join(map(shown, words))} or an offset in m"
@@ -89,22 +95,21 @@ def wrong_words(place: float | str | None, *words: str) -> list[Problem]:
 
 
 def doubt(pier: Pier, device: Device) -> Doubt | None:
-    """Return what is odd about a device of ``pier``; None if nothing is, or if it is confirmed."""
+    """Return the first implausible, unconfirmed value of a device of ``pier``; None if there is none."""
     return next((doubt for doubt in device.doubts(pier) if doubt.name not in device.confirm), None)
 
 
 def unlikely_devices(pier: Pier, devices: Sequence[Device]) -> list[Problem]:
-    """Return what is odd about devices of ``pier``, except what they confirm."""
-    doubts = [(device, doubt(pier, device)) for device in devices]
-    return [
-        Problem(odd.name, getattr(device, odd.name), odd.meaning, device.what, odd.name, Unusual)
-        for device, odd in doubts
-        if odd is not None
-    ]
+    """Return a problem for the first implausible, unconfirmed value of each device of ``pier``."""
+    return [_unusual(device, odd) for device in devices if (odd := doubt(pier, device))]
+
+
+def _unusual(device: Device, odd: Doubt) -> Problem:
+    return Problem(odd.name, getattr(device, odd.name), odd.meaning, device.what, odd.name, Unusual)
 
 
 def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
-    """Return by a study's key the field of a device, and the key's value over the field's; those in kN if the mass is known."""
+    """Return, by study key, a device's field and the factor from its value to the key's; keys in kN only with a known mass."""
     fields = {name: (name, 1.0) for name in ("f", "nu", "exponent", "psi", "restitution", "brace")}
     fields |= {"yield_mm": ("yield_m", 1000.0), "lambda": ("lam", 1.0), "gap_mm": ("gap_m", 1000.0)}
     if pier.mass_t is not None:
@@ -121,12 +126,15 @@ def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
 
 
 def if_finite(**values: float) -> dict[str, float]:
-    """Return those values that are not infinite, which stands for what is not there."""
+    """Return the ``values`` that are not inf, the default of yield forces and braces that are not given."""
     return {name: value for name, value in values.items() if value != math.inf}
 
 
-def over_weight(pier: Pier, **values: float) -> dict[str, Any]:
-    """Return the fields of a device from the keys of a study."""
+def over_weight(pier: Pier, **values: float) -> dict[str, float]:
+    """Return a device's dimensionless fields from study keys such as ``force_kN``.
+
+    Raises ``InputError`` if the mass of ``pier`` is not known, or for a negative value.
+    """
     if pier.mass_t is None:
         refuse([NO_MASS])
     refuse([problem for name, value in values.items() for problem in NOT_NEGATIVE.problems(name, value)])

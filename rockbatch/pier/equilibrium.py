@@ -20,53 +20,53 @@ from rockbatch.pier.places import places, prestress_over_weight
 from rockbatch.pier.restraints import Damper, DeckSpring, Restraint, Stop, Tendon
 
 MOST_STEPS, NEAR = 64, 1e-8
-"""Steps of the vertical balance, and the bracket at which it ends, over the deflection under the whole weight."""
+"""Most iterations of the vertical balance, and its final bracket over the deflection under the whole weight."""
 
 BALANCED = 1e-14
-"""Excess of vertical force over the weight that is rounding."""
+"""Residual of the vertical balance, over the weight, that is rounding."""
 
 PASSES, PARTS = 5, 64
-"""Passes of the search for kinks, each of which divides the steps that hold one into so many."""
+"""Passes of the search for kinks, and the parts into which each pass divides a step that contains one."""
 
 ONSET = 1e-12
-"""Rotation [rad] that stands for the first one, at which friction has its full force and stiffnesses have added nothing."""
+"""Rotation [rad] just above 0, at which friction is fully mobilised and stiffnesses have added nothing."""
 
 
 def bracketed(excess: Callable[[Array], Array], low: Array, high: Array, near: float) -> tuple[Array, Array, Array]:
-    """Return a bracket of the depth at which ``excess`` passes 0, and where in it that lies, as a share of the way.
+    """Return a bracket of the zero of the increasing ``excess``, and the position of the zero in it, 0 to 1.
 
-    By turns the bracket is halved and cut by its chord; friction makes ``excess`` jump, which the bracket then encloses.
+    Bisection and regula falsi alternate; where friction makes ``excess`` jump across 0, the bracket encloses the jump.
     """
     below, above = excess(low), excess(high)
     for step in range(MOST_STEPS):
         converged = (np.minimum(np.abs(below), np.abs(above)) < BALANCED) | (high - low < near)
         if converged.all():
             break
-        share = _share(below, above) if step % 2 else 0.5
+        share = _secant(below, above) if step % 2 else 0.5
         middle = low + share * (high - low)
         excess_at_middle = excess(middle)
         up = excess_at_middle > 0.0
         low, below = np.where(up, low, middle), np.where(up, below, excess_at_middle)
         high, above = np.where(up, middle, high), np.where(up, excess_at_middle, above)
-    return low, high, _share(below, above)
+    return low, high, _secant(below, above)
 
 
-def _share(low: Array, high: Array) -> Array:
-    """Return the share of the way from values ``low`` to ``high`` at which 0 lies on the straight line between them."""
+def _secant(low: Array, high: Array) -> Array:
+    """Return the position, 0 to 1, of the zero of the chord between the values ``low`` and ``high``; 0.5 if they are equal."""
     gap = high - low
     return np.clip(np.divide(-low, gap, out=np.full_like(gap, 0.5), where=gap > 0.0), 0.0, 1.0)
 
 
 def without_dampers(restraints: tuple[Restraint, ...]) -> tuple[Restraint, ...]:
-    """Return tendons, stops and deck springs, whose forces depend on the rotation alone."""
+    """Return the tendons, stops and deck springs among ``restraints``: their forces depend on the rotation alone."""
     return tuple(device for device in restraints if not isinstance(device, Damper))
 
 
 @dataclass(frozen=True)
 class Place:
-    """A device at one place: its ``offset`` [m] from the middle of the base towards the pivot that bears more.
+    """A device at one place, at an ``offset`` [m] from the middle of the base towards the more heavily loaded pivot.
 
-    One at the deck has a ``height`` [m], and lengthens as the deck moves by ``way`` times towards that pivot.
+    At the deck it has a ``height`` [m], and its elongation is ``way`` times the deck's displacement towards that pivot.
     """
 
     device: Restraint
@@ -76,9 +76,9 @@ class Place:
     way: float = 1.0
 
     def pull(self, elongation: Array, since: float) -> Array:
-        """Return its tension at an ``elongation`` [m] reached steadily from ``since``, and that from 0.
+        """Return the tension over the weight at an ``elongation`` [m], reached monotonically from ``since``, and that from 0.
 
-        Friction has its whole force in the direction of the way since then.
+        Friction has its full force in the direction of motion since then.
         """
         device = self.device
         if isinstance(device, Tendon):
@@ -106,14 +106,14 @@ class Equilibria:
     Attributes
     ----------
     weight, tendons, stops, dampers : ndarray
-        Their shares of the righting moment about the pivot that bears more, over the weight [m]; the P–Δ moment is in ``weight``,
-        that of deck springs in ``stops``.
+        Contributions to the righting moment about the more heavily loaded pivot, over the weight [m]; ``weight`` contains the
+        P–Δ moment, ``stops`` that of deck springs.
     lever : ndarray
-        Height by which a horizontal ground acceleration turns the pier [m].
+        Lever arm of the horizontal inertia force [m].
     toe, heel : ndarray
-        Forces of the support that bears more and of the other, over the weight.
+        Forces over the weight of the more heavily loaded support and of the other.
     depth : ndarray
-        Of the toe below its unstressed place [m].
+        Depth of the toe below its unstressed place [m]; 0 on rigid ground.
     """
 
     theta: Array
@@ -138,7 +138,7 @@ class Equilibria:
 
 
 def spring_of(pier: Pier, base: ElasticBase) -> Spring:
-    """Return a support of ``base`` under ``pier``."""
+    """Return one support of ``base`` under ``pier``: stiffness and strength over the weight; inf if it does not yield."""
     strength = 0.5 * base.eta if isinstance(base, YieldingBase) else math.inf
     return Spring(0.5 / static_deflection(pier, base), strength, base.first_loading)
 
@@ -146,7 +146,7 @@ def spring_of(pier: Pier, base: ElasticBase) -> Spring:
 class SlowTurn:
     """A pier on a base that is turned slowly from rest, to the right (``side`` 1) or to the left (−1).
 
-    ``restraints`` are those that act: all of the base by default. Raises nothing: what is impossible is refused before.
+    ``restraints`` are the acting devices: all of the base by default. Impossible values were refused before.
     """
 
     def __init__(
@@ -155,35 +155,29 @@ class SlowTurn:
         devices = base.restraints if restraints is None else restraints
         self.pier, self.finite = pier, base.kinematics == "finite"
         self.b, self.h = pier.size * math.sin(pier.alpha), pier.height
-        self.places = [
-            Place(
-                device,
-                side * place.offset + self.b - pier.half_width,  # of a frame the block is wider than its columns
-                (device.brace if isinstance(device, Damper) else device.lam) * pier.size / pier.half_width**2,
-                place.height,
-                side * place.way or 1.0,
-            )
-            for device in devices
-            if not (isinstance(device, Damper) and device.f == 0.0)  # of speed, which bear nothing at rest
-            for place in places(pier, device)
-        ]
-        self.spring, self.on_pivots = (
-            spring_of(pier, base) if isinstance(base, ElasticBase) else None,
-            not base.on_springs,
-        )
+        self.places = list[Place]()
+        for device in devices:
+            if isinstance(device, Damper) and device.f == 0.0:
+                continue  # viscous: no force in a slow turn
+            stiffness = (device.brace if isinstance(device, Damper) else device.lam) * pier.size / pier.half_width**2
+            for place in places(pier, device):
+                offset = side * place.offset + self.b - pier.half_width  # a frame's block is wider than its columns
+                self.places.append(Place(device, offset, stiffness, place.height, side * place.way or 1.0))
+        self.spring = spring_of(pier, base) if isinstance(base, ElasticBase) else None
+        self.on_pivots = not base.on_springs
         self.at_rest = 0.5 * (1.0 + prestress_over_weight(pier, devices))
         """Force of each support at rest, over the weight."""
         self.settled = 0.0 if self.spring is None else self.spring.depth(self.at_rest)
         """Depth of both pivots at rest [m]."""
 
-    # Geometry: of any rotation, or linearised
+    # Geometry: finite rotations, or linearised
 
     def _rise(self, theta: Array) -> Array:
-        """Return by what each pivot has gone up or down about the middle of the base [m]."""
+        """Return the rise of one pivot, and the fall of the other, relative to the middle of the base [m]."""
         return self.b * (np.sin(theta) if self.finite else theta)
 
     def elongation(self, place: Place, theta: Array, depth: Array) -> Array:
-        """Return the elongation of a device [m], of a pier whose toe is at a ``depth`` [m]."""
+        """Return the elongation of a device [m] with the toe at a ``depth`` [m]."""
         if place.height:
             if not self.finite:
                 return place.way * place.height * theta
@@ -198,6 +192,7 @@ class SlowTurn:
         return self.b if self.on_pivots else 0.0
 
     def _by_v(self, theta: Array) -> Array:
+        """Return the derivative of a device's elongation by the height of the pier: the vertical part of its tension."""
         return 1.0 / np.cos(0.5 * theta) if self.finite else np.ones_like(theta)
 
     def _arm(self, place: Place, theta: Array, elongation: Array) -> Array:
@@ -219,20 +214,19 @@ class SlowTurn:
     # Balance of the vertical forces
 
     def _heel(self, theta: Array, depth: Array) -> Array:
-        """Return the force of the support that is unloaded."""
+        """Return the force of the heel over the weight: 0 on rigid ground and after lift-off."""
         if self.spring is None:
             return np.zeros_like(theta)
         risen = self.settled - depth + 2.0 * self._rise(theta)
         return np.clip(self.at_rest - self.spring.stiffness * risen, 0.0, self.spring.strength)
 
     def _pulls(self, theta: Array, depth: Array, since: list[float]) -> list[Array]:
-        return [
-            place.pull(self.elongation(place, theta, depth), start)
-            for place, start in zip(self.places, since, strict=True)
-        ]
+        """Return the tension of each device over the weight; ``since`` has the elongations [m] from which they move."""
+        starts = zip(self.places, since, strict=True)
+        return [place.pull(self.elongation(place, theta, depth), start) for place, start in starts]
 
     def _excess(self, theta: Array, depth: Array, pulls: list[Array], heel: Array) -> Array:
-        """Return by what the supports press upwards more than weight and devices press down."""
+        """Return the upward force of the supports less weight and tensions, over the weight."""
         assert self.spring is not None
         vertical = (pull for place, pull in zip(self.places, pulls, strict=True) if not place.height)
         down = 1.0 + self._by_v(theta) * sum(vertical, start=np.zeros_like(theta))
@@ -245,7 +239,7 @@ class SlowTurn:
 
     @cached_property
     def _lift_off(self) -> tuple[float, list[float]] | None:
-        """Rotation of lift-off, and the elongations of the devices then."""
+        """Rotation [rad] of lift-off and the devices' elongations [m] there; None if the toe yields before."""
         if self.spring is None:
             return 0.0, [0.0] * len(self.places)
         spring, risen = self.spring, self.at_rest / self.spring.stiffness
@@ -274,7 +268,7 @@ class SlowTurn:
         return float(theta[0]), [float(self.elongation(place, theta, depths)[0]) for place in self.places]
 
     def _without_devices(self, theta: Array, on_both: bool) -> tuple[Array, Array]:
-        """Return depth and the heel's force of a pier without devices."""
+        """Return depth of the toe [m] and force of the heel of a pier without devices."""
         assert self.spring is not None
         spring, rise = self.spring, self._rise(theta)
         if not on_both:
@@ -282,7 +276,7 @@ class SlowTurn:
         if spring.curve.corner:
             heel = np.maximum(0.5 - spring.stiffness * rise, max(1.0 - spring.strength, 0.0))
             return self.settled + 2.0 * rise - (0.5 - heel) / spring.stiffness, heel
-        bears = self.settled + 2.0 * rise - self.at_rest / spring.stiffness  # the depth from which on the heel does
+        bears = self.settled + 2.0 * rise - self.at_rest / spring.stiffness  # depth below which the heel is in contact
         depth = self.settled + rise  # of an elastic toe; Newton's method from there never goes past the root
         for _ in range(MOST_STEPS):
             toe, lifted = spring.force(depth), depth < bears
@@ -295,7 +289,7 @@ class SlowTurn:
         return depth, self._heel(theta, depth)
 
     def _balanced(self, theta: Array, since: list[float], heel: bool) -> tuple[Array, list[Array], Array]:
-        """Return depth, pulls and the heel's force; where friction holds, its force is what the balance leaves."""
+        """Return depth of the toe [m], tensions and the heel's force; friction that sticks takes the rest of the balance."""
         assert self.spring is not None
 
         def heel_at(depth: Array) -> Array:
@@ -314,7 +308,7 @@ class SlowTurn:
         return between(low, high), [between(*pulls) for pulls in ends], between(heel_at(low), heel_at(high))
 
     def _parts(self, theta: Array, on_both: bool) -> Equilibria:
-        """Return the equilibria before lift-off (``on_both``) or after it."""
+        """Return the equilibria at ``theta``, all of them before lift-off (``on_both``) or all after it."""
         since = [0.0] * len(self.places) if on_both or self._lift_off is None else self._lift_off[1]
         if self.spring is None:
             depth, heel = np.zeros_like(theta), np.zeros_like(theta)
@@ -358,12 +352,12 @@ class SlowTurn:
             values[in_contact], values[~in_contact] = getattr(first, name), getattr(second, name)
         return Equilibria(**joined)
 
-    # Where something changes
+    # Rotations at which the regime changes
 
     @cached_property
     def unstable(self) -> float | None:
         """The rotation from which on the righting moment is negative [rad]; None if there is none up to π/2."""
-        if not self.places:  # the toe is plastic beyond it if it cannot bear the weight alone
+        if not self.places:  # a toe that cannot carry the weight alone yields, and carries its strength only
             share = 1.0 if self.spring is None else min(1.0, 2.0 * self.spring.strength - 1.0)
             tangent = share * math.tan(self.pier.alpha)
             return math.atan(tangent) if self.finite else min(tangent, 0.5 * math.pi)
@@ -384,7 +378,7 @@ class SlowTurn:
         return high - step * float(moments[i] / (moments[i] - previous))
 
     def curve(self, until: float, before: int = 12, after: int = 100) -> Equilibria:
-        """Return the equilibria from the first rotation to ``until`` [rad], on both sides of lift-off or of first yield."""
+        """Return the equilibria from rest to ``until`` [rad], in ``before`` steps to lift-off or yield and ``after`` beyond."""
         start = self.lift_off
         if start is None and self.spring is not None:
             # twice the rotation at which the toe, elastic up to there, yields
@@ -397,20 +391,20 @@ class SlowTurn:
         return self._from_rest(grid)
 
     def _from_rest(self, grid: Sequence[float] | Array) -> Equilibria:
-        """Return the equilibria at rotations in order, each once, of which the first may be 0."""
+        """Return the equilibria at the sorted, unique rotations of ``grid``; 0 is solved at :data:`ONSET`."""
         equilibria = self.at(np.unique(np.maximum(grid, ONSET)))
         return replace(equilibria, theta=np.where(equilibria.theta > ONSET, equilibria.theta, 0.0))
 
     def with_rotations(self, curve: Equilibria, rotations: Array) -> Equilibria:
-        """Return a curve with the equilibria at further ``rotations`` within it [rad]."""
+        """Return a curve with further ``rotations`` [rad] inserted; those outside it are left out."""
         inside = rotations[(rotations > curve.theta[0]) & (rotations < curve.theta[-1])]
         parts = zip(vars(curve).values(), vars(self.at(inside)).values(), strict=True)
         _, places = np.unique(np.concatenate((curve.theta, inside)), return_index=True)
         return Equilibria(*(np.concatenate(both)[places] for both in parts))
 
     def kinks(self, curve: Equilibria) -> Array:
-        """Return rotations within a curve, beside lift-off, at which a support, tendon, stop or deck spring yields,
-        is met or lets go [rad]."""
+        """Return rotations [rad] within a curve, beside lift-off, at which a support or tendon yields, a tendon slackens, or a
+        stop or deck spring engages."""
         changes = self._changes(curve)
         for _ in range(PASSES):
             if len(changes):
@@ -420,7 +414,7 @@ class SlowTurn:
         return curve.theta[changes + 1]
 
     def _changes(self, curve: Equilibria) -> npt.NDArray[np.intp]:
-        """Return the places of a curve after which the regime of a support or a device changes."""
+        """Return the indices of ``curve`` after which the regime of a support or a device changes."""
         regimes = [np.zeros(len(curve.theta), dtype=bool)]
         if self.spring is not None:
             regimes += [curve.heel >= self.spring.strength]

@@ -53,8 +53,8 @@ class Sheet(NamedTuple):
 
 
 def statics(sheets: Sequence[Sheet]) -> Figure:
-    """Return the righting moment and the acceleration that holds each pier over its rotation, and its period over the amplitude;
-    of a single pier, also the shares of the moment, and the period of the pier fixed at its base."""
+    """Return a figure of righting moment and steady acceleration over rotation, and of period over amplitude; for a single pier
+    also the contributions to the moment, and its period fixed at the base."""
     sheets = sheets[:MOST_SHEETS]
     heavy = all(sheet.pier.mass_t is not None for sheet in sheets)
     moments, accelerations, periods = [], [], []
@@ -68,14 +68,12 @@ def statics(sheets: Sequence[Sheet]) -> Figure:
         shares = {words: getattr(at, share) for share, words in SHARES.items()} if len(sheets) == 1 else {}
         shown = [(words, values) for words, values in shares.items() if values.any()]
         if len(shown) > 1:
-            moments += [
-                Polyline(across, size * values, words, look=line_of(i), label=words)
-                for i, (words, values) in enumerate(shown, 1)
-            ]
+            for i, (words, values) in enumerate(shown, 1):
+                moments.append(Polyline(across, size * values, words, look=line_of(i), label=words))
     flexural = sheets[0].pier.flexural_period_s if len(sheets) == 1 else None
-    fixed = (
-        [] if flexural is None else [Rule("y", np.array([flexural]), look=line_of(4), label="period fixed at its base")]
-    )
+    fixed = []
+    if flexural is not None:
+        fixed = [Rule("y", np.array([flexural]), look=line_of(4), label="period fixed at its base")]
     panels = [
         _over("θ/α", "moment [MN m]" if heavy else "moment/weight [m]", moments, "righting moment"),
         _over("θ/α", "acceleration [g]", accelerations, "steady horizontal ground acceleration that holds the pier"),
@@ -85,7 +83,7 @@ def statics(sheets: Sequence[Sheet]) -> Figure:
 
 
 def _over(across: str, up: str, lines: Sequence[Polyline], caption: str, fixed: Sequence[Rule] = ()) -> Panel:
-    """Return a panel whose axes begin at zero and hold the lines."""
+    """Return a panel of ``lines`` and ``fixed`` rules whose axes begin at 0."""
     right = max((float(line.x.max()) for line in lines if len(line.x)), default=1.0)
     tops = [float(np.nanmax(line.y, initial=0.0)) for line in lines] + [float(rule.at.max()) for rule in fixed]
     axes = Axis(across, 0.0, right or 1.0, about=8), Axis(up, 0.0, 1.06 * max(tops, default=1.0) or 1.0, about=6)
@@ -93,47 +91,62 @@ def _over(across: str, up: str, lines: Sequence[Polyline], caption: str, fixed: 
 
 
 def devices(pier: Pier, restraints: Sequence[Restraint]) -> tuple[tuple[str, Place], ...]:
-    """Return kinds and places of devices."""
-    return tuple(
-        (f"{restraint.kind} damper" if isinstance(restraint, Damper) else restraint.what.replace("_", " "), place)
-        for restraint in restraints
-        for place in places(pier, restraint)
-    )
+    """Return the kind and place of every device, such as ("friction damper", Place(…))."""
+    placed = []
+    for restraint in restraints:
+        kind = f"{restraint.kind} damper" if isinstance(restraint, Damper) else restraint.what.replace("_", " ")
+        placed += [(kind, place) for place in places(pier, restraint)]
+    return tuple(placed)
 
 
-def sketches(all_of_them: Sequence[Mapping[str, Any]], bases: Collection[str]) -> list[Figure]:
-    """Return each pier, at one scale; ``all_of_them`` as in run.json, ``bases`` the kinds of their bases.
+class _Shape(NamedTuple):
+    """Dimensions [m] of a pier that is drawn: heights of its centre of mass, highest point, and deck (0 for none)."""
+
+    name: str
+    alpha: float
+    half_width: float
+    height: float
+    top: float
+    deck: float
+    devices: Sequence[tuple[str, Place]]
+
+    @classmethod
+    def of(cls, pier: Mapping[str, Any]) -> "_Shape":
+        """Return the shape of a pier of run.json; it is as high as a uniform block if it does not say how high."""
+        deck = float(pier.get("deck_m") or 0.0)
+        top = max(float(pier.get("highest_m") or 2.0 * pier["height_m"]), deck)
+        lengths = pier["alpha"], pier["half_width_m"], pier["height_m"]
+        return cls(pier.get("name", ""), *lengths, top, deck, pier.get("devices", ()))
+
+    @property
+    def possible(self) -> bool:
+        """Return True if a pier can have these dimensions."""
+        return (
+            0.0 < self.alpha < 0.5 * math.pi
+            and 0.0 < self.height < 1e6
+            and 0.0 < 2.0 * self.half_width < 100.0 * self.height
+            and 0.0 < self.top < 1e6
+        )
+
+
+def sketches(piers: Sequence[Mapping[str, Any]], bases: Collection[str]) -> list[Figure]:
+    """Return a sketch of each of the first piers, at one scale; ``piers`` as in run.json, ``bases`` the kinds of their bases.
 
     A pier with impossible values is left out, since run.json may come from anybody.
     """
-    shown = [pier for pier in all_of_them if _can_be(pier)][:MOST_PIERS]
-    if not shown:
+    shapes = [shape for shape in map(_Shape.of, piers) if shape.possible][:MOST_PIERS]
+    if not shapes:
         return []
-    scale = HEIGHT / max(map(_top, shown))
-    return [_sketch(pier, scale, any(base != "rigid" for base in bases)) for pier in shown]
+    scale = HEIGHT / max(shape.top for shape in shapes)
+    return [_sketch(shape, scale, any(base != "rigid" for base in bases)) for shape in shapes]
 
 
-def _can_be(pier: Mapping[str, Any]) -> bool:
-    width, height = 2.0 * pier["half_width_m"], pier["height_m"]
-    return (
-        0.0 < pier["alpha"] < 0.5 * math.pi
-        and 0.0 < height < 1e6
-        and 0.0 < width < 100.0 * height
-        and 0.0 < _top(pier) < 1e6
-    )
-
-
-def _top(pier: Mapping[str, Any]) -> float:
-    """Return the height of the highest point [m]; that of a uniform block if it is not given."""
-    return max(float(pier.get("highest_m") or 2.0 * pier["height_m"]), float(pier.get("deck_m") or 0.0))
-
-
-def _sketch(pier: Mapping[str, Any], scale: float, springs: bool) -> Figure:
+def _sketch(pier: _Shape, scale: float, springs: bool) -> Figure:
     """Return a pier in pixels from the middle of its base."""
-    b, h, top = (scale * length for length in (pier["half_width_m"], pier["height_m"], _top(pier)))
+    b, h, top = (scale * length for length in (pier.half_width, pier.height, pier.top))
     side, high = max(b, 30.0), max(top, h) + ABOVE
     arc = 0.45 * math.hypot(b, h)
-    turn = np.linspace(0.0, pier["alpha"], 9)
+    turn = np.linspace(0.0, pier.alpha, 9)
     marks: list[Mark] = [
         Area(np.array([-b, -b, b, b]), np.array([0.0, top, top, 0.0]), look=Look("band")),
         _stroke("rigid", (-b, 0.0), (-b, top), (b, top), (b, 0.0), (-b, 0.0)),
@@ -143,23 +156,22 @@ def _sketch(pier: Mapping[str, Any], scale: float, springs: bool) -> Figure:
         Words(b, arc, "α"),
         Words(-b, 0.5 * h, "R₀", -1),
         Points(np.zeros(1), np.array([h]), look=Look("peak", shape="dot")),
-        *_length((b + 26.0, 0.0), (b + 26.0, h), f"h = {pier['height_m']:.3g} m"),
+        *_length((b + 26.0, 0.0), (b + 26.0, h), f"h = {pier.height:.3g} m"),
         *(mark for x in (-b, b) for mark in _support(x, springs)),
         *_deck(pier, b, scale),
-        *(mark for kind, place in pier.get("devices", ()) for mark in _device(kind, place, scale, top)),
-        *_length((-b, -32.0), (b, -32.0), f"2b = {2.0 * pier['half_width_m']:.3g} m"),
+        *(mark for kind, place in pier.devices for mark in _device(kind, place, scale, top)),
+        *_length((-b, -32.0), (b, -32.0), f"2b = {2.0 * pier.half_width:.3g} m"),
     ]
     support = "two springs" if springs else "rigid ground"
     words = (
-        f"The pier to scale on {support}: {2.0 * pier['half_width_m']:.3g} m between its pivots, centre of mass "
-        f"{pier['height_m']:.3g} m above them, slenderness {pier['alpha']:.3g} rad"
+        f"The pier to scale on {support}: {2.0 * pier.half_width:.3g} m between its pivots, centre of mass "
+        f"{pier.height:.3g} m above them, slenderness {pier.alpha:.3g} rad"
     )
-    if kinds := dict.fromkeys(kind for kind, _ in pier.get("devices", ())):
+    if kinds := dict.fromkeys(kind for kind, _ in pier.devices):
         words += f", with {' and '.join(kinds)}"
     x, y = Axis("", -LEFT - side, side + RIGHT, names={}), Axis("", -BELOW, high, names={})
-    return Figure(
-        [Panel(x, y, marks, pier.get("name", ""), width=x.high - x.low, height=y.high - y.low, framed=False)], words
-    )
+    panel = Panel(x, y, marks, pier.name, width=x.high - x.low, height=y.high - y.low, framed=False)
+    return Figure([panel], words)
 
 
 def _stroke(kind: str, *points: tuple[float, float], title: str = "", colour: int = 0) -> Polyline:
@@ -167,12 +179,12 @@ def _stroke(kind: str, *points: tuple[float, float], title: str = "", colour: in
     return Polyline(x, y, look=Look(kind, colour), title=title)
 
 
-def _deck(pier: Mapping[str, Any], b: float, scale: float) -> Iterator[Mark]:
-    """Yield the deck at its height: a slab of no particular size, since none is given."""
-    if pier.get("deck_m"):
-        y, half = scale * float(pier["deck_m"]), max(b, 24.0) + 6.0
+def _deck(pier: _Shape, b: float, scale: float) -> Iterator[Mark]:
+    """Yield the deck at its height, if the pier has one: a slab not to scale, whose size is not known."""
+    if pier.deck:
+        y, half = scale * pier.deck, max(b, 24.0) + 6.0
         yield _box(0.0, y, half, 3.0, Look("deck"))
-        yield Words(half, y, f"deck, {float(pier['deck_m']):.3g} m")
+        yield Words(half, y, f"deck, {pier.deck:.3g} m")
 
 
 def _box(x: float, y: float, half_width: float, half_height: float, look: Look) -> Area:
@@ -181,9 +193,9 @@ def _box(x: float, y: float, half_width: float, half_height: float, look: Look) 
 
 
 def _device(kind: str, place: Place, scale: float, top: float) -> Iterator[Mark]:
-    """Yield a tendon up to the top, a stop above the base, or a damper between it and the ground, outside the support there.
+    """Yield the marks of a device: a tendon up to the top, a stop above the base, a damper below it outside the support.
 
-    Beside the deck, a wall that the deck meets, or to which it is tied, on the side on which it is.
+    At the deck it is a link to a wall on its side.
     """
     offset = scale * place.offset
     x = offset + math.copysign(ASIDE, offset)

@@ -1,7 +1,7 @@
-"""First loading of a spring that is loaded slowly: force over F_y by deflection over δ_y, and the other way.
+"""Monotonic first loading of a spring: force/F_y from deflection/δ_y, and the inverse.
 
-A curve follows from its tangent stiffness over the elastic one, s(z) at z = F/F_y: its deflection is ∫ dz/s(z). The statics
-sheet, releases and the static state of a run all take it from here.
+A curve is defined by its tangent stiffness over the elastic one, s(z) at z = F/F_y: its deflection is ∫ dz/s(z). The statics
+sheet, releases and the static state of a run all use it.
 """
 
 from collections.abc import Callable
@@ -17,7 +17,7 @@ STEEL_EXPONENT = 5.0
 """Bouc–Wen exponent of hysteretic dampers."""
 
 SLOW = 0.99
-"""zⁿ from which on the series of a Bouc–Wen curve takes too many terms."""
+"""zⁿ above which the series of a Bouc–Wen curve converges too slowly."""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
@@ -30,7 +30,7 @@ class Straight:
     corner = True
 
     def force(self, deflection: Array) -> Array:
-        """Return F/F_y at a ``deflection``/δ_y ≥ 0."""
+        """Return F/F_y at a ``deflection``/δ_y ≥ 0: the smaller of it and ``most``."""
         return np.minimum(deflection, self.most)
 
     def deflection(self, force: float) -> float:
@@ -38,7 +38,7 @@ class Straight:
         return force
 
     def tangent(self, force: Array) -> Array:
-        """Return 1."""
+        """Return ones, in the shape of ``force``: the elastic stiffness."""
         return np.ones_like(force)
 
 
@@ -46,8 +46,8 @@ class Straight:
 class Smooth:
     """A curve whose tangent stiffness falls to 0 at F_y.
 
-    ``softening`` is s as a function of the deficit 1 − z, from which it is exact near F_y; ``give`` the deflection/δ_y of a brace
-    in series with the spring under F_y.
+    ``softening`` is s as a function of the deficit 1 − z, which keeps its digits near F_y; ``give`` is the deflection/δ_y under
+    F_y of a brace in series with the spring.
     """
 
     softening: Callable[[Array], Array]
@@ -56,19 +56,20 @@ class Smooth:
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:
-        """Forces, in ever smaller steps towards z = 1, and deflections there."""
+        """Forces/F_y, in ever smaller steps towards 1, and the spring's deflections/δ_y there, without the brace."""
         deficit = np.unique(np.concatenate((np.geomspace(1.0, 1e-15, 1200), np.linspace(1.0, 0.1, 300))))[::-1]
         steps = self._between(deficit[:-1], deficit[1:])
         return 1.0 - deficit, np.concatenate(([0.0], np.cumsum(steps)))
 
     def _between(self, start: Array, end: Array) -> Array:
-        """Return by how much the spring deflects as its deficit falls from ``start`` to ``end``."""
+        """Return the deflection/δ_y of the spring as its deficit falls from ``start`` to ``end``; 0 if they are equal."""
         half, middle = 0.5 * (start - end), 0.5 * (start + end)
         with np.errstate(divide="ignore", invalid="ignore"):
             compliance = 1.0 / self.softening(middle[..., None] + half[..., None] * _NODES)
         return half * (np.where(half[..., None] > 0.0, compliance, 0.0) @ _WEIGHTS)
 
     def _deflections(self, force: Array) -> Array:
+        """Return the deflections/δ_y, brace included, at ``force``/F_y: the table, and the rest of a step by quadrature."""
         forces, deflections = self._table
         i = np.searchsorted(forces, force, side="right") - 1
         return deflections[i] + self._between(1.0 - forces[i], 1.0 - force) + self.give * force
@@ -78,7 +79,7 @@ class Smooth:
         return float(self._deflections(np.array([force]))[0])
 
     def force(self, deflection: Array) -> Array:
-        """Return F/F_y at a ``deflection``/δ_y ≥ 0: from the table, by two steps of Newton's method."""
+        """Return F/F_y at a ``deflection``/δ_y ≥ 0: interpolated, and improved by two steps of Newton's method."""
         forces, deflections = self._table
         force = np.interp(deflection, deflections + self.give * forces, forces)
         for _ in range(2):
@@ -88,7 +89,7 @@ class Smooth:
         return force
 
     def tangent(self, force: Array) -> Array:
-        """Return the tangent stiffness of the spring without its brace over the elastic one."""
+        """Return tangent over elastic stiffness of the spring at ``force``/F_y, without its brace."""
         return self.softening(1.0 - force)
 
 
@@ -103,7 +104,7 @@ class BoucWen(Smooth):
     exponent: float = 5.0
 
     def deflection(self, force: float) -> float:
-        """Return the deflection/δ_y under a ``force``/F_y < 1: ∫ ds/(1 − sⁿ) from 0, by its series where that converges soon."""
+        """Return the deflection/δ_y under a ``force``/F_y < 1: ∫ ds/(1 − sⁿ) from 0, by its series up to :data:`SLOW`."""
         n = self.exponent
         ratio = force * force * (force * force) * force if n == 5.0 else force**n
         if ratio > SLOW:
@@ -118,7 +119,7 @@ class BoucWen(Smooth):
 
 @cache
 def bouc_wen(exponent: float, give: float = 0.0) -> BoucWen:
-    """Return the curve of a Bouc–Wen spring, with a brace in series that ``give`` says."""
+    """Return the curve of a Bouc–Wen spring, in series with a brace that deflects by ``give`` δ_y under F_y."""
 
     def softening(deficit: Array) -> Array:
         with np.errstate(divide="ignore"):
@@ -128,7 +129,7 @@ def bouc_wen(exponent: float, give: float = 0.0) -> BoucWen:
 
 
 def steel(give: float) -> BoucWen:
-    """Return the curve of a hysteretic damper on a brace that gives by ``give``, the deflection/δ_y under its whole force."""
+    """Return the curve of a hysteretic damper on a brace that deflects by ``give`` δ_y under the damper's yield force."""
     return bouc_wen(STEEL_EXPONENT, give)
 
 
@@ -141,14 +142,14 @@ class Spring:
     curve: Curve
 
     def force(self, depth: Array) -> Array:
-        """Return the force at a ``depth`` [m] of the pivot below its unstressed place, in first loading; 0 above it."""
+        """Return the force over the weight in first loading at a ``depth`` [m] below the unstressed place; 0 above it."""
         elastic = self.stiffness * np.maximum(depth, 0.0)
         if self.curve.corner:
             return np.minimum(elastic, self.strength)
         return self.strength * self.curve.force(elastic / self.strength)
 
     def depth(self, force: float) -> float:
-        """Return the depth [m] under a ``force`` below the strength, in first loading."""
+        """Return the depth [m] under a ``force`` over the weight, below the strength, in first loading."""
         if self.curve.corner:
             return force / self.stiffness
         return self.curve.deflection(force / self.strength) * self.strength / self.stiffness

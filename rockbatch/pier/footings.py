@@ -51,11 +51,8 @@ class SlowFooting(SlowTurn):
         since = [0.0] * len(self.places)
 
         def excess(depth: Array) -> Array:
-            vertical = (
-                pull
-                for place, pull in zip(self.places, self._pulls(theta, depth, since), strict=True)
-                if not place.height
-            )
+            pulls = zip(self.places, self._pulls(theta, depth, since), strict=True)
+            vertical = (pull for place, pull in pulls if not place.height)
             return self.bed(theta, depth)[0] - 1.0 - self._by_v(theta) * sum(vertical, start=np.zeros_like(theta))
 
         room = 4.0 * np.abs(self._rise(theta)) + 4.0 * self.settled

@@ -1,7 +1,7 @@
-"""Period of free rocking over its amplitude, and the damping that stands for impacts (THEORY.md, Statics).
+"""Period of free rocking over its amplitude, and the viscous damping equivalent to its impacts (THEORY.md, Statics).
 
-Both by the energy integral of the pier under weight, springs, tendons and stops: dampers take part in neither.
-Springs are elastic, as yielding ones are between landings; their vertical vibration is left out: the height follows the rotation.
+Both follow from the energy integral under weight, springs, tendons and stops; dampers are left out. Springs are elastic, as
+yielding ones are between landings, and do not vibrate vertically: the height follows the rotation.
 """
 
 import math
@@ -24,7 +24,7 @@ _OUTER, _INNER = (np.polynomial.legendre.leggauss(n) for n in (20, 8))
 
 
 class Swings(NamedTuple):
-    """Free rocking over its amplitude [rad]: period [s], and damping ratio of the same decay as by impacts; NaN for none."""
+    """Free rocking over its amplitude [rad]: period [s] and equivalent damping ratio of impacts; NaN where undefined."""
 
     amplitude: Array
     period: Array
@@ -32,9 +32,9 @@ class Swings(NamedTuple):
 
 
 class FreeRocking:
-    """A pier that rocks freely on a base between rotations of the same size to either side.
+    """A pier that rocks freely on a base between equal rotations to both sides.
 
-    ``even`` is False where tendons or stops on one side make the swings uneven: there is then no amplitude, and no period.
+    ``even`` is False if tendons or stops on one side make the swings uneven: amplitude and period are then undefined.
     """
 
     def __init__(self, pier: Pier, base: Base) -> None:
@@ -48,7 +48,7 @@ class FreeRocking:
         self.turn = slow_turn(pier, springs, holding)
 
     def swings(self, amplitudes: Array) -> Swings:
-        """Return period and damping at ``amplitudes`` > 0 [rad], below the unstable equilibrium."""
+        """Return period and damping at ``amplitudes`` > 0 [rad], below the unstable equilibrium; NaN if the swings are uneven."""
         none = np.full_like(amplitudes, math.nan)
         if not self.even:
             return Swings(amplitudes, none, none)
@@ -60,7 +60,7 @@ class FreeRocking:
 
     @property
     def in_full_contact(self) -> float | None:
-        """Return the period of small rocking on both supports [s], 2π/ω_r (12) without devices; None on rigid ground."""
+        """Return the period of small rocking on both supports [s]; None on rigid ground, or if the swings are uneven."""
         if self.turn.on_pivots or not self.even:
             return None
         theta = 1e-3 * (self.turn.lift_off or self.pier.alpha)
@@ -69,7 +69,7 @@ class FreeRocking:
 
     @cached_property
     def _edges(self) -> list[float]:
-        """Rotations at which the moment changes its slope."""
+        """Rotations [rad] at which the moment's slope jumps, sorted."""
         return sorted((self.turn.lift_off or 0.0, *self._kinks))
 
     @cached_property
@@ -86,25 +86,24 @@ class FreeRocking:
 
     @cached_property
     def _tabulated(self) -> tuple[Array, Array, Array]:
-        """Rotations [rad] up to the unstable equilibrium, moments [m] there, and by what the toe sinks with the rotation [m]."""
+        """Rotations [rad] up to the unstable equilibrium, moments [m], and derivatives of the toe's depth by θ [m]."""
         turn, curve = self.turn, self._curve
-        parts = np.split(
-            np.arange(len(curve.theta)), [int(np.searchsorted(curve.theta, turn.lift_off or 0.0, "right"))]
-        )
-        sinking = [
-            np.gradient(curve.depth[part], curve.theta[part]) if len(part) > 1 else np.zeros(len(part))
-            for part in parts
-        ]
-        return curve.theta, curve.moment, np.concatenate(sinking)
+        lifted = int(np.searchsorted(curve.theta, turn.lift_off or 0.0, "right"))
+        slopes = []
+        for part in (slice(0, lifted), slice(lifted, None)):  # the slope jumps at lift-off
+            depth, theta = curve.depth[part], curve.theta[part]
+            slopes.append(np.gradient(depth, theta) if len(theta) > 1 else np.zeros(len(theta)))
+        return curve.theta, curve.moment, np.concatenate(slopes)
 
     def _moment(self, theta: Array) -> Array:
+        """Return the righting moment over the weight [m]: exact on pivots and on springs without devices, else interpolated."""
         if self.turn.on_pivots or not (self.turn.places or self.turn.spring is None):
             return self.turn.at(theta).moment
         angles, moments, _ = self._tabulated
         return np.interp(theta, angles, moments)
 
     def _inertia(self, theta: Array) -> Array:
-        """Return the inertia that belongs to θ̇ [m²] while the centre of mass goes up and down with the rotation."""
+        """Return the effective inertia per unit mass of θ̇ [m²], with the rise of the centre of mass by the rotation."""
         turn, pier = self.turn, self.pier
         if turn.on_pivots:
             return np.full_like(theta, pier.inertia_about_pivot)
@@ -122,8 +121,10 @@ class FreeRocking:
         return pier.inertia + lever**2 + (rising - turn.h * np.sin(theta)) ** 2
 
     def _work(self, low: Array, high: Array) -> Array:
-        """Return the integral of the righting moment from ``low`` to ``high`` over the weight [m]; in first-order kinematics over
-        the inertia, too, whose equations have no Lagrangian."""
+        """Return the integral of the righting moment over the weight from ``low`` to ``high`` [m].
+
+        In first-order kinematics, whose equations have no Lagrangian, the integrand is divided by the inertia.
+        """
         total = np.zeros_like(low)
         for start, end in pairwise(np.clip(edge, low, high) for edge in (0.0, *self._edges, math.inf)):
             half, nodes = 0.5 * (end - start), _INNER[0]
@@ -151,10 +152,10 @@ class FreeRocking:
         return 4.0 * quarter
 
     def impact_damping(self, amplitudes: Array, restitution: float) -> Array:
-        """Return the viscous damping ratio of the same decay over the cycle that begins at ``amplitudes`` [rad], on rigid ground.
+        """Return the viscous damping ratio of the same decay over a cycle from each of ``amplitudes`` [rad], on rigid ground.
 
-        Each of the two impacts leaves e² of the energy: the amplitude after them has e⁴ of it, and ζ = ln(θ_0/θ_2)/(2π), the
-        logarithmic decrement. Infinite if the pier stops at its first impact, e = 0.
+        Each of the two impacts leaves e² of the energy, so that the next amplitude θ_2 has e⁴ of it; ζ = ln(θ_0/θ_2)/(2π).
+        Infinite if the pier stops at its first impact, e = 0.
         """
         remaining_energy = restitution**4 * self._work(np.zeros_like(amplitudes), amplitudes)
         low, high = np.zeros_like(amplitudes), amplitudes

@@ -1,4 +1,4 @@
-"""Frequencies of a pier in full contact with its springs, and the deflections of these (THEORY.md, eqs. 12 and 20)."""
+"""Frequencies of a pier in full contact with its springs, and static deflections (THEORY.md, eqs. 12 and 20)."""
 
 import math
 from typing import Protocol
@@ -7,7 +7,7 @@ from rockbatch.pier.block import Pier
 
 
 class Ground(Protocol):
-    """A base by its vertical frequency over p, infinite on rigid ground."""
+    """A base with β, its vertical frequency over p; infinite on rigid ground."""
 
     @property
     def beta(self) -> float: ...
@@ -33,12 +33,12 @@ def vertical_frequency(pier: Pier, base: Ground) -> float:
 
 
 def static_deflection(pier: Pier, base: Ground) -> float:
-    """Return δ_s = g/ω_v² [m], of the springs under the weight at rest, while elastic; 0 on a rigid base."""
+    """Return δ_s = g/ω_v² [m], the elastic deflection of the springs under the weight; 0 on a rigid base."""
     return pier.gravity / vertical_frequency(pier, base) ** 2
 
 
 def yield_deflection(pier: Pier, base: Springs) -> float:
-    """Return δ_y = η δ_s [m], at which a spring yields; elastic springs are measured by δ_s, η = 1."""
+    """Return δ_y = η δ_s [m], the yield deflection; δ_s for elastic springs, η = 1."""
     return base.reference_eta * pier.gravity / vertical_frequency(pier, base) ** 2
 
 
@@ -62,7 +62,7 @@ def rocking_frequency(pier: Pier, base: Springs) -> float:
 def fastest(pier: Pier, base: Springs) -> float:
     """Return the greatest rate [rad/s] in full contact: of vertical vibration or rocking, or of decay if overdamped.
 
-    A vibration ω with the damping d, its decay's rate, has ω as its rate as long as d < ω, and d + √(d² − ω²) beyond;
+    A vibration ω with the decay rate d has the rate ω if d ≤ ω, and d + √(d² − ω²) otherwise;
     d is ζ ω_v of the vertical one, and ζ ω_v μ sin²α/(1 + μ cos²α) of rocking (THEORY.md, Damped supports).
     """
     damping = (base.zeta or 0.0) * vertical_frequency(pier, base)

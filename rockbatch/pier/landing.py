@@ -1,4 +1,4 @@
-"""The force of a foot that lands on ground of a given stiffness, by the speed of a landing on rigid ground: an orientation."""
+"""Estimate of the contact force of a landing foot, from the landing speed on rigid ground and a contact stiffness."""
 
 import math
 
@@ -6,10 +6,10 @@ from rockbatch.pier.block import Pier
 
 
 def landing_force(pier: Pier, stiffness_kN_m: float, speed: float) -> float:
-    """Return the greatest force of a foot over the mass of the pier [m/s²] as it lands at ``speed`` [m/s] (THEORY.md, eq. 21a).
+    """Return the peak contact force over the pier's mass [m/s²] of a foot landing at ``speed`` [m/s] (THEORY.md, eq. 21a).
 
-    The foot, with the mass M_s = M/(1 + b²/I) that a force there moves, presses a spring of ``stiffness_kN_m`` that it meets
-    under half of its weight. The mass of the pier is known.
+    The foot, with the effective mass M_s = M/(1 + b²/I), compresses a spring of ``stiffness_kN_m`` while half of its weight
+    acts on it. ``pier.mass_t`` must be given.
     """
     assert pier.mass_t is not None
     share = 1.0 / (1.0 + pier.half_width**2 / (pier.inertia + pier.height**2))

@@ -1,7 +1,7 @@
-"""Laws of yielding supports: what a pier at rest, messages and checks take from each; the core has the other half.
+"""Laws of yielding supports as the pier, messages and checks need them; their kernels are in the core.
 
-A law is a record of :data:`LAWS`, without which its name cannot be written, and a record of the same name in ``LAWS`` of
-``rockbatch/core/springs/laws.py``, which ``rockbatch/simulation/models.py`` asks for when it is imported. No field has a default.
+A law has an entry in :data:`LAWS`, which makes its name known, and one of the same name in ``LAWS`` of
+``rockbatch/core/springs/laws.py``, which ``rockbatch/simulation/models.py`` checks on import. No field has a default.
 """
 
 from collections.abc import Callable
@@ -17,8 +17,8 @@ SpringLaw = Literal["bouc-wen", "epp", "hardening"]
 class Creep:
     """Cyclic settlement (ratcheting) of springs, which settle a little with every cycle below their yield force.
 
-    ``exponent`` says of n by which power of the load they settle; the law ``other`` does not ratchet, so that the settlement lies
-    between both (THEORY.md, Results of a run).
+    ``exponent`` returns the power of the load with which they settle, from n; the law ``other`` does not ratchet, so that the
+    settlement lies between those by both laws (THEORY.md, Results of a run).
     """
 
     exponent: Callable[[float], float]
@@ -29,8 +29,8 @@ class Creep:
 class Law:
     """A law of yielding supports.
 
-    ``meaning`` stands after its name in the reference of studies; ``has_exponent`` says whether n belongs to it;
-    ``first_loading`` is its curve for a value of n; ``creep`` is None unless it ratchets.
+    ``meaning`` follows its name in the reference of studies; ``has_exponent`` is True if it has the exponent n;
+    ``first_loading`` returns its curve for a value of n; ``creep`` is None unless it ratchets.
     """
 
     meaning: str
@@ -59,7 +59,7 @@ LAWS: dict[SpringLaw, Law] = {
         creep=None,
     ),
 }
-"""All laws by the names that users write."""
+"""All laws, by the names that a study gives."""
 
 if missing := set(get_args(SpringLaw)) ^ set(LAWS):
     raise TypeError(f"laws of springs stand in one of SpringLaw and LAWS only: {', '.join(sorted(missing))}")
@@ -72,12 +72,12 @@ RATCHETING = tuple(name for name, law in LAWS.items() if law.creep is not None)
 
 
 def steady(word: str) -> str:
-    """Return the laws that do not ratchet as a study writes them, joined by ``word``: "and" or "or"."""
+    """Return the quoted names of the laws that do not ratchet, joined by commas and ``word``: "and" or "or"."""
     names = [f'"{name}"' for name in LAWS if name not in RATCHETING]
     return f" {word} ".join((", ".join(names[:-1]), names[-1]))
 
 
 def meanings() -> str:
-    """Return all laws as a study writes them, with their meanings."""
+    """Return the quoted names of all laws with their meanings, joined by semicolons."""
     *others, last = (f'"{name}", {law.meaning}' for name, law in LAWS.items())
     return f"{'; '.join(others)}; or {last}"

@@ -1,4 +1,4 @@
-"""Parts of which a pier is made up, their centres on its axis."""
+"""Parts of a pier: masses and uniform lengths with their centres on its axis."""
 
 from typing import NamedTuple
 
@@ -27,37 +27,37 @@ class Part(NamedTuple):
 
     @property
     def upper_end(self) -> float:
-        """Return the height of its upper end above the pivots [m]: that of its centre without a length."""
+        """Return the height of the part's upper end above the pivots [m]; of its centre if it has no length."""
         return self.height_m + 0.5 * (self.length_m or 0.0)
 
     @classmethod
     @checked
     def shaft(cls, width_m: float, height_m: float, mass_t: float) -> "Part":
-        """Return a uniform shaft that stands on the pivots: a rectangle."""
+        """Return a uniform rectangular shaft from the pivots up to ``height_m``."""
         refuse(out_of_bounds(width_m=width_m, height_m=height_m, mass_t=mass_t))
         return cls.rectangle(mass_t, 0.5 * height_m, height_m, width_m)
 
     @classmethod
     @checked
     def rectangle(cls, mass_t: float, height_m: float, length_m: float, width_m: float, apart_m: float = 0.0) -> "Part":
-        """Return a rectangle whose centre is at ``height_m``, ``length_m`` along the axis of the pier; or two legs, of
-        ``mass_t`` together, whose own axes are ``apart_m`` from each other."""
+        """Return a rectangle with its centre at ``height_m`` and ``length_m`` along the pier's axis; with ``apart_m`` two such
+        legs, of ``mass_t`` together, whose axes are ``apart_m`` from each other."""
         return cls(mass_t, height_m, mass_t * (length_m**2 + width_m**2 + 3.0 * apart_m**2) / 12.0, length_m)
 
 
 def in_floats(mass_t: float, height_m: float, inertia_t_m2: float = 0.0, length_m: float | None = None) -> Part:
-    """Return a part of floats.
+    """Return the part with all values converted to float.
 
     Raises
     ------
     TypeError, ValueError, OverflowError
-        For values that are no numbers.
+        If a value is not a number.
     """
     return Part(float(mass_t), float(height_m), float(inertia_t_m2), None if length_m is None else float(length_m))
 
 
 def part_problems(n: int, part: Part) -> list[Problem]:
-    """Return a problem for each value of part ``n`` that cannot be."""
+    """Return a problem for each impossible value of part ``n``; empty if all are possible."""
     wrong = BOUNDS["mass_t"].problems(f"part_{n}_mass_t", part.mass_t)
     for name, value in (("height_m", part.height_m), ("inertia_t_m2", part.inertia_t_m2)):
         if not (value == 0 or LEAST <= value <= MOST):
@@ -66,7 +66,7 @@ def part_problems(n: int, part: Part) -> list[Problem]:
 
 
 def _length_problems(n: int, part: Part) -> list[Problem]:
-    """Return why the length of part ``n`` cannot be; empty if it can, or is not given."""
+    """Return the problem of an impossible length of part ``n``; empty if it is possible, 0 or not given."""
     length = part.length_m
     if length is None or length == 0:
         return []
@@ -88,4 +88,4 @@ def _length_problems(n: int, part: Part) -> list[Problem]:
 _NOT_NEGATIVE = f"must be 0 or a number above it, to {MOST:g}"
 
 _ROUNDING = 1e-6
-"""Share by which lengths and inertias of parts may be beyond what can be: digits that a study does not give."""
+"""Relative excess of lengths and inertias over their bounds that is taken for rounding in the study."""

@@ -1,4 +1,4 @@
-"""Places of devices under a pier and beside its deck, and what follows from them: symmetry and re-centring."""
+"""Places of devices under a pier and beside its deck; symmetry and re-centring."""
 
 import math
 from dataclasses import replace
@@ -8,13 +8,13 @@ from rockbatch.pier.block import Pier
 from rockbatch.pier.restraints import Damper, DeckSpring, Restraint, Tendon
 
 WAYS: dict[str, tuple[float, ...]] = {"both": (-1.0, 1.0), "left": (-1.0,), "right": (1.0,)}
-"""Directions in which a deck meets a spring, by its side."""
+"""Directions in which a deck meets its springs, by their side."""
 
 
 class Place(NamedTuple):
-    """Where a device acts: at an offset from the centre of the base [m], or at a height on the deck [m].
+    """Place of a device: an offset from the centre of the base [m], or the height of the deck [m].
 
-    ``way`` is −1 or 1 of a spring that a deck meets on its left or right, 0 of a device that acts both ways.
+    ``way`` is −1 or 1 for a spring that the deck meets moving left or right, 0 for a device that acts both ways.
     """
 
     offset: float = 0.0
@@ -23,7 +23,7 @@ class Place(NamedTuple):
 
 
 def places(pier: Pier, restraint: Restraint) -> tuple[Place, ...]:
-    """Return the places at which ``restraint`` acts, those on the left before those on the right."""
+    """Return the places of ``restraint``, left before right."""
     if isinstance(restraint, DeckSpring):
         height = pier.deck if restraint.height_m is None else restraint.height_m
         if restraint.linear:
@@ -40,27 +40,27 @@ def places(pier: Pier, restraint: Restraint) -> tuple[Place, ...]:
 
 
 def offsets(pier: Pier, restraint: Restraint) -> tuple[float, ...]:
-    """Return the places at the base at which ``restraint`` acts, from its centre [m]."""
+    """Return the offsets of ``restraint`` from the centre of the base [m]; none for places at the deck."""
     return tuple(place.offset for place in places(pier, restraint) if place.height == 0.0)
 
 
 def prestress_over_weight(pier: Pier, restraints: tuple[Restraint, ...]) -> float:
-    """Return ψ of all tendons together."""
+    """Return Σψ of all tendons, each counted at every place."""
     return sum(tendon.psi * len(offsets(pier, tendon)) for tendon in restraints if isinstance(tendon, Tendon))
 
 
 def holds_a_tilt(restraints: tuple[Restraint, ...]) -> bool:
-    """Return whether a damper among them may hold the pier at a tilt: it keeps a force at rest, as friction does."""
+    """Return True if a friction or hysteretic damper is among them, which keeps a force at rest and may hold a tilt."""
     return any(isinstance(device, Damper) and device.f > 0 for device in restraints)
 
 
 def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
-    """Return whether weight and prestress overcome friction at small rotations, about either corner.
+    """Return True if weight and prestress overcome the dampers' forces at small rotations, about either corner.
 
-    That is 2 f < 1 + ψ with dampers at both. Dampers count alike with and without a yield deflection.
+    With dampers at both corners that is 2 f < 1 + ψ. Friction and hysteretic dampers count alike.
     """
     for corner in (-pier.half_width, pier.half_width):
-        holding, righting = 0.0, pier.size * math.sin(pier.alpha) / pier.half_width  # 1 but of a frame
+        holding, righting = 0.0, pier.size * math.sin(pier.alpha) / pier.half_width  # 1, except for a frame
         for device in restraints:
             arms = sum(place.height or abs(place.offset - corner) for place in places(pier, device)) / pier.half_width
             holding += device.f * arms if isinstance(device, Damper) else 0.0
@@ -71,15 +71,16 @@ def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
 
 
 def symmetric(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
-    """Return whether each device has its like on the other side."""
+    """Return True if the mirror image has the same devices at the same places."""
     placed = [(place, _anywhere(device)) for device in restraints for place in places(pier, device)]
     return all(placed.count((_mirrored(place), device)) == placed.count((place, device)) for place, device in placed)
 
 
 def _anywhere(device: Restraint) -> Restraint:
-    """Return the device without its place."""
+    """Return the device with a neutral place, for comparison."""
     return replace(device, side="both") if isinstance(device, DeckSpring) else replace(device, at=0.0)
 
 
 def _mirrored(place: Place) -> Place:
+    """Return the place in the mirror image."""
     return Place(-place.offset, place.height, -place.way)

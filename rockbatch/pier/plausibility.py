@@ -1,4 +1,4 @@
-"""Devices that are impossible under a pier."""
+"""Checks for devices that are impossible under a pier."""
 
 from rockbatch.common.errors import Contradiction, OutOfRange, Problem
 from rockbatch.pier.block import Pier
@@ -8,24 +8,24 @@ from rockbatch.pier.restraints import DeckSpring, Restraint, Tendon
 
 
 def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Problem]:
-    """Return what is impossible about dampers and tendons of a pier on springs; empty if nothing."""
+    """Return the problem of unsymmetric tendons under a pier on springs; empty if they are symmetric."""
     if symmetric(pier, tuple(device for device in restraints if isinstance(device, Tendon))):
         return []
     text = (
-        "on springs a tendon off the axis needs its like on the other side, or it leans the pier before any earthquake; "
+        "on springs a tendon off the axis needs an equal one on the other side, or the pier leans before any earthquake; "
         "write a second one with the opposite at, or leave at out"
     )
     return [Problem("", None, text, "tendon", kind=Contradiction)]
 
 
 def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Problem]:
-    """Return what is impossible about devices under ``pier``; empty if nothing."""
+    """Return a problem for each device that is impossible under ``pier``; empty if all are possible."""
     wrong = []
     at_deck = any(isinstance(device, DeckSpring) or device.at == "deck" for device in restraints)
     if at_deck and pier.deck_over_columns is not None:
         text = (
-            "devices at the deck of a rocking frame are not solved, those at the feet of its columns are; leave deck_spring "
-            'and dampers with at = "deck" out, or columns'
+            "devices at the deck of a rocking frame are not solved, only those at the feet of its columns; leave out "
+            'deck_spring and dampers with at = "deck", or columns'
         )
         wrong.append(Problem("columns", None, text, kind=Contradiction))
     wrong += [problem for device in restraints for problem in wrong_device(pier, device)]
@@ -33,7 +33,7 @@ def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Prob
 
 
 def wrong_device(pier: Pier, device: Restraint) -> list[Problem]:
-    """Return what is impossible about the place of a device under ``pier``; empty if nothing is."""
+    """Return the problem of a device more than the base's width from the axis; empty otherwise."""
     if isinstance(device, DeckSpring) or not isinstance(device.at, float | int):
         return []
     if abs(device.at) <= 2.0 * pier.half_width:

@@ -1,4 +1,4 @@
-"""Piers on bases that are impossible together, and the least β and η of springs that hold a pier upright."""
+"""Impossible combinations of pier and base, and the least β and η of springs that hold a pier upright."""
 
 import math
 
@@ -14,11 +14,10 @@ from rockbatch.pier.plausibility import wrong_on_springs, wrong_restraints
 
 
 def least_beta(pier: Pier, base: Base) -> float:
-    """Return β below which the pier topples on its springs under its own weight, or at the least push (THEORY.md, eq. 13).
+    """Return β below which the pier topples on its springs under its weight, or at any disturbance (THEORY.md, eq. 13).
 
-    A spring under the weight, z = −1/η, or with tendons −(1 + ψ)/η, is softer where it is loaded than where it is unloaded, by
-    the factor r of its first loading, 1 − |z|ⁿ by Bouc–Wen; both together have 2r/(1 + r) of the elastic springs' stiffness in
-    rotation.
+    A spring at rest at z = −1/η, or −(1 + ψ)/η with tendons, has r = 1 − |z|ⁿ (Bouc–Wen) of its elastic stiffness in further
+    loading, and all of it in unloading; as a pair in rotation the springs have 2r/(1 + r) of the elastic stiffness.
     """
     if not (isinstance(base, YieldingBase) and base.eta > 1 and base.n >= 1):
         return pier.least_beta
@@ -30,19 +29,19 @@ def least_beta(pier: Pier, base: Base) -> float:
 
 
 def least_eta(pier: Pier, base: Base) -> float:
-    """Return η below which the springs cannot carry the weight and the prestress of the tendons."""
+    """Return η below which the springs cannot carry the weight and the tendons' prestress."""
     return LEAST_ETA * (1.0 + prestress_over_weight(pier, base.restraints))
 
 
 def enough_eta(pier: Pier, base: Base) -> float:
-    """Return η above which the springs carry weight and prestress, and with the stiffness that they have hold the pier upright.
+    """Return η above which the springs carry weight and prestress, and hold the pier upright with the given β.
 
-    The inverse of :func:`least_beta` for a β above that of elastic springs; :func:`least_eta` for another.
+    This inverts :func:`least_beta` if β suffices for elastic springs; otherwise it is :func:`least_eta`.
     """
     least = least_eta(pier, base)
     if isinstance(base, YieldingBase) and base.beta > pier.least_beta:
         excess = 2.0 * (base.beta / pier.least_beta) ** 2 - 1.0
-        low, high = 0.0, 1.0  # of z, between which the stiffness falls to 1/excess
+        low, high = 0.0, 1.0  # bracket of z at which the tangent stiffness is 1/excess of the elastic one
         for _ in range(60):
             middle = 0.5 * (low + high)
             stiff = float(base.first_loading.tangent(np.array(middle))) > 1.0 / excess
@@ -52,11 +51,11 @@ def enough_eta(pier: Pier, base: Base) -> float:
 
 
 def problems(pier: Pier, base: Base) -> list[Problem]:
-    """Return what is impossible about ``pier`` on ``base``, with the limit; empty if nothing is."""
+    """Return a problem, with the limit, for each value that is impossible for ``pier`` on ``base``."""
     if base.on_springs and pier.deck_over_columns is not None:
         text = (
-            f"a rocking frame is solved on rigid ground only, and this base is {base.name}. On springs the columns "
-            "sink by themselves, the deck no longer moves level, and no one block stands for them (Makris & Vassiliou 2013); "
+            f"a rocking frame is solved on rigid ground only, and this base is {base.name}. On springs each column "
+            "settles by itself, the deck no longer stays level, and no single block is equivalent (Makris & Vassiliou 2013); "
             'write base = "rigid"; or, if the columns are fixed to their cap beam, leave columns out and write [[pier.part]] '
             "for them and the beam, with width_m between the outer feet"
         )
@@ -114,7 +113,7 @@ def _wrong_bending(pier: Pier, base: Base) -> list[Problem]:
 
 
 def _wrong_contact(pier: Pier, base: RigidBase) -> list[Problem]:
-    """Return why the force of a landing foot cannot be estimated."""
+    """Return a problem for each reason that ``contact_stiffness_kN_m`` cannot be used."""
     key, stiffness = "contact_stiffness_kN_m", base.contact_stiffness_kN_m
     wrong = []
     if pier.mass_t is None:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
-from typing import Any, ClassVar, Literal, Self, get_args
+from typing import Any, ClassVar, Literal, Self, TypedDict, Unpack, get_args
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import OutOfRange, Problem, WrongType
@@ -16,6 +16,7 @@ from rockbatch.pier.devices import (
     SOFTEST,
     Device,
     Doubt,
+    Placing,
     if_finite,
     over_weight,
     wrong_words,
@@ -24,14 +25,14 @@ from rockbatch.pier.sizes import BOUNDS as OF_PIER
 from rockbatch.pier.sizes import HIGHEST, LOWEST
 
 Side = Literal["both", "left", "right"]
-"""To which side a deck moves when it meets a spring."""
+"""Direction in which the deck moves when it meets a spring."""
 
 HEIGHT = OF_PIER["deck_height_m"]
 """Heights at which a spring may act on the deck [m]."""
 
 FIELDS = DAMPERS | {"tendon": ("psi", "lam"), "stop": ("gap_m", "lam", "restitution")}
 FIELDS["deck_spring"] = FIELDS["stop"]
-"""Fields of devices with bounds, but for a tendon's yield force."""
+"""Names of the bounded fields by kind of device; a tendon's yield force is checked apart."""
 
 YIELDING_TENDON = "yielding tendon"
 
@@ -40,6 +41,21 @@ MOST_STRENGTH = 10.0
 
 MOST_LAMBDA = 100.0
 """Greatest λ of a tendon, by which it adds the pier's weight at a hundredth of α; strands have 0.03 to 10."""
+
+
+class OnBase(TypedDict, total=False):
+    """Further keywords of :meth:`Tendon.of`."""
+
+    at: float | str
+    confirm: Sequence[str]
+
+
+class OnDeck(TypedDict, total=False):
+    """Further keywords of :meth:`DeckSpring.of`."""
+
+    side: Side
+    height_m: float | None
+    confirm: Sequence[str]
 
 
 @checked
@@ -80,7 +96,12 @@ class Tendon(Device):
     @classmethod
     @checked
     def of(
-        cls, pier: Pier, prestress_kN: float = 0.0, stiffness_kN_m: float = 0.0, yield_kN: float = math.inf, **rest: Any
+        cls,
+        pier: Pier,
+        prestress_kN: float = 0.0,
+        stiffness_kN_m: float = 0.0,
+        yield_kN: float = math.inf,
+        **rest: Unpack[OnBase],
     ) -> Self:
         """Return a tendon of the prestress P0 [kN], the stiffness k_t [kN/m] and the yield force T_y [kN] under ``pier``.
 
@@ -126,16 +147,16 @@ class Tendon(Device):
 @checked
 @dataclass(frozen=True)
 class Stop(Device):
-    """A stop that limits how far the base may lift: a spring that is met when its place has risen by a gap.
+    """A stop that limits the uplift of the base: a spring that engages when its place has risen by a gap.
 
-    While it is pressed in for the first time it takes F = k δ; on its way back, and pressed in again up to the greatest δ of the
-    blow, it follows a line of the slope k/e². So it gives back e² of what it has taken, and a mass that hits nothing else leaves
-    it at e times its speed. Before the next blow it has its shape back.
+    In first compression F = k δ; unloading, and reloading up to the greatest δ of the blow, follow a line of the slope k/e².
+    So the stop returns e² of the energy, and a mass that hits nothing else rebounds at e times its speed. Before the next blow
+    the stop has recovered its shape.
 
     Attributes
     ----------
     gap_m : float
-        By how much its place rises until it is met [m].
+        Rise of its place at which the stop engages [m].
     lam : float
         λ = k b²/(M g R0), its stiffness.
     restitution : float
@@ -164,7 +185,9 @@ class Stop(Device):
 
     @classmethod
     @checked
-    def of(cls, pier: Pier, gap_mm: float, stiffness_kN_m: float, restitution: float = 1.0, **rest: Any) -> Self:
+    def of(
+        cls, pier: Pier, gap_mm: float, stiffness_kN_m: float, restitution: float = 1.0, **rest: Unpack[Placing]
+    ) -> Self:
         """Return a stop with a gap [mm] and the stiffness k [kN/m] under ``pier``; ``rest``: ``at`` and ``confirm``.
 
         Raises ``InputError`` as :meth:`Damper.friction`.
@@ -191,19 +214,18 @@ class Stop(Device):
 class DeckSpring(Device):
     """A horizontal spring between the deck and a structure that moves with the ground: an abutment, a neighbouring span.
 
-    With a gap, or on one side, the deck meets it as the base does a :class:`Stop`, and it follows the same law. On both sides
-    and without a gap and a loss it is linear.
+    With a gap, on one side only, or with a restitution below 1 it follows the law of a :class:`Stop`; otherwise it is linear.
 
     Attributes
     ----------
     lam : float
         λ = k b²/(M g R0), its stiffness.
     gap_m : float
-        By how much the deck moves until it is met [m].
+        Travel of the deck at which the spring engages [m].
     restitution : float
         e, 0.1 to 1; 1 takes no energy.
     side : "both", "left" or "right"
-        To which side the deck moves when it is met; both: one on each.
+        Direction in which the deck moves when it meets the spring; both: one spring on each side.
     height_m : float or None
         Height above the pivots at which it acts [m]; that of the deck, ``Pier.deck``, by default.
     confirm : sequence of str
@@ -229,7 +251,9 @@ class DeckSpring(Device):
 
     @classmethod
     @checked
-    def of(cls, pier: Pier, stiffness_kN_m: float, gap_mm: float = 0.0, restitution: float = 1.0, **rest: Any) -> Self:
+    def of(
+        cls, pier: Pier, stiffness_kN_m: float, gap_mm: float = 0.0, restitution: float = 1.0, **rest: Unpack[OnDeck]
+    ) -> Self:
         """Return a spring of the stiffness k [kN/m] with a gap [mm] at the deck of ``pier``.
 
         ``rest``: ``side``, ``height_m`` and ``confirm``. Raises ``InputError`` as :meth:`Damper.friction`.
@@ -239,7 +263,7 @@ class DeckSpring(Device):
 
     @property
     def linear(self) -> bool:
-        """Whether it pulls and pushes alike."""
+        """True if the spring acts in tension and compression alike, without gap and loss."""
         return self.side == "both" and self.gap_m == 0.0 and self.restitution == 1.0
 
     def _measured(self) -> Sequence[str]:
@@ -269,12 +293,13 @@ class DeckSpring(Device):
 
 
 def _gap_doubts(device: Stop | DeckSpring) -> Iterator[Doubt]:
+    """Yield the doubt about a gap above 0 and below 0.5 mm."""
     if 0.0 < device.gap_m < 5e-4:
         yield Doubt("gap_m", f"it is met after {1000.0 * device.gap_m:.2g} mm already")
 
 
 def _stiffness_doubts(pier: Pier, device: Stop | DeckSpring, travel: float) -> Iterator[Doubt]:
-    """Yield what is odd about the stiffness of a device that moves by ``travel`` [m] times the rotation."""
+    """Yield doubts about the stiffness of a device that deflects by ``travel`` [m] per radian of rotation."""
     name = "stop" if isinstance(device, Stop) else "spring"
     if device.lam == 0.0:
         yield Doubt("lam", f"with no stiffness the {name} is not there; give one, or leave the {name} out")
@@ -294,8 +319,8 @@ KINDS: dict[str, type[Restraint]] = {kind.what: kind for kind in (Damper, Tendon
 """Devices by the names of their tables in a study."""
 
 
-def what_of(values: Mapping[str, Any]) -> str:
-    """Return the kind of device, one of :data:`KINDS`, that has these fields in run.json."""
+def what_of(values: Mapping[str, object]) -> str:
+    """Return the kind of device, one of :data:`KINDS`, by which fields it has in run.json."""
     if "side" in values:
         return "deck_spring"
     return "damper" if "kind" in values else "stop" if "gap_m" in values else "tendon"
@@ -308,20 +333,18 @@ def kinds_of(values: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def restraint_of(values: Mapping[str, Any]) -> Restraint:
-    """Return the device with these fields, as run.json and histories have them; None is a value that is not given."""
+    """Return the device with the fields of run.json or a history; None stands for the default."""
     kind = KINDS[what_of(values)]
     names = {attribute.name for attribute in fields(kind)}
     return kind(**{name: value for name, value in values.items() if name in names and value is not None})
 
 
-def described_restraints(restraints: tuple[Restraint, ...]) -> dict[str, Any]:
-    """Return devices by the keys of run.json; empty without any."""
-    devices = [
-        {
-            name: None if value == math.inf else value
-            for name, value in asdict(device).items()
-            if value is not None and name != "confirm"
-        }
-        for device in restraints
-    ]
-    return {"restraints": devices} if devices else {}
+def described_restraints(restraints: tuple[Restraint, ...]) -> dict[str, object]:
+    """Return the key ``restraints`` of run.json with the fields of each device; empty without devices."""
+    return {"restraints": [_fields_given(device) for device in restraints]} if restraints else {}
+
+
+def _fields_given(device: Restraint) -> dict[str, object]:
+    """Return the fields of a device that are not None, but for ``confirm``; None for infinite ones, which JSON lacks."""
+    given = {name: value for name, value in asdict(device).items() if value is not None and name != "confirm"}
+    return {name: None if value == math.inf else value for name, value in given.items()}

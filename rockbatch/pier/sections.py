@@ -11,27 +11,27 @@ from rockbatch.pier.block import Pier
 from rockbatch.pier.parts import Part
 
 _ROUNDING = 1e-9
-"""Share of the pier's height within which a mass at one height is at a section: it counts as above it."""
+"""Distance over the pier's height within which a point mass is at a section, and counts as above it."""
 
 _SAME = 1e-6
-"""Share by which parts may differ from the pier that they belong to."""
+"""Relative difference allowed between the pier and the sum of its parts."""
 
 
 class Above(NamedTuple):
     """The part of a pier above a section, per unit mass of the pier."""
 
-    share: float  # of the mass
-    rise: float  # of its centre of mass above the section [m]
+    share: float  # of the pier's mass
+    rise: float  # height of its centre of mass above the section [m]
     inertia: float  # about that centre [m²]
 
 
 def problems(pier: Pier) -> list[Problem]:
-    """Return why forces in sections of ``pier`` cannot be computed; empty if they can."""
+    """Return a problem for each reason that section forces of ``pier`` cannot be computed; empty if they can."""
     return [Problem("sections", None, text) for text in unknown_masses(pier)]
 
 
 def unknown_masses(pier: Pier) -> list[str]:
-    """Return why it is not known how the mass of ``pier`` is spread over its height; empty if it is."""
+    """Return reasons that the distribution of ``pier``'s mass over its height is not known; empty if it is."""
     if pier.deck_over_columns is not None:
         return [
             "how the deck of a frame presses on each of its columns is not known; leave them out, or give a bent "
@@ -44,14 +44,11 @@ def unknown_masses(pier: Pier) -> list[str]:
             f"mu = {pier.mu:g} does not say how the mass is spread over the height; give the pier by [[pier.part]], or "
             "as a solid rectangle, mu = 3"
         ]
-    wrong = [
-        f"part {n}, at {part.height_m:g} m, has no length_m, over which its mass is spread; write length_m = 0 for a "
-        "mass at one height"
-        for n, part in enumerate(pier.parts, 1)
-        if part.length_m is None
-    ]
+    advice = "has no length_m, over which its mass is spread; write length_m = 0 for a mass at one height"
+    lacking = [(n, part) for n, part in enumerate(pier.parts, 1) if part.length_m is None]
+    wrong = [f"part {n}, at {part.height_m:g} m, {advice}" for n, part in lacking]
     if not wrong:
-        whole = _of_parts(pier.parts, 0.0, 0.0)
+        whole = _above_section(pier.parts, 0.0, 0.0)
         alike = zip((whole.rise, whole.inertia), (pier.height, pier.inertia), strict=True)
         if not all(math.isclose(ours, theirs, rel_tol=_SAME) for ours, theirs in alike):
             wrong.append("the parts are those of another pier; make it by Pier.of_parts again")
@@ -59,7 +56,7 @@ def unknown_masses(pier: Pier) -> list[str]:
 
 
 def section_heights(pier: Pier, sections: int | Sequence[float]) -> tuple[float, ...]:
-    """Return the heights [m] of ``sections``: these, or that many from the foot to the top of the pier.
+    """Return the heights [m] of ``sections``, ascending: those given, or that number from foot to top of the pier.
 
     Raises ``InputError`` for heights outside the pier, and for a pier whose sections are not known.
     """
@@ -71,30 +68,30 @@ def section_heights(pier: Pier, sections: int | Sequence[float]) -> tuple[float,
                 f"sections = {sections}: must be 2 or above: the foot and the top of the pier are among them"
             )
         return tuple(np.linspace(0.0, top, sections).tolist())
-    wrong = [
-        f"sections_m = {height:g}: must be within 0 and the top of the pier, {top:g} m"
-        for height in sections
-        if not 0.0 <= height <= top * (1.0 + _ROUNDING)
-    ]
-    if wrong:
-        raise InputError(*wrong)
+    outside = [height for height in sections if not 0.0 <= height <= top * (1.0 + _ROUNDING)]
+    if outside:
+        bounds = f"must be within 0 and the top of the pier, {top:g} m"
+        raise InputError(*(f"sections_m = {height:g}: {bounds}" for height in outside))
     return tuple(sorted({float(height) for height in sections}))
 
 
 def above(pier: Pier, height: float) -> Above:
     """Return the part of ``pier`` above ``height`` [m]; a mass at that height is above."""
-    return _of_parts(parts_of(pier), height, _ROUNDING * pier.highest)
+    return _above_section(parts_of(pier), height, _ROUNDING * pier.highest)
 
 
 def parts_of(pier: Pier) -> Sequence[Part]:
-    """Return the parts of a pier: a solid rectangle if it has none."""
+    """Return the parts of a pier; a solid rectangle of 1 t if it has none."""
     if pier.parts is not None:
         return pier.parts
     return (Part.shaft(2.0 * pier.half_width, 2.0 * pier.height, 1.0),)
 
 
-def _of_parts(parts: Sequence[Part], height: float, rounding: float) -> Above:
-    """Return the part of ``parts`` above ``height`` [m], with a mass that is below it by ``rounding`` [m] or less."""
+def _above_section(parts: Sequence[Part], height: float, rounding: float) -> Above:
+    """Return mass share, rise and inertia of ``parts`` above ``height`` [m]; zeros if nothing is above.
+
+    A point mass at most ``rounding`` [m] below the section counts as above.
+    """
     pieces = [piece for part in parts if (piece := _piece(part, height, rounding)).share > 0.0]
     share = math.fsum(piece.share for piece in pieces)
     if share == 0.0:
@@ -106,9 +103,9 @@ def _of_parts(parts: Sequence[Part], height: float, rounding: float) -> Above:
 
 
 def _piece(part: Part, height: float, rounding: float) -> Above:
-    """Return what of a part is above ``height``: mass [t], rise [m] and inertia [t m²].
+    """Return mass [t], rise [m] and inertia [t m²] of the piece of a part above ``height``.
 
-    What its inertia has beyond that of a rod is spread evenly over its length, as the width of a rectangle is.
+    The inertia in excess of a rod's is spread evenly over the length, as that of a rectangle's width is.
     """
     length, rise = part.length_m or 0.0, part.height_m - height
     if length == 0.0:

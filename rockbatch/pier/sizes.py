@@ -33,7 +33,8 @@ BOUNDS = {
     "deck_over_columns": POSITIVE,
     "initial_rotation_rad": Bounds(-math.pi / 2, math.pi / 2, why=_rotation),
 }
-"""Possible values of a pier, far beyond any that exists: p = 0.001 rad/s is one of 7000 km. Beyond them a run would never end."""
+"""Possible values of a pier, far wider than any that exists: p = 0.001 rad/s is a size of 7000 km. Beyond them a run would never
+end."""
 
 
 _USUAL_HEIGHT = Usual(
@@ -58,23 +59,23 @@ LOWEST, HIGHEST = 0.25, 2.5
 """Bounds of the heights of deck and drift, over the pier's height."""
 
 THINNEST, THICKEST = 0.03, 1000.0
-"""Bounds of the mass of all that rocks over its width squared and twice the height of its centre [t/m³]: hollow towers have some
-0.2, walls with a deck some 30, slender frames more."""
+"""Bounds of the rocking mass over width squared times twice the height of its centre [t/m³]: hollow towers have some 0.2, walls
+with a deck some 30, slender frames more."""
 
 NARROWEST, BROADEST = 0.01, 5.0
 """Bounds of a deck's radius of gyration over its height: a deck 10 m wide has 3 m."""
 
 LIGHTEST, HEAVIEST = 0.005, 100.0
-"""Bounds of the mass of a deck over that of what carries it."""
+"""Bounds of the mass of a deck over the mass that carries it."""
 
 
 def out_of_bounds(**values: float | None) -> list[Problem]:
-    """Return a problem for each of the named values that is given and not within its :data:`BOUNDS`."""
+    """Return a problem for each of the named values that is not None and outside its :data:`BOUNDS`."""
     return [problem for name, value in values.items() for problem in BOUNDS[name].problems(name, value)]
 
 
 def falls(alpha: float, theta: float) -> list[Problem]:
-    """Return that a pier of slenderness ``alpha`` let go at ``theta`` [rad] does not come back; empty if it does."""
+    """Return the problem of a release from ``theta`` [rad] at or beyond ``alpha``, which overturns; empty below it."""
     if abs(theta) < alpha:
         return []
     degrees = f"; if it is in degrees, write {math.radians(theta):.4g}" if abs(theta) > 0.5 else ""
@@ -83,18 +84,18 @@ def falls(alpha: float, theta: float) -> list[Problem]:
 
 
 def odd(name: str, value: float, text: str) -> Problem:
-    """Return the problem of an unusual value that ``confirm`` accepts by its name."""
+    """Return the problem of an unusual value, which ``confirm`` accepts under the same name."""
     return Problem(name, value, text, confirm=name, kind=Unusual)
 
 
 def unusual(usual: Mapping[str, Usual], confirm: Collection[str], **values: float | None) -> list[Problem]:
-    """Return what is odd about the named values that are given, not ``usual`` and not in ``confirm``."""
+    """Return a problem for each of the named values that is not None, outside ``usual`` and not in ``confirm``."""
     given = {name: value for name, value in values.items() if value is not None and name not in confirm}
     return [problem for name, value in given.items() for problem in usual[name].doubts(name, value)]
 
 
 def unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], **heights: float | None) -> list[Problem]:
-    """Return what is odd about a pier's width and height [m] and its other ``heights``, except those in ``confirm``."""
+    """Return a problem for a pier wider than high, and for implausible ``heights`` [m]; none of those in ``confirm``."""
     wrong = []
     if width_m > height_m and "width_m" not in confirm:
         text = (
@@ -106,16 +107,17 @@ def unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], **
 
 
 def unlikely_heights(height_m: float, confirm: Collection[str], **heights: float | None) -> list[Problem]:
-    """Return what is odd about ``heights`` over that of a pier [m], except those in ``confirm``."""
-    return [
-        odd(name, value, f"{value / height_m:.2g} times the height of the pier, {height_m:g} m")
-        for name, value in heights.items()
-        if value is not None and not LOWEST * height_m <= value <= HIGHEST * height_m and name not in confirm
-    ]
+    """Return a problem for each of ``heights`` [m] implausible for a pier of ``height_m``; none of those in ``confirm``."""
+    wrong = []
+    for name, value in heights.items():
+        if value is None or LOWEST * height_m <= value <= HIGHEST * height_m or name in confirm:
+            continue
+        wrong.append(odd(name, value, f"{value / height_m:.2g} times the height of the pier, {height_m:g} m"))
+    return wrong
 
 
 def unlikely_deck(mass_t: float, deck_mass_t: float, confirm: Collection[str]) -> list[Problem]:
-    """Return what is odd about the mass of a deck over that of what carries it [t]; empty if it is in ``confirm``."""
+    """Return the problem of a deck implausibly light or heavy for the ``mass_t`` below it; empty if in ``confirm``."""
     ratio = deck_mass_t / mass_t
     if LIGHTEST <= ratio <= HEAVIEST or "deck_mass_t" in confirm:
         return []
@@ -125,7 +127,7 @@ def unlikely_deck(mass_t: float, deck_mass_t: float, confirm: Collection[str]) -
 def unlikely_inertia(
     deck_mass_t: float, inertia_t_m2: float, height_m: float, confirm: Collection[str]
 ) -> list[Problem]:
-    """Return what is odd about the rotary inertia of a deck at this height; empty if it is 0 or in ``confirm``."""
+    """Return the problem of an implausible radius of gyration of a deck at ``height_m``; empty if 0 or in ``confirm``."""
     radius = math.sqrt(max(inertia_t_m2, 0.0) / deck_mass_t)
     if inertia_t_m2 == 0 or NARROWEST * height_m <= radius <= BROADEST * height_m or "deck_inertia_t_m2" in confirm:
         return []

@@ -1,4 +1,4 @@
-"""The statics sheet of a pier on a base: what it bears and how it swings, before any earthquake (THEORY.md, Statics)."""
+"""The statics sheet of a pier on a base: static strength and rocking periods (THEORY.md, Statics)."""
 
 import math
 from dataclasses import dataclass
@@ -31,11 +31,11 @@ COMPARED = 0.1
 """Amplitude over α at which the flexural period is compared with that of rocking."""
 
 MOST_FLEXURE = 1.0 / 3.0
-"""Flexural over rocking period above which a pier is not rigid: its bending has then a ninth of the displacement, or more."""
+"""Flexural over rocking period above which a pier is not rigid: bending is then a ninth of the displacement or more."""
 
 
 class Fact(NamedTuple):
-    """A number of the sheet: its name, which ends in its unit, its heading, its format, and its meaning."""
+    """A number of the sheet: its name, which ends in its unit, its heading, its format and its meaning."""
 
     name: str
     heading: str
@@ -43,7 +43,7 @@ class Fact(NamedTuple):
     meaning: str
 
     def written(self, value: float | None) -> str:
-        """Return a value as the sheet shows it; empty for none."""
+        """Return a value as the sheet shows it; "" for None."""
         return "" if value is None else format(value, self.form)
 
 
@@ -51,22 +51,27 @@ FACTS = (
     Fact("weight_kN", "weight [kN]", ",.0f", "of all that rocks"),
     Fact("settlement_m", "settlement at rest [m]", ".3g", "of both supports, under weight and prestress"),
     Fact("stress_at_rest_MPa", "bearing stress at rest [MPa]", ".3g", "under each support, with the prestress"),
-    Fact("stress_on_one_MPa", "bearing stress on one support [MPa]", ".3g", "when the other lifts off; impacts come on top"),
-    Fact("lift_off_g", "lift-off [g]", ".4f", "steady horizontal ground acceleration that lifts the first pivot"),
+    Fact(
+        "stress_on_one_MPa",
+        "bearing stress on one support [MPa]",
+        ".3g",
+        "when the other lifts off; impacts come on top",
+    ),
+    Fact("lift_off_g", "lift-off [g]", ".4f", "steady ground acceleration that lifts the first pivot"),
     Fact("lift_off_over_alpha", "lift-off, θ/α", ".3g", "rotation at which it lifts off"),
-    Fact("strength_g", "static strength [g]", ".4f", "greatest steady horizontal ground acceleration that the pier withstands"),
+    Fact("strength_g", "static strength [g]", ".4f", "greatest steady ground acceleration without overturning"),
     Fact("strength_over_alpha", "static strength, θ/α", ".3g", "rotation at which it is reached"),
-    Fact("moment_over_weight_m", "greatest moment over weight [m]", ".4g", "righting moment about the pivot that bears more"),
+    Fact("moment_over_weight_m", "greatest moment over weight [m]", ".4g", "about the more heavily loaded pivot"),
     Fact("moment_kN_m", "greatest moment [kN m]", ",.0f", "the same with the weight"),
-    Fact("dampers_over_rest", "dampers over the rest at 0.1 α", ".2f", "their moment over all others; below 1 the pier returns"),
-    Fact("unstable_over_alpha", "unstable equilibrium, θ/α", ".4g", "of weight, supports, tendons and stops, without dampers"),
+    Fact("dampers_over_rest", "dampers over the rest at 0.1 α", ".2f", "of moments; below 1 the pier returns"),
+    Fact("unstable_over_alpha", "unstable equilibrium, θ/α", ".4g", "without dampers"),
     Fact("vertical_period_s", "vertical period [s]", ".3g", "of both supports, elastic"),
     Fact("full_contact_period_s", "rocking period on both supports [s]", ".3g", "before lift-off, elastic"),
     Fact("period_s", "rocking period at 0.1 α [s]", ".3g", "of free rocking with that amplitude; it grows with it"),
     Fact("restitution", "restitution e", ".4f", "factor on the angular velocity at an impact on rigid ground"),
-    Fact("impact_damping", "damping by impacts at 0.1 α", ".2%", "viscous damping ratio of the same decay; on rigid ground only"),
-    Fact("flexural_over_rocking", "flexural over rocking period", ".2f", "of the pier fixed at its base over that at 0.1 α"),
-)  # fmt: skip
+    Fact("impact_damping", "damping by impacts at 0.1 α", ".2%", "equivalent viscous ratio; rigid ground only"),
+    Fact("flexural_over_rocking", "flexural over rocking period", ".2f", "fixed at its base, over that at 0.1 α"),
+)
 """Numbers of the sheet, in the order in which it is read."""
 
 
@@ -80,9 +85,9 @@ class Statics(Shown):
     Attributes
     ----------
     pier, base
-        What was asked for.
+        The arguments of :func:`statics`.
     towards : "right", "left" or "either"
-        Where the pier turns.
+        Direction in which the pier turns; "either" if both are alike.
     lift_off_g, lift_off_rad : float or None
         Acceleration [g] and rotation [rad] at which the first pivot lifts off; None if the other support yields before.
     strength_g, strength_rad : float or None
@@ -148,23 +153,21 @@ class Statics(Shown):
 
     @property
     def dampers_over_rest(self) -> float | None:
-        """Return the moment of dampers over that of all else at θ/α = 0.1; None without dampers that bear any."""
-        curve = self.equilibria
-        moment, of_dampers = (
-            float(np.interp(COMPARED * self.pier.alpha, curve.theta, values))
-            for values in (curve.moment, curve.dampers)
-        )
+        """Return the moment of dampers over all others at θ/α = 0.1; None without a damper force, or if dampers have it all."""
+        curve, theta = self.equilibria, COMPARED * self.pier.alpha
+        moment = float(np.interp(theta, curve.theta, curve.moment))
+        of_dampers = float(np.interp(theta, curve.theta, curve.dampers))
         return of_dampers / (moment - of_dampers) if 0.0 < of_dampers < moment else None
 
     @property
     def flexural_over_rocking(self) -> float | None:
-        """Return the flexural period over that of rocking at θ/α = 0.1; None if one is not known."""
+        """Return the flexural period over that of rocking at θ/α = 0.1; None if either is not known."""
         period = self._at_amplitude(self.swings_at.period)
         return None if period is None or self.pier.flexural_period_s is None else self.pier.flexural_period_s / period
 
     @property
     def row(self) -> dict[str, float | None]:
-        """Return the numbers of the sheet by the names of :data:`FACTS`, all over α, the weight or in the unit of the name."""
+        """Return the numbers of the sheet by the names of :data:`FACTS`; None where one does not apply."""
         alpha, weight = self.pier.alpha, self.weight_kN
         mine: dict[str, float | None] = {fact.name: getattr(self, fact.name, None) for fact in FACTS}
         for name in ("lift_off", "strength", "unstable"):
@@ -208,26 +211,24 @@ class Statics(Shown):
     def swings(self) -> "pd.DataFrame":
         """Return free rocking over its amplitude as a table.
 
-        ``amplitude_rad``, ``amplitude_over_alpha``; ``period_s`` of a swing to both sides that loses nothing, NaN where tendons
-        on one side make it uneven; ``impact_damping``, the viscous damping ratio of the same decay as by impacts, NaN where it
-        has no closed form: on springs, on which landings lose what ε, ζ and vertical vibration take.
+        ``amplitude_rad``, ``amplitude_over_alpha``; ``period_s``, undamped, NaN if tendons on one side make the swings uneven;
+        ``impact_damping``, the viscous damping ratio of the same decay as by impacts, NaN on springs, where it has no closed
+        form: landings lose energy by ε, ζ and vertical vibration.
         """
         swings = self.swings_at
-        return pd.DataFrame({
-            "amplitude_rad": swings.amplitude, "amplitude_over_alpha": swings.amplitude / self.pier.alpha,
-            "period_s": swings.period, "impact_damping": swings.impact_damping,
-        })  # fmt: skip
+        columns = {"amplitude_rad": swings.amplitude, "amplitude_over_alpha": swings.amplitude / self.pier.alpha}
+        return pd.DataFrame(columns | {"period_s": swings.period, "impact_damping": swings.impact_damping})
 
     def plot(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
-        """Return the moment and the steady acceleration over the rotation, and the periods, as a matplotlib figure,
-        ``width_mm`` wide or in the place of ``ax``."""
+        """Return a matplotlib figure of moment and steady acceleration over the rotation, and of the periods, ``width_mm`` wide
+        or in the place of ``ax``."""
         from rockbatch.common.figures.paper import drawn
         from rockbatch.pier.figures import Sheet, statics
 
         return drawn(statics([Sheet("", self.pier, self.equilibria, self.swings_at)]), width_mm, ax)
 
     def _at_amplitude(self, values: Array) -> float | None:
-        """Return the value at :data:`COMPARED`; None if there is none."""
+        """Return the value at the amplitude :data:`COMPARED`; None if it is NaN, or the pier overturns before."""
         place = AMPLITUDES.index(COMPARED)
         return float(values[place]) if len(values) > place and not math.isnan(values[place]) else None
 
@@ -237,10 +238,10 @@ class Statics(Shown):
 
 
 def in_words(sheet: Statics) -> dict[str, str]:
-    """Return the sheet in a few lines by their names; empty ones do not apply."""
+    """Return the sheet as lines of text by their names; "" for those that do not apply."""
     alpha, weight, swings = sheet.pier.alpha, sheet.weight_kN, sheet.swings_at
 
-    def held(value: float | None, rotation: float | None, otherwise: str) -> str:
+    def acceleration(value: float | None, rotation: float | None, otherwise: str) -> str:
         if value is None or rotation is None:
             return otherwise
         return f"{value:.4g} g, at θ/α = {rotation / alpha:.3g}"
@@ -265,8 +266,10 @@ def in_words(sheet: Statics) -> dict[str, str]:
     balance = "none: tendons or stops hold the pier at any rotation"
     return {
         "at rest": ", ".join(filter(None, at_rest)),
-        "lift-off": held(sheet.lift_off_g, sheet.lift_off_rad, "never: the support that bears more yields before"),
-        "strength": held(
+        "lift-off": acceleration(
+            sheet.lift_off_g, sheet.lift_off_rad, "never: the support that bears more yields before"
+        ),
+        "strength": acceleration(
             sheet.strength_g, sheet.strength_rad, "rises with the rotation, as tendons or stops hold the pier"
         ),
         "moment": moment,
@@ -279,12 +282,12 @@ def in_words(sheet: Statics) -> dict[str, str]:
 
 
 def is_too_soft(sheet: Statics) -> bool:
-    """Return whether bending matters for a pier that is taken as rigid, by its flexural period."""
+    """Return True if the flexural period is too long for a pier whose shaft is taken as rigid; False if unknown."""
     return (sheet.flexural_over_rocking or 0.0) > MOST_FLEXURE and not sheet.base.bends
 
 
 def flexure(sheet: Statics) -> str:
-    """Return a sentence on the flexural period, which says whether the pier is rigid; empty if it is not known."""
+    """Return a sentence that compares the flexural period with that of rocking; "" if it is not known."""
     ratio = sheet.flexural_over_rocking
     if ratio is None:
         return ""
@@ -331,7 +334,7 @@ def statics(pier: Pier, foundation: Base) -> Statics:
 
 
 def sheet_of(pier: Pier, foundation: Base) -> Statics:
-    """Return the statics sheet of a pier that can stand on its foundation; see :func:`statics`, which checks that."""
+    """Return the statics sheet as :func:`statics` does, without its check that the pier can stand on the foundation."""
     even = symmetric(pier, foundation.restraints)
     sides = [_Side.of(pier, foundation, side) for side in ((1.0,) if even else (1.0, -1.0))]
     weaker, first = min(sides, key=lambda side: side.strength[0]), min(sides, key=lambda side: side.lift_off[0])
@@ -345,24 +348,32 @@ def sheet_of(pier: Pier, foundation: Base) -> Statics:
     free = FreeRocking(pier, foundation)
     shown = np.array([*amplitudes, *(side.lift_off[1] for side in sides)])
     return Statics(
-        pier, foundation, "either" if even else "right" if weaker is sides[0] else "left",
-        lift_off_g=_finite(first.lift_off[0]), lift_off_rad=_finite(first.lift_off[1]),
-        strength_g=_finite(weaker.strength[0]), strength_rad=_finite(weaker.strength[1]),
+        pier,
+        foundation,
+        "either" if even else "right" if weaker is sides[0] else "left",
+        lift_off_g=_finite(first.lift_off[0]),
+        lift_off_rad=_finite(first.lift_off[1]),
+        strength_g=_finite(weaker.strength[0]),
+        strength_rad=_finite(weaker.strength[1]),
         moment_over_weight_m=_finite(weaker.moment),
-        unstable_rad=_finite(balance), settlement_m=None if springs is None else weaker.turn.settled,
+        unstable_rad=_finite(balance),
+        settlement_m=None if springs is None else weaker.turn.settled,
         vertical_period_s=None if springs is None else 2.0 * math.pi / vertical_frequency(pier, springs),
         full_contact_period_s=free.in_full_contact,
-        stress_at_rest_MPa=_finite(stress * weaker.turn.at_rest), stress_on_one_MPa=_finite(stress * weaker.borne_alone),
-        equilibria=weaker.turn.with_rotations(weaker.curve, shown), swings_at=free.swings(amplitudes),
-    )  # fmt: skip
+        stress_at_rest_MPa=_finite(stress * weaker.turn.at_rest),
+        stress_on_one_MPa=_finite(stress * weaker.borne_alone),
+        equilibria=weaker.turn.with_rotations(weaker.curve, shown),
+        swings_at=free.swings(amplitudes),
+    )
 
 
 def _finite(value: float) -> float | None:
+    """Return ``value``; None if it is infinite or NaN."""
     return value if math.isfinite(value) else None
 
 
 class _Side(NamedTuple):
-    """A pier that is turned to one side. Infinite is what never happens."""
+    """A pier turned slowly to one side; rotations and strengths that are never reached are inf."""
 
     turn: SlowTurn
     curve: Equilibria
@@ -370,7 +381,7 @@ class _Side(NamedTuple):
     lift_off: tuple[float, float]  # acceleration [g] and rotation [rad]
     strength: tuple[float, float]
     moment: float
-    borne_alone: float  # by the toe at lift-off, or the most that it bears
+    borne_alone: float  # force of the toe over the weight at lift-off; the greatest along the curve without lift-off
 
     @classmethod
     def of(cls, pier: Pier, base: Base, side: float) -> "_Side":
@@ -385,7 +396,7 @@ class _Side(NamedTuple):
             lift_off, alone = (float(at_lift_off.acceleration[0]), turn.lift_off), float(at_lift_off.toe[0])
         strength, moment = (turn.strongest(quantity, curve, kinks) for quantity in ("acceleration", "moment"))
         curve = turn.with_rotations(curve, np.array([strength[1], moment[1]]))
-        if unstable is None:  # what still rises at the end of the curve has no greatest value
-            ends = (math.inf, math.inf)
-            strength, moment = (ends if best[1] == curve.theta[-1] else best for best in (strength, moment))
+        if unstable is None:  # a quantity that still rises at the end of the curve has no greatest value
+            unbounded = (math.inf, math.inf)
+            strength, moment = (unbounded if best[1] == curve.theta[-1] else best for best in (strength, moment))
         return cls(turn, curve, math.inf if unstable is None else unstable, lift_off, strength, moment[0], alone)

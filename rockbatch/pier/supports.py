@@ -1,4 +1,4 @@
-"""Supports of a pier of known mass: their ratios from kN and kN/m, and which are usual."""
+"""Supports of a pier of known mass: β and η from kN/m and kN, and their usual values."""
 
 import math
 from collections.abc import Callable, Collection
@@ -9,7 +9,7 @@ from rockbatch.common.units import POSITIVE
 from rockbatch.pier.block import Pier
 
 MOST_ETA = 100.0
-"""η beyond which a wrong unit is likelier than the support: foundations bear 2 to 20 times what they carry."""
+"""η above which a wrong unit is likelier than the support: foundations bear 2 to 20 times their static load."""
 
 LIGHTEST, HEAVIEST = 5.0, 1e5
 """Bounds of the stress under a support at rest [kPa]: footings have 100 to 1000, steel bearings some 30 000."""
@@ -30,6 +30,7 @@ def eta_of(pier: Pier, yield_kN: float) -> float:
 
 
 def _mass(pier: Pier, **value: float) -> float:
+    """Return the mass [t] of ``pier``; raise ``InputError`` without one, or if the named value is not positive."""
     wrong = [problem for name, number in value.items() for problem in POSITIVE.problems(name, number)]
     if pier.mass_t is None:
         wrong.append(NO_MASS)
@@ -44,7 +45,7 @@ NO_MASS = Problem(
 
 
 class Support(NamedTuple):
-    """What a value of a support comes to under a pier of known mass, its usual bounds, and words for it beyond them."""
+    """A measure of a support under a pier of known mass, its usual bounds, and the text of the problem outside them."""
 
     comes_to: Callable[[Pier, float], float]
     least: float
@@ -52,11 +53,11 @@ class Support(NamedTuple):
     words: str
 
     def holds(self, pier: Pier, value: float) -> bool:
-        """Return whether a value is usual under a pier."""
+        """Return True if the measure of ``value`` is within the usual bounds under ``pier``."""
         return self.least <= self.comes_to(pier, value) <= self.most
 
     def doubts(self, pier: Pier, name: str, value: float) -> list[Problem]:
-        """Return the problem of a value of the key ``name`` that is unusual, and has to be confirmed."""
+        """Return the problem of an unusual value of the key ``name``; empty if it is usual."""
         if self.holds(pier, value):
             return []
         return [Problem(name, value, self.words.format(self.comes_to(pier, value)), confirm=name, kind=Unusual)]
@@ -90,10 +91,10 @@ SUPPORTS = {
         "the pier's weight presses {:.2g} kPa on it, where footings have 100 to 1000 kPa",
     ),
 }
-"""Usual supports of a pier of known mass, in a study and in Python alike: a wrong unit explains others better than the ground."""
+"""Usual supports of a pier of known mass, in a study and in Python alike; other values suggest a wrong unit."""
 
 
 def unlikely_supports(pier: Pier, confirm: Collection[str], **values: float | None) -> list[Problem]:
-    """Return what is odd about :data:`SUPPORTS` under a pier of known mass that are given and not confirmed."""
+    """Return a problem for each unusual value of :data:`SUPPORTS` that is not None and not in ``confirm``."""
     given = {name: value for name, value in values.items() if value is not None and name not in confirm}
     return [problem for name, value in given.items() for problem in SUPPORTS[name].doubts(pier, name, value)]

@@ -1,4 +1,4 @@
-"""Rows of peaks.csv as arrays, for what asks a few of them for a few columns, a thousand times over."""
+"""Rows of peaks.csv as arrays, converted once, for fast access to a few rows and columns."""
 
 import copy
 from typing import TYPE_CHECKING, Any
@@ -14,19 +14,19 @@ if TYPE_CHECKING:
 Texts = npt.NDArray[np.object_]
 
 MISSING = -1
-"""Place of a row that a table lacks."""
+"""Place of a missing row."""
 
 
 def texts_in(column: "pd.Series[Any]") -> "pd.Series[Any]":
-    """Return a column as texts, "" where there is none, however pandas keeps it."""
+    """Return a column as texts, "" for empty cells, whatever its dtype."""
     cells = column.astype(object)
     return cells.where(cells.notna(), "").map(str)
 
 
 class Rows:
-    """Rows of a table, n of them: columns of numbers, NaN where there is none, and of texts, "" there; shape (n,).
+    """Rows of a table, at its n ``places``; their columns have shape (n,), with NaN or "" in missing rows and empty cells.
 
-    ``places`` are theirs in the table, each of whose columns is converted once, for all that :meth:`at` takes from it.
+    Each column of the table is converted once, for all rows that :meth:`at` takes from it.
     """
 
     def __init__(self, table: "pd.DataFrame") -> None:
@@ -37,20 +37,20 @@ class Rows:
         self._texts: dict[str, Texts] = {}
 
     def at(self, places: npt.NDArray[np.intp], **own: Texts) -> "Rows":
-        """Return those at ``places`` of the table, :data:`MISSING` for one that it lacks.
+        """Return the rows at ``places`` of the table, :data:`MISSING` for a missing one.
 
-        Columns of their ``own`` stand in place of the table's, shape (n,).
+        Columns in ``own``, shape (n,), replace those of the table.
         """
         taken = copy.copy(self)
         taken.places, taken._own = places, own
         return taken
 
     def where(self, chosen: npt.NDArray[np.bool_]) -> "Rows":
-        """Return those that are ``chosen``, shape (n,)."""
+        """Return the rows for which ``chosen``, shape (n,), is True."""
         return self.at(self.places[chosen], **{name: texts[chosen] for name, texts in self._own.items()})
 
     def beside(self, wider: "Rows") -> "Rows":
-        """Return the same rows of a table that has further columns, all of whose rows are in ``wider``."""
+        """Return the same rows of ``wider``, all rows of a table with further columns."""
         return wider.at(self.places, **self._own)
 
     def __len__(self) -> int:
@@ -60,29 +60,31 @@ class Rows:
         return column in self._table
 
     def numbers(self, column: str) -> Values:
-        """Return a column of numbers; NaN for one that an earlier version did not write."""
+        """Return a column of numbers; NaN if the table lacks it, as one of an earlier version."""
         if column not in self._table:
             return np.full(len(self), np.nan)
         if column not in self._numbers:
             whole = self._table[column].to_numpy(dtype=np.float64, na_value=np.nan)
-            self._numbers[column] = np.append(whole, np.nan)  # which MISSING takes
+            self._numbers[column] = np.append(whole, np.nan)  # at MISSING, the last place
         return self._numbers[column][self.places]
 
     @property
     def missing(self) -> npt.NDArray[np.bool_]:
-        """True for each row that the table lacks, shape (n,)."""
+        """True for each missing row, shape (n,)."""
         return self.places == MISSING
 
     def facts(self, column: str) -> npt.NDArray[np.bool_]:
-        """Return True where a column of facts is 1, shape (n,); False where it is empty, too."""
+        """Return True where a column of facts is 1, shape (n,); False where it is 0 or empty."""
         return self.numbers(column) == 1.0
 
     def texts(self, column: str) -> Texts:
-        """Return a column of texts; "" for one that an earlier version did not write."""
+        """Return a column of texts; "" if the table lacks it, as one of an earlier version."""
         if column in self._own:
             return self._own[column]
         if column not in self._table:
             return np.full(len(self), "", dtype=object)
         if column not in self._texts:
-            self._texts[column] = np.array([*texts_in(self._table[column]), ""], dtype=object)  # which MISSING takes
+            self._texts[column] = np.array(
+                [*texts_in(self._table[column]), ""], dtype=object
+            )  # at MISSING, the last place
         return self._texts[column][self.places]

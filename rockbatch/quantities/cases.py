@@ -1,4 +1,4 @@
-"""A case as run.json has it, and what demands take from it: lengths, weight, devices, parameters."""
+"""A case of run.json, and the values of it that demands take: lengths, weight, devices, parameters."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
@@ -16,7 +16,7 @@ Lever = Callable[[Case], float]
 
 
 def of_pier(case: Case) -> tuple[object, ...]:
-    """Return the key that a case shares with that of the other axis of its pier: the name of the one along it, its columns."""
+    """Return a key that the cases of both axes of a pier share: the name of that along the axis, and the columns."""
     return case.get("across_of") or case["case"], *case["columns"].items()
 
 
@@ -44,7 +44,7 @@ def width(case: Case) -> float:
 
 
 def top(case: Case) -> float:
-    """Return the height at which drift is read [m]: twice that of the centre of mass where run.json does not say it."""
+    """Return the height at which drift is read [m], by default twice that of the centre of mass."""
     pier = case["pier"]
     return float(pier.get("top_m", 2.0 * pier["height_m"]))
 
@@ -60,28 +60,28 @@ def per_gravity(case: Case) -> float:
 
 
 def creeps(case: Case) -> bool:
-    """Return True if the springs of a case settle cyclically, so that another law gives its settlement a range."""
+    """Return whether the springs of a case settle further in each cycle, so that two laws give a range of settlement."""
     return case["parameters"].get("spring") in RATCHETING
 
 
 def asks_tension(case: Case) -> bool:
-    """Return True if the impacts of a case ask a support for a pull."""
+    """Return whether the impacts of a case need a support to pull."""
     return case["parameters"].get("impact") in ASKING_TENSION
 
 
 def has_device(case: Case, device: str) -> bool:
-    """Return True if the pier has a device of this kind."""
+    """Return whether the pier has a device of this kind."""
     return any(device in kinds_of(restraint) for restraint in devices(case))
 
 
 def holds_a_tilt(case: Case) -> bool:
-    """Return True if a damper keeps a force at rest, as friction does."""
+    """Return whether a damper keeps a force at rest, as friction and hysteretic ones do, and so may hold a tilt."""
     holding = ("friction", "hysteretic")
     return any(damper.get("kind") in holding and damper.get("f") != 0.0 for damper in devices(case))
 
 
 def devices(case: Case) -> Iterable[Mapping[str, Any]]:
-    """Return the devices of a case, as its file has them."""
+    """Return the devices of a case, as run.json has them; none without parameters."""
     return case["parameters"].get("restraints", ()) if "parameters" in case else ()
 
 
@@ -98,18 +98,18 @@ def has_light_shaft(case: Case) -> bool:
     """Return whether the shaft of a case is known to be light beside what it carries."""
     pier = case["pier"]
     share = pier.get("shaft_share")
-    if share is None:  # without parts
+    if share is None:  # a pier without parts: its shape gives it
         share = share_of_shaft(pier["alpha"], pier["mu"], pier.get("deck_over_columns"))
     return float(share) < LIGHT_SHAFT
 
 
 def lands_by_impulse(case: Case) -> bool:
-    """Return whether a landing is an impulse, of which no force comes, since the ground does not give."""
+    """Return whether each landing is an impulse, without a force, as on rigid ground."""
     return case["base"] in IMPULSIVE
 
 
 def stops_by_impulse(case: Case) -> bool:
-    """Return whether an impulse takes a part of every landing on springs, by ε."""
+    """Return whether ε < 1, so that an impulse stops a part of every landing on springs."""
     return float(case["parameters"].get("epsilon", 1.0)) < 1.0
 
 

@@ -1,4 +1,4 @@
-"""Demands: what a check may limit, and how the rows of peaks.csv and a case of run.json give it.
+"""Demands: quantities that a check may limit, evaluated from rows of peaks.csv and a case of run.json.
 
 Rotations are small: the heel of a pier that tilts by θ stands 2 b θ above its toe, and its top moves by its height times θ.
 """
@@ -30,7 +30,7 @@ Evaluate = Callable[[Rows, Case], Estimated]
 
 
 class Ceiling(NamedTuple):
-    """A value of the case beyond which a limit says nothing, such as that at θ = α, and words for it."""
+    """A value of the case beyond which a limit decides nothing, such as that at θ = α, and words for it."""
 
     value: Lever
     beyond: str
@@ -38,7 +38,7 @@ class Ceiling(NamedTuple):
 
 @dataclass(frozen=True)
 class Demand:
-    """A quantity that a check limits; the less the better, but for those of the case.
+    """A quantity that a check limits; less is better, except for properties of the case.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class Demand:
     other_law : function or None
         Values by the other spring law, shape (n,); the worse counts.
     ceiling : Ceiling or None
-        Value beyond which a limit says nothing.
+        Value beyond which a limit decides nothing.
     verb : str
         Of an event: the words for a record that causes it.
     needs : "", "forces", "rocking" or "sections"
@@ -74,6 +74,9 @@ class Demand:
         Of a case: the height above the pivots at which it is read [m].
     landing, bending : bool
         True if the blow of a landing, or the bending of the shaft, enters it (THEORY.md, Forces).
+    directed : bool
+        True if each axis of the pier has one by itself, so that those of two axes add up. Of others, such as settlements,
+        axial forces and counts, which have the weight or the whole pier in them on either axis, the greater counts.
     """
 
     name: str
@@ -94,69 +97,64 @@ class Demand:
     height: Lever | None = None
     landing: bool = False
     bending: bool = False
+    directed: bool = False
 
     def applies_to(self, case: Case) -> bool:
-        """Return True if it applies to the base of a case."""
+        """Return whether the demand applies to a case, by its base, its dampers or its shaft."""
         held = "held" in self.bases and holds_a_tilt(case)
         return case["base"] in self.bases or held or ("bending" in self.bases and bends(case))
 
     @property
+    def brings(self) -> set[str]:
+        """Keys of [output] that a check of it brings: the other law, since the worse counts."""
+        return {"both_laws"} if self.other_law else set()
+
+    @property
     def words(self) -> str:
-        """Its meaning with its unit in brackets."""
+        """The meaning, with the unit in brackets if there is one."""
         return f"{self.meaning} [{self.unit}]" if self.unit else self.meaning
 
     @property
     def per_run(self) -> bool:
-        """Whether every run has this quantity, so that it is uncertain for a run that was cut short."""
+        """True for a quantity of every run, which is uncertain for a run that was cut short."""
         return not (self.event or self.per_case)
 
 
 def without_error(value: Values) -> Estimated:
-    """Return values whose errors are unknown."""
+    """Return values with unknown errors."""
     return Estimated(value, np.full(len(value), np.nan))
 
 
 def largest(columns: tuple[str, ...], times: Lever = ONE, error: str = "", share: str = "") -> Evaluate:
-    """Return the largest magnitude of some columns times a factor of the case.
+    """Return the evaluation of the largest magnitude of some columns times a factor of the case.
 
-    ``error`` is the column of its error, times the factor too, or ``share`` that of its error as a share of itself.
+    ``error`` is the column of its error, to be multiplied by the factor too, or ``share`` that of its relative error.
     """
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
-        value = times(case) * _magnitude(runs, columns)
+        value = times(case) * magnitude(runs, columns)
         return Estimated(value, value * runs.numbers(share) if share else times(case) * runs.numbers(error))
 
     return evaluate
 
 
-def _magnitude(runs: Rows, columns: tuple[str, ...]) -> Values:
+def magnitude(runs: Rows, columns: tuple[str, ...]) -> Values:
     return np.maximum.reduce([np.abs(runs.numbers(name)) for name in columns])
 
 
 def largest_force(columns: tuple[str, ...], times: Lever, share: str) -> Evaluate:
-    """Return the largest of some columns of forces, times a factor of the case.
+    """Return the evaluation of the largest of some columns of forces, times a factor of the case.
 
-    0 for a run with forces that has none of this, such as no impact; unknown if an earlier version wrote no such column.
+    The value is 0 for a run with forces but without this one, such as one without impacts; NaN in results of an earlier version
+    without the column.
     """
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
-        value = _magnitude(runs, columns)
+        value = magnitude(runs, columns)
         if all(name in runs for name in columns):
             value = np.where(np.isnan(value) & ~np.isnan(runs.numbers(FORCES)), 0.0, value)
         value = times(case) * value
         return Estimated(value, value * runs.numbers(share))
-
-    return evaluate
-
-
-def axial(sign: float) -> Evaluate:
-    """Return the greatest axial force in a section [kN], compression with ``sign`` 1, tension with −1; 0 if it has none."""
-    columns = ("section_axial_least_kN", "section_axial_greatest_kN")
-
-    def evaluate(runs: Rows, case: Case) -> Estimated:
-        least, greatest = (sign * runs.numbers(name) for name in columns)
-        error = _magnitude(runs, columns) * runs.numbers("sections_error")
-        return Estimated(np.maximum(np.maximum(least, greatest), 0.0), error)
 
     return evaluate
 
@@ -179,26 +177,8 @@ OF_SECTIONS = {
 """Columns of sections.csv behind those that name the run, with their meanings."""
 
 
-def in_section(name: str, meaning: str, evaluate: Evaluate | None = None) -> Demand:
-    """Return a demand on a section of the shaft, in kN or kN m; the largest of its column unless ``evaluate`` says otherwise.
-
-    Bending is across the axis: axial forces, which ``evaluate`` gives, have none of it.
-    """
-    unit = "kN m" if name.endswith("kNm") else "kN"
-    return Demand(
-        name,
-        meaning,
-        evaluate or largest((name,), share="sections_error"),
-        unit,
-        needs="sections",
-        weighed=True,
-        landing=True,
-        bending=evaluate is None,
-    )
-
-
 def in_flight(column: str) -> Evaluate:
-    """Return a column of flights; 0 for a run that went through and has none."""
+    """Return the evaluation of a column of flights; 0 for a complete run without a flight."""
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
         value, status = runs.numbers(column), runs.texts("status")
@@ -210,7 +190,7 @@ def in_flight(column: str) -> Evaluate:
 
 
 def tilt(times: Lever) -> Evaluate:
-    """Return the tilt of the base times a factor; its error is that of the residual rotation, to which it is proportional."""
+    """Return the evaluation of the base's tilt times a factor; its error is proportional to that of the residual rotation."""
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
         pier = case["pier"]
@@ -224,18 +204,18 @@ def tilt(times: Lever) -> Evaluate:
 
 
 def toe_settlement(runs: Rows, case: Case) -> Estimated:
-    """Return the settlement of the support that has settled more; its error is that of the mean and half of the difference."""
+    """Return the settlement of the lower support [m]; its error is that of the mean and half of that of the difference."""
     of_difference = tilt(width)(runs, case).error
     return Estimated(toe("settlement_m")(runs, case), runs.numbers("settlement_error_m") + 0.5 * of_difference)
 
 
 def toe(settlement: str) -> Callable[[Rows, Case], Values]:
-    """Return the settlement of the support that has settled more: the mean and half of the difference."""
+    """Return the function for the lower support's settlement [m]: the mean, in column ``settlement``, and half the difference."""
     return lambda runs, case: runs.numbers(settlement) + 0.5 * width(case) * np.abs(runs.numbers("base_tilt_rad"))
 
 
 def event(name: str, meaning: str, happened: Callable[[Rows], npt.NDArray[np.bool_]], verb: str) -> Demand:
-    """Return a demand that is 1 for a run in which something happened."""
+    """Return a demand that is 1 for runs in which the event ``happened``, 0 for others."""
     return Demand(
         name,
         meaning,
@@ -248,7 +228,7 @@ def event(name: str, meaning: str, happened: Callable[[Rows], npt.NDArray[np.boo
 def parameter(
     name: str, meaning: str, unit: str, bases: tuple[str, ...], ceiling: Ceiling | None = None, of: str = ""
 ) -> Demand:
-    """Return a parameter of the case, ``of`` this name if not the same; NaN if it is missing, as a force if no mass is known."""
+    """Return the demand on a parameter of the case, called ``of`` in run.json if not ``name``; NaN if the case lacks it."""
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
         return without_error(np.array([float(case["parameters"].get(of or name, np.nan))]))

@@ -24,19 +24,36 @@ BENDING = ("bending",)
 """A rigid base under a shaft that bends."""
 
 BASES_IN_WORDS = {
-    ALL: "", SPRINGS: "springs or a footing", YIELDING: "yielding springs",
-    TILTS: "springs, a footing, or dampers that hold the pier at a tilt", SETTLING: "yielding springs or a footing",
-    TWO_SPRINGS: "springs", FOOTING: "a footing", BENDING: "a shaft that bends",
-}  # fmt: skip
+    ALL: "",
+    SPRINGS: "springs or a footing",
+    YIELDING: "yielding springs",
+    TILTS: "springs, a footing, or dampers that hold the pier at a tilt",
+    SETTLING: "yielding springs or a footing",
+    TWO_SPRINGS: "springs",
+    FOOTING: "a footing",
+    BENDING: "a shaft that bends",
+}
 
 ENDINGS = {
-    "m": "m", "s": "s", "rad": "rad", "m/s": "m_s", "1/s": "per_s", "m/s^2": "m_s2", "m^2/s^2": "m2_s2", "J/kg": "J_kg",
-    "kN": "kN", "MPa": "MPa", "kJ": "kJ", "kN*s": "kN_s", "kN*m": "kNm", "standard_gravity": "g",
-}  # fmt: skip
-"""Ends of names by their units, as pint reads these."""
+    "m": "m",
+    "s": "s",
+    "rad": "rad",
+    "m/s": "m_s",
+    "1/s": "per_s",
+    "m/s^2": "m_s2",
+    "m^2/s^2": "m2_s2",
+    "J/kg": "J_kg",
+    "kN": "kN",
+    "MPa": "MPa",
+    "kJ": "kJ",
+    "kN*s": "kN_s",
+    "kN*m": "kNm",
+    "standard_gravity": "g",
+}
+"""Endings of names by unit, in the notation of pint."""
 
 SHARES = ("forces_error", "devices_error")
-"""Columns of errors that are shares of what they belong to."""
+"""Columns of relative errors; other errors are in the unit of their quantity."""
 
 
 class Run(Protocol):
@@ -44,7 +61,7 @@ class Run(Protocol):
 
     @property
     def outcome(self) -> Any:
-        """Its :class:`rockbatch.outcome.outcome.Outcome`."""
+        """The :class:`rockbatch.outcome.outcome.Outcome` of the run."""
 
     @property
     def pga(self) -> float:
@@ -77,9 +94,9 @@ class OfSuite(NamedTuple):
 
 
 class Limit(NamedTuple):
-    """A demand that checks make of a quantity: by its own name, words, unit and columns unless given.
+    """A demand that checks make of a quantity, with the quantity's name, words, unit and columns unless given.
 
-    ``unit`` alone makes a name that ends with it; ``times`` is the factor from the columns to it.
+    A ``unit`` without a name replaces the ending of the quantity's name; ``times`` is the factor from the columns to the unit.
     """
 
     name: str = ""
@@ -142,6 +159,10 @@ class Quantity:
         True if the blow of a landing enters it: on rigid ground, where a landing is an impulse, it is a lower bound.
     bending : bool
         True if the bending of the shaft enters it, which a rigid shaft leaves out.
+    directed : bool
+        True if each axis of the pier has one by itself, so that those of two axes add up.
+    least_is_worst : bool
+        True if the smallest value of several runs is the worst.
     """
 
     name: str
@@ -165,34 +186,37 @@ class Quantity:
     requested: Callable[[Any], bool] | None = None
     landing: bool = False
     bending: bool = False
+    directed: bool = False
+    least_is_worst: bool = False
 
     @property
     def meaning(self) -> str:
-        """Its whole meaning, in a sentence."""
+        """The whole meaning in a sentence, with the key of [output] that it needs."""
         return f"{self.words}{self.more}" + (f"; with [output] {self.needs} = true" if self.needs else "")
 
     @property
     def applies(self) -> str:
-        """Runs to which it applies, in words; empty for all."""
+        """Runs to which the quantity applies, in words; empty for all."""
         base = BASES_IN_WORDS[self.bases]
         run = "if the pier stayed upright" if self.stood else "if it occurs" if self.sometimes else ""
         return ", ".join(filter(None, (base, run)))
 
     def requested_by(self, study: Any) -> bool:
-        """Return whether a :class:`rockbatch.study.Study` brings it."""
+        """Return whether a :class:`rockbatch.study.Study` has a column of this quantity."""
         if self.requested:
             return self.requested(study)
-        if self.needs and not getattr(study.output, self.needs):
+        if self.needs and not study.output.has(self.needs):
             return False
         return not self.device or any(
             self.device in device.kinds for case in study.cases for device in case.base.restraints
         )
 
     def demands(self) -> list[Demand]:
-        """Return the demands that checks make of it."""
+        """Return the demands that checks make of this quantity."""
         return [self._demand(limit) for limit in self.limits]
 
     def _demand(self, limit: Limit) -> Demand:
+        """Return the demand of a limit; unless that has its own evaluation, the largest magnitude of its columns."""
         columns = limit.columns or (self.name,)
         evaluate = limit.evaluate
         if evaluate is None and self.needs == "forces":
@@ -202,14 +226,27 @@ class Quantity:
             evaluate = largest(columns, limit.times, **{error: self.error})
         name = limit.name or (f"{self._stem}_{limit.unit}" if limit.unit else self.name)
         return Demand(
-            name, limit.words or self.words, evaluate, limit.unit or in_print(self.unit), self.bases, residual=self.stood,
-            other_law=limit.other_law, ceiling=limit.ceiling, needs=self.needs, weighed=self.weighed, device=self.device,
-            reached=limit.reached, height=limit.height, landing=self.landing, bending=self.bending,
-        )  # fmt: skip
+            name,
+            limit.words or self.words,
+            evaluate,
+            limit.unit or in_print(self.unit),
+            self.bases,
+            residual=self.stood,
+            other_law=limit.other_law,
+            ceiling=limit.ceiling,
+            needs=self.needs,
+            weighed=self.weighed,
+            device=self.device,
+            reached=limit.reached,
+            height=limit.height,
+            landing=self.landing,
+            bending=self.bending,
+            directed=self.directed,
+        )
 
     @property
     def _stem(self) -> str:
-        """Its name without the unit."""
+        """The name without its unit."""
         return self.name.removesuffix(f"_{ENDINGS[self.unit]}")
 
 
@@ -218,3 +255,8 @@ def in_print(unit: str) -> str:
     if unit == "1":
         return ""
     return unit.replace("standard_gravity", "g").replace("^2", "²").replace("*", " ")
+
+
+def fact(name: str, words: str, more: str = "", source: Callable[[Run], Any] | None = None, **facts: Any) -> Quantity:
+    """Return a quantity that is 1 where ``words`` hold and 0 where they do not, of the field of ``Outcome`` of its name."""
+    return Quantity(name, f"1 if {words}, 0 if not", source or name, more=more, kind="fact", sometimes=True, **facts)

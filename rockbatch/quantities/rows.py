@@ -15,25 +15,25 @@ NOT_RUN = "not run"
 
 
 def with_case(peaks: "pd.DataFrame") -> "pd.DataFrame":
-    """Return the rows of runs, without those of files that could not be used; no copy where there are none of these."""
+    """Return the rows of runs, without those of unusable files; the same table if there are none of these."""
     of_runs = peaks["case"] != ""
     return peaks if of_runs.all() else peaks[of_runs]
 
 
 def simulated(runs: "pd.DataFrame") -> "pd.DataFrame":
-    """Return the rows of peaks.csv without mirror images, which say nothing more: each run counts once."""
+    """Return the rows of peaks.csv without mirror images, so that each run counts once."""
     return runs[runs[MIRROR_OF] == ""] if MIRROR_OF in runs else runs
 
 
 def as_in_peaks(value: object) -> object:
-    """Return a value as in peaks.csv: ten digits, and "" for a key that run.json omits."""
+    """Return a value as peaks.csv has it: numbers rounded to ten digits, "" for None and NaN."""
     if value is None or value != value:
         return ""
     return float(f"{value:.10g}") if isinstance(value, float | int) else value
 
 
 def rows_of_cases(runs: "pd.DataFrame", cases: Sequence[Case]) -> Iterator[tuple[Case, npt.NDArray[np.intp]]]:
-    """Yield every case with the places of its rows in ``runs``, in order."""
+    """Yield every case with the places of its rows in ``runs``, ascending; an empty array for a case without runs."""
     keys = list(dict.fromkeys(["case", *(name for case in cases for name in case["columns"])]))
     kinds = runs.groupby(keys, sort=False, dropna=False).ngroup().to_numpy()
     order = np.argsort(kinds, kind="stable")
@@ -53,15 +53,15 @@ def _fits(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArr
     for name, value in columns.items():
         if isinstance(value, str):
             fits &= (runs[name] == value).to_numpy()
-        else:  # peaks.csv has ten digits of it
+        else:  # ten digits in peaks.csv
             fits &= np.isclose(runs[name].to_numpy(np.float64, na_value=np.nan), value, rtol=1e-9, atol=0.0)
     return fits
 
 
 def complete(rows: Rows, stations: Mapping[str, str], polarities: Sequence[str]) -> Rows:
-    """Return ``rows`` of a case at one scale, and a failed one for each that is missing or has no status, as after an interrupt.
+    """Return the rows of a case at one scale, sorted by record and polarity, with a failed one for each missing run.
 
-    They are in the order of record and polarity. ``stations`` has all records, each with its station, empty if it is not known.
+    A row without a status, as an interrupt leaves it, is missing too. ``stations`` has that of every record, "" if unknown.
     """
     names = [*zip(rows.texts("record"), rows.texts("polarity"), strict=True)]
     missing = {*product(stations, polarities)}.difference(names)
@@ -79,13 +79,13 @@ def complete(rows: Rows, stations: Mapping[str, str], polarities: Sequence[str])
 
 
 def counts_as(rows: Rows, count: str) -> tuple[Texts, str]:
-    """Return the record as which each run counts, by ``count`` of ``COUNTS``; and why that is not its station if it should be."""
+    """Return the record under which each run counts by ``count``, of ``COUNTS``, shape (n,); and a remark on unknown stations."""
     if count == "component":
         return rows.texts("record"), ""
     stations_of_runs = rows.texts("station")
     if (stations_of_runs == "").any():
         return rows.texts("record"), (
-            "these results do not say which components are of one station, so that each counts as a record; start "
+            "these results do not say which components are of one station, so that each counts as a record: start "
             "`rockbatch run` again"
         )
     return stations_of_runs, ""

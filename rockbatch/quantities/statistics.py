@@ -1,8 +1,8 @@
 """Statistics over a suite of records.
 
 Every statistic grows with each of its values as long as they are finite, so that it maps bounds to bounds; one that does not has
-an ``interval`` of its own. A code's own are by what is commonly said of it: ``unchecked`` says what each rests on, as no clause's
-own text was at hand.
+an ``interval``. Statistics of codes follow common descriptions of the clauses, whose text could not be checked: ``unchecked``
+has their sources.
 """
 
 import math
@@ -24,21 +24,21 @@ def quantile(values: Values, q: float) -> float:
 
 
 def quantiles(ordered: Values, first: npt.NDArray[np.int64], n: npt.NDArray[np.int64], q: float) -> Values:
-    """Return a quantile of each of several groups, of ``n`` values each, in order, from ``first`` on; NaN for an empty one."""
+    """Return the quantile of each group ``ordered[first : first + n]`` of ascending values; NaN for an empty group."""
     of_groups = np.full(len(n), math.nan)
     filled = n > 0
     last = n[filled] - 1
     below = np.floor(q * last).astype(np.int64)
     share = q * last - below
     low, high = ordered[first[filled] + below], ordered[first[filled] + np.minimum(below + 1, last)]
-    between = share >= 1e-9  # else rounding, no reason to look at the next rank
+    between = share >= 1e-9  # a smaller share is rounding: the next rank, perhaps infinite, has no part
     with np.errstate(invalid="ignore"):
         of_groups[filled] = np.where(between, np.where(np.isinf(high), math.inf, low + share * (high - low)), low)
     return of_groups
 
 
 P84, CONFIDENCE = 0.84, 0.95
-"""The high quantile that checks ask for, and the confidence with which a statistic of few records holds it."""
+"""The high quantile of checks, and the confidence of its bound by few records."""
 
 
 def exceedance(q: float, n: int) -> float:
@@ -50,8 +50,8 @@ def exceedance(q: float, n: int) -> float:
 
 
 def tolerance_rank(n: int, q: float = P84, confidence: float = CONFIDENCE) -> int | None:
-    """Return the least rank of ``n`` values that is no less than the quantile ``q`` with this confidence, whatever their
-    distribution; None if not even the greatest is.
+    """Return the least rank, from 1, whose value among ``n`` bounds the quantile ``q`` with this confidence, for any
+    distribution; None if not even the greatest value does.
 
     The k-th is below the quantile if k or more values are: P(X_(k) ≥ x_q) = P(Bin(n, q) < k) (Wilks 1941).
     """
@@ -64,6 +64,7 @@ def tolerance_rank(n: int, q: float = P84, confidence: float = CONFIDENCE) -> in
 
 
 def _p84_remark(values: Values) -> str:
+    """Return the share of further records that exceed the quantile, in words."""
     n = len(values)
     return (
         f"by interpolation between the ranks of {n}, which {100.0 * exceedance(P84, n):.0f} % of further records exceed"
@@ -71,17 +72,19 @@ def _p84_remark(values: Values) -> str:
 
 
 def _p84_95(values: Values) -> float:
+    """Return the value at :func:`tolerance_rank`, or the greatest of too few."""
     rank = tolerance_rank(len(values))
     return float(np.sort(values)[(rank or len(values)) - 1])
 
 
 def _p84_95_remark(values: Values) -> str:
+    """Return the rank that bounds the quantile, in words; empty for too few values."""
     rank = tolerance_rank(len(values))
     return f"rank {rank} of {len(values)}" if rank else ""
 
 
 def _lognormal(values: Values) -> float:
-    """Return exp(m + z s), with mean and standard deviation of the logarithms; NaN of one value, and where one is 0."""
+    """Return exp(m + z s), with mean m and deviation s of the logarithms; NaN for a single value, and if one is 0."""
     if np.isinf(values).any():
         return math.inf
     if len(values) < 2 or (values <= 0.0).any():
@@ -93,7 +96,7 @@ def _lognormal(values: Values) -> float:
 
 
 def _lognormal_interval(value: Values, low: Values, high: Values) -> tuple[float, float]:
-    """Return the 95 % interval of the quantile of a lognormal distribution, which holds for all values from ``low`` to ``high``.
+    """Return the 95 % interval of the lognormal quantile, for all values between ``low`` and ``high``.
 
     (m + z σ − x̄)/s √n has a non-central t distribution of ν = n − 1 and δ = z √n. The standard deviation of values that change
     by d changes by no more than |d|/√(n − 1).
@@ -117,6 +120,7 @@ def _lognormal_interval(value: Values, low: Values, high: Values) -> tuple[float
 
 
 def _lognormal_remark(values: Values) -> str:
+    """Return what decides a check of the lognormal quantile, in words."""
     if (values <= 0.0).any():
         return "a record demands nothing, which no lognormal distribution has"
     return "its 95 % interval decides, as if the records were of a lognormal distribution"
@@ -131,7 +135,7 @@ def _max(values: Values) -> float:
 
 
 def _asce7_16(values: Values) -> float:
-    """Return the mean by ASCE 7-16; infinite values are the unacceptable responses."""
+    """Return the mean by ASCE 7-16; infinite values are unacceptable responses, of which two or more give infinity."""
     acceptable = values[np.isfinite(values)]
     if len(acceptable) == len(values):
         return _mean(values)
@@ -141,6 +145,7 @@ def _asce7_16(values: Values) -> float:
 
 
 def _asce7_16_remark(values: Values) -> str:
+    """Return the number of unacceptable responses and its consequence, in words; empty for 0."""
     n = int(np.isinf(values).sum())
     if n == 1:
         return "1 unacceptable response: 120 % of the median, or the mean of the others if greater"
@@ -148,10 +153,12 @@ def _asce7_16_remark(values: Values) -> str:
 
 
 def _mean_or_worst(values: Values) -> float:
+    """Return the mean of :data:`MEAN_FROM` values or more, the greatest of fewer."""
     return _mean(values) if len(values) >= MEAN_FROM else _max(values)
 
 
 def _mean_or_worst_remark(values: Values) -> str:
+    """Return the remark that the greatest of few values counts; empty if the mean does."""
     return "" if len(values) >= MEAN_FROM else f"the most unfavourable of fewer than {MEAN_FROM} records"
 
 
@@ -162,17 +169,17 @@ class Statistic:
     Attributes
     ----------
     words : str
-        What it is called in a sentence: "mean of …".
+        Name in a sentence: "mean of …".
     evaluate : function
         Of finite or infinite values; ``None`` for the count of those above a threshold, which the rule gives.
     least : int
-        Number of records below which nothing can pass.
+        Number of records below which no check passes.
     code : str
-        The code whose own it is; empty for a plain statistic.
+        The code that prescribes it; empty for a plain statistic.
     unchecked : str
-        Of a code's own: what it rests on, and what it was not held against.
+        Sources of a code's statistic, and texts that could not be checked.
     remark : function or None
-        Of the values: what to know about the way taken, in words, or nothing.
+        Of the values: a remark on how they were evaluated, or "".
     interval : function or None
         Of the values and of their bounds: the bounds of the statistic, where those are not the statistics of the bounds.
     """
@@ -193,41 +200,60 @@ STATISTICS = {
     "p84": Statistic("84 % quantile", lambda values: quantile(values, P84), 6, remark=_p84_remark),
     "p84_95": Statistic("84 % quantile with 95 % confidence", _p84_95, 18, remark=_p84_95_remark),
     "p84_lognormal": Statistic(
-        "84 % quantile of a lognormal distribution", _lognormal, 3, remark=_lognormal_remark, interval=_lognormal_interval
+        "84 % quantile of a lognormal distribution",
+        _lognormal,
+        3,
+        remark=_lognormal_remark,
+        interval=_lognormal_interval,
     ),
     "count": Statistic("number of records", None),
     "asce7-16": Statistic(
-        "mean by ASCE 7-16", _asce7_16, 11, "ASCE 7-16",
+        "mean by ASCE 7-16",
+        _asce7_16,
+        11,
+        "ASCE 7-16",
         "eleven motions, their mean, and one unacceptable response at most, as Hamburger (2014) presented the proposed chapter "
         "16; neither the 120 % of the median nor the clauses' own text (look into 16.2.2 and 16.4.1.1) could be checked",
         _asce7_16_remark,
     ),
     "en1998-1": Statistic(
-        "design value by EN 1998-1", _mean_or_worst, 3, "EN 1998-1",
+        "design value by EN 1998-1",
+        _mean_or_worst,
+        3,
+        "EN 1998-1",
         "at least three records, the mean from seven on, as EN 1998 is commonly cited; the clauses' own text (look into "
         "EN 1998-1:2004, 3.2.3.1.2 and 4.3.3.4.3) could not be checked",
         _mean_or_worst_remark,
     ),
     "en1998-2": Statistic(
-        "design value by EN 1998-2", _mean_or_worst, 3, "EN 1998-2",
+        "design value by EN 1998-2",
+        _mean_or_worst,
+        3,
+        "EN 1998-2",
         "at least three recordings, the mean from seven on, as Iervolino, Maddaloni & Cosenza (2009, Journal of Earthquake "
         "Engineering 13, 1125–1152) report of EN 1998-2; the standard's own text could not be checked. It takes pairs of "
         "horizontal components at once: a planar model takes the worse of them alone",
         _mean_or_worst_remark,
     ),
     "aashto": Statistic(
-        "design value by AASHTO", _mean_or_worst, 3, "AASHTO",
+        "design value by AASHTO",
+        _mean_or_worst,
+        3,
+        "AASHTO",
         "the maximum of three to six records, the mean from seven on, as AASHTO's specifications for bridges are commonly "
         "cited; neither their own text nor a report of it could be checked. They take all components at once: a planar model "
         "takes the worse horizontal one alone, with the vertical",
         _mean_or_worst_remark,
     ),
     "nzs1170.5": Statistic(
-        "maximum by NZS 1170.5", _max, 3, "NZS 1170.5",
+        "maximum by NZS 1170.5",
+        _max,
+        3,
+        "NZS 1170.5",
         "the maximum of a family of at least three records, as NZS 1170.5 is commonly cited; neither the standard's own text "
         "nor a report of it could be checked, nor how it chooses and scales the family, which is left to the study",
     ),
-}  # fmt: skip
+}
 """Statistics by the name that a rule gives them.
 
 p84

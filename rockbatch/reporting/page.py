@@ -1,10 +1,11 @@
 """The pages of the report: a line for each section, in order."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from typing import NamedTuple
 
 from rockbatch.common.analyses import doors, from_analysis
+from rockbatch.common.observers import from_observer, report_parts
 from rockbatch.reporting import compared
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.finished_analysis import Contents
@@ -15,15 +16,11 @@ from rockbatch.reporting.sections import (
     answer,
     devices,
     distribution,
-    forces,
     histories,
-    intensity,
     motions,
     peaks,
     published,
     reproduce,
-    shaft,
-    shocks,
     statics,
     statistics,
     studied,
@@ -66,7 +63,22 @@ def _of_analysis(name: str, function: str, contents: Contents) -> Markup:
     return content
 
 
-PARTS = (
+def _with_observers(own: Iterable[Part]) -> Iterator[Part]:
+    """Yield parts of the page, each with those of observers behind it, which are loaded when they are drawn."""
+    for part in own:
+        yield part
+        for name, more in report_parts():
+            if more.behind == part.anchor:
+                yield Part(more.heading, more.anchor, partial(_of_observer, name), more.folded)
+
+
+def _of_observer(name: str, finished: Finished) -> Markup:
+    """Return a part that an observer brings."""
+    content: Markup = from_observer(name, "section.section")(finished)
+    return content
+
+
+_OWN = (
     Part("Scorecard", "answer", answer.section),
     Part("Greatest responses", "responses", answer.responses_beside_checks, folded=True),
     Part("Peaks by foundation", "figure", by_foundation),
@@ -74,14 +86,10 @@ PARTS = (
     Part("Every run", "peaks", peaks.section),
     Part("Checks", "checks", verdicts.section),
     Part("Compared with published values", "references", published.section),
-    Part("Shock by shock", "shocks", shocks.section),
-    Part("Forces", "forces", forces.section),
     Part("Devices", "devices", devices.section),
-    Part("Forces over the height of the shaft", "shaft", shaft.section),
     Part("Histories", "histories", histories.section),
     Part("Statistics of the suite", "suite", statistics.section, folded=True),
     Part("One record and the suite", "distribution", distribution.section, folded=True),
-    Part("Intensity measures", "intensity", intensity.section, folded=True),
     Part("What was studied", "studied", studied.section),
     Part("Statics", "statics", statics.section, folded=True),
     Part("Ground motions", "records", motions.section),
@@ -90,6 +98,8 @@ PARTS = (
     Part("Notes", "notes", _template("notes"), kind=Contents),
     Part("How to reproduce", "reproduce", reproduce.section, folded=True),
 )
+
+PARTS = tuple(_with_observers(_OWN))
 """Sections of one folder in the order of the page: the answer, then results, then inputs."""
 
 ALONE = Part("The study file", "study", _template("study"), kind=Contents)

@@ -1,8 +1,7 @@
 """Figures of results: peaks as in Palmeri & Makris (2007), Fig. 7, their distribution, and peaks on self-similar axes."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import product
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -24,7 +23,6 @@ from rockbatch.common.figures.description import (
     log_spanning,
     marks_of,
     sign_of,
-    spanning,
 )
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
@@ -32,7 +30,6 @@ from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.rows import counts_as
 from rockbatch.results.labelled import Item, Labelled, Row, as_dicts, by_pga, ceiling, groups_of
 from rockbatch.results.labels import Series
-from rockbatch.results.sections import columns_in
 from rockbatch.results.suite_statistics import NO_PEAK, distribution, worst_records
 
 THETA = "θ_max/α"
@@ -169,39 +166,6 @@ def _distribution(words: str, runs: "pd.DataFrame", series: Sequence[Series], co
             marks.append(Points(middle[:1], centre, titles=[note], look=sign_of("overturned"), label=OVER))
     axes = Axis(THETA, 0.0, right, last=top), Axis("share of the records", 0.0, 1.0)
     return Panel(*axes, marks, words or "all runs")
-
-
-def over_height(groups: "Iterable[tuple[str, pd.DataFrame]]", series: Sequence[Series]) -> Figure:
-    """Return a figure of the envelopes of shear, moment and axial force over the height of the shaft.
-
-    ``groups`` are captions and the runs of a pier at a scale, with their rows of sections.csv.
-    """
-    panels = []
-    for words, runs in groups:
-        heads, columns = columns_in(runs)
-        height = spanning("height [m]", runs["height_m"].to_numpy())
-        for caption, names in _OVER_HEIGHT.items():
-            pairs = product(runs["series"].unique(), names)
-            marks = [_envelope(runs[runs["series"] == i], columns[name], series[i]) for i, name in pairs]
-            forces = spanning(heads[names[0]], *(mark.x for mark in marks))
-            panels.append(Panel(forces, height, marks, caption, words, 240.0, 200.0))
-    return Figure(panels, "Envelopes of shear, moment and axial force over the height of the shaft")
-
-
-_OVER_HEIGHT = {
-    "greatest shear": ("shear",),
-    "greatest moment": ("moment",),
-    "least and greatest axial force": ("axial_least", "axial_greatest"),
-}
-
-
-def _envelope(runs: "pd.DataFrame", column: str, foundation: Series) -> Polyline:
-    """Return the envelope of a column of sections.csv over a foundation's runs: least or greatest value at each height."""
-    of_heights = runs.groupby("height_m")[column]
-    values = of_heights.min() if "least" in column else of_heights.max()
-    look = Look("level", dash=foundation.index % DASHES) if foundation.rigid else line_of(foundation.index)
-    x, y = values.to_numpy(np.float64), values.index.to_numpy(np.float64)
-    return Polyline(x, y, look=look, label=foundation.label, title=foundation.label)
 
 
 def self_similar(results: Labelled, info: Item) -> Figure:

@@ -1,22 +1,14 @@
 """Intensity measures of each run's motion, scaled for a rocking pier, and how well they order the peaks."""
 
 import math
-from collections.abc import Iterator, Sequence
-from functools import cache
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
-from rockbatch.motions import Motion, measures
-from rockbatch.motions.pairs import pairing_obstacle, station_spectra
-from rockbatch.motions.spectrum import spectral_acceleration
-from rockbatch.results import beside_peaks
-from rockbatch.results.labelled import Row
 from rockbatch.results.suite_statistics import NO_PEAK
-from rockbatch.study import Study
 
 INTENSITY = "intensity.csv"
 
@@ -34,47 +26,6 @@ LEAST_RUNS = 3
 """Fewest runs with values for a rank correlation or a regression line."""
 
 Array = npt.NDArray[np.float64]
-
-
-def intensities(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[Row]:
-    """Yield the rows of intensity.csv, one for each simulated run of ``peaks``."""
-    periods, rules = study.output.sa_periods_s, study.output.sa_pairs
-    stations = grouped(motions, lambda motion: motion.of_station)
-
-    @cache
-    def of_pair(station: str) -> dict[str, Array]:
-        """Return spectral accelerations [m/s²] of a station's pair by the study's rules; NaN without a pair."""
-        if pairing_obstacle(stations[station]):
-            return dict.fromkeys(rules, np.full(len(periods), math.nan))
-        return station_spectra(stations[station], periods, 0.05)
-
-    @cache
-    def of_record(motion: Motion) -> tuple[float, float, Array]:
-        """Return PGV [m/s], CAV [m/s] and spectral accelerations [m/s²] of the unscaled motion."""
-        a, dt = motion.horizontal, motion.dt
-        pgv = measures.pgv(a, dt, motion.initial)
-        return pgv, measures.cumulative_absolute_velocity(a, dt), spectral_acceleration(a, dt, periods)
-
-    @cache
-    def durations(motion: Motion, threshold: float) -> tuple[float, float]:
-        a, dt = motion.horizontal, motion.dt
-        return measures.bracketed_duration(a, dt, threshold), measures.uniform_duration(a, dt, threshold)
-
-    for row, motion, scale, pier in beside_peaks.runs(peaks, study, motions):
-        uplift = pier.gravity * math.tan(pier.alpha)
-        pgv, cav, sa = of_record(motion)
-        bracketed, uniform = durations(motion, uplift / scale)
-        values = (scale * motion.pga / uplift, pier.p * scale * pgv / uplift, bracketed, uniform, scale * cav)
-        spectra = {"": sa} | {rule: of_pair(motion.of_station)[rule] for rule in rules}
-        of_spectrum = {}
-        for rule, spectrum in spectra.items():
-            for period, s in zip(periods, spectrum, strict=True):
-                of_spectrum[_column(period, rule)] = scale * float(s) / pier.gravity
-        yield {**row, **dict(zip(MEANING, values, strict=True)), **of_spectrum}
-
-
-def _column(period: float, rule: str = "") -> str:
-    return f"sa_{period:g}s_{rule}_g" if rule else f"sa_{period:g}s_g"
 
 
 class Order(NamedTuple):

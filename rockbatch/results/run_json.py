@@ -150,7 +150,7 @@ def describe(study: Study, motions: MotionSet) -> Row:
     target = study.motions.target if isinstance(study.motions.target, SpectrumTarget) else None
     compared = target is not None and target.factors == "none"
     fitted = [motion for motion in motions.motions if compared or not _is_pulse(motion, study)]
-    with_pulses = target is not None or study.output.intensity
+    with_pulses = target is not None or study.output.has("intensity")
     labels = motions.labels
     return {
         "study": describe_study(study)

@@ -1,4 +1,4 @@
-"""Runs of a pier on a base under a motion: the only access to the core, which is loaded by the first name that needs it."""
+"""Runs of a pier on a base under a motion: the only access to the core, which is loaded with the first name that needs it."""
 
 from importlib import import_module
 from typing import Any
@@ -12,7 +12,7 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Return a public name from its module, or the module of compiled kernels on disk."""
+    """Return a public name from its module, or for "kept" the module of compiled kernels on disk."""
     if name == "kept":
         return import_module("rockbatch.core.kept")
     for module, names in _HOMES.items():

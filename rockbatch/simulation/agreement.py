@@ -13,18 +13,18 @@ from rockbatch.pier import Pier
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
 
 SAME_TIME = 0.01
-"""In units of 1/p: tolerance on the time of overturning, of flight and of the peak."""
+"""Tolerance on the times of overturning, flight and peak, in units of 1/p."""
 
 SAME_FALL = 0.02
-"""In units of α: tolerance on the rotations before a pier overturned."""
+"""Tolerance on the rotations before overturning, in units of α."""
 
 COUNTS = ("impacts", "separations", "flights", "tendon_slack", "stop_blows", "deck_spring_blows")
 
 FAR_BELOW = 3.0
-"""An extreme that has not converged is harmless if it is below the peak by so many times its change."""
+"""Least distance of an extreme below the peak, over its change, at which it need not have converged."""
 
 SAME_COURSE = 1e-3
-"""In units of the peak: change of an extreme up to which two runs with different counts of events had the same course."""
+"""Greatest change of an extreme, over the peak, at which runs with different counts of events count as the same."""
 
 
 class Agreement(IntEnum):
@@ -32,21 +32,23 @@ class Agreement(IntEnum):
 
     NONE = 0
     RESULTS = 1  # in outcome, peak and residual rotation; its time, or other extremes near the peak, have not converged
-    APART = 2  # likewise, and the extremes that have not converged are far below the peak
+    APART = 2  # as RESULTS, and the extremes that have not converged are far below the peak
     THROUGHOUT = 3  # in the extremes of all windows too, and in the counts of events unless their course is the same
 
 
 PAIRS = {Agreement.THROUGHOUT: 1, Agreement.APART: 2, Agreement.RESULTS: 4}
-"""Halvings in a row that have to agree to this extent at least: the less two runs have in common, the more it takes."""
+"""Consecutive halvings that must agree to at least this extent: the weaker the agreement, the more are needed."""
 
 
 def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agreement:
-    """Return how far two runs agree; ``tolerance`` on rotations [rad]."""
+    """Return the extent to which two trials agree, with a ``tolerance`` on rotations [rad]; NONE if their statuses differ."""
     finer, coarser = fine.outcome, coarse.outcome
     if finer.status != coarser.status:
         return Agreement.NONE
     if finer.status == "failed":
-        moved = abs(finer.theta_max_in_motion - coarser.theta_max_in_motion)  # what comes after it is no result
+        moved = abs(
+            finer.theta_max_in_motion - coarser.theta_max_in_motion
+        )  # later motion of a failed run is no result
         alike = finer.failure == coarser.failure and moved <= tolerance
         return Agreement.THROUGHOUT if alike and finer.failure in LEFT_ALONE else Agreement.NONE
     greatest, change = windows(fine, coarse)
@@ -68,8 +70,8 @@ def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agree
     return Agreement.APART if far_below(greatest, change, differs, finer.theta_max) else Agreement.RESULTS
 
 
-def settled(agreements: Sequence[Agreement]) -> Agreement:
-    """Return the extent to which the last of ``agreements``, from one halving to the next, suffice; NONE if they do not."""
+def converged_extent(agreements: Sequence[Agreement]) -> Agreement:
+    """Return the extent to which a run has converged by its ``agreements``, one per halving; NONE if it has not."""
     for least, pairs in PAIRS.items():
         last = agreements[-pairs:]
         if len(last) == pairs and min(last) >= least:
@@ -78,12 +80,12 @@ def settled(agreements: Sequence[Agreement]) -> Agreement:
 
 
 def same_counts(fine: Outcome, coarse: Outcome) -> bool:
-    """Return whether two outcomes have the same counts of events."""
+    """Return True if two outcomes have the same counts of events."""
     return all(getattr(fine, name) == getattr(coarse, name) for name in COUNTS)
 
 
 def windows(fine: Trial, coarse: Trial) -> tuple[Samples, Samples]:
-    """Return the greater of two runs' extremes in each window, and how far they lie apart [rad]; 0 where neither has one."""
+    """Return the greater of two runs' extremes and their difference, per window [rad]; 0 if none reached it, inf if one did."""
     greatest, change = np.fmax(fine.extremes, coarse.extremes), np.abs(fine.extremes - coarse.extremes)
     change[np.isnan(change)] = math.inf  # a window that one of them has not reached
     reached = ~np.isnan(greatest)
@@ -91,9 +93,10 @@ def windows(fine: Trial, coarse: Trial) -> tuple[Samples, Samples]:
 
 
 def far_below(greatest: Samples, change: Samples, differs: npt.NDArray[np.bool_], peak: float) -> bool:
-    """Return whether the extremes that differ are below the ``peak`` by several times their change."""
+    """Return True if the extremes that differ are below the ``peak`` by :data:`FAR_BELOW` times their change."""
     return bool((FAR_BELOW * change[differs] <= peak - greatest[differs]).all())
 
 
 def flight_of(outcome: Outcome) -> float:
+    """Return the time of the first flight [s]; NaN without one."""
     return math.nan if outcome.t_flight is None else outcome.t_flight

@@ -1,4 +1,4 @@
-"""Chaotic results: those that a motion a hair stronger or weaker changes (THEORY.md, The error that a row reports)."""
+"""Chaotic results: those changed by a tiny change of the motion (THEORY.md, The error that a row reports)."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -18,21 +18,21 @@ CHANGES = {"stronger": 1e-8, "weaker": -1e-8}
 """Relative changes of a motion, less than a record resolves. A result that they change beyond the tolerance is chaotic."""
 
 MARGIN = 2.0
-"""Error that is claimed at least, over what one of :data:`CHANGES` or the drift between readings moves: neither is the most."""
+"""Least claimed error over the change by one of :data:`CHANGES`, or by drift between readings, which are not the worst."""
 
 SENSITIVE = 0.05
-"""Change of the trajectory by halving the step, over α and (ω dt/k)², beyond which a run is tried under :data:`CHANGES`."""
+"""Change of the trajectory by halving the step, over α and (ω dt/k)², above which a run is repeated under :data:`CHANGES`."""
 
 NEARER = 4.0
-"""Least factor by which halving the step brings residuals nearer that converge as the method does."""
+"""Least factor by which halving the step reduces the changes of residuals that converge."""
 
 RISES, FALLS = 300.0, 0.5
-"""An extreme behind the peak is harmless if so many times its change by halving the step bring it neither to the peak nor to
-this rotation over α, from which a pier may fall."""
+"""An extreme after the peak is harmless if RISES times its change by halving the step brings it neither to the peak nor to the
+rotation FALLS α, from which a pier may overturn."""
 
 
 def magnifies(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, until: int) -> bool:
-    """Return whether a run that claims the error of a peak magnifies the errors of steps; its motion lasts ``until`` this window.
+    """Return True if a run that claims the error of its peak magnifies errors of steps; ``until`` is the motion's last window.
 
     A chaotic peak does, as it magnifies changes of the motion (THEORY.md, The error that a row reports).
     """
@@ -49,15 +49,15 @@ def magnifies(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, until: int
 
 
 def residuals_wander(levels: Sequence[Trial], tolerance: float, pier: Pier) -> bool:
-    """Return whether the residuals of a run that converged may be chaotic; as sums over the motion they do not show in rotations.
+    """Return True if the residuals of a converged run may be chaotic, which rotations do not show; False without residuals.
 
-    Counts of events then differ between the last two ``levels``, or residuals did not come nearer by :data:`NEARER` from one
-    halving to the next.
+    Then counts of events differ between the last two ``levels``, or the changes of residuals did not fall by :data:`NEARER`
+    from one halving to the next.
     """
     outcomes = [trial.outcome for trial in levels]
     if outcomes[-1].theta_res_error is None:
         return False
-    changes = [_residuals_apart(coarse, fine, pier) for coarse, fine in pairwise(outcomes)]
+    changes = [_residual_difference(coarse, fine, pier) for coarse, fine in pairwise(outcomes)]
     slow = any(after > max(tolerance, before / NEARER) for before, after in pairwise(changes))
     return slow or not same_counts(outcomes[-1], outcomes[-2])
 
@@ -70,7 +70,7 @@ def look_for_chaos(
     quiet_s: float,
     stop: Stop,
 ) -> None:
-    """Try ``doubtful`` runs under :data:`CHANGES`: their errors become no less than what these change, or are withdrawn."""
+    """Repeat ``doubtful`` runs under :data:`CHANGES`, and raise or withdraw the errors in ``outcomes``; None if stopped."""
     probes = [(i, words, change) for i in doubtful for words, change in CHANGES.items()]
     changed = [replace(runs[i], motion=runs[i].motion.times(1.0 + change)) for i, _, change in probes]
     trials = try_all(changed, [doubtful[i].outcome.substeps for i, _, _ in probes], quiet_s, stop)
@@ -84,7 +84,7 @@ def look_for_chaos(
 
 
 def _with_peak_of(probe: Trial, fine: Trial, outcome: Outcome, tolerance: float, pier: Pier, changed: str) -> Outcome:
-    """Return ``outcome`` with the error of θ_max that ``probe``, under a ``changed`` motion, shows; none if it is chaotic."""
+    """Return ``outcome`` with the error of θ_max raised by ``probe``, under a ``changed`` motion; withdrawn if it is chaotic."""
     tolerance *= pier.alpha
     if outcome.change_in_motion is not None:
         within = MARGIN * abs(probe.outcome.theta_max_in_motion - outcome.theta_max_in_motion)
@@ -113,7 +113,7 @@ def _with_peak_of(probe: Trial, fine: Trial, outcome: Outcome, tolerance: float,
 
 
 def without_error(outcome: Outcome, reason: str) -> Outcome:
-    """Return ``outcome`` with a chaotic peak, of which no error is claimed, and the ``reason``."""
+    """Return ``outcome`` with its peak marked as chaotic for ``reason``, without an error; unchanged if it has none."""
     if outcome.theta_max_error is None:
         return outcome
     chaos = f"the peak is chaotic, {reason}: no error of it is claimed"
@@ -121,26 +121,26 @@ def without_error(outcome: Outcome, reason: str) -> Outcome:
 
 
 def _with_residuals_of(probe: Outcome, outcome: Outcome, tolerance: float, pier: Pier) -> Outcome:
-    """Return ``outcome`` with errors of its residuals of at least what ``probe`` tells; none if they are chaotic."""
+    """Return ``outcome`` with the errors of its residuals raised by ``probe``; withdrawn if they are chaotic."""
     if outcome.theta_res_error is None:
         return outcome
-    if MARGIN * _residuals_apart(probe, outcome, pier) > tolerance * pier.alpha:
+    if MARGIN * _residual_difference(probe, outcome, pier) > tolerance * pier.alpha:
         chaos = (
             f"the residuals are chaotic, a motion {CHANGES['stronger']:g} off moves them: no error of them is claimed"
         )
         return outcome.noted(chaos, theta_res_error=None, settlement_error=None, chaotic=True)
-    tilted, sunk = (MARGIN * _apart(probe, outcome, name) for name in ("theta_res", "settlement"))
+    tilted, sunk = (MARGIN * _difference(probe, outcome, name) for name in ("theta_res", "settlement"))
     settlement_error = None if outcome.settlement_error is None else max(outcome.settlement_error, sunk)
     return outcome.changed(theta_res_error=max(outcome.theta_res_error, tilted), settlement_error=settlement_error)
 
 
-def _residuals_apart(one: Outcome, other: Outcome, pier: Pier) -> float:
-    """Return how far the residuals of two outcomes lie apart, the settlements over half the width [rad]."""
-    return max(_apart(one, other, "theta_res"), _apart(one, other, "settlement") / pier.half_width)
+def _residual_difference(one: Outcome, other: Outcome, pier: Pier) -> float:
+    """Return the greatest difference of the residuals of two outcomes [rad], settlements over half the width."""
+    return max(_difference(one, other, "theta_res"), _difference(one, other, "settlement") / pier.half_width)
 
 
-def _apart(one: Outcome, other: Outcome, name: str) -> float:
-    """Return how far a result of two outcomes lies apart: 0 where neither has one, infinite where one alone has it."""
+def _difference(one: Outcome, other: Outcome, name: str) -> float:
+    """Return the difference of a result of two outcomes: 0 if neither has it, inf if only one has."""
     first, second = getattr(one, name), getattr(other, name)
     if first is None or second is None:
         return 0.0 if first is second else math.inf

@@ -7,7 +7,7 @@ from rockbatch.motions.motion import Motion
 from rockbatch.outcome.changes import change_of_devices
 from rockbatch.outcome.outcome import Failure, Outcome
 from rockbatch.pier import Base, Damper, FootingBase, Pier
-from rockbatch.simulation.agreement import COUNTS, Agreement, agreement, flight_of, settled, windows
+from rockbatch.simulation.agreement import COUNTS, Agreement, agreement, converged_extent, flight_of, windows
 from rockbatch.simulation.beds import with_fewer_strips, with_strips_error
 from rockbatch.simulation.chaos import MARGIN, look_for_chaos, magnifies, residuals_wander, without_error
 from rockbatch.simulation.models import first_substeps, readings
@@ -17,14 +17,14 @@ HALVINGS = 8
 """Greatest number of halvings of the step before a run counts as not converged."""
 
 ROUNDING = 1e-12
-"""Least error of θ/α that is ever claimed."""
+"""Least error of θ/α that is claimed without a viscous damper of exponent < 1."""
 
 ROUGH = 3e-8
-"""Least error of θ/α that is claimed with a viscous damper whose force is a root of the speed: its error at a velocity reversal
-does not fall evenly with the step, so that two runs may agree better than either is right."""
+"""Least error of θ/α that is claimed with a viscous damper of exponent < 1: its error at a velocity reversal does not fall
+smoothly with the step, so that two runs may agree better than either is right."""
 
 CHANCE = 4.0
-"""Error of what need not agree, over what halving the step still changed: the peak within a motion, and demands on devices."""
+"""Claimed error over the change by halving the step, for results that need not converge: peaks in a motion, device demands."""
 
 
 ERRORS = (
@@ -35,7 +35,7 @@ ERRORS = (
     "top_drift_max_error",
     "devices_error",
 )
-"""Fields of an Outcome that hold the errors of what a run came to."""
+"""Fields of an Outcome that hold errors of its results."""
 
 
 def run_to_tolerance(pier: Pier, base: Base, motion: Motion, tolerance: float, quiet_s: float = 2.0) -> Outcome:
@@ -48,12 +48,12 @@ def run_to_tolerance(pier: Pier, base: Base, motion: Motion, tolerance: float, q
 def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, stop: Stop) -> list[Outcome | None]:
     """Return the converged outcome of each run: halve its step until results agree to ``tolerance`` on θ_max/α and on θ_res/α.
 
-    The finer result is kept, and the difference is its estimated error: the coarser one's, hence on the safe side. The
-    trajectories, times of overturning and of flight have to agree too, since an early peak says nothing of what comes after it:
-    if they do not, it takes more halvings (:data:`PAIRS`). The first step respects the springs' frequency, because two coarse
+    The finer result is kept, and its difference from the coarser one is its estimated error, which is on the safe side. The
+    trajectories, times of overturning and of flight have to agree too, since an early peak says nothing about later motion:
+    if they do not, more halvings are needed (:data:`PAIRS`). The first step respects the springs' frequency, because two coarse
     runs that agree prove nothing otherwise. A run that has not converged after :data:`HALVINGS`, or would take more than
     :data:`rockbatch.simulation.runs.MOST_STEPS` steps, keeps its best values and fails with the reason; counts that have not
-    converged are a note. ``None`` for those that were stopped.
+    converged are a note. ``None`` for runs that were stopped.
     """
     outcomes: list[Outcome | None] = [None] * len(runs)
     first = [first_substeps(run.pier, run.base, run.motion.dt) for run in runs]
@@ -73,10 +73,10 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
             fine = Trial(_with_errors(runs[i], fine.outcome, coarse.outcome), fine.extremes)
             levels[i].append(fine)
             agreements[i].append(agreement(fine, coarse, tolerance * pier.alpha, pier))
-            if extent := settled(agreements[i]):
+            if extent := converged_extent(agreements[i]):
                 until = _window_at(runs[i], runs[i].motion.duration, quiet_s)
                 peak = _window_at(runs[i], fine.outcome.t_max, quiet_s)
-                outcome = _noted(fine, coarse, agreements[i][-1], tolerance * pier.alpha, peak)
+                outcome = _with_notes(fine, coarse, agreements[i][-1], tolerance * pier.alpha, peak)
                 outcome = _with_peak_in_motion(runs[i], fine, coarse, outcome, tolerance * pier.alpha, until)
                 outcome = _with_drift(runs[i], outcome)
                 magnified = magnifies(runs[i], fine, coarse, outcome, until)
@@ -97,11 +97,10 @@ def _with_strips_error(
 ) -> list[Outcome | None]:
     """Return ``outcomes`` with the share of the strips in the errors of those on a footing, by a run on half as many."""
     found = list(outcomes)
-    fewer = [
-        (i, Run(run.pier, with_fewer_strips(run.base), run.motion), outcome.substeps)
-        for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True))
-        if isinstance(run.base, FootingBase) and outcome is not None and outcome.status == "ok"
-    ]
+    fewer = list[tuple[int, Run, int]]()
+    for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True)):
+        if isinstance(run.base, FootingBase) and outcome is not None and outcome.status == "ok":
+            fewer.append((i, Run(run.pier, with_fewer_strips(run.base), run.motion), outcome.substeps))
     trials = try_all([run for _, run, _ in fewer], [steps for *_, steps in fewer], quiet_s, stop) if fewer else []
     for (i, *_), trial in zip(fewer, trials, strict=True):
         outcome = found[i]
@@ -110,12 +109,13 @@ def _with_strips_error(
 
 
 def _window_at(run: Run, t: float, quiet_s: float) -> int:
-    """Return the window of a run's extremes in which ``t`` [s] lies."""
+    """Return the index of the window of a run's extremes that contains ``t`` [s]."""
     samples = run.motion.npts - 1 + quiet_samples(quiet_s, run.motion.dt)
     return int(window_of(t / run.motion.dt, float(samples))[0])
 
 
 def _steps_of_next(run: Run, levels: Sequence[Trial], quiet_s: float) -> float:
+    """Return the steps of a run with half the step of the last of its ``levels``."""
     return steps_of(run.motion, 2 * levels[-1].outcome.substeps, quiet_s)
 
 
@@ -126,8 +126,11 @@ def _least_error(base: Base) -> float:
 
 
 def _with_errors(run: Run, fine: Outcome, coarse: Outcome) -> Outcome:
-    """Return ``fine`` with its differences from ``coarse`` as errors."""
-    if fine.status != coarse.status or fine.status in ("overturned", "failed"):  # θ_max is where the run ended
+    """Return ``fine`` with its differences from ``coarse`` as errors; without, if it overturned, failed or ended otherwise."""
+    if fine.status != coarse.status or fine.status in (
+        "overturned",
+        "failed",
+    ):  # θ_max is the rotation at which the run ended
         return fine
     least = _least_error(run.base) * run.pier.alpha
     errors = {"theta_max_error": max(abs(fine.theta_max - coarse.theta_max), least)}
@@ -146,10 +149,10 @@ def _with_errors(run: Run, fine: Outcome, coarse: Outcome) -> Outcome:
 def _with_peak_in_motion(
     run: Run, fine: Trial, coarse: Trial, outcome: Outcome, tolerance: float, until: int
 ) -> Outcome:
-    """Return ``outcome``, that of ``fine``, with the error of the peak within the motion, whose last window is ``until``.
+    """Return the ``outcome`` of ``fine`` with the error of the peak within the motion, which ends in the window ``until``.
 
-    It is :data:`CHANCE` times the greatest change of any extreme until then from ``coarse``, of twice the step. It has none if
-    that is above the ``tolerance`` [rad].
+    It is :data:`CHANCE` times the greatest change of any extreme until then from ``coarse``, of twice the step; None if that
+    exceeds the ``tolerance`` [rad].
     """
     peaks = abs(fine.outcome.theta_max_in_motion - coarse.outcome.theta_max_in_motion)
     change = CHANCE * max(peaks, float(windows(fine, coarse)[1][:until].max(initial=0.0)))
@@ -159,9 +162,9 @@ def _with_peak_in_motion(
 
 
 def _with_drift(run: Run, outcome: Outcome) -> Outcome:
-    """Return ``outcome`` with twice the drift of its residuals between their readings as a part of their errors.
+    """Return ``outcome`` with twice the drift of its residuals between the readings added to their errors.
 
-    The residuals depend by as much on when the record ends: vibration that nothing damps comes and goes.
+    Undamped vibration comes and goes, so that the residuals depend by as much on when the record ends.
     """
     if outcome.theta_res_error is None or outcome.settlement_error is None or outcome.theta_res_drift is None:
         return outcome
@@ -172,11 +175,11 @@ def _with_drift(run: Run, outcome: Outcome) -> Outcome:
     )
 
 
-def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak: int) -> Outcome:
-    """Return the outcome with a note on what has not converged beside it; ``tolerance`` in rad, ``peak`` the window of the peak.
+def _with_notes(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak: int) -> Outcome:
+    """Return the outcome of ``fine`` with notes on other results that did not converge; ``tolerance`` in rad.
 
-    If rotations before the peak have not converged, no error is claimed: the peak depends on digits that no record has, and two
-    runs that agree on it agree by chance.
+    If rotations up to the window ``peak`` of the peak have not converged, no error is claimed: the peak then depends on digits
+    that no record has, and runs that agree on it do so by chance.
     """
     finer, coarser, notes = fine.outcome, coarse.outcome, list[str]()
     if finer.status != "failed":
@@ -201,7 +204,7 @@ def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak
 
 
 def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: str) -> Outcome:
-    """Return the finest of a run's ``levels``, with its values, as failed: it claims no error."""
+    """Return the finest of a run's ``levels`` as a failed outcome: it keeps its values, and claims no errors."""
     finest = levels[-1].outcome
     if finest.status == "failed":
         return finest
@@ -209,11 +212,8 @@ def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: 
     if len(levels) > 1:
         coarser = levels[-2].outcome
         errors = (("theta_max", finest.theta_max_error), ("theta_res", finest.theta_res_error))
-        changes = [
-            f"{name} by {error:.1e} rad"
-            for name, error in errors
-            if error is not None and error > tolerance * pier.alpha
-        ]
+        large = [(name, error) for name, error in errors if error is not None and error > tolerance * pier.alpha]
+        changes = [f"{name} by {error:.1e} rad" for name, error in large]
         if finest.status == coarser.status == "overturned":
             changes = [f"the time of overturning, from {coarser.t_end:.2f} to {finest.t_end:.2f} s"]
         elif finest.status == coarser.status == "flight" and not changes:

@@ -1,4 +1,4 @@
-"""Forces along a recorded run, and those that a designer sizes: peaks, the hardest impact, uplift."""
+"""Forces along a recorded run, and design demands: peaks, the hardest impact, uplift."""
 
 import math
 from collections.abc import Sequence
@@ -27,8 +27,8 @@ LANDINGS = (types.IMPACT_LEFT, types.IMPACT_RIGHT, types.IMPACT_BOTH, types.REST
 
 
 class Impacts(NamedTuple):
-    """Impacts of a run, each shape (k,): index of the row after it, what lands (−1 left, 1 right, 0 both), the greatest speed
-    of what lands [m/s], and the impulse on the pier per unit mass [m/s], horizontal and vertical."""
+    """Impacts of a run, shape (k,) each: index of the row after it, landing pivot (−1 left, 1 right, 0 both), its greatest speed
+    [m/s], and horizontal and vertical impulse on the pier per unit mass [m/s]."""
 
     after: np.ndarray
     side: np.ndarray
@@ -38,16 +38,16 @@ class Impacts(NamedTuple):
 
 
 def at_rows(run: Run, rows: np.recarray) -> np.recarray:
-    """Return the forces (core.observe.forces.Forces) at every row of a run that has both sides of every event."""
+    """Return the forces (core.observe.forces.Forces) at ``rows`` that include both sides of every event."""
     forces = np.recarray(len(rows), FORCES)
     _observe(run, rows, 0.0, forces, np.zeros(0))
     return forces
 
 
 def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarray, extremes: Samples) -> np.record:
-    """Fill ``forces`` at the rows, or the ``extremes`` of all, of a run whose ``rows`` are then every step; return a Noted.
+    """Fill ``forces`` at the rows, or ``extremes`` over ``rows`` at every step; return the record Noted.
 
-    Friction counts where N > ``least_normal`` M g.
+    An empty array is not filled. The friction demand is taken where N > ``least_normal`` M g.
     """
     noted = np.zeros(1, NOTED).view(np.recarray)
     noted.slides = noted.pulls = NEVER
@@ -65,7 +65,7 @@ def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarr
 
 
 def _friction_hold(pier: Pier, base: RigidBase) -> Hold:
-    """Return what friction dampers can do against a pier at rest that begins to turn about its left or right pivot."""
+    """Return the resistance of friction dampers to a pier that begins to turn about its left or right pivot."""
     numbers = []
     for side in (-1.0, 1.0):
         rubs = [
@@ -89,12 +89,12 @@ def _outline(pier: Pier, base: RigidBase) -> Outline:
 
 
 def _events(rows: np.recarray, kinds: Sequence[float]) -> np.ndarray:
-    """Return the indices of the rows behind events of these ``kinds``."""
+    """Return the indices of the rows after events of these ``kinds``."""
     return np.flatnonzero(np.isin(rows.kind, kinds))
 
 
 def impacts(rows: np.recarray, forces: np.recarray) -> Impacts:
-    """Return the impacts between neighbouring rows: the speed before, and by how much the momentum changes."""
+    """Return the impacts in ``rows``: speeds before them, and changes of momentum as impulses."""
     landed = _events(rows, LANDINGS)
     before, kind = landed - 1, rows.kind[landed]
     speed_left, speed_right = np.abs(forces.speed_left[before]), np.abs(forces.speed_right[before])
@@ -115,7 +115,7 @@ def forces_table(t: Samples, forces: np.recarray, gravity: float) -> "pd.DataFra
 
 
 def impacts_table(rows: np.recarray, forces: np.recarray) -> "pd.DataFrame":
-    """Return :attr:`Response.impacts` of a run with these forces."""
+    """Return :attr:`Response.impacts` of a run with the ``forces`` at its ``rows``."""
     landings = impacts(rows, forces)
     columns = [rows.t[landings.after], landings.speed, landings.horizontal, landings.vertical]
     table = pd.DataFrame(dict(zip(IMPACT_UNITS, columns, strict=True)))
@@ -124,10 +124,10 @@ def impacts_table(rows: np.recarray, forces: np.recarray) -> "pd.DataFrame":
 
 
 def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakForces, str]:
-    """Return the demands of a run on the design, and a note on what the model does not follow of it; empty if nothing.
+    """Return the design demands of a run, and a note on motion that the model does not follow; "" without.
 
-    ``rows`` are those of a history with every step. A pier counts until it leans beyond α for good. Friction counts while N is
-    above the share ``least_normal`` of the weight.
+    ``rows`` are those of a history with every step; demands end when the pier leans beyond α for good. The friction demand is
+    taken while N is above the share ``least_normal`` of the weight.
     """
     pier = run.pier
     standing = np.flatnonzero(np.abs(rows.theta) <= pier.alpha)
@@ -137,7 +137,7 @@ def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakF
     most = Forces(*extremes.tolist())
     events = rows[(rows.kind > 0.0) | (rows.kind == types.BEFORE_EVENT)].view(np.recarray)
     landings = impacts(events, at_rows(run, events))
-    # Yield is located to rounding; a dashpot adds to what the spring bears
+    # Yield is located up to rounding, which must not exceed the capacity; a dashpot adds to the spring's force
     capacity = run.base.eta if isinstance(run.base, YieldingBase) and not run.base.zeta else math.inf
     hardest, limit = _hardest(run, events, landings), run.base.friction
     peaks = PeakForces(
@@ -163,7 +163,7 @@ def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakF
 
 
 def _hardest(run: Run, events: np.recarray, landings: Impacts) -> dict[str, float]:
-    """Return the demands of the hardest impact, and the greatest friction demand of any; empty if none occurs."""
+    """Return fields of PeakForces: demands of the fastest landing, and the greatest impact friction; empty without impacts."""
     if len(landings.after) == 0:
         return {}
     hardest = int(landings.speed.argmax())
@@ -179,10 +179,10 @@ def _hardest(run: Run, events: np.recarray, landings: Impacts) -> dict[str, floa
 
 
 def _per_bounce(run: Run, events: np.recarray, after: np.ndarray) -> Samples | float:
-    """Return the factor from the quotient of the impulses of each impact to that of its bounces.
+    """Return the factor from J_h/J_v of each impact in total to that of a single bounce; 1 except when coming to rest.
 
-    Coming to rest sums up ever lower bounces, each of which leaves the share e of the velocity: J_h is (1 − e) and J_v (1 + e) of
-    what a stop at once would take (THEORY.md, Forces).
+    Rest sums up ever lower bounces, each of which leaves the share e of the velocity: for one, J_h is (1 − e) and J_v (1 + e)
+    of the impulses of an immediate stop (THEORY.md, Forces).
     """
     if run.base.on_springs:
         return 1.0
@@ -191,7 +191,7 @@ def _per_bounce(run: Run, events: np.recarray, after: np.ndarray) -> Samples | f
 
 
 def _first_uplift(run: Run, rows: np.recarray) -> dict[str, float]:
-    """Return the time of the first uplift, and the magnitude of the horizontal ground acceleration then; empty if none occurs."""
+    """Return fields of PeakForces: time of the first uplift, and horizontal ground acceleration then; empty without uplift."""
     lifted = _events(rows, _UPLIFTS)
     if len(lifted) == 0:
         return {}
@@ -200,7 +200,7 @@ def _first_uplift(run: Run, rows: np.recarray) -> dict[str, float]:
 
 
 def _not_followed(run: Run, noted: Noted, peaks: PeakForces, least_normal: float) -> str:
-    """Return a note on what the model does not follow: sliding, and a rigid base that would have to pull."""
+    """Return a note on sliding, keys that carry the shear, and tension on rigid ground, which the model does not follow."""
     notes = []
     if noted.pulls != NEVER and not run.base.on_springs:
         notes.append(
@@ -225,12 +225,12 @@ def _not_followed(run: Run, noted: Noted, peaks: PeakForces, least_normal: float
 
 
 def _in_kilonewtons(pier: Pier, force: float) -> str:
-    """Return a force per unit mass [m/s²] in kN, after a comma; empty if the mass is not known."""
+    """Return a force per unit mass [m/s²] as text in kN, after a comma; "" if the mass is not known."""
     return "" if pier.mass_t is None else f", {pier.mass_t * force:,.0f} kN"
 
 
 LARGE_ERROR = 0.01
-"""Error of a force, as a share of it, beyond which a run carries a note."""
+"""Relative error of a force above which a run has a note."""
 
 _SIZED = {
     "base shear": Sized(("base_shear",), "force"),
@@ -247,13 +247,13 @@ _SIZED = {
     "angular velocity": Sized(("omega_over_p",), "rotation"),
     "base shear on the keys": Sized(("key_shear",), "force"),
 }
-"""Fields of PeakForces that have an error, those of both pivots together, and the scale of each."""
+"""Quantities of PeakForces that have an error, with their fields and scales."""
 
 
 def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier, chance: float) -> tuple[PeakForces, str]:
-    """Return ``fine`` with its error: ``chance`` times the greatest change of a quantity from that of twice the step.
+    """Return ``fine`` with ``chance`` times the greatest relative change from ``coarse`` as its error, and a note if it is large.
 
-    The second value is a note on what has not converged; empty if all has.
+    ``coarse`` are the demands with twice the step.
     """
     worst, most = greatest_change(_SIZED, fine, coarse, pier)
     note = f"forces not settled: halving the step still changed the {worst} by {most:.1%}" if most > LARGE_ERROR else ""

@@ -1,4 +1,4 @@
-"""Histories of runs: the rows that the core wrote, with names, units and derived quantities."""
+"""Histories of runs: rows of the core as tables, with derived quantities in SI units."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -54,9 +54,9 @@ def histories(
     polarity: str = "+",
     scale: float = 1.0,
 ) -> Response:
-    """Return the histories of a recorded run that ended with this ``status``, and those that ``observers`` add.
+    """Return the response of a recorded run that ended with ``status``, with the tables that ``observers`` add.
 
-    The motion of the run is scaled and turned already; ``polarity`` and ``scale`` say how.
+    The motion of the run already has the ``polarity`` and the ``scale``, which are only stated.
     """
     run, rows = recording.run, recording.at_samples.rows
     pier, base, motion = run.pier, run.base, run.motion
@@ -90,7 +90,7 @@ def histories(
 
 
 def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str, str, int, int]]:
-    """Return the time, kind and pivot of every event, and the rows before and after it."""
+    """Return time, kind and pivot of every event, and the indices of the rows before and after it, in order of time."""
     kinds = rows.kind
     events = []
     for row in np.flatnonzero(kinds > 0):
@@ -104,7 +104,7 @@ def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str,
 
 
 def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Samples]:
-    """Return rotation and rate, deflection of a shaft that bends, and the energy stored since the start."""
+    """Return columns of a history on rigid ground: rotation, rate, energy since the start, and deflection of an elastic shaft."""
     m, theta, v = block(pier, base), rows.theta, rows.v
     side = np.where(rows.left != rows.right, rows.right - rows.left, (1.0 - m.deck) * rows.bore + m.deck * rows.top)
     lever = m.height * np.cos(theta) + side * m.half_width * np.sin(theta)
@@ -122,7 +122,7 @@ def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Sa
 
 
 def _energy_of_bending(m: FlexibleBlock, rows: np.recarray, key: Samples) -> Samples:
-    """Return kinetic, potential and elastic energy [J/kg] of a pier whose shaft bends, about the base's point at ``key``."""
+    """Return kinetic, potential and elastic energy [J/kg] of a pier with an elastic shaft, about the base point at ``key`` b."""
     b, sine, cosine, u = key * m.half_width, np.sin(rows.theta), np.cos(rows.theta), rows.u
     turning = m.inertia + m.height**2 + b**2 + u * (m.second * u - 2.0 * m.first * b)
     slope, rise = (
@@ -150,10 +150,17 @@ def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
     if base.restraints:
         energy = energy + restraints.stored(pier, base, rows)
     columns = {
-        "theta": rows.theta, "omega": rows.omega, "v": rows.v, "z_left": nothing, "z_right": nothing, "v_left": middle + rise,
-        "v_right": middle - rise, "force_left": -0.5 * (bed.force - of_edges), "force_right": -0.5 * (bed.force + of_edges),
+        "theta": rows.theta,
+        "omega": rows.omega,
+        "v": rows.v,
+        "z_left": nothing,
+        "z_right": nothing,
+        "v_left": middle + rise,
+        "v_right": middle - rise,
+        "force_left": -0.5 * (bed.force - of_edges),
+        "force_right": -0.5 * (bed.force + of_edges),
         "energy": energy,
-    }  # fmt: skip
+    }
     state = np.recarray(len(rows), np.dtype([(name, "f8") for name in columns]))
     for name, values in columns.items():
         state[name] = values
@@ -161,7 +168,7 @@ def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
 
 
 def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str, Samples]:
-    """Return state, pivots and stored energy since the start: kinetic, potential and elastic (THEORY.md, Results of a run)."""
+    """Return columns of a history on springs: state, pivots, forces, and energy since the start (THEORY.md, Results of a run)."""
     m = springs(pier, base)
     v, theta, z_left, z_right = rows.v, rows.theta, rows.z_left, rows.z_right
     b, h = m.half_width, m.height

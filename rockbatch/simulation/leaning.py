@@ -1,4 +1,4 @@
-"""Rocking and lean of a pier: rotation about where it would rest on its base (THEORY.md, Results of a run)."""
+"""Rocking and lean of a pier: rotation about its rest position, and that rest position (THEORY.md, Results of a run)."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -13,17 +13,17 @@ from rockbatch.simulation.runs import Run, Stop
 from rockbatch.simulation.starting import start_of
 
 MOSTLY = 0.5
-"""Least share of lean in θ_max, and share of the greatest rocking above that at the peak, for the peak to count as lean."""
+"""Least lean over θ_max, and greatest rocking at the peak over the greatest rocking, for a peak to count as lean."""
 
 PARTS = 8
-"""Parts of the interval between two rows in which the greatest rocking is sought."""
+"""Parts of the interval between two rows in the search for the greatest rocking."""
 
 
 class Apart(NamedTuple):
     """Rocking and lean of a run [rad].
 
-    ``rocking`` is the greatest |θ − lean|, at ``t`` [s]; ``lean`` is the lean at the peak of |θ|, to its side, and
-    ``rocking_then`` the rest of the peak.
+    ``rocking`` is the greatest |θ − lean|, at ``t`` [s]; ``lean`` is the lean at the peak of |θ|, positive to its side, and
+    ``rocking_then`` the remainder of the peak.
     """
 
     rocking: float
@@ -33,7 +33,7 @@ class Apart(NamedTuple):
 
     @property
     def leans(self) -> bool:
-        """Return whether the peak is mostly lean, while the pier rocks far less than it has."""
+        """Return True if the peak is mostly lean, with far less rocking than the greatest."""
         return self.lean >= MOSTLY * (self.lean + self.rocking_then) and self.rocking_then < MOSTLY * self.rocking
 
 
@@ -51,12 +51,12 @@ class Path(NamedTuple):
 
 
 def may_lean(outcome: Outcome) -> bool:
-    """Return whether the greatest rotation may be mostly lean: the pier stands, and rests at half of it or more."""
+    """Return True if the greatest rotation may be mostly lean: the pier stands, and rests at half of it or more."""
     return outcome.status == "ok" and abs(outcome.theta_res or 0.0) >= MOSTLY * outcome.theta_max > 0.0
 
 
 def apart(pier: Pier, base: ElasticBase, rows: np.recarray) -> Apart:
-    """Separate rocking from lean in the ``rows`` of a run, at samples and both sides of events."""
+    """Return rocking and lean of a run from its ``rows`` at samples and both sides of events."""
     path = Path(*(np.ascontiguousarray(rows[name]) for name in Path._fields))  # columns are read many times
     theta, lean, t = path.theta, lean_of(pier, base, path), path.t
     swing = theta - lean
@@ -66,7 +66,7 @@ def apart(pier: Pier, base: ElasticBase, rows: np.recarray) -> Apart:
 
 
 def greatest_swing(t: Samples, theta: Samples, omega: Samples, swing: Samples) -> tuple[float, float]:
-    """Return the greatest |``swing``| [rad], θ less what is straight between rows, and its time, which may lie between rows."""
+    """Return the greatest |``swing``| [rad] and its time [s], also between rows; θ − ``swing`` is taken as linear there."""
     h, size = np.diff(t), np.abs(swing)
     greatest = size.argmax()
     most, instant = float(size[greatest]), float(t[greatest])
@@ -82,7 +82,7 @@ def greatest_swing(t: Samples, theta: Samples, omega: Samples, swing: Samples) -
 
 
 def lean_of(pier: Pier, base: ElasticBase, rows: np.recarray | Path) -> Samples:
-    """Return the rotation [rad] at which the pier would rest on its base as it is at every row (THEORY.md, eq. 20)."""
+    """Return the static rest rotation [rad] on the base as deformed at every row (THEORY.md, eq. 20)."""
     left, right = unstressed(pier, base, rows)
     b = pier.half_width
     return 0.5 * (left - right) / b / tilt_over_residual(pier.gravity, pier.height, b, vertical_frequency(pier, base))
@@ -103,7 +103,7 @@ def unstressed(pier: Pier, base: ElasticBase, rows: np.recarray | Path) -> tuple
 
 
 def _last_borne(unstressed: Samples, borne: Samples, at_first: float) -> Samples:
-    """Return the unstressed position of a support, which stays where it was, ``at_first`` [m], while its pivot is away."""
+    """Return the unstressed position of a support [m]; without contact it keeps the last one, or ``at_first``."""
     if borne.all():
         return unstressed
     last = np.maximum.accumulate(np.where(borne, np.arange(len(borne)), -1))
@@ -111,7 +111,7 @@ def _last_borne(unstressed: Samples, borne: Samples, at_first: float) -> Samples
 
 
 def with_rocking(outcome: Outcome, parts: Apart, alpha: float) -> Outcome:
-    """Return ``outcome`` with rocking and lean, and a note if the peak is lean; angles in the note are over ``alpha``."""
+    """Return ``outcome`` with rocking and lean, and a note if the peak is mostly lean, in units of ``alpha`` [rad]."""
     lean = None if outcome.status == "flight" else parts.lean
     outcome = outcome.changed(theta_rocking=parts.rocking, theta_lean=lean)
     if outcome.status != "ok" or not parts.leans:
@@ -124,7 +124,7 @@ def with_rocking(outcome: Outcome, parts: Apart, alpha: float) -> Outcome:
 
 
 def with_error_of_rocking(outcome: Outcome, fine: Apart, coarse: Apart) -> Outcome:
-    """Return ``outcome`` with the errors of rocking and lean: what halving the step from ``coarse`` to ``fine`` changed."""
+    """Return ``outcome`` with the errors of rocking and lean: their changes from ``coarse`` to ``fine``."""
     return outcome.changed(
         theta_rocking_error=abs(fine.rocking - coarse.rocking),
         theta_lean_error=None if outcome.theta_lean is None else abs(fine.lean - coarse.lean),
@@ -134,23 +134,22 @@ def with_error_of_rocking(outcome: Outcome, fine: Apart, coarse: Apart) -> Outco
 def with_lean(
     runs: Sequence[Run], outcomes: Sequence[Outcome], quiet_s: float, wait: bool = True, stop: Stop | None = None
 ) -> list[Outcome]:
-    """Return ``outcomes`` with rocking and lean apart where the peak is lean, on yielding springs.
+    """Return ``outcomes`` with rocking and lean of those on yielding springs whose peak is mostly lean.
 
-    After the record nothing shakes the pier, and it swings no further about its rest: a run to the end of its quiet time, a
-    quarter of the whole, tells most peaks from lean. Runs that are too long to be written down stay as they are, and all that
-    come after ``stop``.
+    After the record the rocking does not grow, so that a run to the end of its quiet time, a quarter of the whole, rules most
+    candidates out. Runs that are too long to be recorded are not changed, nor those that come after ``stop``.
     """
     found = list(outcomes)
     mixed = [i for i, run in enumerate(runs) if isinstance(run.base, YieldingBase) and may_lean(outcomes[i])]
     early = [i for i in mixed if found[i].t_max <= runs[i].motion.duration + quiet_s]
-    of_record = _apart(runs, found, early, quiet_s, False, stop)
+    of_record = _lean_of_runs(runs, found, early, quiet_s, False, stop)
     mixed = [i for i in mixed if i not in early or (i in of_record and of_record[i].leans)]
-    for i, parts in _apart(runs, found, mixed, quiet_s, wait, stop).items():
+    for i, parts in _lean_of_runs(runs, found, mixed, quiet_s, wait, stop).items():
         found[i] = with_rocking(found[i], parts, runs[i].pier.alpha)
     return found
 
 
-def _apart(
+def _lean_of_runs(
     runs: Sequence[Run],
     outcomes: Sequence[Outcome],
     numbers: Sequence[int],
@@ -158,7 +157,7 @@ def _apart(
     wait: bool,
     stop: Stop | None,
 ) -> dict[int, Apart]:
-    """Return rocking and lean of the runs with these ``numbers``, which are on springs."""
+    """Return rocking and lean by the ``numbers`` of runs on springs, those too long to be recorded left out."""
     chosen, their = [runs[i] for i in numbers], [outcomes[i] for i in numbers]
     parts = {}
     for j, recording in recorded_side_by_side(chosen, their, quiet_s, wait, stop):

@@ -1,4 +1,4 @@
-"""Numbers that the core takes for piers, bases and motions, and the steps that these need."""
+"""The core's numbers for piers, bases and motions, and the steps that these need."""
 
 import math
 from functools import lru_cache
@@ -44,34 +44,48 @@ from rockbatch.pier import (
 )
 
 FREQUENCY_STEP = 0.2
-"""Largest ω h of a first run; the second, with half the step, is then below 0.1, where outcomes were never wrong."""
+"""Largest ω h of a first run; the second, with half the step, has at most 0.1, where outcomes were never wrong."""
 
 FIRST_ON_ROCK = 2
 """Least steps per sample of a first run on a rigid base. With one, that run and the next may take the same sub-steps, since
-both begin anew at every impact, and agree by chance."""
+both restart at every impact, and agree by chance."""
 
 STABLE_STEP = 2.0
-"""Largest ω h that is run at all: Runge–Kutta 4 blows up an oscillator beyond 2√2."""
+"""Largest ω h that is run at all: Runge–Kutta 4 is unstable for an oscillator beyond 2√2."""
 
 PATIENCE = 40.0
-"""Time in 1/p for which a run goes on after the record at most, while by its energy the pier could still turn further or
-overturn. By then it has left any unstable equilibrium that rounding can hold."""
+"""Longest time after the record, in 1/p, for which a run continues while its energy allows a greater rotation or overturning.
+By then it has left any unstable equilibrium that rounding can hold."""
 
 ROUNDING = 1e-12
-"""Of the velocities g/ω_v on springs and R0 α p on a rigid base: below it a pivot counts as having none."""
+"""Velocity of a pivot that counts as 0, over g/ω_v on springs and R0 α p on a rigid base."""
 
 STEEP = 100.0
-"""In units of p: rate at which a viscous damper with an exponent below 1 slows a block on rigid ground that hardly moves."""
+"""Greatest decay rate, in units of p, by a viscous damper of exponent < 1 on a slow block on rigid ground."""
 
 READ_AFTER = 5.0
-"""Periods 2π/ω_v of the vertical vibration from the end of the record to the moment at which residuals are read."""
+"""Periods 2π/ω_v of vertical vibration between the end of the record and the reading of residuals."""
 
 
 IDLE = Element(
-    kind=VISCOUS, strength=0.0, stiffness=0.0, coefficient=0.0, exponent=1.0, prestress=0.0, offset=0.0, linear_below=0.0,
-    slope=0.0, give=0.0, start=0.0, returned=1.0, quickest=0.0, height=0.0, swing=0.0, way=1.0,
-)  # fmt: skip
-"""An element without force in the middle of the base, from which others differ."""
+    kind=VISCOUS,
+    strength=0.0,
+    stiffness=0.0,
+    coefficient=0.0,
+    exponent=1.0,
+    prestress=0.0,
+    offset=0.0,
+    linear_below=0.0,
+    slope=0.0,
+    give=0.0,
+    start=0.0,
+    returned=1.0,
+    quickest=0.0,
+    height=0.0,
+    swing=0.0,
+    way=1.0,
+)
+"""A forceless element in the middle of the base, from which others are made."""
 
 
 if unknown := set(CODES) ^ {"elastic", *LAWS}:
@@ -81,15 +95,15 @@ if unknown := set(CODES) ^ {"elastic", *LAWS}:
 
 
 Line = Any
-"""A run as the core takes it, a NamedTuple of its system."""
+"""The core's numbers for a run: a NamedTuple whose class depends on the system."""
 
 
 class Start(NamedTuple):
-    """State in which a pier is held before it is let go; of one that stands in its static state all is 0.
+    """State in which a pier is held before its release; all 0 for a pier at rest.
 
     ``v`` of the centre of mass above unstressed springs [m], ``theta`` [rad], forces of the springs over F_y, states of all
-    devices, ``level``, v of the pier before it was pulled [m], NaN where it stands, and where its supports were then
-    ``unstressed`` [m].
+    devices, ``level``, v of the pier before it was pulled [m], NaN for a pier at rest, and the ``unstressed`` position of its
+    supports then [m].
     """
 
     v: float = 0.0
@@ -103,7 +117,7 @@ class Start(NamedTuple):
 
 @lru_cache(maxsize=4096)
 def springs(pier: Pier, base: ElasticBase) -> Springs:
-    """Return the core's numbers for ``pier`` on springs: plain floats, per unit mass."""
+    """Return the core's numbers for ``pier`` on springs, per unit mass."""
     exponent: float | int | None = None
     eta, law, creep = base.reference_eta, "elastic", 0.0
     if isinstance(base, YieldingBase):
@@ -137,7 +151,7 @@ def springs(pier: Pier, base: ElasticBase) -> Springs:
 
 
 def _exponent(n: float) -> float | int | None:
-    """Return n in the type by which the core's compiled code is chosen."""
+    """Return n as None for 5, int for other small whole numbers and float otherwise: the type selects the compiled code."""
     if n == 5:
         return None
     return int(n) if n in range(1, LARGEST_WHOLE + 1) else float(n)
@@ -145,11 +159,11 @@ def _exponent(n: float) -> float | int | None:
 
 @lru_cache(maxsize=4096)
 def block(pier: Pier, base: RigidBase) -> Block:
-    """Return the core's numbers for ``pier`` on a rigid base: plain floats, per unit mass."""
+    """Return the core's numbers for a rigid ``pier`` on a rigid base, per unit mass."""
     restitution = pier.restitution if base.restitution is None else base.restitution
     half_width, height = float(pier.size * math.sin(pier.alpha)), float(pier.size * math.cos(pier.alpha))
     return Block(
-        half_width=half_width,  # not that of a frame's column
+        half_width=half_width,  # R0 sin α, also for a frame, whose pier.half_width is a column's
         height=height,
         inertia=float(pier.inertia),
         gravity=float(pier.gravity),
@@ -168,7 +182,7 @@ def block(pier: Pier, base: RigidBase) -> Block:
 
 @lru_cache(maxsize=4096)
 def flexible_block(pier: Pier, base: RigidBase) -> FlexibleBlock:
-    """Return the core's numbers for ``pier`` on a rigid base whose shaft bends: plain floats, per unit mass."""
+    """Return the core's numbers for ``pier`` with an elastic shaft on a rigid base, per unit mass."""
     rigid, mode, period = block(pier, base), mode_of(pier), pier.flexural_period_s
     assert period is not None
     frequency = 2.0 * math.pi / period
@@ -195,7 +209,7 @@ def flexible_block(pier: Pier, base: RigidBase) -> FlexibleBlock:
 
 
 def _tipping(m: Block, mode: Mode, frequency: float) -> float:
-    """Return the rotation [rad] at which the pier stands on one pivot, its shaft bent by the weight: below α."""
+    """Return the unstable equilibrium [rad] on one pivot with the shaft bent by the weight; it is below α."""
     leans = m.gravity * mode.first**2 / (mode.second * frequency**2)
     low, high = 0.0, m.alpha
     for _ in range(60):
@@ -227,11 +241,11 @@ def footing(pier: Pier, base: FootingBase) -> Footing:
 
 
 Model = Block | FlexibleBlock | Springs | Footing
-"""Numbers of a pier as the core takes them."""
+"""The core's numbers for a pier."""
 
 
 def model(pier: Pier, base: Base) -> Model:
-    """Return the core's numbers for ``pier`` on ``base``."""
+    """Return the core's numbers for ``pier`` on ``base``, of the class of its system."""
     if isinstance(base, FootingBase):
         return footing(pier, base)
     if base.on_springs:
@@ -240,7 +254,7 @@ def model(pier: Pier, base: Base) -> Model:
 
 
 def system_of(m: Model) -> System:
-    """Return the system of a pier, whose runs share compiled code; systems are compared by value."""
+    """Return the system of a model; runs of equal systems share compiled code."""
     if isinstance(m, Block):
         return block_lanes.system_of(m)
     if isinstance(m, FlexibleBlock):
@@ -261,7 +275,7 @@ def line_of(
     prestress: float,
     start: Start,
 ) -> Line:
-    """Return a run as the core takes it: the model's numbers, then ``timing`` from ``dt`` to ``patience``."""
+    """Return the core's line of a run: the model's numbers, the initial state, and ``timing`` from ``dt`` to ``patience``."""
     if isinstance(m, Block):
         return block_lanes.line_of(m, start.theta, 0.0, *timing)
     if isinstance(m, FlexibleBlock):
@@ -272,11 +286,12 @@ def line_of(
 
 
 def elements(pier: Pier, base: Base) -> list[Element]:
-    """Return the core's numbers for the devices of ``base``: plain floats, per unit mass."""
+    """Return the core's numbers for the devices of ``base``, one Element for each place, per unit mass."""
     return [_element(pier, base, device, place) for device in base.restraints for place in places(pier, device)]
 
 
 def _element(pier: Pier, base: Base, device: Restraint, place: Place) -> Element:
+    """Return the Element of a device at a place."""
     element = IDLE._replace(offset=float(place.offset))
     if place.height != 0.0:
         swing = 0.0 if base.on_springs else pier.half_width
@@ -297,20 +312,25 @@ def _element(pier: Pier, base: Base, device: Restraint, place: Place) -> Element
 
 
 def _damper(pier: Pier, base: Base, damper: Damper, element: Element) -> Element:
-    """Return the Element of a damper where ``element`` is."""
+    """Return the Element of a damper at the place of ``element``."""
     if damper.brace < math.inf:
         return _braced(pier, damper, element)
     force, coefficient = float(pier.gravity * damper.f), float(damper.nu * pier.p)
     soft = float(1.0 / damper.yield_m) if damper.kind == "hysteretic" else 0.0
     linear_below, slope = _linear_part(pier, base, element, coefficient, float(damper.exponent))
     return element._replace(
-        kind=DAMPERS[damper.kind], strength=force, stiffness=soft, coefficient=coefficient, exponent=float(damper.exponent),
-        linear_below=linear_below, slope=slope,
-    )  # fmt: skip
+        kind=DAMPERS[damper.kind],
+        strength=force,
+        stiffness=soft,
+        coefficient=coefficient,
+        exponent=float(damper.exponent),
+        linear_below=linear_below,
+        slope=slope,
+    )
 
 
 def _braced(pier: Pier, damper: Damper, element: Element) -> Element:
-    """Return the Element of a damper on a brace where ``element`` is."""
+    """Return the Element of a damper on a brace at the place of ``element``."""
     stiffness = float(damper.brace * pier.gravity * pier.size / pier.half_width**2)
     if damper.kind == "hysteretic":
         force, soft = float(pier.gravity * damper.f), float(1.0 / damper.yield_m)
@@ -318,17 +338,16 @@ def _braced(pier: Pier, damper: Damper, element: Element) -> Element:
     coefficient, exponent = float(damper.nu * pier.p), float(damper.exponent)
     if coefficient == 0.0:
         return element._replace(linear_below=math.inf)
-    return element._replace(
-        kind=MAXWELL, stiffness=stiffness, coefficient=coefficient, exponent=exponent,
-        linear_below=math.inf if exponent == 1.0 else 0.0, quickest=stiffness / (exponent * coefficient),
-    )  # fmt: skip
+    linear_below, quickest = math.inf if exponent == 1.0 else 0.0, stiffness / (exponent * coefficient)
+    element = element._replace(kind=MAXWELL, stiffness=stiffness, linear_below=linear_below, quickest=quickest)
+    return element._replace(coefficient=coefficient, exponent=exponent)
 
 
 def _linear_part(pier: Pier, base: Base, element: Element, coefficient: float, exponent: float) -> tuple[float, float]:
     """Return the speed [m/s] below which a viscous damper is linear, and the slope [1/s] of its force there.
 
-    For a < 1 it would damp faster there than anything else in a pier, and end small motions at once, in steps that no
-    method resolves.
+    For a < 1 the damping rate is unbounded at low speed, and would stop small motions faster than any step resolves. 0 and 0
+    for a > 1.
     """
     if exponent > 1.0 or coefficient == 0.0:
         return 0.0, 0.0
@@ -339,12 +358,12 @@ def _linear_part(pier: Pier, base: Base, element: Element, coefficient: float, e
 
 
 def _fastest(pier: Pier, base: Base) -> float:
-    """Return the greatest rate [1/s] of a pier without devices; on rigid ground that at which a steep damper may slow it."""
+    """Return the greatest rate [1/s] of a pier without devices on springs; on rigid ground the bound for dampers, STEEP p."""
     return fastest(pier, base) if base.on_springs else STEEP * pier.p
 
 
 def _lever(pier: Pier, base: Base, element: Element) -> float:
-    """Return the acceleration at a device under a force there of one per unit mass, in full contact or about a corner."""
+    """Return the acceleration at a device by a unit force there per unit mass: in full contact, or about a corner."""
     if element.height != 0.0:
         inertia = pier.inertia + pier.height**2 if base.on_springs else pier.inertia_about_pivot
         return (element.height**2 + element.swing**2) / inertia
@@ -355,17 +374,17 @@ def _lever(pier: Pier, base: Base, element: Element) -> float:
 
 @lru_cache(maxsize=4096)
 def prestress(pier: Pier, base: Base) -> float:
-    """Return Σ P0/M of all tendons [m/s²]."""
+    """Return Σ P0/M of all tendons [m/s²]; 0 without any."""
     return sum(law.prestress for law in elements(pier, base))
 
 
 def hanging(m: FlexibleBlock, theta: float) -> float:
-    """Return the deflection [m] of the top under the weight alone, of a pier that is held by its base at ``theta`` [rad]."""
+    """Return the deflection [m] of the top by the weight alone, with the base held at ``theta`` [rad]."""
     return m.gravity * m.first * math.sin(theta) / (m.second * m.frequency**2)
 
 
 def _vibration(pier: Pier, base: RigidBase, turning: float) -> float:
-    """Return the greater rate [1/s] of the shaft's mode beside a rotation with the moment of inertia ``turning`` [m²]."""
+    """Return the greatest rate [1/s] of the shaft's mode coupled with a rotation of the inertia ``turning`` [m²]."""
     mode, frequency = mode_of(pier), 2.0 * math.pi / (pier.flexural_period_s or math.inf)
     share = 1.0 - mode.coupling**2 / (mode.second * turning)
     fast, decay = frequency / math.sqrt(share), base.flexural_damping * frequency / share
@@ -374,7 +393,7 @@ def _vibration(pier: Pier, base: RigidBase, turning: float) -> float:
 
 @lru_cache(maxsize=4096)
 def fastest_rate(pier: Pier, base: Base) -> float:
-    """Return the greatest rate [1/s] of a model: of the springs, of vibration against devices, of decay by linear dampers."""
+    """Return the greatest rate [1/s] of a model: of springs, vibration against devices, or decay by linear dampers."""
     stiff, slows, relaxes, steep = 0.0, 0.0, 0.0, False
     for law in elements(pier, base):
         lever = _lever(pier, base, law)
@@ -391,7 +410,7 @@ def fastest_rate(pier: Pier, base: Base) -> float:
 
 
 def ground_of(motion: Motion) -> Samples:
-    """Return a motion as the core takes it, shape (npts, 4); see :func:`rockbatch.core.ground.ground_rows`."""
+    """Return the core's rows of a motion, shape (npts, 4); see :func:`rockbatch.core.ground.ground_rows`."""
     vertical = () if motion.vertical is None else motion.vertical
     return ground_rows(motion.horizontal, vertical, float(motion.dt))
 
@@ -402,13 +421,13 @@ def acceleration_at(samples: Samples, dt: float, t: Samples | float) -> Samples:
 
 
 def first_substeps(pier: Pier, base: Base, dt: float) -> int:
-    """Return the steps per sample [of ``dt`` s] that the model's highest frequency needs, FIRST_ON_ROCK at least on a rigid
-    base."""
+    """Return the steps per sample of ``dt`` [s] of a first run, by the model's highest frequency; at least FIRST_ON_ROCK on a
+    rigid base."""
     return max(_substeps_for(FREQUENCY_STEP, pier, base, dt), 1 if base.on_springs else FIRST_ON_ROCK)
 
 
 def least_substeps(pier: Pier, base: Base, dt: float) -> int:
-    """Return the steps per sample [of ``dt`` s] below which the integration would blow up."""
+    """Return the least steps per sample of ``dt`` [s] with which the integration is stable."""
     return _substeps_for(STABLE_STEP, pier, base, dt)
 
 
@@ -417,16 +436,16 @@ def _substeps_for(largest: float, pier: Pier, base: Base, dt: float) -> int:
 
 
 def patience(pier: Pier, dt: float) -> int:
-    """Return the samples [of ``dt`` s] for which a run goes on after the record at most; see :data:`PATIENCE`."""
+    """Return the greatest number of samples of ``dt`` [s] after the record; see :data:`PATIENCE`."""
     return int(PATIENCE / (pier.p * dt)) + 1
 
 
 @lru_cache(maxsize=4096)
 def readings(pier: Pier, base: Base, dt: float) -> tuple[int, int]:
-    """Return when residuals are read, in samples [of ``dt`` s]: after the record, and how long after the first reading again.
+    """Return the samples of ``dt`` [s] from the end of the record to the first reading of residuals, and on to the second.
 
-    The second reading gives their drift, over whole periods of full-contact rocking that span :data:`READ_AFTER` at least. 0, 0
-    on elastic springs, which have no residuals.
+    The second reading gives their drift, over whole periods of full-contact rocking of at least :data:`READ_AFTER`. 0 and 0
+    unless the springs yield.
     """
     if not isinstance(base, YieldingBase):
         return 0, 0

@@ -15,22 +15,22 @@ MOST_STEPS_RECORDED = 5_000_000
 
 
 class Observer:
-    """An optional output of runs. Subclasses are frozen dataclasses of settings, which engines send to other machines.
+    """An optional output of runs. Subclasses are frozen dataclasses of settings, which can be sent to other machines.
 
     Attributes
     ----------
     table : str
-        File of its rows beside peaks.csv, a key of :attr:`Outcome.tables`; empty for columns of peaks.csv.
+        File of its table beside peaks.csv, a key of :attr:`Outcome.tables`; empty if it adds columns to peaks.csv.
     every_step : bool
         True if it reads every step, not only samples and events.
     most_steps : float
-        Steps of a run beyond which it reads none.
+        Greatest number of steps of a run that it reads at every step.
     separates_lean : bool
-        True if it finds whether a peak is lean, which is else found with a shorter run.
+        True if it determines whether a peak is lean, which otherwise takes a shorter run.
     column : str
-        A column of peaks.csv that has a number for each run that it read, if it adds to the histories; empty if it adds nothing.
+        A column of peaks.csv that is filled for each run that it read, if it adds to the histories; empty if it does not.
     histories_of_steps : bool
-        True if what it adds to the histories takes every step.
+        True if it needs every step to add to the histories.
     """
 
     table: ClassVar[str] = ""
@@ -41,43 +41,43 @@ class Observer:
     histories_of_steps: ClassVar[bool] = False
 
     def observes(self, motions: Sequence[Motion]) -> bool:
-        """Return whether it observes runs under one of these ``motions``."""
+        """Return True if the observer applies to runs under any of these ``motions``."""
         return True
 
     def beside(self, run: Run, outcome: Outcome) -> Run | None:
-        """Return another run to whose outcome that of ``run`` is compared; None without."""
+        """Return another run whose outcome is compared with that of ``run``; None without."""
         return None
 
     def compare(self, outcome: Outcome, other: Outcome) -> Outcome:
-        """Return ``outcome`` with what the other run came to."""
+        """Return ``outcome`` with results of the ``other`` outcome, of the run by :meth:`beside`."""
         return outcome
 
     def reads(self, run: Run, outcome: Outcome) -> bool:
-        """Return whether it reads the history of a run."""
+        """Return True if the observer reads the history of this run."""
         return outcome.was_run
 
     def claims_error(self, outcome: Outcome) -> bool:
-        """Return whether what it reads has an error, by a history of twice the step."""
+        """Return True if its results have an error estimate, which takes a history of twice the step."""
         return outcome.status != "failed" and not outcome.chaotic
 
     def quiet_s(self, run: Run, quiet_s: float) -> float:
-        """Return how long after its motion a run has to go on for it [s], ``quiet_s`` for others."""
+        """Return the time after the motion [s] that the observer needs in the history; ``quiet_s`` by default."""
         return quiet_s
 
     def read(self, recording: Recording, outcome: Outcome) -> Any:
-        """Return what it takes from a history of a run."""
+        """Return the results of a history, of the type that :meth:`add` takes."""
 
     def add(self, run: Run, outcome: Outcome, fine: Any, coarse: Any) -> Outcome:
-        """Return ``outcome`` with what was read of it, None where nothing was, and of a history of twice the step."""
+        """Return ``outcome`` with the results ``fine`` of its history and ``coarse`` by twice the step; None if not read."""
         return outcome
 
     def histories(self, recording: Recording) -> "Mapping[str, pd.DataFrame]":
-        """Return fields of :class:`Response` that it adds to the histories of a run."""
+        """Return tables by the fields of :class:`Response` that the observer adds to the histories of a run."""
         return {}
 
 
-Found = dict[Observer, Any]
-"""What each observer has read of a run."""
+Readings = dict[Observer, Any]
+"""Results of a run's history, of the type of each observer."""
 
 
 def observed(
@@ -90,9 +90,9 @@ def observed(
     wait: bool = True,
     stop: Stop | None = None,
 ) -> list[Outcome]:
-    """Return ``outcomes`` with what ``observers`` read, with their ``error`` by a history of twice the step, too.
+    """Return ``outcomes`` with the results of ``observers``; with ``error`` also their errors, by a history of twice the step.
 
-    A run that is too long to be recorded at every step is read at samples by those that need no more. Runs that come after
+    A run that is too long to be recorded at every step is read only by observers that need samples. Runs that come after
     ``stop`` are not read.
     """
     reading, halved = dict[int, list[Observer]](), [o.changed(substeps=o.substeps // 2) for o in outcomes]
@@ -101,11 +101,11 @@ def observed(
         if chosen:
             reading[i] = chosen
     fine = _read_all(runs, outcomes, reading, quiet_s, wait, stop)
-    claiming = {
-        i: chosen
-        for i, found in fine.items()
-        if error and outcomes[i].substeps % 2 == 0 and (chosen := [o for o in found if o.claims_error(outcomes[i])])
-    }
+    claiming = dict[int, list[Observer]]()
+    for i, found in fine.items() if error else ():
+        chosen = [observer for observer in found if observer.claims_error(outcomes[i])]
+        if chosen and outcomes[i].substeps % 2 == 0:
+            claiming[i] = chosen
     coarse = _read_all(runs, halved, claiming, quiet_s, wait, stop, longer=False)
     done = list(outcomes)
     for i, run in enumerate(runs):
@@ -116,6 +116,7 @@ def observed(
 
 
 def _is_read(observer: Observer, run: Run, outcome: Outcome, quiet_s: float) -> bool:
+    """Return True if the observer reads the run, and it is not too long for it."""
     if not (outcome.was_run and observer.reads(run, outcome)):
         return False
     return not observer.every_step or steps_of(run.motion, outcome.substeps, quiet_s) <= observer.most_steps
@@ -129,12 +130,12 @@ def _read_all(
     wait: bool,
     stop: Stop | None,
     longer: bool = True,
-) -> dict[int, Found]:
-    """Return what each observer in ``reading`` takes from the run of this number: those at samples side by side.
+) -> dict[int, Readings]:
+    """Return the readings of the observers in ``reading``, by the numbers of runs; those at samples run side by side.
 
-    If ``longer``, a run goes on for as long as one of them needs, and the others read until its own end.
+    If ``longer``, a run continues as long as any of its observers needs, and the others read until the run's own end.
     """
-    found, together = dict[int, Found](), dict[float, list[int]]()
+    found, together = dict[int, Readings](), dict[float, list[int]]()
     for i, observers in reading.items():
         longest = max(observer.quiet_s(runs[i], quiet_s) for observer in observers) if longer else quiet_s
         if not any(observer.every_step for observer in observers):
@@ -142,27 +143,27 @@ def _read_all(
         elif stop is None or not stop.is_set:
             try:
                 recording = recorded(runs[i], outcomes[i], longest, True, wait)
-            except InputError:  # too many impacts to be written down
+            except InputError:  # its impacts make too many rows at every step
                 together.setdefault(longest, []).append(i)
             else:
-                found[i] = _taken(recording, outcomes[i], observers, quiet_s, longest)
+                found[i] = _readings_of(recording, outcomes[i], observers, quiet_s, longest)
     for longest, numbers in together.items():
         chosen = [runs[i] for i in numbers], [outcomes[i] for i in numbers]
         for j, recording in recorded_side_by_side(*chosen, longest, wait, stop):
             i = numbers[j]
             at_samples = [observer for observer in reading[i] if not observer.every_step]
-            found[i] = _taken(recording, outcomes[i], at_samples, quiet_s, longest)
+            found[i] = _readings_of(recording, outcomes[i], at_samples, quiet_s, longest)
     return found
 
 
-def _taken(
+def _readings_of(
     recording: Recording, outcome: Outcome, observers: Iterable[Observer], quiet_s: float, longest: float
-) -> Found:
-    """Return what ``observers`` read of a ``recording`` that goes on for the ``longest`` time after its motion [s]."""
+) -> Readings:
+    """Return the readings of a ``recording`` that continues for the time ``longest`` [s] after its motion."""
     whole = {True: recording, False: recording.at_samples}
     own = recording.until(outcome.t_end) if longest > quiet_s else recording
     short = {True: own, False: own.at_samples}
-    found = Found()
+    found = Readings()
     for observer in observers:
         needs_all = observer.quiet_s(recording.run, quiet_s) > quiet_s
         found[observer] = observer.read((whole if needs_all else short)[observer.every_step], outcome)

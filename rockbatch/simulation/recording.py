@@ -1,4 +1,4 @@
-"""Recorded runs: the rows that the core writes at samples and events, or at every step."""
+"""Recorded runs: histories at samples and events, or at every step."""
 
 import contextlib
 import math
@@ -18,14 +18,14 @@ MOST_ROWS = 10_000_000
 """Greatest number of rows of a history held in memory, about a gigabyte."""
 
 ROWS_TOGETHER = 150_000
-"""Greatest number of rows of histories that are written side by side, some 16 megabytes."""
+"""Greatest total number of rows of histories written side by side, some 16 megabytes."""
 
 SPARE = 1.1
-"""Rows for which there is room, over the steps of a run: velocity reversals of springs have rows of their own."""
+"""Rows reserved over the steps of a run: velocity reversals of springs have rows of their own."""
 
 
 class Recording(NamedTuple):
-    """A run, and the rows of its history: a record for each moment (``core.history``)."""
+    """A run, the rows of its history (``core.history``), and the time of its first flight [s], None without."""
 
     run: Run
     rows: np.recarray
@@ -33,23 +33,23 @@ class Recording(NamedTuple):
 
     @property
     def at_samples(self) -> "Recording":
-        """The same without the steps between samples and events: to the bit what is recorded without them."""
+        """The recording without steps between samples and events: bitwise the one that is recorded without them."""
         return self._replace(rows=self.rows[self.shown].view(np.recarray))
 
     @property
     def shown(self) -> np.ndarray:
-        """Which rows are those."""
+        """Return True for each row at a sample or event, and the last one."""
         shown: np.ndarray = self.rows.kind != types.STEP
         shown[-1:] = True  # an overturned pier may fall between samples
         return shown
 
     def until(self, t: float) -> "Recording":
-        """Return the rows until a time [s]."""
+        """Return the recording up to and including the time ``t`` [s]."""
         return self._replace(rows=self.rows[: int(np.searchsorted(self.rows.t, t, side="right"))].view(np.recarray))
 
 
 def recorded(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> Recording:
-    """Return the history of a run whose steps, counts and end are those of ``outcome``.
+    """Return the history of a run again, with the steps and the end of its ``outcome``.
 
     Raises ``InputError`` for more than :data:`MOST_ROWS`.
     """
@@ -64,12 +64,13 @@ def recorded(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait:
 
 
 def _recording(run: Run, result: Result, rows: np.recarray) -> Recording:
+    """Return the recording in the first of ``rows``, as many as the ``result`` has."""
     t_flight = None if math.isnan(result.t_flight) else result.t_flight
     return Recording(run, rows[: result.rows].view(np.recarray), t_flight)
 
 
 def _room(run: Run, outcome: Outcome, every_step: bool, until: float = math.inf) -> int:
-    """Return for how many rows there should be room in a run that ends by ``until`` [s]."""
+    """Return an estimate of the number of rows of a run that ends by ``until`` [s]."""
     steps = min(outcome.t_end, until) / run.motion.dt * (outcome.substeps if every_step else 1)
     return int(SPARE * steps) + 64 * (outcome.impacts + outcome.separations + 64)
 
@@ -77,7 +78,7 @@ def _room(run: Run, outcome: Outcome, every_step: bool, until: float = math.inf)
 def recorded_side_by_side(
     runs: Sequence[Run], outcomes: Sequence[Outcome], quiet_s: float, wait: bool = True, stop: Stop | None = None
 ) -> Iterator[tuple[int, Recording]]:
-    """Yield the number and the history, at samples and events, of each run that is not too long to be held in memory."""
+    """Yield number and history, at samples and events, of each run; those of more than :data:`MOST_ROWS` are left out."""
     ends = [math.inf if wait else run.motion.duration + quiet_s for run in runs]
     room = [_room(run, o, False, end) for run, o, end in zip(runs, outcomes, ends, strict=True)]
     alike: dict[object, list[int]] = {}
@@ -97,7 +98,7 @@ def recorded_side_by_side(
 def _recorded_together(
     runs: Sequence[Run], outcomes: Sequence[Outcome], numbers: Sequence[int], quiet_s: float, room: int, wait: bool
 ) -> Iterator[tuple[int, Recording]]:
-    """Yield the histories of the runs with these ``numbers``, of one kind and step, for which there should be ``room``."""
+    """Yield the histories of the runs ``numbers``, alike in system and step, with ``room`` rows each, or more if needed."""
     if len(numbers) == 1:
         with contextlib.suppress(InputError):
             yield numbers[0], recorded(runs[numbers[0]], outcomes[numbers[0]], quiet_s, False, wait)

@@ -34,7 +34,7 @@ from rockbatch.simulation.models import elements, footing, model, prestress, spr
 from rockbatch.simulation.starting import start_of
 
 AT_REST = 1e-9
-"""In units of R0 α p: velocity that counts as none in a history."""
+"""Velocity in units of R0 α p that counts as zero in a history."""
 
 
 def names(pier: Pier, base: Base) -> list[str]:
@@ -49,7 +49,7 @@ def names(pier: Pier, base: Base) -> list[str]:
 
 
 def apart(base: Base, rows: np.recarray) -> tuple[np.recarray, Samples]:
-    """Return rows of a history as those of a plain pier, and force [m/s²] and moment [m²/s²] of all devices at each."""
+    """Return ``rows`` without the columns of devices, and their total force [m/s²] and moment [m²/s²] per row, shape (n, 2)."""
     if not base.restraints:
         return rows, np.zeros((len(rows), 2))
     names = rows.dtype.names or ()
@@ -86,7 +86,7 @@ def _follow(m, devices, rows, moves, elongation, speed, pull, energy):  # type: 
 
 
 class _Followed(NamedTuple):
-    """What devices go through, at each row; see :func:`_follow`."""
+    """Histories of devices, shape (rows, devices) each; see :func:`_follow`."""
 
     elongation: Samples
     speed: Samples
@@ -95,7 +95,7 @@ class _Followed(NamedTuple):
 
 
 def _followed(pier: Pier, base: Base, rows: np.recarray) -> _Followed:
-    """Return what each device goes through, at each row."""
+    """Return elongation, its rate, force and stored energy of each device at each row."""
     devices = recorded(pier, base, rows)
     found = _Followed(*(np.zeros((len(rows), len(devices.elements))) for _ in _Followed._fields))
     moves = AT_REST * pier.size * pier.alpha * pier.p
@@ -104,7 +104,7 @@ def _followed(pier: Pier, base: Base, rows: np.recarray) -> _Followed:
 
 
 def loops(pier: Pier, base: Base, rows: np.recarray) -> "pd.DataFrame":
-    """Return the force [N/kg] and elongation [m] of every device at every row."""
+    """Return a table of elongation [m] and force [N/kg] of every device at every row, after the time."""
     found = _followed(pier, base, rows)
     table = {"t": rows.t}
     for j, name in enumerate(names(pier, base)):
@@ -113,14 +113,14 @@ def loops(pier: Pier, base: Base, rows: np.recarray) -> "pd.DataFrame":
 
 
 def device_work(pier: Pier, base: Base, rows: np.recarray, least_stroke: float) -> DeviceWork:
-    """Return the work of the devices of a run whose ``rows`` are every step; half cycles from ``least_stroke`` [m] up."""
+    """Return the greatest work of devices in a run with ``rows`` at every step; half cycles from ``least_stroke`` [m] up."""
     found = _followed(pier, base, rows)
     courses = Courses(found.elongation, found.pull, rows.lost, rows.t, found.speed)
     return greatest_of(pier, base, work_of(pier, base, courses, least_stroke))
 
 
 def stored(pier: Pier, base: Base, rows: np.recarray) -> Samples:
-    """Return the energy [J/kg] that all tendons give back until they are slack, relative to the start."""
+    """Return the elastic energy [J/kg] stored in all devices at every row, relative to the start."""
     energy = _followed(pier, base, rows).energy.sum(axis=1)
     return energy - energy[0]
 
@@ -141,11 +141,11 @@ def with_devices(pier: Pier, base: Base, rows: np.recarray, terms: Samples) -> S
 def rests_at(
     pier: Pier, base: ElasticBase | FootingBase, result: Result, level: float, states: Samples, sticks: np.ndarray
 ) -> float:
-    """Return the rotation [rad] at which the pier comes to rest on its supports after a run with this ``result``.
+    """Return the static rotation [rad] of the pier on its supports after a run with this ``result``.
 
-    Static, small, both pivots on their springs; devices give way elastically from their state at its end, and a friction
-    damper that does not move stays where it is. ``level`` is v of the pier at rest at the start [m]; ``states`` and ``sticks``,
-    shape (devices,), are the state of each device at the end, and whether it is a friction damper that does not move then.
+    Small rotations, both pivots on their springs; devices deform elastically from their state at the end of the run, and a
+    sticking friction damper holds its place. ``level`` is v of the pier at rest at the start [m]; ``states`` and ``sticks``,
+    shape (devices,), are the state of each device at the end, and True for a friction damper that sticks then.
     """
     v, theta = result.v_end, result.theta_end
     if isinstance(base, FootingBase):
@@ -165,28 +165,26 @@ def rests_at(
         if law.height != 0.0:
             u, soft = law.way * law.height * theta, np.array([0.0, law.way * law.height])
         force, tangent = _at_rest(law, u, state, k if holding else 0.0)
-        # F = force + tangent (x − u), which pulls down by F and turns by −s F
+        # F = force + tangent (x − u) pulls down by F, and turns by F times the arm
         stiffness += tangent * np.outer(soft, soft)
         load -= (force - tangent * (u + (level if law.height == 0.0 else 0.0))) * soft
     return float(np.linalg.solve(stiffness, load)[1])
 
 
 def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Samples, sticks: np.ndarray) -> float:
-    """Return the rotation [rad] at which devices hold a pier that has not come to rest upright, 0 if they do not.
+    """Return the rotation [rad] at which devices hold a pier that is not at rest upright; 0 if they do not hold it.
 
-    Friction holds it where it is; other devices give way elastically until weight and devices balance.
+    Friction holds the final rotation; other devices deform elastically until weight and devices balance.
     """
     theta, b = result.theta_end, pier.half_width
     laws = elements(pier, base)
-    if any(
-        holding and abs(law.offset - math.copysign(b, theta)) > 1e-9 * b
-        for law, holding in zip(laws, sticks, strict=True)
-    ):
-        return theta
+    for law, holding in zip(laws, sticks, strict=True):
+        if holding and abs(law.offset - math.copysign(b, theta)) > 1e-9 * b:  # at the pivot friction has no arm
+            return theta
     side = math.copysign(1.0, theta)
 
     def excess(tilt: float) -> float:
-        """Return the moment [m²/s²] that rights the pier at rest at ``tilt``."""
+        """Return the righting moment [m²/s²] of weight and devices at ``tilt`` [rad]."""
         righting = pier.gravity * pier.size * math.sin(pier.alpha - tilt)
         for law, state in zip(laws, states, strict=True):
             u, arm = _reach(law, b, tilt, side)
@@ -206,7 +204,7 @@ def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Sam
 
 
 def _reach(law: Element, b: float, tilt: float, side: float) -> tuple[float, float]:
-    """Return the elongation [m] of a device of a block at rest on the pivot at ``side``, and its rate over the ``tilt`` [m]."""
+    """Return the elongation [m] of a device of a block on the pivot at ``side``, and its derivative by the ``tilt`` [m]."""
     if law.height != 0.0:
         direction = side * law.way
         return direction * (law.height * math.sin(tilt) + b * (1.0 - math.cos(tilt))), direction * (
@@ -217,8 +215,10 @@ def _reach(law: Element, b: float, tilt: float, side: float) -> tuple[float, flo
 
 
 def _at_rest(law: Element, elongation: float, state: float, support: float) -> tuple[float, float]:
-    """Return force [N/kg] and stiffness [1/s²] of a device at rest; ``support`` is a spring's stiffness where friction holds,
-    else 0."""
+    """Return force [N/kg] and tangent stiffness [1/s²] of a device at rest.
+
+    ``support`` is the stiffness of a support if a friction damper sticks, which is then much stiffer; 0 if it slides.
+    """
     if law.kind == FRICTION:
         return 0.0, 1e6 * support
     if law.kind == HYSTERETIC:

@@ -1,9 +1,8 @@
 """Runs with given steps: piers on bases under motions, side by side, and the outcome of each."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -49,7 +48,7 @@ from rockbatch.simulation.restraints import rests_at, rests_on_rigid_base
 from rockbatch.simulation.starting import start_of
 
 MOST_STEPS = 1e8
-"""Greatest number of steps of a run, about a quarter of a minute of work."""
+"""Greatest number of steps of a run, about 15 s of computing."""
 
 _STATUS = {
     types.SURVIVED: "ok",
@@ -58,7 +57,7 @@ _STATUS = {
     types.OVERTURNED: "overturned",
     types.FLIGHT: "flight",
 }
-"""Statuses by those of the core; any other has failed."""
+"""Statuses by those of the core; a run with any other has failed."""
 
 _FAILURES = {
     types.CHATTER: Failure.CONTACTS,
@@ -78,10 +77,10 @@ _REASONS = {
 }
 
 LEFT_ALONE = (Failure.UNDECIDED, Failure.RATCHETS)
-"""Failures of runs that the longest tail did not decide, which smaller steps do not change."""
+"""Failures of runs that the longest tail did not decide; smaller steps do not change them."""
 
 NOTED_TILT = 1e-4
-"""In units of α: change of the residual rotation by dampers and tendons beyond which a note reports it."""
+"""Change of the residual rotation by dampers and tendons, in units of α, above which a note reports it."""
 
 _RESTLESS = "left alone after the record for {seconds:.0f} s, the pier has still the energy for a greater rotation"
 _HIGH = "flew up to {height:.2g} mm, more than flight_limit_mm = {limit:g}"
@@ -105,10 +104,10 @@ class Run:
 
 @dataclass(frozen=True)
 class Trial:
-    """Outcome of a run with given steps, and its trajectory in short.
+    """Outcome of a run with given steps, and a summary of its trajectory.
 
-    ``extremes``, shape (:data:`rockbatch.core.clock.WINDOWS`,), holds the greatest |θ| [rad] at a sample in equal
-    parts of the run, NaN for those that it did not reach.
+    ``extremes``, shape (:data:`rockbatch.core.clock.WINDOWS`,), holds the greatest |θ| [rad] at samples in equal
+    windows of the run, NaN for those that it did not reach.
     """
 
     outcome: Outcome
@@ -116,7 +115,7 @@ class Trial:
 
 
 class Stop:
-    """Flag that ends, in their kernels, the runs of other threads that were given it."""
+    """Flag that other threads may set to end runs in their kernels."""
 
     def __init__(self) -> None:
         self.flag = np.zeros(1, np.uint8)
@@ -126,24 +125,24 @@ class Stop:
 
     @property
     def is_set(self) -> bool:
-        """Whether the runs are to end."""
+        """True if the runs have to end."""
         return bool(self.flag[0])
 
 
 def quiet_samples(quiet_s: float, dt: float) -> int:
-    """Return the samples of a free-vibration tail."""
+    """Return the number of samples of a free-vibration tail, rounded up."""
     return math.ceil(quiet_s / dt - 1e-9)
 
 
 def _line(pier: Pier, base: Base, dt: float, substeps: int, quiet_s: float, wait: bool) -> Line:
-    """Return a run as the core takes it: numbers only, but for the place of its motion in the ground."""
+    """Return the core's line of a run; its ``first_row`` and ``npts``, which depend on the motion, are still 0."""
     timing = (dt, substeps, quiet_samples(quiet_s, dt), 0, 0, patience(pier, dt) if wait else 0)
     read = readings(pier, base, dt) if wait else (0, 0)
     return line_of(model(pier, base), timing, read, prestress(pier, base), start_of(pier, base))
 
 
 def _devices(pier: Pier, base: Base) -> Devices | None:
-    """Return the devices of a run at its start."""
+    """Return the devices of a run in their initial states; None without any."""
     start = start_of(pier, base)
     return devices_of(elements(pier, base), start.states, start.level)
 
@@ -157,7 +156,7 @@ def written_run(
     every_step: bool = False,
     wait: bool = True,
 ) -> tuple[Result, np.recarray]:
-    """Return one run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
+    """Return result and history of a run, as :func:`written_runs`."""
     return written_runs([run], substeps, quiet_s, rows, locate, every_step, wait)[0]
 
 
@@ -170,7 +169,10 @@ def written_runs(
     every_step: bool = False,
     wait: bool = True,
 ) -> list[tuple[Result, np.recarray]]:
-    """Return runs of one system, more than one only without devices, and their histories of at most ``rows`` rows each."""
+    """Return the results of runs of one system, and their histories of at most ``rows`` rows each.
+
+    With ``every_step`` the history has rows between samples, too. Runs with devices must be passed alone.
+    """
     system, devices = kernel_of(runs[0].pier, runs[0].base)[0], _devices(runs[0].pier, runs[0].base)
     columns = _row_type(system, 0 if devices is None else len(devices.elements))
     written = np.zeros((len(runs), rows, columns.itemsize // 8))
@@ -181,7 +183,7 @@ def written_runs(
 
 
 def _lines(runs: Sequence[Run], substeps: int, quiet_s: float, wait: bool) -> tuple[list[Line], Samples]:
-    """Return runs as the core takes them, and the ground of all their motions."""
+    """Return the core's lines of runs, and the ground rows of all their motions, each motion once."""
     first_rows: dict[int, int] = {}
     grounds: list[Samples] = []
     of_piers: dict[tuple[int, int, float], Line] = {}
@@ -198,13 +200,12 @@ def _lines(runs: Sequence[Run], substeps: int, quiet_s: float, wait: bool) -> tu
 
 
 def _row_type(system: System, devices: int) -> np.dtype:
-    """Return the dtype of a row of a history, as ``core.history`` writes it: with states and pull of ``devices``, if any."""
+    """Return the dtype of a history's row, as ``core.history`` writes it; ``devices``, if any, add their columns."""
     names = [(name, "f8") for name in (*MOMENT, *system.columns)]
     if not devices:
         return np.dtype(names)
-    return np.dtype([
-        *names, ("state", "f8", (devices,)), ("lost", "f8", (devices,)), ("input", "f8"), ("p_delta", "f8"), ("pull", "f8", (2,)),
-    ])  # fmt: skip
+    per_device = [("state", "f8", (devices,)), ("lost", "f8", (devices,))]
+    return np.dtype([*names, *per_device, ("input", "f8"), ("p_delta", "f8"), ("pull", "f8", (2,))])
 
 
 def _results(records: np.recarray) -> list[Result]:
@@ -223,11 +224,11 @@ def run_fixed(
 def run_all_fixed(
     runs: Sequence[Run], substeps: Sequence[int], quiet_s: float, stop: Stop, locate: bool = True, wait: bool = True
 ) -> list[Outcome | None]:
-    """Run with given steps per sample, side by side; return outcomes in the order of ``runs``, ``None`` for stopped ones.
+    """Return the outcomes of ``runs`` with given steps per sample, in their order; ``None`` for stopped ones.
 
-    An outcome does not depend on the runs beside it. With ``locate=False`` events take place at the end of their step: first
-    order, for comparison only. With ``wait=False`` a run ends ``quiet_s`` after its record, whatever the pier then does. A step
-    beyond the method's stability is not run; the outcome says how many it takes.
+    An outcome does not depend on the runs beside it. With ``locate=False`` events take place at the end of their step, which
+    is of first order and for comparison only. With ``wait=False`` a run ends ``quiet_s`` after its record, whatever the pier
+    does. A step beyond the method's stability is refused; the reason gives the number of steps that is needed.
     """
     return [None if trial is None else trial.outcome for trial in try_all(runs, substeps, quiet_s, stop, locate, wait)]
 
@@ -235,13 +236,15 @@ def run_all_fixed(
 def try_all(
     runs: Sequence[Run], substeps: Sequence[int], quiet_s: float, stop: Stop, locate: bool = True, wait: bool = True
 ) -> list[Trial | None]:
-    """Run as :func:`run_all_fixed`, and return the trajectories in short, too."""
-    trials: list[Trial | None] = [_refused(run, steps, quiet_s) for run, steps in zip(runs, substeps, strict=True)]
+    """Return trials as :func:`run_all_fixed` returns outcomes: with summaries of the trajectories."""
+    trials: list[Trial | None] = [_refusal(run, steps, quiet_s) for run, steps in zip(runs, substeps, strict=True)]
     alike: dict[tuple[System, int, int | None], list[int]] = {}
     for i, run in enumerate(runs):
         if trials[i] is None:
             system, with_devices = kernel_of(run.pier, run.base)
-            alike.setdefault((system, substeps[i], i if with_devices else None), []).append(i)  # each of them alone
+            alike.setdefault((system, substeps[i], i if with_devices else None), []).append(
+                i
+            )  # a run with devices is alone
     for (system, steps, alone), members in alike.items():
         if stop.is_set:
             break
@@ -252,13 +255,14 @@ def try_all(
             if result.status != types.RUNNING:
                 outcome = _outcome(runs[i], steps, result)
                 if devices is not None:
-                    outcome = _held_at_rest(runs[i], result, devices, outcome).changed(**_use(runs[i], devices.use))
+                    outcome = _with_static_rotation(runs[i], result, devices, outcome)
+                    outcome = outcome.changed(**_device_demands(runs[i], devices.use))
                 trials[i] = Trial(outcome, extremes)
     return trials
 
 
-def _held_at_rest(run: Run, result: Result, devices: Devices, outcome: Outcome) -> Outcome:
-    """Return ``outcome`` with the residual rotation at which dampers and tendons hold the pier."""
+def _with_static_rotation(run: Run, result: Result, devices: Devices, outcome: Outcome) -> Outcome:
+    """Return ``outcome`` with the static residual rotation under its devices; unchanged unless "ok" with residuals."""
     pier, base = run.pier, run.base
     if outcome.status != "ok" or not base.has_residual:
         return outcome
@@ -274,11 +278,11 @@ def _held_at_rest(run: Run, result: Result, devices: Devices, outcome: Outcome) 
     return outcome.noted(remark if changed else "", theta_res=rotation)
 
 
-def _use(run: Run, use: np.recarray) -> dict[str, Any]:
-    """Return the demands on devices by the fields of Outcome, of the kinds that the base has."""
+def _device_demands(run: Run, use: np.recarray) -> dict[str, float]:
+    """Return the demands on devices by the fields of Outcome, for the kinds that the base has."""
     kinds = np.array([device.what for device in run.base.restraints for _ in places(run.pier, device)])
     dampers, tendons = (use[kinds == stop_kind].view(np.recarray) for stop_kind in ("damper", "tendon"))
-    demands: dict[str, Any] = {}
+    demands: dict[str, float] = {}
     if len(dampers):
         demands["damper_force"] = float(dampers.most.max()) / run.pier.gravity
         demands["damper_stroke"] = float(dampers.stroke.max())
@@ -291,12 +295,12 @@ def _use(run: Run, use: np.recarray) -> dict[str, Any]:
     for stop_kind in ("stop", "deck_spring"):
         if (kinds == stop_kind).any():
             laws = [law for law, kind in zip(elements(run.pier, run.base), kinds, strict=True) if kind == stop_kind]
-            demands |= _of_contacts(laws, use[kinds == stop_kind].view(np.recarray), stop_kind, run.pier.gravity)
+            demands |= _contact_demands(laws, use[kinds == stop_kind].view(np.recarray), stop_kind, run.pier.gravity)
     return demands
 
 
-def _of_contacts(laws: list[Element], use: np.recarray, name: str, gravity: float) -> dict[str, Any]:
-    """Return the demands on stops or deck springs, all of which are straight on first loading."""
+def _contact_demands(laws: list[Element], use: np.recarray, name: str, gravity: float) -> dict[str, float]:
+    """Return the demands on stops or deck springs, whose depth is force over stiffness, since first loading is linear."""
     stiffness = np.array([law.stiffness for law in laws])
     return {
         f"{name}_force": float(use.most.max()) / gravity,
@@ -306,8 +310,8 @@ def _of_contacts(laws: list[Element], use: np.recarray, name: str, gravity: floa
     }
 
 
-def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
-    """Return the trial of a run that must not be run, else ``None``."""
+def _refusal(run: Run, substeps: int, quiet_s: float) -> Trial | None:
+    """Return the failed trial of a run with too large or too many steps; ``None`` if it can be run."""
     pier, base, motion = run.pier, run.base, run.motion
     least = least_substeps(pier, base, motion.dt)
     if substeps < least:
@@ -328,10 +332,10 @@ def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
 
 
 _UNCHANGED = ("t_max", "impacts", "flights", "flight_duration", "flight_height", "t_end")
-"""Fields of the core's Result that an Outcome takes over."""
+"""Fields of the core's Result that an Outcome has, too."""
 
 _BLANK = Outcome("failed", "", math.nan, math.nan, 0, 0, None, 0.0, 0)
-"""Outcome of which that of every run is a changed copy, made in a quarter of the time of a new one."""
+"""Outcome that every run copies with changes, in a quarter of the time of a new one."""
 
 
 def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
@@ -339,11 +343,11 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
     pier, base = run.pier, run.base
     failure = _FAILURES.get(result.status)
     status, reason = _STATUS.get(result.status, "failed"), "" if failure is None else _REASONS[failure]
-    more: dict[str, Any] = {}
+    more: Mapping[str, object] = {}
     if isinstance(base, FootingBase):
         more = of_bed(pier, base, result, survived=status == "ok")
     elif base.on_springs:
-        more = _of_springs(pier, base, result, survived=status == "ok")
+        more = _spring_results(pier, base, result, survived=status == "ok")
     elif base.bends:
         more = {"deflection_max": result.deflection_max, "top_drift_max": result.drift_max}
     if result.status == types.FLIGHT:
@@ -384,9 +388,9 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
 def cause_of_flight(
     motion: Motion, omega_v: float | None, gravity: float, t_flight: float, t_impact: float, zeta: float = 0.0
 ) -> str:
-    """Return why a pier flies at ``t_flight`` [s], and what to do, in words.
+    """Return a sentence on why a pier left the ground at ``t_flight`` [s], with advice.
 
-    ``omega_v`` [rad/s] and ``zeta`` are of the vertical vibration, None on a rigid base and as a share of critical; the last
+    ``omega_v`` [rad/s] is the frequency of vertical vibration, None on a rigid base, and ``zeta`` its damping ratio; the last
     impact before was at ``t_impact`` [s], NaN without one.
     """
     opening = f"both pivots left the ground at {t_flight:.3f} s: "
@@ -405,9 +409,9 @@ def cause_of_flight(
     return f"{opening}{oscillator}, reached 1 g, {times}; {_DAMP}"
 
 
-def _of_springs(pier: Pier, base: ElasticBase, result: Result, survived: bool) -> dict[str, Any]:
-    """Return what only piers on springs have: residuals if the pier ``survived``, and the demands on yielding springs."""
-    more: dict[str, Any] = {}
+def _spring_results(pier: Pier, base: ElasticBase, result: Result, survived: bool) -> dict[str, float]:
+    """Return the fields of Outcome on springs: residuals if the pier ``survived``, and demands on yielding springs."""
+    more: dict[str, float] = {}
     if survived:
         # From the base's tilt to the rotation, static on the deformed base (THEORY.md, eq. 20)
         half_width = pier.half_width
@@ -433,9 +437,10 @@ def _of_springs(pier: Pier, base: ElasticBase, result: Result, survived: bool) -
 
 
 def _not_run(failure: Failure, reason: str, substeps: int) -> Trial:
+    """Return the failed trial of a run that was refused; its rotations are NaN, and it has no extremes."""
     return Trial(_BLANK.changed(failure=failure, reason=reason, substeps=substeps), np.empty(0))
 
 
 def steps_of(motion: Motion, substeps: int, quiet_s: float) -> float:
-    """Return the number of steps of a run to the end of its free-vibration tail."""
+    """Return the number of steps of a run to the end of its tail of ``quiet_s`` [s]."""
     return substeps * (motion.npts + quiet_s / motion.dt)

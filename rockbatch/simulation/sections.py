@@ -33,13 +33,13 @@ from rockbatch.simulation.runs import Run
 
 
 class Motion(NamedTuple):
-    """The motion of a pier at one moment."""
+    """The motion of a pier at an instant."""
 
     theta: float  # [rad]
     omega: float  # [rad/s]
     v_acceleration: float  # over the ground, upwards [m/s²]
     turning: float  # [rad/s²]
-    side: float  # pivot about which the centre of mass moves horizontally: of springs the only one in contact
+    side: float  # −1 or 1 for the only pivot in contact, left or right; 0 for both or none
     horizontal: float  # acceleration of the ground [m/s²]
     vertical: float
 
@@ -47,11 +47,11 @@ class Motion(NamedTuple):
 MOTION = record(Motion)
 
 Places = npt.NDArray[np.intp]
-"""Numbers of rows in a history."""
+"""Indices of rows in a history."""
 
 
 class Recorded(NamedTuple):
-    """A run recorded at every step, as forces in its sections are made of it."""
+    """A run recorded at every step, as section forces need it."""
 
     run: Run
     rows: np.recarray  # of its history, shape (n,)
@@ -60,7 +60,7 @@ class Recorded(NamedTuple):
 
 
 class InBody(NamedTuple):
-    """Accelerations of a pier at k moments, in the axes of its body, shape (k,) each."""
+    """Accelerations of a pier at k instants, in the axes of its body, shape (k,) each."""
 
     across: Samples  # of its centre of mass with gravity, across the axis, to the right [m/s²]
     along: Samples  # and along it, upwards
@@ -72,7 +72,7 @@ class InBody(NamedTuple):
 
 
 class InSection(NamedTuple):
-    """Forces of the part below a section on that above, shape (k,) each: see :class:`Section`."""
+    """Forces of the lower part on the upper part at a section, shape (k,) each: see :class:`Section`."""
 
     shear: Samples
     moment: Samples
@@ -117,7 +117,7 @@ def _follow(m, run, numbers, shares, out, pushes):  # type: ignore[no-untyped-de
 
 
 def recorded(run: Run, rows: np.recarray) -> Recorded:
-    """Return a run whose history at every step is ``rows``."""
+    """Return a run with its history at every step, ``rows``, prepared for section forces."""
     plain, pulls = apart(run.base, rows)
     devices = recorded_devices(run.pier, run.base, rows) if run.base.restraints else None
     whole = RecordedRun(plain, pulls, devices, ground_of(run.motion), float(run.motion.dt))
@@ -130,7 +130,7 @@ def in_body(of: Recorded, numbers: Places, shares: Samples) -> InBody:
     pier, base = of.run.pier, of.run.base
     motion, pushes = np.recarray(len(numbers), MOTION), np.zeros((len(numbers), len(of.heights)))
     _follow(model(pier, base), of.plain, numbers, shares, motion, pushes)
-    # In flight the shear key of a block holds the pivot that bore last
+    # In flight the shear key of a block holds the pivot that was last in contact
     side = (
         motion.side * base.two_springs
         if base.on_springs
@@ -164,8 +164,8 @@ def in_section(pier: Pier, body: InBody, height: float) -> InSection:
 def sections_of(run: Run, rows: np.recarray, heights: Sequence[float]) -> list[Section]:
     """Return the greatest forces in sections at ``heights`` [m] of a run recorded at every step.
 
-    As other forces they count until the pier leans beyond α for good, at the ends of each step, in its middle, and where a
-    parabola through these promises more (THEORY.md, Forces).
+    They are taken until the pier leans beyond α for good, at the ends and the middle of each step, and at the vertex of a
+    parabola through these if it may exceed them (THEORY.md, Forces).
     """
     standing = np.flatnonzero(np.abs(rows.theta) <= run.pier.alpha)
     rows = rows[: standing[-1] + 1].view(np.recarray)
@@ -177,7 +177,7 @@ def sections_of(run: Run, rows: np.recarray, heights: Sequence[float]) -> list[S
 
 
 def _section(of: Recorded, at_ends: InBody, middles: InBody, steps: Places, height: float) -> Section:
-    """Return the greatest forces in the section at ``height``; ``middles`` are those of the ``steps``."""
+    """Return the greatest forces in the section at ``height`` [m]; ``middles`` are accelerations amid the ``steps``."""
     pier = of.run.pier
     ends, halves = in_section(pier, at_ends, height), in_section(pier, middles, height)
     _let_go(of.rows, ends)
@@ -189,9 +189,9 @@ def _section(of: Recorded, at_ends: InBody, middles: InBody, steps: Places, heig
 
 
 def _let_go(rows: np.recarray, forces: InSection) -> None:
-    """Give all rows of the instant at which a block leaves its rest the forces after it.
+    """Set the forces in all rows of the instant at which a block leaves its rest to those after it.
 
-    They differ where a motion begins with a jump, which the ground cannot hold the block against.
+    They differ if a motion begins with a jump, against which the ground cannot hold the block.
     """
     for row in np.flatnonzero((rows.kind == LIFT_OFF) | (rows.kind == TAKE_OFF)):
         first = int(np.searchsorted(rows.t, rows.t[row]))
@@ -200,7 +200,7 @@ def _let_go(rows: np.recarray, forces: InSection) -> None:
 
 
 def _promising(ends: InSection, middles: InSection, steps: Places) -> tuple[Places, Samples]:
-    """Return the steps, and the share of each, at which a parabola through its ends and middle promises a new extreme."""
+    """Return steps and shares of them at which a parabola through ends and middle exceeds the extremes of any force."""
     places: set[tuple[int, float]] = set()
     for values, half in zip(ends, middles, strict=True):
         slope, bend = values[steps] - values[steps - 1], values[steps - 1] + values[steps] - 2.0 * half
@@ -216,7 +216,7 @@ def _promising(ends: InSection, middles: InSection, steps: Places) -> tuple[Plac
 
 
 MOST_TURNS = 20
-"""Greatest number of promised extremes of a force in a section that are looked at."""
+"""Greatest number of such vertices that are evaluated for each extreme of a force."""
 
 _SIZED = {
     "shear": Sized(("shear",), "force"),
@@ -227,7 +227,7 @@ _SIZED = {
 
 
 def with_errors(fine: Sequence[Section], coarse: Sequence[Section], pier: Pier, chance: float) -> list[Section]:
-    """Return ``fine`` with errors, ``chance`` times the change from the forces with twice the step."""
+    """Return ``fine`` with errors: ``chance`` times the greatest relative change from ``coarse``, with twice the step."""
     pairs = zip(fine, coarse, strict=True)
     changes = [max(greatest_change(_SIZED, section, other, pier)[1], LEAST) for section, other in pairs]
     return [section._replace(error=chance * change) for section, change in zip(fine, changes, strict=True)]

@@ -1,4 +1,4 @@
-"""Effects of each shock of a sequence on a pier, read from the history of the run."""
+"""Effects of each shock of a sequence on a pier, from the history of the run."""
 
 import math
 from dataclasses import replace
@@ -13,7 +13,7 @@ from rockbatch.simulation.leaning import greatest_swing, lean_of, unstressed
 from rockbatch.simulation.runs import Run
 
 LAST_PART = 0.25
-"""Share of a pause, at its end, in which it is seen whether the pier still moves."""
+"""Final share of a pause in which the remaining motion is measured."""
 
 NOT_REACHED = "not reached"
 """Status of a shock before which the run ended."""
@@ -23,47 +23,46 @@ _AT_ONCE = 1e-9  # s: times of samples are sums, and rounded
 
 
 class OfShocks(NamedTuple):
-    """What each shock of a run does, without errors, and the greatest |θ| [rad] and its time [s] of each by the rows alone."""
+    """Effects of each shock of a run, without errors, and its greatest |θ| [rad] with its time [s] by the rows alone."""
 
     outcomes: list[ShockOutcome]
     peaks: list[tuple[float, float]]
 
 
 def of_shocks(run: Run, outcome: Outcome, rows: np.recarray) -> OfShocks:
-    """Return what each shock of a run does by its ``rows``, which go on until a pause after the last."""
+    """Return the effects of each shock from the ``rows`` of a run, which include a pause after the last one."""
     peaks = _peaks(run.motion, rows)
-    return OfShocks(_read(run, outcome, rows, list(peaks)), peaks)
+    return OfShocks(_effects(run, outcome, rows, list(peaks)), peaks)
 
 
 def with_error(fine: OfShocks, coarse: OfShocks) -> list[ShockOutcome]:
-    """Return what each shock does with errors, by what halving the step from ``coarse`` changed."""
-    return [
-        replace(finer, theta_max_error=abs(finer.theta_max - theta) if finer.status == "ok" else math.nan)
-        for finer, (theta, _) in zip(fine.outcomes, coarse.peaks, strict=True)
-    ]
+    """Return the effects of each shock with the change of θ_max from ``coarse`` as its error; NaN unless it is "ok"."""
+    pairs = zip(fine.outcomes, coarse.peaks, strict=True)
+    errors = [abs(finer.theta_max - theta) if finer.status == "ok" else math.nan for finer, (theta, _) in pairs]
+    return [replace(finer, theta_max_error=error) for finer, error in zip(fine.outcomes, errors, strict=True)]
 
 
 def _peaks(motion: Motion, rows: np.recarray) -> list[tuple[float, float]]:
-    """Return the greatest |θ| [rad] from each shock to the next, and its time [s]; NaN for those that the run does not reach."""
+    """Return the greatest |θ| [rad] and its time [s] from each shock to the next; NaN if the run does not reach it."""
     ends = [*(shock.until for shock in motion.shocks[:-1]), math.inf]
     return [_peak(rows, shock.start, end) for shock, end in zip(motion.shocks, ends, strict=True)]
 
 
 def _peak(rows: np.recarray, start: float, end: float) -> tuple[float, float]:
-    """Return the greatest |θ| between two times, at rows and between them, where θ is cubic."""
+    """Return the greatest |θ| [rad] and its time [s] between two times, also between rows; NaN without rows."""
     inside = rows[(rows.t >= start - _AT_ONCE) & (rows.t <= end + _AT_ONCE)]
     if len(inside) == 0:
         return math.nan, math.nan
     return greatest_swing(inside.t, inside.theta, inside.omega, inside.theta)
 
 
-def _read(run: Run, outcome: Outcome, rows: np.recarray, peaks: list[tuple[float, float]]) -> list[ShockOutcome]:
-    """Return what each shock does, without errors, by the ``rows`` of the run, and the ``peaks`` in them."""
+def _effects(run: Run, outcome: Outcome, rows: np.recarray, peaks: list[tuple[float, float]]) -> list[ShockOutcome]:
+    """Return the effects of each shock, without errors, from the ``rows`` and the ``peaks`` in them, of which one is changed."""
     shocks = run.motion.shocks
     of_run = max(i for i, shock in enumerate(shocks) if shock.start <= outcome.t_max + _AT_ONCE)
-    peaks[of_run] = outcome.theta_max, outcome.t_max  # of all steps, not only of rows
+    peaks[of_run] = outcome.theta_max, outcome.t_max  # the run's peak over all steps, not only rows
     ended = outcome.t_end if outcome.status in ("overturned", "flight") else math.inf
-    lean, settlement = _base(run, rows)
+    lean, settlement = _rest_state(run, rows)
     outcomes = []
     for shock, (theta, t) in zip(shocks, peaks, strict=True):
         if ended < shock.start - _AT_ONCE:
@@ -76,16 +75,17 @@ def _read(run: Run, outcome: Outcome, rows: np.recarray, peaks: list[tuple[float
             high, low = float(rotations.max()), float(rotations.min())
             last = int(np.searchsorted(rows.t, shock.until - _AT_ONCE)) - 1
             residual = 0.5 * (high + low) if run.base.has_residual else math.nan
-            outcomes.append(ShockOutcome(
-                "ok", theta, t, theta_res=residual if lean is None else float(lean[last]),
-                settlement=math.nan if settlement is None else float(settlement[last]), moving=0.5 * (high - low),
-            ))  # fmt: skip
+            theta_res = residual if lean is None else float(lean[last])
+            sunk = math.nan if settlement is None else float(settlement[last])
+            outcomes.append(ShockOutcome("ok", theta, t, math.nan, theta_res, sunk, 0.5 * (high - low)))
     return outcomes
 
 
-def _base(run: Run, rows: np.recarray) -> tuple[Samples | None, Samples | None]:
-    """Return the rotation at which the pier would rest [rad], and the mean settlement of its supports [m], at every row; ``None``
-    where dampers or tendons have a say in it, or on a rigid base."""
+def _rest_state(run: Run, rows: np.recarray) -> tuple[Samples | None, Samples | None]:
+    """Return the static rest rotation [rad] and the mean settlement of the supports [m] at every row.
+
+    The rotation is ``None`` if devices affect it; both are ``None`` on a rigid base.
+    """
     pier, base = run.pier, run.base
     if not isinstance(base, ElasticBase):  # a history does not hold the set of a bed
         return None, None

@@ -1,7 +1,7 @@
-"""Start of a run: a pier stands in its static state, or is held at a rotation and let go (THEORY.md, Release from a rotation).
+"""Initial state of a run: at rest, or held at a rotation and released (THEORY.md, Release from a rotation).
 
-A laboratory pulls the pier there slowly, by a horizontal force, and holds it. So the vertical forces balance, springs and dampers
-have been loaded once, and those that yield are on the curve of their first loading.
+A laboratory pulls the pier there slowly by a horizontal force and holds it. So the vertical forces balance, springs and dampers
+have been loaded once, and those that yield are on their curve of first loading.
 """
 
 import math
@@ -20,7 +20,7 @@ _STANDING = Start()
 
 @lru_cache(maxsize=4096)
 def start_of(pier: Pier, base: Base) -> Start:
-    """Return the state in which a run begins."""
+    """Return the initial state of a run; that of a pier without an initial rotation is all 0."""
     theta = pier.initial_rotation_rad
     if theta == 0.0:
         return _STANDING
@@ -29,15 +29,15 @@ def start_of(pier: Pier, base: Base) -> Start:
     if base.on_springs:
         return _on_springs(pier, base)
     states = []
-    for law in elements(pier, base):  # about a corner: the chord of the device's way
+    for law in elements(pier, base):  # rotation about a corner: the elongation is the chord of the arc
         distance = pier.half_width - math.copysign(law.offset, theta * law.offset)
         chord = 2.0 * distance * math.sin(0.5 * abs(theta))
-        states.append(_force_and_state(law, chord if law.height == 0.0 else _on_deck(law, theta, True))[1])
+        states.append(_force_and_state(law, chord if law.height == 0.0 else _deck_elongation(law, theta, True))[1])
     return Start(theta=theta, states=tuple(states), level=0.0)
 
 
 def _on_springs(pier: Pier, base: ElasticBase) -> Start:
-    """Return the vertical equilibrium of a pier on springs at its initial rotation: one equation for the pressed spring."""
+    """Return the vertical equilibrium of a pier on springs at its initial rotation, by the deflection of the pressed spring."""
     m, theta, laws = springs(pier, base), pier.initial_rotation_rad, elements(pier, base)
     curve, delta, side = base.first_loading, m.yield_deflection, math.copysign(1.0, theta)
     static = 0.5 * (m.gravity + prestress(pier, base)) / m.yield_force
@@ -49,32 +49,33 @@ def _on_springs(pier: Pier, base: ElasticBase) -> Start:
     rise = m.half_width * tilt
 
     def state(deflection: float) -> tuple[float, float, float]:
-        """Return v [m], and the forces over F_y of the spring that is pressed to ``deflection``/δ_y and of the lifted one."""
+        """Return v [m], and force/F_y of the spring pressed to ``deflection``/δ_y and of the other one."""
         v = -delta * deflection + rise - drop
         return v, float(curve.force(np.array([deflection]))[0]), max(static - (v + rise + drop - level) / delta, 0.0)
 
+    def elongation(law: Element, v: float) -> float:
+        if law.height != 0.0:
+            return _deck_elongation(law, theta, m.finite is not None)
+        return by_v * (v - level + drop - side * tilt * law.offset)
+
     def devices(v: float) -> list[tuple[float, float]]:
-        up = v - level + drop
-        return [
-            _force_and_state(law, _on_deck(law, theta, m.finite is not None))
-            if law.height != 0.0
-            else _force_and_state(law, by_v * (up - side * tilt * law.offset))
-            for law in laws
-        ]
+        """Return force [m/s²] and state of each device with the centre of mass at v [m]."""
+        return [_force_and_state(law, elongation(law, v)) for law in laws]
 
     def excess(deflection: float) -> float:
+        """Return the upward force less weight and tensions [m/s²]: it rises with the deflection."""
         v, pressed, lifted = state(deflection)
         pull = by_v * sum(force for (force, _), law in zip(devices(v), laws, strict=True) if law.height == 0.0)
         return m.yield_force * (pressed + lifted) - m.gravity - pull
 
-    v, pressed, lifted = state(_root(excess))
+    v, pressed, lifted = state(_nonnegative_root(excess))
     z_left, z_right = (-lifted, -pressed) if side > 0.0 else (-pressed, -lifted)
     states = tuple(device_state for _, device_state in devices(v))
     return Start(v, theta, z_left + 0.0, z_right + 0.0, states, level, level + delta * static)
 
 
 def _force_and_state(law: Element, elongation: float) -> tuple[float, float]:
-    """Return force [m/s²] and state of a device that was drawn out slowly from rest to this ``elongation`` [m]."""
+    """Return force [m/s²] and state of a device after slow loading from rest to ``elongation`` [m]; 0 and 0 if viscous."""
     if law.kind == TENDON:
         pull = law.prestress + law.stiffness * elongation
         plastic = (pull - law.strength) / law.stiffness if pull > law.strength else 0.0
@@ -89,7 +90,7 @@ def _force_and_state(law: Element, elongation: float) -> tuple[float, float]:
     return law.stiffness * elongation if law.kind == SPRING else 0.0, 0.0  # viscous
 
 
-def _on_deck(law: Element, theta: float, finite: bool) -> float:
+def _deck_elongation(law: Element, theta: float, finite: bool) -> float:
     """Return the elongation of a device at the deck [m]."""
     if not finite:
         return law.way * law.height * theta
@@ -97,8 +98,8 @@ def _on_deck(law: Element, theta: float, finite: bool) -> float:
     return law.way * (law.height * math.sin(theta) + swing * (1.0 - math.cos(theta)))
 
 
-def _root(rising: Callable[[float], float]) -> float:
-    """Return the deflection above 0 at which a rising function becomes 0: doubled until it is above, then between."""
+def _nonnegative_root(rising: Callable[[float], float]) -> float:
+    """Return x ≥ 0 at which a rising function is 0, or 0 if it is not negative there; it must become positive."""
     from scipy.optimize import brentq
 
     low, high = 0.0, 1.0

@@ -2,8 +2,9 @@
 
 from rockbatch.study.load import Study, given_study, load_study
 from rockbatch.study.motions import Motions
+from rockbatch.study.output import Output
 from rockbatch.study.piers import PIER_KEYS
-from rockbatch.study.spec import Case, FemaSpec, MotionSpec, Numerics, Output, PulseSpec, Reference
+from rockbatch.study.spec import Case, FemaSpec, MotionSpec, Numerics, PulseSpec, Reference
 
 __all__ = [
     "PIER_KEYS",

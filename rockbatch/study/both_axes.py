@@ -23,7 +23,7 @@ KEY = "other_width_m"
 def with_other_axes(file: TomlFile, cases: Sequence[Case], motions: MotionSpec) -> list[Case]:
     """Return the cases, each that gives the width of its other axis followed by the case of that axis.
 
-    What stands in the way is noted in ``file``.
+    A case that cannot be run on both axes is noted in ``file``, with the reason.
     """
     tables = file.tables("case", title="name")
     names = [table.data.get("name") for table in tables]
@@ -32,25 +32,26 @@ def with_other_axes(file: TomlFile, cases: Sequence[Case], motions: MotionSpec) 
         both.append(case)
         if KEY in case.columns:
             table = tables[names.index(case.name) if case.name in names else 0]  # a single one need not have a name
-            wrong = list(_unfit(case, motions, names))
+            wrong = list(_obstacles(case, motions, names))
             for problem in wrong:
                 table.complain(f"{KEY}: {problem}", KEY)
-            both += [] if wrong else _across(table, case)
+            both += [] if wrong else _case_across(table, case)
     return both
 
 
-def _name(case: Case) -> str:
+def _name_across(case: Case) -> str:
+    """Return the name of the case across the axis of ``case``."""
     return f"{case.name} across"
 
 
-def _unfit(case: Case, motions: MotionSpec, names: Container[object]) -> Iterator[str]:
-    """Yield why a case cannot be run on both axes, with the remedy."""
-    if _name(case) in names:
-        yield f"the case across the axis is called {shown(_name(case))}; give the case of that name another one"
+def _obstacles(case: Case, motions: MotionSpec, names: Container[object]) -> Iterator[str]:
+    """Yield each reason why a case cannot be run on both axes, with the remedy."""
+    if _name_across(case) in names:
+        yield f"the case across the axis is called {shown(_name_across(case))}; give the case of that name another one"
     if "width_m" not in case.columns:
-        yield "is beside width_m of [pier], and the size is given otherwise; write width_m and height_m, or width_m and parts"
+        yield "needs width_m of [pier]; write width_m and height_m, or width_m and parts, instead of another size"
     if case.base.bends:
-        yield 'its shaft bends across the axis with another period; write a case and a [pier] for each axis, or shaft = "rigid"'
+        yield 'a shaft that bends has another period across the axis; write a case and a [pier] for each axis, or shaft = "rigid"'
     if case.pier.initial_rotation_rad or motions.still_s is not None:
         yield "a pier that is let go turns in one plane; leave initial_rotation_rad and still_s, or this, out"
     if len(motions.azimuths) != 1 and not isinstance(motions.override, MotionSet):
@@ -65,8 +66,8 @@ def _unfit(case: Case, motions: MotionSpec, names: Container[object]) -> Iterato
         )
 
 
-def _across(table: Table, case: Case) -> list[Case]:
-    """Return the case across the axis of ``case``: none if it cannot be, which is noted in ``table``."""
+def _case_across(table: Table, case: Case) -> list[Case]:
+    """Return the case across the axis of ``case``, or nothing if its pier is impossible, which is noted in ``table``."""
     width = float(case.columns[KEY])
     pier_table = table.file.table("pier")
     confirmed = {name.replace(KEY, "width_m") for name in table.confirmed}
@@ -84,7 +85,7 @@ def _across(table: Table, case: Case) -> list[Case]:
                 )
             table.complain(in_table(problem), KEY)
         return []
-    return [replace(case, name=_name(case), pier=pier, base=base, across_of=case.name)]
+    return [replace(case, name=_name_across(case), pier=pier, base=base, across_of=case.name)]
 
 
 def across(pier: Pier, base: Base, other: Pier) -> Base:
@@ -103,8 +104,8 @@ def _in_the_middle(pier: Pier, device: Restraint, other: Pier) -> Restraint:
     """Return a device of ``pier`` in the middle of the base of ``other``, with its stiffness and damping coefficient."""
     levers = (other.half_width / pier.half_width) ** 2 * pier.size / other.size
     times = {"lam": levers, "brace": levers, "nu": pier.p / other.p}
-    changed: dict[str, Any] = {name: getattr(device, name) * by for name, by in times.items() if hasattr(device, name)}
-    return replace(device, **changed | {"at": 0.0})
+    changes: dict[str, Any] = {name: getattr(device, name) * by for name, by in times.items() if hasattr(device, name)}
+    return replace(device, **changes | {"at": 0.0})
 
 
 def along_the_axis(cases: Iterable[Case]) -> tuple[Case, ...]:

@@ -1,8 +1,8 @@
 """The cases of a study file, with every combination of listed values: [[case]]."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rockbatch.common.errors import Problem
 from rockbatch.common.showing import shown
@@ -33,26 +33,34 @@ from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.study.piers import PIER, Values, has_mass
 from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices
 from rockbatch.study.spec import Case
-from rockbatch.toml.kinds import KindError, Other, choice, positive, text, within
+from rockbatch.toml.kinds import KeyValues, KindError, Other, choice, positive, text, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile, in_table
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
 _CALLED = {
-    "base": names({
-        "rigid": "fixed rigidbase rigidground housner rock", "elastic": "spring springs winkler flexible linear compliant",
-        "yielding": "inelastic nonlinear plastic elastoplastic elasticplastic epp boucwen bilinear",
-        "footing": "bed soil strip foot spreadfooting shallowfoundation",
-    }),
-    "spring": names({
-        "epp": "bilinear elastoplastic elasticplastic elasticperfectlyplastic perfectlyplastic", "bouc-wen": "smooth",
-    }),
+    "base": names(
+        {
+            "rigid": "fixed rigidbase rigidground housner rock",
+            "elastic": "spring springs winkler flexible linear compliant",
+            "yielding": "inelastic nonlinear plastic elastoplastic elasticplastic epp boucwen bilinear",
+            "footing": "bed soil strip foot spreadfooting shallowfoundation",
+        }
+    ),
+    "spring": names(
+        {
+            "epp": "bilinear elastoplastic elasticplastic elasticperfectlyplastic perfectlyplastic",
+            "bouc-wen": "smooth",
+        }
+    ),
     "impact": names({"landing": "impulse"}),
-    "kinematics": names({
-        "first-order": "small smallrotations linear linearised linearized 1storder",
-        "finite": "large largerotations nonlinear exact full",
-    }),
-}  # fmt: skip
+    "kinematics": names(
+        {
+            "first-order": "small smallrotations linear linearised linearized 1storder",
+            "finite": "large largerotations nonlinear exact full",
+        }
+    ),
+}
 _ON_SPRINGS = {"base": tuple(name for name, base in BASES.items() if base.two_springs)}
 _ON_GROUND_THAT_GIVES = {"base": tuple(name for name, base in BASES.items() if base.on_springs)}
 _NOT_ON_A_BED = {"base": (*_ON_SPRINGS["base"], "rigid")}
@@ -60,108 +68,233 @@ _ON_ROCK = {"base": tuple(name for name, base in BASES.items() if not base.on_sp
 _YIELDS = {"base": tuple(name for name, base in BASES.items() if base.two_springs and base.yields)}
 
 
-def _blow(value: Any) -> str:
+def _impact_rule(value: object) -> str:
+    """Return the name of an impact rule of a shaft that bends. Raises :class:`KindError` for an unknown one."""
     if problem := wrong_blow(str(value)):
         raise KindError(problem, whole=True)
     return str(value)
 
 
 BASE_KEYS = {
-    "restitution": Key(within(BOUNDS["restitution"]), "0.9",
-        "Factor on the angular velocity at an impact; default: Housner's, from the geometry.", many=True,
-        only=_ON_ROCK, usual=USUAL["restitution"]),
-    "beta": Key(positive, "40.0",
-        "Stiffness as β = ω_v/p, the vertical over the rocking frequency; or give `stiffness_kN_m`.", many=True,
+    "restitution": Key(
+        within(BOUNDS["restitution"]),
+        "0.9",
+        "Factor on the angular velocity at an impact; default: Housner's, from the geometry.",
+        many=True,
+        only=_ON_ROCK,
+        usual=USUAL["restitution"],
+    ),
+    "beta": Key(
+        positive,
+        "40.0",
+        "Stiffness as β = ω_v/p, the vertical over the rocking frequency; or give `stiffness_kN_m`.",
+        many=True,
         only=_ON_GROUND_THAT_GIVES,
-        usual=USUAL["beta"]),
-    "stiffness_kN_m": Key(positive, "2.0e6",
-        "Stiffness K of one support, if the mass is given; or give `beta`.", many=True, only=_ON_SPRINGS),
-    "mass_t": Key(positive, "3000.0", "Mass of all that rocks, unless `[pier]` states it.", many=True,
-        only=_ON_GROUND_THAT_GIVES, usual=PIER["mass_t"].usual),
-    "epsilon": Key(within(BOUNDS["epsilon"]), "0.05",
-        "Restitution ε of the landing pivot, from 0 (no rebound) to 1 (no loss).", many=True,
-        only=_ON_SPRINGS | {"impact": WITH_EPSILON}),
-    "impact": Key(choice(*WORDS["impact"], called=_CALLED["impact"]), '"landing"',
+        usual=USUAL["beta"],
+    ),
+    "stiffness_kN_m": Key(
+        positive,
+        "2.0e6",
+        "Stiffness K of one support, if the mass is given; or give `beta`.",
+        many=True,
+        only=_ON_SPRINGS,
+    ),
+    "mass_t": Key(
+        positive,
+        "3000.0",
+        "Mass of all that rocks, unless `[pier]` states it.",
+        many=True,
+        only=_ON_GROUND_THAT_GIVES,
+        usual=PIER["mass_t"].usual,
+    ),
+    "epsilon": Key(
+        within(BOUNDS["epsilon"]),
+        "0.05",
+        "Restitution ε of the landing pivot, from 0 (no rebound) to 1 (no loss).",
+        many=True,
+        only=_ON_SPRINGS | {"impact": WITH_EPSILON},
+    ),
+    "impact": Key(
+        choice(*WORDS["impact"], called=_CALLED["impact"]),
+        '"landing"',
         'What a landing does: "landing", an impulse at that pivot, by `epsilon`; or "housner", Housner\'s e on the '
         "angular velocity while the other pivot keeps its velocity, for which the supports would have to pull.",
-        many=True, only=_ON_SPRINGS),
-    "zeta": Key(within(BOUNDS["zeta"]), "0.05",
+        many=True,
+        only=_ON_SPRINGS,
+    ),
+    "zeta": Key(
+        within(BOUNDS["zeta"]),
+        "0.05",
         "Damping ratio ζ of the vertical vibration, by a dashpot parallel to each spring; instead of `epsilon`.",
-        many=True, only=_ON_SPRINGS),
-    "kinematics": Key(choice(*WORDS["kinematics"], called=_CALLED["kinematics"]), '"first-order"',
-        "The paper's equations, \"first-order\", or equations for rotations of any size.", many=True, only=_ON_SPRINGS),
-    "eta": Key(within(BOUNDS["eta"]), "2.5",
-        "Strength as η = F_y/(static force of a support), above 1; or give `yield_kN`.", many=True, only=_YIELDS,
-        usual=USUAL["eta"]),
-    "yield_kN": Key(positive, "4.0e4",
-        "Yield force F_y of one support, if the mass is given; or give `eta`.", many=True, only=_YIELDS),
-    "spring": Key(choice(*WORDS["spring"], called=_CALLED["spring"]), '"bouc-wen"',
-        f"Law of the supports: {meanings()}.", many=True, only=_YIELDS),
-    "n": Key(within(BOUNDS["n"]), "5",
-        "Bouc–Wen exponent, of hardening springs too: the larger, the sharper the corner between elastic and plastic.", many=True,
-        only=_YIELDS | {"spring": WITH_EXPONENT}),
-    "flight": Key(choice(*WORDS["flight"]), '"stop"',
+        many=True,
+        only=_ON_SPRINGS,
+    ),
+    "kinematics": Key(
+        choice(*WORDS["kinematics"], called=_CALLED["kinematics"]),
+        '"first-order"',
+        'The paper\'s equations, "first-order", or equations for rotations of any size.',
+        many=True,
+        only=_ON_SPRINGS,
+    ),
+    "eta": Key(
+        within(BOUNDS["eta"]),
+        "2.5",
+        "Strength as η = F_y/(static force of a support), above 1; or give `yield_kN`.",
+        many=True,
+        only=_YIELDS,
+        usual=USUAL["eta"],
+    ),
+    "yield_kN": Key(
+        positive,
+        "4.0e4",
+        "Yield force F_y of one support, if the mass is given; or give `eta`.",
+        many=True,
+        only=_YIELDS,
+    ),
+    "spring": Key(
+        choice(*WORDS["spring"], called=_CALLED["spring"]),
+        '"bouc-wen"',
+        f"Law of the supports: {meanings()}.",
+        many=True,
+        only=_YIELDS,
+    ),
+    "n": Key(
+        within(BOUNDS["n"]),
+        "5",
+        "Bouc–Wen exponent, of hardening springs too: the larger, the sharper the corner between elastic and plastic.",
+        many=True,
+        only=_YIELDS | {"spring": WITH_EXPONENT},
+    ),
+    "flight": Key(
+        choice(*WORDS["flight"]),
+        '"stop"',
         'What happens when both pivots are off the ground: "guided" follows the pier, which shear keys hold sideways, until '
-        'it lands, and the run goes on; "stop" ends the run there, as in the paper.', many=True,
-        only=_NOT_ON_A_BED),
-    "flight_limit_mm": Key(within(BOUNDS["flight_limit_mm"]), "20.0",
-        "Height of the lower pivot in flight beyond which a run carries a note: as far as shear keys reach, say.", many=True,
-        usual=USUAL["flight_limit_mm"]),
-    "friction": Key(within(BOUNDS["friction"]), "0.5",
+        'it lands, and the run goes on; "stop" ends the run there, as in the paper.',
+        many=True,
+        only=_NOT_ON_A_BED,
+    ),
+    "flight_limit_mm": Key(
+        within(BOUNDS["flight_limit_mm"]),
+        "20.0",
+        "Height of the lower pivot in flight beyond which a run carries a note: as far as shear keys reach, say.",
+        many=True,
+        usual=USUAL["flight_limit_mm"],
+    ),
+    "friction": Key(
+        within(BOUNDS["friction"]),
+        "0.5",
         "Coefficient of friction of the interface, for runs with `forces = true` under `[output]`: those that would slide "
-        "say so.", many=True, usual=USUAL["friction"]),
-    "contact_stiffness_kN_m": Key(within(BOUNDS["contact_stiffness_kN_m"]), "5.0e6",
+        "say so.",
+        many=True,
+        usual=USUAL["friction"],
+    ),
+    "contact_stiffness_kN_m": Key(
+        within(BOUNDS["contact_stiffness_kN_m"]),
+        "5.0e6",
         "Stiffness of the ground under one foot, by which runs with `forces = true` estimate the force of their hardest landing: "
-        "the column `landing_force_kN`, an orientation that no check takes; it does not affect any run.", many=True,
-        only=_ON_ROCK),
-    "shaft": Key(choice(*WORDS["shaft"]), '"rigid"',
+        "the column `landing_force_kN`, an orientation that no check takes; it does not affect any run.",
+        many=True,
+        only=_ON_ROCK,
+    ),
+    "shaft": Key(
+        choice(*WORDS["shaft"]),
+        '"rigid"',
         'Whether the shaft bends: "elastic" follows one mode of the period `flexural_period_s` of `[pier]` beside the rotation.',
-        many=True, only=_ON_ROCK),
-    "flexural_damping": Key(within(BOUNDS["flexural_damping"]), "0.05",
-        "Damping ratio of that mode, of the pier fixed at its base.", many=True, only=_ON_ROCK | {"shaft": ("elastic",)}),
-    "flexural_impact": Key(Other('"momentum"', _blow, {"enum": ["momentum"]}), '"momentum"',
+        many=True,
+        only=_ON_ROCK,
+    ),
+    "flexural_damping": Key(
+        within(BOUNDS["flexural_damping"]),
+        "0.05",
+        "Damping ratio of that mode, of the pier fixed at its base.",
+        many=True,
+        only=_ON_ROCK | {"shaft": ("elastic",)},
+    ),
+    "flexural_impact": Key(
+        Other('"momentum"', _impact_rule, {"enum": ["momentum"]}),
+        '"momentum"',
         "What a blow keeps, the momentum of the mode: the only rule, so that the key has no effect and may be left out.",
-        many=True, only=_ON_ROCK | {"shaft": ("elastic",)}),
-    "area_m2": Key(within(BOUNDS["area_m2"]), "6.0",
-        "Area of one support, for the bearing stresses of the statics sheet; it does not affect any run.", many=True,
-        only=_NOT_ON_A_BED),
+        many=True,
+        only=_ON_ROCK | {"shaft": ("elastic",)},
+    ),
+    "area_m2": Key(
+        within(BOUNDS["area_m2"]),
+        "6.0",
+        "Area of one support, for the bearing stresses of the statics sheet; it does not affect any run.",
+        many=True,
+        only=_NOT_ON_A_BED,
+    ),
     **FOOTING_KEYS,
-}  # fmt: skip
+}
 """Keys that describe a base; in a list each value is a case."""
-CASE = Section(("case",), (
-    "A foundation. Write one for each foundation to compare. All keys but `name`, `base`, `other_width_m` "
-    "and `confirm` may be lists: every combination is a case."
-), {
-    "name": Key(text, '"soft"', "Its name in tables; the base if there is only one case."),
-    "base": Key(choice(*BASES, called=_CALLED["base"]), '"yielding"',
-        '"rigid": Housner\'s block on ground that neither gives nor yields; "elastic": two springs without tension; '
-        '"yielding": the same, and the springs yield; "footing": a foot on a bed of strips.', required=True),
-    **BASE_KEYS,
-    "other_width_m": Key(within(OF_PIER["width_m"]), "8.0",
-        "Width between the pivots across the axis, at right angles to `width_m` of `[pier]`. The case is then run on both axes, "
-        "each a planar model under its component of every record, and checks combine them by `both_axes`.",
-        usual=PIER["width_m"].usual, only=_NOT_ON_A_BED),
-    **CONFIRM,
-}, many=True, required=True, homes=(YieldingBase, ElasticBase, RigidBase, FootingBase), also=names({
-    "base": "foundation support supports type kind model", "stiffness_kN_m": "k kv kz springstiffness",
-    "yield_kN": "fy strength capacity yieldforce yieldstrength bearingcapacity", "zeta": "damping dampingratio xi",
-    ("restitution", "epsilon"): "cor e r coefficientofrestitution", "friction": "mu mus coefficientoffriction",
-    "spring": "law hysteresis material springs springlaw springtype", "eta": "fs factorofsafety safetyfactor",
-    "n": "exponent boucwenn", "name": "id label title",
-}), instead=names({("mass_t", "the weight in kN over 9.81"): "weight w"}), clashes=(
-    Clash(("beta", "stiffness_kN_m"), "beta and stiffness_kN_m are given, which fix the same; keep one", at="stiffness_kN_m"),
-    Clash(("eta", "yield_kN"), "eta and yield_kN are given, which fix the same; keep one", at="yield_kN"),
-    Clash(("epsilon", "zeta"), EPSILON_AND_ZETA, shown=True),
-    Clash(("impact", "zeta"), EPSILON_AND_ZETA, shown=True),
-    Clash(("mass_t",), "mass_t is for use with stiffness_kN_m or yield_kN; leave it out", lacking=("stiffness_kN_m", "yield_kN")),
-))  # fmt: skip
+CASE = Section(
+    ("case",),
+    (
+        "A foundation. Write one for each foundation to compare. All keys but `name`, `base`, `other_width_m` "
+        "and `confirm` may be lists: every combination is a case."
+    ),
+    {
+        "name": Key(text, '"soft"', "Its name in tables; the base if there is only one case."),
+        "base": Key(
+            choice(*BASES, called=_CALLED["base"]),
+            '"yielding"',
+            '"rigid": Housner\'s block on ground that neither gives nor yields; "elastic": two springs without tension; '
+            '"yielding": the same, and the springs yield; "footing": a foot on a bed of strips.',
+            required=True,
+        ),
+        **BASE_KEYS,
+        "other_width_m": Key(
+            within(OF_PIER["width_m"]),
+            "8.0",
+            "Width between the pivots across the axis, at right angles to `width_m` of `[pier]`. The case is then run "
+            "on both axes, each a planar model under its component of every record, and checks combine them by "
+            "`both_axes`.",
+            usual=PIER["width_m"].usual,
+            only=_NOT_ON_A_BED,
+        ),
+        **CONFIRM,
+    },
+    many=True,
+    required=True,
+    homes=(YieldingBase, ElasticBase, RigidBase, FootingBase),
+    also=names(
+        {
+            "base": "foundation support supports type kind model",
+            "stiffness_kN_m": "k kv kz springstiffness",
+            "yield_kN": "fy strength capacity yieldforce yieldstrength bearingcapacity",
+            "zeta": "damping dampingratio xi",
+            ("restitution", "epsilon"): "cor e r coefficientofrestitution",
+            "friction": "mu mus coefficientoffriction",
+            "spring": "law hysteresis material springs springlaw springtype",
+            "eta": "fs factorofsafety safetyfactor",
+            "n": "exponent boucwenn",
+            "name": "id label title",
+        }
+    ),
+    instead=names({("mass_t", "the weight in kN over 9.81"): "weight w"}),
+    clashes=(
+        Clash(
+            ("beta", "stiffness_kN_m"),
+            "beta and stiffness_kN_m are given, which fix the same; keep one",
+            at="stiffness_kN_m",
+        ),
+        Clash(("eta", "yield_kN"), "eta and yield_kN are given, which fix the same; keep one", at="yield_kN"),
+        Clash(("epsilon", "zeta"), EPSILON_AND_ZETA, shown=True),
+        Clash(("impact", "zeta"), EPSILON_AND_ZETA, shown=True),
+        Clash(
+            ("mass_t",),
+            "mass_t is for use with stiffness_kN_m or yield_kN; leave it out",
+            lacking=("stiffness_kN_m", "yield_kN"),
+        ),
+    ),
+)
 
 _ANY_PIER = Pier(alpha=1.0, p=1.0, flexural_period_s=1.0)
-"""Pier used if none can be read, so that everything independent of it is still checked."""
+"""Pier used if none can be read, so that keys that do not depend on it are still checked."""
 
 
-class _Read(NamedTuple):
-    """A [[case]] as it is written, and the values of its keys."""
+class _WrittenCase(NamedTuple):
+    """A [[case]] as it is written: its table, its name and base, its devices, and the values of its keys."""
 
     table: Table
     name: str
@@ -171,7 +304,7 @@ class _Read(NamedTuple):
 
 
 def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[list[Case], tuple[str, ...]]:
-    """Return every [[case]] on every pier, its columns all keys that apply, and which keys are lists in any of them."""
+    """Return every [[case]] on every pier, with all keys that apply as columns, and the keys that are lists in any of them."""
     tables = file.tables("case", title="name")
     if file.data.get("case", []) == [] and ("case",) not in file.misspelt:
         file.complain(("case",), '[[case]] is missing; write at least one, for example with base = "rigid"')
@@ -179,7 +312,7 @@ def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[li
     varied: dict[str, None] = {}
     names: set[str] = set()
     for table in tables:
-        case = _case(table)
+        case = _read_case(table)
         if len(tables) > 1 and "name" not in table.data:
             table.complain('name is missing; of several cases each needs its own, for example name = "soft"')
         elif case.name in names:
@@ -191,16 +324,15 @@ def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[li
     if message := too_many(max(len(piers), 1) * sum(len(case.grid) for case in cases), "cases"):
         file.complain(("case",), message)
         return [], tuple(varied)
-    expanded = [
-        _expand(case, chosen, pier, pier_values)
-        for pier, pier_values in piers or [(_ANY_PIER, {})]
-        for case in cases
-        for chosen in _without_repeats(case.grid)
-    ]
+    expanded = []
+    for pier, pier_values in piers or [(_ANY_PIER, {})]:
+        for case in cases:
+            expanded += [_case_of(case, chosen, pier, pier_values) for chosen in _without_repeats(case.grid)]
     return expanded, tuple(varied)
 
 
-def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Case:
+def _case_of(case: _WrittenCase, chosen: Chosen, pier: Pier, pier_values: Values) -> Case:
+    """Return the case of one choice of values on a pier; note values that are impossible or unusual together."""
     values = {key: setting.value for key, setting in chosen.items()}
     any_pier = pier is _ANY_PIER
     if "mass_t" in values:
@@ -212,13 +344,12 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
     devices = tuple(device for device in made if device is not None)
     devices = at_pivots(devices, pivots) if pier is not pivots else devices
     of_base = {name: values[name] for name in BASE_KEYS if name in values}
-    of_base |= {"restraints": devices, "confirm": tuple(USUAL)}  # what is unusual is noted where it is read
+    of_base |= {"restraints": devices, "confirm": tuple(USUAL)}  # reading the keys notes unusual values
     if "zeta" in of_base:
-        for name in ("epsilon", "impact"):  # that they clash is noted already
+        for name in ("epsilon", "impact"):  # the clash is noted already
             of_base.pop(name, None)
-    base, wrong = (
-        footing_of(values, pier, devices) if case.base == FootingBase.name else _base(case.base, of_base, pier)
-    )
+    on_bed = case.base == FootingBase.name
+    base, wrong = footing_of(values, pier, devices) if on_bed else _base_of(case.base, of_base, pier)
     wrong += problems(pier, base)
     of_devices = [problem for device in devices for problem in wrong_device(pier, device)]
     for problem in wrong:
@@ -227,7 +358,7 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
     if not wrong and pier.mass_t is not None:
         _complain_unless_usual(case.table, chosen, pier)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | values
-    for name in ("restraints", "confirm", "flexural_impact", "vertical_over_formula"):  # their own keys say them
+    for name in ("restraints", "confirm", "flexural_impact", "vertical_over_formula"):  # columns of their own have them
         applying.pop(name, None)
     if not base.has_epsilon:
         applying.pop("epsilon", None)
@@ -241,10 +372,10 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
     return Case(case.name, pier, base, pier_values | applying)
 
 
-def _base(name: str, values: Mapping[str, Any], pier: Pier) -> tuple[Base, list[Problem]]:
-    """Return the base, and what is impossible about β and η that follow from K [kN/m] and F_y [kN] by the mass of the pier.
+def _base_of(name: str, values: KeyValues, pier: Pier) -> tuple[Base, list[Problem]]:
+    """Return the base, with β and η from K [kN/m] and F_y [kN] by the mass of the pier, and the problems of β and η.
 
-    Where β or η is impossible, or missing, which is noted already, a possible value lets the rest be checked.
+    A possible value takes the place of an impossible or missing one, so that the other keys can be checked.
     """
     arguments, wrong = dict(values), list[Problem]()
     stiffness, strength, _ = (arguments.pop(key, None) for key in ("stiffness_kN_m", "yield_kN", "mass_t"))
@@ -262,7 +393,7 @@ def _base(name: str, values: Mapping[str, Any], pier: Pier) -> tuple[Base, list[
 
 
 def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
-    """Yield all choices, without n or ε if spring or impact has none, and without the repetitions that this leaves."""
+    """Yield the choices, each once, without n or ε where the law of the springs or the impact has none."""
     visited = set()
     for chosen in all_of_them:
         if "spring" in chosen and chosen["spring"].value not in WITH_EXPONENT:
@@ -278,7 +409,8 @@ def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
 # Mistakes that take more than one key to see
 
 
-def _case(table: Table) -> _Read:
+def _read_case(table: Table) -> _WrittenCase:
+    """Return a [[case]]; note keys that are missing beside others or beside [pier]."""
     grid = Grid.of(table, CASE, other=RESTRAINTS)
     base, name = (next((s.value for s in grid.settings.pop(key, ())), "") for key in ("base", "name"))
     weighed = has_mass(table.file)
@@ -304,18 +436,18 @@ def _case(table: Table) -> _Read:
             "area_m2: stresses are of a pier whose mass is known; write mass_t in [pier], or leave it out", "area_m2"
         )
     devices, of_devices = read_devices(table)
-    return _Read(table, name or base, base, devices, grid + of_devices)
+    return _WrittenCase(table, name or base, base, devices, grid + of_devices)
 
 
 def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: Base) -> None:
-    """Place a problem of the structure at its key, or at the one from which its value was derived, with its limit."""
+    """Note a problem of pier and base at its key, or at K or F_y, from which β or η follows, with the value needed."""
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(problem.key, "")
     mass = pier.mass_t
     if source in chosen and mass is not None:
         strength = f"yield_kN above {rounded_up(0.5 * enough_eta(pier, base) * mass * pier.gravity):.4g}"
         stiffness = f"stiffness_kN_m above {rounded_up(0.5 * (least_beta(pier, base) * pier.p) ** 2 * mass):.4g}"
         remedies = {"eta": strength, "beta": stiffness}
-        if "yield_kN" in chosen and base.beta > pier.least_beta:  # enough for springs that are far from yielding
+        if "yield_kN" in chosen and base.beta > pier.least_beta:  # β is too low only for springs so near to yielding
             remedies["beta"] = f"{strength}, or {stiffness}"
         weighing = f"mass_t = {mass:g}" if "mass_t" in chosen else f"the {mass:g} t of [pier]"
         derived = f"{source} = {chosen[source].value:g} with {weighing}"
@@ -325,7 +457,7 @@ def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: 
 
 
 def _complain_unless_usual(table: Table, chosen: Chosen, pier: Pier) -> None:
-    """Note an implausible mass, stiffness, yield force or area of a support under this pier, unless they are confirmed."""
+    """Note an unusual mass, stiffness, yield force or area of a support under this pier, unless it is confirmed."""
     if "mass_t" in chosen:
         for problem in unlikely_mass(pier, table.confirmed):
             table.complain_about(chosen["mass_t"], in_table(problem))

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
-from typing import Any
 
 from rockbatch.common.errors import InputError, Problem
 from rockbatch.common.showing import shown
@@ -20,32 +19,70 @@ from rockbatch.study.restraint_inputs import (
 )
 from rockbatch.study.restraint_keys import DEVICES
 from rockbatch.study.spec import Case
-from rockbatch.toml.kinds import Kind
+from rockbatch.toml.kinds import KeyValues, Kind
 from rockbatch.toml.section import Key
 
 OF_PIER = ("alpha", "p", "mu")
 
 _RANGES: dict[str, tuple[Mapping[str, Key], dict[str, str]]] = {
-    "": ({**PIER, **CASE}, {
-        "alpha": "[0.12, 0.16]", "p": "[0.3, 0.5]", "mu": "[2.5, 3.5]", "restitution": "[0.85, 0.95]", "beta": "[30, 90]",
-        "epsilon": "[0.05, 0.3]", "zeta": "[0.02, 0.1]", "eta": "[2.0, 4.0]", "n": "[2, 8]", "stiffness_kN_m": "[1e6, 4e6]",
-        "yield_kN": "[3e4, 6e4]",
-    }),
-    "damper": (DEVICES["damper"], {
-        "force_kN": "[300.0, 600.0]", "f": "[0.01, 0.05]", "yield_mm": "[3.0, 8.0]", "coefficient_kN_s_m": "[500.0, 2000.0]",
-        "nu": "[0.2, 0.8]", "exponent": "[0.3, 1.0]", "brace_kN_m": "[1.0e5, 4.0e5]", "brace": "[2.0, 10.0]",
-    }),
-    "tendon": (DEVICES["tendon"], {
-        "prestress_kN": "[3000.0, 6000.0]", "psi": "[0.2, 0.8]", "stiffness_kN_m": "[2.0e4, 8.0e4]",
-        "yield_kN": "[8000.0, 1.2e4]", "lambda": "[0.5, 2.0]",
-    }),
-    "stop": (DEVICES["stop"], {
-        "gap_mm": "[80.0, 120.0]", "stiffness_kN_m": "[2.0e5, 1.0e6]", "lambda": "[10.0, 40.0]", "restitution": "[0.4, 0.8]",
-    }),
-    "deck_spring": (DEVICES["deck_spring"], {
-        "gap_mm": "[20.0, 60.0]", "stiffness_kN_m": "[2.0e4, 1.0e5]", "lambda": "[0.1, 0.5]", "restitution": "[0.4, 0.8]",
-    }),
-}  # fmt: skip
+    "": (
+        {**PIER, **CASE},
+        {
+            "alpha": "[0.12, 0.16]",
+            "p": "[0.3, 0.5]",
+            "mu": "[2.5, 3.5]",
+            "restitution": "[0.85, 0.95]",
+            "beta": "[30, 90]",
+            "epsilon": "[0.05, 0.3]",
+            "zeta": "[0.02, 0.1]",
+            "eta": "[2.0, 4.0]",
+            "n": "[2, 8]",
+            "stiffness_kN_m": "[1e6, 4e6]",
+            "yield_kN": "[3e4, 6e4]",
+        },
+    ),
+    "damper": (
+        DEVICES["damper"],
+        {
+            "force_kN": "[300.0, 600.0]",
+            "f": "[0.01, 0.05]",
+            "yield_mm": "[3.0, 8.0]",
+            "coefficient_kN_s_m": "[500.0, 2000.0]",
+            "nu": "[0.2, 0.8]",
+            "exponent": "[0.3, 1.0]",
+            "brace_kN_m": "[1.0e5, 4.0e5]",
+            "brace": "[2.0, 10.0]",
+        },
+    ),
+    "tendon": (
+        DEVICES["tendon"],
+        {
+            "prestress_kN": "[3000.0, 6000.0]",
+            "psi": "[0.2, 0.8]",
+            "stiffness_kN_m": "[2.0e4, 8.0e4]",
+            "yield_kN": "[8000.0, 1.2e4]",
+            "lambda": "[0.5, 2.0]",
+        },
+    ),
+    "stop": (
+        DEVICES["stop"],
+        {
+            "gap_mm": "[80.0, 120.0]",
+            "stiffness_kN_m": "[2.0e5, 1.0e6]",
+            "lambda": "[10.0, 40.0]",
+            "restitution": "[0.4, 0.8]",
+        },
+    ),
+    "deck_spring": (
+        DEVICES["deck_spring"],
+        {
+            "gap_mm": "[20.0, 60.0]",
+            "stiffness_kN_m": "[2.0e4, 1.0e5]",
+            "lambda": "[0.1, 0.5]",
+            "restitution": "[0.4, 0.8]",
+        },
+    ),
+}
 """Keys of a pier and its case, and of its devices, that have ranges, with examples."""
 
 
@@ -57,13 +94,12 @@ def ranges(of: str = "", kind: Kind | None = None) -> dict[str, Key]:
     }
 
 
-def varied(case: Case, values: Mapping[str, Any]) -> Case:
-    """Return the case with other values of its pier and its base. Raises :class:`InputError` where the pier cannot be."""
+def varied(case: Case, values: KeyValues) -> Case:
+    """Return the case with other ``values`` of its pier, base and devices. Raises :class:`InputError` for impossible ones."""
     arguments = dict(values)
     of_pier = {name: arguments.pop(name) for name in OF_PIER if name in arguments}
-    pier = replace(
-        case.pier, **of_pier, confirm=(*case.pier.confirm, *of_pier, "mass_t")
-    )  # ranges are what the study means
+    # The author of the study means its ranges: none of their values needs to be confirmed
+    pier = replace(case.pier, **of_pier, confirm=(*case.pier.confirm, *of_pier, "mass_t"))
     for name, ratio in IN_KILONEWTONS.items():
         if name in arguments:
             arguments[ratio] = (beta_of if ratio == "beta" else eta_of)(pier, arguments.pop(name))
@@ -73,8 +109,8 @@ def varied(case: Case, values: Mapping[str, Any]) -> Case:
     return replace(case, pier=pier, base=replace(case.base, **arguments, confirm=(*case.base.confirm, *arguments)))
 
 
-def values_of(case: Case) -> dict[str, Any]:
-    """Return the values of all quantities that a case may vary; ε where it applies, ζ if it is given."""
+def values_of(case: Case) -> KeyValues:
+    """Return the values of all quantities that a case may vary, without ε where it does not apply and ζ if not given."""
     pier = {name: getattr(case.pier, name) for name in OF_PIER}
     base = {field.name: getattr(case.base, field.name) for field in fields(case.base)}
     if base.get("zeta") is None:
@@ -86,8 +122,8 @@ def values_of(case: Case) -> dict[str, Any]:
     return pier | base | {name: float(f"{value:.12g}") for name, value in derived.items()}
 
 
-def impossible(case: Case, values: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Return what is impossible about the case with other values: a sentence each, and the name of the input it is about."""
+def impossible(case: Case, values: KeyValues) -> list[tuple[str, str]]:
+    """Return the problems of the case with other values, each a sentence and the name of its input; empty if possible."""
     try:
         changed = varied(case, values)
         wrong: Sequence[Problem] = problems(changed.pier, changed.base)
@@ -97,7 +133,7 @@ def impossible(case: Case, values: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def outside(name: str, ends: Sequence[float], value: float | None, case: Case) -> str:
-    """Return that a range does not hold the value of the case, and one that does; empty if it does, or none is given."""
+    """Return a message about a range without the ``value`` of the case, with a wider range; empty if it holds it, or for None."""
     low, high = ends
     if value is None or low <= value <= high:
         return ""
@@ -108,15 +144,13 @@ def outside(name: str, ends: Sequence[float], value: float | None, case: Case) -
 
 
 def why_no_case(name: str, study: Study) -> str:
-    """Return why no case of the study has this input."""
+    """Return the reason why no case of the study has this input."""
     if is_of_restraint(name):
         return why_none(name, study.cases)
     if name in IN_KILONEWTONS:
         return "it goes with a pier of known mass (mass_t) on springs"
     if name in ("epsilon", "zeta") and any(case.base.on_springs for case in study.cases):
-        return (
-            "it goes with springs that have one; write zeta in the case"
-            if name == "zeta"
-            else 'zeta or impact = "housner" takes its place'
-        )
+        if name == "zeta":
+            return "it goes with springs that have one; write zeta in the case"
+        return 'zeta or impact = "housner" takes its place'
     return "no case of the study has it"

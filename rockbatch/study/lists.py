@@ -13,7 +13,7 @@ Chosen = dict[str, Setting]
 """One value of each key."""
 
 MOST_CASES = 100_000
-"""Of a study: piers times foundations. Each stands in run.json and in the report, and is held in memory."""
+"""Greatest number of cases of a study, piers times foundations: run.json, the report and the memory hold each of them."""
 
 
 @dataclass(frozen=True)
@@ -25,11 +25,10 @@ class Grid:
 
     @classmethod
     def of(cls, table: Table, keys: Mapping[str, Key], prefix: str = "", other: Iterable[str] = ()) -> "Grid":
-        """Read a table; ``prefix`` goes before its keys, ``other`` ones are read elsewhere."""
-        settings = {
-            prefix + name: value if keys[name].many else [Setting(value, (*table.key_path, name))]
-            for name, value in table.read(keys, other=other, places=True).items()
-        }
+        """Read a table, with ``prefix`` before the names of its keys; ``other`` keys are read elsewhere."""
+        settings = {}
+        for name, value in table.read(keys, other=other, places=True).items():
+            settings[prefix + name] = value if keys[name].many else [Setting(value, (*table.key_path, name))]
         lists = [name for name, value in table.data.items() if name in keys and isinstance(value, list)]
         return cls(settings, tuple(prefix + name for name in lists if name != "confirm"))
 
@@ -46,7 +45,7 @@ class Grid:
 
 
 def too_many(number: int, what: str) -> str:
-    """Return a message about more than :data:`MOST_CASES`; empty for fewer."""
+    """Return a message about more than :data:`MOST_CASES` cases or piers (``what``); empty for fewer."""
     if number <= MOST_CASES:
         return ""
     return (
@@ -56,7 +55,7 @@ def too_many(number: int, what: str) -> str:
 
 
 def complain_where_due(table: Table, chosen: Chosen, problem: Problem) -> None:
-    """Note a problem at its key, or else for the table."""
+    """Note a problem at the chosen value of its key, or for the table if no value of that key is chosen."""
     if problem.key in chosen:
         table.complain_about(chosen[problem.key], in_table(problem))
     else:

@@ -4,48 +4,55 @@ import os
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
-from rockbatch.checks.rule_choices import implausible, unmet
+from rockbatch.checks.rule_choices import Available, implausible, unmet
 from rockbatch.checks.rule_files import SUITE, read_checks
 from rockbatch.checks.rules import CHECK, Rule
 from rockbatch.common.analyses import doors
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError, Problem
+from rockbatch.common.observers import parts
 from rockbatch.common.showing import Shown, several, shown
 from rockbatch.common.units import MOST, Bounds, Usual
 from rockbatch.motions import MotionSet
-from rockbatch.motions.pairs import TWO_COMPONENT_RULES
 from rockbatch.motions.sequences import SEQUENCE
-from rockbatch.pier import NO_SECTIONS, Pier, described, symmetric
-from rockbatch.pier.sections import section_heights
+from rockbatch.pier import described, symmetric
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.study.both_axes import along_the_axis, with_other_axes
 from rockbatch.study.cases import BASE_KEYS, CASE, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
+from rockbatch.study.output import OUTPUT, Output
 from rockbatch.study.piers import PART, PIER, read_piers
 from rockbatch.study.restraint_keys import DEVICES
-from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
-from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
-from rockbatch.study.target import TARGET, VERTICAL_TARGET
-from rockbatch.toml.kinds import Whole, boolean, choice, count, not_negative, positive, share, text, within
+from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Reference
+from rockbatch.study.tables import as_toml, changed, plain_table, without_lost_cases
+from rockbatch.study.target_keys import TARGET, VERTICAL_TARGET
+from rockbatch.toml.kinds import choice, count, not_negative, positive, text, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
-TOP = Section((), "", {
-    "title": Key(text, '"Pier 4, longitudinal"', "Heading of the report and its tables; default: the file's name."),
-    "notes": Key(text, '"Soil class C."', "Free text for the report. Blank lines separate paragraphs."),
-}, also=names({
-    "pier": "geometry structure column body", "motions": "groundmotion groundmotions records earthquakes accelerograms input",
-    "case": "foundation foundations base bases support supports loadcase",
-    "numerics": "analysis solver settings options integration numerical", "output": "results",
-    "check": "limit limits criteria acceptance rule rules verification",
-}))  # fmt: skip
+TOP = Section(
+    (),
+    "",
+    {
+        "title": Key(text, '"Pier 4, longitudinal"', "Heading of the report and its tables; default: the file's name."),
+        "notes": Key(text, '"Soil class C."', "Free text for the report. Blank lines separate paragraphs."),
+    },
+    also=names(
+        {
+            "pier": "geometry structure column body",
+            "motions": "groundmotion groundmotions records earthquakes accelerograms input",
+            "case": "foundation foundations base bases support supports loadcase",
+            "numerics": "analysis solver settings options integration numerical",
+            "output": "results",
+            "check": "limit limits criteria acceptance rule rules verification",
+        }
+    ),
+)
 _ROUNDING = f"must be {LEAST_TOLERANCE:g} or above, because rounding alone makes as much"
 NUMERICS = Section(("numerics",), "How exact the results are.", {
     "tolerance": Key(within(Bounds(LEAST_TOLERANCE, MOST, why=_ROUNDING)), "1e-4",
@@ -67,73 +74,49 @@ NUMERICS = Section(("numerics",), "How exact the results are.", {
 }), clashes=(
     Clash(("tolerance", "substeps"), "tolerance and substeps are given: a fixed step has no tolerance; keep one", at="substeps"),
 ))  # fmt: skip
-OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
-    "histories": Key(choice("worst", "all", "none"), '"all"',
-        'Runs whose histories are kept: the "worst" record of each case, "all", or "none".'),
-    "histories_MB": Key(positive, "50",
-        'How large their file may become with "worst"; the greatest rotations are kept first.', only={"histories": ("worst",)}),
-    "ledger": Key(boolean, "true", "Whether the energy ledger of every run is added to the table."),
-    "forces": Key(boolean, "true",
-        "Whether what designers size is added: base shear, friction, forces of the supports, gaps, impacts, accelerations."),
-    "rocking": Key(boolean, "true",
-        "Whether the rocking about a base that has yielded is separated from its lean in every run, which takes one more."),
-    "least_normal_share": Key(share, "0.1",
-        "Share of the weight that the normal force has to exceed for the friction demand to count: below it, as in a hop, "
-        "shear keys carry the base shear, which is a column of its own.", only={"forces": (True,)}),
-    "both_laws": Key(boolean, "true",
-        "Whether the settlement of Bouc–Wen springs is found by the elastic–perfectly plastic law too, which takes two more "
-        "runs or more; of others it is not a range. A check of a settlement, which takes the worse, has it found too."),
-    "intensity": Key(boolean, "true",
-        "Whether intensity measures of each motion are written, and which of them orders the peaks best."),
-    "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]",
-        "Periods of the spectral accelerations among the intensity measures.", many=True,
-        only={"intensity": (True,)}),
-    "sa_pairs": Key(choice(*TWO_COMPONENT_RULES), '["rotd50", "rotd100"]',
-        "Spectral accelerations of both components of a station, beside those of each: their geometric mean, and the median and "
-        "the greatest over all directions.", many=True, only={"intensity": (True,)}),
-    "half_cycles": Key(boolean, "true",
-        "Whether half_cycles.csv is written: of every run the times of impacts, the angular velocities around them and the "
-        "amplitudes in between; half_cycle 0 begins with the run, such as a release, and not with an impact."),
-    "sections": Key(Whole(2, "a whole number, 2 or above: foot and top of the pier are among them"), "5",
-        "Number of sections of the pier, evenly from its foot to its highest point, in which shear, moment and axial force of "
-        "every run are computed: `sections.csv`."),
-    "sections_m": Key(not_negative, "[0.0, 7.5, 15.0]", "Heights of such sections above the pivots instead.", many=True),
-    "devices_work": Key(boolean, "true",
-        "Whether the work of devices is added: travel, energy and half cycles of the damper that has most, and the strain of "
-        "tendons over their yield strain."),
-    "least_stroke_mm": Key(positive, "20.0",
-        "Stroke, from end to end, from which half cycles of dampers count.", only={"devices_work": (True,)}),
-}, homes=(Output,), also=names({
-    "histories": "timehistories timehistory", "ledger": "energy", "intensity": "intensitymeasures",
-}), instead=names({
-    "write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file",
-    "the estimates of design practice are an example now, configs/code_estimates.py; leave it out": "estimate estimates",
-}), clashes=(
-    Clash(("sections", "sections_m"), "sections and sections_m are given, which say the same; keep one", at="sections_m"),
-))  # fmt: skip
 _OF_TABLES = "|".join(rf"^{what}_[1-9][0-9]*_({'|'.join(keys)})$" for what, keys in {"part": PART, **DEVICES}.items())
 """Keys of tables in a list, by their numbers: "damper_1_f"."""
 
-REFERENCE = Section(("reference",), (
-    "A published value to print beside the results. Keys that the study varies tell the case from its siblings."
-), {
-    "record": Key(text, '"*LGP*"', "Names of the records, as a pattern with * and ?.", required=True),
-    "case": Key(text, '"rigid"', "Name of the case.", required=True),
-    "theta_max_over_alpha": Key(positive, "0.114", "The published θ_max/α.", required=True),
-    "source": Key(text, '"Palmeri & Makris (2007)"', "Where it was published.", required=True),
-    **{
-        name: Key(key.kind, key.example, "The value that the case has, where the study varies this key.")
-        for name, key in {**PIER, **BASE_KEYS}.items() if name != "confirm"
+REFERENCE = Section(
+    ("reference",),
+    ("A published value to print beside the results. Keys that the study varies tell the case from its siblings."),
+    {
+        "record": Key(text, '"*LGP*"', "Names of the records, as a pattern with * and ?.", required=True),
+        "case": Key(text, '"rigid"', "Name of the case.", required=True),
+        "theta_max_over_alpha": Key(positive, "0.114", "The published θ_max/α.", required=True),
+        "source": Key(text, '"Palmeri & Makris (2007)"', "Where it was published.", required=True),
+        **{
+            name: Key(key.kind, key.example, "The value that the case has, where the study varies this key.")
+            for name, key in {**PIER, **BASE_KEYS}.items()
+            if name != "confirm"
+        },
     },
-}, many=True, free=_OF_TABLES)  # fmt: skip
+    many=True,
+    free=_OF_TABLES,
+)
 OF_REFERENCE = ("record", "case", "theta_max_over_alpha", "source")
 """Keys of a reference itself; the others tell its case from its siblings."""
 
 SECTIONS = (
-    TOP, PIER, PART, MOTIONS, SELECT, TARGET, VERTICAL_TARGET, PULSE, FEMA, SEQUENCE, CASE, *DEVICES.values(), NUMERICS, OUTPUT,
-    SUITE, CHECK, REFERENCE,
-)  # fmt: skip
-"""Tables that are read with the study, outer ones before inner; those of analyses are read by their own commands."""
+    TOP,
+    PIER,
+    PART,
+    MOTIONS,
+    SELECT,
+    TARGET,
+    VERTICAL_TARGET,
+    PULSE,
+    FEMA,
+    SEQUENCE,
+    CASE,
+    *DEVICES.values(),
+    NUMERICS,
+    OUTPUT,
+    SUITE,
+    CHECK,
+    REFERENCE,
+)
+"""Tables that are read with the study, outer ones before inner; the commands of analyses read their own."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -188,27 +171,27 @@ class Study(Shown):
         ``path`` is what messages and results call it; paths in the study are relative to its folder. No such file is needed.
         ``motions`` as for :func:`load_study`.
         """
-        return _checked(TomlFile.parse(Path(path), text, SECTIONS), motions)
+        return _checked_study(TomlFile.parse(Path(path), text, SECTIONS), motions)
 
     @classmethod
     @checked
     def from_dict(
-        cls, tables: Mapping[str, Any], path: str | os.PathLike[str] = "study.toml", *, motions: Motions = None
+        cls, tables: Mapping[str, object], path: str | os.PathLike[str] = "study.toml", *, motions: Motions = None
     ) -> "Study":
         """Check a study of the tables and keys of a study file, such as ``{"pier": {"alpha": 0.13, "p": 0.38}, "case": […]}``.
 
         Mistakes are reported as those of a file, by table and key. ``path`` and ``motions`` as for :meth:`from_toml`.
         """
-        return _checked(TomlFile.parse(Path(path), as_toml(plain(tables)), SECTIONS, lined=False), motions)
+        return _checked_study(TomlFile.parse(Path(path), as_toml(plain_table(tables)), SECTIONS, lined=False), motions)
 
     @checked
-    def with_(self, *, motions: Motions | Mapping[str, Any] = None, **tables: Any) -> "Study":
+    def with_(self, *, motions: Motions | Mapping[str, object] = None, **tables: object) -> "Study":
         """Return a changed study, checked again with everything in it.
 
         Parameters
         ----------
         motions : path, MotionSet, Motion, list of Motion, or dict, optional
-            What replaces all motions of the study, or changes of [motions].
+            Motions that replace all those of the study, or changes of [motions].
         **tables
             Changes by the names of tables and keys at the top: a dict changes a table key by key, and None takes a key, a table
             or all tables of a name away. Of tables that have names, ``case="pads"`` and ``case=["rock", "pads"]`` keep these,
@@ -223,10 +206,10 @@ class Study(Shown):
         changes = tables | ({"motions": motions} if isinstance(motions, Mapping) else {})
         override = self.motions.override if motions is None or isinstance(motions, Mapping) else motions
         if not changes:
-            return _checked(self.file(), override)
+            return _checked_study(self.file(), override)
         before = tomllib.loads(self.text)
         after = without_lost_cases(before, changed(before, changes))
-        return _checked(TomlFile.parse(self.path, as_toml(after), SECTIONS, lined=False), override)
+        return _checked_study(TomlFile.parse(self.path, as_toml(after), SECTIONS, lined=False), override)
 
     @property
     def in_file(self) -> bool:
@@ -237,7 +220,7 @@ class Study(Shown):
             return False
 
     def file(self) -> TomlFile:
-        """Return the text, parsed again, for the tables of analyses."""
+        """Return the study parsed again, for reading the tables of analyses."""
         return TomlFile.parse(self.path, self.text, SECTIONS, lined=self.lined)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
@@ -268,8 +251,8 @@ def load_study(path: str | os.PathLike[str], *, motions: Motions = None) -> Stud
     path : path-like
         A TOML file; paths in it are relative to its folder.
     motions : path, MotionSet, Motion or list of Motion, optional
-        What replaces all motions of the study: a file or folder, or motions, which are then selected and scaled as the study
-        says; the keys of [motions] by which files are read do not matter to these.
+        Replacement for all motions of the study: a file or folder, or motions, which are then selected and scaled as the
+        study says; the keys of [motions] about reading files do not apply to these.
 
     Returns
     -------
@@ -288,10 +271,11 @@ def load_study(path: str | os.PathLike[str], *, motions: Motions = None) -> Stud
     >>> study.title, [case.name for case in study.cases]
     ('Pier 4', ['rigid', 'pads'])
     """
-    return _checked(TomlFile.read(Path(path), SECTIONS), motions)
+    return _checked_study(TomlFile.read(Path(path), SECTIONS), motions)
 
 
-def _checked(file: TomlFile, motions: Motions) -> Study:
+def _checked_study(file: TomlFile, motions: Motions) -> Study:
+    """Return the study in ``file``, with ``motions`` instead of its own unless None. Raises ``InputError`` with all mistakes."""
     of_analyses = (name for door in doors().values() for name in door.tables)  # read by their own commands
     others = dict.fromkeys((*(section.at[0] for section in SECTIONS[1:]), *of_analyses))
     top = Table(file, (), "", file.data).read(TOP, other=others)
@@ -303,7 +287,7 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
     varied = varied_pier + varied_case
     references = _references(file, cases, varied)
     table = file.table("output")
-    output = Output(**table.read(OUTPUT)) if table else Output()
+    output = Output.with_keys(**table.read(OUTPUT)) if table else Output()
     if len(motion_spec.polarity) > 1 and not all(symmetric(case.pier, case.base.restraints) for case in cases):
         message = "devices on one side make another run of the reversed motion, not the mirror image"
         file.complain(("motions", "polarity"), f"[motions]: {message}; keep one polarity")
@@ -313,13 +297,11 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
             ("motions", "polarity"),
             f"[motions]: {message}; keep one polarity, and list initial_rotation_rad = [0.05, -0.05] for the other side",
         )
-    _complain_about_sections(file, [pier for pier, _ in piers], output, any(case.base.bends for case in cases))
-    if not output.forces:
-        _complain_without_forces(file)
+    for kind, complain in parts("study.COMPLAINS"):
+        complain(file, output.of(kind), [pier for pier, _ in piers], any(case.base.bends for case in cases))
     along = along_the_axis(cases)
-    checks = read_checks(file, partial(_unfit, along, motion_spec, output, bool(piers)) if along else None)
-    if any(DEMANDS[rule.demand].other_law for rule in checks.rules):
-        output = replace(output, both_laws=True)
+    checks = read_checks(file, partial(_problems_of_rule, along, motion_spec, output, bool(piers)) if along else None)
+    output = output.also({key for rule in checks.rules for key in DEMANDS[rule.demand].brings})
     file.finish()
     return Study(
         title=top.get("title", file.path.stem),
@@ -340,48 +322,43 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
 
 
 def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) -> Study:
-    """Return a study, a file or one that is loaded, perhaps with other ``motions``."""
+    """Return a study, loaded from a file unless it is one, with ``motions`` instead of its own unless None."""
     if not isinstance(study, Study):
         return load_study(study, motions=motions)
     return study if motions is None else study.with_(motions=motions)
 
 
-def _unfit(
+def _problems_of_rule(
     cases: Sequence[Case], motions: MotionSpec, output: Output, known_piers: bool, rule: Rule
 ) -> Iterator[Problem]:
-    """Return the choices of a check that the study lacks, and limits that are implausible for its piers, if these are known."""
-    yield from unmet(
-        rule,
+    """Yield problems of a check: choices that the study lacks, and implausible limits if its piers are known."""
+    available = Available(
         cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
         other_law=True,  # a check that takes it brings it
-        output=[key for key in BROUGHT if getattr(output, key) or not _brings(key, cases)],
+        output=[key for key in BROUGHT if output.has(key) or not _adds_columns(key, cases)],
         sections=_heights(cases, output) if known_piers else {rule.at_m or 0.0},
     )
+    yield from unmet(rule, available)
     if not known_piers:
         return
-    rows = [
-        {
-            "case": case.name,
-            "base": case.base.name,
-            "pier": described(case.pier),
-            "parameters": case.base.parameters(case.pier),
-        }
-        for case in cases
-    ]
-    yield from implausible(rule, rows)
+    yield from implausible(rule, [_as_in_run_json(case) for case in cases])
+
+
+def _as_in_run_json(case: Case) -> dict[str, object]:
+    """Return the entries of a case in run.json that a limit is compared with."""
+    pier, base = case.pier, case.base
+    return {"case": case.name, "base": base.name, "pier": described(pier), "parameters": base.parameters(pier)}
 
 
 def _heights(cases: Sequence[Case], output: Output) -> set[float]:
-    """Return the heights [m] of all sections of all cases; none without any, or of a pier that lacks some, which is noted."""
-    heights = set[float]()
-    for pier in {case.pier for case in cases}:
-        with suppress(InputError):
-            heights.update(section_heights(pier, output.requested_sections or 0))
-    return heights
+    """Return the heights [m] at which rules may be about sections of the cases' piers."""
+    piers = {case.pier for case in cases}
+    return {height for kind, heights in parts("study.HEIGHTS") for height in heights(output.of(kind), piers)}
 
 
 def _numerics(file: TomlFile) -> Numerics:
+    """Return [numerics]; a fixed number of substeps has no tolerance."""
     table = file.table("numerics")
     read = table.read(NUMERICS) if table else {}
     if "substeps" in read:
@@ -389,46 +366,18 @@ def _numerics(file: TomlFile) -> Numerics:
     return Numerics(**read)
 
 
-_OF_FORCES = {
-    "friction": "nothing to hold it against; write forces = true under [output], which computes the friction demand",
-    "contact_stiffness_kN_m": "is of the force of a landing; write forces = true under [output], which computes it",
-}
-"""Keys of a [[case]] that only forces use, and what is missing without them."""
+def _adds_columns(key: str, cases: Sequence[Case]) -> bool:
+    """Return whether a key of [output] adds a column for these cases; a column of a device needs the device."""
+    return any(COLUMNS[name].device in _device_kinds(cases) for name in BROUGHT[key])
 
 
-def _complain_without_forces(file: TomlFile) -> None:
-    """Note keys that only forces use in a study without, which cost a second run with every step."""
-    for table in file.tables("case", title="name"):
-        for key, problem in _OF_FORCES.items():
-            if key in table.data:
-                table.complain(f"{key}: {problem}, or leave it out", key)
-
-
-def _brings(key: str, cases: Sequence[Case]) -> bool:
-    """Return whether a key of [output] brings columns of these cases: those of devices need the device."""
-    return any(COLUMNS[name].device in _kinds(cases) for name in BROUGHT[key])
-
-
-def _kinds(cases: Sequence[Case]) -> set[str]:
-    """Return the kinds of devices in these cases, and "" of columns that need none."""
+def _device_kinds(cases: Sequence[Case]) -> set[str]:
+    """Return the kinds of devices in these cases, and "", the kind of columns that need no device."""
     return {"", *(kind for case in cases for device in case.base.restraints for kind in device.kinds)}
 
 
-def _complain_about_sections(file: TomlFile, piers: Iterable[Pier], output: Output, bends: bool) -> None:
-    """Note sections that some pier does not have, or whose forces are not known, such as those of a shaft that bends."""
-    if output.requested_sections is None:
-        return
-    wrong: dict[str, None] = {NO_SECTIONS: None} if bends else {}
-    for pier in piers:
-        try:
-            section_heights(pier, output.requested_sections)
-        except InputError as error:
-            wrong |= dict.fromkeys(error.messages)
-    for problem in wrong:
-        file.complain(("output", "sections" if output.sections else "sections_m"), f"[output]: {problem}")
-
-
 def _references(file: TomlFile, cases: Sequence[Case], varied: Iterable[str]) -> tuple[Reference, ...]:
+    """Return the references; note values of ``varied`` keys that no case of the name has."""
     named = [table.data.get("name", table.data.get("base")) for table in file.tables("case", title="name")]
     names = choice(*dict.fromkeys(name for name in named if isinstance(name, str)))
     of_parts = {name: Key(not_negative, "0.0") for name in varied if name not in REFERENCE}

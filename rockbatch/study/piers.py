@@ -2,139 +2,290 @@
 
 from collections.abc import Callable, Collection
 from dataclasses import asdict, replace
-from typing import Any
 
 from rockbatch.common.errors import InputError, refuse
 from rockbatch.pier import Part, Pier
 from rockbatch.pier.sizes import BOUNDS, USUAL, unlikely_deck, unlikely_inertia
 from rockbatch.study.lists import Grid, complain_where_due, too_many
-from rockbatch.toml.kinds import Whole, not_negative, positive, within
+from rockbatch.toml.kinds import KeyValues, Whole, not_negative, positive, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
-PIER = Section(("pier",), (
-    "The pier, a rigid block that can pivot about its two lower corners. Its size is given in one of three ways: "
-    "`width_m` with `height_m`, `size_m`, or `p`. Every key but `gravity` may be a list: each value is a separate pier."
-), {
-    "alpha": Key(within(BOUNDS["alpha"]), "0.13",
-        "Slenderness α: the angle at a lower corner between the vertical and the line to the centre of mass, in radians. It "
-        "follows from `width_m` and `height_m`, and is then left out.", many=True),
-    "mu": Key(within(BOUNDS["mu"]), "3.0",
-        "Shape factor μ = M R0²/I0, with the moment of inertia I0 about the centre of mass. It follows from `width_m` and "
-        "`height_m`, and is then left out.", many=True),
-    "gravity": Key(within(BOUNDS["gravity"]), "9.81",
-        "Acceleration of gravity [m/s²], for the pier and for motions that are given in g.",
-        usual=USUAL["gravity"]),
-    "p": Key(within(BOUNDS["p"]), "0.38", "Frequency parameter [rad/s], p² = μ/(1+μ) · gravity/R0.", many=True,
-        usual=USUAL["p"]),
-    "size_m": Key(within(BOUNDS["size_m"]), "60.1", "R0, from a lower corner to the centre of mass.", many=True,
-        usual=USUAL["size_m"]),
-    "width_m": Key(within(BOUNDS["width_m"]), "4.0",
-        "Width of a solid rectangle; of a pier with parts, the distance between its pivots.", many=True, usual=USUAL["width_m"]),
-    "height_m": Key(within(BOUNDS["height_m"]), "30.0",
-        "Height of a solid rectangle. Parts have heights of their own.", many=True, usual=USUAL["height_m"]),
-    "mass_t": Key(within(BOUNDS["mass_t"]), "3000.0",
-        "Mass of the pier without its deck; of one column of a frame. Forces in kN need a mass.",
-        many=True, usual=USUAL["mass_t"]),
-    "deck_mass_t": Key(within(BOUNDS["deck_mass_t"]), "1000.0",
-        "Mass of the deck that it carries; of a frame, of the whole deck.", many=True, usual=USUAL["mass_t"]),
-    "deck_height_m": Key(within(BOUNDS["deck_height_m"]), "31.0",
-        "Height of the deck's centre above the pivots; default: `height_m`; of a pier with parts it has to be given.", many=True,
-        usual=USUAL["height_m"]),
-    "deck_inertia_t_m2": Key(not_negative, "0.0",
-        "Moment of inertia of the deck about its own centre. 0 for a deck on bearings, which does not rotate.", many=True),
-    "top_m": Key(within(BOUNDS["top_m"]), "31.5",
-        "Height above the pivots at which drift is read; default: the highest point of the pier, its parts and its deck.",
-        many=True, usual=USUAL["height_m"]),
-    "flexural_period_s": Key(within(BOUNDS["flexural_period_s"]), "0.6",
-        "First period of the pier with its deck, fixed at its base. The statics sheet holds it against the period of rocking, to "
-        "see whether the pier is rigid; runs take it as rigid unless a case says `shaft = \"elastic\"`.", many=True,
-        usual=USUAL["flexural_period_s"]),
-    "columns": Key(Whole(2, "a whole number, 2 or above (a single column is a pier with a deck)"), "4",
-        "Number of equal columns of a rocking frame under one deck that rests on their tops, on a rigid base only. A bent whose "
-        "columns are fixed to its cap beam is one pier: leave this out and write [[pier.part]].", many=True),
-    "initial_rotation_rad": Key(within(BOUNDS["initial_rotation_rad"]), "0.05",
-        "Rotation at which the pier is held, and let go at the first sample of the motion; positive to the right, below α. A "
-        "still ground, `still_s` of [motions], makes it a release test.", many=True,
-        usual=USUAL["initial_rotation_rad"]),
-    **CONFIRM,
-}, required=True, homes=(Pier,), also=names({
-    "deck_mass_t": "superstructuremass superstructure topmass tributarymass", "width_m": "diameter breadth basewidth",
-    "size_m": "r0 r radius halfdiagonal",
-    "flexural_period_s": "period t1 fundamentalperiod naturalperiod", "gravity": "g", "alpha": "alfa", "p": "frequencyparameter",
-    "mu": "shapefactor", "columns": "ncolumns numberofcolumns", "initial_rotation_rad": "theta0 initialtilt initialangle",
-}), instead=names({
-    ("mass_t", "the weight in kN over 9.81"): "weight selfweight w",
-    ("deck_mass_t", "the weight in kN over 9.81"): "deckweight superstructureweight",
-    ("width_m", "twice the half"): "halfwidth", ("height_m", "twice the half"): "halfheight",
-    ("size_m", "half the diagonal"): "diagonal",
-    "write alpha = atan(width/height), in radians": "slenderness slendernessratio aspectratio",
-    "write mu = M R0²/I0, or a [[pier.part]] with its inertia_t_m2": "inertia i0 momentofinertia",
-    "units stand in the names of keys; leave it out": "unit units",
-    "write deck_mass_t and deck_height_m in [pier]": "deck", "write flexural_period_s, 1 over it in Hz": "frequency",
-}), clashes=(
-    Clash(("part",), "[[pier.part]]: needs width_m, between the pivots, and no other size; write width_m = 4.0",
-        lacking=("width_m",)),
-    Clash(("height_m", "part"),
-        "height_m: the parts say how high the pier is; call it top_m if drift is to be read at this height, or leave it out"),
-    Clash(("mass_t", "part"), "mass_t: the parts say what the pier weighs; leave it out"),
-    Clash(("deck_mass_t",),
-        "mass_t is missing beside deck_mass_t, of the pier without its deck; write for example mass_t = 2000.0",
-        lacking=("part", "mass_t", "columns")),
-    Clash(("deck_mass_t", "columns"), "mass_t is missing beside deck_mass_t, of one column; write for example mass_t = 2000.0",
-        lacking=("part", "mass_t")),
-    Clash(("deck_mass_t",), "deck_mass_t: goes with width_m and height_m; other sizes are those of the pier with its deck, and "
-        "mass_t is then the mass of both", lacking=("width_m", "columns")),
-    Clash(("deck_mass_t", "part"), "deck_height_m is missing beside deck_mass_t; write for example deck_height_m = 31.0",
-        lacking=("deck_height_m",)),
-    Clash(("deck_height_m",), "deck_height_m: there is no deck; write deck_mass_t too, or leave it out",
-        lacking=("deck_mass_t",)),
-    Clash(("deck_inertia_t_m2",), "deck_inertia_t_m2: there is no deck; write deck_mass_t too, or leave it out",
-        lacking=("deck_mass_t",)),
-    Clash(("columns",), "columns: a frame has a deck; write deck_mass_t, of the whole deck, too", lacking=("deck_mass_t",)),
-    Clash(("part", "columns"), "part: the columns of a frame are solid rectangles; leave [[pier.part]] out"),
-    Clash(("mu", "columns"), "mu: the columns of a frame are solid rectangles; leave it out"),
-    Clash(("deck_height_m", "columns"),
-        "deck_height_m: the deck of a frame rests on its columns and keeps level, so only its mass counts; leave it out"),
-    Clash(("deck_inertia_t_m2", "columns"),
-        "deck_inertia_t_m2: the deck of a frame keeps level, so only its mass counts; leave it out"),
-    Clash(("top_m", "columns"),
-        "top_m: the deck of a frame keeps level, so all of it drifts as the tops of the columns do; leave it out"),
-))  # fmt: skip
-PART = Section(("pier", "part"), (
-    "A part of a non-uniform pier, with its centre on the axis. Write one for each part, in addition to `width_m`."
-), {
-    "mass_t": Key(positive, "500.0", "Mass of the part.", required=True, many=True, usual=USUAL["mass_t"]),
-    "height_m": Key(not_negative, "28.0", "Height of its centre above the pivots.",
-        required=True, many=True, usual=USUAL["height_m"]._replace(least=0.0)),
-    "inertia_t_m2": Key(not_negative, "0.0",
-        "Moment of inertia about its own centre; default 0, or what follows from `width_m`.", many=True),
-    "length_m": Key(not_negative, "20.0",
-        "Length along the axis over which its mass is spread evenly, 0 of a mass at one height; `sections` of [output] need it.",
-        many=True, usual=USUAL["height_m"]._replace(least=0.0)),
-    "width_m": Key(not_negative, "2.4",
-        "Width of a rectangle, or of each of two legs; its inertia follows from it and `length_m`.",
-        many=True, usual=USUAL["width_m"]._replace(least=0.0)),
-    "apart_m": Key(not_negative, "10.7",
-        "Distance of the axes of two equal legs, which this part is; `mass_t` is that of both.",
-        many=True, usual=USUAL["width_m"]._replace(least=0.0)),
-    **CONFIRM,
-}, many=True, clashes=(
-    Clash(("inertia_t_m2", "width_m"), "inertia_t_m2 and width_m are given, which fix the same; keep one"),
-    Clash(("width_m",), "length_m is missing beside width_m; write for example length_m = 20.0", lacking=("length_m",)),
-    Clash(("apart_m",), "width_m is missing beside apart_m, of each leg; write for example width_m = 2.4", lacking=("width_m",)),
-))  # fmt: skip
+PIER = Section(
+    ("pier",),
+    (
+        "The pier, a rigid block that can pivot about its two lower corners. Its size is given in one of three ways: "
+        "`width_m` with `height_m`, `size_m`, or `p`. Every key but `gravity` may be a list: each value is a separate pier."
+    ),
+    {
+        "alpha": Key(
+            within(BOUNDS["alpha"]),
+            "0.13",
+            "Slenderness α: the angle at a lower corner between the vertical and the line to the centre of mass, in radians. It "
+            "follows from `width_m` and `height_m`, and is then left out.",
+            many=True,
+        ),
+        "mu": Key(
+            within(BOUNDS["mu"]),
+            "3.0",
+            "Shape factor μ = M R0²/I0, with the moment of inertia I0 about the centre of mass. It follows from `width_m` and "
+            "`height_m`, and is then left out.",
+            many=True,
+        ),
+        "gravity": Key(
+            within(BOUNDS["gravity"]),
+            "9.81",
+            "Acceleration of gravity [m/s²], for the pier and for motions that are given in g.",
+            usual=USUAL["gravity"],
+        ),
+        "p": Key(
+            within(BOUNDS["p"]),
+            "0.38",
+            "Frequency parameter [rad/s], p² = μ/(1+μ) · gravity/R0.",
+            many=True,
+            usual=USUAL["p"],
+        ),
+        "size_m": Key(
+            within(BOUNDS["size_m"]),
+            "60.1",
+            "R0, from a lower corner to the centre of mass.",
+            many=True,
+            usual=USUAL["size_m"],
+        ),
+        "width_m": Key(
+            within(BOUNDS["width_m"]),
+            "4.0",
+            "Width of a solid rectangle; of a pier with parts, the distance between its pivots.",
+            many=True,
+            usual=USUAL["width_m"],
+        ),
+        "height_m": Key(
+            within(BOUNDS["height_m"]),
+            "30.0",
+            "Height of a solid rectangle. Parts have heights of their own.",
+            many=True,
+            usual=USUAL["height_m"],
+        ),
+        "mass_t": Key(
+            within(BOUNDS["mass_t"]),
+            "3000.0",
+            "Mass of the pier without its deck; of one column of a frame. Forces in kN need a mass.",
+            many=True,
+            usual=USUAL["mass_t"],
+        ),
+        "deck_mass_t": Key(
+            within(BOUNDS["deck_mass_t"]),
+            "1000.0",
+            "Mass of the deck that it carries; of a frame, of the whole deck.",
+            many=True,
+            usual=USUAL["mass_t"],
+        ),
+        "deck_height_m": Key(
+            within(BOUNDS["deck_height_m"]),
+            "31.0",
+            "Height of the deck's centre above the pivots; default: `height_m`; of a pier with parts it has to be given.",
+            many=True,
+            usual=USUAL["height_m"],
+        ),
+        "deck_inertia_t_m2": Key(
+            not_negative,
+            "0.0",
+            "Moment of inertia of the deck about its own centre. 0 for a deck on bearings, which does not rotate.",
+            many=True,
+        ),
+        "top_m": Key(
+            within(BOUNDS["top_m"]),
+            "31.5",
+            "Height above the pivots at which drift is read; default: the highest point of the pier, its parts and its deck.",
+            many=True,
+            usual=USUAL["height_m"],
+        ),
+        "flexural_period_s": Key(
+            within(BOUNDS["flexural_period_s"]),
+            "0.6",
+            "First period of the pier with its deck, fixed at its base. The statics sheet holds it against the period "
+            "of rocking, to see whether the pier is rigid; runs take it as rigid unless a case says `shaft = "
+            '"elastic"`.',
+            many=True,
+            usual=USUAL["flexural_period_s"],
+        ),
+        "columns": Key(
+            Whole(2, "a whole number, 2 or above (a single column is a pier with a deck)"),
+            "4",
+            "Number of equal columns of a rocking frame under one deck that rests on their tops, on a rigid base only. "
+            "A bent whose columns are fixed to its cap beam is one pier: leave this out and write [[pier.part]].",
+            many=True,
+        ),
+        "initial_rotation_rad": Key(
+            within(BOUNDS["initial_rotation_rad"]),
+            "0.05",
+            "Rotation at which the pier is held, and let go at the first sample of the motion; positive to the right, below α. A "
+            "still ground, `still_s` of [motions], makes it a release test.",
+            many=True,
+            usual=USUAL["initial_rotation_rad"],
+        ),
+        **CONFIRM,
+    },
+    required=True,
+    homes=(Pier,),
+    also=names(
+        {
+            "deck_mass_t": "superstructuremass superstructure topmass tributarymass",
+            "width_m": "diameter breadth basewidth",
+            "size_m": "r0 r radius halfdiagonal",
+            "flexural_period_s": "period t1 fundamentalperiod naturalperiod",
+            "gravity": "g",
+            "alpha": "alfa",
+            "p": "frequencyparameter",
+            "mu": "shapefactor",
+            "columns": "ncolumns numberofcolumns",
+            "initial_rotation_rad": "theta0 initialtilt initialangle",
+        }
+    ),
+    instead=names(
+        {
+            ("mass_t", "the weight in kN over 9.81"): "weight selfweight w",
+            ("deck_mass_t", "the weight in kN over 9.81"): "deckweight superstructureweight",
+            ("width_m", "twice the half"): "halfwidth",
+            ("height_m", "twice the half"): "halfheight",
+            ("size_m", "half the diagonal"): "diagonal",
+            "write alpha = atan(width/height), in radians": "slenderness slendernessratio aspectratio",
+            "write mu = M R0²/I0, or a [[pier.part]] with its inertia_t_m2": "inertia i0 momentofinertia",
+            "units stand in the names of keys; leave it out": "unit units",
+            "write deck_mass_t and deck_height_m in [pier]": "deck",
+            "write flexural_period_s, 1 over it in Hz": "frequency",
+        }
+    ),
+    clashes=(
+        Clash(
+            ("part",),
+            "[[pier.part]]: needs width_m, between the pivots, and no other size; write width_m = 4.0",
+            lacking=("width_m",),
+        ),
+        Clash(
+            ("height_m", "part"),
+            "height_m: the parts say how high the pier is; call it top_m if drift is to be read at this height, or leave it out",
+        ),
+        Clash(("mass_t", "part"), "mass_t: the parts say what the pier weighs; leave it out"),
+        Clash(
+            ("deck_mass_t",),
+            "mass_t is missing beside deck_mass_t, of the pier without its deck; write for example mass_t = 2000.0",
+            lacking=("part", "mass_t", "columns"),
+        ),
+        Clash(
+            ("deck_mass_t", "columns"),
+            "mass_t is missing beside deck_mass_t, of one column; write for example mass_t = 2000.0",
+            lacking=("part", "mass_t"),
+        ),
+        Clash(
+            ("deck_mass_t",),
+            "deck_mass_t: goes with width_m and height_m; other sizes are those of the pier with its deck, and "
+            "mass_t is then the mass of both",
+            lacking=("width_m", "columns"),
+        ),
+        Clash(
+            ("deck_mass_t", "part"),
+            "deck_height_m is missing beside deck_mass_t; write for example deck_height_m = 31.0",
+            lacking=("deck_height_m",),
+        ),
+        Clash(
+            ("deck_height_m",),
+            "deck_height_m: there is no deck; write deck_mass_t too, or leave it out",
+            lacking=("deck_mass_t",),
+        ),
+        Clash(
+            ("deck_inertia_t_m2",),
+            "deck_inertia_t_m2: there is no deck; write deck_mass_t too, or leave it out",
+            lacking=("deck_mass_t",),
+        ),
+        Clash(
+            ("columns",),
+            "columns: a frame has a deck; write deck_mass_t, of the whole deck, too",
+            lacking=("deck_mass_t",),
+        ),
+        Clash(("part", "columns"), "part: the columns of a frame are solid rectangles; leave [[pier.part]] out"),
+        Clash(("mu", "columns"), "mu: the columns of a frame are solid rectangles; leave it out"),
+        Clash(
+            ("deck_height_m", "columns"),
+            "deck_height_m: the deck of a frame rests on its columns and keeps level, so only its mass counts; leave it out",
+        ),
+        Clash(
+            ("deck_inertia_t_m2", "columns"),
+            "deck_inertia_t_m2: the deck of a frame keeps level, so only its mass counts; leave it out",
+        ),
+        Clash(
+            ("top_m", "columns"),
+            "top_m: the deck of a frame keeps level, so all of it drifts as the tops of the columns do; leave it out",
+        ),
+    ),
+)
+PART = Section(
+    ("pier", "part"),
+    ("A part of a non-uniform pier, with its centre on the axis. Write one for each part, in addition to `width_m`."),
+    {
+        "mass_t": Key(positive, "500.0", "Mass of the part.", required=True, many=True, usual=USUAL["mass_t"]),
+        "height_m": Key(
+            not_negative,
+            "28.0",
+            "Height of its centre above the pivots.",
+            required=True,
+            many=True,
+            usual=USUAL["height_m"]._replace(least=0.0),
+        ),
+        "inertia_t_m2": Key(
+            not_negative,
+            "0.0",
+            "Moment of inertia about its own centre; default 0, or what follows from `width_m`.",
+            many=True,
+        ),
+        "length_m": Key(
+            not_negative,
+            "20.0",
+            "Length along the axis over which its mass is spread evenly, 0 of a mass at one height; `sections` of "
+            "[output] need it.",
+            many=True,
+            usual=USUAL["height_m"]._replace(least=0.0),
+        ),
+        "width_m": Key(
+            not_negative,
+            "2.4",
+            "Width of a rectangle, or of each of two legs; its inertia follows from it and `length_m`.",
+            many=True,
+            usual=USUAL["width_m"]._replace(least=0.0),
+        ),
+        "apart_m": Key(
+            not_negative,
+            "10.7",
+            "Distance of the axes of two equal legs, which this part is; `mass_t` is that of both.",
+            many=True,
+            usual=USUAL["width_m"]._replace(least=0.0),
+        ),
+        **CONFIRM,
+    },
+    many=True,
+    clashes=(
+        Clash(("inertia_t_m2", "width_m"), "inertia_t_m2 and width_m are given, which fix the same; keep one"),
+        Clash(
+            ("width_m",), "length_m is missing beside width_m; write for example length_m = 20.0", lacking=("length_m",)
+        ),
+        Clash(
+            ("apart_m",),
+            "width_m is missing beside apart_m, of each leg; write for example width_m = 2.4",
+            lacking=("width_m",),
+        ),
+    ),
+)
 PIER_KEYS = tuple(name for name in PIER if name not in ("mass_t", "confirm"))
-"""Keys that tell piers apart; the mass, which a [[case]] may have too, tells foundations apart."""
+"""Keys by which piers differ; the mass, which a [[case]] may have too, is one by which foundations differ."""
 
 Values = dict[str, float | str]
 
 
 def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ...]]:
-    """Return the piers of [pier] with their keys' values (none if there are mistakes), and which keys are lists.
+    """Return the piers of [pier], each with its values by key, and the keys that are lists; no pier if there are mistakes.
 
-    Those of the n-th [[pier.part]] are called part_n_mass_t and so on.
+    Keys of the n-th [[pier.part]] are called part_n_mass_t and so on.
     """
     table = file.table("pier", required="[pier] with alpha = 0.13 and p = 0.38, or with width_m and height_m")
     if table is None:
@@ -166,26 +317,26 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
             for problem in error.problems:
                 complain_where_due(table, chosen, problem)
         else:
-            of_pier = asdict(replace(pier, parts=None))  # their own keys say them
+            of_pier = asdict(replace(pier, parts=None))  # each key of a part has a column
             del of_pier["confirm"]
             piers.append((pier, {name: value for name, value in of_pier.items() if value is not None} | values))
     return piers, grid.varied
 
 
 def has_mass(file: TomlFile) -> bool:
-    """Return whether [pier] says what the pier weighs, or may do so under another name."""
+    """Return whether [pier] states the mass, itself, by parts, or probably by a misspelt name."""
     return file.has(("pier", "mass_t")) or bool(file.value(("pier", "part"))) or ("pier",) in file.misspelt
 
 
-def _pier(values: dict[str, Any], parts: int, confirmed: Collection[str]) -> Pier:
-    """Return the pier that these keys describe; which of them go together is checked already."""
+def _pier(values: KeyValues, parts: int, confirmed: Collection[str]) -> Pier:
+    """Return the pier with these ``values``, of which reading has checked that they go together."""
     common = {name: values[name] for name in ("gravity", "top_m") if name in values} | {"confirm": tuple(confirmed)}
 
     def constructed(constructor: Callable[..., Pier], *names: str) -> Pier:
         return constructor(**{name: values[name] for name in names if name in values}, **common)
 
     if parts:
-        return _of_parts(values, parts, common)
+        return _pier_of_parts(values, parts, common)
     if "deck_mass_t" in values and "columns" not in values:
         names = ("width_m", "height_m", "mass_t", "deck_mass_t", "deck_height_m", "deck_inertia_t_m2")
         return constructed(Pier.with_deck, *names)
@@ -205,17 +356,17 @@ def _pier(values: dict[str, Any], parts: int, confirmed: Collection[str]) -> Pie
 
 
 def with_width(values: Values, width_m: float, confirmed: Collection[str]) -> Pier:
-    """Return the pier that these keys describe with another width, as it stands across its axis.
+    """Return the pier with these ``values`` and another width, as it stands across its axis.
 
-    All else is as it is given: heights, masses, the inertias of parts and deck. A flexural period is along the axis alone.
-    Raises ``InputError`` for what is impossible or not ``confirmed``.
+    Heights, masses, and the inertias of parts and deck stay. A flexural period is along the axis alone, and left out.
+    Raises ``InputError`` for an impossible pier, or an unusual one that is not ``confirmed``.
     """
     parts = sum(name.startswith("part_") and name.endswith("_mass_t") for name in values)
     return _pier(values | {"width_m": width_m}, parts, confirmed)
 
 
-def _of_parts(values: dict[str, Any], parts: int, common: dict[str, Any]) -> Pier:
-    """Return a pier of parts, and the deck as one more."""
+def _pier_of_parts(values: KeyValues, parts: int, common: KeyValues) -> Pier:
+    """Return a pier of parts, with the deck as its last part."""
     written = (
         {name: values[f"part_{n}_{name}"] for name in PART if f"part_{n}_{name}" in values} for n in range(1, parts + 1)
     )
@@ -232,7 +383,7 @@ def _of_parts(values: dict[str, Any], parts: int, common: dict[str, Any]) -> Pie
 
 
 def _check_one_size(table: Table) -> None:
-    """Note a size that is given in no way or in several, and α and μ beside one that they follow from."""
+    """Note a size that is missing or given in several ways, and α and μ beside sides from which they follow."""
     parts = table.has("part")
     written = [name for name in table.names if name in ("p", "size_m", "width_m", "height_m")]
     sides = [name for name in written if name in ("width_m", "height_m")]

@@ -14,14 +14,14 @@ from rockbatch.study.restraint_keys import FIELD_OF, IN_KN, KEYS_OF, RESTRAINTS
 from rockbatch.study.spec import Case
 
 IN_KILONEWTONS = {"stiffness_kN_m": "beta", "yield_kN": "eta"}
-"""Inputs that a pier of known mass turns into ratios, and which."""
+"""Inputs in kN, of a pier of known mass, and the ratio of the base that each becomes."""
 
 TABLE = re.compile(rf"({'|'.join(RESTRAINTS)})(?:_([1-9][0-9]*))?")
-"""Name of a table of such inputs: of the only device of its kind, or with its number in the case."""
+"""Table of an input: "damper" for the only one of its kind, "damper_2" for the second of the case."""
 
 
 class Parameter(NamedTuple):
-    """Place of a parameter: the number of the base's device, its field, and the key's value over the field's."""
+    """A parameter of a device: the device's index in the base, its field, and the ratio of the key's value to the field's."""
 
     place: int
     field: str
@@ -29,12 +29,12 @@ class Parameter(NamedTuple):
 
 
 def is_of_restraint(name: str) -> bool:
-    """Return whether an input is one of a device."""
+    """Return whether the name of an input is that of a device's parameter, such as "damper.f"."""
     return "." in name
 
 
 def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter]:
-    """Return all parameters of devices that have a value, by names with numbers: "damper_1.f"."""
+    """Return all finite parameters of devices by names with numbers: "damper_1.f"."""
     parameters_by_name: dict[str, Parameter] = {}
     counts: Counter[str] = Counter()
     given_by = fields_of(pier)
@@ -48,18 +48,21 @@ def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter
 
 
 def parameters(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter]:
-    """Return :func:`numbered` ones; those that only one damper or tendon has go without a number, too."""
+    """Return the :func:`numbered` parameters, and those that only one device has also without its number: "damper.f"."""
     by_number = numbered(pier, restraints)
-    counts = Counter(map(_plain, by_number))
-    return by_number | {_plain(name): place for name, place in by_number.items() if counts[_plain(name)] == 1}
+    counts = Counter(map(_without_number, by_number))
+    return by_number | {
+        _without_number(name): place for name, place in by_number.items() if counts[_without_number(name)] == 1
+    }
 
 
-def _plain(name: str) -> str:
+def _without_number(name: str) -> str:
+    """Return "damper.f" for "damper_2.f"."""
     return re.sub(r"_[0-9]+\.", ".", name)
 
 
 def values_of_devices(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, float]:
-    """Return the values of all :func:`parameters`."""
+    """Return the values of all :func:`parameters` by name, in the units of their keys."""
     return {
         name: getattr(restraints[place], field) * divisor
         for name, (place, field, divisor) in parameters(pier, restraints).items()
@@ -67,7 +70,7 @@ def values_of_devices(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, 
 
 
 def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str, float]) -> tuple[Restraint, ...]:
-    """Return the devices with other values of such parameters, under the pier as it is at that point."""
+    """Return the devices with ``values`` by the names of :func:`parameters`; ``pier`` converts those in kN."""
     places, changed = parameters(pier, restraints), list(restraints)
     for name, value in values.items():
         place, field, divisor = places[name]
@@ -77,12 +80,12 @@ def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str
 
 
 def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
-    """Return by name what is ambiguous about inputs of devices in this case, and what to write instead."""
+    """Return a message for each input of devices that is ambiguous in this case, by name, with what to write instead."""
     numbers = numbered(case.pier, case.base.restraints)
     problems: dict[str, str] = {}
     fixed: dict[tuple[int, str], str] = {}
     for name in filter(is_of_restraint, names):
-        fitting = [number for number in numbers if name in (number, _plain(number))]
+        fitting = [number for number in numbers if name in (number, _without_number(number))]
         if len(fitting) > 1:
             problems[name] = f"{name}: case {shown(case.name)} has {len(fitting)} of them; write {' or '.join(fitting)}"
         elif fitting and (first := fixed.setdefault(numbers[fitting[0]][:2], name)) != name:
@@ -91,7 +94,7 @@ def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
 
 
 def why_none(name: str, cases: Iterable[Case]) -> str:
-    """Return why no case has this parameter of a device."""
+    """Return the reason why no case has this parameter of a device."""
     table, key = name.split(".")
     match = TABLE.fullmatch(table)
     what, number = match.groups() if match else (table, None)
@@ -113,8 +116,11 @@ def why_none(name: str, cases: Iterable[Case]) -> str:
     return f"no {what} of that number has it"
 
 
-def in_words(problem: Problem, values: Mapping[str, Any]) -> tuple[str, str]:
-    """Return a problem of a base or of a device in terms of the input that it is about, and the input's name."""
+def in_words(problem: Problem, values: Mapping[str, float]) -> tuple[str, str]:
+    """Return a problem of a base or a device in terms of the input in ``values`` that caused it, and the input's name.
+
+    The name is the problem's own key if no input became it.
+    """
     symbol = problem.key
     mine = [name for name in values if problem.place and name.startswith(problem.place)]
     if name := next((name for name in mine if name.endswith(f".{symbol}")), ""):

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
 
 from rockbatch.common.errors import InputError, Problem, Unusual
 from rockbatch.pier import DeckSpring, Pier, Restraint, Stop, doubt, fields_of
@@ -12,7 +11,7 @@ from rockbatch.pier.plausibility import wrong_device
 from rockbatch.pier.restraints import KINDS
 from rockbatch.study.lists import Chosen, Grid
 from rockbatch.study.piers import has_mass
-from rockbatch.toml.kinds import Choice, choice, not_negative, number, positive, within
+from rockbatch.toml.kinds import Choice, KeyValues, choice, not_negative, number, positive, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, in_table
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
@@ -23,101 +22,209 @@ _OR_DECK = Choice(
     ("left", "right", "deck"), '"left", "right", "deck" or an offset from the middle of the base in m', number, _MIDDLE
 )
 _ALSO_AT = names({"at": "location position place offset x eccentricity where"})
-_ALSO_SPRING = _ALSO_AT | names({
-    "stiffness_kN_m": "k", "lambda": "lamda", "gap_mm": "clearance distance", "restitution": "cor e coefficientofrestitution",
-})  # fmt: skip
+_ALSO_SPRING = _ALSO_AT | names(
+    {
+        "stiffness_kN_m": "k",
+        "lambda": "lamda",
+        "gap_mm": "clearance distance",
+        "restitution": "cor e coefficientofrestitution",
+    }
+)
 _ONE_EACH = names({"write a table for each": "number quantity count"})
-_KINDS = names({
-    "viscous": "dashpot fluid fluidviscous fvd oil linearviscous nonlinearviscous", "friction": "coulomb sliding frictional",
-    "hysteretic": "steel metallic yielding brb ufp tadas bilinear elastoplastic",
-})  # fmt: skip
+_KINDS = names(
+    {
+        "viscous": "dashpot fluid fluidviscous fvd oil linearviscous nonlinearviscous",
+        "friction": "coulomb sliding frictional",
+        "hysteretic": "steel metallic yielding brb ufp tadas bilinear elastoplastic",
+    }
+)
 _FORCE, _VISCOUS = {"kind": ("friction", "hysteretic")}, {"kind": ("viscous",)}
 _ON_BRACE = {"kind": ("viscous", "hysteretic")}
 
 
 def _either(key: str, ratio: str) -> Clash:
+    """Return the contradiction between a key in kN and the ratio that fixes the same parameter, noted at the ratio."""
     return Clash((key, ratio), f"{key} and {ratio} are given, which fix the same; keep one", at=ratio)
 
 
 _OR_LAMBDA = _either("stiffness_kN_m", "lambda")
-_RESTITUTION = Key(within(BOUNDS["restitution"]), "0.6",
-    "Restitution: speed of a mass after a blow over that before, by this device alone.", many=True)  # fmt: skip
+_RESTITUTION = Key(
+    within(BOUNDS["restitution"]),
+    "0.6",
+    "Restitution: speed of a mass after a blow over that before, by this device alone.",
+    many=True,
+)
 
-DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. Write one for each.", {
-    "kind": Key(choice(*DAMPERS, called=_KINDS), '"friction"',
-        "What its force depends on: the direction of the motion, a yielding displacement, or the speed.", required=True),
-    "force_kN": Key(positive, "450.0",
-        "Force of a friction or hysteretic damper, if the mass is given; or give `f`.", many=True, only=_FORCE),
-    "f": Key(within(BOUNDS["f"]), "0.02", "Force of a friction or hysteretic damper over the weight.", many=True, only=_FORCE),
-    "yield_mm": Key(positive, "5.0", "Yield displacement of a hysteretic damper.", many=True, only={"kind": ("hysteretic",)}),
-    "coefficient_kN_s_m": Key(not_negative, "900.0",
-        "Coefficient C of a viscous damper, in kN and m/s to the power of `exponent`; or give `nu`.", many=True, only=_VISCOUS),
-    "nu": Key(within(BOUNDS["nu"]), "0.5", "Coefficient of a viscous damper as C/(M p).", many=True, only=_VISCOUS),
-    "exponent": Key(within(BOUNDS["exponent"]), "0.5", "Exponent of the speed of a viscous damper.", many=True, only=_VISCOUS),
-    "brace_kN_m": Key(positive, "2.0e5",
-        "Stiffness of the brace in series with the damper, if the mass is given; or give `brace`. It is rigid "
-        "if neither is given.", many=True, only=_ON_BRACE),
-    "brace": Key(positive, "5.0", "Stiffness of its brace as λ = k b²/(M g R0).", many=True, only=_ON_BRACE),
-    "at": Key(_OR_DECK, '"left"',
-        "Where it is: a pivot, an offset [m] from the middle of the base, or between the deck and its neighbours; one at each "
-        "pivot if it is not given."),
-    **CONFIRM,
-}, many=True, single=True, also=_ALSO_AT | names({
-    "kind": "type", "exponent": "alpha velocityexponent power", "brace_kN_m": "bracestiffness kb",
-    "coefficient_kN_s_m": "c damping dampingcoefficient dampingconstant",
-    "force_kN": "f fy yieldforce strength capacity slipforce", ("force_kN", "yield_mm"): "yield",
-    "yield_mm": "dy uy yielddisplacement yielddeformation",
-}), instead=_ONE_EACH | names({
-    "write yield_mm, the force over the stiffness, or brace_kN_m of what the damper hangs on":
-        "stiffness k k0 k1 initialstiffness",
-    "write coefficient_kN_s_m, or nu = C/(M p)": "zeta xi dampingratio",
-    "write force_kN, friction times the normal force, or f, that force over the weight": "mu friction",
-}), clashes=(
-    _either("force_kN", "f"), _either("coefficient_kN_s_m", "nu"), _either("brace_kN_m", "brace"),
-))  # fmt: skip
+DAMPER = Section(
+    ("case", "damper"),
+    "A damper between the pier and the ground. Write one for each.",
+    {
+        "kind": Key(
+            choice(*DAMPERS, called=_KINDS),
+            '"friction"',
+            "What its force depends on: the direction of the motion, a yielding displacement, or the speed.",
+            required=True,
+        ),
+        "force_kN": Key(
+            positive,
+            "450.0",
+            "Force of a friction or hysteretic damper, if the mass is given; or give `f`.",
+            many=True,
+            only=_FORCE,
+        ),
+        "f": Key(
+            within(BOUNDS["f"]),
+            "0.02",
+            "Force of a friction or hysteretic damper over the weight.",
+            many=True,
+            only=_FORCE,
+        ),
+        "yield_mm": Key(
+            positive, "5.0", "Yield displacement of a hysteretic damper.", many=True, only={"kind": ("hysteretic",)}
+        ),
+        "coefficient_kN_s_m": Key(
+            not_negative,
+            "900.0",
+            "Coefficient C of a viscous damper, in kN and m/s to the power of `exponent`; or give `nu`.",
+            many=True,
+            only=_VISCOUS,
+        ),
+        "nu": Key(within(BOUNDS["nu"]), "0.5", "Coefficient of a viscous damper as C/(M p).", many=True, only=_VISCOUS),
+        "exponent": Key(
+            within(BOUNDS["exponent"]), "0.5", "Exponent of the speed of a viscous damper.", many=True, only=_VISCOUS
+        ),
+        "brace_kN_m": Key(
+            positive,
+            "2.0e5",
+            "Stiffness of the brace in series with the damper, if the mass is given; or give `brace`. It is rigid "
+            "if neither is given.",
+            many=True,
+            only=_ON_BRACE,
+        ),
+        "brace": Key(positive, "5.0", "Stiffness of its brace as λ = k b²/(M g R0).", many=True, only=_ON_BRACE),
+        "at": Key(
+            _OR_DECK,
+            '"left"',
+            "Where it is: a pivot, an offset [m] from the middle of the base, or between the deck and its neighbours; "
+            "one at each pivot if it is not given.",
+        ),
+        **CONFIRM,
+    },
+    many=True,
+    single=True,
+    also=_ALSO_AT
+    | names(
+        {
+            "kind": "type",
+            "exponent": "alpha velocityexponent power",
+            "brace_kN_m": "bracestiffness kb",
+            "coefficient_kN_s_m": "c damping dampingcoefficient dampingconstant",
+            "force_kN": "f fy yieldforce strength capacity slipforce",
+            ("force_kN", "yield_mm"): "yield",
+            "yield_mm": "dy uy yielddisplacement yielddeformation",
+        }
+    ),
+    instead=_ONE_EACH
+    | names(
+        {
+            "write yield_mm, the force over the stiffness, or brace_kN_m of what the damper hangs on": "stiffness k k0 "
+            "k1 initialstiffness",
+            "write coefficient_kN_s_m, or nu = C/(M p)": "zeta xi dampingratio",
+            "write force_kN, friction times the normal force, or f, that force over the weight": "mu friction",
+        }
+    ),
+    clashes=(
+        _either("force_kN", "f"),
+        _either("coefficient_kN_s_m", "nu"),
+        _either("brace_kN_m", "brace"),
+    ),
+)
 TENDON = Section(
-    ("case", "tendon"), "An unbonded tendon between the pier and the ground, which takes tension only.", {
-    "prestress_kN": Key(not_negative, "5000.0",
-        "Its prestress P0, if the mass is given; or give `psi`.", many=True),
-    "psi": Key(within(BOUNDS["psi"]), "0.5", "Prestress over the weight.", many=True),
-    "stiffness_kN_m": Key(not_negative, "40000.0",
-        "Its stiffness k_t, if the mass is given; or give `lambda`.", many=True),
-    "lambda": Key(not_negative, "1.0", "Stiffness as λ = k_t b²/(M g R0).", many=True),
-    "yield_kN": Key(positive, "9000.0", "Force at which it yields; default: it does not yield.", many=True),
-    "at": Key(_PLACE, "0.0",
-        "Where it is: a pivot, or an offset [m] from the middle of the base; on the axis if it is not given."),
-    **CONFIRM,
-}, many=True, single=True, also=_ALSO_AT | names({
-    "prestress_kN": "pretension preload p0 t0 force initialforce posttension", "stiffness_kN_m": "k kt",
-    "yield_kN": "fy strength capacity yieldforce",
-}), instead=_ONE_EACH | names({
-    "write stiffness_kN_m, E A over the length": "area modulus e length",
-    "write prestress_kN, the stress times the area": "prestressmpa stressmpa stress",
-}), clashes=(
-    _either("prestress_kN", "psi"), _OR_LAMBDA,
-))  # fmt: skip
+    ("case", "tendon"),
+    "An unbonded tendon between the pier and the ground, which takes tension only.",
+    {
+        "prestress_kN": Key(
+            not_negative, "5000.0", "Its prestress P0, if the mass is given; or give `psi`.", many=True
+        ),
+        "psi": Key(within(BOUNDS["psi"]), "0.5", "Prestress over the weight.", many=True),
+        "stiffness_kN_m": Key(
+            not_negative, "40000.0", "Its stiffness k_t, if the mass is given; or give `lambda`.", many=True
+        ),
+        "lambda": Key(not_negative, "1.0", "Stiffness as λ = k_t b²/(M g R0).", many=True),
+        "yield_kN": Key(positive, "9000.0", "Force at which it yields; default: it does not yield.", many=True),
+        "at": Key(
+            _PLACE,
+            "0.0",
+            "Where it is: a pivot, or an offset [m] from the middle of the base; on the axis if it is not given.",
+        ),
+        **CONFIRM,
+    },
+    many=True,
+    single=True,
+    also=_ALSO_AT
+    | names(
+        {
+            "prestress_kN": "pretension preload p0 t0 force initialforce posttension",
+            "stiffness_kN_m": "k kt",
+            "yield_kN": "fy strength capacity yieldforce",
+        }
+    ),
+    instead=_ONE_EACH
+    | names(
+        {
+            "write stiffness_kN_m, E A over the length": "area modulus e length",
+            "write prestress_kN, the stress times the area": "prestressmpa stressmpa stress",
+        }
+    ),
+    clashes=(
+        _either("prestress_kN", "psi"),
+        _OR_LAMBDA,
+    ),
+)
 STOP = Section(
-    ("case", "stop"), "A stop that limits how far the base lifts: a spring that is met when its place has risen by a gap.", {
-    "gap_mm": Key(not_negative, "100.0", "Uplift of its position at contact.", required=True, many=True),
-    "stiffness_kN_m": Key(positive, "5.0e5", "Its stiffness k, if the mass is given; or give `lambda`.", many=True),
-    "lambda": Key(not_negative, "20.0", "Stiffness as λ = k b²/(M g R0).", many=True),
-    "restitution": _RESTITUTION,
-    "at": Key(_PLACE, '"left"',
-        "Where it is: a pivot, or an offset [m] from the middle of the base; one at each pivot if it is not given."),
-    **CONFIRM,
-}, many=True, single=True, homes=(Stop,), also=_ALSO_SPRING, instead=_ONE_EACH, clashes=(_OR_LAMBDA,))  # fmt: skip
+    ("case", "stop"),
+    "A stop that limits how far the base lifts: a spring that is met when its place has risen by a gap.",
+    {
+        "gap_mm": Key(not_negative, "100.0", "Uplift of its position at contact.", required=True, many=True),
+        "stiffness_kN_m": Key(positive, "5.0e5", "Its stiffness k, if the mass is given; or give `lambda`.", many=True),
+        "lambda": Key(not_negative, "20.0", "Stiffness as λ = k b²/(M g R0).", many=True),
+        "restitution": _RESTITUTION,
+        "at": Key(
+            _PLACE,
+            '"left"',
+            "Where it is: a pivot, or an offset [m] from the middle of the base; one at each pivot if it is not given.",
+        ),
+        **CONFIRM,
+    },
+    many=True,
+    single=True,
+    homes=(Stop,),
+    also=_ALSO_SPRING,
+    instead=_ONE_EACH,
+    clashes=(_OR_LAMBDA,),
+)
 DECK_SPRING = Section(
     ("case", "deck_spring"),
     "A horizontal spring between the deck and an abutment or a neighbouring span, which go with the ground; a damper there is a "
-    '[[case.damper]] with `at = "deck"`.', {
-    "stiffness_kN_m": Key(positive, "5.0e4", "Its stiffness k, if the mass is given; or give `lambda`.", many=True),
-    "lambda": Key(not_negative, "0.2", "Stiffness as λ = k b²/(M g R0).", many=True),
-    "gap_mm": Key(not_negative, "50.0", "Displacement of the deck at contact.", many=True),
-    "restitution": _RESTITUTION,
-    "side": Key(choice("both", "left", "right"), '"right"', "To which side the deck moves when it is met."),
-    "height_m": Key(positive, "31.5", "Height above the pivots at which it acts; that of the deck if it is not given."),
-    **CONFIRM,
-}, many=True, single=True, homes=(DeckSpring,), also=_ALSO_SPRING, instead=_ONE_EACH, clashes=(_OR_LAMBDA,))  # fmt: skip
+    '[[case.damper]] with `at = "deck"`.',
+    {
+        "stiffness_kN_m": Key(positive, "5.0e4", "Its stiffness k, if the mass is given; or give `lambda`.", many=True),
+        "lambda": Key(not_negative, "0.2", "Stiffness as λ = k b²/(M g R0).", many=True),
+        "gap_mm": Key(not_negative, "50.0", "Displacement of the deck at contact.", many=True),
+        "restitution": _RESTITUTION,
+        "side": Key(choice("both", "left", "right"), '"right"', "To which side the deck moves when it is met."),
+        "height_m": Key(
+            positive, "31.5", "Height above the pivots at which it acts; that of the deck if it is not given."
+        ),
+        **CONFIRM,
+    },
+    many=True,
+    single=True,
+    homes=(DeckSpring,),
+    also=_ALSO_SPRING,
+    instead=_ONE_EACH,
+    clashes=(_OR_LAMBDA,),
+)
 DEVICES: dict[str, Section] = {"damper": DAMPER, "tendon": TENDON, "stop": STOP, "deck_spring": DECK_SPRING}
 """Tables of a case's devices, by their names."""
 
@@ -125,13 +232,16 @@ RESTRAINTS = tuple(DEVICES)
 
 IN_KN = ("force_kN", "coefficient_kN_s_m", "prestress_kN", "stiffness_kN_m", "yield_kN", "brace_kN_m")
 _UNMEASURED = ("kind", "at", "side", "height_m", "confirm")
-KEYS_OF = {
-    kind: tuple(
-        name for name, key in DAMPER.items() if name not in _UNMEASURED and kind in key.only.get("kind", (kind,))
-    )
-    for kind in DAMPERS
-} | {
-    what: tuple(name for name in keys if name not in _UNMEASURED) for what, keys in DEVICES.items() if what != "damper"
+
+
+def _measured_keys(section: Section, damper: str = "") -> tuple[str, ...]:
+    """Return the keys of a device that have numbers; of those of dampers, the keys of this kind of ``damper``."""
+    measured = ((name, key) for name, key in section.items() if name not in _UNMEASURED)
+    return tuple(name for name, key in measured if damper in key.only.get("kind", (damper,)))
+
+
+KEYS_OF = {kind: _measured_keys(DAMPER, kind) for kind in DAMPERS} | {
+    device: _measured_keys(section) for device, section in DEVICES.items() if device != "damper"
 }
 """Keys with numbers of a damper of each kind, and of each other device."""
 
@@ -149,24 +259,22 @@ class Device:
 
     @property
     def what(self) -> str:
-        """Return the name of its table, one of :data:`DEVICES`."""
+        """Return the name of its table, a key of :data:`DEVICES`."""
         return self.name.rpartition("_")[0]
 
     def values(self, chosen: Chosen) -> Chosen:
-        """Return those of the chosen values that are its own, by their keys."""
+        """Return the chosen values of this device, by their keys: "damper_1_f" becomes "f"."""
         prefix = f"{self.name}_"
         return {key.removeprefix(prefix): setting for key, setting in chosen.items() if key.startswith(prefix)}
 
     def made(self, pier: Pier, chosen: Chosen, *, judged: bool) -> Restraint | None:
-        """Return it with the chosen values; note what is impossible about them, when it is None, or odd, if it is ``judged``."""
+        """Return the device with the chosen values, None if impossible; note impossible ones, and unusual ones if ``judged``."""
         values = {key: setting.value for key, setting in self.values(chosen).items()}
-        arguments: dict[str, Any] = {
-            name: values[name] for name in ("kind", "at", "side", "height_m") if name in values
-        }
+        arguments: KeyValues = {name: values[name] for name in ("kind", "at", "side", "height_m") if name in values}
         arguments |= {field: values[key] / unit for key, (field, unit) in fields_of(pier).items() if key in values}
         arguments["confirm"] = tuple(FIELD_OF.get(name, name) for name in sorted(self.table.confirmed))
         if values.get("kind") == "hysteretic":
-            arguments.setdefault("yield_m", 0.001)  # missing, which is noted: a possible value lets the rest be checked
+            arguments.setdefault("yield_m", 0.001)  # a missing one is noted; a possible value lets the rest be checked
         if self.what in ("stop", "deck_spring"):  # likewise
             arguments.setdefault("gap_m", 0.0)
             arguments.setdefault("lam", 1.0)
@@ -181,7 +289,7 @@ class Device:
         return device
 
     def _complain(self, chosen: Chosen, problems: Iterable[Problem]) -> None:
-        """Note what is impossible about it, each problem at its key."""
+        """Note each problem at its key; one at a derived field with the key's value."""
         values = self.values(chosen)
         keys = {FIELD_OF.get(key, key): key for key in values}
         for problem in (replace(problem, place="") for problem in problems):
@@ -192,7 +300,7 @@ class Device:
             self.table.complain(problem, key or next(iter(values)))
 
     def _complain_unless_usual(self, pier: Pier, chosen: Chosen, device: Restraint) -> None:
-        """Note the first of its values that is far from usual and not confirmed, at its key."""
+        """Note the first of its values that is unusual and not confirmed, at its key."""
         values = self.values(chosen)
         keys = {FIELD_OF.get(key, key): key for key in values}
         doubts = doubt(pier, device)
@@ -203,7 +311,7 @@ class Device:
 
 
 def read_devices(case: Table) -> tuple[list[Device], Grid]:
-    """Return the devices of a case, and the values of their keys: those of the first damper as "damper_1_f"."""
+    """Return the devices of a case, and the values of their keys, called "damper_1_f" for the first damper."""
     devices: list[Device] = []
     grid = Grid()
     for section, keys in DEVICES.items():
@@ -223,7 +331,7 @@ def read_devices(case: Table) -> tuple[list[Device], Grid]:
 
 
 def _tables(case: Table, kind: str) -> list[Table]:
-    """Return one table, or several, called by their place in the case."""
+    """Return the tables of a kind of device, labelled by their number in the case; one under single brackets has none."""
     single = case.data.get(kind)
     if isinstance(single, dict):
         return [Table(case.file, (*case.key_path, kind), f"{case.label}, {kind}", single)]
@@ -232,10 +340,13 @@ def _tables(case: Table, kind: str) -> list[Table]:
 
 
 _NEEDED = {
-    "friction": ("force_kN", "f"), "hysteretic": ("force_kN", "f"), "viscous": ("coefficient_kN_s_m", "nu"),
-    "tendon": ("prestress_kN", "psi", "stiffness_kN_m", "lambda"), "stop": ("stiffness_kN_m", "lambda"),
+    "friction": ("force_kN", "f"),
+    "hysteretic": ("force_kN", "f"),
+    "viscous": ("coefficient_kN_s_m", "nu"),
+    "tendon": ("prestress_kN", "psi", "stiffness_kN_m", "lambda"),
+    "stop": ("stiffness_kN_m", "lambda"),
     "deck_spring": ("stiffness_kN_m", "lambda"),
-}  # fmt: skip
+}
 
 
 def _check_given(table: Table, kind: str) -> None:
@@ -244,7 +355,7 @@ def _check_given(table: Table, kind: str) -> None:
     if not any(map(table.has, _NEEDED[kind])):
         example = f"write for example {first} = {DEVICES.get(kind, DAMPER)[first].example}, or"
         if kind == "tendon":
-            message = "it has neither prestress nor stiffness, so that it is not there"
+            message = "it has neither prestress nor stiffness, so it has no effect"
             table.complain(f"{message}; {example} leave the table out")
         else:
             table.complain(f"{first} is missing; {example} {second}")

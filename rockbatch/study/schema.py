@@ -2,15 +2,14 @@
 
     python -m rockbatch.study.schema study > study.schema.json
 
-writes one; ``#:schema study.schema.json`` as the first line of a study names it. A schema refuses what a single key shows
-to be wrong, and takes all that is right; what takes several keys to see, only the reader tells.
+writes one; ``#:schema study.schema.json`` as the first line of a study names it. A schema refuses
+values that are wrong by themselves, and accepts every valid file; contradictions between keys are left to the reader.
 """
 
 import json
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
 
 from rockbatch.checks.rule_files import SUITE
 from rockbatch.checks.rule_files import TOP as CHECKS_TOP
@@ -55,6 +54,7 @@ def schema_of(sections: Sequence[Section], title: str) -> Schema:
 
 
 def _table(section: Section) -> Schema:
+    """Return the schema of one table, with conditions for keys that depend on the value of another."""
     table: Schema = {
         "type": "object",
         "description": section.about,
@@ -71,7 +71,7 @@ def _table(section: Section) -> Schema:
 
 
 def _excluded(section: Section, other: str) -> Iterator[Schema]:
-    """Yield the keys that do not apply beside each value of another key, of which there may be several, and without it."""
+    """Yield conditions that exclude the keys that do not apply beside a value of ``other``, or without that key."""
     for value in options(section[other]):
         single: Schema = {"const": value}
         several = {"anyOf": [single, {"type": "array", "items": single, "minItems": 1}]}
@@ -81,13 +81,15 @@ def _excluded(section: Section, other: str) -> Iterator[Schema]:
         yield from _unless(section, other, section.default(other), {"not": {"required": [other]}})
 
 
-def _unless(section: Section, other: str, value: Any, condition: Schema) -> Iterator[Schema]:
+def _unless(section: Section, other: str, value: object, condition: Schema) -> Iterator[Schema]:
+    """Yield the exclusion, under ``condition``, of the keys that do not apply to a ``value`` of ``other``, if there are any."""
     names = [name for name, key in section.items() if other in key.only and value not in key.only[other]]
     if names:
         yield {"if": condition, "then": {"properties": dict.fromkeys(names, False)}}
 
 
 def _value(section: Section, name: str) -> Schema:
+    """Return the schema of the value of a key, with its meaning and its default."""
     key = section[name]
     single = key.kind.schema()
     if key.pair:
@@ -101,7 +103,7 @@ def _value(section: Section, name: str) -> Schema:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Write the schema of a file of FILES to the standard output."""
+    """Print the schema of one of :data:`FILES`; return the exit status, 2 for another argument."""
     if len(arguments) != 1 or arguments[0] not in FILES:
         print(f"write one of {', '.join(FILES)} behind python -m rockbatch.study.schema", file=sys.stderr)
         return 2

@@ -1,4 +1,4 @@
-"""Parts of a study, once checked."""
+"""Parts of a checked study."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
@@ -36,11 +36,18 @@ class PulseSpec:
     nu: float | None = None
 
     def motion(self, gravity: float) -> Motion:
-        """Return the motion. Raises ``InputError`` for impossible values; implausible ones are noted by the study."""
+        """Return the motion, with ``gravity`` in m/s². Raises ``InputError`` for impossible values, but not for unusual ones."""
         return pulse(
-            self.shape, name=self.name, amplitude=self.amplitude_g * gravity, period=self.period_s, dt=self.dt_s,
-            duration=self.duration_s, gamma=self.gamma, nu=self.nu, confirm=("amplitude", "dt"),
-        )  # fmt: skip
+            self.shape,
+            name=self.name,
+            amplitude=self.amplitude_g * gravity,
+            period=self.period_s,
+            dt=self.dt_s,
+            duration=self.duration_s,
+            gamma=self.gamma,
+            nu=self.nu,
+            confirm=("amplitude", "dt"),
+        )
 
 
 @dataclass(frozen=True)
@@ -48,7 +55,7 @@ class MotionSpec:
     """[motions]: which ground motions are used, and how. :data:`rockbatch.study.motions.MOTIONS` says what each key means.
 
     ``paths`` are files and folders that exist, ``azimuths`` the directions [degrees from north] that horizontal pairs are turned
-    to, none: as recorded, and ``target`` what records are scaled to, with ``scale`` on top; pulses have their own amplitude.
+    to, as recorded if empty, and ``target`` what records are scaled to, with ``scale`` on top; pulses have their own amplitude.
     ``vertical_target`` is what vertical components are scaled to on their own, with ``vertical_scale`` on top.
     ``override`` are motions from Python or a path that take the place of all sources.
     """
@@ -87,12 +94,12 @@ class MotionSpec:
 
     @property
     def simulated(self) -> str:
-        """The one polarity that is simulated: pier and foundation are symmetric, so the other gives the mirror image."""
+        """The polarity that is simulated, "+" if both are asked for; the other is its mirror image, as the pier is symmetric."""
         return "+" if "+" in self.polarity else "-"
 
 
 LEAST_TOLERANCE = 1e-12
-"""On θ_max/α: rounding alone makes as much, and step halving would never converge."""
+"""Least tolerance on θ_max/α: rounding errors are as large, and step halving would never converge."""
 
 
 @dataclass(frozen=True)
@@ -104,50 +111,11 @@ class Numerics:
     quiet_s: float = 2.0
 
 
-LEAST_NORMAL_SHARE = 0.1
-"""Of the weight: the normal force below which shear keys, not friction, bear the base shear."""
-
-
-LEAST_STROKE_MM = 10.0
-"""Stroke from which half cycles of dampers count."""
-
-
-@dataclass(frozen=True)
-class Output:
-    """[output]: results beyond the peaks, each of which costs time; :data:`rockbatch.study.load.OUTPUT` explains them."""
-
-    histories: str = "worst"
-    histories_MB: float = 20.0  # noqa: N815 (the study's key)
-    ledger: bool = False
-    forces: bool = False
-    rocking: bool = False
-    least_normal_share: float = LEAST_NORMAL_SHARE
-    both_laws: bool = False
-    intensity: bool = False
-    sa_periods_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)
-    sa_pairs: tuple[str, ...] = ()
-    half_cycles: bool = False
-    sections: int | None = None
-    sections_m: tuple[float, ...] = ()
-    devices_work: bool = False
-    least_stroke_mm: float = LEAST_STROKE_MM
-
-    @property
-    def requested_sections(self) -> int | tuple[float, ...] | None:
-        """Sections of the shaft whose forces are asked for: their number or their heights [m]; None without any."""
-        return self.sections or self.sections_m or None
-
-    @property
-    def least_stroke(self) -> float | None:
-        """Stroke from which half cycles of dampers count [m]; None unless the work of devices is asked for."""
-        return 0.001 * self.least_stroke_mm if self.devices_work else None
-
-
 @dataclass(frozen=True)
 class Case:
-    """One pier on one base. ``columns`` holds the values of those varied keys that apply to it.
+    """One pier on one base. ``columns`` has the values of the varied keys that apply to it.
 
-    ``across_of`` is the name of the case whose pier this is across its axis, with the same ``columns``; empty along it.
+    ``across_of`` is empty, or the name of the case along the axis of the same pier, if this one is across it.
     """
 
     name: str
@@ -157,7 +125,7 @@ class Case:
     across_of: str = ""
 
     def with_columns(self, varied: Iterable[str]) -> "Case":
-        """Return the case with those of its columns that are ``varied``."""
+        """Return the case with no other columns than those of ``varied`` keys."""
         return replace(self, columns={name: self.columns[name] for name in varied if name in self.columns})
 
 

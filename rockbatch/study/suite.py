@@ -17,11 +17,11 @@ from rockbatch.study.spec import MotionSpec
 
 
 def ground_motions(study: Study) -> MotionSet:
-    """Return all motions of a study: its files, packaged records and pulses, and what could not be used.
+    """Return all motions of a study, of its files, packaged records and pulses, and its unusable files.
 
     Records are read, freed of their offsets, turned and paired, joined to sequences, then selected, then scaled to the study's
-    target; its ``scale`` and ``polarity`` are left to the runs. Raises ``InputError`` if nothing is left, in a strict study if
-    anything is unusable, and for keys about recorded motions without any.
+    target; its ``scale`` and ``polarity`` are left to the runs. Raises ``InputError`` if no motion is left, in a strict study if
+    any file is unusable, and for keys about recorded motions in a study without these.
     """
     spec, both = study.motions, _both_axes(study)
     if wrong := _without_records(spec, both):
@@ -69,35 +69,41 @@ def ground_motions(study: Study) -> MotionSet:
 
 _OF_FILES = ("unit", "dt", "columns", "sensitivity", "role", "layout")
 _OF_RECORDS = (
-    "vertical", "offset", "azimuths", "select", "target", "vertical_target", "vertical_scale", "confirm", "confirm_pga",
-    "leave_out", "strict",
-)  # fmt: skip
-"""What pulses and still ground have no use for; scale and polarity are theirs too."""
+    "vertical",
+    "offset",
+    "azimuths",
+    "select",
+    "target",
+    "vertical_target",
+    "vertical_scale",
+    "confirm",
+    "confirm_pga",
+    "leave_out",
+    "strict",
+)
+"""Keys that do not apply to pulses and still ground; scale and polarity do."""
 
 
 def _without_records(spec: MotionSpec, both_axes: bool) -> list[str]:
-    """Return a message for each key that only recorded motions use, without any; motions that take their place use them."""
+    """Return a message for each key that only recorded motions use, in a study without any; motions from Python use them."""
     if spec.paths or spec.override is not None:
         return []
     usual = {field.name: field.default for field in fields(spec)} | {"offset": Offset(), "select": Selection()}
-    idle = [
-        name
-        for name in (_OF_FILES if spec.fema_p695 else (*_OF_FILES, *_OF_RECORDS))
-        if getattr(spec, name) != usual[name]
-        and not (name == "azimuths" and both_axes)
-        and not (name == "confirm" and {*spec.confirm} <= {"scale"})
-        and not (name == "target" and isinstance(spec.target, SpectrumTarget) and spec.target.factors == "none")
-    ]
+    candidates = _OF_FILES if spec.fema_p695 else (*_OF_FILES, *_OF_RECORDS)
+    idle = [name for name in candidates if getattr(spec, name) != usual[name]]
+    compared_only = isinstance(spec.target, SpectrumTarget) and spec.target.factors == "none"
+    effective = {"azimuths": both_axes, "confirm": {*spec.confirm} <= {"scale"}, "target": compared_only}
+    idle = [name for name in idle if not effective.get(name)]
     keys = ["axis_deg or every_deg" if name == "azimuths" else name for name in idle]
     return [f'[motions]: {key}: is for recorded motions; write path = "../motions", or leave {key} out' for key in keys]
 
 
 def _azimuths(study: Study) -> tuple[float, ...]:
-    """Return the directions that pairs are turned to: those of the runs, and square to the first one if none of them is and the
-    study asks for spectra of pairs or for runs on both axes."""
+    """Return the directions [°] that pairs are turned to: those of the study, and one at right angles to the first if spectra
+    of pairs or runs on both axes need it and none of them is."""
     spec = study.motions
     of_pairs = spec.target is not None and spec.target.pairs != "apart"
-    if not (of_pairs or study.output.sa_pairs or _both_axes(study)) or not spec.azimuths:
+    if not (of_pairs or study.output.has("sa_pairs") or _both_axes(study)) or not spec.azimuths:
         return spec.azimuths
     square = (spec.azimuths[0] + 90.0) % 360.0
     if any(same_azimuth(azimuth, way) for azimuth in spec.azimuths for way in (square, square + 180.0)):
@@ -106,11 +112,12 @@ def _azimuths(study: Study) -> tuple[float, ...]:
 
 
 def _both_axes(study: Study) -> bool:
+    """Return whether a case is run on both axes of its pier."""
     return any(case.across_of for case in study.cases)
 
 
 def _with_pairs(motions: MotionSet, pulses: Sequence[Motion]) -> tuple[MotionSet, list[Motion]]:
-    """Return records and pulses that have both horizontal components; those without one are unusable, with the reason."""
+    """Return the records and pulses that have both horizontal components; the others become unusable files."""
     reason = (
         "has no horizontal component at right angles, and cases with other_width_m are run on both axes; leave it out "
         "(leave_out under [motions]), or run it in a study without other_width_m"
@@ -125,7 +132,7 @@ def _with_pairs(motions: MotionSet, pulses: Sequence[Motion]) -> tuple[MotionSet
 
 
 def _without_the_square(motions: MotionSet, azimuths: Sequence[float]) -> MotionSet:
-    """Return motions without those of the last of ``azimuths``, each within that of its station along the first."""
+    """Return motions without those along the last of ``azimuths``, which become components across the first."""
     first, square = (f"_az{azimuth:03g}" for azimuth in (azimuths[0], azimuths[-1]))
     across = {motion.of_station: motion for motion in motions if motion.name.endswith(square)}
     along = [motion for motion in motions if across.get(motion.of_station) is not motion]
@@ -137,7 +144,10 @@ def _without_the_square(motions: MotionSet, azimuths: Sequence[float]) -> Motion
 
 
 def _as_given(motions: MotionSet, vertical: bool | str) -> MotionSet:
-    """Return given motions, with the vertical components that the study requires."""
+    """Return motions from Python, without vertical components if ``vertical`` is False.
+
+    Raises ``InputError`` for motions without one if it is "required".
+    """
     if vertical is False:
         return replace(motions, motions=[replace(motion, vertical=None) for motion in motions])
     if vertical == "required":

@@ -6,22 +6,26 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from fnmatch import fnmatchcase
-from typing import Any
+from typing import TypeAlias, TypeGuard
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
 
+TomlValue: TypeAlias = (
+    bool | int | float | str | datetime.date | datetime.time | list["TomlValue"] | dict[str, "TomlValue"]
+)
+TomlTable = dict[str, TomlValue]
+
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _DEEPEST = 32
-_VALUES = (bool, int, float, str, datetime.date, datetime.time)
 
 
-def plain(value: Any, *place: str) -> Any:
-    """Return ``value`` as a TOML parser returns it: dicts, lists, numbers and texts.
+def plain(value: object, *place: str) -> TomlValue:
+    """Return ``value`` as a TOML parser returns it: dicts, lists, numbers, texts, dates.
 
-    Tuples and arrays become lists, paths texts, and keys with None are left out. Raises ``InputError`` for what TOML has not,
-    with its ``place``.
+    Tuples and arrays become lists, paths texts, and keys with None are left out. Raises ``InputError`` with its ``place`` for
+    a value that TOML does not have.
     """
     where = ".".join(place)
     if hasattr(value, "tolist"):  # NumPy's arrays and numbers
@@ -29,40 +33,64 @@ def plain(value: Any, *place: str) -> Any:
     if len(place) > _DEEPEST:
         raise InputError(f"{'.'.join(place[:3])}: tables or lists within one another, more than {_DEEPEST} deep")
     if isinstance(value, Mapping):
-        return {str(key): plain(item, *place, str(key)) for key, item in value.items() if item is not None}
+        return plain_table(value, *place)
     if isinstance(value, list | tuple):
         return [plain(item, *place, str(n)) for n, item in enumerate(value)]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if isinstance(value, int) and value.bit_length() > 64:
-        raise InputError(f"{where}: a whole number of more than 64 bits, which TOML has not")
-    if not isinstance(value, _VALUES):
-        raise InputError(f"{where}: expected a number, a text, a list or a table, not {type(value).__name__}")
-    return value
+        raise InputError(f"{where}: a whole number of more than 64 bits, which TOML does not have")
+    if isinstance(value, bool | int | float | str | datetime.date | datetime.time):
+        return value
+    raise InputError(f"{where}: expected a number, a text, a list or a table, not {type(value).__name__}")
 
 
-def changed(old: Any, new: Any, *place: str) -> Any:
-    """Return the value ``old`` of a study with the changes ``new``; ``InputError`` for a name that is not there.
+def plain_table(table: Mapping[str, object], *place: str) -> TomlTable:
+    """Return a table with its values as :func:`plain` returns them, without keys that have None."""
+    return {str(key): plain(item, *place, str(key)) for key, item in table.items() if item is not None}
 
-    A table is changed key by key, and None takes a key away. Of a list of tables, such as the cases, a name or a list of names
-    keeps those tables, and a mapping changes some of them by their names. Anything else takes the place of ``old``.
+
+def changed(table: TomlTable, changes: Mapping[str, object], *place: str) -> TomlTable:
+    """Return a table of a study with ``changes`` key by key; None takes a key away. ``InputError`` for an unknown name.
+
+    Of a list of tables, such as the cases, a name or a list of names keeps those tables, and a mapping changes some of them by
+    their names.
     """
+    result = dict(table)
+    for key, change in changes.items():
+        if change is None:
+            result.pop(str(key), None)
+        else:
+            result[str(key)] = _changed_value(result.get(str(key)), change, *place, str(key))
+    return result
+
+
+def _changed_value(old: TomlValue | None, new: object, *place: str) -> TomlValue:
+    """Return a value with its change: tables merged, tables of a list chosen or changed by name, others replaced."""
     if isinstance(old, dict) and isinstance(new, Mapping):
-        result = dict(old)
-        for key, item in ((str(key), item) for key, item in new.items()):
-            if item is None:
-                result.pop(key, None)
-            else:
-                result[key] = changed(old.get(key), item, *place, key)
-        return result
+        return changed(old, new, *place)
     if are_tables(old):
+        if isinstance(new, Mapping):
+            return _changed_by_name(old, new, *place)
         names = [new] if isinstance(new, str) else new
-        if isinstance(names, Mapping) or (isinstance(names, list | tuple) and all(isinstance(n, str) for n in names)):
-            return _by_name(old, names, *place)
+        if isinstance(names, list | tuple) and all(isinstance(name, str) for name in names):
+            by_name = _named(old, names, *place)
+            return [by_name[name] for name in names]
     return plain(new, *place)
 
 
-def _by_name(tables: list[dict[str, Any]], names: Any, *place: str) -> list[dict[str, Any]]:
+def _changed_by_name(tables: list[TomlTable], changes: Mapping[str, object], *place: str) -> list[TomlValue]:
+    """Return tables with the changes by their names, without those that have None."""
+    result: list[TomlValue] = []
+    for name, table in _named(tables, changes, *place).items():
+        change = changes.get(name, {})
+        if change is not None:
+            result.append(_changed_value(table, change, *place, name))
+    return result
+
+
+def _named(tables: list[TomlTable], names: Iterable[str], *place: str) -> dict[str, TomlTable]:
+    """Return tables by their names. Raises ``InputError`` if they lack one of ``names``."""
     by_name = {name_of(table): table for table in tables}
     problems = []
     for name in names:
@@ -73,52 +101,51 @@ def _by_name(tables: list[dict[str, Any]], names: Any, *place: str) -> list[dict
             problems.append(f"{'.'.join(place)} = {shown(name)}: no table has this name; {instead}")
     if problems:
         raise InputError(*problems)
-    if not isinstance(names, Mapping):
-        return [by_name[name] for name in names]
-    return [
-        changed(table, names.get(name, {}), *place, name)
-        for name, table in by_name.items()
-        if names.get(name, {}) is not None
-    ]
+    return by_name
 
 
-def name_of(table: Mapping[str, Any]) -> str:
-    """Return the name of a table among others of its kind; a single case may be called by its base."""
+def name_of(table: Mapping[str, TomlValue]) -> str:
+    """Return the name of a table among others of its kind; that of a single case may be its base."""
     return str(table.get("name", table.get("base", "")))
 
 
-def are_tables(value: Any) -> bool:
+def are_tables(value: TomlValue | None) -> TypeGuard[list[TomlTable]]:
     """Return whether ``value`` is a list of tables, and not empty."""
     return isinstance(value, list) and bool(value) and all(isinstance(item, dict) for item in value)
 
 
-def without_lost_cases(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the tables ``after`` a change without checks and references that are about cases alone that are gone."""
+def without_lost_cases(before: Mapping[str, TomlValue], after: Mapping[str, TomlValue]) -> TomlTable:
+    """Return the tables ``after`` a change, without checks and references that are about removed cases alone."""
     result = dict(after)
-    if not (are_tables(before.get("case")) and are_tables(after.get("case"))):
+    cases_before, cases = before.get("case"), after.get("case")
+    if not (are_tables(cases_before) and are_tables(cases)):
         return result
-    present = [name_of(case) for case in after["case"]]
-    lost = [name for name in map(name_of, before["case"]) if name not in present]
+    present = [name_of(case) for case in cases]
+    lost = [name for name in map(name_of, cases_before) if name not in present]
     for kind in ("reference", "check"):
-        if not are_tables(result.get(kind)):
+        tables = result.get(kind)
+        if not are_tables(tables):
             continue
-        remaining = []
-        for table in result.pop(kind):
-            patterns = table["case"] if isinstance(table.get("case"), list) else [table.get("case", "*")]
+        remaining: list[TomlValue] = []
+        for table in tables:
+            chosen = table.get("case", "*")
+            patterns = chosen if isinstance(chosen, list) else [chosen]
             about = [pattern for pattern in patterns if _fits(present, pattern) or not _fits(lost, pattern)]
             if about:
                 remaining.append(table if about == patterns else table | {"case": about})
+        del result[kind]
         if remaining:
             result[kind] = remaining
     return result
 
 
-def _fits(names: Iterable[str], pattern: Any) -> bool:
+def _fits(names: Iterable[str], pattern: TomlValue) -> bool:
+    """Return whether one of ``names`` is ``pattern``, or matches it as a glob."""
     return any(name == pattern or fnmatchcase(name, str(pattern)) for name in names)
 
 
-def as_toml(tables: Mapping[str, Any], *place: str) -> str:
-    """Return tables as :func:`plain` returns them as TOML: keys first, then the tables within, each under its header."""
+def as_toml(tables: Mapping[str, TomlValue], *place: str) -> str:
+    """Return tables of :func:`plain` values as TOML: keys first, then the tables within, each under its header."""
     lines, inner = [], []
     for key, value in tables.items():
         header = ".".join(map(_key, (*place, key)))
@@ -132,14 +159,17 @@ def as_toml(tables: Mapping[str, Any], *place: str) -> str:
 
 
 def _key(name: str) -> str:
+    """Return a key as TOML writes it, in quotes if it is not a bare one."""
     return name if _BARE.fullmatch(name) else _basic(name)
 
 
 def _basic(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", r"\u007f")  # TOML's basic strings are JSON's
+    """Return a basic string of TOML: one of JSON, but for the control character DEL, which TOML escapes."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", r"\u007f")
 
 
-def _written(value: Any) -> str:
+def _written(value: TomlValue) -> str:
+    """Return a value as TOML writes it; a text of several lines keeps them."""
     if isinstance(value, str) and "\n" in value:
         return '"""\n' + "\n".join(_basic(line)[1:-1] for line in value.split("\n")) + '"""'
     if isinstance(value, str):

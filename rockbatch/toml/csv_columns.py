@@ -16,15 +16,15 @@ MOST_ROWS = 100_000
 
 
 def columns_of(path: Path, kinds: Mapping[str, Kind], *, gaps: bool = False) -> dict[str, list[Any]]:
-    """Return the columns of a CSV file by their names in its first line, all as long, with values of these ``kinds``.
+    """Return the columns of a CSV file by the names in its first line, of equal length, with values of these ``kinds``.
 
-    Lines that begin with # are remarks. With semicolons between the cells, decimals may have commas. Where there may be ``gaps``
-    an empty cell is NaN. Raises ``InputError`` with the file and the line for an unknown column, a cell that is not of its kind,
+    Lines that begin with # are comments. With semicolons between the cells, decimals may have commas. With ``gaps`` an empty
+    cell is NaN. Raises ``InputError`` with the file and the line for an unknown column, a cell that is not of its kind,
     or a line that is too short.
     """
     rows, delimiter = _rows(path)
     names = _names(path, *rows[0], kinds)
-    columns: dict[str, list[Any]] = {name: [] for name in names}
+    columns: dict[str, list[object]] = {name: [] for name in names}
     wrong: list[str] = []
     for number, cells in rows[1:]:
         if len(cells) != len(names):
@@ -48,12 +48,9 @@ def heading_of(path: Path) -> list[str]:
 
 
 def _rows(path: Path) -> tuple[list[tuple[int, list[str]]], str]:
-    """Return the numbers and cells of the lines that are no remarks, the heading first, and what is between the cells."""
-    lines = [
-        (number, line)
-        for number, line in enumerate(TomlFile.text_of(path).splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
+    """Return the numbers and cells of the lines that are no comments, the heading first, and the delimiter."""
+    numbered = enumerate(TomlFile.text_of(path).splitlines(), 1)
+    lines = [(number, line) for number, line in numbered if line.strip() and not line.lstrip().startswith("#")]
     if len(lines) < 2 or len(lines) > MOST_ROWS:
         raise InputError(f"{path}: expected a line of column names, and a line for each row below it")
     delimiter = ";" if ";" in lines[0][1] else ","
@@ -63,6 +60,7 @@ def _rows(path: Path) -> tuple[list[tuple[int, list[str]]], str]:
 
 
 def _names(path: Path, number: int, names: Sequence[str], known: Collection[str]) -> Sequence[str]:
+    """Return the ``names`` of the heading in line ``number``. Raises ``InputError`` for an unknown or a repeated one."""
     for name in names:
         if name not in known:
             nearest = closest(name, known)
@@ -73,12 +71,13 @@ def _names(path: Path, number: int, names: Sequence[str], known: Collection[str]
     return names
 
 
-def _value(cell: str, kind: Kind, delimiter: str, gaps: bool) -> Any:
+def _value(cell: str, kind: Kind, delimiter: str, gaps: bool) -> object:
+    """Return the value of a cell. Raises :class:`KindError`; an empty cell is NaN with ``gaps``."""
     if gaps and cell.lower() in ("", "nan"):
         return math.nan
     if isinstance(kind, Text):
         return kind(cell)
-    if "_" in cell:  # 1_0 is 10 to Python, and a slip in a table
+    if "_" in cell:  # Python reads 1_0 as 10, but in a table it is a slip
         raise KindError(kind.words)
     try:
         value = float(cell.replace(",", ".") if delimiter == ";" else cell)

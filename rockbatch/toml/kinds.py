@@ -8,12 +8,15 @@ from typing import Any, Protocol
 from rockbatch.common.files import legible
 from rockbatch.common.showing import shown
 from rockbatch.common.units import LEAST, MOST, Bounds, of_percent
-from rockbatch.toml.meant import word_meant
+from rockbatch.toml.meant import words_meant
 
 _SHORT = 100  # characters of what is expected beside a suggestion
 
 Schema = dict[str, Any]
 """A JSON schema, draft 7."""
+
+KeyValues = dict[str, Any]
+"""Values of a table by key, each as the :class:`Kind` of its key returns it."""
 
 
 class KindError(ValueError):
@@ -34,14 +37,14 @@ class KindError(ValueError):
 
 
 class Kind(Protocol):
-    """The values that a key may have."""
+    """The values that a key may have, and their form in the program."""
 
     @property
     def words(self) -> str:
         """The expected values in words, for messages and the reference."""
 
-    def __call__(self, value: Any) -> Any:
-        """Return the value as the program uses it. Raises :class:`KindError`."""
+    def __call__(self, value: object) -> Any:
+        """Return the value as the program uses it. Raises :class:`KindError` for one that is not of this kind."""
 
     def schema(self) -> Schema:
         """Return the JSON schema of the values that are accepted."""
@@ -74,10 +77,10 @@ class Number:
             return f"a number, {bounds.low:.7g} or above"
         return f"a number from {bounds.low:g} to {'below ' if bounds.below else ''}{bounds.high:g}"
 
-    def __call__(self, value: Any) -> float:
+    def __call__(self, value: object) -> float:
         if self.endless and isinstance(value, float) and value == math.inf:
             return value
-        converted = _finite(value)
+        converted = _finite_float(value)
         if converted not in Bounds(self.low, self.high, above=self.above, below=self.below) or converted == self.but:
             share = of_percent(converted, self.low, self.high)
             raise KindError(self.text, None if share is None else f"{share:g}")
@@ -104,7 +107,7 @@ class Whole:
     low: int = 1
     words: str = "a whole number, 1 or above"
 
-    def __call__(self, value: Any) -> int:
+    def __call__(self, value: object) -> int:
         if isinstance(value, bool) or not isinstance(value, int) or value < self.low:
             raise KindError(self.words)
         return value
@@ -115,12 +118,12 @@ class Whole:
 
 @dataclass(frozen=True)
 class Text:
-    """Text that is not empty; ``check`` may refuse some of it with :class:`KindError`, which a schema cannot say."""
+    """Text that is not empty; ``check`` may raise :class:`KindError` for some of it, which a schema cannot express."""
 
     words: str = "text in quotes"
     check: Callable[[str], None] | None = None
 
-    def __call__(self, value: Any) -> str:
+    def __call__(self, value: object) -> str:
         if not isinstance(value, str) or not value.strip():
             raise KindError("text in quotes")
         if self.check is not None:
@@ -137,21 +140,21 @@ class Text:
 class Choice:
     """One of a few words, numbers or truth values; ``also`` is a kind whose values are accepted beside them.
 
-    ``called`` has other names of the words, letters and digits in lower case, as :func:`rockbatch.toml.meant.word_meant`
+    ``called`` has other names of the words, letters and digits in lower case, as :func:`rockbatch.toml.meant.words_meant`
     takes them. ``listed_by`` is the command that lists many options, in place of the list in messages.
     """
 
-    options: tuple[Any, ...]
+    options: tuple[object, ...]
     own_words: str = ""
     also: Number | None = None
-    called: Mapping[str, Any] = field(default_factory=dict)
+    called: Mapping[str, object] = field(default_factory=dict)
     listed_by: str = ""
 
     @property
     def words(self) -> str:
         return self.own_words or "one of " + ", ".join(map(shown, self.options))
 
-    def __call__(self, value: Any) -> Any:
+    def __call__(self, value: object) -> object:
         for option in self.options:
             if value == option and isinstance(value, bool) == isinstance(option, bool):
                 return option
@@ -160,9 +163,10 @@ class Choice:
         words = f"one that `{self.listed_by}` lists" if self.listed_by else self.words
         raise KindError(words, " or ".join(map(shown, self._meant(value))))
 
-    def _meant(self, value: Any) -> list[Any]:
+    def _meant(self, value: object) -> list[object]:
+        """Return the options that a misspelt word may stand for; none for a value that is not text."""
         words = [option for option in self.options if isinstance(option, str)]
-        return word_meant(value, words, self.called) if isinstance(value, str) else []
+        return words_meant(value, words, self.called) if isinstance(value, str) else []
 
     def schema(self) -> Schema:
         if self.options == (True, False):
@@ -173,20 +177,21 @@ class Choice:
 
 @dataclass(frozen=True)
 class Other:
-    """Values of a form of their own: ``read`` returns or refuses them, ``form`` is their schema."""
+    """Values that ``read`` converts, or refuses with :class:`KindError`; ``form`` is their schema."""
 
     words: str
-    read: Callable[[Any], Any]
+    read: Callable[[object], object]
     form: Schema
 
-    def __call__(self, value: Any) -> Any:
+    def __call__(self, value: object) -> object:
         return self.read(value)
 
     def schema(self) -> Schema:
         return dict(self.form)
 
 
-def _finite(value: Any) -> float:
+def _finite_float(value: object) -> float:
+    """Return a number as a float. Raises :class:`KindError` for text, a boolean, NaN or an infinite one."""
     if isinstance(value, str):
         raise KindError("a number (without quotes)")
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -200,13 +205,13 @@ def _finite(value: Any) -> float:
     return converted
 
 
-def choice(*options: str, called: Mapping[str, Any] | None = None) -> Choice:
-    """Return the kind of one of ``options``, which have other names in ``called``."""
+def choice(*options: str, called: Mapping[str, object] | None = None) -> Choice:
+    """Return the kind of a word, one of ``options``; ``called`` maps other names to them."""
     return Choice(options, called=called or {})
 
 
 def within(bounds: Bounds) -> Number:
-    """Return the kind of a number within the bounds of a quantity; of one above 0 the sign is checked first."""
+    """Return the kind of a number within ``bounds``; if these exclude 0, a message about the sign comes first."""
     return replace(positive, bounds=bounds) if bounds.low > 0 or bounds.above else Number(bounds=bounds)
 
 

@@ -36,7 +36,7 @@ class TooDeepError(ValueError):
 def key_lines(text: str) -> dict[KeyPath, int]:
     """Return the line (from 1) of every table, key and list element in ``text``.
 
-    Raises :class:`TooDeepError` before a parser would be long over it, ``ValueError`` where the text is no TOML.
+    Raises :class:`TooDeepError` for nesting that would take a parser long, ``ValueError`` where the text is no TOML.
     """
     scan = _Scan(text)
     scan.document()
@@ -44,14 +44,17 @@ def key_lines(text: str) -> dict[KeyPath, int]:
 
 
 class _Scan:
+    """One pass over a text, position by position, that notes the line of every place."""
+
     def __init__(self, text: str) -> None:
         self.text = text
         self.here = 0
-        self.counted, self.lines_above = 0, 0  # up to here there are so many line ends
+        self.counted, self.lines_above = 0, 0  # number of line ends before position `counted`
         self.lines: dict[KeyPath, int] = {}
         self.last_element: dict[KeyPath, int] = {}  # of each array of tables
 
     def take(self, token: str) -> str:
+        """Return the text of a token at this position, and move behind it. Raises ``ValueError`` if there is none."""
         match = _TOKENS[token].match(self.text, self.here)
         if match is None:
             raise ValueError(f"line {self.line()}: not valid TOML")
@@ -59,21 +62,24 @@ class _Scan:
         return match.group()
 
     def peek(self) -> str:
+        """Return the next character; empty at the end."""
         return self.text[self.here : self.here + 1]
 
     def line(self) -> int:
+        """Return the line of this position, from 1; only the text since the last call is searched for line ends."""
         self.lines_above += self.text.count("\n", self.counted, self.here)
         self.counted = self.here
         return self.lines_above + 1
 
     def mark(self, key_path: KeyPath, line: int) -> None:
-        """Note the line of a place, and of the tables on the way that dotted keys imply."""
+        """Note the line of a place, and of the tables that a dotted key implies."""
         if len(key_path) > _DEEPEST:
             raise TooDeepError(f"line {line}: tables or lists within one another, more than {_DEEPEST} deep")
         for depth in range(1, len(key_path) + 1):
             self.lines.setdefault(key_path[:depth], line)
 
     def document(self) -> None:
+        """Scan the whole text."""
         table: KeyPath = ()
         while self.take("blank") is not None and self.here < len(self.text):
             if self.peek() == "[":
@@ -82,6 +88,7 @@ class _Scan:
                 self.pair(table)
 
     def header(self) -> KeyPath:
+        """Scan "[a.b]" or "[[a.b]]", and return its place, with the index of an array's element."""
         line = self.line()
         brackets = 2 if self.text.startswith("[[", self.here) else 1
         self.here += brackets
@@ -99,6 +106,7 @@ class _Scan:
         return key_path
 
     def pair(self, table: KeyPath) -> None:
+        """Scan a key of a table with its value."""
         line = self.line()
         key_path = table + self.dotted_key()
         self.mark(key_path, line)
@@ -106,6 +114,7 @@ class _Scan:
         self.value(key_path)
 
     def dotted_key(self) -> tuple[str, ...]:
+        """Scan a key, and return its parts, without quotes."""
         parts = []
         while True:
             self.take("space")
@@ -117,6 +126,7 @@ class _Scan:
             self.here += 1
 
     def value(self, key_path: KeyPath) -> None:
+        """Scan a value, and note the places within it."""
         self.take("space")
         if self.peek() in ("[", "{"):
             self.items(key_path, inline_table=self.peek() == "{")
@@ -124,6 +134,7 @@ class _Scan:
             self.take("string" if self.peek() in ('"', "'") else "plain")
 
     def items(self, key_path: KeyPath, *, inline_table: bool) -> None:
+        """Scan an array, or an inline table, with its brackets."""
         self.here += 1
         index = 0
         while self.take("blank") is not None and self.peek() not in ("]", "}"):

@@ -18,7 +18,7 @@ Also = str | tuple[str, ...]
 
 
 def names(listed: Mapping[Any, str]) -> dict[str, Any]:
-    """Return by each of the names that are ``listed`` with a key, word or sentence, apart by blanks, what it means."""
+    """Return the meaning of each name: ``{"alpha": "slope angle"}`` gives ``{"slope": "alpha", "angle": "alpha"}``."""
     return {name: meant for meant, several in listed.items() for name in several.split()}
 
 
@@ -28,13 +28,13 @@ def plain(name: str) -> str:
 
 
 def without_unit(name: str) -> Iterator[str]:
-    """Yield the plain name, and then without one word after the other at its end, as units are."""
+    """Yield the plain name, then with fewer and fewer words: "height_kN_m" gives "heightknm", "heightkn", "height"."""
     words = name[:_LONGEST].replace("-", "_").split("_")
     return (plain("_".join(words[:n])) for n in range(len(words), 0, -1))
 
 
 def _stem(key: str) -> str:
-    """Return the plain key without its unit."""
+    """Return the plain key without its unit: "stiffness_kN_m" gives "stiffness"."""
     words = key.split("_")
     while len(words) > 1 and words[-1] in _UNITS:
         words.pop()
@@ -42,7 +42,7 @@ def _stem(key: str) -> str:
 
 
 def known_as(name: str, keys: Iterable[str], also: Mapping[str, Also]) -> str:
-    """Return which of ``keys`` has this name but for case and unit, is ``also`` called so, or is spelled alike; empty if none."""
+    """Return the key that ``name`` means, by its spelling but for case and unit, or by ``also``; empty if none is similar."""
     keys = list(keys)
     if nearest := next((key for key in keys if plain(key) == plain(name)), "") or closest(name, keys, _VERY_ALIKE):
         return nearest
@@ -55,14 +55,14 @@ def known_as(name: str, keys: Iterable[str], also: Mapping[str, Also]) -> str:
     return closest(name, keys, _ALIKE) or ""
 
 
-def word_meant(word: str, options: Iterable[str], called: Mapping[str, Any]) -> list[Any]:
-    """Return the options that a word is but for case and signs, that are ``called`` so, or the one that is spelled alike.
+def words_meant(word: str, options: Iterable[str], called: Mapping[str, object]) -> list[object]:
+    """Return the options that ``word`` may stand for: the same but for case and signs, by ``called``, or the most similar one.
 
-    A tuple in ``called`` has several; anything else is the value itself.
+    A tuple in ``called`` has several; anything else is the value itself. Empty if none is similar.
     """
     options = list(options)
     if same := [option for option in options if plain(word) and plain(option) == plain(word)]:
-        return same
+        return list[object](same)
     meant = called.get(plain(word))
     if meant is not None:
         return list(meant) if isinstance(meant, tuple) else [meant]

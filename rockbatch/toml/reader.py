@@ -1,4 +1,4 @@
-"""Tables read against the keys they may have; every mistake is kept and reported with its line."""
+"""Reading of TOML tables by their sections; every mistake is kept and reported with its line."""
 
 import io
 import os
@@ -25,7 +25,7 @@ from rockbatch.common.errors import (
 from rockbatch.common.files import opened_input
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
-from rockbatch.toml.kinds import Choice, KindError, Other
+from rockbatch.toml.kinds import Choice, KeyValues, KindError, Other
 from rockbatch.toml.lines import KeyPath, TooDeepError, key_lines
 from rockbatch.toml.section import CONFIRM, Key, Section, home, options
 from rockbatch.toml.slips import syntax_error
@@ -40,7 +40,7 @@ MOST_REPORTED = 100
 
 
 class Setting(NamedTuple):
-    """One value of a key that may hold several, and where it stands."""
+    """One value of a key, and its place in the file."""
 
     value: Any
     key_path: KeyPath
@@ -55,7 +55,7 @@ class TomlFile:
     data: dict[str, Any]
     lines: dict[KeyPath, int]
     sections: Sequence[Section] = ()
-    """Tables that the file may have, outer ones before inner, for what is said of keys that stand elsewhere."""
+    """Tables that the file may have, outer ones before inner, by which messages say where a misplaced key belongs."""
     misspelt: set[KeyPath] = field(default_factory=set)
     """Keys and tables that are probably there under a name that is not known."""
     problems: list[tuple[int, Problem]] = field(default_factory=list)
@@ -63,7 +63,7 @@ class TomlFile:
 
     @classmethod
     def read(cls, path: Path, sections: Sequence[Section] = ()) -> "TomlFile":
-        """Read and parse. Raises :class:`InputError` with the line where this is not TOML."""
+        """Read and parse a file. Raises :class:`InputError` with the line at which it is no TOML."""
         return cls.parse(path, cls.text_of(path), sections)
 
     @staticmethod
@@ -96,7 +96,7 @@ class TomlFile:
         except TooDeepError as error:
             raise BadSyntax(f"{path}: {error}") from None
         except ValueError:
-            pass  # the parser tells better what is wrong, and gets no further
+            pass  # the parser below fails too, with a better message
         try:
             return cls(path, text, tomllib.loads(text), lines, sections)
         except (ValueError, RecursionError) as error:
@@ -105,7 +105,7 @@ class TomlFile:
     def complain(self, key_path: KeyPath, message: str | Problem, label: str = "") -> None:
         """Note a mistake about the value at ``key_path``; one that is missing counts where its table starts.
 
-        ``label`` names the table. A ``message`` that is a problem already keeps its kind, and its text under the key of the file.
+        ``label`` names the table. A ``message`` that is a problem keeps its kind.
         """
         if self.is_full:
             return
@@ -119,22 +119,22 @@ class TomlFile:
             self.problems.append(problem)
 
     def adopt(self, other: "TomlFile", key_path: KeyPath) -> None:
-        """Note the mistakes of another file, whose name stands at ``key_path``."""
+        """Note the mistakes of another file, at the ``key_path`` that names it."""
         line = self.lines.get(key_path, 0)
         in_order = sorted(other.problems, key=lambda problem: (problem[0], str(problem[1])))
         self.problems += [(line, problem) for _, problem in in_order][: MOST_REPORTED - len(self.problems)]
 
     @property
     def is_full(self) -> bool:
-        """Return whether there are as many mistakes as are reported at once, so that nobody need look for more."""
+        """Return whether :data:`MOST_REPORTED` mistakes are noted, so that reading may stop."""
         return len(self.problems) >= MOST_REPORTED
 
     def is_sound_since(self, before: int) -> bool:
-        """Return whether no mistake was noted after the first ``before``; never of a file that notes no more."""
+        """Return whether no mistake was noted after the first ``before``; False for a full file, which notes no more."""
         return len(self.problems) == before and not self.is_full
 
     def finish(self) -> None:
-        """Raise :class:`InputError` with all mistakes, in the order of the file, if there are any."""
+        """Raise :class:`InputError` with all mistakes, in the order of the file; return if there are none."""
         in_order = [problem for _, problem in sorted(self.problems, key=lambda problem: problem[0])]
         if self.is_full:
             more = f"{MOST_REPORTED} mistakes are reported at once; there may be more"
@@ -142,7 +142,7 @@ class TomlFile:
         refuse(in_order)
 
     def table(self, *key_path: str | int, required: str = "") -> "Table | None":
-        """Return the table ``[key_path]``, or None; ``required`` says what to write if it is missing."""
+        """Return the table ``[key_path]``, or None; note another value, and a missing table if ``required`` gives an example."""
         name = ".".join(map(str, key_path))
         value = self.value(key_path)
         if isinstance(value, dict):
@@ -150,7 +150,7 @@ class TomlFile:
         if value is not None:
             self.complain(key_path, f"{name}: expected one table; write [{name}] on a line of its own, once")
         elif required and key_path not in self.misspelt:
-            self.complain(key_path, _of(MissingKey, f"[{name}] is missing; write {required}"))
+            self.complain(key_path, _problem(MissingKey, f"[{name}] is missing; write {required}"))
         return None
 
     def has(self, key_path: KeyPath) -> bool:
@@ -174,7 +174,7 @@ class TomlFile:
 
     def value(self, key_path: KeyPath) -> Any:
         """Return the value at ``key_path``, or None."""
-        node: Any = self.data
+        node: object = self.data
         for part in key_path:
             if isinstance(node, dict):
                 node = node.get(str(part))
@@ -202,7 +202,7 @@ class Table:
 
     @contextmanager
     def noting(self, *key: str | int) -> Iterator[None]:
-        """Note the problems of an ``InputError`` within the ``with`` block, which ends it, as mistakes about a key."""
+        """Note an ``InputError`` of the ``with`` block as mistakes about a key, instead of raising it."""
         try:
             yield
         except InputError as error:
@@ -233,12 +233,12 @@ class Table:
         unfit: Mapping[str, str] | None = None,
         other: Iterable[str] = (),
         places: bool = False,
-    ) -> dict[str, Any]:
+    ) -> KeyValues:
         """Return the usable values by key, in the order of the file; note what is unusable, unknown or missing.
 
         A caller may go on checking with what is left: :meth:`TomlFile.finish` raises in the end.
-        ``unfit`` gives reasons for keys that exist but have no place here; ``other`` keys are read elsewhere. Of a key that takes
-        a list the value is a tuple, or with ``places`` a list of :class:`Setting`. :attr:`confirmed` is read apart.
+        ``unfit`` gives reasons why keys of other tables do not apply here; ``other`` keys are read elsewhere. The value of a key
+        that takes a list is a tuple, or with ``places`` a list of :class:`Setting`. ``confirm`` is left to :attr:`confirmed`.
         """
         unfit = unfit or {}
         usable: dict[str, list[Setting]] = {}
@@ -247,16 +247,16 @@ class Table:
                 break
             if name not in keys:
                 if name in unfit:
-                    self.complain(_of(Contradiction, f"{name} = {shown(value)}: {unfit[name]}"), name)
+                    self.complain(_problem(Contradiction, f"{name} = {shown(value)}: {unfit[name]}"), name)
                 elif name not in other:
                     self._unknown(name, keys, other)
             elif reason := self._not_applying(keys, name):
-                self.complain(_of(Contradiction, f"{name} = {shown(value)}: {reason}"), name)
-            elif settings := self._checked(name, keys[name], value):
+                self.complain(_problem(Contradiction, f"{name} = {shown(value)}: {reason}"), name)
+            elif settings := self._usable(name, keys[name], value):
                 usable[name] = settings
         self._check_missing(keys)
-        self._doubt(keys, usable)
-        read: dict[str, Any] = {}
+        self._note_doubts(keys, usable)
+        read: KeyValues = {}
         for name, settings in usable.items():
             values = tuple(setting.value for setting in settings)
             several = settings if places else values
@@ -264,22 +264,22 @@ class Table:
         return read
 
     def requires(self, keys: Mapping[str, Key], name: str) -> bool:
-        """Return whether a key has to be written beside the others."""
+        """Return whether a key has to be written, given the values of the keys on which it depends."""
         return keys[name].required and all(self.data.get(other) in values for other, values in keys[name].only.items())
 
     def _check_missing(self, keys: Mapping[str, Key]) -> None:
-        """Note required keys that are missing, and keys that do not go together."""
+        """Note required keys that are missing, and keys that contradict each other."""
         for name, key in keys.items():
             if self.requires(keys, name) and not self.has(name):
                 few = isinstance(key.kind, Choice) and not key.kind.listed_by
                 choices = f"; {name} is {key.kind.words}" if few else ""
                 message = f"{name} is missing; write for example {name} = {key.example}{choices}"
-                self.complain(_of(MissingKey, message))
+                self.complain(_problem(MissingKey, message))
         for clash in keys.clashes if isinstance(keys, Section) else ():
             if all(map(self.has, clash.given)) and not any(map(self.has, clash.lacking)):
                 first = clash.given[0]
                 named = f"{first} = {shown(self.data.get(first))}: " if clash.shown else ""
-                self.complain(_of(Contradiction, f"{named}{clash.message}"), clash.at or first)
+                self.complain(_problem(Contradiction, f"{named}{clash.message}"), clash.at or first)
 
     def _not_applying(self, keys: Mapping[str, Key], name: str) -> str:
         """Return why a key does not apply beside the values of others; empty if it does, or they are not known."""
@@ -298,22 +298,22 @@ class Table:
                 return f"does not apply to {other} = {' or '.join(map(shown, written_values))}; leave it out, or write {instead}"
         return ""
 
-    def _doubt(self, keys: Mapping[str, Key], usable: dict[str, list[Setting]]) -> None:
-        """Note confirmed keys that are not there, and values far from usual that are not confirmed."""
+    def _note_doubts(self, keys: Mapping[str, Key], usable: dict[str, list[Setting]]) -> None:
+        """Note confirmed keys that the table lacks, and unusual values that are not confirmed."""
         if keys.get("confirm") is CONFIRM["confirm"]:
             present = [shown(name) for name in self.data if name in keys and name != "confirm"]
             for setting in usable.pop("confirm", ()):
                 if shown(setting.value) not in present:
                     instead = f"write one of {', '.join(present)}" if present else "leave it out"
                     message = f"confirm = {shown(setting.value)}: this table has no such key; {instead}"
-                    self.complain_about(setting, _of(UnknownKey, message))
+                    self.complain_about(setting, _problem(UnknownKey, message))
         for name in (name for name in usable if name not in self.confirmed):
             for setting in usable[name]:
                 for problem in keys[name].doubts(name, setting.value):
                     self.complain_about(setting, in_table(problem))
 
-    def _checked(self, name: str, key: Key, value: Any) -> list[Setting]:
-        """Return the usable values of a key with their places, of a range both ends or none; note the others."""
+    def _usable(self, name: str, key: Key, value: object) -> list[Setting]:
+        """Return the usable values of a key with their places, both ends of a range or none; note the others."""
         whole = Setting(value, (*self.key_path, name))
         items = [whole]
         if isinstance(value, list):
@@ -346,7 +346,8 @@ class Table:
         self.complain(f"{name} = {shown(value)}: expected a range; write for example {name} = {example}", name)
         return []
 
-    def _converted(self, name: str, key: Key, setting: Setting) -> Any:
+    def _converted(self, name: str, key: Key, setting: Setting) -> object:
+        """Return a value as its kind converts it; None if that refuses it, which is noted."""
         try:
             return key.kind(setting.value)
         except KindError as wrong:
@@ -354,7 +355,7 @@ class Table:
             return None
 
     def _not_one(self, name: str, key: Key, whole: Setting) -> None:
-        """Note a list in the place of one value, or several tables in that of one."""
+        """Note a list, or several tables, where the key takes a single value or table."""
         if isinstance(key.kind, Other) and all(isinstance(item, dict) for item in whole.value):
             header = ".".join(part for part in whole.key_path if isinstance(part, str))
             self.complain(f"{name}: expected one table; write [{header}] on a line of its own, once", name)
@@ -362,22 +363,24 @@ class Table:
             self._wrong(name, key, whole, KindError("one value, not a list"))
 
     def _wrong(self, name: str, key: Key, setting: Setting, wrong: KindError) -> None:
+        """Note a value that its kind refuses, with an example unless the message has one."""
         example = "" if wrong.meant or wrong.whole or options(key) else f"; write for example {name} = {key.example}"
         message = f"{name} = {shown(setting.value)}: {wrong.advice()}{example}"
-        self.complain_about(setting, _of(OutOfRange if wrong.whole else WrongType, message))
+        self.complain_about(setting, _problem(OutOfRange if wrong.whole else WrongType, message))
 
     def _unknown(self, name: str, keys: Mapping[str, Key], other: Iterable[str]) -> None:
+        """Note a key or table that is not known here, with what may be meant."""
         section = not self.key_path and isinstance(self.data[name], dict | list)
         complaint = "unknown section" if section else "unknown key"
         written = name if name.isidentifier() and len(name) <= _LONGEST else shown(name)
-        self.complain(_of(UnknownKey, f"{written}: {complaint}; {self._instead(name, keys, other)}"), name)
+        self.complain(_problem(UnknownKey, f"{written}: {complaint}; {self._instead(name, keys, other)}"), name)
 
     def _instead(self, name: str, keys: Mapping[str, Key], other: Iterable[str]) -> str:
         """Return what to write instead of an unknown key: another of this table first, then the table where it belongs."""
         place = tuple(part for part in self.key_path if isinstance(part, str))
         own = next((section for section in self.file.sections if section.at == place), Section(place, "", keys))
         own = keys if isinstance(keys, Section) else own
-        known = [key for key in keys if not self._not_applying(keys, key)]
+        known = [key for key in keys if not self._not_applying(keys, key)]  # advice must not lead to the next mistake
         if place or not isinstance(self.data[name], dict | list):
             known += other if place else ()
         else:
@@ -398,17 +401,18 @@ class Table:
         return f"write one of {', '.join(known)}"
 
 
-def _of(kind: type[InputError], message: str) -> Problem:
-    """Return a message as a problem of a kind; where it stands, the file says."""
+def _problem(kind: type[InputError], message: str) -> Problem:
+    """Return a message as a problem of a kind, without a place, which the file adds."""
     return Problem("", None, message, kind=kind)
 
 
 def in_table(problem: Problem, table: str = "this table") -> Problem:
-    """Return an unusual value as a table of a file says it, in which it is confirmed."""
-    return _of(Unusual, f"{problem} in {table}") if problem.confirm else problem
+    """Return a problem that may be confirmed with the name of the ``table`` to confirm it in; others as they are."""
+    return _problem(Unusual, f"{problem} in {table}") if problem.confirm else problem
 
 
 def _unreadable(path: Path, error: OSError) -> InputError:
+    """Return the error about a file that cannot be opened, with a file that may be meant."""
     if isinstance(error, FileNotFoundError):
         return NotFound(f"{path}: no such file{nearby(path, str(path))}")
     if path.is_dir():
@@ -419,7 +423,7 @@ def _unreadable(path: Path, error: OSError) -> InputError:
 
 
 def nearby(path: Path, written: str) -> str:
-    """Return the hint at a file of a similar name in the folder of ``path``, as ``written`` would have it; else empty."""
+    """Return "; did you mean …?" with a file of similar name beside ``path``, in the form of ``written``; empty if none."""
     try:
         names = os.listdir(path.parent)
     except OSError:

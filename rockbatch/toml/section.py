@@ -4,7 +4,7 @@ From them follow the reader (:mod:`reader`), the JSON schemas, the reference in 
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
 from rockbatch.common.errors import Problem
@@ -48,7 +48,7 @@ class Key:
     distinct: bool = True
     pair: bool = False
     usual: Usual | None = None
-    default: Any = None
+    default: object = None
     only: Mapping[str, tuple[Any, ...]] = field(default_factory=dict)
 
     @property
@@ -56,18 +56,18 @@ class Key:
         """Return whether it has to be written whatever the other keys are."""
         return self.required and not self.only
 
-    def doubts(self, name: str, value: Any) -> list[Problem]:
-        """Return the problem of a value of the key ``name`` that is unusual, and has to be confirmed."""
+    def doubts(self, name: str, value: float) -> list[Problem]:
+        """Return the problem of an unusual value of the key ``name``, to be confirmed; empty for a usual one."""
         return [] if self.usual is None else self.usual.doubts(name, value)
 
 
-def options(key: Key) -> tuple[Any, ...]:
-    """Return the values that a key may have, if they are a few."""
+def options(key: Key) -> tuple[object, ...]:
+    """Return the values between which a key chooses; empty for one that is no choice."""
     return key.kind.options if isinstance(key.kind, Choice) else ()
 
 
 class Clash(NamedTuple):
-    """Keys that do not go together: wrong where all of ``given`` are written and none of ``lacking`` is.
+    """Keys that contradict each other: a mistake if all of ``given`` are written and none of ``lacking`` is.
 
     ``message`` stands at the key ``at``, or at the first one, which is ``shown`` before it, with its value.
     """
@@ -79,9 +79,7 @@ class Clash(NamedTuple):
     shown: bool = False
 
 
-CONFIRM = {
-    "confirm": Key(text, '["height_m"]', "Keys of this table with unusual values that are correct.", many=True)
-}  # fmt: skip
+CONFIRM = {"confirm": Key(text, '["height_m"]', "Keys of this table with unusual values that are correct.", many=True)}
 """The key by which a table confirms its values."""
 
 
@@ -143,15 +141,15 @@ class Section(Mapping[str, Key]):
         return (f"[[{name}]]" if self.many else f"[{name}]") if name else ""
 
     def known_as(self, name: str, names: Iterable[str]) -> str:
-        """Return which of ``names``, keys of it or of other tables, a name means; see :func:`rockbatch.toml.meant.known_as`."""
+        """Return which of ``names`` a name means, as :func:`rockbatch.toml.meant.known_as` does; empty if none."""
         return known_as(name, names, self.also)
 
     def advice(self, name: str) -> tuple[str, str]:
-        """Return the key to write instead of an unknown name, if there is one, and the advice; both empty if none is known."""
+        """Return the key to write instead of an unknown name, empty if none, and the advice; both empty if none is known."""
         advice = next(filter(None, map(self.instead.get, without_unit(name))), "")
         return ("", advice) if isinstance(advice, str) else (advice[0], f"write {advice[0]}, {advice[1]}")
 
-    def default(self, name: str) -> Any:
+    def default(self, name: str) -> object:
         """Return the value of a key that is not written; None if there is none, or it follows from others."""
         for home in self.homes:
             for attribute in fields(home):
@@ -160,15 +158,49 @@ class Section(Mapping[str, Key]):
         return self[name].default
 
 
+def joined(section: Section, *more: Section) -> Section:
+    """Return ``section`` with the keys of others, and all that they say of these."""
+    sections = (section, *more)
+    return replace(
+        section,
+        keys_read={name: key for part in sections for name, key in part.items()},
+        homes=tuple(home for part in sections for home in part.homes),
+        also={name: words for part in sections for name, words in part.also.items()},
+        clashes=tuple(clash for part in sections for clash in part.clashes),
+    )
+
+
 _GENERAL = {
-    "at", "columns", "confirm", "count", "damping", "dt", "f", "file", "gamma", "kind", "n", "name", "nu", "offset", "path",
-    "period_s", "polarity", "reason", "records", "scale", "side", "source", "type", "unit",
-}  # fmt: skip
+    "at",
+    "columns",
+    "confirm",
+    "count",
+    "damping",
+    "dt",
+    "f",
+    "file",
+    "gamma",
+    "kind",
+    "n",
+    "name",
+    "nu",
+    "offset",
+    "path",
+    "period_s",
+    "polarity",
+    "reason",
+    "records",
+    "scale",
+    "side",
+    "source",
+    "type",
+    "unit",
+}
 """Names that mean something else in tables that do not belong together."""
 
 
 def home(sections: Iterable[Section], name: str, place: tuple[str, ...]) -> str:
-    """Return the headers of the other tables than that at ``place`` that have a key of this name, if it is not a general one."""
+    """Return the headers of tables, but that at ``place``, with a key of this name; empty for none, or a general name."""
     others = (section for section in sections if section.at and section.at != place)
     headers = dict.fromkeys(section.header for section in others if name in section and not section.free)
     return "" if name in _GENERAL else " or ".join(headers)

@@ -1,4 +1,4 @@
-"""What is wrong about a text that is not TOML."""
+"""The message about a text that is not TOML."""
 
 import re
 from pathlib import Path
@@ -11,7 +11,7 @@ _RULES = "texts stand in quotes, decimals behind a point, and a number alone; [[
 
 
 def syntax_error(path: Path, text: str, error: str) -> str:
-    """Return the message about a text that a parser refuses with ``error``: its line, as it reads, and the rules."""
+    """Return the message about a text that the parser refuses with ``error``: the line, its text, and the rules of TOML."""
     place = re.search(r" *\(at (?:line (\d+), column \d+|end of document)\)", error)
     reason = error[: place.start()] if place else error
     lines = text.split("\n")

@@ -228,7 +228,7 @@ class StopAfter(Stop):
 def test_a_group_that_is_stopped_anywhere_runs_no_further_and_what_it_returns_is_whole(study):
     """Once it is set, it is looked at no more than twice for each run."""
     loaded, runs = plan_of(study)
-    chosen, observers = [runs[i] for i in (0, 1, 2, 7)], observers_of(Output(rocking=True, forces=True))
+    chosen, observers = [runs[i] for i in (0, 1, 2, 7)], observers_of(Output.with_keys(rocking=True, forces=True))
     unstopped = StopAfter(10**6)
     whole = outcomes_of(chosen, loaded.numerics, observers, unstopped)
     assert None not in whole

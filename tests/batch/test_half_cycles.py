@@ -8,7 +8,7 @@ import rockbatch as rb
 from rockbatch.common.files import read_table
 from rockbatch.observers.half_cycles import TABLE as HALF_CYCLES
 from rockbatch.outcome.half_cycles import HALF_CYCLE_COLUMNS
-from rockbatch.study.load import OUTPUT
+from rockbatch.study.output import OUTPUT
 
 pytestmark = pytest.mark.usefixtures("no_report")
 

@@ -1,16 +1,21 @@
 """An observer is one folder and one name in a tuple: each is taken away in a copy of the package, and the rest stays."""
 
+import json
 import os
 import shutil
 import subprocess
 import sys
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.common.observers import OBSERVERS
+from rockbatch.common.observers import OBSERVERS, report_parts
+from rockbatch.quantities.catalogue import COLUMNS, DEMANDS
+from rockbatch.reporting.page import PARTS
 
 KEYS = {
     "other_law": {"both_laws": True},
@@ -21,52 +26,98 @@ KEYS = {
     "half_cycles": {"half_cycles": True},
     "sections": {"sections": 3},
     "shocks": {},
+    "intensity": {"intensity": True},
 }
 """What a study writes under [output] for each."""
 
+GROUPS = ("FIRST", "QUANTITIES", "ERRORS", "FURTHER", "LAST")
+"""Places of the columns that observers bring."""
+
+FAST = ("forces", "rocking", "sections")
+"""Those that are deleted in fast tests: one with columns, one without forces of its own, one with a table beside."""
+
 RUN = """
-import sys
+import json, sys
 import rockbatch as rb
+from rockbatch.quantities.catalogue import COLUMNS, DEMANDS
+from rockbatch.reporting.page import PARTS
 rb.run(sys.argv[1], sys.argv[2])
+try:
+    rb.load_study(sys.argv[3])
+except rb.UnknownKey as error:
+    print(error)
+print("seen:", json.dumps([[part.anchor for part in PARTS], [*COLUMNS], [*DEMANDS]]))
 """
+
+
+def delete(package, name):
+    """Delete an observer: its folder, and its line in the tuple."""
+    shutil.rmtree(package / "observers" / name)
+    listing = package / "common" / "observers.py"
+    lines = listing.read_text(encoding="utf-8").splitlines(keepends=True)
+    kept = [line for line in lines if line != f'    "{name}",\n']
+    assert len(kept) == len(lines) - 1
+    listing.write_text("".join(kept), encoding="utf-8")
+
+
+def brought(name):
+    """Return the parts of the report, the columns and the demands that an observer brings."""
+    parts = [part.anchor for owner, part in report_parts() if owner == name]
+    if not find_spec(f"rockbatch.observers.{name}.quantities"):
+        return parts, [], []
+    quantities = import_module(f"rockbatch.observers.{name}.quantities")
+    columns = [quantity for group in GROUPS for quantity in getattr(quantities, group, ())]
+    demands = [*getattr(quantities, "DEMANDS", ()), *(demand for column in columns for demand in column.demands())]
+    return parts, [column.name for column in columns], [demand.name for demand in demands]
 
 
 def output_of(names):
     return {"histories": "none"} | {key: value for name in names for key, value in KEYS[name].items()}
 
 
-def study_of(folder, names):
+def study_of(folder, names, name="study.toml"):
     damper = {"kind": "friction", "f": 0.05, "at": "left"}
     cases = [RIGID, PADS, RIGID | {"name": "damped", "damper": [damper]}]
     text = study_text(pier=PIER, pulses=[SINE | {"duration_s": 2.0}], cases=cases, output=output_of(names))
-    return write_study(folder, text)
+    return write_study(folder, text, name)
 
 
 def test_every_observer_is_deleted_below():
     assert sorted(KEYS) == sorted(OBSERVERS)
+    assert {name for name in OBSERVERS if brought(name)[0]} == {"forces", "shocks", "sections", "intensity"}
+    assert {name for name in OBSERVERS if brought(name)[1]} == {*OBSERVERS} - {
+        "shocks",
+        "half_cycles",
+        "sections",
+        "intensity",
+    }
+    assert {name for name in OBSERVERS if brought(name)[2]} == {"rocking", "forces", "devices_work", "sections"}
 
 
-@pytest.mark.parametrize(
-    "name", [*(pytest.param(n, marks=pytest.mark.slow) for n in OBSERVERS if n != "forces"), "forces"]
-)
+@pytest.mark.parametrize("name", [n if n in FAST else pytest.param(n, marks=pytest.mark.slow) for n in OBSERVERS])
 @pytest.mark.usefixtures("no_report")
 def test_an_observer_is_deleted_with_its_folder_and_its_name(tmp_path, name):
-    """Tables of a study that asks for all others are the same to the byte."""
-    others = [other for other in OBSERVERS if other != name]
-    study = study_of(tmp_path, others)
+    """Tables of a study that asks for all others are the same to the byte, and its key is unknown."""
+    study, asking = (
+        study_of(tmp_path, [other for other in OBSERVERS if other != name]),
+        study_of(tmp_path, [name], "own.toml"),
+    )
     rb.run(study, tmp_path / "whole")
     copied = tmp_path / "copied"
     shutil.copytree(Path(rb.__file__).parent, copied / "rockbatch", ignore=shutil.ignore_patterns("*.nb[ci]"))
-    shutil.rmtree(copied / "rockbatch" / "observers" / name)
-    listing = copied / "rockbatch" / "common" / "observers.py"
-    text = listing.read_text(encoding="utf-8")
-    assert f'    "{name}",\n' in text
-    listing.write_text(text.replace(f'    "{name}",\n', ""), encoding="utf-8")
+    delete(copied / "rockbatch", name)
     done = subprocess.run(
-        [sys.executable, "-c", RUN, str(study), str(tmp_path / "rest")],
+        [sys.executable, "-c", RUN, str(study), str(tmp_path / "rest"), str(asking)],
         cwd=copied, env=os.environ | {"PYTHONPATH": str(copied)}, text=True, capture_output=True, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
+    assert all(f"{key}: unknown key" in done.stdout for key in KEYS[name])
+    parts, columns, demands = (set(own) for own in brought(name))
+    assert json.loads(done.stdout.rpartition("seen: ")[2]) == [
+        [part.anchor for part in PARTS if part.anchor not in parts],
+        [column for column in COLUMNS if column not in columns],
+        [demand for demand in DEMANDS if demand not in demands],
+    ]
     files = [path.name for path in sorted((tmp_path / "whole").glob("*.csv"))]
     assert files == [path.name for path in sorted((tmp_path / "rest").glob("*.csv"))]
     for file in files:

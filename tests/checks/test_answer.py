@@ -253,7 +253,7 @@ def test_a_component_that_is_left_out_of_a_station_in_use_is_listed_too():
 
 def test_what_passes_comes_first_then_what_fails_then_what_is_open():
     some = [
-        verdict("a", "not decided", note="2 stations count"),
+        verdict("a", "not decided", remarks=("2 stations count",)),
         verdict("b", "fail", value=0.6, ratio=1.2),
         verdict("c", "pass"),
     ]
@@ -269,7 +269,7 @@ def test_a_check_is_named_with_its_case_where_there_are_several_and_a_ban_withou
             line for line in lines([verdict("a", "pass", ratio=0.5), verdict("a", "pass", ratio=0.0, **ban), *more])
         )
         assert f"Closest to its limit: {of}margin at 50\u00a0%." in passed.details
-    opened = [verdict("a", "not decided", note="open", **(ban | {"check": f"c{i}"})) for i in range(5)]
+    opened = [verdict("a", "not decided", remarks=("open",), **(ban | {"check": f"c{i}"})) for i in range(5)]
     assert lines(opened[:3])[0].details == tuple(f"c{i}: open." for i in range(3))
     assert lines(opened)[0].details == (*(f"c{i}: open." for i in range(3)), "and 2 more.")
     (banned,) = lines([verdict("a", "pass", ratio=0.0, **ban)])
@@ -292,9 +292,9 @@ def test_cases_that_are_not_checked_stand_in_the_order_of_how_many_runs_did_not_
 
 
 def test_what_is_open_says_why_and_that_it_does_not_matter_where_a_case_fails():
-    open_ = verdict("a", "not decided", check="tilt", note="between 0.2 and 0.6", record="ERZ", high=0.6)
+    open_ = verdict("a", "not decided", check="tilt", remarks=("between 0.2 and 0.6",), record="ERZ", high=0.6)
     assert lines([open_])[0].details == ("tilt: between 0.2 and 0.6, limit 0.5, left open by record ERZ.",)
-    few = verdict("a", "not decided", note="2 stations count, EN 1998-1 asks for 3", record="ERZ")
+    few = verdict("a", "not decided", remarks=("2 stations count, EN 1998-1 asks for 3",), record="ERZ")
     assert lines([few])[0].details == ("margin: 2 stations count, EN 1998-1 asks for 3.",)
     failed = verdict("a", "fail", value=0.6, ratio=1.2)
     assert lines([open_, failed])[-1].cases == "tilt, in cases that fail anyway"
@@ -336,9 +336,9 @@ def test_a_verdict_stands_with_signs_of_its_sense_and_digits_that_tell_it_from_i
 
 def test_a_sentence_that_holds_for_several_verdicts_is_said_once():
     few, open_ = "the most unfavourable of fewer than 7 records", "no error estimate"
-    some = [verdict(name, "pass", check=check, note=few) for name in "abc" for check in ("drift", "uplift")]
-    some += [verdict("a", "pass", check="soil", note=open_), verdict("b", "pass", check="soil")]
-    some.append(verdict("c", "does not apply", check="drift", note="the pier has no damper"))
+    some = [verdict(name, "pass", check=check, remarks=(few,)) for name in "abc" for check in ("drift", "uplift")]
+    some += [verdict("a", "pass", check="soil", remarks=(open_,)), verdict("b", "pass", check="soil")]
+    some.append(verdict("c", "does not apply", check="drift", remarks=("the pier has no damper",)))
     notes = wording.Notes(some)
     assert [notes.about(one) for one in some] == [*[""] * 6, open_, "", "the pier has no damper"]
     assert notes.common() == [

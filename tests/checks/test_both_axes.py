@@ -12,10 +12,11 @@ from rockbatch.checks import Rule, judge
 from rockbatch.checks.answer import answer
 from rockbatch.checks.coverage import runs_of_cases
 from rockbatch.checks.responses import worst_of_cases
+from rockbatch.checks.verdicts import read_verdicts, write_verdicts
 from rockbatch.checks.wording import both_axes
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Damper, RigidBase
-from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 
@@ -88,6 +89,16 @@ def test_the_verdict_says_what_is_combined():
     assert both_axes([verdict]) == (
         "Two planar models of each pier, one for each axis, combined: SRSS of both axes (rotation)."
     )
+
+
+def test_remarks_and_the_way_of_both_axes_are_read_back_from_the_file_as_written(tmp_path):
+    rule = Rule("rotation", "theta_max_over_alpha", at_most=60.0, statistic="p84_95", both_axes="srss")
+    (written,) = judged(both([0.3], [0.4]), rule)
+    write_verdicts(tmp_path, [written])
+    (read,) = read_verdicts(tmp_path)
+    assert len(written.remarks) >= 3
+    assert (read.remarks, read.axes) == (written.remarks, written.axes)
+    assert both_axes([replace(read, words="reworded")]) == both_axes([written])
 
 
 @pytest.mark.parametrize("fallen", ["pads", "pads across"])
@@ -182,6 +193,7 @@ def test_the_answer_counts_the_pier_once():
     assert "ductility" in line.text
 
 
-def test_directed_demands_exist_and_none_is_an_event_or_of_the_case():
-    assert set(DIRECTED) <= set(DEMANDS)
-    assert not any(DEMANDS[name].event or DEMANDS[name].per_case or DEMANDS[name].device for name in DIRECTED)
+def test_no_directed_demand_is_an_event_or_of_the_case_or_of_a_device():
+    directed = [demand for demand in DEMANDS.values() if demand.directed]
+    assert len(directed) == 28
+    assert not any(demand.event or demand.per_case or demand.device for demand in directed)

@@ -13,7 +13,8 @@ from rockbatch.checks.bounds import of_runs
 from rockbatch.common.errors import InputError
 from rockbatch.pier import ElasticBase, RigidBase
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.catalogue import COLUMNS, DEMANDS, FACTS, IN_MOTION, IN_MOTION_ERROR
+from rockbatch.quantities.catalogue import COLUMNS, DEMANDS, FACTS
+from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR
 
 INF = math.inf
 

@@ -100,7 +100,7 @@ def test_sentence_and_scorecard_count_the_same_on_random_verdicts():
     for _ in range(300):
         cases = [f"c{i}" for i in range(chance.randint(1, 6))]
         found = [
-            verdict(name, chance.choice(kinds), check=f"k{k}", ratio=chance.uniform(0.1, 3.0), note="few")
+            verdict(name, chance.choice(kinds), check=f"k{k}", ratio=chance.uniform(0.1, 3.0), remarks=("few",))
             for name in cases
             for k in range(chance.randint(0, 3))
         ]

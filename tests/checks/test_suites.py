@@ -43,7 +43,7 @@ def test_a_record_of_which_only_the_mirror_image_is_there_is_one_whose_run_is_mi
 def test_a_limit_that_no_run_comes_near_is_noted_unless_it_is_confirmed(limit, confirm, noted):
     verdict = judged(runs([0.1, 0.2]), at_most=limit, confirm=confirm)
     assert verdict.verdict == "pass"
-    assert ('0.2 is below 0.01 of the limit; check its unit, or write confirm = ["at_most"]' in verdict.note) is noted
+    assert ('0.2 is below 0.01 of the limit: check its unit, or write confirm = ["at_most"]' in verdict.note) is noted
 
 
 def test_a_record_counts_once_with_the_worse_of_its_polarities():

@@ -9,7 +9,7 @@ from core_samples import gaps_of, held_pivots
 
 from rockbatch.pier import ElasticBase, Pier
 from rockbatch.simulation.models import IDLE, springs
-from rockbatch.simulation.starting import _on_deck
+from rockbatch.simulation.starting import _deck_elongation
 
 PIER = Pier(0.3, 1.2)
 AT_FOOT, AT_DECK = IDLE._replace(offset=0.7), IDLE._replace(height=9.0, swing=1.5, way=-1.0)
@@ -40,7 +40,7 @@ def test_in_finite_kinematics_an_elongation_and_its_derivatives_are_those_of_the
                 for theta, v in ((1.0, 0.0), (0.0, 1.0), (y.omega, y.v_rate))
             )
             assert gap.elongation == pytest.approx(along[1], rel=1e-12)
-            assert of is AT_FOOT or _on_deck(of, y.theta, True) == pytest.approx(along[1], rel=1e-12)
+            assert of is AT_FOOT or _deck_elongation(of, y.theta, True) == pytest.approx(along[1], rel=1e-12)
             assert gap.by_theta == gap.arm == pytest.approx((by_theta[2] - by_theta[0]) / (2.0 * short), rel=1e-6)
             assert gap.by_v == pytest.approx((by_v[2] - by_v[0]) / (2.0 * short), abs=1e-9)
             assert gap.speed == pytest.approx((along[2] - along[0]) / (2.0 * short), abs=1e-7)
@@ -54,7 +54,7 @@ def test_in_first_order_kinematics_an_elongation_is_linear_and_arms_keep_p_delta
         assert foot[:5] == pytest.approx((y.v - 0.7 * y.theta, y.v_rate - 0.7 * y.omega, 1.0, -0.7, 0.0), rel=1e-12)
         assert foot.arm == pytest.approx(m.height * y.theta - 0.7, rel=1e-12)
         assert deck == pytest.approx((-9.0 * y.theta, -9.0 * y.omega, 0.0, -9.0, 0.0, -9.0), rel=1e-12)
-        assert _on_deck(AT_DECK, y.theta, False) == deck.elongation
+        assert _deck_elongation(AT_DECK, y.theta, False) == deck.elongation
 
 
 def test_friction_holds_the_pivot_that_does_not_accelerate(uncompiled):

@@ -100,6 +100,6 @@ def verdict(case: str, decided: str, *, check: str = "margin", ratio: float = 0.
         "columns": {}, "scale": 1.0, "demand": "theta_max_over_alpha", "statistic": "mean",
         "words": "mean of theta_max_over_alpha", "records": 6, "runs": 6, "value": 0.25, "low": 0.2, "high": 0.3,
         "sense": "at most", "limit": 0.5, "margin": 0.25, "basis": "judgement", "reason": "half of α",
-        "counting": "overturned: infinite", "counted": "", "note": "",
+        "counting": "overturned: infinite", "counted": "", "remarks": (),
     }  # fmt: skip
     return Verdict(**{**values, "check": check, "case": case, "verdict": decided, "ratio": ratio, **more})

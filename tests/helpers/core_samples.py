@@ -15,14 +15,14 @@ from rockbatch.core.devices.elongation import attitude, gap_of
 from rockbatch.core.devices.events import (
     Rounding,
     _is_held,
-    _of_device,
-    after_contact,
+    _write_functions,
     device_event,
     device_functions,
+    reset_device_modes,
     settle_friction,
 )
 from rockbatch.core.devices.laws import FRICTION
-from rockbatch.core.devices.pull import START, device_rates, devices_of, resolved
+from rockbatch.core.devices.pull import START, device_rates, devices_of, step_resolving_devices
 from rockbatch.core.springs.lanes import LANE, static_contact, static_state
 from rockbatch.core.system import rates, status_at_sample
 from rockbatch.core.table import put, table
@@ -162,7 +162,7 @@ def device_signals(of, mode, goes, at):
     motion = SimpleNamespace(
         gap=SimpleNamespace(elongation=elongation, speed=speed), acceleration=acceleration, state=state
     )
-    _of_device(devices, 0, motion, Rounding(1e-9, 1e-12), functions)
+    _write_functions(devices, 0, motion, Rounding(1e-9, 1e-12), functions)
     return functions.values[OF_PIER:].tolist(), functions.slopes[OF_PIER:].tolist()
 
 
@@ -171,7 +171,7 @@ def after_event(m, now, of, mode, goes, state, what):
     devices = devices_of([of], [state], 0.0)
     devices.modes[0], devices.goes[0], still = mode, goes, Ground(0.0, 0.0, 0.0, 0.0)
     if what is None:
-        after_contact(m, devices, now, still)
+        reset_device_modes(m, devices, now, still)
     else:
         device_event(m, devices, now, still, 0.01, OF_PIER + what)
     return tuple(map(float, (devices.modes[0], devices.goes[0], devices.x[0], devices.use[0].times)))
@@ -183,7 +183,7 @@ def longest_step(m, now, of, dt):
     devices.goes[0] = 1.0
     under, *_ = device_rates(m, devices, now, devices.x, still, START)
     start = Instant(now.y, rates(under, now.y, now.contact, still), now.contact, None, still)
-    return float(resolved(under, devices, start, dt, dt))
+    return float(step_resolving_devices(under, devices, start, dt, dt))
 
 
 def rate_of_normal(m, now, of):

@@ -15,7 +15,7 @@ COMPUTED = {
 }  # fmt: skip
 SYMMETRIC = {
     "min", "max", "isinstance", "cast", "checked", "np.minimum", "np.maximum", "np.fmin", "np.fmax", "math.hypot", "np.hypot",
-    "suppress", "windows", "same_counts", "_apart", "_residuals_apart", "correlation", "overlap",
+    "suppress", "windows", "same_counts", "_difference", "_residual_difference", "correlation", "overlap",
     "self._fitting", "self._overlap", "np.array_equal",
 }  # fmt: skip
 """Functions to which the order of arguments means nothing, or that fail at once with another."""

@@ -12,13 +12,14 @@ from report_samples import FIG7, FOUNDATIONS, case_entry, write_results
 from studies import study_text, write_study
 
 import rockbatch.reporting.sections
+from rockbatch.observers.forces import section as forces
 from rockbatch.pier import Damper, Pier, RigidBase
 from rockbatch.reporting import compared, write_analyses
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.finished_analysis import Contents, FinishedAnalysis
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.page import PARTS, PARTS_OF_TWO, page, sections
-from rockbatch.reporting.sections import answer, forces
+from rockbatch.reporting.sections import answer
 from rockbatch.reporting.templates import Section, document
 from rockbatch.results.run_json import describe_case, describe_study
 from rockbatch.study import Case, load_study

@@ -9,9 +9,9 @@ from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.common.errors import InputError
+from rockbatch.observers.sections.figure import over_height
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.sections import shaft
-from rockbatch.results.figures import over_height
 from rockbatch.results.labelled import groups_of
 from rockbatch.results.sections import SECTIONS
 

@@ -10,10 +10,12 @@ from report_samples import case_entry, write_results
 from studies import COSINE, SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.observers.forces import section as forces
+from rockbatch.observers.intensity import section as intensity
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.reporting import write_report
 from rockbatch.reporting.finished import read
-from rockbatch.reporting.sections import distribution, forces, intensity, studied, target
+from rockbatch.reporting.sections import distribution, studied, target
 
 PULSES = tuple(
     {**shape, "name": f"{shape['shape']} {size}", "amplitude_g": size}

@@ -131,7 +131,13 @@ def test_a_law_is_added_by_two_records(copied):
     assert '"softening", softer in proportion to its force' in found["help"]
 
 
-@pytest.mark.parametrize("lacks", ["stiffness_loss=softening_loss, ", "remembers=0.0,", "yields_when_pressed=1.0, "])
+@pytest.mark.parametrize(
+    "lacks",
+    [
+        "stiffness_loss=softening_loss, ",
+        *(pytest.param(each, marks=pytest.mark.slow) for each in ("remembers=0.0,", "yields_when_pressed=1.0, ")),
+    ],
+)
 def test_a_law_without_an_entry_in_the_core_stops_the_import(copied, lacks):
     add(copied, core=CORE.replace(lacks, ""))
     done = python(copied, "import rockbatch; rockbatch.simulate")
@@ -147,6 +153,7 @@ def test_a_law_without_an_entry_for_statics_or_releases_stops_the_import(copied,
     assert f"missing 1 required positional argument: '{lacks.split('=')[0]}'" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_law_in_one_table_only_stops_the_import(copied):
     end = '}\n"""All laws by the names'
     add(copied, of_pier=end)

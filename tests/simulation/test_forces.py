@@ -89,7 +89,7 @@ def test_the_deck_accelerates_at_its_own_height_whatever_drift_is_read_at(tmp_pa
 
 def test_friction_without_forces_says_what_to_write(tmp_path):
     path = study(tmp_path, forces=False, cases=(RIGID | {"friction": 0.5}, ON_PADS))
-    with pytest.raises(InputError, match="friction: nothing to hold it against; write forces = true under") as error:
+    with pytest.raises(InputError, match="friction: is compared only with the friction demand; write forces") as error:
         rb.load_study(path)
     assert f"{path}:{path.read_text().splitlines().index('friction = 0.5') + 1}" in error.value.messages[0]
 

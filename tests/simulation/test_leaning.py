@@ -41,7 +41,7 @@ def pulse_and_vibration(vertical):
 
 def outcome_of(base, motion, **output):
     planned = StudyRun(motion, "+", 1.0, Case("case", PIER, base, {}))
-    (outcome,) = outcomes_of([planned], Numerics(tolerance=1e-4), observers_of(Output(**output)))
+    (outcome,) = outcomes_of([planned], Numerics(tolerance=1e-4), observers_of(Output.with_keys(**output)))
     return outcome
 
 

@@ -113,7 +113,7 @@ def test_both_components_have_one_axis_and_one_factor_each_and_are_those_of_turn
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"pier": {"alpha": 0.2, "p": 1.0}}, '[[case]] "rock": other_width_m: is beside width_m of [pier]'),
+        ({"pier": {"alpha": 0.2, "p": 1.0}}, '[[case]] "rock": other_width_m: needs width_m of [pier]'),
         ({"pier": PIER | {"initial_rotation_rad": 0.01}}, "a pier that is let go turns in one plane"),
         ({"cases": [BLOCK, RIGID | {"name": "rock across"}]}, 'the case across the axis is called "rock across"'),
         ({"cases": [BLOCK | {"other_width_m": 30.0}]}, 'other_width_m = 30: more than the height, 20 m'),

@@ -743,13 +743,16 @@ USES["[release]"] = {
 }  # fmt: skip
 
 
-def _of_analysis(header):
-    """Return whether a table is one of an analysis, whose studies take longer."""
-    return header.strip("[]").partition(".")[0] in ("fragility", "spectrum", "sensitivity", "release")
+def _takes_long(header):
+    """Return whether a table is a case, which has the most keys, or one of an analysis, whose studies take longer."""
+    return (
+        header.strip("[]").partition(".")[0] in ("fragility", "spectrum", "sensitivity", "release")
+        or header == "[[case]]"
+    )
 
 
 @pytest.mark.parametrize(
-    "header", [pytest.param(header, marks=pytest.mark.slow) if _of_analysis(header) else header for header in USES]
+    "header", [pytest.param(header, marks=pytest.mark.slow) if _takes_long(header) else header for header in USES]
 )
 @pytest.mark.usefixtures("no_report")
 def test_another_value_of_every_key_tells(header, uncompiled):

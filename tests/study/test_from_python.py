@@ -66,7 +66,7 @@ def test_mistakes_of_tables_name_table_and_key_and_those_of_a_text_its_line():
         "pier.alpha: expected a number, a text, a list or a table, not object"
     ]
     assert problems(rb.Study.from_dict, {"title": 10**5000}) == [
-        "title: a whole number of more than 64 bits, which TOML has not"
+        "title: a whole number of more than 64 bits, which TOML does not have"
     ]
     assert 'study.toml: "a\\n\\"": unknown key' in "".join(problems(rb.Study.from_dict, TABLES | {'a\n"': 3}))
     assert all(len(problem) < 500 for problem in problems(rb.Study.from_dict, TABLES | {"x" * 600: 3}))
@@ -127,7 +127,7 @@ def test_one_case_is_changed_by_its_name_and_a_list_replaces_all(pier4):
         ({"pier": {1: 2}}, 'study.toml: [pier]: "1": unknown key'),
         ({"motions": "\0"}, "has a NUL character"),
         ({"peir": {"height_m": 3}}, "study.toml: peir: unknown section; did you mean pier?"),
-        ({"motions": []}, "motions: there is none in it; write for example motions = rb.read_motions(folder)"),
+        ({"motions": []}, "motions: there are none; write for example motions = rb.read_motions(folder)"),
         ({"motions": 3}, "motions = 3: must be"),
     ],
 )  # fmt: skip

@@ -258,7 +258,7 @@ def test_what_is_usual_of_a_device_ends_at_its_bound(make, name, bound, beyond):
 
 def test_an_empty_tendon_is_refused(tmp_path):
     (problem,) = problems_of(written_with(tmp_path, case='[[case]]\nname = "a"\nbase = "rigid"\n[[case.tendon]]\n'))
-    assert '[[case]] "a", tendon 1: it has neither prestress nor stiffness, so that it is not there' in problem
+    assert '[[case]] "a", tendon 1: it has neither prestress nor stiffness, so it has no effect' in problem
 
 
 @pytest.mark.parametrize(

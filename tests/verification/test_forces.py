@@ -60,7 +60,7 @@ EVERY_BASE = pytest.mark.parametrize(
 
 def outcome_of(pier, base, motion, *, forces=True, **numerics):
     run = StudyRun(motion, "+", 1.0, Case("case", pier, base, {}))
-    (outcome,) = outcomes_of([run], Numerics(**numerics), observers_of(Output(forces=forces)))
+    (outcome,) = outcomes_of([run], Numerics(**numerics), observers_of(Output.with_keys(forces=forces)))
     return outcome
 
 
@@ -582,7 +582,7 @@ def test_forces_that_halving_the_step_still_changes_have_an_error_and_a_note():
 def test_friction_counts_from_a_normal_force_that_the_study_chooses(share):
     """The less has to press, the more is asked, and |V| there is the demand times that share of the weight at most."""
     run = StudyRun(shaken(), "+", 1.0, Case("case", PIER, BASES["elastic"], {}))
-    observers = observers_of(Output(forces=True, least_normal_share=share))
+    observers = observers_of(Output.with_keys(forces=True, least_normal_share=share))
     (outcome,) = outcomes_of([run], Numerics(), observers)
     usual = outcome_of(PIER, BASES["elastic"], shaken()).forces
     less, more = (outcome.forces, usual) if share < 0.1 else (usual, outcome.forces)

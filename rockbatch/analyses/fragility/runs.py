@@ -149,17 +149,9 @@ Simulate = Callable[[ScaledRuns], "pd.DataFrame"]
 
 
 def output(spec: FragilitySpec, of_study: Output) -> Output:
-    """Return the settings of [output] with only the outputs that the limits need; the other law only if ``of_study`` has it."""
-    needs = {DEMANDS[rule.demand].needs for rule in spec.limits}
-    return Output(
-        histories="none",
-        both_laws=any(DEMANDS[rule.demand].other_law for rule in spec.limits),
-        forces="forces" in needs,
-        rocking="rocking" in needs,
-        least_normal_share=of_study.least_normal_share,
-        devices_work="devices_work" in needs,
-        least_stroke_mm=of_study.least_stroke_mm,
-    )
+    """Return the settings of [output] with only the outputs that the limits need."""
+    demands = [DEMANDS[rule.demand] for rule in spec.limits]
+    return of_study.only({key for demand in demands for key in (demand.needs, *demand.brings)})
 
 
 def intensities(motions: Sequence[Motion], spec: FragilitySpec, gravity: float) -> list[float]:

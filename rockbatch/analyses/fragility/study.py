@@ -28,7 +28,7 @@ from rockbatch.common.showing import shown
 from rockbatch.pier import Base
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.load import Study
-from rockbatch.study.target import PERIOD
+from rockbatch.study.target_keys import PERIOD
 from rockbatch.toml.kinds import Number, choice, positive, share, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table
@@ -271,7 +271,12 @@ def read_fragility(study: Study, im: Any = None) -> FragilitySpec:
     uncertain = read_uncertain(file, study)
     dispersions = read_dispersions(file, uncertain.names)
     file.finish()
-    settings = {"method": "stripes", "hazard": hazard, "dispersions": dispersions, "stripes": stripes} | read
+    settings: dict[str, Any] = {
+        "method": "stripes",
+        "hazard": hazard,
+        "dispersions": dispersions,
+        "stripes": stripes,
+    } | read
     return FragilitySpec(levels=levels, limits=(OVERTURNING, *limits), uncertain=uncertain, **settings)
 
 

@@ -1,4 +1,4 @@
-"""Ending of a run on a rigid base (THEORY.md, When a run is over). Looked at once a sample, from the end of the tail on."""
+"""End of a run on a rigid base, checked once a sample after the tail (THEORY.md, When a run is over)."""
 
 import math
 
@@ -16,7 +16,7 @@ from rockbatch.core.types import NO_EVENT, RESTLESS, RUNNING, SURVIVED, UNDECIDE
 
 @kernel
 def reach_of(theta, omega, alpha, p):
-    """Return the greatest |θ| [rad] of free rocking from here on; infinite where the pier may overturn."""
+    """Return the greatest |θ| [rad] of free rocking from a state on; inf if the pier may overturn."""
     tilt = abs(theta)
     level = math.cos(alpha - tilt) + 0.5 * (omega / p) * (omega / p)
     if tilt >= alpha or level >= 1.0:
@@ -26,7 +26,7 @@ def reach_of(theta, omega, alpha, p):
 
 @inlined
 def stored_by_devices(m, devices, y, contact):
-    """Return the energy [J/kg] that tendons, stops and springs store in state ``y``, and what dampers may give back."""
+    """Return the energy [J/kg] stored in tendons, stops and springs in state ``y``, and in dampers and their braces."""
     kept, back, at = 0.0, 0.0, attitude(m, y, contact, devices.level[0])
     for j in range(len(devices.elements)):
         of = devices.elements[j]
@@ -40,18 +40,18 @@ def stored_by_devices(m, devices, y, contact):
 
 
 @inlined
-def _at(m, y, theta):
-    """Return ``y`` at rest at rotation ``theta``."""
+def _at_rest(m, y, theta):
+    """Return the state at rest at rotation ``theta``, of the type of ``y``."""
     v, _ = on_pivot(m, theta, 1.0 if theta > 0.0 else -1.0)
     return type(y)(v, theta, 0.0, 0.0)
 
 
 @kernel
 def _cannot_reach(m, devices, now, peak):
-    """Return whether the energy of this moment does not suffice to turn beyond ``peak`` [rad] to either side.
+    """Return True if the present energy does not suffice to exceed ``peak`` [rad] on either side.
 
-    Weight, tendons and springs have a potential, stops take more than they give back, and dampers only take, but for what
-    hysteretic ones and braces have stored.
+    Weight, tendons and springs have a potential, stops dissipate, and dampers return only the elastic energy of hysteretic
+    ones and braces.
     """
     y, limit, inertia = now.y, min(peak, m.alpha), 1.0 / m.quickness
     level = inertia * m.p * m.p
@@ -59,14 +59,14 @@ def _cannot_reach(m, devices, now, peak):
     energy = 0.5 * inertia * y.omega * y.omega + level * math.cos(m.alpha - abs(y.theta)) + kept + back
     least = math.inf
     for side in (-1.0, 1.0):
-        there, _ = stored_by_devices(m, devices, _at(m, y, side * limit), on_side(side))
+        there, _ = stored_by_devices(m, devices, _at_rest(m, y, side * limit), on_side(side))
         least = min(least, level * math.cos(m.alpha - limit) + there)
     return abs(y.theta) < m.alpha and energy <= least
 
 
 @kernel
 def _decided(lanes, i, m, devices, now):
-    """Return whether nothing that comes later can exceed the peak: energy is only lost while the ground rests."""
+    """Return True if nothing can exceed the peak any more, as energy only decreases while the ground is at rest."""
     y = now.y
     if devices is None:
         reach = reach_of(y.theta, y.omega, m.alpha, m.p)
@@ -76,7 +76,7 @@ def _decided(lanes, i, m, devices, now):
 
 @kernel
 def held(m, devices, y):
-    """Return whether friction holds the block at a tilt."""
+    """Return True if friction holds the block at a tilt; False without devices."""
     if devices is None:
         return False
     return sticking(devices, NO_EVENT) != NO_EVENT and abs(y.omega) * m.height <= m.rest
@@ -84,16 +84,16 @@ def held(m, devices, y):
 
 @kernel
 def set_deadline(lanes, i, run):
-    """Set the sample at which a block is no longer waited for."""
+    """Set the sample at which a run ends in any case."""
     lanes.ending.longest[i] = lanes.clock.samples[i] + run.patience
     lanes.ending.omega[i] = lanes.ending.turned[i] = 0.0
 
 
 @kernel
 def _watch_reversals(lanes, i):
-    """Note a velocity reversal since the last sample while the ground rests; impacts keep the sign of the velocity.
+    """Record a velocity reversal since the last sample while the ground is at rest.
 
-    Landings do not: none is noted before the last of them.
+    Impacts keep the sign of the velocity. Landings from flight do not, so that reversals before them are discarded.
     """
     ending, contact, omega = lanes.ending, lanes.contact, lanes.now.omega[i]
     if contact.left[i] == 0.0 and contact.right[i] == 0.0:
@@ -105,14 +105,14 @@ def _watch_reversals(lanes, i):
 
 @system.status_at_sample.of(BlockTraits)
 def status_at_sample(traits, lanes, i, devices):
-    """Return the status at a sample, and the next one to look at it: the end of the record, and every one from there on."""
+    """Return the status at a sample, and the next sample to check: the end of the record, then every one."""
     status = _status(traits, lanes, i, devices)
     return status, max(lanes.clock.npts[i] - 1.0, lanes.clock.sample[i] + 1.0)
 
 
 @kernel
 def _status(traits, lanes, i, devices):
-    """Return how the run in lane ``i`` has ended, RUNNING if it goes on."""
+    """Return the status of the run in lane ``i``, RUNNING unless it ends."""
     sample, samples, longest = lanes.clock.sample[i], lanes.clock.samples[i], lanes.ending.longest[i]
     _watch_reversals(lanes, i)
     if sample < samples:
@@ -129,6 +129,6 @@ def _status(traits, lanes, i, devices):
             return SURVIVED
     if sample < longest:
         return RUNNING
-    if longest == samples:  # nothing is waited for
+    if longest == samples:  # the run ends with its tail in any case
         return SURVIVED
     return RESTLESS if reach_of(y.theta, y.omega, m.alpha, m.p) < math.inf else UNDECIDED

@@ -17,13 +17,13 @@ def arms_about(m, theta, side):
 
 @inlined
 def tilt_acceleration(m, slope, lever, ground):
-    """Return θ̈ [rad/s²] while rocking, by weight and ground alone, from the arms about the pivot (THEORY.md, eq. 14)."""
+    """Return θ̈ [rad/s²] while rocking, without devices, from the arms about the pivot (THEORY.md, eq. 14)."""
     return -m.quickness * ((m.gravity + ground.vertical) * slope + ground.horizontal * lever)
 
 
 @system.rates.of(Rocker)
 def rocker_rates(m, y, side, ground):
-    """Return the rates of a block that rocks about the pivot on ``side`` and leans by FLAT at most, or rests on NEITHER."""
+    """Return the rates of a block that rocks about the pivot on ``side`` with |θ| ≤ FLAT, or rests if NEITHER."""
     sine, cosine = flat_sine_and_cosine(y.theta)
     b = side * m.half_width
     slope, arm = b * cosine - m.height * sine, m.height * cosine + b * sine
@@ -32,19 +32,19 @@ def rocker_rates(m, y, side, ground):
 
 @inlined
 def side_of(contact):
-    """Return the pivot about which the block rocks, or NEITHER."""
+    """Return the pivot about which the block rocks, NEITHER at rest and in flight."""
     return contact.right - contact.left
 
 
 @inlined
 def key_of(m, contact):
-    """Return where in flight the key holds the block, −1 at the left pivot to 1 at the right; of a frame the mean of its keys."""
+    """Return the position of the key that guides the block in flight, −1 left to 1 right; for a frame the mean of its keys."""
     return (1.0 - m.deck) * contact.bore + m.deck * contact.top
 
 
 @inlined
 def halves(m, top):
-    """Return how far the left and the right pivot are from the centre of mass [m], in the direction of the base.
+    """Return the distances of the left and the right pivot from the centre of mass [m], along the base.
 
     A frame's centre of mass moves along the base with the corner on which its deck rests.
     """
@@ -61,13 +61,13 @@ def arms(m, theta, top):
 
 @inlined
 def lost_by_deck(m):
-    """Return what a deck that changes corners at θ = 0 takes from the moment of inertia [m²]; 0 of a block without one."""
+    """Return the loss of the moment of inertia [m²] as a deck changes corners at θ = 0; 0 without a deck."""
     return 2.0 * m.deck * (1.0 - 2.0 * m.deck) * m.half_width * m.half_width
 
 
 @system.shift.of(Block)
 def shift(m, contact):
-    """Return how far the middle of a frame's columns is from that of the block that stands for it [m]."""
+    """Return the distance of the middle of a frame's columns from that of its equivalent block [m]."""
     return m.half_width * m.deck * contact.top
 
 
@@ -82,7 +82,7 @@ def on_pivot(m, theta, side):
 
 @inlined
 def pull_down(pull):
-    """Return the devices' force [m/s²] and moment [m²/s²]."""
+    """Return the devices' force [m/s²] and moment [m²/s²]; zeros without devices."""
     if pull is None:
         return 0.0, 0.0
     return pull.force, pull.moment
@@ -90,7 +90,7 @@ def pull_down(pull):
 
 @inlined
 def _accelerations(m, y, contact, ground):
-    """Return v̈ [m/s²] and θ̈ [rad/s²]: rocking (eq. 14), in flight with the key of the pivot that bore last, or at rest."""
+    """Return v̈ [m/s²] and θ̈ [rad/s²]: rocking (eq. 14), in flight with the key of the last pivot in contact, or at rest."""
     side = side_of(contact)
     down, back = pull_down(m.pull)
     if side != 0.0:
@@ -106,14 +106,14 @@ def _accelerations(m, y, contact, ground):
 
 @system.rates.of(Block)
 def rates(m, y, contact, ground):
-    """Return the right-hand side."""
+    """Return the rates of state ``y``: the right-hand side."""
     v_acceleration, theta_acceleration = _accelerations(m, y, contact, ground)
     return Rocking(y.v_rate, y.omega, v_acceleration, theta_acceleration)
 
 
 @hook
 def constrained(m, y, contact):
-    """Return ``y`` with v and v̇ as the pivot that is on the ground has them."""
+    """Return ``y`` with v and v̇ that follow from θ about the pivot on the ground; unchanged in flight and at rest."""
 
 
 @constrained.of(Block)
@@ -127,13 +127,13 @@ def _constrained_block(m, y, contact):
 
 @system.end_step.of(Block)
 def end_step(m, y, start, contact, remaining):
-    """Return the end of a step, on the pivot that is on the ground."""
+    """Return the end of a step, projected onto the pivot that is on the ground."""
     return constrained(m, y, contact)
 
 
 @inlined
 def lever(m, y, contact):
-    """Return H [m]: the height of the centre of mass above the pivot that bears or bore last."""
+    """Return H [m], the height of the centre of mass above the pivot in contact, or last in contact."""
     side = side_of(contact)
     return arms_about(m, y.theta, side if side != 0.0 else key_of(m, contact))[1]
 

@@ -41,33 +41,33 @@ from rockbatch.core.types import (
 )
 
 NEGLIGIBLE = 1e-13
-"""Of α: height of the bounces that are summed up instead of followed."""
+"""Height of bounces over α below which their infinite sequence is summed up."""
 
 HOP = 1.25
-"""Of the time that a bounce would last by its acceleration at its start: the longest sub-step that shows its landing."""
+"""Longest sub-step that shows the landing of a bounce, over its duration by the initial acceleration."""
 
 NEARBY = 1e-6
-"""Of the ground's own time 1/p: over which the rate of the normal force is taken."""
+"""Interval of the finite difference for the rate of the normal force, in units of 1/p."""
 
 HARDLY = 1e-300
-"""A velocity [rad/s] that has a sign and nothing else."""
+"""Least velocity [rad/s] that has a sign."""
 
 NEAR_FLIGHT = 0.3
-"""Of g: normal force above which none is lost and regained within a sub-step."""
+"""Normal force over M g above which contact is not lost and regained within a sub-step."""
 
 RESTING = Stance(1.0, 1.0, 0.0, 0.0)
 
 
 @inlined
 def lifting(m, devices, y, side, ground):
-    """Return the tilt's acceleration [rad/s²] towards ``side`` of a block at rest that began to rock."""
+    """Return the acceleration [rad/s²] towards ``side`` of a block at rest, were it to begin to rock about that pivot."""
     under = about_to_turn(devices, m, y, on_side(side), OPENS)
     return side * rates(under, y, on_side(side), ground).omega
 
 
 @hook
 def lift_rate(m, devices, now, side):
-    """Return the rate [rad/s³] of the acceleration by which a block at rest would begin to rock towards ``side``."""
+    """Return the rate [rad/s³] of the acceleration by :func:`lifting` towards ``side``."""
 
 
 @lift_rate.of(Block)
@@ -78,7 +78,7 @@ def _lift_rate(m, devices, now, side):
 
 @kernel
 def _change_of_normal(m, devices, now):
-    """Return the rate of N/M [m/s³] of a block that rocks, from a moment later, with that of the devices' forces."""
+    """Return the rate of N/M [m/s³] of a rocking block with its devices, by a finite difference."""
     y, k, contact, supports, ground = now
     near = NEARBY / m.p
     soon, there = Moment(constrained(m, along(y, k, near), contact), contact, supports), later(ground, near)
@@ -89,7 +89,7 @@ def _change_of_normal(m, devices, now):
 
 @inlined
 def _height(m, height, velocity, acceleration):
-    """Return the height [m] of a pivot in flight, and its rate; one that has just left the ground, to rounding, has left it."""
+    """Return the height [m] of a pivot in flight and its rate; made positive if, within rounding, it has just taken off."""
     rest = m.rest
     length = rest * rest / (NO_ACCELERATION * m.gravity)
     rises = velocity > rest or (velocity >= -rest and acceleration >= -1e-9 * m.gravity)
@@ -100,7 +100,7 @@ def _height(m, height, velocity, acceleration):
 
 @inlined
 def _at_once(value, slope, rounding):
-    """Return an event function of what holds the block down, and its slope: below zero, but for rounding, it happens at once."""
+    """Return an event function that may start below zero, and its slope: made falling, so that the event occurs at once."""
     if abs(value) <= rounding:
         return rounding, slope
     return value, (slope if value > 0.0 else min(-abs(slope), value))
@@ -112,20 +112,20 @@ WEIGHTLESS = 1e-13
 
 @inlined
 def _weightless(m, ground):
-    """Return whether the ground falls as fast as the block: it leaves the ground only once that falls faster."""
+    """Return True if the ground falls as fast as the block, which takes off only once the ground falls faster."""
     return abs(m.gravity + ground.vertical) <= WEIGHTLESS * m.gravity
 
 
 def event_functions_of(m, devices, now):
-    """Return Signals, and slopes: at rest what keeps each pivot down; rocking the tilt and the normal force; else heights."""
+    """Return Signals and slopes: at rest the resistance of each pivot to uplift; rocking tilt and normal force; else heights."""
     y, k, contact, _, ground = now
     side = side_of(contact)
     if side != 0.0:
         omega, turning = side * y.omega, side * k.omega
         if abs(omega) * m.height <= m.rest:
             least = NO_ACCELERATION * m.p * m.p
-            turning = turning if abs(turning) > least else least  # it has just been lifted, to rounding
-            # no more than it has: a slope of ``rest`` would dwarf the tilt of a block that left the ground a moment ago
+            turning = turning if abs(turning) > least else least  # it has just been lifted, within rounding
+            # not ``rest`` as elsewhere: as a slope it would dwarf the tilt of a block that has just left the ground
             omega = math.copysign(max(abs(omega), HARDLY) if omega * turning > 0.0 else HARDLY, turning)
         normal, normal_rate = normal_force(m, y, k, ground.vertical), 0.0
         if normal < NEAR_FLIGHT * m.gravity:
@@ -161,7 +161,7 @@ system.event_functions.of(Block)(event_functions_of)
 
 @inlined
 def _deck_tilt(m, y, k, contact):
-    """Return the tilt at whose end the deck of a frame in flight changes corners, and its rate; above zero without a deck."""
+    """Return the tilt at whose zero a frame's deck changes corners in flight, and its rate; 1 and 0 without a deck."""
     if m.deck == 0.0 or contact.top == 0.0:
         return 1.0, 0.0
     rate = contact.top * y.omega
@@ -172,7 +172,7 @@ def _deck_tilt(m, y, k, contact):
 
 @inlined
 def within_bounce(m, start, h):
-    """Return no more than a bounce that has just begun will last: a cubic over a longer sub-step could hide it."""
+    """Return a step [s] of at most ``h``, shorter than a bounce that has just begun: a cubic over both ends could hide it."""
     y, k, contact, _, _ = start
     side = side_of(contact)
     if side == 0.0 or y.theta != 0.0:
@@ -184,13 +184,13 @@ def within_bounce(m, start, h):
 
 @system.longest_step.of(Block)
 def longest_step(m, start, h):
-    """Return what shows a bounce."""
+    """Return a step [s] of at most ``h`` that shows a bounce."""
     return within_bounce(m, start, h)
 
 
 @system.transition.of(Block)
 def transition(m, devices, now, which, ground, dt):
-    """Return the Transition by event ``which``. A pier that topples takes off and lands beyond α, which is no impact to count."""
+    """Return the Transition by event ``which``; landings beyond α, of a pier that topples, are not counted as impacts."""
     y, contact, supports = now
     side = side_of(contact)
     pivot = LEFT if which == CONTACT_LEFT else RIGHT
@@ -213,7 +213,7 @@ def transition(m, devices, now, which, ground, dt):
 
 
 def released(m, now, ground):
-    """Return the Moment ``now`` behind an impact: where the ground would have to hold the block down, it is in the air."""
+    """Return the Moment ``now`` after an impact; in the air if the ground would have to pull the block down."""
     y, contact, supports = now
     side = side_of(contact)
     if side == 0.0:
@@ -228,7 +228,7 @@ system.released.of(Block)(released)
 
 @kernel
 def lift_off(m, devices, y, side, ground):
-    """Return state, stance and kind as the block leaves rest: about the pivot on ``side``, or with both (THEORY.md, eq. 15)."""
+    """Return state, stance and kind as the block lifts off about the pivot on ``side``, or takes off (THEORY.md, eq. 15)."""
     other = lifting(m, devices, y, -side, ground)
     under = about_to_turn(devices, m, y, on_side(side), OPENS)
     k = rates(under, y, on_side(side), ground)
@@ -259,12 +259,10 @@ def _impact(m, devices, y, ground, dt):
 
 @kernel
 def bounces(m, devices, still, omega, share, ground):
-    """Return the height [rad] of the next bounce, and the time [s] of all that are left (Zeno), if the ground allows rest.
+    """Return the height [rad] of the next bounce, and the duration [s] of all that follow (Zeno); inf and inf without rest.
 
-    ``still`` is the state of the block with its base at rest; each impact leaves a ``share`` of the angular velocity.
-
-    Small bounces see a constant acceleration towards rest, friction added while they open and taken off while they close.
-    Infinite if there is no rest, as where neither impacts nor friction slow the block.
+    ``still`` is the state of the block with its base at rest; each impact leaves a ``share`` of the angular velocity. Small
+    bounces have a constant acceleration towards rest, to which friction adds while they open, and opposes while they close.
     """
     here = RIGHT if omega > 0.0 else LEFT
     speed, times, ratio, height = abs(omega), 0.0, 1.0, 0.0
@@ -285,7 +283,7 @@ def bounces(m, devices, still, omega, share, ground):
 
 @kernel
 def _closing(m, devices, y, side, ground):
-    """Return θ̈ [rad/s²] of a block about its pivot on ``side`` that closes at θ = 0, against what devices then hold."""
+    """Return θ̈ [rad/s²] of a block about its pivot on ``side`` that closes at θ = 0, against the devices' resistance."""
     under = about_to_turn(devices, m, y, on_side(side), CLOSES)
     return rates(under, y, on_side(side), ground).omega
 
@@ -294,10 +292,8 @@ def _closing(m, devices, y, side, ground):
 def _landing(m, y, contact, pivot):
     """Return state, stance and kind as ``pivot`` lands from flight; the other may land at the same instant.
 
-    THEORY.md, Flight on the rigid base.
-
-    The impulse at the pivot has a horizontal part: its key takes over from that of the pivot that bore last. Angular momentum
-    about it is kept, and its velocity is multiplied by −ε.
+    The impulse at the pivot has a horizontal part, as its key takes over from that of the pivot last in contact. The angular
+    momentum about it is conserved, and its velocity multiplied by −ε (THEORY.md, Flight on the rigid base).
     """
     left, right, left_velocity, right_velocity = clearances(m, y, contact.top)
     arm_left, arm_right = arms(m, y.theta, pivot)
@@ -320,6 +316,6 @@ def _landing(m, y, contact, pivot):
     kind = IMPACT_LEFT if pivot == LEFT else IMPACT_RIGHT
     if rebounds:
         return landed, Stance(0.0, 0.0, pivot, pivot), kind
-    if pivot * y.theta < 0.0:  # both are down, to rounding
+    if pivot * y.theta < 0.0:  # both are down, within rounding
         landed = Rocking(0.0, 0.0, landed.v_rate, omega)
     return constrained(m, landed, stance), stance, kind

@@ -1,4 +1,4 @@
-"""Lanes of piers on a rigid base: what a table holds of them, how runs begin and end."""
+"""Lanes of piers on a rigid base: their table, and the start of their runs."""
 
 import math
 from typing import NamedTuple
@@ -18,13 +18,13 @@ from rockbatch.core.types import LEFT, RIGHT, Moment
 class Ending(NamedTuple):
     """Numbers that decide when the run is over."""
 
-    longest: float  # sample at which a block is no longer waited for
+    longest: float  # sample at which the run ends in any case
     omega: float  # at the last sample since the ground rests, 0 before it [rad/s]
     turned: float  # 1 once the velocity has reversed since then
 
 
 class Bounds(NamedTuple):
-    """Numbers by which the pass bounds the normal force, and sees the ground lift a block at rest."""
+    """Numbers by which the pass bounds the normal force, and the ground acceleration that lifts a block at rest."""
 
     tangent: float  # tan α
     share: float  # μ/(1+μ)
@@ -32,10 +32,18 @@ class Bounds(NamedTuple):
     radius: float  # R0 [m]
 
 
-LANE = lanes_of(COMMON | {
-    "model": Numbers, "now": Rocking, "end": Tilt, "rates": Rocking, "contact": Stance, "ending": Ending,
-    "bounds": Bounds,
-})  # fmt: skip
+LANE = lanes_of(
+    COMMON
+    | {
+        "model": Numbers,
+        "now": Rocking,
+        "end": Tilt,
+        "rates": Rocking,
+        "contact": Stance,
+        "ending": Ending,
+        "bounds": Bounds,
+    }
+)
 
 
 LINE = (
@@ -43,8 +51,8 @@ LINE = (
     ("theta", float),  # at the start [rad]
     ("omega", float),  # [rad/s]
     *TIMING,
-)  # fmt: skip
-"""Fields of a run as it is requested."""
+)
+"""Fields of the request of a run, with their types."""
 
 Line = NamedTuple("Line", LINE)  # type: ignore[misc]
 
@@ -54,16 +62,28 @@ def _model(traits, lanes, i):
     """Return the Block of lane ``i``."""
     m = get(lanes.model, i, Numbers)
     return Block(
-        m.half_width, m.height, m.inertia, m.gravity, m.alpha, m.p, m.restitution, m.epsilon, m.guided, m.quickness, m.rest,
-        m.deck, traits.pull, True,
-    )  # fmt: skip
+        m.half_width,
+        m.height,
+        m.inertia,
+        m.gravity,
+        m.alpha,
+        m.p,
+        m.restitution,
+        m.epsilon,
+        m.guided,
+        m.quickness,
+        m.rest,
+        m.deck,
+        traits.pull,
+        True,
+    )
 
 
 @system.pier_in.of(BlockTraits)
 def pier_in(traits, lanes, i):
-    """Return the Block of lane ``i``, and its Moment; the ground needs no support."""
+    """Return the Block of lane ``i`` and its Moment, without supports."""
     m, contact, y = _model(traits, lanes, i), get(lanes.contact, i, Stance), get(lanes.now, i, Rocking)
-    if traits.pull is None:  # the pass goes on with θ alone
+    if traits.pull is None:  # the pass advances θ and its rate only
         y = constrained(m, y, contact)
     return m, Moment(y, contact, None)
 
@@ -88,13 +108,13 @@ def begin(traits, lanes, i, run):
 
 @system.take_in_step.of(BlockTraits)
 def take_in_step(traits, lanes, i, substep, history):
-    """Let the lane go on from the end of its sub-step; a new peak is the driver's."""
+    """Advance the lane to the end of its sub-step; the driver records the peak."""
     lanes.now.theta[i], lanes.now.omega[i] = lanes.end.theta[i], lanes.end.omega[i]
 
 
 @system.take_in_part.of(BlockTraits)
 def take_in_part(traits, lanes, i, m, part, after):
-    """Keep the height of flight, state and stance."""
+    """Record the height of flight, and set state and stance."""
     if system.airborne(m, part.start.contact):
         start, top = part.start, part.start.contact.top
         include_height(lanes, i, clearances(m, start.y, top), clearances(m, part.end, top), part.length)
@@ -110,5 +130,5 @@ def system_of(m):
 
 
 def line_of(m, theta, omega, *timing):
-    """Return the Line of a run of the pier ``m`` (Block); ``timing`` is what Line has from ``dt`` on."""
+    """Return the Line of a run of the pier ``m`` (Block); ``timing`` are the fields of Line from ``dt`` on."""
     return Line(*m[:-2], theta, omega, *timing)

@@ -1,4 +1,4 @@
-"""A pier on a rigid base, its state and what it stands on (THEORY.md, Rigid base)."""
+"""A pier on a rigid base, its state and its contacts (THEORY.md, Rigid base)."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,7 @@ from rockbatch.core.types import Pull
 
 
 class Block(NamedTuple):
-    """A pier on a rigid base, per unit mass. Its kinematics are finite always."""
+    """A pier on a rigid base, per unit mass, with finite kinematics."""
 
     half_width: float  # b [m]
     height: float  # h [m]
@@ -18,14 +18,14 @@ class Block(NamedTuple):
     epsilon: float  # restitution of a pivot that lands from flight
     guided: float  # 1: flight goes on, 0: it ends the run
     quickness: float  # 1/(I0/M + R0²) [1/m²]
-    rest: float  # velocity that counts as none [m/s]
-    deck: float  # γ/(1+2γ) of the block that stands for a frame with the deck γ; 0 of any other
+    rest: float  # velocity that counts as zero [m/s]
+    deck: float  # γ/(1+2γ) of the equivalent block of a frame; 0 for other blocks
     pull: Pull | None = None  # of dampers and tendons; None: there are none
     finite: bool = True
 
 
 class BlockTraits(NamedTuple):
-    """Traits that kernels are compiled for: the type of this field of a Block; otherwise blocks differ in numbers only."""
+    """Traits for which kernels are compiled: the type of this field of a Block."""
 
     pull: Pull | None = None
 
@@ -66,5 +66,5 @@ class Stance(NamedTuple):
 
     left: float  # 1 if the pivot is on the ground
     right: float
-    bore: float  # pivot whose shear key holds its place: the one that bore last, LEFT or RIGHT, or NEITHER after rest
+    bore: float  # pivot whose shear key guides the block: the last one in contact, or NEITHER after rest
     top: float  # pivot diagonally below the corner on which a frame's deck rests; without a deck as ``bore``

@@ -1,7 +1,7 @@
-"""One pass over all lanes of blocks: a sub-step each, where arithmetic proves that nothing happens on the way.
+"""One pass over all lanes of blocks: a sub-step each, with bounds that prove that no event occurs in it.
 
-The compiler makes vector instructions of the loops, because nothing in them branches and the numbers of a field lie next to
-each other. A lane's arithmetic does not see its neighbours, so a run comes to the same bits in any company.
+The compiler vectorises the loops, since they have no branches and the numbers of a field are contiguous. The arithmetic of a
+lane does not depend on its neighbours, so that a run gives the same bits in any company.
 """
 
 from rockbatch.core import system
@@ -19,10 +19,10 @@ from rockbatch.core.types import Instant
 
 @inlined
 def _pass_over(lanes, i, substep, settings):
-    """Take lane ``i`` a sub-step further.
+    """Integrate lane ``i`` over a sub-step.
 
-    It is calm if the block surely stays on its pivot, by the Bézier points and a bound on the normal force; does not lean
-    far; and has no new peak but at the end. One at rest is calm if the ground, linear in time, does not lift it at either end.
+    It is calm if the block certainly stays on its pivot, by the Bézier points and a bound on the normal force, does not lean
+    far, and has no new peak except at the end. At rest it is calm if the ground does not lift it at either end.
     """
     model, h = lanes.model, lanes.clock.step[i]
     m = Rocker(model.half_width[i], model.height[i], model.gravity[i], model.quickness[i])
@@ -47,8 +47,8 @@ def _pass_over(lanes, i, substep, settings):
     steep, fastest = max(model.alpha[i], beyond), abs(y.omega) + abs(end.omega)
     bears = 1.0 - bounds.share[i] * max(bounds.sine_squared[i], max(beyond, 0.0) * max(beyond, 0.0))
     throws = bounds.share[i] * min(0.5, steep) * strongest + bounds.radius[i] * fastest * fastest
-    # Numbers above 0 for what holds, of which the least decides: truth values would need masks of another width
-    # What may be no number comes first: then the least is none either, and does not stand
+    # Conditions are numbers above 0, combined by min, since booleans would need vector masks of another width
+    # Arguments that may be NaN come first in min, so that its result is NaN, too, and the sub-step does not stand
     moves = min(down * bears - throws, stays)
     rests = min(
         bounds.tangent[i] * (m.gravity + ground.vertical) - abs(ground.horizontal),
@@ -65,6 +65,6 @@ def _pass_over(lanes, i, substep, settings):
 
 @system.one_pass.of(BlockTraits)
 def one_pass(traits, lanes, count, substep, settings):
-    """Take the first ``count`` lanes a sub-step further."""
+    """Integrate the first ``count`` lanes over a sub-step."""
     for i in range(count):
         _pass_over(lanes, i, substep, settings)

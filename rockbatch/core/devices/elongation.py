@@ -1,8 +1,8 @@
 """Elongations of devices from the motion of the base (THEORY.md, Dampers and tendons, Stops and deck springs).
 
-A device at the offset s from the middle of the base has the elongation e = u/cos(θ/2), where u is the rise of its place
-above that at rest. While a block turns about a point of the ground at the distance d that is 2 d sin(θ/2), the chord of the
-place's way. In first-order kinematics e = u. A device on the deck lengthens by the deck's way over the ground.
+A device at the offset s from the middle of the base has the elongation e = u/cos(θ/2), where u is the rise of its place from
+rest. For a block that turns about a point of the ground at the distance d this is 2 d sin(θ/2), the chord of the place's arc.
+In first-order kinematics e = u. The elongation of a device at the deck is the deck's displacement over the ground.
 """
 
 import math
@@ -32,7 +32,7 @@ class Gap(NamedTuple):
     speed: float  # ė [m/s]
     by_v: float  # ∂e/∂v
     by_theta: float  # ∂e/∂θ [m]
-    bend: float  # what ë has beside v̈ ∂e/∂v + θ̈ ∂e/∂θ [m/s²]
+    bend: float  # ë less v̈ ∂e/∂v + θ̈ ∂e/∂θ [m/s²]
     arm: float  # of the force about the centre of mass [m], with first-order P–Δ
 
 
@@ -73,7 +73,7 @@ def gap(m, s, at, y):
 
 @inlined
 def across(m, of, at, y):
-    """Return the Gap of a device ``of`` the deck: h_d sin θ and, where the pier turns about its pivots, b (1 − cos θ) away."""
+    """Return the Gap of the device ``of`` at the deck: h_d sin θ, and b (1 − cos θ) more if the pier turns about its pivots."""
     if m.finite is None:
         by_theta = of.way * of.height
         return Gap(by_theta * y.theta, by_theta * y.omega, 0.0, by_theta, 0.0, by_theta)
@@ -92,5 +92,5 @@ def gap_of(m, of, at, y):
 
 @inlined
 def lifted(at, k):
-    """Return ë [m/s²] of a device whose Gap is ``at``, under a pier with rates ``k``."""
+    """Return ë [m/s²] of a device with the Gap ``at``, from the pier's rates ``k``."""
     return at.by_v * k.v_rate + at.by_theta * k.omega + at.bend

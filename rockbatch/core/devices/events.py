@@ -1,8 +1,8 @@
-"""Events of devices: an elongation turns, a friction damper lets go, a tendon goes slack or taut, or yields, a stop is met.
+"""Events of devices: velocity reversal, slip of friction, slack, taut and yielding tendons, closing and opening stops.
 
-Behind the event functions of the pier there are three of each device: it turns, it goes slack or taut again, it yields or
-lets go. A stop turns while it is pressed in for the first time, is met or left, and passes the point up to which it was
-pressed in before or, left, recovers.
+After the event functions of the pier each device has three: TURNS, its velocity reverses; SLACKENS, it goes slack or taut;
+GIVES, it yields or slips. A stop TURNS in first compression, SLACKENS as it closes or opens, and GIVES as it passes its
+greatest compression or, open, recovers.
 """
 
 import math
@@ -35,23 +35,30 @@ from rockbatch.core.system import rates
 from rockbatch.core.table import along
 from rockbatch.core.types import LAW_LEFT, NO_EVENT, OF_PIER, Moment
 
-TURNS, SLACKENS, GIVES = 0, 1, 2  # behind the first of a device's
+TURNS, SLACKENS, GIVES = 0, 1, 2  # offsets among the event functions of a device
 PER_DEVICE = 3
 
 NEARBY = 1e-6
-"""Of a step: over which the rate of a friction damper's force is taken."""
+"""Interval of the finite difference for the rate of a sticking force, over the step."""
 
 SOON = 1e-3
-"""Of a step: how long after friction has let go it is looked at what goes where."""
+"""Time after a slip, over the step, at which directions are decided."""
 
 SURE = 1e-9
-"""Of a friction damper's strength: by how much rounding lets it hold more."""
+"""Relative excess of a sticking force over the strength that is rounding."""
 
 WAYS = (
-    (STICKS, STICKS), (OPENS, STICKS), (CLOSES, STICKS), (STICKS, OPENS), (STICKS, CLOSES),
-    (OPENS, OPENS), (OPENS, CLOSES), (CLOSES, OPENS), (CLOSES, CLOSES),
-)  # fmt: skip
-"""Directions that two friction dampers without velocity can take."""
+    (STICKS, STICKS),
+    (OPENS, STICKS),
+    (CLOSES, STICKS),
+    (STICKS, OPENS),
+    (STICKS, CLOSES),
+    (OPENS, OPENS),
+    (OPENS, CLOSES),
+    (CLOSES, OPENS),
+    (CLOSES, CLOSES),
+)
+"""Directions that two friction dampers without velocity can take, in the order in which they are tried."""
 
 
 class EventFunctions(NamedTuple):
@@ -70,7 +77,7 @@ class Motion(NamedTuple):
 
 
 class Rounding(NamedTuple):
-    """Speed [m/s] and length [m] that are no more than rounding."""
+    """Speed [m/s] and length [m] that are rounding."""
 
     speed: float
     length: float
@@ -78,7 +85,7 @@ class Rounding(NamedTuple):
 
 @inlined
 def _crossing(value, slope, speed, rounding):
-    """Return an event function of an elongation, and its slope: one that has just changed, or hangs on zero, is above it."""
+    """Return an event function of an elongation and its slope; made positive within rounding if it rises or is at rest."""
     rest, length = rounding
     if abs(value) > length:
         return value, slope
@@ -86,7 +93,7 @@ def _crossing(value, slope, speed, rounding):
 
 
 @kernel
-def _of_stop(devices, j, motion, rounding, functions):
+def _stop_functions(devices, j, motion, rounding, functions):
     """Write the three event functions of stop ``j``, and their slopes."""
     of, mode, at, acceleration, deepest = (
         devices.elements[j],
@@ -113,8 +120,8 @@ def _of_stop(devices, j, motion, rounding, functions):
 
 
 @kernel
-def _of_device(devices, j, motion, rounding, functions):
-    """Write the three event functions of device ``j``, and their slopes, but for a friction damper that does not move."""
+def _write_functions(devices, j, motion, rounding, functions):
+    """Write the three event functions of device ``j`` and their slopes; not those of a sticking friction damper."""
     of, mode, goes, at, state = devices.elements[j], devices.modes[j], devices.goes[j], motion.gap, motion.state
     values, slopes, acceleration, rest = functions.values, functions.slopes, motion.acceleration, rounding.speed
     turns = OF_PIER + PER_DEVICE * j + TURNS
@@ -124,7 +131,7 @@ def _of_device(devices, j, motion, rounding, functions):
     if of.linear_below == math.inf or (of.kind == FRICTION and goes == STICKS):
         return
     if of.kind == CONTACT:
-        _of_stop(devices, j, motion, rounding, functions)
+        _stop_functions(devices, j, motion, rounding, functions)
         return
     if of.kind == MAXWELL:
         rate = goes * response(of, at.elongation, at.speed, state, TAUT, goes).state_rate
@@ -134,15 +141,17 @@ def _of_device(devices, j, motion, rounding, functions):
         return
     if of.kind != TENDON or mode == YIELDING:
         way = OPENS if of.kind == TENDON else goes
-        starts = abs(at.speed) <= rest and way * acceleration >= 0.0  # it has just turned, or is let go, to rounding
+        starts = (
+            abs(at.speed) <= rest and way * acceleration >= 0.0
+        )  # it has just reversed, or is released, within rounding
         values[turns], slopes[turns] = rest if starts else way * at.speed, way * acceleration
         return
     pull, rate = tension(of, at.elongation, state), of.stiffness * surely(at.speed, acceleration, rest)
     sign, least = 1.0 if mode == TAUT else -1.0, of.stiffness * rounding.length
     values[slackens], slopes[slackens] = sign * pull, sign * rate
-    if abs(pull) <= least and sign * rate > 0.0:  # it has just changed, to rounding
+    if abs(pull) <= least and sign * rate > 0.0:  # it has just changed, within rounding
         values[slackens] = least
-    if abs(at.speed) <= rest and abs(pull) <= least:  # it hangs there, neither taut nor slack
+    if abs(at.speed) <= rest and abs(pull) <= least:  # at rest between taut and slack
         values[slackens], slopes[slackens] = least, 0.0
     if mode == TAUT and of.strength < math.inf:
         values[gives], slopes[gives] = of.strength - pull, -rate
@@ -151,11 +160,11 @@ def _of_device(devices, j, motion, rounding, functions):
 
 
 @kernel
-def _of_friction(m, devices, now, place, h, functions):
-    """Write what friction dampers that do not move could hold more; its rate from a moment later."""
+def _sticking_functions(m, devices, now, place, h, functions):
+    """Write the reserve of strength of sticking friction dampers, and its slope by a finite difference."""
     x, kx, near = devices.x if place == START else devices.end, devices.rates[place], NEARBY * h
     one = two = one_later = two_later = 0.0
-    for ahead in (0.0, near):  # in one place, for it is much machine code
+    for ahead in (0.0, near):  # a loop, since two calls would be much machine code
         for i in range(len(x)):
             devices.stage[i] = x[i] + ahead * kx[i]
         one, two, there = one_later, two_later, later(now.ground, ahead)
@@ -173,7 +182,7 @@ def _of_friction(m, devices, now, place, h, functions):
 
 @kernel
 def _is_held(m, devices, now, slope, i):
-    """Return whether friction holds the pivot of event function ``i`` where it is, on or just off its support."""
+    """Return True if friction holds the pivot of event function ``i`` in place, on or just above its support."""
     least, at = NO_ACCELERATION * m.gravity, attitude(m, now.y, now.contact, devices.level[0])
     lift = lifted(gap(m, -m.half_width if i % 2 == 0 else m.half_width, at, now.y), now.k)
     return abs(slope) <= least and abs(lift) <= least
@@ -181,9 +190,9 @@ def _is_held(m, devices, now, slope, i):
 
 @kernel
 def device_functions(m, devices, now, place, h, functions):
-    """Write the event functions of all devices and their slopes behind those of the pier, of the Instant ``now``.
+    """Write the event functions of all devices and their slopes after those of the pier, of the Instant ``now``.
 
-    Rates and gaps of the devices are in their ``place``. What friction holds at a pivot, to rounding, is no event of it.
+    Rates and gaps of the devices are in their row ``place``. A pivot that friction holds, within rounding, has no event.
     """
     x, least, rest = devices.x if place == START else devices.end, NO_ACCELERATION * m.gravity, m.rest
     length, holds = rest * rest / least, sticking(devices, NO_EVENT) != NO_EVENT
@@ -192,21 +201,21 @@ def device_functions(m, devices, now, place, h, functions):
         rounding = rest if i >= LAW_LEFT else length
         if holds and abs(values[i]) <= rounding and _is_held(m, devices, now, slopes[i], i):
             values[i], slopes[i] = 1.0, 0.0
-        elif i >= LAW_LEFT and abs(values[i]) <= rest and slopes[i] > 0.0:  # it has just turned, to rounding
+        elif i >= LAW_LEFT and abs(values[i]) <= rest and slopes[i] > 0.0:  # it has just reversed, within rounding
             values[i] = rest
     for j in range(len(devices.elements)):
         here = devices.gaps[place, j]
         acceleration = lifted(here, now.k)
         if abs(acceleration) <= least:
             acceleration = 0.0
-        _of_device(devices, j, Motion(here, acceleration, x[j]), Rounding(rest, length), functions)
+        _write_functions(devices, j, Motion(here, acceleration, x[j]), Rounding(rest, length), functions)
     if holds:
-        _of_friction(m, devices, now, place, h, functions)
+        _sticking_functions(m, devices, now, place, h, functions)
 
 
 @kernel
 def _consistent(m, devices, now, x, ground, pair):
-    """Return whether a ``pair`` of friction dampers without velocity can do what ``goes`` says of them."""
+    """Return True if the directions in ``goes`` of a ``pair`` of friction dampers without velocity are consistent."""
     under, one, two = under_devices(m, devices, now, x, ground)
     k = rates(under, now.y, now.contact, ground)
     holding = sticking(devices, NO_EVENT)
@@ -224,7 +233,7 @@ def _consistent(m, devices, now, x, ground, pair):
 
 @kernel
 def settle_friction(m, devices, now, x, ground):
-    """Decide what friction dampers without velocity do from here on: hold if they can, else go where the others take them."""
+    """Set the directions of friction dampers without velocity: STICKS if they can hold, else a consistent combination."""
     first = sticking(devices, NO_EVENT)
     if first == NO_EVENT:
         return
@@ -237,14 +246,14 @@ def settle_friction(m, devices, now, x, ground):
             devices.goes[second] = way[1]
         if _consistent(m, devices, now, x, ground, (first, second)):
             return
-    devices.goes[first] = STICKS  # what rounding leaves
+    devices.goes[first] = STICKS  # by rounding no combination is consistent
     if second != NO_EVENT:
         devices.goes[second] = STICKS
 
 
 @kernel
 def change_tendon(mode, limit):
-    """Return the mode of a tendon whose force has fallen to 0 or, slack, risen to it; with ``limit``, come to its strength."""
+    """Return the mode of a tendon after its force reached its strength (``limit``) or 0: SLACK if it was TAUT, else TAUT."""
     if limit:
         return YIELDING
     return SLACK if mode == TAUT else TAUT
@@ -252,7 +261,7 @@ def change_tendon(mode, limit):
 
 @kernel
 def _stop_event(devices, j, depth, what):
-    """Change the mode of stop ``j``, pressed in by ``depth`` [m]; left, it recovers when the pier is where it first met it."""
+    """Change mode and state of stop ``j`` at compression ``depth`` [m]; open, it recovers at the point of first contact."""
     mode = devices.modes[j]
     if mode == YIELDING:
         devices.modes[j], devices.x[j] = TAUT, depth
@@ -269,10 +278,10 @@ def _stop_event(devices, j, depth, what):
 
 @kernel
 def device_event(m, devices, now, ground, h, which):
-    """Let the event ``which`` of a device happen in the Moment ``now``: its mode or direction changes.
+    """Apply the event ``which`` of a device in the Moment ``now``: change its mode or direction.
 
-    Of friction that lets go, and perhaps others with it, what they do a moment later decides: now each of them still holds
-    to rounding, and where two reach their force at one time neither can go alone.
+    For friction that slips the directions are decided by the state a moment later: now each damper still sticks within
+    rounding, and if two reach their strength at once, neither can slip alone.
     """
     if devices is None:
         return
@@ -295,7 +304,7 @@ def device_event(m, devices, now, ground, h, which):
     under, one, two = device_rates(m, devices, now, devices.x, ground, START)
     holds = one if sticking(devices, NO_EVENT) == j else two
     k = rates(under, y, now.contact, ground)
-    for i in range(len(devices.elements)):  # friction that comes to rest at the same time may hold, too
+    for i in range(len(devices.elements)):  # another damper that comes to rest at the same time may stick, too
         other, here = devices.elements[i], devices.gaps[START, i]
         stops = i == j or (abs(here.speed) <= m.rest and devices.goes[i] * lifted(here, k) < 0.0)
         if stops and not lets_go and other.kind == FRICTION and other.strength > 0.0:
@@ -314,8 +323,8 @@ def device_event(m, devices, now, ground, h, which):
 
 
 @kernel
-def after_contact(m, devices, now, ground):
-    """Choose directions and modes once an event at a pivot may have made all velocities jump."""
+def reset_device_modes(m, devices, now, ground):
+    """Set directions and modes of devices from the velocities after an event at a pivot, where these may have jumped."""
     if devices is None:
         return
     y, at = now.y, attitude(m, now.y, now.contact, devices.level[0])
@@ -347,7 +356,7 @@ def after_contact(m, devices, now, ground):
 
 @inlined
 def start_devices(m, devices, now, ground):
-    """Choose directions and modes of devices at the start; unless the level is known, the lower pivot is where it rests."""
+    """Set directions and modes of devices at the start; an unknown level is that at which the lower pivot rests."""
     if devices is None:
         return
     y = now.y
@@ -359,12 +368,12 @@ def start_devices(m, devices, now, ground):
         of = devices.elements[j]
         devices.goes[j] = STICKS if of.kind == FRICTION and of.strength > 0.0 else OPENS
         devices.modes[j] = mode_of(of, gap_of(m, of, at, y).elongation, devices.x[j], OPENS)
-    after_contact(m, devices, now, ground)
+    reset_device_modes(m, devices, now, ground)
 
 
 @kernel
 def leave_rest(m, devices, y, contact):
-    """Let devices go as the pier leaves rest for ``contact``: to turn about its pivot, or to rise without one."""
+    """Set directions and modes of devices as the pier leaves rest for ``contact``: about a pivot, or rising."""
     if devices is None:
         return
     at = attitude(m, y, contact, devices.level[0])

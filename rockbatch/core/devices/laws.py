@@ -15,19 +15,19 @@ FRICTION = 0.0
 VISCOUS = 1.0
 HYSTERETIC = 2.0
 TENDON = 3.0
-MAXWELL = 4.0  # a viscous damper behind a spring, its brace
+MAXWELL = 4.0  # a viscous damper in series with a spring, its brace
 CONTACT = 5.0  # a stop
 SPRING = 6.0
 
 DAMPERS = {"friction": FRICTION, "viscous": VISCOUS, "hysteretic": HYSTERETIC}
-"""Kinds of dampers without a brace by the names that users write."""
+"""Kinds of dampers without a brace by their names in studies."""
 
 # Modes of a tendon; of a stop: on its elastic line, open, on its first-loading line
 TAUT = 0.0
 SLACK = 1.0
 YIELDING = 2.0
 
-# Direction of a device: its elongation grows, falls, or friction holds it
+# Direction of a device: its elongation grows, falls, or friction sticks
 OPENS = 1.0
 CLOSES = -1.0
 STICKS = 0.0
@@ -43,11 +43,11 @@ class Element(NamedTuple):
     exponent: float
     prestress: float  # of a tendon [m/s²]
     offset: float  # from the centre of the base, positive to the right [m]
-    linear_below: float  # speed [m/s] up to which a viscous damper is linear: |ė|^a would rise without bound in slope
+    linear_below: float  # speed [m/s] up to which a viscous damper is linear, since |ė|^a has an unbounded slope
     slope: float  # of its force there [1/s]
-    give: float  # of the brace of a hysteretic damper over that of the damper
+    give: float  # compliance of the brace of a hysteretic damper over that of the damper
     start: float  # elongation at which a stop is met [m]
-    returned: float  # e², share of the energy that a stop gives back
+    returned: float  # e², share of the energy that a stop returns
     quickest: float  # rate of vibration against a stop on its elastic line, or of relaxation of a braced damper at 1 m/s [1/s]
     height: float  # at which a device acts on the deck, horizontally [m]; 0 of one at the base
     swing: float  # b where the pier turns about its pivots [m]
@@ -59,7 +59,7 @@ class Response(NamedTuple):
 
     force: float  # [m/s²]
     state_rate: float  # of z [1/s], of a tendon's permanent elongation [m/s], of a braced damper's force [m/s³]
-    loss_rate: float  # power that is not stored in a tendon, a spring, a stop or a brace [W/kg]
+    loss_rate: float  # power that is dissipated, not stored in a tendon, spring, stop or brace [W/kg]
 
 
 class Use(NamedTuple):
@@ -69,8 +69,8 @@ class Use(NamedTuple):
     stroke: float
     speed: float
     lost: float
-    yielded: float  # by how much a tendon has been lengthened for good [m]
-    times: float  # how often a tendon has gone slack, or a stop been met
+    yielded: float  # permanent elongation of a tendon [m]
+    times: float  # number of times that a tendon went slack, or that a stop closed
 
 
 ELEMENT = record(Element)
@@ -79,26 +79,26 @@ USE = record(Use)
 
 @kernel
 def tension(of, elongation, slack):
-    """Return the force of a tendon unstressed at ``slack`` − prestress/k, were it to take compression and any tension."""
+    """Return the force of a linear tendon [m/s²], compression included, with the permanent elongation ``slack`` [m]."""
     return of.prestress + of.stiffness * (elongation - slack)
 
 
 @kernel
 def past_release(of, elongation, deepest):
-    """Return by how much a stop is pressed in beyond where it lets go again [m], once pressed in by ``deepest`` [m]."""
+    """Return the compression of a stop beyond its point of release [m] after a greatest compression ``deepest`` [m]."""
     return elongation - of.start - deepest * (1.0 - of.returned)
 
 
 @kernel
 def stop_force(of, elongation, deepest):
-    """Return the force of a stop at any elongation: k δ on first loading, k/e² beyond the point of release after it."""
+    """Return the force of a stop [m/s²]: k δ in first loading, slope k/e² from the point of release after it; 0 if open."""
     first = of.stiffness * (elongation - of.start)
     return max(min(first, of.stiffness / of.returned * past_release(of, elongation, deepest)), 0.0)
 
 
 @kernel
 def slip_rate(of, pull):
-    """Return the rate [m/s] at which a braced viscous damper itself lengthens under the force ``pull`` [m/s²]."""
+    """Return the speed [m/s] of a braced viscous damper itself under the force ``pull`` [m/s²]."""
     return math.copysign((abs(pull) / of.coefficient) ** (1.0 / of.exponent), pull)
 
 
@@ -121,7 +121,7 @@ def _hysteretic(of, speed, z, goes):
 
 @inlined
 def _tendon(of, elongation, speed, slack, mode):
-    """Return the Response of a tendon, which lengthens while it yields."""
+    """Return the Response of a tendon, whose permanent elongation grows while it yields."""
     if mode == TAUT:
         return Response(tension(of, elongation, slack), 0.0, 0.0)
     return Response(0.0, 0.0, 0.0) if mode == SLACK else Response(of.strength, speed, of.strength * speed)
@@ -147,10 +147,10 @@ def _stop(of, elongation, speed, deepest, mode):
 
 @inlined
 def response(of, elongation, speed, state, mode, goes):
-    """Return the Response of an element that ``goes`` out or in.
+    """Return the Response of an element in ``mode`` that ``goes`` OPENS, CLOSES or STICKS.
 
-    ``state``: z of a hysteretic damper, u_0 [m] of a tendon, the force [m/s²] of a braced viscous damper, by how much a stop has
-    been pressed in [m].
+    ``state``: z of a hysteretic damper, permanent elongation [m] of a tendon, force [m/s²] of a braced viscous damper,
+    greatest compression [m] of a stop.
     """
     if of.kind == VISCOUS:
         return _viscous(of, speed)
@@ -186,7 +186,7 @@ def own_speed(of, speed, state):
 
 @kernel
 def stored(of, elongation, state):
-    """Return the energy [J/kg] that a device gives back until it bears nothing; 0 of dampers without a brace."""
+    """Return the elastic energy [J/kg] of a tendon, stop, spring or viscous damper's brace; 0 for other dampers."""
     if of.kind == CONTACT:
         pull = stop_force(of, elongation, state)
         return 0.5 * pull * pull * of.returned / of.stiffness
@@ -202,7 +202,7 @@ def stored(of, elongation, state):
 
 @kernel
 def mode_of(of, elongation, state, goes):
-    """Return the mode of a tendon or a stop at this elongation that goes on out or in."""
+    """Return the mode of a tendon or a stop at an ``elongation`` that ``goes`` OPENS or CLOSES; TAUT for other devices."""
     if of.kind == CONTACT:
         depth = elongation - of.start
         return SLACK if depth < 0.0 or (depth == 0.0 and goes != OPENS) else YIELDING

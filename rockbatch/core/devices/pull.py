@@ -2,8 +2,8 @@
 
 The force F of a device with the elongation e acts on v and θ by ∂e/∂v and ∂e/∂θ.
 
-What is integrated beside the pier's state, x: the state of each device, the energy that each has taken and not given back
-[J/kg], the work of the ground [J/kg], and what the devices' P–Δ moments have put in [J/kg].
+The variables x integrated beside the pier's state are the state of each device, the energy dissipated by each [J/kg], the
+work of the ground [J/kg], and that of the devices' P–Δ moments [J/kg].
 """
 
 import math
@@ -36,29 +36,29 @@ from rockbatch.core.table import with_pull
 from rockbatch.core.types import NO_EVENT, Pull
 
 STAYS = 1e-9
-"""Acceleration of a place by a unit force there, below which it does not move: a pivot on rigid ground, to rounding."""
+"""Acceleration of a place by a unit force there that is rounding: a pivot on rigid ground does not move."""
 
 LINKED = 1e-12
-"""Of the product of two such accelerations: a determinant below it means that two places can only move together."""
+"""Determinant over the product of two such accelerations below which two places can only move together."""
 
 PLASTIC = 1e-14
-"""Distance from 1 at which |z| of a hysteretic damper is 1: 1 − z decays by exp(−5 e/u_y), in steps of u_y for ever."""
+"""Distance of |z| from 1 at which a hysteretic damper counts as plastic; 1 − z decays by exp(−5 e/u_y) without end."""
 
 TRAVEL = 0.5
-"""Of u_y: what a hysteretic damper may be drawn out by in one step of a sample's length, and less the more steps a sample has."""
+"""Greatest elongation of a hysteretic damper over u_y in a step of a whole sample; proportionally less in shorter steps."""
 
 GROWTH = 0.5
-"""By which share of itself the speed of a viscous damper may grow or fall in a step: |ė|^a has no Taylor series at 0."""
+"""Greatest relative change of the speed of a viscous damper in a step: |ė|^a has no Taylor series at 0."""
 
 FINE = 0.2
-"""Of 1/rate: the longest step while a pier vibrates against a stop, or a braced damper relaxes."""
+"""Longest step times the rate of vibration against a stop, or of relaxation of a braced damper."""
 
 NEAREST = 1e-3
-"""Of a step: the shortest that this asks for, from a velocity reversal or to it."""
+"""Shortest step near a velocity reversal, over the whole one."""
 
 
-START, SECOND, THIRD, FOURTH, END, BESIDE = map(np.int64, range(6))  # literals: what takes them is compiled for each
-"""Places of rates and gaps at both ends of a step, between them those of its stages, and of a state beside it."""
+START, SECOND, THIRD, FOURTH, END, BESIDE = map(np.int64, range(6))  # literals would compile callees for each value
+"""Rows of ``rates`` and ``gaps``: start of a step, its stages, its end, and a state beside the step."""
 
 
 class Devices(NamedTuple):
@@ -79,14 +79,14 @@ class Devices(NamedTuple):
 
 
 def _bounds_steps(of):
-    """Return whether :func:`resolved` may ask for shorter steps because of an element."""
+    """Return True if :func:`step_resolving_devices` may shorten steps for an element."""
     return of.kind in (HYSTERETIC, CONTACT) or (of.kind in (VISCOUS, MAXWELL) and of.exponent < 1.0)
 
 
 def devices_of(elements, states=(), level=math.nan):
-    """Return Devices for a sequence of Element, at rest or with the ``states`` in which they are held; None without any.
+    """Return Devices for a sequence of Element, at rest or in the ``states`` in which they are held; None without any.
 
-    ``level`` is v of the pier at rest [m], where that of the start is another one.
+    ``level`` is v of the pier at rest [m]; NaN if it starts there.
     """
     n = len(elements)
     if n == 0:
@@ -97,15 +97,15 @@ def devices_of(elements, states=(), level=math.nan):
     x[: len(states)] = states
     use = np.zeros(n, USE).view(np.recarray)
     gaps = np.zeros((6, n), GAP).view(np.recarray)
-    return Devices(
-        rows, np.full(1, float(level)), np.zeros(n), np.zeros(n), x, stage, end, np.zeros((6, size)), gaps, use,
-        any(_bounds_steps(element) for element in elements), np.zeros(3),
-    )  # fmt: skip
+    modes, goes, rates_at = np.zeros(n), np.zeros(n), np.zeros((6, size))
+    bound_steps = any(_bounds_steps(element) for element in elements)
+    levels, ended = np.full(1, float(level)), np.zeros(3)
+    return Devices(rows, levels, modes, goes, x, stage, end, rates_at, gaps, use, bound_steps, ended)
 
 
 @kernel
 def sticking(devices, after):
-    """Return the number of the next friction damper behind ``after`` that does not move, NO_EVENT without one."""
+    """Return the number of the first sticking friction damper beyond number ``after``, NO_EVENT without one."""
     for j in range(after + 1, len(devices.elements)):
         if devices.elements[j].kind == FRICTION and devices.goes[j] == STICKS:
             return j
@@ -113,14 +113,15 @@ def sticking(devices, after):
 
 
 @kernel
-def _held_by_friction(m, first, second, now, ground, strengths):
-    """Return the forces [m/s²] at two places, whose Gaps are given, by which they do not move; the second is 0 if both are one.
+def _sticking_forces(m, first, second, now, ground, strengths):
+    """Return the friction forces per mass [m/s²] at two places, with the Gaps given, that stop their motion.
 
-    ``m`` is the pier under all else. Accelerations are linear in the forces. At a pivot on the ground friction bears nothing.
-    Two places that can only move together share the force by their ``strengths``.
+    ``m`` is the pier under all other forces; accelerations are linear in the friction forces. A force is 0 where it moves
+    nothing, as at a pivot on the ground, and the second is 0 if both places are the same. Two places that can only move
+    together share the force by their ``strengths``.
     """
     free, free_other, own, other_by_own, by_other, own_other = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for unit in range(3):  # none, one at the first place, one at the second
+    for unit in range(3):  # no force, a unit force at the first place, and at the second
         arm = first.arm if unit == 1 else (second.arm if unit == 2 else 0.0)
         down = first.by_v if unit == 1 else (second.by_v if unit == 2 else 0.0)
         under = with_pull(m, Pull(m.pull.force + down, m.pull.moment + arm))
@@ -148,22 +149,22 @@ def _held_by_friction(m, first, second, now, ground, strengths):
 
 @kernel
 def _with_friction(m, devices, at, now, ground):
-    """Return the pier ``m``, under all else, under friction that holds too; and forces [m/s²] of the first two such dampers."""
+    """Return the pier ``m`` with sticking friction added to its pull, and the forces [m/s²] of the first two such dampers."""
     first, elements = sticking(devices, NO_EVENT), devices.elements
     second = sticking(devices, first)
     other = second if second != NO_EVENT else first
     here, there = gap_of(m, elements[first], at, now.y), gap_of(m, elements[other], at, now.y)
     strengths = elements[first].strength, elements[other].strength
-    one, two = _held_by_friction(m, here, there, now, ground, strengths)
+    one, two = _sticking_forces(m, here, there, now, ground, strengths)
     down = one * here.by_v + two * there.by_v
     return with_pull(m, Pull(m.pull.force + down, m.pull.moment + one * here.arm + two * there.arm)), one, two
 
 
 @kernel
 def device_rates(m, devices, now, x, ground, place):
-    """Write the rates of the devices' states ``x`` to their ``place``, and the gaps there but for stages inside a step.
+    """Return the pier ``m`` under all devices, and the forces [m/s²] of the first two sticking friction dampers.
 
-    Return the pier ``m`` under all devices, and the forces [m/s²] of the first two friction dampers that do not move.
+    Write the rates of the devices' states ``x`` to their row ``place``, and the gaps, except for stages inside a step.
     """
     y, n, k, at = now.y, len(devices.elements), devices.rates[place], attitude(m, now.y, now.contact, devices.level[0])
     total, moment, one, two, holds = 0.0, 0.0, 0.0, 0.0, False
@@ -189,13 +190,13 @@ def device_rates(m, devices, now, x, ground, place):
 
 @inlined
 def goes_on(devices):
-    """Return whether a step goes on from the end of the last one: an event changes rates, and friction that holds is not kept."""
+    """Return True if a step continues from the rates at the end of the last one: not after events, nor with sticking friction."""
     return devices.ended[0] != 0.0
 
 
 @kernel
 def pulled_at_end(m, devices):
-    """Return the pier under its devices at the end of the last step, whose rates and gaps become those of a start."""
+    """Return the pier under its devices at the end of the last step; copy rates and gaps there to the start of the next."""
     for i in range(len(devices.x)):
         devices.rates[START, i] = devices.rates[END, i]
     for j in range(len(devices.elements)):
@@ -205,7 +206,7 @@ def pulled_at_end(m, devices):
 
 @kernel
 def under_devices(m, devices, now, x, ground):
-    """Return what :func:`device_rates` does, of a Moment that is looked at beside a step."""
+    """Return the result of :func:`device_rates` for a Moment beside a step, without changing rows of the step."""
     return device_rates(m, devices, now, x, ground, BESIDE)
 
 
@@ -226,7 +227,7 @@ def _loaded(devices, m, now, ground):
 
 @hook
 def loaded_soon(devices, m, now, soon, ground, near):
-    """Return the pier ``m`` under its devices in the Moment ``soon``, ``near`` [s] after ``now``, the Moment of their stage."""
+    """Return the pier ``m`` under its devices in the Moment ``soon``, ``near`` [s] after ``now`` with the staged states."""
 
 
 @loaded_soon.of(type(None))
@@ -244,9 +245,9 @@ def _loaded_soon(devices, m, now, soon, ground, near):
 
 @hook
 def about_to_turn(devices, m, y, contact, sense):
-    """Return the pier ``m`` at rest under its devices, were it to have the ``contact`` that comes.
+    """Return the pier ``m`` at rest under its devices as it begins to move with the ``contact`` to come.
 
-    ``sense`` is OPENS or, for a block that is about to land, CLOSES. Friction then resists with all that it has.
+    ``sense`` is OPENS or, for a block about to land, CLOSES. Friction resists with its full force.
     """
 
 
@@ -269,7 +270,7 @@ def _devices_hold(devices, m, y, contact, sense):
 
 @kernel
 def way_of_opening(m, of, contact):
-    """Return where a device goes when the pier begins to turn about the pivot that ``contact`` has, or to rise without one."""
+    """Return OPENS, CLOSES or STICKS for a device as the pier begins to turn about the pivot in ``contact``, or to rise."""
     side = contact.right - contact.left
     if side == 0.0:
         return OPENS
@@ -281,7 +282,7 @@ def way_of_opening(m, of, contact):
 
 @inlined
 def stage_states(devices, place, h):
-    """Put the devices' states ``h`` [s] after the start, by the rates at ``place``, into their stage."""
+    """Set the staged states of devices to those ``h`` [s] after the start by the rates at ``place``."""
     if devices is None:
         return
     for i in range(len(devices.x)):
@@ -290,7 +291,7 @@ def stage_states(devices, place, h):
 
 @inlined
 def advance_states(devices, h):
-    """Put the devices' states at the end of a step of ``h`` [s] into ``end``, and into their stage."""
+    """Set ``end`` and the staged states of devices to those at the end of a step of ``h`` [s]."""
     if devices is None:
         return
     k, n = devices.rates, len(devices.elements)
@@ -302,14 +303,12 @@ def advance_states(devices, h):
 
 
 @kernel
-def resolved(under, devices, start, h, dt):
-    """Return the longest step [s] from the Instant ``start``, ``h`` at most, that resolves the laws of devices.
+def step_resolving_devices(under, devices, start, h, dt):
+    """Return the longest step [s] from the Instant ``start``, at most ``h``, that resolves the laws of devices.
 
-    These are hysteretic dampers that are not plastic all along it, viscous ones with an exponent below 1 near a velocity
-    reversal or behind a brace, and stops that are met.
-
-    It is shorter by one and the same factor for all ``h``, so that a run with half the step halves these steps too: what it
-    changes goes on telling the error.
+    They are hysteretic dampers not yet plastic, viscous ones of exponent < 1 near a velocity reversal or behind a brace, and
+    closed stops. The factor on ``h`` depends on ``dt`` and hardly on ``h``, so that a run with half the step halves these
+    steps, too, and its change still measures the error.
     """
     if devices is None or not devices.bound_steps:
         return h
@@ -345,5 +344,5 @@ def resolved(under, devices, start, h, dt):
 
 @kernel
 def _is_steep(of):
-    """Return whether the force's slope is unbounded where the speed is 0, but for what ``linear_below`` sets."""
+    """Return True for a viscous damper of exponent < 1, whose force has an unbounded slope at speed 0."""
     return of.kind == VISCOUS and of.exponent < 1.0

@@ -1,4 +1,4 @@
-"""Use of devices in a run: greatest forces, strokes and speeds, energies."""
+"""Demands on devices in a run: greatest forces, strokes and speeds, and energies."""
 
 from rockbatch.core.devices.elongation import lifted
 from rockbatch.core.devices.laws import HYSTERETIC, MAXWELL, OPENS, SPRING, TAUT, TENDON, VISCOUS, force, slip_rate
@@ -9,13 +9,13 @@ from rockbatch.core.roots import highest_within, largest_within, steepest_within
 
 @inlined
 def _greatest(f0, d0, f1, d1, h, best):
-    """Return the greatest |f| so far; a speed has jumped at the start of a part if that is behind an impact."""
+    """Return the greater of ``best`` and the greatest |f| of the Hermite cubic in a part of ``h`` [s], its start included."""
     return largest_within(f0, d0, f1, d1, h, max(best, abs(f0)))[1]
 
 
 @kernel
-def _of_braced(devices, j, h):
-    """Bring the use of a braced viscous damper up to a smooth part of ``h`` [s]; return its greatest |force| there [m/s²].
+def _include_braced_viscous(devices, j, h):
+    """Include a smooth part of ``h`` [s] in the Use of a braced viscous damper; return its greatest |force| there [m/s²].
 
     Stroke and speed are those of the damper itself, without its brace.
     """
@@ -31,8 +31,8 @@ def _of_braced(devices, j, h):
 
 
 @kernel
-def _of_braced_steel(devices, j, h):
-    """Bring stroke and speed of a hysteretic damper, without its brace, up to a smooth part of ``h`` [s]."""
+def _include_braced_hysteretic(devices, j, h):
+    """Include a smooth part of ``h`` [s] in stroke and speed of a hysteretic damper, without its brace."""
     of, line = devices.elements[j], devices.use[j]
     brace = of.give / of.stiffness
     was, now = devices.gaps[START, j], devices.gaps[END, j]
@@ -43,8 +43,8 @@ def _of_braced_steel(devices, j, h):
 
 
 @kernel
-def _of_own_way(devices, j, k, k_end, h):
-    """Bring stroke and speed of a device without a brace up to a smooth part of ``h`` [s]."""
+def _include_unbraced(devices, j, k, k_end, h):
+    """Include a smooth part of ``h`` [s] in stroke and speed of a device without a brace."""
     line, was, now = devices.use[j], devices.gaps[START, j], devices.gaps[END, j]
     line.stroke = _greatest(was.elongation, was.speed, now.elongation, now.speed, h, line.stroke)
     lift, lift_end = lifted(was, k), lifted(now, k_end)
@@ -52,8 +52,8 @@ def _of_own_way(devices, j, k, k_end, h):
 
 
 @kernel
-def _pull(devices, j, h):
-    """Return the greatest |force| [m/s²] of a device in a smooth part of ``h`` [s], up to which its use has been brought."""
+def _greatest_force(devices, j, h):
+    """Return the greatest |force| [m/s²] of a device in a smooth part of ``h`` [s] that its stroke and speed include."""
     of, line, was, now = devices.elements[j], devices.use[j], devices.gaps[START, j], devices.gaps[END, j]
     if of.kind == VISCOUS:
         return force(of, 0.0, line.speed, 0.0, TAUT, OPENS)
@@ -73,19 +73,19 @@ def _take_in(devices, k, k_end, h):
     for j in range(n):
         of, line = devices.elements[j], devices.use[j]
         if of.kind == MAXWELL:
-            pull = _of_braced(devices, j, h)
+            pull = _include_braced_viscous(devices, j, h)
         elif of.give > 0.0:
-            _of_braced_steel(devices, j, h)
-            pull = _pull(devices, j, h)
+            _include_braced_hysteretic(devices, j, h)
+            pull = _greatest_force(devices, j, h)
         else:
-            _of_own_way(devices, j, k, k_end, h)
-            pull = _pull(devices, j, h)
+            _include_unbraced(devices, j, k, k_end, h)
+            pull = _greatest_force(devices, j, h)
         line.most, line.lost = max(line.most, pull), devices.end[n + j]
         line.yielded = devices.end[j] if of.kind == TENDON else 0.0
 
 
 @inlined
 def take_in(devices, k, k_end, h):
-    """Bring the use of all devices up to a smooth part of ``h`` [s], by the pier's rates and their own gaps at both ends."""
+    """Include a smooth part of ``h`` [s] in the Use of all devices, with the pier's rates and the gaps at both ends."""
     if devices is not None:
         _take_in(devices, k, k_end, h)

@@ -1,4 +1,4 @@
-"""Ending of a run of a pier whose shaft bends (THEORY.md, A shaft that bends). Looked at once a sample, at the end."""
+"""End of a run of a pier with an elastic shaft, checked once a sample after the tail (THEORY.md, A shaft that bends)."""
 
 import math
 
@@ -22,7 +22,7 @@ def bending_energy(m, u):
 
 @kernel
 def kinetic_and_potential(m, y, contact):
-    """Return the kinetic energy and that of the weight since rest [J/kg]."""
+    """Return the kinetic energy and the potential energy of the weight, 0 at rest [J/kg]."""
     side = side_of(contact)
     key = side if side != 0.0 else key_of(m, contact)
     about, sine = masses_about(m, y.u, key), math.sin(y.theta)
@@ -45,7 +45,7 @@ def _leaning(m, theta):
 
 @kernel
 def _cannot_reach(m, devices, now, limit):
-    """Return whether the energy of this moment does not suffice to turn to ``limit`` [rad] on either side."""
+    """Return True if the present energy does not suffice to reach ``limit`` [rad] on either side."""
     kinetic, potential = kinetic_and_potential(m, now.y, now.contact)
     energy, least = kinetic + potential + bending_energy(m, now.y.u), math.inf
     if devices is not None:
@@ -62,7 +62,7 @@ def _cannot_reach(m, devices, now, limit):
 
 @kernel
 def _stands_for_good(m, devices, now):
-    """Return whether both feet are down and the vibration that is left cannot lift either, by the moment at its amplitude."""
+    """Return True if both feet are down and the remaining vibration of the shaft cannot lift either of them."""
     y, contact = now.y, now.contact
     if contact.left == 0.0 or contact.right == 0.0:
         return False
@@ -76,14 +76,14 @@ def _stands_for_good(m, devices, now):
 
 @system.status_at_sample.of(FlexibleTraits)
 def status_at_sample(traits, lanes, i, devices):
-    """Return the status at a sample, and the next one to look at it: the end of the record, and every one from there on."""
+    """Return the status at a sample, and the next sample to check: the end of the record, then every one."""
     status = _status(traits, lanes, i, devices)
     return status, max(lanes.clock.npts[i] - 1.0, lanes.clock.sample[i] + 1.0)
 
 
 @kernel
 def _status(traits, lanes, i, devices):
-    """Return how the run in lane ``i`` has ended, RUNNING if it goes on."""
+    """Return the status of the run in lane ``i``, RUNNING unless it ends."""
     sample, samples, longest = lanes.clock.sample[i], lanes.clock.samples[i], lanes.ending.longest[i]
     if sample < samples:
         return RUNNING
@@ -95,6 +95,6 @@ def _status(traits, lanes, i, devices):
             return SURVIVED
     if sample < longest:
         return RUNNING
-    if longest == samples:  # nothing is waited for
+    if longest == samples:  # the run ends with its tail in any case
         return SURVIVED
     return RESTLESS if _cannot_reach(m, devices, now, m.tipping) else UNDECIDED

@@ -1,4 +1,4 @@
-"""Equations of a pier whose shaft bends: full contact, rocking about a pivot, flight (THEORY.md, A shaft that bends)."""
+"""Equations of a pier with an elastic shaft: full contact, rocking, flight (THEORY.md, A shaft that bends)."""
 
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ from rockbatch.core.trigonometry import sine_and_cosine
 
 
 class Masses(NamedTuple):
-    """Mass matrix of deflection and rotation about a point of the base, per unit mass, and how it changes."""
+    """Terms of the mass matrix of deflection and rotation about a point of the base, per unit mass."""
 
     offset: float  # of that point to the right of the centre of mass, along the base [m]
     turning: float  # of θ̇² [m²]
@@ -72,7 +72,7 @@ def _accelerations(m, y, contact, ground):
 
 @system.rates.of(FlexibleBlock)
 def rates(m, y, contact, ground):
-    """Return the right-hand side."""
+    """Return the rates of state ``y``: the right-hand side."""
     v_acceleration, theta_acceleration, u_acceleration = _accelerations(m, y, contact, ground)
     return Flexing(y.v_rate, y.omega, v_acceleration, theta_acceleration, y.u_rate, u_acceleration)
 
@@ -88,7 +88,7 @@ def _constrained(m, y, contact):
 
 @system.end_step.of(FlexibleBlock)
 def end_step(m, y, start, contact, remaining):
-    """Return the end of a step, on the pivot that is on the ground."""
+    """Return the end of a step, projected onto the pivot that is on the ground."""
     return constrained(m, y, contact)
 
 
@@ -111,7 +111,7 @@ def ground_power(m, y, contact, ground):
 
 @inlined
 def rise_of_bending(m, y, k):
-    """Return the vertical acceleration [m/s²] of the centre of mass beyond that of a straight shaft."""
+    """Return the vertical acceleration [m/s²] of the centre of mass less that of a straight shaft."""
     sine, cosine = sine_and_cosine(y.theta)
     turned = k.omega * cosine - y.omega * y.omega * sine
     return -m.first * (k.u_rate * sine + 2.0 * y.u_rate * y.omega * cosine + y.u * turned)

@@ -1,4 +1,4 @@
-"""Events of a pier whose shaft bends; those at which nothing jumps are a rigid block's (THEORY.md, A shaft that bends)."""
+"""Events of a pier with an elastic shaft; those without jumps are a rigid block's (THEORY.md, A shaft that bends)."""
 
 from rockbatch.core import system
 from rockbatch.core.block.equations import clearances, constrained, key_of, on_pivot, on_side, side_of
@@ -40,7 +40,7 @@ system.released.of(FlexibleBlock)(released)
 
 @system.longest_step.of(FlexibleBlock)
 def longest_step(m, start, h):
-    """Return what shows a bounce, and in flight what resolves the mode."""
+    """Return a step [s] of at most ``h`` that shows a bounce, or in flight resolves the mode."""
     return min(h, m.flight_step) if airborne(m, start.contact) else within_bounce(m, start, h)
 
 
@@ -75,9 +75,9 @@ def transition(m, devices, now, which, ground, dt):
 
 @kernel
 def _after_blow(m, y, key, rise, pivot):
-    """Return θ̇ and u̇ behind a blow at ``pivot``; until then the base turned about its ``key`` and that rose at ``rise`` [m/s].
+    """Return θ̇ and u̇ after an impact at ``pivot``; before it the base turned about ``key``, which rose at ``rise`` [m/s].
 
-    The blow has no moment about the pivot and does no work on the mode, so that the momenta of both are kept.
+    The impulse has no moment about the pivot and does no work on the mode, so that both momenta are conserved.
     """
     sine, cosine = sine_and_cosine(y.theta)
     about, b = masses_about(m, y.u, pivot), m.half_width
@@ -93,7 +93,7 @@ def _after_blow(m, y, key, rise, pivot):
 
 @kernel
 def _flat(m, y):
-    """Return the state as both pivots stop at once: only the mode moves on, with its momentum."""
+    """Return the state after both pivots stop at once: only the mode moves on, with its momentum."""
     return Flexing(0.0, 0.0, 0.0, 0.0, y.u, y.u_rate + m.coupling / m.second * y.omega)
 
 
@@ -101,7 +101,7 @@ def _flat(m, y):
 def _impact(m, y, side):
     """Return state, stance and kind as the base passes through θ = 0.
 
-    Where the pier would not turn on about the new pivot, both stay down.
+    If the pier would not continue to turn about the new pivot, both pivots stay down.
     """
     y = Flexing(0.0, 0.0, y.v_rate, y.omega, y.u, y.u_rate)
     omega, u_rate = _after_blow(m, y, side, 0.0, -side)

@@ -1,4 +1,4 @@
-"""Lanes of piers whose shaft bends: what a table holds of them, how runs begin and end."""
+"""Lanes of piers with an elastic shaft: their table, and the start and the results of their runs."""
 
 import math
 from typing import NamedTuple
@@ -19,14 +19,22 @@ from rockbatch.core.types import LEFT, RIGHT, Moment
 class Ending(NamedTuple):
     """Number that decides when the run is over, and its greatest displacements so far."""
 
-    longest: float  # sample at which the pier is no longer waited for
+    longest: float  # sample at which the run ends in any case
     deflection: float  # of the top across the shaft [m]
-    drift: float  # of the top, horizontally from above where it stands at rest [m]
+    drift: float  # horizontal displacement of the top from rest [m]
 
 
-LANE = lanes_of(COMMON | {
-    "model": Numbers, "now": Flexing, "end": Tilt, "rates": Flexing, "contact": Stance, "ending": Ending,
-})  # fmt: skip
+LANE = lanes_of(
+    COMMON
+    | {
+        "model": Numbers,
+        "now": Flexing,
+        "end": Tilt,
+        "rates": Flexing,
+        "contact": Stance,
+        "ending": Ending,
+    }
+)
 
 
 LINE = (
@@ -34,8 +42,8 @@ LINE = (
     ("theta", float),  # at the start [rad]
     ("u", float),  # [m]
     *TIMING,
-)  # fmt: skip
-"""Fields of a run as it is requested."""
+)
+"""Fields of the request of a run, with their types."""
 
 Line = NamedTuple("Line", LINE)  # type: ignore[misc]
 
@@ -45,21 +53,38 @@ def _model(traits, lanes, i):
     """Return the FlexibleBlock of lane ``i``."""
     m = get(lanes.model, i, Numbers)
     return FlexibleBlock(
-        m.half_width, m.height, m.inertia, m.gravity, m.alpha, m.p, m.guided, m.rest, m.deck, m.first, m.second,
-        m.coupling, m.frequency, m.damping, m.top, m.top_shape, m.tipping, m.flight_step,
-        traits.pull, True,
-    )  # fmt: skip
+        m.half_width,
+        m.height,
+        m.inertia,
+        m.gravity,
+        m.alpha,
+        m.p,
+        m.guided,
+        m.rest,
+        m.deck,
+        m.first,
+        m.second,
+        m.coupling,
+        m.frequency,
+        m.damping,
+        m.top,
+        m.top_shape,
+        m.tipping,
+        m.flight_step,
+        traits.pull,
+        True,
+    )
 
 
 @system.pier_in.of(FlexibleTraits)
 def pier_in(traits, lanes, i):
-    """Return the FlexibleBlock of lane ``i``, and its Moment; the ground needs no support."""
+    """Return the FlexibleBlock of lane ``i`` and its Moment, without supports."""
     return _model(traits, lanes, i), Moment(get(lanes.now, i, Flexing), get(lanes.contact, i, Stance), None)
 
 
 @inlined
 def _drift(m, y):
-    """Return how far the top is to the right of the middle of the base, beyond rest [m], and its rate [m/s]."""
+    """Return the horizontal displacement of the top from rest, to the right [m], and its rate [m/s]."""
     sine, cosine = math.sin(y.theta), math.cos(y.theta)
     u, u_rate = m.top_shape * y.u, m.top_shape * y.u_rate
     return m.top * sine + u * cosine, (m.top * cosine - u * sine) * y.omega + u_rate * cosine
@@ -80,7 +105,7 @@ def begin(traits, lanes, i, run):
 
 @kernel
 def _include_displacements(lanes, i, m, part):
-    """Bring the greatest displacements up to those of a Part."""
+    """Raise the greatest displacements to those of a Part."""
     start, end, kept = part.start.y, part.end, lanes.ending
     kept.deflection[i] = largest_within(start.u, start.u_rate, end.u, end.u_rate, part.length, kept.deflection[i])[1]
     way, rate = _drift(m, start)
@@ -90,7 +115,7 @@ def _include_displacements(lanes, i, m, part):
 
 @system.take_in_part.of(FlexibleTraits)
 def take_in_part(traits, lanes, i, m, part, after):
-    """Keep displacements, the height of flight, state and stance."""
+    """Record displacements and the height of flight, and set state and stance."""
     _include_displacements(lanes, i, m, part)
     if system.airborne(m, part.start.contact):
         start, top = part.start, part.start.contact.top
@@ -111,5 +136,5 @@ def system_of(m):
 
 
 def line_of(m, theta, u, *timing):
-    """Return the Line of a run of the pier ``m`` (FlexibleBlock); ``timing`` is what Line has from ``dt`` on."""
+    """Return the Line of a run of the pier ``m`` (FlexibleBlock); ``timing`` are the fields of Line from ``dt`` on."""
     return Line(*m[:-2], theta, u, *timing)

@@ -18,12 +18,12 @@ class FlexibleBlock(NamedTuple):
     alpha: float  # α [rad]
     p: float  # [rad/s]
     guided: float  # 1: flight goes on, 0: it ends the run
-    rest: float  # velocity that counts as none [m/s]
+    rest: float  # velocity that counts as zero [m/s]
     deck: float  # 0: no frame
     first: float  # μ1 = ∫φ dm/M
     second: float  # μ2 = ∫φ² dm/M
     coupling: float  # λ = ∫φ z dm/M [m]
-    frequency: float  # ω_f of the shaft on a base that stands [rad/s]
+    frequency: float  # ω_f of the shaft on a fixed base [rad/s]
     damping: float  # 2 ζ_f ω_f [1/s]
     top: float  # height at which drift is read [m]
     top_shape: float  # φ there
@@ -34,7 +34,7 @@ class FlexibleBlock(NamedTuple):
 
 
 class FlexibleTraits(NamedTuple):
-    """Traits that kernels are compiled for: the type of this field of a FlexibleBlock."""
+    """Traits for which kernels are compiled: the type of this field of a FlexibleBlock."""
 
     pull: Pull | None = None
 
@@ -48,7 +48,7 @@ Numbers = NamedTuple("Numbers", NUMBERS)  # type: ignore[misc]
 class Flexing(NamedTuple):
     """State of a FlexibleBlock; also its rates. While it rocks, v follows from θ."""
 
-    v: float  # height above that at rest of where the centre of mass would be in a straight shaft [m]
+    v: float  # rise of the centre of mass of a straight shaft above rest [m]
     theta: float  # rotation of the base, positive to the right [rad]
     v_rate: float  # [m/s]
     omega: float  # [rad/s]

@@ -213,15 +213,50 @@ def settle(m, d, d_end, h):
     if not _beyond(m, d, d_end, h) > 0.0:
         return False
     for j in range(int(m.strips) + 1):
-        x = m.bed[POSITIONS, j]
-        deepest = summit_within(
-            d.level + d.slope * x, d.level_rate + d.slope_rate * x,
-            d_end.level + d_end.slope * x, d_end.level_rate + d_end.slope_rate * x, h,
-        )  # fmt: skip
-        if deepest - most > m.bed[SET, j]:
-            m.bed[SET, j] = deepest - most
+        growth = _growth(m, d, d_end, h, j)
+        if growth > 0.0:
+            m.bed[SET, j] += growth
             yields = True
     return yields
+
+
+@inlined
+def _growth(m, d, d_end, h, j):
+    """Return by how much the set at node ``j`` grows in a step of ``h`` [s] between two Sinkings; not above 0 if it stays."""
+    x = m.bed[POSITIONS, j]
+    deepest = summit_within(
+        d.level + d.slope * x, d.level_rate + d.slope_rate * x,
+        d_end.level + d_end.slope * x, d_end.level_rate + d_end.slope_rate * x, h,
+    )  # fmt: skip
+    return deepest - m.strength / m.stiffness - m.bed[SET, j]
+
+
+@kernel
+def settling_work(m, d, d_end, h):
+    """Return the plastic work [J/kg] of a step that ``settle`` has not brought the set up to: of order 2.
+
+    In a strip of which one end yields the push on that end depends on the other one, so that no function of the set is its work.
+    """
+    work = 0.0
+    for j in range(int(m.strips) + 1):
+        growth = _growth(m, d, d_end, h, j)
+        if growth > 0.0:
+            for k in (j - 1, j + 1):
+                work += 0.5 * growth * (_push_at(m, d, j, k) + _push_at(m, d_end, j, k))
+    return work
+
+
+@inlined
+def _push_at(m, d, j, k):
+    """Return the push of the springs of the strip between nodes ``j`` and ``k`` that acts at ``j`` [m/s²]."""
+    if k < 0 or k > int(m.strips):
+        return 0.0
+    near, far, area = deflection(m, d, j), deflection(m, d, k), m.bed[AREA, min(j, k)]
+    if near <= 0.0:
+        return 0.0
+    share = near / (near - far) if far < 0.0 else 1.0
+    near, far = _within(m.stiffness * near, m.strength), _within(m.stiffness * far, m.strength)
+    return area * share * (0.5 * (near + far) - share * (near + 2.0 * far) * (1.0 / 6.0))
 
 
 @kernel

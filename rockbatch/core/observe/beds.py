@@ -8,7 +8,7 @@ from typing import NamedTuple
 from rockbatch.core.footing.equations import accelerations, energies, lever
 from rockbatch.core.footing.lanes import start_on_bed
 from rockbatch.core.footing.model import Footing, State, Touch
-from rockbatch.core.footing.strips import Push, deflection, push, settle, sinking, stored
+from rockbatch.core.footing.strips import Push, deflection, push, settle, settling_work, sinking
 from rockbatch.core.kernel import entry, kernel
 from rockbatch.core.observe.forces import Forces, fastest_heels, forces_at, friction_demand, waiting
 from rockbatch.core.observe.ledger import pulled
@@ -167,10 +167,9 @@ def follow_bed(m, rows, pulls, ground, dt, balance, out):
             shaken += sixth * (first.input + 4.0 * middle.input + last.input)
             p_delta += sixth * (first.p_delta + 4.0 * middle.p_delta + last.p_delta)
             damping += sixth * (first.damping + 4.0 * middle.damping + last.damping)
-            d = sinking(m, y_end)
-            before = stored(m, d)
-            settle(m, sinking(m, y), d, step.length)
-            plastic += before - stored(m, d)
+            d, d_end = sinking(m, y), sinking(m, y_end)
+            plastic += settling_work(m, d, d_end, step.length)
+            settle(m, d, d_end, step.length)
         kinetic, potential, elastic = energies(m, y_end)
         bed, line, at = push(m, sinking(m, y_end)), balance[i], out[i]
         line.kinetic, line.potential, line.elastic = kinetic - kinetic0, potential - potential0, elastic - elastic0

@@ -18,14 +18,14 @@ from rockbatch.core.types import LEFT, RIGHT
 
 
 class Forces(NamedTuple):
-    """A moment of a run: forces on the pier per unit of its mass, and how it moves over the ground."""
+    """Forces on a pier at one moment, per unit of its mass, and its motion over the ground."""
 
     shear: float  # V/M, horizontal, of the supports on the pier, to the right [m/s²]
     normal: float  # N/M, vertical, of all supports, up [m/s²]
     moment: float  # over M, of supports and devices about the middle of the base, positive as the right one bears more [m²/s²]
     left: float  # of the left support [m/s²]
     right: float
-    gap_left: float  # of the pivot above where its support waits [m]
+    gap_left: float  # of the pivot above its support [m]
     gap_right: float
     speed_left: float  # at which it opens [m/s]
     speed_right: float
@@ -33,14 +33,14 @@ class Forces(NamedTuple):
     along: float  # velocity of the centre of mass over the ground, to the right, of springs as in full contact [m/s]
     up: float  # and upwards
     omega: float  # [rad/s]
-    friction: float  # |V|/N; infinite where nothing presses the pier down
+    friction: float  # |V|/N; inf if N is not above 0
     clearance: float  # of the lower pivot [m]
 
 
 FORCES = record(Forces)
 
 LIFTED = 1e-9
-"""Of g: a normal force that is no more than rounding."""
+"""Normal force over M g that is rounding."""
 
 
 class Outline(NamedTuple):
@@ -48,13 +48,13 @@ class Outline(NamedTuple):
 
     size: float  # R0 [m]
     width: float  # 2b between the corners [m]
-    deck_share: float  # of the horizontal motion of the centre of mass that the deck makes too
-    deck_above: float  # by how much the deck is higher, where it turns with the block [m]
-    deck_shape: float  # share of the top's deflection that the deck of a shaft that bends makes
+    deck_share: float  # horizontal motion of the deck over that of the centre of mass
+    deck_above: float  # height of a deck that turns with the block above the centre of mass [m]
+    deck_shape: float  # mode shape of an elastic shaft at the deck
 
 
 class Hold(NamedTuple):
-    """Friction against a block at rest that begins to turn about either pivot."""
+    """Resistance of friction to a block at rest that begins to turn about either pivot."""
 
     left_down: float  # force on the pier [m/s²]
     left_back: float  # angular deceleration [rad/s²]
@@ -63,7 +63,7 @@ class Hold(NamedTuple):
 
 
 class Body(NamedTuple):
-    """Numbers beside Block that the forces on a rigid base need."""
+    """Further numbers that the forces on a rigid base need."""
 
     outline: Outline
     hold: Hold
@@ -71,7 +71,7 @@ class Body(NamedTuple):
 
 @kernel
 def friction_demand(gravity, shear, normal):
-    """Return |V|/N, infinite where nothing presses the pier down."""
+    """Return |V|/N; inf if N is not above 0 by more than rounding."""
     return abs(shear) / normal if normal > LIFTED * gravity else math.inf
 
 
@@ -111,7 +111,7 @@ def on_springs(m, deck, now, ground):
 
 @kernel
 def _waits(was, contact, side, waiting, position):
-    """Return where the support on ``side`` waits [m]: where its pivot has left it, which is at ``position`` now."""
+    """Return the position [m] of the free support on ``side``: ``position`` if its pivot has just separated, else ``waiting``."""
     before, now = (was.left, contact.left) if side == LEFT else (was.right, contact.right)
     left = (before != 0.0 or was.held == side) and now == 0.0 and contact.held != side
     return position if left else waiting
@@ -121,7 +121,7 @@ def _waits(was, contact, side, waiting, position):
 def _at_rest(m, body, y, ground):
     """Return the forces on a block at rest on both pivots, and the pivot about which it would turn, 0 if it stays.
 
-    Both bear what moment and weight ask for; what would lift one of them friction holds, as far as it can.
+    The pivots carry weight and moment; friction resists the uplift of one of them as far as it can.
     """
     (outline, hold), horizontal, vertical = body, ground.horizontal, ground.vertical
     b, still, gap = 0.5 * outline.width, 0.0 * outline.size * y.omega, 0.0 * outline.width
@@ -130,7 +130,7 @@ def _at_rest(m, body, y, ground):
     pressed = LEFT if more > 0.0 else RIGHT
     down, back = (hold.left_down, hold.left_back) if pressed == LEFT else (hold.right_down, hold.right_back)
     lacks = (abs(more) - normal) * b * m.quickness
-    wider = m.half_width - b  # 0, but of a frame: the block that stands for its columns is wider than one
+    wider = m.half_width - b  # 0, except for a frame, whose equivalent block is wider than a column
     lacks += wider * (abs(horizontal) * m.height / m.half_width - m.gravity - vertical) * m.quickness
     share = lacks / back if lacks > 0.0 else 0.0
     normal += share * down if lacks <= back else 0.0
@@ -148,7 +148,7 @@ def _at_rest(m, body, y, ground):
 def on_block(m, body, now, ground):
     """Return the forces on a block, rocking about a pivot, in flight or at rest.
 
-    Devices pull along the chord of the way of their places, to which cos(θ/2) of their force is vertical.
+    Devices pull along the chord of the arc of their places: cos(θ/2) of their force is vertical.
     """
     (y, contact, _), outline, horizontal, vertical = now, body.outline, ground.horizontal, ground.vertical
     side = side_of(contact)
@@ -174,7 +174,9 @@ def on_block(m, body, now, ground):
     shear = horizontal + along + grounded * pull * half_sine
     place = lean * m.half_width - slope
     moment = place * lifted - lever * (horizontal + along) - m.inertia * turning - shift(m, contact) * lifted
-    held = 0.5 * (contact.bore + contact.top) - lean  # keys of the deck beyond the mean of all, of a frame in flight
+    held = (
+        0.5 * (contact.bore + contact.top) - lean
+    )  # position of the deck's key relative to the mean of all keys, for a frame in flight
     swung = held * m.half_width * (sine * turning + cosine * squared)
     deck = outline.deck_share * (along + swung) + outline.deck_above * (cosine * turning - sine * squared)
     on_left, on_right = contact.left, contact.right
@@ -190,7 +192,7 @@ def on_block(m, body, now, ground):
 
 @kernel
 def on_flexible_block(m, body, now, ground):
-    """Return the forces on a pier whose shaft bends, by the motion of its mass; otherwise as :func:`on_block`."""
+    """Return the forces on a pier with an elastic shaft, by the motion of its mass; otherwise as :func:`on_block`."""
     (y, contact, _), outline, horizontal, vertical = now, body.outline, ground.horizontal, ground.vertical
     side, flies = side_of(contact), airborne(m, contact)
     k, key = rates(m, y, contact, ground), side if side != 0.0 else key_of(m, contact)
@@ -198,7 +200,9 @@ def on_flexible_block(m, body, now, ground):
     half_sine, half_cosine = sine_and_cosine(0.5 * y.theta)
     about, squared, b = masses_about(m, y.u, key), y.omega * y.omega, m.half_width
     slope, arm = about.offset * cosine - m.height * sine, about.offset * sine + m.height * cosine
-    bent = cosine * k.u_rate - 2.0 * sine * y.u_rate * y.omega  # of what deflects by 1
+    bent = (
+        cosine * k.u_rate - 2.0 * sine * y.u_rate * y.omega
+    )  # acceleration of a point with the mode shape 1 by bending
     along = arm * k.omega + slope * squared + m.first * bent
     pull, grounded = m.pull.force * half_cosine, 0.0 if flies else 1.0
     lifted = m.gravity + vertical + k.v_rate + rise_of_bending(m, y, k)
@@ -211,7 +215,7 @@ def on_flexible_block(m, body, now, ground):
     if side == 0.0 and not flies:
         more = (m.pull.moment - moment) / b
         left, right = 0.5 * (normal + more), 0.5 * (normal - more)
-        lacks = max(-left, -right, 0.0)  # friction of dampers holds it
+        lacks = max(-left, -right, 0.0)  # tension of a foot, which friction of dampers carries
         left, right = max(left, 0.0) - (lacks if right < 0.0 else 0.0), max(right, 0.0) - (lacks if left < 0.0 else 0.0)
     high, to_deck = m.height + outline.deck_above, outline.deck_shape * bent
     place = key * b - outline.deck_shape * y.u
@@ -229,13 +233,13 @@ def on_flexible_block(m, body, now, ground):
 
 @hook
 def waiting(m, y, was, contact, supports):
-    """Return where the supports of free pivots wait in state ``y``, whose contact ``was`` another until then."""
+    """Return the Supports of free pivots in state ``y``, when the contact ``was`` replaced by ``contact``."""
 
 
 @waiting.of(Springs)
 def _waiting_springs(m, y, was, contact, supports):
     at = geometry(m, y.theta)
-    # A damped support creeps back to where it is unstressed
+    # A damped support recovers to its unstressed position
     left = y.v + at.lift_left - m.yield_deflection * y.z_left
     right = y.v + at.lift_right - m.yield_deflection * y.z_right
     left, right = _waits(was, contact, LEFT, supports.left, left), _waits(was, contact, RIGHT, supports.right, right)
@@ -272,12 +276,12 @@ def _forces_on_flexible_block(m, body, now, ground):
 
 @hook
 def fastest_heels(m, step):
-    """Return the shares of a step at which the left and the right heel may leave their supports fastest; 0 if at none."""
+    """Return the shares of a step at which the gaps of the left and the right heel may open fastest; 0 if at its ends."""
 
 
 @kernel
 def _fastest(m, on_spring, z, acceleration, length):
-    """Return the share of a step at which the gap above a support that creeps back opens fastest, 0 if it does not.
+    """Return the share of a step at which the gap above a recovering support opens fastest; 0 if not inside.
 
     The support moves at w exp(−t/τ), its pivot at a steady acceleration a: that is where a + (w/τ) exp(−t/τ) = 0.
     """

@@ -1,8 +1,8 @@
-"""Energy balance of a recorded run: terms of the input, and the residual (THEORY.md, Energy ledger).
+"""Energy balance of a recorded run: its terms, and the residual (THEORY.md, Energy ledger).
 
 An observer: it takes the rows of a history, step by step, and integrates the power of each term by Simpson's rule, with
-the state in the middle of a step from the cubic Hermite polynomial through its ends. Runs that do not ask for it pay
-nothing. What is left over tests the equations, the events and the impacts at once.
+the state in the middle of a step from the cubic Hermite polynomial through its ends. Other runs pay nothing for it. The
+residual tests equations, events and impacts at once.
 """
 
 from typing import NamedTuple
@@ -56,7 +56,7 @@ def _stored(m, y, contact):
 
 @kernel
 def _powers(m, y, k, contact, ground):
-    """Return the powers of input, plastic work, P–Δ, constraint and the dashpots under the pivots [W/kg]."""
+    """Return the powers [W/kg] of input, plastic work, P–Δ, constraint and dashpots; 0 for terms that do not occur."""
     at = geometry(m, y.theta)
     left, right = y.v_rate + at.arm_left * y.omega, y.v_rate + at.arm_right * y.omega
     shaken = ground_power(m, y, contact, ground)
@@ -78,7 +78,7 @@ def _powers(m, y, k, contact, ground):
 
 @kernel
 def _recovered(m, contact, y, y_end):
-    """Return the energy [J/kg] that supports without their pivots have lost to their dashpots: all that was stored."""
+    """Return the energy [J/kg] that supports without their pivots have lost to their dashpots in a step."""
     left = (1.0 - contact.left) * (y.z_left * y.z_left - y_end.z_left * y_end.z_left)
     right = (1.0 - contact.right) * (y.z_right * y.z_right - y_end.z_right * y_end.z_right)
     return 0.5 * m.yield_force * m.yield_deflection * (left + right)

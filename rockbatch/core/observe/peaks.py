@@ -1,8 +1,8 @@
-"""Forces of a recorded run, at its rows and the greatest of all (THEORY.md, Forces).
+"""Forces of a recorded run at its rows, and their greatest values (THEORY.md, Forces).
 
-An observer, like the ledger: runs that do not ask for it pay nothing. Forces follow from the state at any share of a step. Each
-step is looked at in its middle too, and where a parabola through the three moments promises a greater peak: what is taken
-is the force of the state there, never the parabola's own value, which may lie beyond all that occurs where a law is steep.
+An observer, like the ledger: other runs pay nothing for it. Forces follow from the state at any share of a step. Each step is
+evaluated at its middle, too, and at the vertex of a parabola through the three values if it exceeds the peak: the force of
+the state there counts, not the parabola's value, which may be too large where a law is steep.
 """
 
 import math
@@ -42,20 +42,20 @@ from rockbatch.core.table import record, with_pull
 from rockbatch.core.types import Ground, Moment, Pull
 
 NEVER = -1.0
-"""Time of what does not happen."""
+"""Time of an event that does not occur."""
 
 BISECTIONS = 40
-"""Of a step in which the normal force passes its limit."""
+"""Bisections of a step in which the normal force passes its limit."""
 
 _FRICTION, _SHEAR = Forces._fields.index("friction"), Forces._fields.index("shear")
 
 
 class Limits(NamedTuple):
-    """Limits that the moments of a run are held against."""
+    """Limits with which the forces of a run are compared."""
 
     friction: float  # coefficient of the interface, infinite where it is not known
-    normal: float  # N/M below which friction counts for nothing [m/s²]
-    unstressed: float  # where the supports of pivots that are free at the start wait [m]
+    normal: float  # N/M below which no friction demand is taken [m/s²]
+    unstressed: float  # position of the supports of pivots that are free at the start [m]
 
 
 class Noted(NamedTuple):
@@ -136,7 +136,7 @@ def _pull_within(m, devices, j, at, place, y):
 
 
 @kernel
-def _by_laws(m, devices, place, y):
+def _pull_by_laws(m, devices, place, y):
     """Return the Pull, in state ``y`` at a Place, of all that has a law: not of friction."""
     total, moment, at = 0.0, 0.0, attitude(m, y, place.step.contact, devices.level)
     for j in range(len(devices.elements)):
@@ -163,9 +163,9 @@ def _with_devices(devices, m, pulls, place, y):
     """Use the devices' laws, and what friction adds to them at both ends, linear between."""
     i, step, s = place
     start, now, end = (
-        _by_laws(m, devices, Place(i, step, 0.0), step.start),
-        _by_laws(m, devices, place, y),
-        _by_laws(m, devices, Place(i, step, 1.0), step.end),
+        _pull_by_laws(m, devices, Place(i, step, 0.0), step.start),
+        _pull_by_laws(m, devices, place, y),
+        _pull_by_laws(m, devices, Place(i, step, 1.0), step.end),
     )
     rubs, rubs_end = pulls[i - 1, 0] - start.force, pulls[i, 0] - end.force
     turns, turns_end = pulls[i - 1, 1] - start.moment, pulls[i, 1] - end.moment

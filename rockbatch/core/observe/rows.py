@@ -1,4 +1,4 @@
-"""Rows of a history, the ground under them, and states within a step: for observers of a recorded run."""
+"""States, contacts and ground at the rows of a history and within its steps, for observers of a recorded run."""
 
 from typing import NamedTuple
 
@@ -32,7 +32,7 @@ def _state_of_flexible_block(m, row):
 
 @hook
 def contact_of(m, row):
-    """Return the contact in a row: that of the step that ends there, or after the event."""
+    """Return the contact in a row: of the step that ends there, or after the event."""
 
 
 @contact_of.of(Springs)
@@ -60,7 +60,7 @@ def remember(m, y, y_end, length):
 
 @kernel
 def ground_at(ground, dt, middle, t):
-    """Return the Ground at ``t``, in the sampling interval in which ``middle`` lies."""
+    """Return the Ground at ``t`` [s], linear in the sampling interval that contains ``middle``; zeros after the motion."""
     sample = int(middle / dt)
     if sample >= len(ground):
         return Ground(0.0, 0.0, 0.0, 0.0)
@@ -83,7 +83,7 @@ class Step(NamedTuple):
 
 @kernel
 def step_between(under, under_end, row, row_end, ground, dt):
-    """Return the Step from ``row`` to ``row_end`` of a pier that is ``under`` the pull of its devices at both."""
+    """Return the Step from ``row`` to ``row_end``; ``under`` and ``under_end`` are the pier with its devices' pull there."""
     start, end, contact = state_of(under, row), state_of(under, row_end), contact_of(under, row_end)
     middle = 0.5 * (row.t + row_end.t)
     shaking, shaking_end = ground_at(ground, dt, middle, row.t), ground_at(ground, dt, middle, row_end.t)
@@ -104,7 +104,7 @@ def ground_within(step, s):
 def cubic(start, rate, end, rate_end, h, s):
     """Return the cubic Hermite polynomial at the share ``s`` of a step of ``h`` [s].
 
-    It keeps between its ends where both rates have the same sign: through what is steep at one end it would overshoot.
+    It is limited to the values at its ends if both rates have the same sign, since a steep end would make it overshoot.
     """
     way = end - start
     value = start + s * (way + (1.0 - s) * ((1.0 - s) * (h * rate - way) - s * (h * rate_end - way)))
@@ -115,18 +115,20 @@ def cubic(start, rate, end, rate_end, h, s):
 
 @hook
 def within(m, step, s):
-    """Return the state at the share ``s`` of a step; what decays in closed form does so here too."""
+    """Return the state at the share ``s`` of a step by cubics, with decaying variables in closed form."""
 
 
 @within.of(Springs)
 def _within_on_springs(m, step, s):
     y, k, end, k_end, h = step.start, step.rates, step.end, step.rates_end, step.length
     y_within = State(
-        cubic(y.v, k.v, end.v, k_end.v, h, s), cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
-        cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s), cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
+        cubic(y.v, k.v, end.v, k_end.v, h, s),
+        cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
+        cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s),
+        cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
         cubic(y.z_left, k.z_left, end.z_left, k_end.z_left, h, s),
         cubic(y.z_right, k.z_right, end.z_right, k_end.z_right, h, s),
-    )  # fmt: skip
+    )
     return stage(m, y_within, y, step.contact, share(m, s * h))
 
 
@@ -134,16 +136,21 @@ def _within_on_springs(m, step, s):
 def _within_of_block(m, step, s):
     y, k, end, k_end, h = step.start, step.rates, step.end, step.rates_end, step.length
     return Rocking(
-        cubic(y.v, k.v, end.v, k_end.v, h, s), cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
-        cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s), cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
-    )  # fmt: skip
+        cubic(y.v, k.v, end.v, k_end.v, h, s),
+        cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
+        cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s),
+        cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
+    )
 
 
 @within.of(FlexibleBlock)
 def _within_of_flexible_block(m, step, s):
     y, k, end, k_end, h = step.start, step.rates, step.end, step.rates_end, step.length
     return Flexing(
-        cubic(y.v, k.v, end.v, k_end.v, h, s), cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
-        cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s), cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
-        cubic(y.u, k.u, end.u, k_end.u, h, s), cubic(y.u_rate, k.u_rate, end.u_rate, k_end.u_rate, h, s),
-    )  # fmt: skip
+        cubic(y.v, k.v, end.v, k_end.v, h, s),
+        cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
+        cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s),
+        cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
+        cubic(y.u, k.u, end.u, k_end.u, h, s),
+        cubic(y.u_rate, k.u_rate, end.u_rate, k_end.u_rate, h, s),
+    )

@@ -1,6 +1,6 @@
-"""Ending of a run on springs, and reading of its residuals (THEORY.md, When a run is over).
+"""End of a run on springs, and reading of its residuals, checked once a sample after the record.
 
-Looked at once a sample, from the end of the record on.
+See THEORY.md, When a run is over.
 """
 
 import math
@@ -27,47 +27,49 @@ from rockbatch.core.system import pier_in
 from rockbatch.core.types import GROWING, RESTLESS, RUNNING, SURVIVED, UNDECIDED, Moment
 
 GROWTH = 1e-4
-"""Of α: by how much |θ| and the base's tilt may grow in the second half of the waiting without the pier counting as
+"""Growth of |θ| and of the base's tilt over α in the second half of the time after the record above which a pier counts as
 leaning further."""
 
 
 FORESEEN = 2.0
-"""Factor by which a base on springs that ratchet may drift on faster than between its readings: its lean speeds it up, and
-vibration that has not decayed comes and goes (measured; a pier has overturned whose drift was taken as it was)."""
+"""Factor by which a base on ratcheting springs may drift faster than between its readings: its lean accelerates it, and undamped
+vibration comes and goes (measured: without it a pier counted as standing that overturned)."""
 
 
 class Waiting(NamedTuple):
     """Numbers that decide when a run is over, and its residuals."""
 
-    earliest: float  # sample from which on residuals may be read
-    patience: float  # samples that a pier is waited for at most
-    longest: float  # sample at which waiting ends
-    read_wait: float  # samples between two readings; 0 where there is nothing to read twice
-    read_by: float  # sample from which on residuals are read though the pier still steps, or may turn further
+    earliest: float  # first sample at which residuals may be read
+    patience: float  # greatest number of further samples
+    longest: float  # sample at which the run ends in any case
+    read_wait: float  # samples between two readings; 0 if springs do not yield
+    read_by: float  # sample from which residuals are read even if the pier still steps, or may turn further
     read: float  # sample of the first reading, UNSET before it
-    read_left: float  # unstressed positions of both supports then [m], their difference a mean up to the second reading
+    read_left: (
+        float  # unstressed positions of both supports then [m]; their difference is a mean up to the second reading
+    )
     read_right: float
-    last_read: float  # likewise, of the last one
+    last_read: float  # sample of the last reading, and positions then
     last_left: float
     last_right: float
     drift_left: float  # of both supports from the first reading to the second [m/s], NaN before it
     drift_right: float
-    last_drift_left: float  # likewise, between the last two, 0 before them
+    last_drift_left: float  # between the last two readings, 0 before them
     last_drift_right: float
-    midway: float  # greatest |θ| when half of the waiting is over [rad]
+    midway: float  # greatest |θ| halfway between tail and longest end [rad]
     midway_tilt: float  # |tilt| of the base then [rad]
-    load: float  # what the supports carry at rest, the weight and what tendons add to it [m/s²]
-    stored: float  # energy that tendons may give back, beyond what they do at that load [J/kg]
+    load: float  # load of the supports at rest: weight and tendons [m/s²]
+    stored: float  # energy that devices may return, beyond the work of that load [J/kg]
     period: float  # of rocking in full contact [s]
-    growth: float  # factor by which impacts may raise the energy while the pier is waited for
-    further_right: float  # what is foreseen of the base's tilt, a Drift
+    growth: float  # factor by which impacts may still raise the energy
+    further_right: float  # foreseen Drift of the base's tilt
     further_left: float
     further_growth: float
 
 
 @kernel
 def set_deadline(lanes, i, m, run):
-    """Set how long lane ``i`` of the pier ``m`` goes on after its record at most, and when its residuals are read."""
+    """Set the longest end of the run of the pier ``m`` in lane ``i``, and the samples at which residuals are read."""
     waiting, last, samples = lanes.waiting, lanes.clock.npts[i] - 1.0, lanes.clock.samples[i]
     waiting.earliest[i] = last + run.read_after
     waiting.patience[i] = run.patience
@@ -86,6 +88,7 @@ def set_deadline(lanes, i, m, run):
 
 @kernel
 def _unstressed(m, position, z, on_spring, waiting):
+    """Return the unstressed position of a support [m]: by its pivot in contact, else ``waiting``."""
     return position - m.yield_deflection * z if on_spring != 0.0 else waiting
 
 
@@ -108,33 +111,33 @@ def _tilt(m, now):
 
 @kernel
 def _calm_from(lanes, i):
-    """Return the time [s] from which on no pivot has moved for a period of rocking, and the ground has been at rest."""
+    """Return the time [s] one period of rocking after the last contact event and the end of the record."""
     return max(lanes.tally.moved[i], lanes.clock.npts[i] * lanes.clock.dt[i]) + lanes.waiting.period[i]
 
 
 @kernel
 def _stands(lanes, i, contact):
-    """Return whether the pier has stood on both pivots for a period of rocking while the ground was at rest."""
+    """Return True if the pier has stood on both pivots for a period of rocking with the ground at rest."""
     both = contact.left != 0.0 and contact.right != 0.0
     return both and lanes.clock.sample[i] * lanes.clock.dt[i] >= _calm_from(lanes, i)
 
 
 @kernel
 def _legible(lanes, i, contact):
-    """Return whether residuals may be read: the pier stands, or has been waited for as long as it is."""
+    """Return True if residuals may be read: the pier stands, or the latest sample for it has come."""
     return lanes.clock.sample[i] >= lanes.waiting.read_by[i] or _stands(lanes, i, contact)
 
 
 @kernel
 def _base_and_yield_points(m, now):
-    """Return where both supports are unstressed [m], and their yield points."""
+    """Return the unstressed positions of both supports [m], and their yield points."""
     left, right = base_of(m, now)
     return Supports(left, right, now.supports.yield_left, now.supports.yield_right)
 
 
 @kernel
 def _peak_is_final(lanes, i, m, now, devices):
-    """Return whether nothing can exceed the peak any more; never while the ground moves."""
+    """Return True if nothing can exceed the peak any more; False while the ground moves."""
     if not ground_rests(lanes, i):
         return False
     waiting = lanes.waiting
@@ -147,7 +150,7 @@ def _peak_is_final(lanes, i, m, now, devices):
 
 @kernel
 def _read_base(lanes, i, m, now):
-    """Read the residuals: the positions of the supports, and how they have drifted since the last reading."""
+    """Record the positions of the supports, and their drift since the last reading."""
     waiting, sample = lanes.waiting, lanes.clock.sample[i]
     left, right = base_of(m, now)
     if waiting.read[i] < 0.0:
@@ -165,7 +168,7 @@ def _read_base(lanes, i, m, now):
 
 @kernel
 def _foresee(lanes, i, m):
-    """Foresee how far the base may still tilt, if its supports go on as between the first two readings, or the last two."""
+    """Set the Drift of the base, should its supports continue as between the first two readings, or the last two."""
     waiting = lanes.waiting
     ahead = 0.5 * waiting.patience[i] * lanes.clock.dt[i] * (FORESEEN if m.creep > 0.0 else 1.0)
     last_left, last_right = ahead * waiting.last_drift_left[i], ahead * waiting.last_drift_right[i]
@@ -178,7 +181,7 @@ def _foresee(lanes, i, m):
 
 @kernel
 def _include_in_mean(lanes, i, m, now):
-    """Bring the tilt, which is a mean over the time between the first two readings, up to this sample."""
+    """Include this sample in the tilt, a mean over the time between the first two readings."""
     waiting = lanes.waiting
     left, right = base_of(m, now)
     samples = lanes.clock.sample[i] - waiting.read[i] + 1.0
@@ -188,8 +191,8 @@ def _include_in_mean(lanes, i, m, now):
 
 
 @kernel
-def _in_deck(m, devices, y, contact):
-    """Return the energy [J/kg] that springs and stops at the deck store in state ``y``, which depends on θ alone."""
+def _energy_at_deck(m, devices, y, contact):
+    """Return the energy [J/kg] stored in springs and stops at the deck in state ``y``; it depends on θ alone."""
     energy, at = 0.0, attitude(m, y, contact, devices.level[0])
     for j in range(len(devices.elements)):
         of = devices.elements[j]
@@ -199,12 +202,11 @@ def _in_deck(m, devices, y, contact):
 
 
 @kernel
-def _in_devices(lanes, i, m, devices, now):
-    """Note the load [m/s²] that supports carry at rest, and the energy [J/kg] that devices may give back beyond its work.
+def _set_load_and_energy(lanes, i, m, devices, now):
+    """Set the load of the supports at rest [m/s²], and the energy [J/kg] that devices may return beyond its work.
 
-    A tendon's force falls with its elongation or stays: its energy lies above the tangent at any elongation, and that where
-    the base has come to is as good as any. Others give back what they have stored elastically, less what springs and stops at
-    the deck store at the peak.
+    A tendon's energy is convex in its elongation and lies above any tangent; that at the present settlement is taken. Other
+    devices return their elastic energy, less the energy that springs and stops at the deck store at the peak.
     """
     if devices is None:
         return
@@ -228,20 +230,20 @@ def _in_devices(lanes, i, m, devices, now):
     lanes.waiting.load[i] = load
     limit = min(lanes.peak.theta[i], unstable_equilibrium(m, load))
     right, left = State(y.v, limit, 0.0, 0.0, 0.0, 0.0), State(y.v, -limit, 0.0, 0.0, 0.0, 0.0)
-    at_limit = min(_in_deck(m, devices, right, contact), _in_deck(m, devices, left, contact))
+    at_limit = min(_energy_at_deck(m, devices, right, contact), _energy_at_deck(m, devices, left, contact))
     lanes.waiting.stored[i] = max(beyond, 0.0) + abs(turning) * (abs(y.theta) + lanes.peak.theta[i]) - at_limit
 
 
 @system.status_at_sample.of(SpringTraits)
 def status_at_sample(traits, lanes, i, devices):
-    """Return how the run in lane ``i`` has ended, and the next sample at which it may have or residuals are read."""
+    """Return the status of the run in lane ``i``, and the next sample to check or to read residuals."""
     status = _status(traits, lanes, i, devices)
     return status, _next_due(lanes, i)
 
 
 @kernel
 def _status(traits, lanes, i, devices):
-    """Return how the run in lane ``i`` has ended, RUNNING if it goes on; residuals are read."""
+    """Return the status of the run in lane ``i``, RUNNING unless it ends; read residuals when due."""
     waiting, sample = lanes.waiting, lanes.clock.sample[i]
     samples, longest = lanes.clock.samples[i], waiting.longest[i]
     if sample < waiting.earliest[i]:
@@ -259,7 +261,7 @@ def _status(traits, lanes, i, devices):
             _include_in_mean(lanes, i, m, now)
     if decided and sample < max(samples, waiting.read[i] + wait):
         return RUNNING
-    _in_devices(lanes, i, m, devices, now)
+    _set_load_and_energy(lanes, i, m, devices, now)
     final = _peak_is_final(lanes, i, m, now, devices)
     if final and not decided:
         lanes.peak.decided_at[i] = sample
@@ -274,7 +276,7 @@ def _status(traits, lanes, i, devices):
 
 @kernel
 def _next_due(lanes, i):
-    """Return the number of the next sample at which the run may be over, or something has to be read."""
+    """Return the next sample at which the run may end, or residuals have to be read."""
     waiting, sample = lanes.waiting, lanes.clock.sample[i]
     if sample < waiting.earliest[i]:
         return waiting.earliest[i]
@@ -292,7 +294,7 @@ def _next_due(lanes, i):
 
 @kernel
 def _given_up(lanes, i, m, now):
-    """Return how a run ends that nothing has decided for so long; one that is not waited for is cut off as it is."""
+    """Return the status of a run that is still undecided at its longest end; SURVIVED if it has no patience."""
     if lanes.waiting.patience[i] == 0.0:
         return SURVIVED
     lean = lean_on(m, _base_and_yield_points(m, now))

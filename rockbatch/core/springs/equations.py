@@ -18,27 +18,29 @@ def geometry(m, theta):
         s, c = sine_and_cosine(theta)
         drop = h * s * s / (1.0 + c)  # h (1 − cos θ), without the loss of digits
         arm_left, arm_right = b * c + h * s, -b * c + h * s
+        lift_left, lift_right, bend_left, bend_right = b * s + drop, -b * s + drop, -b * s + h * c, b * s + h * c
+        lever, slope, swing, swing_slope = h * c, -h * s, b * s, b * c
         return Geometry(
-            b * s + drop, -b * s + drop,
-            arm_left, arm_right,
-            -b * s + h * c, b * s + h * c,
-            arm_left, arm_right,
-            h * c, -h * s,
-            b * s, b * c,
-        )  # fmt: skip
-    return Geometry(
-        b * theta, -b * theta,
-        b, -b,
-        0.0, 0.0,
-        b + h * theta, -b + h * theta,
-        h, 0.0,
-        b * theta, b,
-    )  # fmt: skip
+            lift_left,
+            lift_right,
+            arm_left,
+            arm_right,
+            bend_left,
+            bend_right,
+            arm_left,
+            arm_right,
+            lever,
+            slope,
+            swing,
+            swing_slope,
+        )
+    moment_left, moment_right = b + h * theta, -b + h * theta
+    return Geometry(b * theta, -b * theta, b, -b, 0.0, 0.0, moment_left, moment_right, h, 0.0, b * theta, b)
 
 
 @inlined
 def with_forces(pull, force, moment):
-    """Return force and moment, upwards and to the right, with those of dampers and tendons."""
+    """Return force, upwards, and moment, to the right, with those of devices added."""
     if pull is None:
         return force, moment
     return force - pull.force, moment - pull.moment
@@ -46,7 +48,7 @@ def with_forces(pull, force, moment):
 
 @inlined
 def accelerations_at(m, y, contact, at, ground):
-    """Return v̈ [m/s²] and θ̈ [rad/s²] of state ``y``, whose geometry is ``at``."""
+    """Return v̈ [m/s²] and θ̈ [rad/s²] of state ``y`` with the Geometry ``at``."""
     force_left, force_right = forces(m, y, contact, at)
     side = contact.right - contact.left
     lever = at.lever + side * at.swing
@@ -85,7 +87,7 @@ def rates(m, y, contact, ground):
 
 @kernel
 def pivot_acceleration(m, y, contact, side, ground):
-    """Return the vertical acceleration [m/s²] of the pivot on ``side`` (LEFT or RIGHT), over that of its support without it."""
+    """Return the vertical acceleration [m/s²] of the pivot on ``side`` (LEFT or RIGHT) relative to a free support."""
     at = geometry(m, y.theta)
     v_acceleration, theta_acceleration = accelerations_at(m, y, contact, at, ground)
     if side == LEFT:
@@ -97,19 +99,19 @@ def pivot_acceleration(m, y, contact, side, ground):
 
 @system.share.of(Springs)
 def share(m, h):
-    """Return the share of z that is left after ``h`` [s] to supports without their pivots."""
+    """Return the factor of z after ``h`` [s] of supports without their pivots."""
     return share_left(m, h)
 
 
 @system.stage.of(Springs)
 def stage(m, y, start, contact, remaining):
-    """Return a stage of a step, with what has recovered in closed form."""
+    """Return a stage of a step, with z of supports without their pivots in closed form."""
     return with_recovery(m, y, start, contact, remaining)
 
 
 @system.end_step.of(Springs)
 def end_step(m, y, start, contact, remaining):
-    """Return the end of a step, with z no lower than −1 and what has recovered in closed form."""
+    """Return the end of a step, with z limited to −1, and in closed form without pivots."""
     z_left, z_right = within_yield(y.z_left, contact.left_yields), within_yield(y.z_right, contact.right_yields)
     return with_recovery(m, State(y.v, y.theta, y.v_rate, y.omega, z_left, z_right), start, contact, remaining)
 
@@ -124,24 +126,22 @@ def ground_power(m, y, contact, ground):
 
 @system.airborne.of(Springs)
 def airborne(m, contact):
-    """Return whether both pivots are in the air."""
+    """Return True if both pivots are in the air, without grazing contact."""
     return contact.left == 0.0 and contact.right == 0.0 and contact.held == 0.0
 
 
 @inlined
 def clearances(m, y, supports):
-    """Return the Clearances of both pivots above their waiting supports; the rates are those of the pivots."""
+    """Return the Clearances of both pivots above their supports; the rates are the pivots' velocities."""
     at = geometry(m, y.theta)
     left, right = top(m, supports.left, y.z_left), top(m, supports.right, y.z_right)
-    return Clearances(
-        y.v + at.lift_left - left, y.v + at.lift_right - right,
-        y.v_rate + at.arm_left * y.omega, y.v_rate + at.arm_right * y.omega,
-    )  # fmt: skip
+    rate_left, rate_right = y.v_rate + at.arm_left * y.omega, y.v_rate + at.arm_right * y.omega
+    return Clearances(y.v + at.lift_left - left, y.v + at.lift_right - right, rate_left, rate_right)
 
 
 @kernel
 def without(contact, side):
-    """Return the contacts once the pivot on ``side`` is free."""
+    """Return ``contact`` with the pivot on ``side`` free."""
     held = 0.0 if contact.held == side else contact.held
     if side == LEFT:
         return Contact(0.0, contact.right, 0.0, contact.right_yields, held)
@@ -150,7 +150,7 @@ def without(contact, side):
 
 @kernel
 def touching(contact, side, yields):
-    """Return the contacts once the pivot on ``side`` is on its spring, on the branch that ``yields`` says."""
+    """Return ``contact`` with the pivot on ``side`` on its spring, on the inelastic branch if ``yields`` is 1."""
     held = 0.0 if contact.held == side else contact.held
     if side == LEFT:
         return Contact(1.0, contact.right, yields, contact.right_yields, held)
@@ -159,7 +159,7 @@ def touching(contact, side, yields):
 
 @kernel
 def holding(contact, side, yields):
-    """Return the contacts once the pivot on ``side`` grazes its support, between contact and flight; only one can."""
+    """Return ``contact`` with the pivot on ``side`` grazing its support; the other one then is in contact if it grazed."""
     if contact.held == -side:
         contact = touching(contact, -side, yields)
     free = without(contact, side)

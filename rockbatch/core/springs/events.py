@@ -1,7 +1,7 @@
-"""Event functions of the pivots: positive until an event, at which one falls through zero.
+"""Event functions of the pivots: positive until an event, where one falls through zero.
 
-Each pivot has two signals. On its spring: −z (separation) and the spring law's switching_point (reversal of the velocity, or
-yield). Free: the gap to the waiting support (landing). Held: the two conditions under which it stops being held.
+Each pivot has two functions. On its spring: −z (separation) and the law's switching_point (velocity reversal, or yield).
+Free: the gap to its support (landing). In grazing contact: the two conditions that end it.
 """
 
 from typing import NamedTuple
@@ -16,7 +16,7 @@ from rockbatch.core.springs.recovery import acceleration_of_top, lag, top, veloc
 from rockbatch.core.types import LEFT, RIGHT, Signals
 
 NO_GAP = 1e-12
-"""Of δ_y: a gap that rounding can open or close."""
+"""Gap over δ_y that rounding can open or close."""
 
 
 class Side(NamedTuple):
@@ -34,7 +34,7 @@ class Side(NamedTuple):
 
 @inlined
 def _gap(m, gap, velocity, acceleration):
-    """Return a gap; one that is nothing but rounding, of a pivot that has no velocity either, opens unless it is pressed down."""
+    """Return a gap [m]; one within rounding of a pivot at rest is made positive, unless the pivot accelerates downwards."""
     rounding = NO_GAP * m.yield_deflection
     if abs(velocity) <= m.rest and acceleration > -NO_ACCELERATION * m.gravity and abs(gap) <= rounding:
         return rounding
@@ -43,7 +43,7 @@ def _gap(m, gap, velocity, acceleration):
 
 @inlined
 def _compression(m, z, z_rate, velocity, acceleration):
-    """Return the force over F_y with which a pivot presses its support, and its rate [1/s]."""
+    """Return the compression of a support over F_y, with its dashpot, and its rate [1/s]."""
     if m.damped is None:
         return -z, -z_rate
     slower = lag(m)
@@ -54,8 +54,8 @@ def _compression(m, z, z_rate, velocity, acceleration):
 
 
 @inlined
-def _above(m, side):
-    """Return the gap [m] of a free pivot over its support, and the velocity [m/s] with which it opens."""
+def _free_functions(m, side):
+    """Return the gap [m] of a free pivot over its support, and its opening velocity [m/s]."""
     velocity = side.velocity - velocity_of_top(m, side.z)
     acceleration = side.acceleration - acceleration_of_top(m, side.z)
     gap = _gap(m, side.position - top(m, side.support, side.z), velocity, acceleration)
@@ -63,7 +63,7 @@ def _above(m, side):
 
 
 @inlined
-def _on_spring(m, side):
+def _contact_functions(m, side):
     """Return values and slopes of the two event functions of a pivot on its spring."""
     z, z_rate, velocity, acceleration = side.z, side.z_rate, side.velocity, side.acceleration
     if abs(velocity) <= m.rest:
@@ -76,8 +76,8 @@ def _on_spring(m, side):
 
 
 @kernel
-def _held(m, y, contact, side, ground):
-    """Return the event functions of a grazing contact: it lasts while contact would lift the pivot and freedom press it down."""
+def _grazing_functions(m, y, contact, side, ground):
+    """Return the event functions of a grazing contact, which lasts while contact would lift the pivot and flight lower it."""
     lifted = pivot_acceleration(m, y, touching(contact, side, 0.0), side, ground)
     pressed = -pivot_acceleration(m, y, without(contact, side), side, ground)
     return lifted, pressed
@@ -87,15 +87,14 @@ def _held(m, y, contact, side, ground):
 def _sides(m, y, k, contact, supports):
     """Return both sides in state ``y`` with rates ``k``."""
     at, turning = geometry(m, y.theta), y.omega * y.omega
-    left = Side(
-        y.v + at.lift_left, y.v_rate + at.arm_left * y.omega, k.v_rate + at.arm_left * k.omega + at.bend_left * turning,
-        y.z_left, k.z_left, contact.left_yields, supports.left, supports.yield_left,
-    )  # fmt: skip
-    right = Side(
-        y.v + at.lift_right, y.v_rate + at.arm_right * y.omega, k.v_rate + at.arm_right * k.omega + at.bend_right * turning,
-        y.z_right, k.z_right, contact.right_yields, supports.right, supports.yield_right,
-    )  # fmt: skip
-    return left, right
+    velocity = y.v_rate + at.arm_left * y.omega
+    acceleration = k.v_rate + at.arm_left * k.omega + at.bend_left * turning
+    yields, support, point = contact.left_yields, supports.left, supports.yield_left
+    left = Side(y.v + at.lift_left, velocity, acceleration, y.z_left, k.z_left, yields, support, point)
+    velocity = y.v_rate + at.arm_right * y.omega
+    acceleration = k.v_rate + at.arm_right * k.omega + at.bend_right * turning
+    yields, support, point = contact.right_yields, supports.right, supports.yield_right
+    return left, Side(y.v + at.lift_right, velocity, acceleration, y.z_right, k.z_right, yields, support, point)
 
 
 @system.event_functions.of(Springs)
@@ -105,28 +104,28 @@ def event_functions(m, devices, now):
     left_side, right_side = _sides(m, y, k, contact, supports)
     left_law, left_law_slope, right_law, right_law_slope = 1.0, 0.0, 1.0, 0.0
     if contact.left != 0.0:
-        left, left_slope, left_law, left_law_slope = _on_spring(m, left_side)
+        left, left_slope, left_law, left_law_slope = _contact_functions(m, left_side)
     else:
-        left, left_slope = _above(m, left_side)
+        left, left_slope = _free_functions(m, left_side)
     if contact.right != 0.0:
-        right, right_slope, right_law, right_law_slope = _on_spring(m, right_side)
+        right, right_slope, right_law, right_law_slope = _contact_functions(m, right_side)
     else:
-        right, right_slope = _above(m, right_side)
+        right, right_slope = _free_functions(m, right_side)
     if contact.held < 0.0:
-        left, left_law = _held(m, y, contact, LEFT, ground)
+        left, left_law = _grazing_functions(m, y, contact, LEFT, ground)
         left_slope = 0.0
     elif contact.held > 0.0:
-        right, right_law = _held(m, y, contact, RIGHT, ground)
+        right, right_law = _grazing_functions(m, y, contact, RIGHT, ground)
         right_slope = 0.0
     return Signals(left, right, left_law, right_law), Signals(left_slope, right_slope, left_law_slope, right_law_slope)
 
 
 @kernel
 def settle(m, y, contact, side, ground):
-    """Return the contacts of a pivot that is at its support and goes as it does: the accelerations decide.
+    """Return the contacts of a pivot at its support with the same velocity, as the accelerations decide.
 
-    Contact equations that press it down keep it there; else free ones that lift it let it go; else neither has a
-    solution, and it is held (Filippov's sliding mode).
+    It is in contact if the equations of contact press it down; else free if those of flight lift it; else neither has a
+    solution, and the contact grazes (Filippov's sliding mode).
     """
     at = geometry(m, y.theta)
     arm = at.arm_left if side == LEFT else at.arm_right

@@ -1,9 +1,8 @@
-"""Bounds on free vibration: how far a pier's energy carries it, and whether beyond the unstable equilibrium.
+"""Bounds on free vibration: the greatest rotation that a pier's energy allows, and whether it may overturn.
 
-The ground is at rest. Between impacts energy is kept, at impacts and by yielding it is lost, so the energy of this
-moment bounds every later rotation (THEORY.md, When a run is over); impacts by Housner's e may add a little. Energies
-are per unit mass [J/kg]. ``load`` is what the supports carry at rest [m/s²]: g, and what tendons add to it without an
-arm h θ of their own.
+The ground is at rest. Energy is conserved between impacts, and lost at impacts and by yielding, so the present energy
+bounds every later rotation (THEORY.md, When a run is over); impacts by Housner's e may add a little. Energies are per unit
+mass [J/kg]. ``load`` is the load of the supports at rest [m/s²]: g and the tendons' forces, which have no P–Δ moment.
 """
 
 import math
@@ -15,19 +14,18 @@ from rockbatch.core.springs.laws import give, limited
 from rockbatch.core.springs.model import HOUSNER
 
 PARTS = 24
-"""Parts of the way to the supports' capacity over which their work is summed."""
+"""Intervals up to the supports' capacity over which their work is summed."""
 
 GAINED = 0.1
-"""Share of the most that a landing by Housner's e can add to the energy, which landings have added on average (measured: 0.06
-at most)."""
+"""Mean gain of energy of landings by Housner's e over the greatest possible one (measured: at most 0.06)."""
 
 SEEN = 1e-6
-"""Relative error of an extreme that has been seen, by which it may lie below the amplitude of its vibration."""
+"""Relative amount by which the extremes of a sampled vibration may lie below its amplitude."""
 
 
 @kernel
 def _capacity(m, load):
-    """Return the supports' greatest moment about the base's centre, over load · b: one carries all, or what it can."""
+    """Return the supports' greatest moment about the base's centre over load · b; below 1 if one cannot carry all."""
     return min(1.0, 2.0 * m.yield_force / load - 1.0) if limited(m.law) != 0.0 else 1.0
 
 
@@ -64,12 +62,12 @@ def _weight_moment(m, travel):
 
 @kernel
 def _climb(m, lean, target, load, point):
-    """Return the energy that it takes at least to turn from rest at ``lean`` to ``target`` [rad], or to the unstable equilibrium.
+    """Return the least energy to turn from rest at ``lean`` to ``target`` [rad], or to the unstable equilibrium.
 
     The pier turns towards the support on the right, which is loaded by x, the supports' moment over load · b; the other one
-    is unloaded, elastic. A Bouc–Wen spring takes 1/(1 − zⁿ) of the elastic deflection, a hardening one beyond its yield
-    ``point``. From the capacity on, the moment stays and the pier turns about its far support. For the other direction
-    reverse both angles. A pier that leans beyond ``target`` is there already: −inf.
+    is unloaded elastically. A Bouc–Wen spring has 1/(1 − zⁿ) of the elastic deflection rate, a hardening one beyond its yield
+    ``point``. At the capacity the moment is constant and the pier turns about its far support. For the other direction
+    reverse both angles. −inf if ``lean`` is at ``target`` or beyond.
     """
     if lean >= target:
         return -math.inf
@@ -105,10 +103,10 @@ def _climb(m, lean, target, load, point):
 
 @kernel
 def _returned(m, theta):
-    """Return the share of the energy that may come back on the way to ``theta`` [rad]: 2 b h θ/(I0/M + h² + b²).
+    """Return the relative gain of energy that is possible up to ``theta`` [rad]: 2 b h θ/(I0/M + h² + b²).
 
-    First-order P–Δ moments have no potential: what the vertical inertia v̈ does with the arm h θ is no energy of the
-    model. It integrates to v̇ h θ θ̇, of which v̇ ≤ b θ̇. In finite kinematics H jumps by as much with a contact.
+    First-order P–Δ moments have no potential: the work of the vertical inertia v̈ on the arm h θ integrates to v̇ h θ θ̇,
+    where v̇ ≤ b θ̇. In finite kinematics H jumps by as much with a contact.
     """
     b, h = m.half_width, m.height
     return 2.0 * b * h * theta / (m.inertia + h * h + b * b)
@@ -116,10 +114,10 @@ def _returned(m, theta):
 
 @kernel
 def growth(m, seconds):
-    """Return the factor by which impacts may raise the energy within ``seconds``: 1 but by Housner's e.
+    """Return the factor by which impacts may raise the energy within ``seconds``: 1 unless by Housner's e.
 
-    A landing by it adds (1 − e)/(1 + e) · b²/(I0/M + h²) of the kinetic energy at most (THEORY.md, eq. 11b). As many are
-    counted as both pivots can have at the frequency of the vertical vibration.
+    A landing by it adds at most (1 − e)/(1 + e) · b²/(I0/M + h²) of the kinetic energy (THEORY.md, eq. 11b). Their number is
+    that of both pivots at the frequency of the vertical vibration.
     """
     if m.impact != HOUSNER:
         return 1.0
@@ -129,19 +127,19 @@ def growth(m, seconds):
 
 
 class Drift(NamedTuple):
-    """Greatest further tilt of the base that can be foreseen: yielding springs settle on with each cycle of vibration."""
+    """Greatest further tilt of the base that is foreseen, as yielding springs settle with each cycle of vibration."""
 
-    right: float  # amplified to the rotation of a pier on it [rad]
+    right: float  # rotation of a pier on it to the right [rad]
     left: float
-    growth: float  # share of its lean by which it leans further
+    growth: float  # relative growth of its lean
 
 
 @kernel
 def further(m, right, left, sinking):
-    """Return the Drift of a base that tilts by ``right`` or ``left`` [rad] and sinks by ``sinking`` [m] if it goes on as it has.
+    """Return the Drift of a base that will tilt by ``right`` or ``left`` [rad] and sink by ``sinking`` [m].
 
-    A Bouc–Wen support under a share 1 + h θ/b of its load sinks (1 + h θ/b)ⁿ times as fast: the lean grows by itself,
-    by the factor exp(n h amplification · sinking/b²) while both sink by ``sinking`` on average.
+    A Bouc–Wen support under 1 + h θ/b times its load sinks (1 + h θ/b)ⁿ times as fast: the lean grows exponentially, by the
+    factor exp(n h amplification · sinking/b²) while both sink by ``sinking`` on average.
     """
     amplification = _amplification(m)
     right, left = max(right * amplification, 0.0), max(left * amplification, 0.0)
@@ -156,7 +154,7 @@ def further(m, right, left, sinking):
 
 @kernel
 def _amplification(m):
-    """Return the rotation of a pier at rest over the tilt of its base."""
+    """Return the rotation of a pier at rest over the tilt of its base, above 1 by its P–Δ moment."""
     stiffness = rocking_stiffness(m)
     return (stiffness + m.gravity * m.height) / stiffness
 
@@ -168,7 +166,7 @@ def lean_on(m, base):
 
 
 class Load(NamedTuple):
-    """Load of the supports at rest [m/s²], what devices may give back beyond its work [J/kg], and :func:`growth` by impacts."""
+    """Load of the supports at rest [m/s²], energy of devices beyond its work [J/kg], and :func:`growth` by impacts."""
 
     weight: float
     stored: float
@@ -177,18 +175,18 @@ class Load(NamedTuple):
 
 @kernel
 def peak_is_final(m, now, carried, peak, calm, drift):
-    """Return whether nothing that comes after the Moment ``now`` can exceed the peak, nor overturn the pier.
+    """Return True if nothing after the Moment ``now`` can exceed the peak or overturn the pier.
 
     Parameters
     ----------
     now : Moment
-        Its supports tell where both are unstressed [m], also under their pivots, and their yield points.
+        Its supports have the unstressed positions of both [m], also in contact, and their yield points.
     carried : Load
     peak : float
         Greatest |θ| so far [rad].
     calm : bool
-        Both pivots have stayed on the ground, and the ground at rest, for a period of rocking: what rocks then keeps
-        apart from what vibrates vertically, but for the P–Δ moment of the latter.
+        Both pivots have been in contact, and the ground at rest, for a period of rocking: rocking and vertical vibration are
+        then coupled by the P–Δ moment only.
     drift : Drift
     """
     y, contact, base = now

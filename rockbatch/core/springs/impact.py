@@ -8,7 +8,7 @@ from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, LEFT, RIGHT
 
 @kernel
 def supported(contact, side):
-    """Return whether the pivot on ``side`` is on its support, or grazes it."""
+    """Return True if the pivot on ``side`` is on its support, or grazes it."""
     return (contact.left if side == LEFT else contact.right) != 0.0 or contact.held == side
 
 
@@ -24,9 +24,9 @@ def _arms(m, theta, side):
 
 @kernel
 def land(m, y, side, contact):
-    """Return the state after the pivot on ``side`` (LEFT or RIGHT) has met its waiting support, and its velocity [m/s] then.
+    """Return the state after the pivot on ``side`` (LEFT or RIGHT) has landed on its support, and its velocity [m/s] then.
 
-    By Housner's e the other pivot keeps its velocity if it is ``supported``, else the centre of mass does.
+    By Housner's e the other pivot keeps its velocity if it is ``supported``; otherwise the centre of mass does.
     """
     arm, other, inertia = _arms(m, y.theta, side)
     if m.impact == HOUSNER:
@@ -44,7 +44,7 @@ def land(m, y, side, contact):
 def land_flat(m, y):
     """Return the state after both pivots have landed at one instant: both velocities, hence v̇ and θ̇, are multiplied by ε.
 
-    By Housner's e neither supports the other: θ̇ is multiplied by it, and v̇ is kept.
+    By Housner's e θ̇ is multiplied by e, and v̇ is kept.
     """
     if m.impact == HOUSNER:
         return State(y.v, y.theta, y.v_rate, m.restitution * y.omega, y.z_left, y.z_right)
@@ -53,9 +53,9 @@ def land_flat(m, y):
 
 @kernel
 def loss(m, y, contact, kind):
-    """Return the energy [J/kg] that an impact of this ``kind`` takes from state ``y`` with the contacts before it.
+    """Return the energy [J/kg] lost in an impact of ``kind`` from state ``y``, with the contacts before it.
 
-    By the landing pivot's ε it is never negative; by Housner's e it is where the supporting pivot moves fast enough
+    By the landing pivot's ε it is never negative; by Housner's e it is negative if the supporting pivot moves fast enough
     (THEORY.md, eq. 11b).
     """
     side = LEFT if kind == IMPACT_LEFT else RIGHT

@@ -1,4 +1,4 @@
-"""Lanes of piers on springs: what a table holds of them, how runs begin and end."""
+"""Lanes of piers on springs: their table, and the start and the results of their runs."""
 
 from typing import NamedTuple
 
@@ -31,30 +31,42 @@ class Lowest(NamedTuple):
     plastic: float  # unstressed position of both supports at the start [m]
 
 
-LANE = lanes_of(COMMON | {
-    "model": Numbers, "now": State, "end": State, "rates": State, "contact": Contact, "supports": Supports,
-    "loading": Loading, "lowest": Lowest, "reversals": Reversals, "waiting": Waiting,
-})  # fmt: skip
+LANE = lanes_of(
+    COMMON
+    | {
+        "model": Numbers,
+        "now": State,
+        "end": State,
+        "rates": State,
+        "contact": Contact,
+        "supports": Supports,
+        "loading": Loading,
+        "lowest": Lowest,
+        "reversals": Reversals,
+        "waiting": Waiting,
+    }
+)
 
 
 LINE = (
-    *NUMBERS, *TIMING,
-    ("read_after", float),  # samples from the end of the record to the earliest moment at which residuals are read
-    ("read_wait", float),  # from there to the second reading, which tells how they drift; 0: once the peak is decided
+    *NUMBERS,
+    *TIMING,
+    ("read_after", float),  # samples from the end of the record to the first reading of residuals
+    ("read_wait", float),  # samples on to the second reading, which gives their drift; 0 if the springs do not yield
     ("prestress", float),  # of tendons, over the mass [m/s²]
-    ("v", float),  # where the pier is held at the start [m], if it is held at a rotation
+    ("v", float),  # state at the start [m] of a pier that is held at a rotation
     ("theta", float),  # [rad]; 0 for the static state
     ("z_left", float),
     ("z_right", float),
-)  # fmt: skip
-"""Fields of a run as it is requested."""
+)
+"""Fields of the request of a run, with their types."""
 
 Line = NamedTuple("Line", LINE)  # type: ignore[misc]
 
 
 @system.pier_in.of(SpringTraits)
 def pier_in(traits, lanes, i):
-    """Return the Springs of lane ``i``, and its Moment."""
+    """Return the Springs of lane ``i`` and its Moment."""
     now = Moment(get(lanes.now, i, State), get(lanes.contact, i, Contact), get(lanes.supports, i, Supports))
     return model_in(traits, lanes, i), now
 
@@ -68,14 +80,14 @@ def _put_moment(lanes, i, now):
 
 @kernel
 def static_state(m, load):
-    """Return the equilibrium under the ``load`` [m/s²], of the weight and of tendons: z = −(1 + ψ)/η on first loading."""
+    """Return the state at rest under the ``load`` [m/s²] of weight and tendons, z = −(1 + ψ)/η in first loading."""
     force = 0.5 * load / m.yield_force
     return State(m.level, 0.0, 0.0, 0.0, -force, -force)
 
 
 @kernel
 def static_contact(m, y):
-    """Return contacts and supports in the static state ``y``, in first loading."""
+    """Return contacts and supports in the static state ``y``."""
     branch = yields_at_first(m.law)
     point = yield_point(m.law, 0.0, y.z_left)
     return Contact(1.0, 1.0, branch, branch, 0.0), Supports(0.0, 0.0, point, point)
@@ -83,10 +95,10 @@ def static_contact(m, y):
 
 @kernel
 def held_contact(m, y, z_static, plastic):
-    """Return contacts and supports as the pier is let go in state ``y``, to which it was pulled from the static one.
+    """Return contacts and supports at the release in state ``y``, to which the pier was pulled from the static one.
 
-    The side that was lifted is pressed next, and the one that was pressed is unloaded; a support without its pivot waits where it
-    is unstressed, at ``plastic`` [m].
+    The lifted side is compressed next, and the compressed one unloaded; a support without its pivot is unstressed at
+    ``plastic`` [m].
     """
     pressed, left, right = yields_when_pressed(m.law), y.z_left < 0.0, y.z_right < 0.0
     left_yields = pressed if left and y.theta > 0.0 else 0.0
@@ -98,7 +110,7 @@ def held_contact(m, y, z_static, plastic):
 
 @system.begin.of(SpringTraits)
 def begin(traits, lanes, i, run):
-    """Put the model of ``run`` into lane ``i``, in its static state or where it is held at a rotation."""
+    """Set the model of ``run`` in lane ``i``, and its state: static, or held at a rotation."""
     put(lanes.model, i, taken(run, Numbers))
     pier = model_in(traits, lanes, i)
     y = static_state(pier, run.gravity + run.prestress)
@@ -118,7 +130,7 @@ def begin(traits, lanes, i, run):
 
 @inlined
 def _include_extremes(lanes, i, m, part):
-    """Bring height of flight and lowest positions up to those of a Part."""
+    """Include a Part in the height of flight and the lowest positions."""
     (y, contact, supports), end, h = part
     if system.airborne(m, contact):
         include_height(lanes, i, clearances(m, y, supports), clearances(m, end, supports), h)
@@ -137,7 +149,7 @@ def _include_extremes(lanes, i, m, part):
 
 @system.take_in_part.of(SpringTraits)
 def take_in_part(traits, lanes, i, m, part, after):
-    """Keep extremes, where the branches of the springs began, and the plastic work of those that have ended."""
+    """Record extremes, the starts of the springs' branches, and the plastic work of those that have ended."""
     _include_extremes(lanes, i, m, part)
     loading, before = get(lanes.loading, i, Loading), part.start.contact
     put(lanes.loading, i, branches(m, loading, before, after.contact, branch_change(m, after.y)))
@@ -146,7 +158,7 @@ def take_in_part(traits, lanes, i, m, part, after):
 
 @system.take_in_step.of(SpringTraits)
 def take_in_step(traits, lanes, i, substep, history):
-    """Take in extremes and reversals of a sub-step of lane ``i`` that stands; the lane goes on from its end."""
+    """Record extremes and reversals of a sub-step of lane ``i`` that stands, and advance the lane to its end."""
     m, now = pier_in(traits, lanes, i)
     end = get(lanes.end, i, State)
     _include_extremes(lanes, i, m, Part(now, end, lanes.clock.step[i]))
@@ -157,13 +169,12 @@ def take_in_step(traits, lanes, i, substep, history):
 
 @kernel
 def _change_branches(lanes, i, m, now, substep, history):
-    """Let the springs of lane ``i`` change their branches where their velocities reversed in its sub-step."""
+    """Change the branches of the springs of lane ``i`` whose velocities reversed in its sub-step."""
     before, at, reversals = now.contact, get(lanes.reversals, i, BranchChange), lanes.reversals
     left, right = before.left_yields, before.right_yields
-    after = Contact(
-        before.left, before.right,
-        1.0 - left if reversals.left[i] >= 0.0 else left, 1.0 - right if reversals.right[i] >= 0.0 else right, 0.0,
-    )  # fmt: skip
+    left_after = 1.0 - left if reversals.left[i] >= 0.0 else left
+    right_after = 1.0 - right if reversals.right[i] >= 0.0 else right
+    after = Contact(before.left, before.right, left_after, right_after, 0.0)
     if history.rows.shape[0] > 0:
         _write_reversals(lanes, i, m, substep, after, history)
     put(lanes.contact, i, after)
@@ -195,7 +206,7 @@ def finish(traits, lanes, i, t, result):
 
 @kernel
 def _write_reversals(lanes, i, m, substep, after, history):
-    """Write both sides of the reversals that change the contact of lane ``i`` to that ``after`` its sub-step."""
+    """Write rows before and after each reversal that leads to the contact ``after`` the sub-step of lane ``i``."""
     start, number = substep * lanes.clock.step[i], int(lanes.clock.number[i])
     t, ground = lanes.clock.sample[i] * lanes.clock.dt[i] + start, ground_at(lanes, i, start)
     y, contact, supports = get(lanes.now, i, State), get(lanes.contact, i, Contact), get(lanes.supports, i, Supports)
@@ -220,11 +231,11 @@ def _write_reversals(lanes, i, m, substep, after, history):
 
 
 def system_of(m):
-    """Return the System of the pier ``m`` (Springs): what its runs are compiled for."""
+    """Return the System of the pier ``m`` (Springs), for which its runs are compiled."""
     return System(SpringTraits(m.exponent, m.finite, m.damped), Line, LANE, State._fields + Contact._fields)
 
 
 def line_of(m, *timing):
-    """Return the Line of a run of the pier ``m`` (Springs); ``timing`` is what Line has from ``dt`` on."""
+    """Return the Line of a run of the pier ``m`` (Springs); ``timing`` are the fields of Line from ``dt`` on."""
     exponent = 5.0 if m.exponent is None else float(m.exponent)
     return Line(*m[:-4], exponent, *timing)

@@ -1,9 +1,9 @@
 """Constitutive models of a spring: ż = (v̇/δ_y)(1 − |z|ⁿ) while it yields, v̇/δ_y otherwise (THEORY.md, eq. 7).
 
-z = F/F_y is in [−1, 0]. Bouc–Wen is on the inelastic branch whenever it is being compressed, the elastic spring never. The
-two others have a yield point, and are on it from there on until their velocity reverses: the elastic–perfectly plastic spring
-from z = −1, where the same expression gives ż = 0, the hardening one from the least z that it has had. What distinguishes the
-laws is one table here, :data:`LAWS`; kernels ask for its entries. ``yields`` is 1 on the inelastic branch, 0 on the elastic one;
+z = F/F_y is in [−1, 0]. A Bouc–Wen spring is on the inelastic branch whenever it is being compressed, an elastic one never. The
+other two have a yield point, and are on that branch from there until their velocity reverses: the elastic–perfectly plastic
+spring from z = −1, where the same expression gives ż = 0, the hardening one from the least z so far. All differences between
+the laws are in the table :data:`LAWS`, whose entries kernels use. ``yields`` is 1 on the inelastic branch, 0 on the elastic one;
 ``point`` is the yield point.
 """
 
@@ -16,7 +16,7 @@ from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.powers import power
 
 # Gauss–Legendre: poles of the integrand lie on the unit circle at ±2π/n, which n = 5 keeps well away from [0, 1]
-_NEARBY = 0.1  # half of a way over which half of the nodes suffice: 19⁻¹² is left, the poles being 9.5 such halves away
+_NEARBY = 0.1  # half width up to which half of the nodes suffice: with poles 9.5 half widths away the error is 19⁻¹²
 _NODES_NEARBY, _WEIGHTS_NEARBY = (tuple(map(float, column)) for column in np.polynomial.legendre.leggauss(6))
 _NODES_5, _WEIGHTS_5 = (tuple(map(float, column)) for column in np.polynomial.legendre.leggauss(12))
 _NODES, _WEIGHTS = (tuple(map(float, column)) for column in np.polynomial.legendre.leggauss(24))
@@ -24,7 +24,7 @@ _NODES, _WEIGHTS = (tuple(map(float, column)) for column in np.polynomial.legend
 
 @inlined
 def bouc_wen_loss(m, x):
-    """Return the share of a spring's stiffness that is lost on the inelastic branch, at the force ``x`` = |z| from 0 to 1: xⁿ."""
+    """Return xⁿ, the share of the stiffness that is lost on the inelastic branch at the force ``x`` = |z|, 0 to 1."""
     return power(x, m.exponent)
 
 
@@ -41,8 +41,8 @@ def _elastic_share(x, n):
 
 
 @kernel
-def _integral(middle, half, n):
-    """Integrate the elastic share over middle ± half; return the integral over ``half``."""
+def _elastic_share_integral(middle, half, n):
+    """Return ∫ (1 − x) xⁿ/(1 − xⁿ) dx over middle ± half, divided by ``half``; n = None stands for 5."""
     total = 0.0
     if n is None and half <= _NEARBY:
         for i in range(len(_NODES_NEARBY)):
@@ -59,7 +59,7 @@ def _integral(middle, half, n):
 
 @kernel
 def bouc_wen_work(m, z_from, z_to, plastic_deflection):
-    """Return the work/F_y [m] dissipated while a spring is compressed on its inelastic branch from ``z_from`` to ``z_to``.
+    """Return the work/F_y [m] dissipated in compression on the inelastic branch from ``z_from`` to ``z_to``.
 
     The law does not depend on the rate, so the work follows from the two ends: with x = |z| the plastic deflection
     grows by δ_y xⁿ/(1 − xⁿ) dx, and ∫ x du = Δu − δ_y ∫ (1 − x) xⁿ/(1 − xⁿ) dx, whose integrand is smooth. At
@@ -68,20 +68,20 @@ def bouc_wen_work(m, z_from, z_to, plastic_deflection):
     start, end = max(-z_from, 0.0), max(-z_to, 0.0)
     half = 0.5 * (end - start)
     middle = 0.5 * (end + start)
-    return plastic_deflection - m.yield_deflection * half * _integral(middle, half, m.exponent)
+    return plastic_deflection - m.yield_deflection * half * _elastic_share_integral(middle, half, m.exponent)
 
 
 class Law(NamedTuple):
-    """A law of springs. No field has a default: a law that lacks an entry cannot be imported.
+    """A law of springs. No field has a default, so that a law without an entry fails on import.
 
     Numbers are 0 or 1. Functions take the pier ``m`` first, whose law has been chosen by its code.
     """
 
-    limited: float  # it bears F_y at most
+    limited: float  # its force is at most F_y
     yields_at_first: float  # first loading is on the inelastic branch from the start
-    yields_when_pressed: float  # so is any loading from a state without velocity
+    yields_when_pressed: float  # any compression is on the inelastic branch
     has_point: float  # the elastic branch ends at a yield point
-    remembers: float  # which is the least z at which the spring has been unloaded; else −1
+    remembers: float  # the yield point is the least z at which the spring was unloaded; else −1
     stiffness_loss: (
         Callable  # (m, x): share of the stiffness lost on the inelastic branch, at the force x = |z| from 0 to 1
     )
@@ -128,14 +128,14 @@ LAWS = {
         plastic_work=bouc_wen_work,
     ),
 }
-"""All laws by the names that users write, and that of springs that do not yield."""
+"""All laws by their names in studies, and the law of springs that do not yield."""
 
 CODES = {name: float(code) for code, name in enumerate(LAWS)}
-"""Codes by which a pier's model names its law."""
+"""Codes of the laws in a pier's model."""
 
 
 def _flag(codes):
-    """Return the kernel that tells whether a law is one of those with these ``codes``: 1 or 0."""
+    """Return a kernel that returns 1 for a law with one of ``codes``, else 0."""
     if not codes:
         return _never
     code, others = codes[0], _flag(codes[1:])
@@ -153,13 +153,14 @@ def _never(law):
 
 
 def _flag_of(name):
+    """Return a kernel that returns the entry ``name``, 0 or 1, of a law by its code."""
     return _flag([CODES[law] for law, entries in LAWS.items() if getattr(entries, name) != 0.0])
 
 
 def _choice(functions):
-    """Return the kernel that calls the function of the pier's law, from pairs of code and function.
+    """Return a kernel that calls the function of the pier's law, from pairs of code and function.
 
-    Functions that all laws share are not chosen between: nothing is added to the vector loops that call them.
+    A function that all laws share is returned itself, so that nothing is added to the vector loops that call it.
     """
     (code, function), *others = functions
     if all(other is function for _, other in others):
@@ -174,6 +175,7 @@ def _choice(functions):
 
 
 def _function_of(name):
+    """Return a kernel that calls the entry ``name`` of the pier's law."""
     functions = [(CODES[law], getattr(entries, name)) for law, entries in LAWS.items()]
     return _choice(functions[::-1])
 
@@ -188,8 +190,8 @@ stiffness_loss, plastic_work = _function_of("stiffness_loss"), _function_of("pla
 def z_rate(m, z, velocity, yields):
     """Return the rate of z [1/s] of a spring in contact, from its velocity [m/s].
 
-    A step too long for a hard landing may try z < −1: the law ends at −1 (see :func:`within_yield`), for beyond it
-    would throw z back with all the more force and let a pressed spring separate.
+    A step too long for a hard landing may try z < −1: the force is limited to −1 (see :func:`within_yield`), since beyond it
+    the law would throw z back and let a compressed spring separate.
     """
     rate = velocity * m.stiffness
     if yields != 0.0:
@@ -199,32 +201,32 @@ def z_rate(m, z, velocity, yields):
 
 @inlined
 def within_yield(z, yields):
-    """Return z, no lower than −1 on the inelastic branch; a step that resolves the law never gets there."""
+    """Return z, but at least −1 on the inelastic branch, which a step that resolves the law never passes."""
     return max(z, -1.0) if yields != 0.0 else z
 
 
 @inlined
 def kept_sign(law, on_spring, yields):
-    """Return the sign that a spring's velocity keeps while it stays on its branch; 0 where the branch does not depend on it."""
+    """Return the sign of a spring's velocity on its branch; 0 if the branch does not depend on it, or without contact."""
     reloads = yields_when_pressed(law)
     return on_spring * (reloads - (reloads + 1.0) * yields)
 
 
 @inlined
 def may_yield(law, yields):
-    """Return whether the spring leaves its branch at a yield point."""
+    """Return True if the spring leaves its branch at a yield point."""
     return has_point(law) != 0.0 and yields == 0.0
 
 
 @inlined
 def yield_point(law, point, z):
-    """Return the yield point of a spring, so far at ``point``, whose velocity reverses at ``z`` on its inelastic branch."""
+    """Return the yield point after a velocity reversal at ``z`` on the inelastic branch; it was at ``point`` before."""
     return min(point, z) if remembers(law) != 0.0 else -1.0
 
 
 @inlined
 def switching_point(law, side, z_rate, acceleration):
-    """Return the event function of a switching point, positive while the spring of a Side stays on its branch, and its rate."""
+    """Return the event function of a Side's change of branch, positive before it, and its rate; 1 and 0 if it never changes."""
     sign = kept_sign(law, 1.0, side.yields)
     if may_yield(law, side.yields):
         return side.z - side.point, z_rate
@@ -233,13 +235,13 @@ def switching_point(law, side, z_rate, acceleration):
 
 @inlined
 def after_switch(law, yields, point, z):
-    """Return the other branch, and z, which is exactly the yield point where it is there that the branch changes."""
+    """Return the other branch, and z, set exactly to the yield point if the spring yields there."""
     return 1.0 - yields, point if may_yield(law, yields) else z
 
 
 @inlined
 def branch_after_jump(law, yields, point, z, velocity, rest):
-    """Return the branch of a spring whose velocity has jumped to ``velocity`` [m/s], which counts as none up to ``rest``."""
+    """Return the branch of a spring after a jump to ``velocity`` [m/s]; unchanged if that is at most ``rest``."""
     if abs(velocity) <= rest:
         return yields
     if velocity > 0.0:
@@ -249,16 +251,16 @@ def branch_after_jump(law, yields, point, z, velocity, rest):
 
 @inlined
 def branch_of_landing(m, velocity):
-    """Return the branch of a spring that a pivot meets at ``velocity`` [m/s]; a damped support may be met on its way up.
+    """Return the branch of a spring on which a pivot lands at ``velocity`` [m/s], upwards perhaps on a damped support.
 
-    It has been unloaded since it reached its yield point, if it has one.
+    A spring with a yield point has been unloaded since, and is elastic.
     """
     return 0.0 if m.damped is not None and velocity > 0.0 else yields_when_pressed(m.law)
 
 
 @kernel
 def give(m, force, point):
-    """Return δ_y/F_y times the rate of deflection with force, of a spring that is loaded with ``force``/F_y up to 1."""
+    """Return the tangent compliance over the elastic one of a spring under ``force``/F_y, from 0 to 1."""
     if yields_when_pressed(m.law) == 0.0 and (has_point(m.law) == 0.0 or force < -point):
         return 1.0
     return 1.0 / (1.0 - stiffness_loss(m, min(max(force, 0.0), 1.0 - 1e-12)))

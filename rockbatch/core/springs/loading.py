@@ -1,4 +1,4 @@
-"""The plastic work of the springs, branch by branch: runs keep only where each spring's present branch began."""
+"""Plastic work of the springs, branch by branch, from the start of each spring's present branch."""
 
 from typing import NamedTuple
 
@@ -19,7 +19,7 @@ class Loading(NamedTuple):
 
 
 class BranchChange(NamedTuple):
-    """Unstressed positions [m] and z of both springs where they change their branches."""
+    """Unstressed positions [m] and z of both springs at a change of their branches."""
 
     unstressed_left: float
     unstressed_right: float
@@ -37,7 +37,7 @@ class Branch(NamedTuple):
 
 @kernel
 def _branch(m, was, now, begun, unstressed, z):
-    """Return the Branch ``begun``, brought up to an event at ``z``, ``unstressed`` there then."""
+    """Return the Branch after an event at ``z``; that ``begun`` if the branch does not change, from ``was`` to ``now``."""
     if was == now:
         return begun
     work = begun.work
@@ -48,9 +48,9 @@ def _branch(m, was, now, begun, unstressed, z):
 
 @kernel
 def branches(m, loading, before, after, at):
-    """Return the Loading of both springs, brought up to a change of the contacts from ``before`` to ``after``.
+    """Return the Loading of both springs after a change of the contacts from ``before`` to ``after``.
 
-    ``at`` has unstressed positions [m] and z of both springs at the change of each (BranchChange).
+    ``at`` is a BranchChange: unstressed positions [m] and z at the change.
     """
     left = Branch(loading.left, loading.z_left, loading.work_left)
     left = _branch(m, before.left_yields, after.left_yields, left, at.unstressed_left, at.z_left)
@@ -61,7 +61,7 @@ def branches(m, loading, before, after, at):
 
 @kernel
 def branch_change(m, y):
-    """Return the BranchChange of springs that change their branches in state ``y``."""
+    """Return unstressed positions and z of both springs in state ``y``, as a BranchChange."""
     at, soft = geometry(m, y.theta), m.yield_deflection
     left, right = y.v + at.lift_left - soft * y.z_left, y.v + at.lift_right - soft * y.z_right
     return BranchChange(left, right, y.z_left, y.z_right)

@@ -6,19 +6,19 @@ from rockbatch.core.kernel import inlined
 from rockbatch.core.table import get
 from rockbatch.core.types import Pull
 
-# Impacts: what a landing does to the velocities
+# Rules of impact
 LANDING = 0.0
 HOUSNER = 1.0
 
 IMPACTS = {"landing": LANDING, "housner": HOUSNER}
-"""Impacts by the names that users write."""
+"""Rules of impact by the names in studies."""
 
 
 class Springs(NamedTuple):
     """A pier on two springs, per unit mass.
 
-    The last four are told apart by their types, hence when kernels are compiled: a call of ``pow``, ``sin`` or ``cos``
-    in an unused branch would cost the common model, n = 5, first-order and undamped, its vector instructions.
+    The types of the last four select code when kernels are compiled: a call of ``pow``, ``sin`` or ``cos`` in an unused
+    branch would keep the common model, n = 5, first-order and undamped, from being vectorised.
     """
 
     half_width: float  # b [m]
@@ -32,11 +32,11 @@ class Springs(NamedTuple):
     impact: float  # LANDING, by epsilon, or HOUSNER, by restitution
     restitution: float  # Housner's e, by which θ̇ is multiplied
     damping: float  # C/M = ζ ω_v of each support's dashpot [1/s]
-    law: float  # its code, of CODES in laws.py
+    law: float  # one of CODES in laws.py
     level: float  # v at rest, under the weight and tendons, on first loading [m]
-    creep: float  # power of its load by which a spring settles with every small cycle of it; 0 if it does not ratchet
+    creep: float  # power of the load with which a spring settles in every small cycle; 0 if it does not ratchet
     guided: float  # 1: flight goes on, 0: it ends the run
-    rest: float  # velocity that counts as none [m/s]
+    rest: float  # velocity that counts as zero [m/s]
     exponent: float | int | None  # n of Bouc–Wen; None for the paper's 5, int for other whole numbers up to 10
     finite: bool | None  # True: finite kinematics; None: first-order
     damped: bool | None = None  # True: a dashpot beside each spring; None: none
@@ -44,7 +44,7 @@ class Springs(NamedTuple):
 
 
 class SpringTraits(NamedTuple):
-    """Traits that kernels are compiled for: the types of these fields of Springs; their values do not matter."""
+    """Traits for which kernels are compiled: the types of these fields of Springs; their values do not matter."""
 
     exponent: float | int | None
     finite: bool | None
@@ -60,6 +60,7 @@ Numbers = NamedTuple("Numbers", NUMBERS)  # type: ignore[misc]
 
 @inlined
 def _typed(exponent, value):
+    """Return ``value`` in the type of ``exponent``: int, float or None."""
     if isinstance(exponent, int):
         return int(value)
     if isinstance(exponent, float):
@@ -69,13 +70,30 @@ def _typed(exponent, value):
 
 @inlined
 def model_in(traits, lanes, i):
-    """Return the Springs of lane ``i``, of the types that ``traits`` have."""
+    """Return the Springs of lane ``i``, with the types of ``traits``."""
     m = get(lanes.model, i, Numbers)
     return Springs(
-        m.half_width, m.height, m.inertia, m.gravity, m.yield_deflection, m.stiffness, m.yield_force, m.epsilon,
-        m.impact, m.restitution, m.damping, m.law, m.level, m.creep, m.guided, m.rest,
-        _typed(traits.exponent, m.exponent), traits.finite, traits.damped, traits.pull,
-    )  # fmt: skip
+        m.half_width,
+        m.height,
+        m.inertia,
+        m.gravity,
+        m.yield_deflection,
+        m.stiffness,
+        m.yield_force,
+        m.epsilon,
+        m.impact,
+        m.restitution,
+        m.damping,
+        m.law,
+        m.level,
+        m.creep,
+        m.guided,
+        m.rest,
+        _typed(traits.exponent, m.exponent),
+        traits.finite,
+        traits.damped,
+        traits.pull,
+    )
 
 
 class State(NamedTuple):
@@ -104,9 +122,9 @@ class Contact(NamedTuple):
 class Supports(NamedTuple):
     """State of the supports that is constant between events."""
 
-    left: float  # position at which the support of a free pivot is unstressed [m]; of others it means nothing
+    left: float  # unstressed position of the support of a free pivot [m]; without meaning in contact
     right: float
-    yield_left: float = -1.0  # yield point: z at which an elastic branch ends, where the law has one
+    yield_left: float = -1.0  # yield point: z at which the elastic branch ends, if the law has one
     yield_right: float = -1.0
 
 
@@ -123,5 +141,5 @@ class Geometry(NamedTuple):
     moment_right: float
     lever: float  # H in full contact [m]
     lever_slope: float  # dH/dθ [m]
-    swing: float  # what H gains when only the right pivot is in contact, and loses when only the left is [m]
+    swing: float  # increase of H with only the right pivot in contact, decrease with only the left [m]
     swing_slope: float

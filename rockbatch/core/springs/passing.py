@@ -1,8 +1,7 @@
 """One pass over all lanes of piers on springs: a sub-step each, and whether it stands.
 
-The compiler turns its first and last loop into vector instructions, several lanes at once, because nothing in them branches
-and nothing sums over lanes. Each lane has its own pier, motion, step and time, and its arithmetic does not see its
-neighbours: a run comes to the same bits in any company.
+The compiler vectorises the first and the last loop, since they have no branches and no sums over lanes. Each lane has its own
+pier, motion, step and time, and its arithmetic does not depend on its neighbours: a run gives the same bits in any company.
 """
 
 import math
@@ -23,11 +22,11 @@ from rockbatch.core.types import Instant
 
 
 class Reversals(NamedTuple):
-    """Reversals that the pass has corrected; they are those of the sub-step only where ``keeps`` is negative."""
+    """Reversals that the pass has corrected; valid for the sub-step only if ``keeps`` is negative."""
 
-    keeps: float  # negative if a spring's velocity has lost the sign that it keeps on its branch [m/s]
+    keeps: float  # negative if a spring's velocity has lost the sign of its branch [m/s]
     surely: float  # positive unless there may be two reversals of a spring, or one that is too sharp for a correction
-    left: float  # when the left velocity reversed [s], UNSET without a reversal
+    left: float  # time of the left reversal [s], UNSET without one
     right: float
     z_left: float  # z then
     z_right: float
@@ -36,26 +35,24 @@ class Reversals(NamedTuple):
 
 
 class Range(NamedTuple):
-    """Bounds on a pivot within a sub-step: Bézier points of the cubic through its ends, which runs between them."""
+    """Bounds on a pivot within a sub-step, by the Bézier points of the cubic through its ends."""
 
     lowest: float  # position [m]
-    rise: float  # by how much z may be above that at the start
-    rise_end: float  # and above that at the end
-    fall: float  # and by how much it may be below
+    rise: float  # bound on z above its start
+    rise_end: float  # bound on z above its end
+    fall: float  # bounds on z below them
     fall_end: float
 
 
 @inlined
 def _range(m, start, end, h):
-    """Return the Range of a pivot. z moves no faster than the pivot's velocity/δ_y, and in its direction."""
+    """Return the Range of a pivot; z changes no faster than the pivot's velocity/δ_y, and in its direction."""
     third = h * (1.0 / 3.0)
     third_of_z = third * m.stiffness
     down, down_end = max(-start.velocity, 0.0), max(end.velocity, 0.0)
-    return Range(
-        min(end.position - third * down_end, start.position - third * down),
-        third_of_z * max(start.velocity, 0.0), third_of_z * max(-end.velocity, 0.0),
-        third_of_z * down, third_of_z * down_end,
-    )  # fmt: skip
+    lowest = min(end.position - third * down_end, start.position - third * down)
+    rise, rise_end = third_of_z * max(start.velocity, 0.0), third_of_z * max(-end.velocity, 0.0)
+    return Range(lowest, rise, rise_end, third_of_z * down, third_of_z * down_end)
 
 
 class Support(NamedTuple):
@@ -71,48 +68,48 @@ class Support(NamedTuple):
 
 @inlined
 def _clear(m, support, start, end, within, h):
-    """Return a number, positive if a pivot surely has neither separated nor landed, nor reached its yield point.
+    """Return a number that is positive if a pivot has certainly neither separated nor landed, nor reached its yield point.
 
-    What may be no number comes first in maxima and minima: then they are none either.
+    Arguments that may be NaN come first in max and min, so that the result is NaN, too.
     """
     on_spring, yields, unstressed, point, z, z_end = support
     contact = -max(z_end + within.rise_end, z + within.rise)
-    if m.damped is not None:  # the dashpot pulls most where the parabola through both velocities and the way is highest
+    if m.damped is not None:  # greatest velocity by the parabola through both velocities and the displacement
         bulge = 1.5 * abs((end.position - start.position) / h - 0.5 * (start.velocity + end.velocity))
         contact -= lag(m) * (max(start.velocity, end.velocity) + bulge)
     until_yield = min(z_end - within.fall_end, z - within.fall) - point
-    gap = within.lowest - top(m, unstressed, z_end)  # a support creeps up
+    gap = within.lowest - top(m, unstressed, z_end)  # without its pivot a damped support rises
     contact = min(contact, until_yield) if may_yield(m.law, yields) else contact
     return contact if on_spring != 0.0 else gap
 
 
 @inlined
 def _not_lower(on_spring, start, end, within, lowest):
-    """Return a number, negative if a pivot may have been lower on its spring inside the sub-step than before, and at its ends."""
+    """Return a number that is negative if a pivot may have its lowest position so far inside the sub-step."""
     return within.lowest - lowest if on_spring * min(-start.velocity, end.velocity) > 0.0 else 1.0
 
 
 @inlined
 def _free(lanes, i):
-    """Return contacts without a grazing one, of which the pass does not know."""
+    """Return the contacts of lane ``i`` without a grazing one, which the pass does not handle."""
     at = lanes.contact
     return Contact(at.left[i], at.right[i], at.left_yields[i], at.right_yields[i], 0.0)
 
 
 @inlined
 def _signs(m, contact):
-    """Return the signs that the velocities of both springs keep on their branches."""
+    """Return the signs of the velocities of both springs on their branches."""
     left = kept_sign(m.law, contact.left, contact.left_yields)
     return left, kept_sign(m.law, contact.right, contact.right_yields)
 
 
 @inlined
 def _stepped(traits, lanes, i, substep):
-    """Take lane ``i`` through the sub-step, on the branches that its springs are on."""
+    """Integrate lane ``i`` over the sub-step, on the present branches of its springs."""
     m, h = model_in(traits, lanes, i), lanes.clock.step[i]
     y, contact, ground = get(lanes.now, i, State), _free(lanes, i), ground_at(lanes, i, substep * h)
     k = rates(m, y, contact, ground)
-    lanes.rates.v_rate[i], lanes.rates.omega[i] = k.v_rate, k.omega  # all that a correction takes
+    lanes.rates.v_rate[i], lanes.rates.omega[i] = k.v_rate, k.omega  # corrections need only these
     end = rk4(m, None, Instant(y, k, contact, None, ground), h)
     put(lanes.end, i, end)
     (left, right), (sign_left, sign_right) = pivots(m, end), _signs(m, contact)
@@ -121,8 +118,8 @@ def _stepped(traits, lanes, i, substep):
 
 @inlined
 def _next_turned(lanes, i, count):
-    """Return the first lane from ``i`` on in which a velocity has reversed; ``count`` if there is none."""
-    while i < count and not lanes.reversals.keeps[i] < 0.0:  # an empty lane has no number there
+    """Return the first lane from ``i`` on with a velocity reversal; ``count`` without one."""
+    while i < count and not lanes.reversals.keeps[i] < 0.0:  # NaN in empty lanes
         i += 1
     return i
 
@@ -146,9 +143,9 @@ def correct_reversals(traits, lanes, i):
 
 @inlined
 def _judged(traits, lanes, i, substep, settings):
-    """Say whether the sub-step of lane ``i`` stands, and let the lane go on from its end if it is calm.
+    """Set the step status of lane ``i``, and advance the lane if its sub-step is calm.
 
-    Extremes at the end are taken here; a sub-step that may hold one between its ends is not calm.
+    Extremes at the end are recorded here; a sub-step that may contain one between its ends is not calm.
     """
     m, h, step_status = model_in(traits, lanes, i), lanes.clock.step[i], lanes.step_status
     lowest, supports, low_left, low_right = lanes.lowest, lanes.supports, lanes.lowest.left[i], lanes.lowest.right[i]
@@ -169,7 +166,7 @@ def _judged(traits, lanes, i, substep, settings):
     tilt_end = abs(end.theta)
     clear = min(clear_left, clear_right, surely, ON_ITS_SIDE - tilt_end)
     watched = max(step_status.watched[i], abs(lanes.contact.held[i]))
-    stands = min(clear, (0.5 if settings.locate else -0.5) - watched) > 0.0  # never of what is no number
+    stands = min(clear, (0.5 if settings.locate else -0.5) - watched) > 0.0  # False for NaN
     eventful = CALM if stands else EVENTFUL
     beyond = max(abs(y.theta), tilt_end) + excess(y.omega, end.omega, h)
     nothing_new = min(
@@ -183,23 +180,27 @@ def _judged(traits, lanes, i, substep, settings):
     peak_at_end(lanes, i, tilt_end if calm else 0.0, substep)
     lowest.left[i] = min(low_left, left_end.position if min(contact.left, stays) > 0.0 else math.inf)
     lowest.right[i] = min(low_right, right_end.position if min(contact.right, stays) > 0.0 else math.inf)
-    put(lanes.now, i, State(
-        end.v if calm else y.v,
-        end.theta if calm else y.theta,
-        end.v_rate if calm else y.v_rate,
-        end.omega if calm else y.omega,
-        end.z_left if calm else y.z_left,
-        end.z_right if calm else y.z_right,
-    ))  # fmt: skip
+    put(
+        lanes.now,
+        i,
+        State(
+            end.v if calm else y.v,
+            end.theta if calm else y.theta,
+            end.v_rate if calm else y.v_rate,
+            end.omega if calm else y.omega,
+            end.z_left if calm else y.z_left,
+            end.z_right if calm else y.z_right,
+        ),
+    )
     step_status.kind[i] = max(eventful, CALM if calm else STANDS)
 
 
 @system.one_pass.of(SpringTraits)
 def one_pass(traits, lanes, count, substep, settings):
-    """Take the first ``count`` lanes a sub-step further.
+    """Integrate the first ``count`` lanes over a sub-step.
 
-    Two loops, for what depends on each other within one is too long a chain for a processor to overlap two of them. Lanes whose
-    springs have reversed, a few in a hundred, are corrected one by one.
+    Two loops, since the dependency chain of one would be too long for a processor to overlap two lanes. Lanes with reversals
+    of springs, a few in a hundred, are corrected one by one.
     """
     for i in range(count):
         _stepped(traits, lanes, i, substep)

@@ -1,4 +1,4 @@
-"""Reversals without a search: what the other branch would have made of a step's rest (THEORY.md, Reversals of springs)."""
+"""Correction of a step for velocity reversals of springs, without a search (THEORY.md, Reversals of springs)."""
 
 from typing import NamedTuple
 
@@ -8,32 +8,32 @@ from rockbatch.core.springs.laws import stiffness_loss
 from rockbatch.core.springs.model import State
 
 SHARP = 1e-3
-"""z that a corrected reversal may add at most."""
+"""Greatest change of z by a corrected reversal."""
 
 
 class Pivot(NamedTuple):
-    """One pivot at one time."""
+    """Vertical position and velocity of a pivot."""
 
     position: float  # v_i [m]
     velocity: float  # [m/s]
 
 
 class Reversal(NamedTuple):
-    """Reversal of one spring in a step; without one its times and additions are 0."""
+    """Reversal of one spring in a step; without one ``after`` and ``added`` are 0."""
 
     after: float  # time from the reversal to the end of the step [s], above 0 if it happened
     z: float  # at the reversal
     unstressed: float  # position then [m]
-    added: float  # z at the end of the step, that the other branch has added
+    added: float  # change of z at the end of the step by the other branch
     softness: (
         float  # δ_y dz per change of the pivot's position at the end of the step: 1 − |z|ⁿ on the inelastic branch
     )
-    surely: float  # above 0 unless there may be two reversals, or one that is too sharp for a correction
+    surely: float  # positive unless there may be two reversals, or one too sharp for a correction
 
 
 @inlined
 def pivots(m, y):
-    """Return both pivots in state ``y``."""
+    """Return the left and the right Pivot in state ``y``."""
     at = geometry(m, y.theta)
     return (
         Pivot(y.v + at.lift_left, y.v_rate + at.arm_left * y.omega),
@@ -52,28 +52,29 @@ def pivot_accelerations(m, y, k):
 
 @inlined
 def _size(z):
+    """Return |z| of compression, limited to 0 to 1."""
     return min(max(-z, 0.0), 1.0)
 
 
 @inlined
 def reversal(m, sign, start, acceleration, end, z_end, h):
-    """Return the reversal of a spring in a step of ``h`` [s] that was taken on one branch, from Pivot ``start`` to ``end``.
+    """Return the Reversal of a spring in a step of ``h`` [s] on a single branch, from Pivot ``start`` to ``end``.
 
     Parameters
     ----------
     sign : float
-        Of :func:`rockbatch.core.springs.laws.kept_sign`.
+        Sign of the velocity on the branch, :func:`rockbatch.core.springs.laws.kept_sign`.
     acceleration : float
-        Of the pivot at the start [m/s²].
+        Acceleration of the pivot at the start [m/s²].
     z_end : float
-        z at the end of the step, as the branch has it.
+        z at the end of the step by the branch.
     """
     w0, w1 = sign * start.velocity, sign * end.velocity
     happened = w1 < -m.rest
     share = w1 / (w1 - max(w0, 0.0)) if happened else 0.0  # of the step after the reversal, by the chord
     before = 1.0 - share
     way = end.position - start.position
-    # The position turns at the reversal, so that an error of the time matters squared: a polynomial of order 4 gives it
+    # The position has an extremum at the reversal, so that an error of its time counts squared; a quartic gives it
     cubic = share * (h * start.velocity - way) + before * (way - h * end.velocity)
     quartic = h * (0.5 * h * acceleration + 2.0 * start.velocity + end.velocity) - 3.0 * way
     unit = share * (way - before * (cubic + before * share * quartic)) * m.stiffness  # way after the reversal/δ_y
@@ -89,9 +90,9 @@ def reversal(m, sign, start, acceleration, end, z_end, h):
 
 @inlined
 def once(m, sign, start, end, h):
-    """Return a number [m], negative if a velocity that has ``sign`` at both ends may reverse twice between.
+    """Return a number [m] that is negative if a velocity with ``sign`` at both ends may reverse twice in between.
 
-    The parabola through both velocities and the way between them may dip below zero.
+    It bounds the parabola through both velocities and the displacement.
     """
     speed, speed_end = h * (sign * start.velocity), h * (sign * end.velocity)
     sag = 1.5 * (speed + speed_end) - 3.0 * sign * (end.position - start.position)
@@ -102,8 +103,8 @@ def once(m, sign, start, end, h):
 def corrected(m, contact, y, left, right):
     """Return the end of a step, ``y``, after the reversals ``left`` and ``right``.
 
-    What is added to z grows like the square of the time t since the reversal. Its force changes velocities like an
-    impulse F_y δz t/3, and positions like F_y δz t²/12, which both springs follow.
+    The added z grows like the square of the time t since the reversal. Its force changes velocities by the impulse F_y δz t/3,
+    and positions by F_y δz t²/12, which both springs follow.
     """
     at = geometry(m, y.theta)
     third = m.yield_force * (1.0 / 3.0)
@@ -115,7 +116,7 @@ def corrected(m, contact, y, left, right):
     turn = -1.0 / (m.inertia + lever * lever)
     v = -(way_left + way_right)
     theta = turn * (at.moment_left * way_left + at.moment_right * way_right)
-    if m.damped is not None:  # the dashpots' impulse on the way
+    if m.damped is not None:  # impulse of the dashpots by these displacements
         push_left += m.damping * contact.left * (v + at.arm_left * theta)
         push_right += m.damping * contact.right * (v + at.arm_right * theta)
     return State(

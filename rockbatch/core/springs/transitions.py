@@ -1,4 +1,4 @@
-"""Transitions at events: separation, landing, a spring's new branch, a contact that grazes or ends it.
+"""Transitions at events: separation, landing, change of a spring's branch, grazing contact and its end.
 
 Written for the left pivot; at the right one, the mirror image is handled (θ → −θ, left ↔ right, ü_g → −ü_g).
 """
@@ -47,7 +47,7 @@ def _mirrored(y):
 
 @hook
 def _mirrored_pull(pull):
-    """Return the mirror image of a pull of devices, of the type that it has."""
+    """Return the mirror image of a pull of devices; None of None."""
 
 
 @_mirrored_pull.of(type(None))
@@ -89,7 +89,7 @@ def _mirrored_moment(now):
 
 @system.transition.of(Springs)
 def transition(m, devices, now, which, ground, dt):
-    """Return the Transition by event ``which``; a pivot may land and be lifted at once. Springs have no rest."""
+    """Return the Transition by event ``which``; a pivot may land and separate at once."""
     after, kind = handle(m, now, which, ground)
     landed = 2 if kind == IMPACT_BOTH else (1 if kind in (IMPACT_LEFT, IMPACT_RIGHT) else 0)
     uplifts = landed - on_ground(after.contact) + on_ground(now.contact)
@@ -98,13 +98,13 @@ def transition(m, devices, now, which, ground, dt):
 
 @kernel
 def handle(m, now, which, ground):
-    """Return the Moment after event ``which``, of a pivot's contact or of its spring's law, and its kind."""
+    """Return the Moment after event ``which``, of a pivot's contact or of its spring's law, and the kind of event."""
     if which in (CONTACT_LEFT, LAW_LEFT):
-        after, kind = _at_left(m, now, which == LAW_LEFT, ground)
+        after, kind = _transition_of_left(m, now, which == LAW_LEFT, ground)
     else:
         mirrored_pier = with_pull(m, _mirrored_pull(m.pull))
         mirrored_ground = Ground(-ground.horizontal, -ground.horizontal_slope, ground.vertical, ground.vertical_slope)
-        mirrored, kind = _at_left(mirrored_pier, _mirrored_moment(now), which == LAW_RIGHT, mirrored_ground)
+        mirrored, kind = _transition_of_left(mirrored_pier, _mirrored_moment(now), which == LAW_RIGHT, mirrored_ground)
         after, kind = _mirrored_moment(mirrored), _mirrored_kind(kind)
     supports = with_yield_points(m, now.y, now.contact, after.contact, after.supports)
     return Moment(after.y, after.contact, supports), kind
@@ -112,7 +112,7 @@ def handle(m, now, which, ground):
 
 @kernel
 def with_yield_points(m, at, before, after, supports):
-    """Return ``supports`` with the yield points of springs that have left their inelastic branch, at the z that ``at`` has."""
+    """Return ``supports`` with new yield points of springs that left their inelastic branch at z of ``at``."""
     left, right = supports.yield_left, supports.yield_right
     if before.left_yields > after.left_yields:
         left = yield_point(m.law, left, at.z_left)
@@ -128,8 +128,8 @@ def _left_moved(supports, position):
 
 
 @kernel
-def _at_left(m, now, of_law, ground):
-    """Do what :func:`handle` does for the left pivot, of its contact or of its spring's law."""
+def _transition_of_left(m, now, of_law, ground):
+    """Return Moment and kind after an event of the left pivot, of its spring's law if ``of_law``, else of its contact."""
     y, contact, supports = now
     if contact.held == LEFT:
         at = geometry(m, y.theta)
@@ -149,7 +149,7 @@ def _at_left(m, now, of_law, ground):
 
 @kernel
 def _separation(m, now, ground):
-    """Separate the left pivot, whose support bears nothing: from here on it stays, or creeps back as fast as the pivot rises."""
+    """Return Moment and kind as the left pivot separates; a damped support begins to recover as fast as the pivot rises."""
     y, contact, supports = now
     at = geometry(m, y.theta)
     velocity = y.v_rate + at.arm_left * y.omega
@@ -165,7 +165,7 @@ def _separation(m, now, ground):
 
 @kernel
 def _landing(m, now, ground):
-    """Land the left pivot on its support; the right one may land at the same instant."""
+    """Return Moment and kind as the left pivot lands on its support; the right one may land at the same instant."""
     y, contact, supports = now
     if m.damped is not None:
         return _damped_landing(m, now, ground)
@@ -194,7 +194,7 @@ def _landing(m, now, ground):
 
 @kernel
 def _damped_landing(m, now, ground):
-    """Land the left pivot on the top of its damped support: its dashpot bears it at once, without an impulse."""
+    """Return Moment and kind as the left pivot lands on its damped support, without an impulse."""
     y, contact, supports = now
     velocity = y.v_rate + geometry(m, y.theta).arm_left * y.omega
     if abs(velocity - velocity_of_top(m, y.z_left)) <= m.rest:
@@ -204,9 +204,9 @@ def _damped_landing(m, now, ground):
 
 @kernel
 def _right_after_impulse(m, y, contact, supports, at):
-    """Return contacts and supports once an impulse at the left pivot has made the velocity of the right one jump too.
+    """Return contacts and supports after an impulse at the left pivot, by which the velocity of the right one jumps, too.
 
-    Its spring may have to change its branch, and a pivot that was held moves.
+    Its spring may change its branch, and a grazing contact may end.
     """
     velocity = y.v_rate + at.arm_right * y.omega
     if contact.held == RIGHT and abs(velocity) > m.rest:

@@ -68,7 +68,7 @@ def _byte_order(data: bytes) -> str | None:
 
 
 def read_sac(file: RecordFile) -> list[Component | Unusable]:
-    """Return the component of a SAC file in the study's unit: data / sensitivity × unit; raise ``UnstatedError`` without.
+    """Return the component of a SAC file in the study's unit: data / sensitivity × unit; raise ``Unstated`` without.
 
     SAC's entry for the kind of data (IDEP) is no statement of the unit: files in g that claim nm/s² are common. Velocities
     and displacements are refused by it, and by the channel of a seismometer, unless a manifest states the file's unit.

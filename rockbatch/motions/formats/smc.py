@@ -91,7 +91,7 @@ def parse(text: str) -> list[Recording]:
 def _from_film(values: Samples, number: str) -> tuple[float, Samples, tuple[str, ...]]:
     """Return interval [s], even samples and notes of pairs of time [s] and value, flattened in ``values``.
 
-    Raises ``NoRecordError`` for uneven times, since the corrected file of station ``number`` will do instead.
+    Raises ``NoRecord`` for uneven times, since the corrected file of station ``number`` will do instead.
     """
     try:
         if len(values) % 2:

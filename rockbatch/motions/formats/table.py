@@ -148,7 +148,7 @@ def _below_its_count(header: list[str], pairs: Samples) -> tuple[list[str], Samp
 
 
 def _table_error(lines: list[str], reason: str) -> InputError:
-    """Return the error of a bad table: ``NoRecordError`` if fewer than half of the lines are numbers only."""
+    """Return the error of a bad table: ``NoRecord`` if fewer than half of the lines are numbers only."""
     written = [line for line in lines if line.strip()]
     numbers = sum(_NUMERIC.fullmatch(line) is not None for line in written)
     return InputError(reason) if 2 * numbers >= len(written) else NoRecord(reason)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from rockbatch.observers.devices_work.study import DevicesWork
 from rockbatch.outcome.device_work import with_work
 from rockbatch.outcome.outcome import DeviceWork, Outcome
 from rockbatch.simulation import restraints
@@ -34,4 +35,5 @@ class WorkOfDevices(Observer):
 
 def requested(output: Output) -> WorkOfDevices | None:
     """Return the observer that a study asks for, if any."""
-    return WorkOfDevices(0.001 * output.least_stroke_mm) if output.devices_work else None
+    settings = output.of(DevicesWork)
+    return WorkOfDevices(0.001 * settings.least_stroke_mm) if settings.devices_work else None

@@ -10,6 +10,7 @@ from rockbatch.core import types
 from rockbatch.core.observe.beds import BED_STATE, follow_bed
 from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
 from rockbatch.motions.motion import Samples
+from rockbatch.observers.energy_balance.study import Ledger
 from rockbatch.outcome.outcome import TERMS, Outcome
 from rockbatch.pier import FootingBase
 from rockbatch.simulation import restraints
@@ -71,4 +72,4 @@ def energies(run: Run, rows: np.recarray) -> Samples:
 
 def requested(output: Output) -> EnergyBalance | None:
     """Return the observer that a study asks for, if any."""
-    return EnergyBalance() if output.ledger else None
+    return EnergyBalance() if output.of(Ledger).ledger else None

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rockbatch.common.lazy import pd
+from rockbatch.observers.forces.study import Forces
 from rockbatch.outcome.outcome import Outcome, PeakForces
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error
@@ -48,4 +49,5 @@ class PeaksOfForces(Observer):
 
 def requested(output: Output) -> PeaksOfForces | None:
     """Return the observer that a study asks for, if any."""
-    return PeaksOfForces(output.least_normal_share) if output.forces else None
+    settings = output.of(Forces)
+    return PeaksOfForces(settings.least_normal_share) if settings.forces else None

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from rockbatch.observers.half_cycles import TABLE
+from rockbatch.observers.half_cycles.study import Cycles
 from rockbatch.outcome.half_cycles import HALF_CYCLE_COLUMNS, HalfCycles, apparent_restitution
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.simulation.histories import cycles_of
@@ -45,4 +46,4 @@ class CyclesOfRocking(Observer):
 
 def requested(output: Output) -> CyclesOfRocking | None:
     """Return the observer that a study asks for, if any."""
-    return CyclesOfRocking() if output.half_cycles else None
+    return CyclesOfRocking() if output.of(Cycles).half_cycles else None

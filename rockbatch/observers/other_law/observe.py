@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+from rockbatch.observers.other_law.study import BothLaws
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.runs import Run
@@ -28,4 +29,4 @@ class OtherLaw(Observer):
 
 def requested(output: Output) -> OtherLaw | None:
     """Return the observer that a study asks for, if any."""
-    return OtherLaw() if output.both_laws else None
+    return OtherLaw() if output.of(BothLaws).both_laws else None

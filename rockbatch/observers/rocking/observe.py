@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from rockbatch.observers.rocking.study import Separation
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import ElasticBase, YieldingBase
 from rockbatch.simulation.leaning import Apart, apart, with_error_of_rocking, with_rocking
@@ -48,4 +49,4 @@ def _may_lean(run: Run, outcome: Outcome) -> bool:
 
 def requested(output: Output) -> Rocking | None:
     """Return the observer that a study asks for, if any."""
-    return Rocking() if output.rocking else None
+    return Rocking() if output.of(Separation).rocking else None

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from rockbatch.observers.sections.study import Sections
 from rockbatch.outcome.outcome import Outcome, Section
 from rockbatch.pier.sections import section_heights
 from rockbatch.results.sections import SECTIONS, section_rows
@@ -39,5 +40,5 @@ class ForcesInSections(Observer):
 
 def requested(output: Output) -> ForcesInSections | None:
     """Return the observer that a study asks for, if any."""
-    sections = output.requested_sections
+    sections = output.of(Sections).requested
     return None if sections is None else ForcesInSections(sections)

@@ -3,7 +3,7 @@
 from rockbatch.quantities.catalogue import report_columns
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, join, tag
-from rockbatch.reporting.sections.forces import of_cases
+from rockbatch.reporting.sections.worst import of_cases
 
 LEGEND = (
     "Greatest values of each case over its records. Energies of dampers, stops and deck springs in J/kg are those of all of them "

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import creeps
-from rockbatch.quantities.catalogue import COLUMNS, IN_MOTION, IN_MOTION_ERROR, OTHER_LAW, report_columns
+from rockbatch.quantities.catalogue import COLUMNS, report_columns
+from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR, OTHER_LAW
 from rockbatch.reporting.finished import Finished, worst_first
 from rockbatch.reporting.labels import counted, head, symbol
 from rockbatch.reporting.markup import Markup, join, number, tag

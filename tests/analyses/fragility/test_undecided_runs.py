@@ -24,8 +24,7 @@ from rockbatch.motions.hazard import HazardCurve
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.reporting.finished_analysis import Contents
-from rockbatch.study import load_study
-from rockbatch.study.spec import Output
+from rockbatch.study import Output, load_study
 
 
 @pytest.mark.parametrize("fragility", [STRIPES, IDA], ids=["stripes", "ida"])
@@ -102,16 +101,18 @@ def test_both_rates_that_undecided_runs_allow_are_in_the_table(tmp_path):
 def test_runs_put_out_what_their_limits_need_and_no_more(tmp_path):
     spec = read_fragility(load_study(written(tmp_path, STRIPES)))
     rotation = Rule("half way", "theta_max_over_alpha", at_most=0.5)
-    of_study = Output(least_normal_share=0.2, least_stroke_mm=7.0)
+    of_study = Output.with_keys(least_normal_share=0.2, least_stroke_mm=7.0)
     of_runs = {name: demand for name, demand in DEMANDS.items() if not demand.per_case and demand.needs != "sections"}
     assert {demand.needs for demand in of_runs.values()} >= {"forces", "rocking", "devices_work"}
     for name, demand in of_runs.items():
         asked = output(replace(spec, limits=(rotation, Rule("other", name, at_most=0.01))), of_study)
-        assert asked.both_laws == bool(demand.other_law)
+        assert asked.has("both_laws") == bool(demand.other_law)
         for need in ("forces", "rocking", "devices_work"):
-            assert getattr(asked, need) == (demand.needs == need), name
-        assert (asked.histories, asked.least_normal_share, asked.least_stroke_mm) == ("none", 0.2, 7.0)
-    assert output(replace(spec, limits=(Rule("settled", "settlement_m", at_most=0.01),)), Output()).both_laws
+            assert asked.has(need) == (demand.needs == need), name
+        assert asked.histories == "none"
+        assert asked.keys["least_normal_share"] == (0.2 if demand.needs == "forces" else 0.1)
+        assert asked.keys["least_stroke_mm"] == (7.0 if demand.needs == "devices_work" else 10.0)
+    assert output(replace(spec, limits=(Rule("settled", "settlement_m", at_most=0.01),)), Output()).has("both_laws")
 
 
 def test_undecided_runs_alone_make_no_curve_but_an_open_interval(tmp_path):

@@ -4,14 +4,14 @@ from collections.abc import Iterator
 from itertools import islice
 
 from rockbatch.common.lazy import pd
+from rockbatch.observers.sections.figure import over_height
 from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup
-from rockbatch.reporting.sections.forces import CUT_SHORT
+from rockbatch.reporting.sections.worst import CUT_SHORT
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import Head, alarm, table
 from rockbatch.reporting.templates import render
-from rockbatch.results.figures import over_height
 from rockbatch.results.labelled import groups_of
 from rockbatch.results.sections import SECTIONS, columns_in, read_sections
 
@@ -30,7 +30,7 @@ def section(finished: Finished) -> Markup:
         return Markup("")
     groups = list(groups_of(runs, finished.piers))
     return render(
-        "reporting/sections/shaft.html", file=SECTIONS, shown=min(len(groups), MOST_GROUPS), groups=len(groups),
+        "observers/sections/section.html", file=SECTIONS, shown=min(len(groups), MOST_GROUPS), groups=len(groups),
         picture=drawn(over_height(islice(groups, MOST_GROUPS), finished.series)),
         table=table(_heads(runs), _rows(finished, groups), sortable=True, name="Forces in every section"),
         bounds=bool(runs["status"].isin(CUT_SHORT).any()),

@@ -27,7 +27,7 @@ def section(finished: Finished) -> Markup:
         return Markup("")
     ranks, dispersions = _tables(finished, orders(measures, finished.info["varied"]))
     return render(
-        "reporting/sections/intensity.html", ranks=ranks, dispersions=dispersions, file=INTENSITY, least=LEAST_RUNS
+        "observers/intensity/section.html", ranks=ranks, dispersions=dispersions, file=INTENSITY, least=LEAST_RUNS
     )
 
 

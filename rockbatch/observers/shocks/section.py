@@ -31,7 +31,7 @@ def section(finished: Finished) -> Markup:
     runs = [run for run in whole.values() if run[0]["shock_status"] not in ("failed", "not read")]
     whole_runs = [run for run in runs if all(row["shock_status"] == "ok" for row in run)]
     return render(
-        "reporting/sections/shocks.html", runs=len(runs), cut_short=len(whole) - len(whole_runs), all_runs=len(whole),
+        "observers/shocks/section.html", runs=len(runs), cut_short=len(whole) - len(whole_runs), all_runs=len(whole),
         file=SHOCKS, pauses=len(moving), still=sum(m > AT_REST for m in moving),
         most=max(moving, default=None), at_rest=AT_REST,
         later=sum(max(run, key=_peak) is not run[0] for run in runs),

@@ -1,0 +1,62 @@
+"""Its keys of [output]."""
+
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+
+from rockbatch.common.errors import InputError
+from rockbatch.pier import NO_SECTIONS, Pier
+from rockbatch.pier.sections import section_heights
+from rockbatch.toml.kinds import Whole, not_negative
+from rockbatch.toml.reader import TomlFile
+from rockbatch.toml.section import Clash, Key, Section
+
+
+@dataclass(frozen=True)
+class Sections:
+    """Sections of the shaft whose forces are computed: their number, or their heights [m]."""
+
+    sections: int | None = None
+    sections_m: tuple[float, ...] = ()
+
+    @property
+    def requested(self) -> int | tuple[float, ...] | None:
+        """Their number or their heights [m]; None without any."""
+        return self.sections or self.sections_m or None
+
+
+OUTPUT = Section(("output",), "", {
+    "sections": Key(Whole(2, "a whole number, 2 or above: foot and top of the pier are among them"), "5",
+        "Number of sections of the pier, evenly from its foot to its highest point, in which shear, moment and axial force of "
+        "every run are computed: `sections.csv`."),
+    "sections_m": Key(not_negative, "[0.0, 7.5, 15.0]", "Heights of such sections above the pivots instead.", many=True),
+}, homes=(Sections,), clashes=(
+    Clash(("sections", "sections_m"), "sections and sections_m are given, which say the same; keep one", at="sections_m"),
+))  # fmt: skip
+
+
+def complain(file: TomlFile, settings: Sections, piers: Iterable[Pier], bends: bool) -> None:
+    """Note sections that some pier does not have, or whose forces are not known, such as those of a shaft that bends."""
+    if settings.requested is None:
+        return
+    wrong: dict[str, None] = {NO_SECTIONS: None} if bends else {}
+    for pier in piers:
+        try:
+            section_heights(pier, settings.requested)
+        except InputError as error:
+            wrong |= dict.fromkeys(error.messages)
+    for problem in wrong:
+        file.complain(("output", "sections" if settings.sections else "sections_m"), f"[output]: {problem}")
+
+
+def heights(settings: Sections, piers: Iterable[Pier]) -> set[float]:
+    """Return the heights [m] of all sections of all ``piers``; none without any, or of a pier that lacks some, which is noted."""
+    found = set[float]()
+    for pier in piers:
+        with suppress(InputError):
+            found.update(section_heights(pier, settings.requested or 0))
+    return found
+
+
+COMPLAINS = (Sections, complain)
+HEIGHTS = (Sections, heights)

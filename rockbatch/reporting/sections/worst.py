@@ -1,0 +1,39 @@
+"""Tables of the worst runs of every case."""
+
+from rockbatch.common.lazy import pd
+from rockbatch.quantities.quantity import Quantity
+from rockbatch.reporting.finished import Finished
+from rockbatch.reporting.labels import head
+from rockbatch.reporting.markup import Markup, join, number
+from rockbatch.reporting.sections.peaks import on_scale
+from rockbatch.reporting.table import Head, alarm, table
+
+CUT_SHORT = ("flight", "failed")
+"""Statuses of runs that ended early: their values are only bounds."""
+
+
+def of_cases(finished: Finished, shown: list[Quantity], name: str) -> Markup:
+    """Return a table with a row for each case: the worst of its runs, column by column."""
+    rows: list[list[object]] = []
+    for words, group in finished.groups():
+        for place in group["series"].unique():
+            runs, label = group[group["series"] == place], finished.series[int(place)].label
+            ended = int(runs["status"].isin(CUT_SHORT).sum())
+            counts = f"{len(runs) - ended} of {len(runs)}"
+            cells = (_worst(column, runs, bool(ended)) for column in shown)
+            rows.append([f"{label} ({words})" if words else label, alarm(counts) if ended else counts, *cells])
+    runs_head = Head(
+        "runs", note="that went through, of all; where some did not, the others bound the values from one side"
+    )
+    return table([Head("case"), runs_head, *map(head, shown)], rows, sortable=True, name=name)
+
+
+def _worst(column: Quantity, runs: "pd.DataFrame", cut_short: bool) -> object:
+    """Return the worst of the runs, with ≥ or ≤ if it is only a bound."""
+    values = runs[column.name].dropna()
+    if values.empty:
+        return None
+    least = column.least_is_worst
+    value = on_scale(column.name, float(values.min() if least else values.max()))
+    shown = number(value, head(column).form)
+    return join(f"{'≤' if least else '≥'}\u00a0", shown) if cut_short else value
