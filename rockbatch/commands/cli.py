@@ -52,7 +52,7 @@ class _Parser(argparse.ArgumentParser):
     """A parser that reports a mistake in one line."""
 
     def error(self, message: str) -> NoReturn:
-        more = "" if message.endswith("?") else f"; `see `{self.prog} --help`"
+        more = "" if message.endswith("?") else f"; see `{self.prog} --help`"
         self.exit(2, f"{self.prog}: {message}{more}\n")
 
 

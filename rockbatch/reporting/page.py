@@ -64,7 +64,7 @@ def _of_analysis(name: str, function: str, contents: Contents) -> Markup:
 
 
 def _with_observers(own: Iterable[Part]) -> Iterator[Part]:
-    """Yield parts of the page, each with those of observers behind it, which are loaded when they are drawn."""
+    """Yield the sections of the page, each followed by observers' sections, whose modules load when drawn."""
     for part in own:
         yield part
         for name, more in report_parts():
@@ -73,7 +73,7 @@ def _with_observers(own: Iterable[Part]) -> Iterator[Part]:
 
 
 def _of_observer(name: str, finished: Finished) -> Markup:
-    """Return a part that an observer brings."""
+    """Draw the section of an observer."""
     content: Markup = from_observer(name, "section.section")(finished)
     return content
 

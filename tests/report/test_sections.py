@@ -226,13 +226,13 @@ def test_forces_on_rigid_ground_are_said_to_leave_landings_out_where_a_run_lands
 
 def test_the_greatest_is_claimed_of_the_runs_that_end_standing(tmp_path):
     write_results(tmp_path, changes={("ERZ-NS", "1"): {"status": "failed"}, ("SYL360", "1"): {"status": "overturned"}})
-    assert "Greatest values of 28 of 30 runs that end standing" in Page(section_of(tmp_path, answer)).text
+    assert "Largest value over 28 of 30 runs that end standing" in Page(section_of(tmp_path, answer)).text
     assert "30 runs, 28 end standing" in page(read(tmp_path, ()))
     write_results(tmp_path)
     peaks = pd.read_csv(tmp_path / "peaks.csv")
     peaks.iloc[:-3].to_csv(tmp_path / "peaks.csv", index=False)
     told = Page(section_of(tmp_path, answer)).text
-    assert "Greatest values of 27 of 30 runs that end standing" in told
+    assert "Largest value over 27 of 30 runs that end standing" in told
     assert "3 runs not run" in told
     assert "30 runs, 27 end standing" in page(read(tmp_path, ()))
 

@@ -115,7 +115,7 @@ def test_nobody_gets_what_nobody_asked_for_and_tables_of_another_time_go(tmp_pat
     assert not (tmp_path / "out" / "intensity.csv").exists()
     assert "pulse" not in plain.info["records"][0]
     assert "target" not in plain.info
-    with pytest.raises(InputError, match=r"write \[output\] intensity = true"):
+    with pytest.raises(InputError, match=r"add \[output\] intensity = true"):
         plain.intensity  # noqa: B018
 
 
