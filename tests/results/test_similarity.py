@@ -16,7 +16,8 @@ LENGTH, TIME = 8.0, 2.0
 SPEED, ACCELERATION = LENGTH / TIME, LENGTH / TIME**2
 UNITS = {
     "1": 1.0, "rad": 1.0, "standard_gravity": 1.0, "s": TIME, "1/s": 1.0 / TIME, "m": LENGTH, "m/s": SPEED, "m/s^2": ACCELERATION,
-    "m^2/s^2": SPEED**2, "J/kg": SPEED**2, "kJ": SPEED**2, "kN": ACCELERATION, "kN*s": SPEED, "kN*m": ACCELERATION * LENGTH, "MPa": ACCELERATION / LENGTH**2,
+    "m^2/s^2": SPEED**2, "J/kg": SPEED**2, "kJ": SPEED**2, "kN": ACCELERATION, "kN*s": SPEED, "kN*m": ACCELERATION * LENGTH,
+    "MPa": ACCELERATION / LENGTH**2,
 }  # fmt: skip
 TIMES = 0.01 * np.arange(500)
 HORIZONTAL = 4.0 * np.sin(2.1 * TIMES) + 2.0 * np.sin(9.0 * TIMES)
@@ -32,7 +33,9 @@ BASES = {
     "damped": rb.YieldingBase(30.0, eta=2.2, zeta=0.1, spring="epp"),
     "yielding with devices": rb.YieldingBase(30.0, eta=2.2, epsilon=0.1, restraints=DEVICES[:3]),
     "footing": rb.FootingBase(60.0, 2.5, length_m=5.0),
-    "footing, finite, with devices": rb.FootingBase(60.0, 2.5, kinematics="finite", length_m=5.0, restraints=DEVICES[:2]),
+    "footing, finite, with devices": rb.FootingBase(
+        60.0, 2.5, kinematics="finite", length_m=5.0, restraints=DEVICES[:2]
+    ),
 }
 OTHERWISE = {"note", "damper_half_cycles"}
 """Words that name a time, and a count of strokes above a length that the user sets."""
@@ -66,7 +69,7 @@ def row(base, length, time):
     ).row
 
 
-@pytest.mark.parametrize("name", BASES)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if "footing" in n else n for n in BASES])
 def test_numbers_of_every_column_are_in_its_unit(name):
     here, there = row(BASES[name], 1.0, 1.0), row(BASES[name], LENGTH, TIME)
     assert len(here) > 60
@@ -78,7 +81,7 @@ def test_numbers_of_every_column_are_in_its_unit(name):
         assert pd.isna(there[column]) if pd.isna(here[column]) else there[column] == value, column
 
 
-@pytest.mark.parametrize("name", BASES)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if "footing" in n else n for n in BASES])
 def test_facts_of_the_statics_and_their_tables_are_in_the_units_that_end_their_names(name):
     """Tables have nine decimals."""
     here, there = (rb.statics(*in_units(BASES[name], *units)) for units in ((1.0, 1.0), (LENGTH, TIME)))
