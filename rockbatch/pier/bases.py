@@ -581,7 +581,9 @@ class FootingBase(_Traits):
         Raises ``InputError`` as that does.
         """
         soil, width = Soil(shear_modulus_MPa, poisson, embedment_m), 2.0 * pier.half_width
-        refuse(wrong_soil(soil, length_m, density_t_m3))
+        known = [] if formula in FORMULAS else [f"must be {' or '.join(map(shown, FORMULAS))}"]
+        wrong = [Problem("formula", formula, text, kind=WrongType) for text in known]
+        refuse(wrong + wrong_soil(soil, length_m, density_t_m3))
         stiffness = FORMULAS[formula](width, length_m, soil)
         bed = bed_stiffness(width, length_m, stiffness.rocking)
         rest["vertical_over_formula"] = bed * width * length_m / stiffness.vertical

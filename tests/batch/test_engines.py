@@ -265,7 +265,7 @@ class Late:
         self.asked += 1
         if self.asked <= self.times:
             raise TimeoutError
-        return "outcomes"
+        return ["outcomes"]
 
     def sync(self, ask, callback_timeout):
         if not self.answers:
@@ -275,7 +275,7 @@ class Late:
 
 def test_a_result_that_does_not_come_is_waited_for_only_while_the_scheduler_answers():
     late, silent, never = Late(1, answers=True), Late(1, answers=False), Late(2, answers=True)
-    assert _result_of(late, late) == "outcomes"
+    assert _result_of(late, late) == ["outcomes"]
     with pytest.raises(TimeoutError):
         _result_of(silent, silent)
     assert silent.asked == 1

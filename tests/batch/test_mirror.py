@@ -191,7 +191,7 @@ def test_statistics_checks_and_the_report_count_mirror_images_once(study, tmp_pa
     assert "2 records × 2 scales × 2 cases = 8 runs (polarity: mirror images, counted once)" in told.err
     assert json.loads((out / "run.json").read_text(encoding="utf-8"))["runs"] == ROWS // 2
     page = (out / "report.html").read_text(encoding="utf-8")
-    assert "8 runs. Polarity: mirror images, counted once." in page
+    assert "8 runs. Opposite polarities are mirror images and counted once." in " ".join(page.split())
     alone = study('"+"')
     pd.testing.assert_frame_equal(rb.check(out), rb.check(rb.run(alone), study=alone))
     peaks = rb.open_results(out).peaks

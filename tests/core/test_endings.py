@@ -425,7 +425,7 @@ def test_devices_on_springs_add_to_the_load_and_may_give_energy_back(uncompiled)
         turned = abs(pull * offset) * (0.006 + 0.01)
         given = devices, Moment(y, contact, supports)
         values = {"lowest__plastic": -0.02, "peak__theta": 0.01}
-        _, waiting = uncompiled(waiting_after, ("springs.ending", "_in_devices"), values, m, *given)
+        _, waiting = uncompiled(waiting_after, ("springs.ending", "_set_load_and_energy"), values, m, *given)
         assert waiting["load"] == pytest.approx(FIG5.gravity + pull, rel=1e-12)
         expected = max(tied + back, 0.0) + turned - 0.5 * 2.5 * (9.0 * 0.01) ** 2
         assert waiting["stored"] == pytest.approx(expected, rel=1e-9)

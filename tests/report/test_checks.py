@@ -36,7 +36,7 @@ def test_cases_that_pass_fail_and_are_not_decided_are_named(tmp_path):
         tmp_path,
         verdict("1", "pass"),
         verdict("2", "fail", ratio=1.25, value=0.625, low=0.62, high=0.63),
-        verdict("3", "not decided", ratio=0.99, high=0.6, note="between 0.2 and 0.6"),
+        verdict("3", "not decided", ratio=0.99, high=0.6, remarks=("between 0.2 and 0.6",)),
         verdict("3", "pass", check="tilt"),
         verdict("1", "does not apply", check="tilt", value=math.nan, ratio=math.nan),
     )

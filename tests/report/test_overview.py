@@ -203,7 +203,9 @@ def test_the_legend_stands_above_the_fold(tmp_path):
         for case in "123"
         for i in range(5)
     ]
-    write_verdicts(tmp_path, [*failing, verdict("4", "not decided", note="2 stations count; the check asks for 3")])
+    write_verdicts(
+        tmp_path, [*failing, verdict("4", "not decided", remarks=("2 stations count", "the check asks for 3"))]
+    )
     act = 'found.legend = document.querySelector("#answer ul.key").getBoundingClientRect().bottom;'
     assert 0 < browse(write_report(tmp_path, []), act, size=(1280, 800))["legend"] < 800
 

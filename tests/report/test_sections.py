@@ -29,7 +29,9 @@ STUDY = {"title": "Piers & pads", "notes": "First.\n\nSecond.", "text": 'title =
 
 def test_every_module_of_sections_stands_in_the_list_of_the_page():
     package = rockbatch.reporting.sections
-    modules = {module.name for module in pkgutil.iter_modules(package.__path__)}
+    modules = {module.name for module in pkgutil.iter_modules(package.__path__)} - {
+        "worst"
+    }  # a table of several sections
     assert len(modules) >= 7
     of_modules = [import_module(f"{package.__name__}.{name}").section for name in modules]
     assert all(sum(part.content is section for part in PARTS) == 1 for section in of_modules)

@@ -69,6 +69,6 @@ def test_a_table_that_was_damaged_is_an_error_in_words(out, tmp_path):
     table = shutil.copytree(out, tmp_path / "out") / SECTIONS
     table.write_text(table.read_text(encoding="utf-8").replace("section_shear_kN", "shear"), encoding="utf-8")
     with pytest.raises(
-        InputError, match=r"sections.csv: column section_shear_kN is missing; .*start `rockbatch run` again"
+        InputError, match=r"sections.csv: column section_shear_kN is missing: .*start `rockbatch run` again"
     ):
         rb.report(tmp_path / "out")

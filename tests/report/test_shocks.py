@@ -53,5 +53,5 @@ def test_a_pier_at_rest_and_one_that_falls_are_said(tmp_path):
 def test_a_table_that_was_damaged_is_an_error_in_words(out, tmp_path):
     table = shutil.copytree(out, tmp_path / "out") / SHOCKS
     table.write_text(table.read_text(encoding="utf-8").replace("shock_status", "state"), encoding="utf-8")
-    with pytest.raises(InputError, match=r"shocks.csv: column shock_status is missing; .*start `rockbatch run` again"):
+    with pytest.raises(InputError, match=r"shocks.csv: column shock_status is missing: .*start `rockbatch run` again"):
         rb.report(tmp_path / "out")

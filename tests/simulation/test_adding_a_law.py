@@ -19,7 +19,7 @@ CORE = """    "softening": Law(
         stiffness_loss=softening_loss, plastic_work=softening_work,
     ),
 }
-\"\"\"All laws by the names"""
+\"\"\"All laws"""
 
 KERNELS = '''@inlined
 def softening_loss(m, x):
@@ -45,7 +45,7 @@ PIER = """    "softening": Law(
         creep=Creep(exponent=lambda n: 1.0, other="epp"),
     ),
 }
-\"\"\"All laws by the names"""
+\"\"\"All laws"""
 
 SCRIPT = """
 import json
@@ -92,7 +92,7 @@ def edit(place, module, *changes):
 
 
 def add(place, core=CORE, of_pier=PIER, literal=True):
-    end = '}\n"""All laws by the names'
+    end = '}\n"""All laws'
     edit(place, "core/springs/laws.py", ("LAWS = {\n", KERNELS), (end, core))
     edit(
         place,
@@ -155,7 +155,7 @@ def test_a_law_without_an_entry_for_statics_or_releases_stops_the_import(copied,
 
 @pytest.mark.slow
 def test_a_law_in_one_table_only_stops_the_import(copied):
-    end = '}\n"""All laws by the names'
+    end = '}\n"""All laws'
     add(copied, of_pier=end)
     done = python(copied, "import rockbatch; rockbatch.simulate")
     assert "softening" in done.stderr.splitlines()[-1]
@@ -163,6 +163,6 @@ def test_a_law_in_one_table_only_stops_the_import(copied):
 
 
 def test_a_law_in_the_core_only_stops_the_import_of_the_models(copied):
-    add(copied, of_pier='}\n"""All laws by the names', literal=False)
+    add(copied, of_pier='}\n"""All laws', literal=False)
     done = python(copied, "import rockbatch; rockbatch.simulate")
     assert done.stderr.splitlines()[-1].endswith("core/springs/laws.py and pier/laws.py only: softening")

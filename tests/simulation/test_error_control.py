@@ -660,8 +660,8 @@ def test_residuals_differ_by_rotation_and_settlements_over_half_the_width(one, o
     sunk = [
         outcome.changed(theta_res=None, settlement=value) for outcome, value in zip(tilted, (one, other), strict=True)
     ]
-    assert chaos._residuals_apart(*tilted, QUICK) == pytest.approx(apart)
-    assert chaos._residuals_apart(*sunk, QUICK) == pytest.approx(apart / QUICK.half_width)
+    assert chaos._residual_difference(*tilted, QUICK) == pytest.approx(apart)
+    assert chaos._residual_difference(*sunk, QUICK) == pytest.approx(apart / QUICK.half_width)
 
 
 def test_the_errors_of_a_shaft_are_its_changes_by_halving_the_step():

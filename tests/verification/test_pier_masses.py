@@ -204,7 +204,7 @@ def test_a_frame_on_springs_is_refused_with_the_reason():
     motion = rb.pulse("sine", name="pulse", amplitude=1.0, period=1.0, dt=0.01, duration=2.0)
     for base in (rb.ElasticBase(60.0), rb.YieldingBase(60.0, eta=3.0)):
         with pytest.raises(
-            InputError, match=r"rigid ground only.*the columns sink by themselves.*write \[\[pier.part\]\]"
+            InputError, match=r"rigid ground only.*each column settles by itself.*write \[\[pier.part\]\]"
         ):
             rb.simulate(frame, base, motion)
 

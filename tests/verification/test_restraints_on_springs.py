@@ -293,7 +293,7 @@ def test_a_pier_rests_where_springs_and_devices_balance_wherever_its_run_has_end
     ("base", "told"),
     [
         (YieldingBase(50.0, eta=1.5, restraints=(Tendon(psi=0.5),)), "eta must be above 1 + psi"),
-        (ElasticBase(50.0, restraints=(Tendon(psi=0.5, at="left"),)), "its like on the other side"),
+        (ElasticBase(50.0, restraints=(Tendon(psi=0.5, at="left"),)), "an equal one on the other side"),
         (ElasticBase(50.0, restraints=(Damper("friction", f=0.1),) * 2), "two places of friction"),
     ],
 )

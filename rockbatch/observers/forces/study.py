@@ -28,7 +28,7 @@ OUTPUT = Section(("output",), "", {
 
 
 _OF_FORCES = {
-    "friction": "nothing to hold it against; write forces = true under [output], which computes the friction demand",
+    "friction": "is compared only with the friction demand; write forces = true under [output], which computes it",
     "contact_stiffness_kN_m": "is of the force of a landing; write forces = true under [output], which computes it",
 }
 """Keys of a [[case]] that only forces use, and what is missing without them."""
