@@ -66,6 +66,7 @@ TOPICS: dict[str, tuple[str, tuple[str, ...]]] = {
             "RigidBase",
             "ElasticBase",
             "YieldingBase",
+            "FootingBase",
             "Damper",
             "Tendon",
             "Stop",
