@@ -106,7 +106,7 @@ def begin(traits, lanes, i, run):
 
 @optional_hook
 def lanes_in_pass(traits, count):
-    """Return how many lanes a pass takes: whole vectors of them. Those beyond ``count`` hold what nobody reads."""
+    """Return how many lanes a pass takes: whole vectors; lanes beyond ``count`` are padding."""
     left_over = count % VECTOR
     return count if left_over <= FEW else count - left_over + VECTOR
 

@@ -50,7 +50,7 @@ ASKING_TENSION: tuple[Impact, ...] = ("housner",)
 """Impacts that ask a support for a pull, which one without tension cannot give (THEORY.md, Impact by Housner's e)."""
 
 EPSILON_AND_ZETA = "zeta is given too, and a damped support takes a landing without an impulse; keep one"
-"""What is wrong about a support with both."""
+"""Message on a support that has both."""
 
 
 def _strength(eta: float) -> str:

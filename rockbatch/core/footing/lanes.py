@@ -41,7 +41,7 @@ from rockbatch.core.types import Instant, Moment, Part
 
 
 class Demands(NamedTuple):
-    """What the bed has borne so far."""
+    """Greatest demands on the bed until now."""
 
     contact_least: float  # least share of the area that was pressed at the end of a step
     pressure: float  # greatest pressure at an edge, over that on the whole area per unit mass [m/s²]

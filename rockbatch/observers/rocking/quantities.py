@@ -39,4 +39,4 @@ ERRORS = (
 )  # fmt: skip
 
 DIRECTED = (ROCKING,)
-"""What an axis of the pier has by itself."""
+"""Demands that each axis of the pier has by itself, so that those of two axes add up."""
