@@ -54,26 +54,52 @@ TOP = Section(
     ),
 )
 _ROUNDING = f"must be {LEAST_TOLERANCE:g} or above, because rounding alone makes as much"
-NUMERICS = Section(("numerics",), "How exact the results are.", {
-    "tolerance": Key(within(Bounds(LEAST_TOLERANCE, MOST, why=_ROUNDING)), "1e-4",
-        "Error allowed on θ_max/α. The step of each run is halved until it is met, and the error is reported.",
-        usual=Usual(0.1, "of theta_max/alpha, in which 1 is the edge of overturning: 1e-6 to 1e-2 is usual")),
-    "substeps": Key(count, "4",
-        "Instead of a tolerance: a fixed number of steps per sample, without an estimate of the error."),
-    "quiet_s": Key(not_negative, "2.0",
-        "Time at rest after the record, at least; a run continues as long as anything larger may follow.",
-        usual=Usual(600.0, "s: a pier that rocks comes to rest in less", 0.01)),
-    **CONFIRM,
-}, homes=(Numerics,), also=names({
-    "tolerance": "tol rtol atol error accuracy precision maxerror", "quiet_s": "freevibration timeafter after tail rest padding",
-    "substeps": "stepspersample subdivisions",
-}), instead=names({
-    "the step follows from tolerance; leave it out, or write substeps, the number of steps per sample": "dt timestep step deltat",
-    "there is one method; leave it out": "integrator method solver scheme",
-    "write --jobs behind rockbatch run; leave it out": "jobs threads cores workers",
-}), clashes=(
-    Clash(("tolerance", "substeps"), "tolerance and substeps are given: a fixed step has no tolerance; keep one", at="substeps"),
-))  # fmt: skip
+NUMERICS = Section(
+    ("numerics",),
+    "How exact the results are.",
+    {
+        "tolerance": Key(
+            within(Bounds(LEAST_TOLERANCE, MOST, why=_ROUNDING)),
+            "1e-4",
+            "Error allowed on θ_max/α. The step of each run is halved until it is met, and the error is reported.",
+            usual=Usual(0.1, "of theta_max/alpha, in which 1 is the edge of overturning: 1e-6 to 1e-2 is usual"),
+        ),
+        "substeps": Key(
+            count, "4", "Instead of a tolerance: a fixed number of steps per sample, without an estimate of the error."
+        ),
+        "quiet_s": Key(
+            not_negative,
+            "2.0",
+            "Time at rest after the record, at least; a run continues as long as anything larger may follow.",
+            usual=Usual(600.0, "s: a pier that rocks comes to rest in less", 0.01),
+        ),
+        **CONFIRM,
+    },
+    homes=(Numerics,),
+    also=names(
+        {
+            "tolerance": "tol rtol atol error accuracy precision maxerror",
+            "quiet_s": "freevibration timeafter after tail rest padding",
+            "substeps": "stepspersample subdivisions",
+        }
+    ),
+    instead=names(
+        {
+            "the step follows from tolerance; leave it out, or write substeps, the number of steps per sample": (
+                "dt timestep step deltat"
+            ),
+            "there is one method; leave it out": "integrator method solver scheme",
+            "write --jobs behind rockbatch run; leave it out": "jobs threads cores workers",
+        }
+    ),
+    clashes=(
+        Clash(
+            ("tolerance", "substeps"),
+            "tolerance and substeps are given: a fixed step has no tolerance; keep one",
+            at="substeps",
+        ),
+    ),
+)
 _OF_TABLES = "|".join(rf"^{what}_[1-9][0-9]*_({'|'.join(keys)})$" for what, keys in {"part": PART, **DEVICES}.items())
 """Keys of tables in a list, by their numbers: "damper_1_f"."""
 

@@ -71,12 +71,31 @@ def _fields_of(kind: type, keys: dict[str, Any]) -> dict[str, Any]:
     return {field.name: keys[field.name] for field in fields(kind) if field.name in keys}
 
 
-OUTPUT = joined(Section(("output",), "What is kept beyond the table of peaks.", {
-    "histories": Key(choice("worst", "all", "none"), '"all"',
-        'Runs whose histories are kept: the "worst" record of each case, "all", or "none".'),
-    "histories_MB": Key(positive, "50",
-        'How large their file may become with "worst"; the greatest rotations are kept first.', only={"histories": ("worst",)}),
-}, homes=(Output,), also=names({"histories": "timehistories timehistory"}), instead=names({
-    "write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file",
-    "the estimates of design practice are an example now, configs/code_estimates.py; leave it out": "estimate estimates",
-})), *_OF_OBSERVERS)  # fmt: skip
+OUTPUT = joined(
+    Section(
+        ("output",),
+        "What is kept beyond the table of peaks.",
+        {
+            "histories": Key(
+                choice("worst", "all", "none"),
+                '"all"',
+                'Runs whose histories are kept: the "worst" record of each case, "all", or "none".',
+            ),
+            "histories_MB": Key(
+                positive,
+                "50",
+                'How large their file may become with "worst"; the greatest rotations are kept first.',
+                only={"histories": ("worst",)},
+            ),
+        },
+        homes=(Output,),
+        also=names({"histories": "timehistories timehistory"}),
+        instead=names(
+            {
+                "write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file",
+                "estimates of design practice are an example now, configs/code_estimates.py; leave it out": "estimate estimates",
+            }
+        ),
+    ),
+    *_OF_OBSERVERS,
+)

@@ -14,10 +14,22 @@ class DevicesWork:
     least_stroke_mm: float = 10.0
 
 
-OUTPUT = Section(("output",), "", {
-    "devices_work": Key(boolean, "true",
-        "Whether the work of devices is added: travel, energy and half cycles of the damper that has most, and the strain of "
-        "tendons over their yield strain."),
-    "least_stroke_mm": Key(positive, "20.0",
-        "Stroke, from end to end, from which half cycles of dampers count.", only={"devices_work": (True,)}),
-}, homes=(DevicesWork,))  # fmt: skip
+OUTPUT = Section(
+    ("output",),
+    "",
+    {
+        "devices_work": Key(
+            boolean,
+            "true",
+            "Whether the work of devices is added: travel, energy and half cycles of the damper that has most, and the strain of "
+            "tendons over their yield strain.",
+        ),
+        "least_stroke_mm": Key(
+            positive,
+            "20.0",
+            "Stroke, from end to end, from which half cycles of dampers count.",
+            only={"devices_work": (True,)},
+        ),
+    },
+    homes=(DevicesWork,),
+)

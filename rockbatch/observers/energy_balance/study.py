@@ -14,6 +14,12 @@ class Ledger:
     ledger: bool = False
 
 
-OUTPUT = Section(("output",), "", {
-    "ledger": Key(boolean, "true", "Whether the energy ledger of every run is added to the table."),
-}, homes=(Ledger,), also=names({"ledger": "energy"}))  # fmt: skip
+OUTPUT = Section(
+    ("output",),
+    "",
+    {
+        "ledger": Key(boolean, "true", "Whether the energy ledger of every run is added to the table."),
+    },
+    homes=(Ledger,),
+    also=names({"ledger": "energy"}),
+)

@@ -33,13 +33,17 @@ def section(finished: Finished) -> Markup:
     cut_short = finished.runs["status"].isin(CUT_SHORT).to_numpy()
     known = np.isfinite(available) & ~np.isnan(demands) & ~cut_short
     return render(
-        "observers/forces/section.html", of_cases=of_cases(finished, shown, "Forces of every case"),
+        "observers/forces/section.html",
+        of_cases=of_cases(finished, shown, "Forces of every case"),
         every_run=every_run(finished, heads, cells, "Forces of every run"),
-        interfaces=bool(np.isfinite(available).any()), slides=int((demands > available).sum()),
-        known=int(known.sum()), on_interfaces=int(np.isfinite(available).sum()) + finished.not_run,
+        interfaces=bool(np.isfinite(available).any()),
+        slides=int((demands > available).sum()),
+        known=int(known.sum()),
+        on_interfaces=int(np.isfinite(available).sum()) + finished.not_run,
         frames=any(is_frame(case) for case in finished.info["cases"]),
         bounds=bool(cut_short.any()),
         landings=bool((impulsive & (finished.runs["impacts"] > 0).to_numpy()).any()),
-        modes=any(bends(case) for case in finished.info["cases"]), factors=FACTORS,
+        modes=any(bends(case) for case in finished.info["cases"]),
+        factors=FACTORS,
         heavy=any(not bends(case) and not has_light_shaft(case) for case in finished.info["cases"]),
-    )  # fmt: skip
+    )

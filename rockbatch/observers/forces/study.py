@@ -18,13 +18,25 @@ class Forces:
     least_normal_share: float = LEAST_NORMAL_SHARE
 
 
-OUTPUT = Section(("output",), "", {
-    "forces": Key(boolean, "true",
-        "Whether what designers size is added: base shear, friction, forces of the supports, gaps, impacts, accelerations."),
-    "least_normal_share": Key(share, "0.1",
-        "Share of the weight that the normal force has to exceed for the friction demand to count: below it, as in a hop, "
-        "shear keys carry the base shear, which is a column of its own.", only={"forces": (True,)}),
-}, homes=(Forces,))  # fmt: skip
+OUTPUT = Section(
+    ("output",),
+    "",
+    {
+        "forces": Key(
+            boolean,
+            "true",
+            "Whether what designers size is added: base shear, friction, forces of the supports, gaps, impacts, accelerations.",
+        ),
+        "least_normal_share": Key(
+            share,
+            "0.1",
+            "Share of the weight that the normal force has to exceed for the friction demand to count: below it, as in a hop, "
+            "shear keys carry the base shear, which is a column of its own.",
+            only={"forces": (True,)},
+        ),
+    },
+    homes=(Forces,),
+)
 
 
 _OF_FORCES = {

@@ -17,13 +17,31 @@ class Measures:
     sa_pairs: tuple[str, ...] = ()
 
 
-OUTPUT = Section(("output",), "", {
-    "intensity": Key(boolean, "true",
-        "Whether intensity measures of each motion are written, and which of them orders the peaks best."),
-    "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]",
-        "Periods of the spectral accelerations among the intensity measures.", many=True,
-        only={"intensity": (True,)}),
-    "sa_pairs": Key(choice(*TWO_COMPONENT_RULES), '["rotd50", "rotd100"]',
-        "Spectral accelerations of both components of a station, beside those of each: their geometric mean, and the median and "
-        "the greatest over all directions.", many=True, only={"intensity": (True,)}),
-}, homes=(Measures,), also=names({"intensity": "intensitymeasures"}))  # fmt: skip
+OUTPUT = Section(
+    ("output",),
+    "",
+    {
+        "intensity": Key(
+            boolean,
+            "true",
+            "Whether intensity measures of each motion are written, and which of them orders the peaks best.",
+        ),
+        "sa_periods_s": Key(
+            positive,
+            "[0.5, 1.0, 2.0]",
+            "Periods of the spectral accelerations among the intensity measures.",
+            many=True,
+            only={"intensity": (True,)},
+        ),
+        "sa_pairs": Key(
+            choice(*TWO_COMPONENT_RULES),
+            '["rotd50", "rotd100"]',
+            "Spectral accelerations of both components of a station, beside those of each: their geometric mean, and the "
+            "median and the greatest over all directions.",
+            many=True,
+            only={"intensity": (True,)},
+        ),
+    },
+    homes=(Measures,),
+    also=names({"intensity": "intensitymeasures"}),
+)

@@ -13,7 +13,15 @@ class Separation:
     rocking: bool = False
 
 
-OUTPUT = Section(("output",), "", {
-    "rocking": Key(boolean, "true",
-        "Whether the rocking about a base that has yielded is separated from its lean in every run, which takes one more."),
-}, homes=(Separation,))  # fmt: skip
+OUTPUT = Section(
+    ("output",),
+    "",
+    {
+        "rocking": Key(
+            boolean,
+            "true",
+            "Whether the rocking about a base that has yielded is separated from its lean in every run, which takes one more.",
+        ),
+    },
+    homes=(Separation,),
+)

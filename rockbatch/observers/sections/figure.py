@@ -31,9 +31,10 @@ def over_height(groups: "Iterable[tuple[str, pd.DataFrame]]", series: Sequence[S
 
 
 _OVER_HEIGHT = {
-    "greatest shear": ("shear",), "greatest moment": ("moment",),
+    "greatest shear": ("shear",),
+    "greatest moment": ("moment",),
     "least and greatest axial force": ("axial_least", "axial_greatest"),
-}  # fmt: skip
+}
 
 
 def _envelope(runs: "pd.DataFrame", column: str, foundation: Series) -> Polyline:

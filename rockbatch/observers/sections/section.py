@@ -30,11 +30,14 @@ def section(finished: Finished) -> Markup:
         return Markup("")
     groups = list(groups_of(runs, finished.piers))
     return render(
-        "observers/sections/section.html", file=SECTIONS, shown=min(len(groups), MOST_GROUPS), groups=len(groups),
+        "observers/sections/section.html",
+        file=SECTIONS,
+        shown=min(len(groups), MOST_GROUPS),
+        groups=len(groups),
         picture=drawn(over_height(islice(groups, MOST_GROUPS), finished.series)),
         table=table(_heads(runs), _rows(finished, groups), sortable=True, name="Forces in every section"),
         bounds=bool(runs["status"].isin(CUT_SHORT).any()),
-    )  # fmt: skip
+    )
 
 
 def _heads(runs: "pd.DataFrame") -> list[Head]:
@@ -46,10 +49,13 @@ def _heads(runs: "pd.DataFrame") -> list[Head]:
         for name in order
     ]
     return [
-        Head("case"), Head("height [m]", ".2f", OF_SECTIONS["height_m"]), *forces,
-        Head("±", ".0e", OF_SECTIONS["sections_error"]), Head("runs", note="that went through, of all"),
+        Head("case"),
+        Head("height [m]", ".2f", OF_SECTIONS["height_m"]),
+        *forces,
+        Head("±", ".0e", OF_SECTIONS["sections_error"]),
+        Head("runs", note="that went through, of all"),
         Head("record with the moment"),
-    ]  # fmt: skip
+    ]
 
 
 def _rows(finished: Finished, groups: "list[tuple[str, pd.DataFrame]]") -> Iterator[list[object]]:
@@ -62,7 +68,14 @@ def _rows(finished: Finished, groups: "list[tuple[str, pd.DataFrame]]") -> Itera
             ended = int(runs["status"].isin(CUT_SHORT).sum())
             counts, error = f"{len(runs) - ended} of {len(runs)}", runs["sections_error"].max()
             yield [
-                f"{label} ({words})" if words else label, bent["height_m"], runs[columns["shear"]].max(), bent[columns["moment"]],
-                bent[columns["axial_at_moment"]], runs[columns["axial_least"]].min(), runs[columns["axial_greatest"]].max(),
-                error, alarm(counts) if ended else counts, finished.shown(bent["record"]),
-            ]  # fmt: skip
+                f"{label} ({words})" if words else label,
+                bent["height_m"],
+                runs[columns["shear"]].max(),
+                bent[columns["moment"]],
+                bent[columns["axial_at_moment"]],
+                runs[columns["axial_least"]].min(),
+                runs[columns["axial_greatest"]].max(),
+                error,
+                alarm(counts) if ended else counts,
+                finished.shown(bent["record"]),
+            ]

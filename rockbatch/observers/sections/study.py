@@ -25,14 +25,29 @@ class Sections:
         return self.sections or self.sections_m or None
 
 
-OUTPUT = Section(("output",), "", {
-    "sections": Key(Whole(2, "a whole number, 2 or above: foot and top of the pier are among them"), "5",
-        "Number of sections of the pier, evenly from its foot to its highest point, in which shear, moment and axial force of "
-        "every run are computed: `sections.csv`."),
-    "sections_m": Key(not_negative, "[0.0, 7.5, 15.0]", "Heights of such sections above the pivots instead.", many=True),
-}, homes=(Sections,), clashes=(
-    Clash(("sections", "sections_m"), "sections and sections_m are given, which say the same; keep one", at="sections_m"),
-))  # fmt: skip
+OUTPUT = Section(
+    ("output",),
+    "",
+    {
+        "sections": Key(
+            Whole(2, "a whole number, 2 or above: foot and top of the pier are among them"),
+            "5",
+            "Number of sections of the pier, evenly from its foot to its highest point, in which shear, moment and axial force "
+            "of every run are computed: `sections.csv`.",
+        ),
+        "sections_m": Key(
+            not_negative, "[0.0, 7.5, 15.0]", "Heights of such sections above the pivots instead.", many=True
+        ),
+    },
+    homes=(Sections,),
+    clashes=(
+        Clash(
+            ("sections", "sections_m"),
+            "sections and sections_m are given, which say the same; keep one",
+            at="sections_m",
+        ),
+    ),
+)
 
 
 def complain(file: TomlFile, settings: Sections, piers: Iterable[Pier], bends: bool) -> None:

@@ -31,13 +31,19 @@ def section(finished: Finished) -> Markup:
     runs = [run for run in whole.values() if run[0]["shock_status"] not in ("failed", "not read")]
     whole_runs = [run for run in runs if all(row["shock_status"] == "ok" for row in run)]
     return render(
-        "observers/shocks/section.html", runs=len(runs), cut_short=len(whole) - len(whole_runs), all_runs=len(whole),
-        file=SHOCKS, pauses=len(moving), still=sum(m > AT_REST for m in moving),
-        most=max(moving, default=None), at_rest=AT_REST,
+        "observers/shocks/section.html",
+        runs=len(runs),
+        cut_short=len(whole) - len(whole_runs),
+        all_runs=len(whole),
+        file=SHOCKS,
+        pauses=len(moving),
+        still=sum(m > AT_REST for m in moving),
+        most=max(moving, default=None),
+        at_rest=AT_REST,
         later=sum(max(run, key=_peak) is not run[0] for run in runs),
         fallen=sorted(Counter(row["shock"] for row in rows if row["shock_status"] == "overturned").items()),
         table=_table(finished, rows),
-    )  # fmt: skip
+    )
 
 
 def _peak(row: dict[str, Any]) -> float:
@@ -72,9 +78,17 @@ def _table(finished: Finished, rows: Sequence[dict[str, Any]]) -> Markup:
                 row[name] for name in ("theta_max_over_alpha", "theta_max_error", "t_max_s", "theta_res_over_alpha")
             ]
             stood.append(1000.0 * row["settlement_m"])
-        cells.append([
-            finished.shown(row["record"]), foundation, row["shock"], finished.shown(row["shock_record"]), row["start_s"],
-            row["shock_pga_g"], status if status == "ok" else alarm(status), *stood,
-            alarm(f"{moving:.4f}") if moving > AT_REST else moving,
-        ])  # fmt: skip
+        cells.append(
+            [
+                finished.shown(row["record"]),
+                foundation,
+                row["shock"],
+                finished.shown(row["shock_record"]),
+                row["start_s"],
+                row["shock_pga_g"],
+                status if status == "ok" else alarm(status),
+                *stood,
+                alarm(f"{moving:.4f}") if moving > AT_REST else moving,
+            ]
+        )
     return table(heads, cells, sortable=True, name="Every shock")
