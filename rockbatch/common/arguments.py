@@ -114,6 +114,7 @@ def _take(value: Any, kind: Any) -> object:
         if (
             isinstance(value, Integral if plain is int else Real)
             and not isinstance(value, bool)
+            and not _is_duration(value)
             and not _is_endless(value)
         ):
             return plain(value)
@@ -130,18 +131,26 @@ def _take(value: Any, kind: Any) -> object:
 
 def _is_endless(value: object) -> bool:
     """Return whether a value is a whole number beyond ±10¹⁸, which floats or integers of 64 bits may not hold."""
-    return isinstance(value, Integral) and not -MOST_WHOLE <= int(value) <= MOST_WHOLE
+    return isinstance(value, Integral) and not _is_duration(value) and not -MOST_WHOLE <= int(value) <= MOST_WHOLE
+
+
+def _is_duration(value: object) -> bool:
+    """Return whether a value is NumPy's ``timedelta64``, which counts as a whole number though its unit is its own."""
+    return type(value).__name__ == "timedelta64"
 
 
 def _unfit_for_a_name(value: object) -> str:
-    """Return why a text or path cannot be a file's name: a NUL, or half of a surrogate pair; empty if it can."""
+    """Return why a text or path cannot be a file's name: a NUL, or half of a surrogate pair; empty if it can.
+
+    Whether the file system of this machine has its letters is another matter, which whoever writes the file learns.
+    """
     name = os.fspath(value) if isinstance(value, os.PathLike) else value
     if not isinstance(name, str):
         return ""
     if "\0" in name:
         return "has a NUL character"
     try:
-        os.fsencode(name)
+        name.encode(errors="surrogateescape")
     except UnicodeEncodeError as error:
         return f"has {name[error.start]!a}, half of a character, which no file's name has"
     return ""

@@ -8,6 +8,7 @@ from pathlib import Path
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import legible
 from rockbatch.motions import archives
+from rockbatch.motions.own_files import OWN, is_own
 
 MANIFESTS = ("motions.toml", "motions.csv")
 
@@ -111,6 +112,8 @@ def _source_file(path: Path, source: str) -> SourceFile:
         return SourceFile(path, source, companion="text about the records")
     if path.name not in MANIFESTS and suffix in _BY_SUFFIX:
         return SourceFile(path, source, companion=_BY_SUFFIX[suffix])
+    if path.name not in MANIFESTS and is_own(path):
+        return SourceFile(path, source, companion=OWN)
     return SourceFile(path, source, archives.not_read(path))
 
 

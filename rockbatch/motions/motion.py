@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+_GREATEST_RATE = 1e4  # Hz, of any recorder
+
+
 @dataclass(frozen=True)
 class Initial:
     """The ground's velocity [m/s] and displacement [m] at a record's first sample."""
@@ -61,6 +64,9 @@ class Finding:
     key: str = "confirm"  # which confirms it, under [motions] and in manifests; "confirm" confirms all findings
 
 
+COMPONENTS = ("horizontal", "vertical", "across")
+"""Fields of a motion that are samples; all but the first may be ``None``."""
+
 MOST_SAMPLES = 10_000_000
 """Greatest number of samples of a pulse or of still ground."""
 
@@ -76,15 +82,13 @@ def _check_still(duration: float, dt: float) -> None:
 
 
 def _frozen(samples: object) -> Samples:
-    """Return samples as a read-only array of ``float64``, itself if it is one; raise ``TypeError`` unless real numbers."""
+    """Return samples as an array of ``float64`` over bytes, itself if it is one; raise ``TypeError`` unless real numbers.
+
+    Nobody can write into bytes, while whoever made an array read-only may make it writeable again.
+    """
     if np.ma.is_masked(samples):
         raise TypeError("has masked samples: fill them or leave the record out")
-    if (
-        isinstance(samples, np.ndarray)
-        and not samples.flags.writeable
-        and samples.base is None
-        and samples.dtype == float
-    ):
+    if isinstance(samples, np.ndarray) and isinstance(samples.base, bytes) and samples.dtype == float:
         return samples
     try:
         values = np.asarray(samples)
@@ -92,9 +96,7 @@ def _frozen(samples: object) -> Samples:
         raise TypeError(f"cannot be made an array of: {error}") from error
     if values.dtype.kind not in "iuf":
         raise TypeError(f"has samples of type {values.dtype}: must be real numbers")
-    frozen = np.array(values, dtype=np.float64)
-    frozen.flags.writeable = False
-    return frozen
+    return np.frombuffer(np.ascontiguousarray(values, np.float64).tobytes(), np.float64).reshape(values.shape)
 
 
 @checked
@@ -152,7 +154,8 @@ class Motion(Shown):
     vertical_factor : float or None
         What the vertical component as it was recorded was multiplied by, if that is not ``factor``.
 
-    Raises ``InputError`` for samples that are no numbers and components of different lengths.
+    All samples are copied and cannot be changed afterwards. Raises ``InputError`` for samples that are no numbers and
+    components of different lengths.
 
     Examples
     --------
@@ -197,11 +200,12 @@ class Motion(Shown):
         if not (math.isfinite(self.dt) and self.dt > 0):
             wrong.append(f'motion "{self.name}": dt = {self.dt:g}: must be a number above 0 [s]')
         elif "dt" not in self.confirm:
-            rate = f"; if it is a rate in Hz, write dt = {1.0 / self.dt:g}" if self.dt >= 10.0 else ""
+            rate = f"; if it is a rate in Hz, write dt = {1.0 / self.dt:g}" if 10.0 <= self.dt <= _GREATEST_RATE else ""
             doubts = USUAL_STEP.doubts("dt", self.dt)
             wrong += [replace(doubt, text=f"{doubt.text}{rate}", place=f'motion "{self.name}"') for doubt in doubts]
-        for component, samples in (("horizontal", self.horizontal), ("vertical", self.vertical)):
-            if samples is None and component == "vertical":
+        for component in COMPONENTS:
+            samples = getattr(self, component)
+            if samples is None and component != "horizontal":
                 continue
             try:
                 samples = _frozen(samples)
@@ -219,11 +223,13 @@ class Motion(Shown):
                     f'motion "{self.name}": {component} sample {first} (t = {first * self.dt:g} s) is {samples[first]}: '
                     "must be a number; repair the record or leave it out"
                 )
-        if not wrong and self.vertical is not None and len(self.vertical) != len(self.horizontal):
-            wrong.append(
-                f'motion "{self.name}": {len(self.horizontal)} horizontal and {len(self.vertical)} vertical samples: '
-                "bring them to one length"
-            )
+        for component in COMPONENTS[1:] if not wrong else ():
+            samples = getattr(self, component)
+            if samples is not None and len(samples) != len(self.horizontal):
+                wrong.append(
+                    f'motion "{self.name}": {len(self.horizontal)} horizontal and {len(samples)} {component} samples: '
+                    "bring them to one length"
+                )
         refuse(wrong)
 
     @classmethod
@@ -317,11 +323,11 @@ class Motion(Shown):
         )
 
     def __setstate__(self, state: dict[str, object]) -> None:
-        """Restore a copy, or a motion from another process, with read-only samples: pickling loses that flag."""
+        """Restore a copy, or a motion from another process, with samples that cannot be changed: pickling loses that."""
         vars(self).update(state)
-        for value in state.values():
-            if isinstance(value, np.ndarray):
-                value.flags.writeable = False
+        for component in COMPONENTS:
+            if (samples := state.get(component)) is not None:
+                vars(self)[component] = _frozen(samples)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Motion):
@@ -439,8 +445,7 @@ class Motion(Shown):
         for name, by in (("horizontal", along), ("vertical", factor), ("across", factor)):
             if (samples := getattr(self, name)) is not None:
                 with np.errstate(over="ignore", invalid="ignore"):  # __post_init__ refuses it below
-                    vars(times)[name] = samples * by
-                vars(times)[name].flags.writeable = False
+                    vars(times)[name] = _frozen(samples * by)
         if self.initial is not None:
             vars(times)["initial"] = self.initial.times(along)
         if not math.isfinite(times.pga + (times.pga_vertical or 0.0)):

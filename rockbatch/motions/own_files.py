@@ -1,0 +1,66 @@
+"""Recognise what rockbatch wrote: a folder of records may hold the results of a study that lies beside them."""
+
+import re
+from pathlib import Path
+
+from rockbatch.common.errors import InputError
+from rockbatch.motions.archives import bare, content
+
+OWN = "a result that rockbatch wrote"
+
+_TABLES = (".csv", ".part", ".tsv", ".txt")
+_HISTORIES = (".h5", ".hdf5")
+_HISTORIES_BEGIN = b"rockbatch histories"
+_MOST_OF_A_HEAD = 16_384  # bytes: more than the heads of all columns
+_SEAL = re.compile(rb"[0-9a-f]{8} ")  # of a line in a journal
+
+_NAMED_TOGETHER: tuple[frozenset[str], ...] = tuple(
+    frozenset(names.split())
+    for names in (
+        "record case polarity scale",
+        "check case verdict",
+        "case limit_state",
+        "record measure unit unscaled level",
+        "case parameter swing",
+        "case parameter first total",
+        "record polarity scale status theta_max_over_alpha",
+        "case alpha two_pi_over_p_s",
+        "map case outcome",
+        "method machine study",
+        "case parameter value confidence",
+        "case impact t_measured_s",
+        "case t_s theta_rad",
+        "record file_h file_v",
+        "case lift_off_g",
+        "case theta_rad moment_over_weight_m",
+    )
+)
+"""Columns of which every table has at least one group, and which no table of samples has."""
+
+
+def is_own(path: Path) -> bool:
+    """Return whether a file, or a member of an archive, is a table, a journal or the histories of a study or an analysis.
+
+    Its first bytes decide, not its name: a table may have been copied or renamed.
+    """
+    suffix = bare(path).suffix.lower()
+    try:
+        if suffix in _HISTORIES:
+            return content(path, len(_HISTORIES_BEGIN)).startswith(_HISTORIES_BEGIN)
+        return suffix in _TABLES and _is_head(content(path, _MOST_OF_A_HEAD))
+    except (InputError, OSError):
+        return False  # whoever reads it says what is wrong with it
+
+
+def _is_head(begin: bytes) -> bool:
+    """Return whether the first line of a table names columns of ours; of a journal one of the first three, behind digests."""
+    lines = begin.removeprefix(b"\xef\xbb\xbf").splitlines()[:3]
+    heads = lines if lines and _SEAL.match(lines[0]) else lines[:1]
+    return any(_has_our_columns(head) for head in heads)
+
+
+def _has_our_columns(head: bytes) -> bool:
+    cells = {
+        cell.strip(' "') for cell in re.split(r"[,;\t]|\\n", _SEAL.sub(b"", head, count=1).decode(errors="replace"))
+    }
+    return any(names <= cells for names in _NAMED_TOGETHER)
