@@ -108,6 +108,7 @@ def judge(
     if sections is not None:
         at_heights = {rule.at_m: rule for rule in rules if rule.at_m is not None}
         tables |= {height: at_section(runs, sections, rule) for height, rule in at_heights.items()}
+    names = frozenset(str(case["case"]) for case in cases)
     verdicts = []
     for _, of_axes in groupby(rows_of_cases(runs, cases), lambda pair: of_pier(pair[0])):
         pier = list(of_axes)
@@ -118,7 +119,7 @@ def judge(
                 axes.append(Axis(case, complete(at_scale, stations, polarities)))
             judged = []
             for rule in rules:
-                if chooses(rule, str(axes[0].case["case"]), scale):
+                if chooses(rule, str(axes[0].case["case"]), scale, names):
                     of_rule = [Axis(axis.case, axis.suite.beside(tables[rule.at_m])) for axis in axes]
                     judged.append((rule, _verdict(rule, of_rule, scale, rule.count or count, events or {})))
             verdicts += left_open(judged, [axis.suite for axis in axes])

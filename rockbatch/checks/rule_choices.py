@@ -1,6 +1,5 @@
 """Rules checked against their study: choices that it does not offer, and limits that decide nothing."""
 
-import fnmatch
 import math
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import NamedTuple
@@ -9,6 +8,7 @@ from rockbatch.checks.rules import Rule
 from rockbatch.common.errors import MissingKey, Problem, UnknownKey, Unusual
 from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
+from rockbatch.common.naming import chosen, chosen_by
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, weight
@@ -24,14 +24,14 @@ LEAST_MM = 1.0
 """Limit of a length [mm] below which it is more probably in metres."""
 
 
-def is_about(rule: Rule, case: str) -> bool:
-    """Return whether the rule is about the case of this name."""
-    return not rule.case or any(_matches(case, pattern) for pattern in rule.case)
+def is_about(rule: Rule, case: str, cases: frozenset[str]) -> bool:
+    """Return whether the rule is about the case of this name, one of ``cases``."""
+    return not rule.case or case in chosen_by(tuple(rule.case), cases)
 
 
-def chooses(rule: Rule, case: str, scale: float) -> bool:
-    """Return whether the rule is about the case of this name at this scale."""
-    return is_about(rule, case) and (not rule.scale or any(math.isclose(scale, factor) for factor in rule.scale))
+def chooses(rule: Rule, case: str, scale: float, cases: frozenset[str]) -> bool:
+    """Return whether the rule is about the case of this name, one of ``cases``, at this scale."""
+    return is_about(rule, case, cases) and (not rule.scale or any(math.isclose(scale, factor) for factor in rule.scale))
 
 
 class Available(NamedTuple):
@@ -52,7 +52,7 @@ def unmet(rule: Rule, available: Available) -> Iterator[Problem]:
     """Yield a problem for each choice of the rule that is not ``available``."""
     cases, scales = available.cases, available.scales
     for pattern in rule.case:
-        if not any(_matches(name, pattern) for name in cases):
+        if not chosen(pattern, cases):
             nearest = closest(pattern, cases)
             instead = f"did you mean {shown(nearest)}?" if nearest else f"there is {', '.join(map(shown, cases))}"
             yield Problem("case", pattern, f"there is no such case; {instead}", kind=UnknownKey)
@@ -92,11 +92,6 @@ def _no_section(rule: Rule, sections: Collection[float]) -> Iterator[Problem]:
         yield Problem("at_m", rule.at_m, text, kind=UnknownKey)
 
 
-def _matches(name: str, pattern: str) -> bool:
-    """Return whether a name is ``pattern``, which may have brackets of its own, or matches it as a glob."""
-    return name == pattern or fnmatch.fnmatchcase(name, pattern)
-
-
 def implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
     """Yield the problem of a limit that is too far from possible values to decide anything, unless it is confirmed.
 
@@ -115,7 +110,8 @@ def implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
     if value < 0:
         passing = "nothing" if key == "at_most" else "all"
         yield odd(f"{rule.demand} is counted without its sign, so that {passing} passes", "sign")
-    mine = [case for case in cases if demand.applies_to(case) and is_about(rule, str(case["case"]))]
+    names = frozenset(str(case["case"]) for case in cases)
+    mine = [case for case in cases if demand.applies_to(case) and is_about(rule, str(case["case"]), names)]
     most = max((demand.ceiling.value(case) for case in mine if demand.ceiling), default=math.inf)
     shown = 1e-3 * most if rule.demand in ("top_drift_mm", "heel_uplift_mm") and math.isfinite(most) else 0.0
     if demand.unit == "mm" and 0 < value < max(LEAST_MM, shown):

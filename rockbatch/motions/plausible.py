@@ -6,10 +6,10 @@ compared with real records in motions/README.md.
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 
 import numpy as np
 
+from rockbatch.common.naming import fits
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
 from rockbatch.motions.component import Component
@@ -336,4 +336,4 @@ def confirmation_request(name: str, findings: Sequence[Finding], confirmed: Coll
 
 def matches_any(name: str, patterns: Sequence[str]) -> bool:
     """Return whether a record's name is one of ``patterns``, or matches one with ``*`` and ``?``."""
-    return any(name == pattern or fnmatchcase(name, pattern) for pattern in patterns)
+    return any(fits(name, pattern) for pattern in patterns)

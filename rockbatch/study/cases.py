@@ -5,6 +5,7 @@ from dataclasses import asdict, replace
 from typing import NamedTuple
 
 from rockbatch.common.errors import Problem
+from rockbatch.common.naming import alike
 from rockbatch.common.showing import shown
 from rockbatch.common.units import rounded_up
 from rockbatch.pier import (
@@ -317,6 +318,12 @@ def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[li
             table.complain('name is missing; of several cases each needs its own, for example name = "soft"')
         elif case.name in names:
             table.complain(f"name = {shown(case.name)}: given twice; give each case its own name", "name")
+        elif other := alike(case.name, sorted(names)):
+            table.complain(
+                f"name = {case.name!a}: is read as the case {other!a}, from which it differs in letters or spaces that look "
+                "alike; give it another name",
+                "name",
+            )
         names |= {case.name} - {""}
         varied |= dict.fromkeys(case.grid.varied)
         if case.base:

@@ -5,11 +5,11 @@ import json
 import os
 import re
 from collections.abc import Iterable, Mapping
-from fnmatch import fnmatchcase
 from typing import TypeAlias, TypeGuard
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
+from rockbatch.common.naming import chosen
 from rockbatch.common.showing import shown
 
 TomlValue: TypeAlias = (
@@ -128,20 +128,15 @@ def without_lost_cases(before: Mapping[str, TomlValue], after: Mapping[str, Toml
             continue
         remaining: list[TomlValue] = []
         for table in tables:
-            chosen = table.get("case", "*")
-            patterns = chosen if isinstance(chosen, list) else [chosen]
-            about = [pattern for pattern in patterns if _fits(present, pattern) or not _fits(lost, pattern)]
+            written = table.get("case", "*")
+            patterns = written if isinstance(written, list) else [written]
+            about = [p for p in patterns if chosen(str(p), present) or not chosen(str(p), lost)]
             if about:
                 remaining.append(table if about == patterns else table | {"case": about})
         del result[kind]
         if remaining:
             result[kind] = remaining
     return result
-
-
-def _fits(names: Iterable[str], pattern: TomlValue) -> bool:
-    """Return whether one of ``names`` is ``pattern``, or matches it as a glob."""
-    return any(name == pattern or fnmatchcase(name, str(pattern)) for name in names)
 
 
 def as_toml(tables: Mapping[str, TomlValue], *place: str) -> str:

@@ -209,7 +209,8 @@ def assess(
     plans = plans or level_plans(study, spec, motions)
     runs = RecordRuns(study, spec, motions, plans, simulate)
     cases = [describe_case(case) for case in study.cases]
-    pairs = [(c, rule) for rule in spec.limits for c, case in enumerate(cases) if applies(rule, case)]
+    names = frozenset(case.name for case in study.cases)
+    pairs = [(c, rule) for rule in spec.limits for c, case in enumerate(cases) if applies(rule, case, names)]
     first = {
         (c, m): first_intensities(spec, plans[c], m, case)
         for c, case in enumerate(study.cases)

@@ -19,11 +19,11 @@ overturned and the check counts that as unknown; it is left out if the check say
 """
 
 
-def applies(rule: Rule, case: Case) -> bool:
-    """Return whether a limit applies to a case, given as in run.json."""
+def applies(rule: Rule, case: Case, names: frozenset[str]) -> bool:
+    """Return whether a limit applies to a case, given as in run.json; ``names`` are those of all cases."""
     demand = DEMANDS[rule.demand]
     equipped = not demand.device or has_device(case, demand.device)
-    return chooses(rule, str(case["case"]), 1.0) and demand.applies_to(case) and equipped
+    return chooses(rule, str(case["case"]), 1.0, names) and demand.applies_to(case) and equipped
 
 
 def threshold(rule: Rule) -> float:

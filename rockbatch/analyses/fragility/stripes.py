@@ -1,6 +1,5 @@
 """Stripes with records of their own in a study file, as record selection gives them: [[fragility.stripe]]."""
 
-import fnmatch
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -8,6 +7,7 @@ from typing import Any
 from rockbatch.analyses.fragility.hazard import IN_G, IN_M_S
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
+from rockbatch.common.naming import chosen
 from rockbatch.common.showing import shown
 from rockbatch.toml.csv_columns import columns_of
 from rockbatch.toml.kinds import positive, text
@@ -116,11 +116,12 @@ def members(file: TomlFile, stripes: Sequence[StripeRecords], names: Sequence[st
 
     Raises ``InputError`` with the line of every name that is no record's, and of patterns with a factor that fit several.
     """
-    chosen = []
+    levels = []
     for n, stripe in enumerate(stripes):
         scales_of_level: dict[int, float | None] = {}
         for place, pattern in enumerate(stripe.records):
-            fitting = [number for number, name in enumerate(names) if fnmatch.fnmatchcase(name, pattern)]
+            its = chosen(pattern, names)
+            fitting = [number for number, name in enumerate(names) if name in its]
             wrong = ""
             if not fitting:
                 nearest = closest(pattern, names)
@@ -137,6 +138,6 @@ def members(file: TomlFile, stripes: Sequence[StripeRecords], names: Sequence[st
                     f"[[fragility.stripe]] {shown(pattern)}: {wrong}",
                 )
             scales_of_level |= dict.fromkeys(fitting, stripe.scales[place] if stripe.scales else None)
-        chosen.append(scales_of_level)
+        levels.append(scales_of_level)
     file.finish()
-    return chosen
+    return levels

@@ -1,6 +1,5 @@
 """Fragility curves in a study file: [fragility]."""
 
-import fnmatch
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -24,6 +23,7 @@ from rockbatch.analyses.fragility.uncertain import SECTIONS as OF_UNCERTAIN
 from rockbatch.analyses.fragility.uncertain import Uncertain, read_uncertain
 from rockbatch.checks.rules import Rule
 from rockbatch.common.grouping import closest
+from rockbatch.common.naming import chosen, chosen_by
 from rockbatch.common.showing import shown
 from rockbatch.pier import Base
 from rockbatch.quantities.catalogue import DEMANDS
@@ -332,22 +332,22 @@ def _levels(table: Table, read: dict[str, Any], stripes: Sequence[StripeRecords]
     return levels
 
 
-def _limits(table: Table, rules: tuple[Rule, ...], chosen: tuple[str, ...] | None) -> tuple[Rule, ...]:
+def _limits(table: Table, rules: tuple[Rule, ...], wanted: tuple[str, ...] | None) -> tuple[Rule, ...]:
     """Return the checks that are limit states, all by default, at all scales; those of the case alone, and those in sections,
     which peaks do not have, are left out."""
     able = [rule for rule in rules if not DEMANDS[rule.demand].per_case and rule.demand != OVERTURNING.demand]
     able = [rule for rule in able if rule.at_m is None]
     if any(rule.name == OVERTURNING.name for rule in able):
         table.complain(f"a [[check]] is called {shown(OVERTURNING.name)}, as the limit state is; give it another name")
-    if chosen is not None:
+    if wanted is not None:
         names = [rule.name for rule in able]
-        for n, pattern in enumerate(chosen):
-            if not any(fnmatch.fnmatchcase(name, pattern) for name in names):
+        for n, pattern in enumerate(wanted):
+            if not chosen(pattern, names):
                 nearest = closest(pattern, names)
                 choices = f"there is {', '.join(map(shown, names))}" if names else "the study has none about records"
                 instead = f"did you mean {shown(nearest)}?" if nearest else choices
                 table.complain(f"checks = {shown(pattern)}: no [[check]] has this name; {instead}", "checks", n)
-        able = [rule for rule in able if any(fnmatch.fnmatchcase(rule.name, pattern) for pattern in chosen)]
+        able = [rule for rule in able if rule.name in chosen_by(wanted, frozenset(names))]
     return tuple(map(_of_one_record, able))
 
 

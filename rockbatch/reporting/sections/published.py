@@ -1,8 +1,8 @@
 """Published values beside computed ones."""
 
 import math
-from fnmatch import fnmatchcase
 
+from rockbatch.common.naming import fits
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import symbol
 from rockbatch.reporting.markup import Markup, join, tag
@@ -45,6 +45,6 @@ def _fits(run: Row, reference: Row) -> bool:
             return math.isclose(ours, theirs, rel_tol=1e-9)
         return ours == theirs
 
-    return fnmatchcase(run["record"], reference["record"]) and all(
+    return fits(run["record"], reference["record"]) and all(
         equal(run.get(key), value) for key, value in reference["columns"].items()
     )
