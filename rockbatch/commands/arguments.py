@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.commands.example_studies import FIRST
 from rockbatch.common.analyses import Door, doors
-from rockbatch.common.argument_values import address, flag, shard, value, whole
+from rockbatch.common.argument_values import address, flag, place, shard, value, whole
 
 if TYPE_CHECKING:
     from rockbatch.study import Study
@@ -74,7 +74,7 @@ def _study(arguments: argparse.Namespace) -> "Study":
 
 _STUDY: Arguments = {
     "study": value(Path, "STUDY.toml", "the study file"),
-    "--out": value(Path, "DIR", "folder for the results (default: reports/STUDY)"),
+    "--out": value(place, "DIR", "folder for the results (default: reports/STUDY)"),
     "--motions": value(Path, "PATH", "file or folder of records instead of the study's motions"),
     "--strict": flag("run nothing if any record cannot be used"),
 }

@@ -3,6 +3,7 @@
 import argparse
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 
@@ -27,6 +28,13 @@ def address(text: str) -> str:
     if not text.strip():
         raise argparse.ArgumentTypeError("must be an address such as tcp://10.0.0.1:8786; it is empty")
     return text
+
+
+def place(text: str) -> Path:
+    """Return the path of a folder; raise ``ArgumentTypeError`` if the text is empty, which would be the current folder."""
+    if not text.strip():
+        raise argparse.ArgumentTypeError("must be a folder; it is empty: write . for this one")
+    return Path(text)
 
 
 def shard(text: str) -> tuple[int, int]:

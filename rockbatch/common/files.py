@@ -280,6 +280,8 @@ def only_writer(folder: Path) -> Iterator[None]:
     try:
         lock.acquire(blocking=False)
     except Timeout:
+        if not (folder / LOCK).exists():  # the file system has no such files, as that of /proc
+            raise InputError(f"{folder}: no file can be written there; choose another folder with --out") from None
         raise InputError(
             f"{folder}: another process is writing its results there; wait for it, or choose another folder with --out"
         ) from None

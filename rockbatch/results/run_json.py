@@ -254,4 +254,4 @@ def write_info(directory: Path, info: Item) -> None:
 
 
 def _json(value: object) -> str:
-    return json.dumps(value, ensure_ascii=False)
+    return json.dumps(value, ensure_ascii=False).encode(errors="backslashreplace").decode()  # bytes that are no text
