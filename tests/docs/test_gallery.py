@@ -19,13 +19,17 @@ def drawn(path):
     return module.draw()
 
 
-LONG = "fragility", "overturning_map", "peaks", "self_similar", "spectrum"  # `make docs` draws them, too
+LONG = "fragility", "overturning_map", "peaks", "self_similar", "spectrum"
+COMPILED = ("footing",)
+"""Those with a kernel that no fast test shares; `make docs` draws them and the long ones, too."""
 
 
-@pytest.mark.parametrize(
-    "path",
-    [pytest.param(path, id=path.stem, marks=[pytest.mark.thorough] * (path.stem in LONG)) for path in SCRIPTS],
-)
+def marks_of(name):
+    """Return the mark of a script that takes longer than fast tests do."""
+    return [pytest.mark.thorough] * (name in LONG) + [pytest.mark.slow] * (name in COMPILED)
+
+
+@pytest.mark.parametrize("path", [pytest.param(path, id=path.stem, marks=marks_of(path.stem)) for path in SCRIPTS])
 def test_each_script_draws_a_picture(path):
     figure = drawn(path)
     picture = BytesIO()
