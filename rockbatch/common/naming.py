@@ -11,12 +11,12 @@ _LIKE_LATIN = str.maketrans(  # Cyrillic and Greek letters that most fonts draw 
 
 
 def fits(name: str, pattern: str) -> bool:
-    """Return whether a name is ``pattern`` or matches it, where ``*`` and ``?`` stand for anything; brackets are themselves."""
-    return name == pattern or fnmatchcase(name, pattern.replace("[", "[[]"))
+    """Return whether a name is ``pattern``, which may have brackets of its own, or matches it as a glob."""
+    return name == pattern or fnmatchcase(name, pattern)
 
 
 def chosen(pattern: str, names: Iterable[str]) -> list[str]:
-    """Return the names that ``pattern`` chooses: the one that it is, though it may have ``*`` in it, else those that match."""
+    """Return the names that ``pattern`` chooses: the one that it is, else those that it matches as a glob."""
     names = list(names)
     return [pattern] if pattern in names else [name for name in names if fits(name, pattern)]
 

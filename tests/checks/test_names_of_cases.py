@@ -13,7 +13,7 @@ CHECK = {"name": "upright", "reason": "test", "demand": "theta_max_over_alpha", 
     ("pattern", "names", "expected"),
     [
         ("soft [1]", ["soft [1]", "soft 1"], ["soft [1]"]),
-        ("soft [1]", ["soft 1"], []),
+        ("soft [12]", ["soft 1", "soft 3"], ["soft 1"]),
         ("soft *", ["soft *", "soft 1"], ["soft *"]),
         ("soft *", ["soft 1", "hard", "soft 2"], ["soft 1", "soft 2"]),
         ("s?ft", ["soft", "sft"], ["soft"]),
