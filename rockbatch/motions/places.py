@@ -28,6 +28,7 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
         "de": "freifeld*, freies feld, gelaendeoberflaeche, gelandeoberflache, dammfuss",
         "tr el": "serbest saha, serbest alan, acik saha, elefthero pedio, ελευθερο πεδιο",
         "ja zh": "jiyu jiban, chihyo, 地表, 自由地盤, ziyou chang, 自由场, 自由場",
+        "ru nl ko fa": "свободное поле, vrije veld, maaiveld, 자유장, 지표면, میدان آزاد",
     },
     "ground": {
         "en": "ground, grnd, grd, soil, grade, lawn, yard, parking, field, hut, shed, shelter, vault, pad, kiosk, hillside, "
@@ -37,28 +38,34 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
         "de": "boden, gelande, garten, huette, hutte",
         "tr el": "zemin, bahce, arazi, edafos, εδαφος",
         "ja zh": "jiban, jimen, 地盤, 地面, dimian",
+        "ru nl ko fa": "грунт*, земля, grond, bodem, 지반, زمین",
     },
     "structure": {
         "en": "roof, rooftop, penthouse, mezzanine, attic, balcony, parapet*, ceiling, catwalk, deck, girder, beam, truss*, "
         "abut*, abtmt, crest, column, bent cap, cap beam, pile, pilecap, piling, footing, ftg, ftng, caisson, embank*, embkmt, "
         "levee, berm, isolator, isolation, isoltr, isol, midspan, mid span, wingwall, wing wall, shear wall, core wall, "
         "spillway, dam top, top of dam, dam body, upstream face, downstream face, pylon, superstructure, superstr, pier cap, "
-        "pier top, top of pier, pier base, base of pier, tower top, top of tower, tower base, base of tower, hinge",
-        "es pt": "techo, azotea, tejado, estribo, coronacion, coronamiento, encepado, terraplen*, aislador*, cuerpo de la presa, "
-        "telhado, tabuleiro, coroamento, bloco de estacas, isolador*, corpo da barragem",
+        "pier top, top of pier, pier base, base of pier, tower top, top of tower, tower base, base of tower, hinge, pedestal, "
+        "anchor block, tailings dam, mezz",
+        "es pt": "techo, azotea, tejado, estribo, coronacion, corona de la presa, coronamiento, encepado, terraplen*, "
+        "aislador*, cuerpo de la presa, telhado, tabuleiro, coroamento, bloco de estacas, isolador*, corpo da barragem",
         "fr it": "toiture, culee, couronnement, semelle, isolateur, appareil d appui, corps du barrage, sottotetto, impalcato, "
         "coronamento, pila del ponte, isolatore, isolatori, corpo diga",
-        "de": "dachgeschoss, ueberbau, uberbau, fahrbahnplatte, widerlager, dammkrone, mauerkrone, fundamentplatte, pfahlkopf*",
+        "de": "dachgeschoss, ueberbau, uberbau, fahrbahnplatte, widerlager, dammkrone, mauerkrone, fundamentplatte, pfahlkopf*, "
+        "brueckenpfeiler*, bruckenpfeiler*, isolatorebene",
         "tr el": "catisi, tabliye, kenar ayak, kenar ayagi, orta ayak, kret, kreti, izolator*, taratsa, katastroma, "
         "akrovathro, mesovathro, epichoma, στεγη, ταρατσα, καταστρωμα, ακροβαθρο, στεψη, υποστυλωμα*, μεσοβαθρο, επιχωμα, "
         "μονωτηρ*",
         "ja zh": "okujo, okujou, kyodai, kyokyaku, menshin, 屋上, 床版, 橋台, 天端, 橋脚, フーチング, 盛土, 免震, "
         "屋顶, 屋頂, 楼顶, 桥面, 橋面, 桥台, 坝顶, 壩頂, 坝体, 桥墩, 橋墩, 承台, 路堤, 隔震",
+        "ru": "крыша, крыши, крыше, кровля, чердак, насыпь, насыпи, свая, сваи, сваях, ростверк*, пролетн*, гребень плотины",
+        "nl": "landhoofd*, brugdek, paalkop*, dijkkruin",
+        "ko fa": "옥상, 지붕, 교각, 교대, 상판, 말뚝, 성토, 면진, 주탑, سقف, پشت بام, پایه پل, خاکریز",
     },
     "structure, in places only": {  # also names of towns, streets and people
         "en": "pier, bent, tower, span, wall, bearing, anchorage, approach*, gallery, wharf, quay, dock, crane, tank, silo, "
-        "stack, shaft, mast, dike, dyke, ramp, cable, saddle, chimney, joint, col, rf",
-        "es": "ultimo piso, tablero, viga, cresta, columna, zapata, cabezal, pilote, pila, pilon, galeria, torre, pilar*, "
+        "stack, shaft, mast, dike, dyke, ramp, cable, saddle, chimney, joint, col, rf, tunnel, mine",
+        "es": "ultimo piso, tablero, viga, cresta, cima, columna, zapata, cabezal, pilote, pila, pilon, galeria, torre, pilar*, "
         "apoyo, muro",
         "pt": "encontro, crista, coluna, sapata, estaca, aterro",
         "fr": "toit, terrasse, tablier, poutre, crete, poteau*, pieu*, remblai, tour, pilier, mur",
@@ -71,6 +78,8 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
         "πεδιλο",
         "ja zh": "shouban, shoban, keta, tenba, tentan, hashira, futingu, kui, morido, wuding, loding, qiaomian, liang, qiaotai, "
         "badi, bading, zhuzi, qiaodun, chengtai, zhuang, ludi, gezhen*, 桁, 柱, 杭, 桩, 梁",
+        "ru": "опора, опоры, опоре, колонна, колонны, колонне, балка, балки, балке, башня, башни, стена, стены, гребень",
+        "nl ko fa": "dak, pijler*, kolom, kolommen, ligger*, toren, kruin, 기둥, ستون, برج",
     },
     "borehole": {
         "en": "borehole*, bore hole, downhole*, down hole, dwnhl, dwnh, dhole, dh, bh, drillhole, drill hole, underground",
@@ -79,6 +88,7 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
         "de": "bohrloch*, bohrung*",
         "tr el": "sondaj*, kuyu ici, geotrisi*, γεωτρηση",
         "ja zh": "chichu, konai, 地中, 孔内, jingxia, zuankong, 井下, 钻孔, 鑽孔",
+        "ru nl ko fa": "скважин*, boorgat*, 시추공, گمانه",
     },
     "borehole, in places only": {"": "hole, pozo, pozzo, furo, foro, kuyu, well, tiefe"},
     "depth": {
@@ -101,6 +111,7 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
         "de": "stock, stockwerk, og, obergeschoss, etage, ebene, geschoss",
         "tr el": "kat, orofos, οροφος",
         "ja zh": "kai, f, lou, ceng, 階, 层, 層, 楼, 樓",
+        "ru nl ko fa": "этаж*, verdieping*, 층, طبقه",
     },
 }
 _STREETS = (  # behind a word, which is a name then
@@ -112,7 +123,8 @@ _ORDINALS = "second third fourth fifth sixth seventh eighth ninth tenth eleventh
 _CARDINAL = re.compile(r"\b(?:north|south|east|west|n|s|e|w|nw|ne|sw|se|northwest|northeast|southwest|southeast)\b")
 _LEAST_DEPTH = 2.0  # m: vaults of sensors at the surface are less deep
 _FOOT = 0.3048  # m
-_WIDE = r"぀-ヿ一-鿿"  # scripts without blanks between words
+_WIDE = r"぀-ヿ一-鿿가-힣؀-ۿ"  # scripts without blanks between words, or whose words have endings and articles joined to them
+_LETTERS = "a-zα-ωа-я"
 
 _LENGTH = r"(?P<number>\d+(?:[.,]\d+)?) ?(?P<unit>m|mt|mts|meters?|metres?|metros|metri|ft|feet|foot)\b\.?"
 _DIRECTED = re.compile(
@@ -159,15 +171,17 @@ def _folded(text: str) -> str:
 @lru_cache(maxsize=64)
 def _pattern(*kinds: str) -> re.Pattern[str]:
     """Return a pattern that matches the words of these kinds in ``_PLACES``."""
-    words = {word.strip() for kind in kinds for listed in _PLACES[kind].values() for word in listed.split(",")}
+    words = {
+        word.strip().casefold() for kind in kinds for listed in _PLACES[kind].values() for word in listed.split(",")
+    }
     wide = [re.escape(word) for word in words if re.search(f"[{_WIDE}]", word)]
     plain = sorted(words - {word for word in words if re.search(f"[{_WIDE}]", word)}, key=len, reverse=True)
     ends = [
         re.sub(r"\\? ", "[- .]*", re.escape(word.removesuffix("*")))
-        + ("[a-zα-ω]*" if word.endswith("*") else "(?:s|es)?")
+        + (f"[{_LETTERS}]*" if word.endswith("*") else "(?:s|es)?")
         for word in plain
     ]
-    return re.compile(rf"(?<![a-zα-ω])(?:{'|'.join(ends)})(?![a-zα-ω])" + "".join(f"|{word}" for word in wide))
+    return re.compile(rf"(?<![{_LETTERS}])(?:{'|'.join(ends)})(?![{_LETTERS}])" + "".join(f"|{word}" for word in wide))
 
 
 def _is_on_structure(text: str, is_name: bool) -> bool:
@@ -201,7 +215,7 @@ def _upper_floor() -> re.Pattern[str]:
     """Return a pattern of floors from the second on, in digits or words, before or after the word for floor."""
     floor = _pattern("floor").pattern
     number = r"(?<![\d.b-])(?:[2-9]|[1-9]\d)(?![\d])"
-    ordinal = r"(?:st|nd|rd|th|er|do|to|mo|e|eme|ieme|o|a|°|º|ª|\.|os|inci|uncu|ncu)?"
+    ordinal = r"(?:st|nd|rd|th|er|do|to|mo|e|eme|ieme|de|ste|o|a|°|º|ª|\.|os|οσ|inci|uncu|ncu|-?и|-?м)?"
     words = "|".join(_ORDINALS.split())
     return re.compile(rf"(?:{number}{ordinal}|\b(?:{words}))[ -]*(?:{floor})|(?:{floor})[ .#]*(?:no[. ]*)?{number}")
 

@@ -81,6 +81,20 @@ STATIONS_ON_STRUCTURES = (
 # fmt: on
 
 
+IN_FURTHER_LANGUAGES = {
+    Stand.STRUCTURE: "крыша|3 этаж|2-й этаж|опора 3|насыпь|свая|지붕|옥상|3층|교각|سقف|dak|3e verdieping|"
+    "landhoofd|3ος όροφος|Brückenpfeiler 2|Isolatorebene|Corona de la presa|Tailings dam|Pedestal|Anchor block|Tunnel|Mezz.",
+    Stand.BOREHOLE: "скважина 30 м|boorgat 2|시추공",
+    Stand.GROUND: "грунт|1 этаж|1층|свободное поле|maaiveld|지표면|Dakar|Mezzogiorno|Stena Line|Minerva",
+}
+
+
+@pytest.mark.parametrize("where", IN_FURTHER_LANGUAGES)
+def test_places_are_understood_in_the_languages_of_directions(where):
+    wrong = [place for place in IN_FURTHER_LANGUAGES[where].split("|") if stand(place, "Somewhere")[0] is not where]
+    assert wrong == []
+
+
 @pytest.mark.parametrize(
     ("places", "where"), [(ON_STRUCTURES, Stand.STRUCTURE), (ON_GROUND, Stand.GROUND), (BELOW, Stand.BOREHOLE)]
 )
