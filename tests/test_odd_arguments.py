@@ -14,7 +14,7 @@ from rockbatch.commands.cli import main
 def test_no_advice_repeats_a_value_that_is_no_number():
     with pytest.raises(rb.OutOfRange) as refused:
         rb.Pier(alpha=float("nan"), p=2.0)
-    assert str(refused.value).startswith("alpha = nan: must be within")
+    assert str(refused.value).startswith("alpha = nan: must be below")
     assert "write" not in str(refused.value)
     with pytest.raises(rb.InputError) as refused:
         rb.Motion("m", 1e300, [0.0, 1.0])

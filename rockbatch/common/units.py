@@ -44,12 +44,11 @@ class Bounds:
         """Return the complaint about a value that is out of bounds, to follow "name = value: "."""
         if value <= 0.0 <= self.low and 0.0 not in self:
             return f"must be a number above 0{self.unit}"
-        if callable(self.why) and math.isfinite(value):  # what it suggests instead is computed from the value
+        if callable(self.why):
             return self.why(value)
         share = of_percent(value, self.low, self.high)
         percent = "" if share is None else f"; if it is in percent, write {share:g}"
-        why = "" if callable(self.why) else self.why
-        return (why or f"must be within {self.low:g} and {self.high:g}") + percent
+        return (self.why or f"must be within {self.low:g} and {self.high:g}") + percent
 
     def problems(self, name: str, value: float | None) -> list[Problem]:
         """Return the problem of a value of the key ``name``, if it is given and out of bounds."""

@@ -10,14 +10,19 @@ from rockbatch.common.errors import OutOfRange, Problem, Unusual
 from rockbatch.common.units import LEAST, MOST, POSITIVE, Bounds, Usual
 
 
+def _if_in_degrees(angle: float) -> str:
+    """Return what to write if an angle [rad] is in degrees; nothing for one that is no number."""
+    return f"; if it is in degrees, write {math.radians(angle):.4g}" if math.isfinite(angle) else ""
+
+
 def _slenderness(alpha: float) -> str:
     if alpha < math.pi / 2:
         return f"must be within {BOUNDS['alpha'].low:g} and π/2 = 1.5708 rad"
-    return f"must be below π/2 = 1.5708 rad; if it is in degrees, write {math.radians(alpha):.4g}"
+    return f"must be below π/2 = 1.5708 rad{_if_in_degrees(alpha)}"
 
 
 def _rotation(theta: float) -> str:
-    return f"must be between −π/2 and π/2 rad; if it is in degrees, write {math.radians(theta):.4g}"
+    return f"must be between −π/2 and π/2 rad{_if_in_degrees(theta)}"
 
 
 _LENGTH, _MASS = Bounds(LEAST, MOST, " [m]"), Bounds(LEAST, MOST, " [t]")
@@ -78,7 +83,7 @@ def falls(alpha: float, theta: float) -> list[Problem]:
     """Return the problem of a release from ``theta`` [rad] at or beyond ``alpha``, which overturns; empty below it."""
     if abs(theta) < alpha:
         return []
-    degrees = f"; if it is in degrees, write {math.radians(theta):.4g}" if abs(theta) > 0.5 else ""
+    degrees = _if_in_degrees(theta) if abs(theta) > 0.5 else ""
     text = f"must be below alpha = {alpha:.4g} rad in magnitude, beyond which a pier that is let go falls{degrees}"
     return [Problem("initial_rotation_rad", theta, text, kind=OutOfRange)]
 
