@@ -30,7 +30,7 @@ def test_an_empty_folder_for_results_is_refused(tmp_path, monkeypatch, capsys):
     assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
 
 
-@pytest.mark.skipif(not os.path.isdir("/proc/self/fd"), reason="a file system without files, which Linux has")
+@pytest.mark.skipif(not os.path.isdir("/proc/self/fd"), reason="needs a folder that takes no files: Linux has one")
 def test_a_folder_that_takes_no_files_is_not_said_to_be_in_use(tmp_path, capsys):
     study = write_study(tmp_path, study_text(cases=(RIGID,)))
     assert main(["run", str(study), "--out", "/proc/self/fd"]) == 2
@@ -39,7 +39,6 @@ def test_a_folder_that_takes_no_files_is_not_said_to_be_in_use(tmp_path, capsys)
     assert "another process" not in said
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="the locale of a POSIX system")
 def test_names_beyond_ascii_are_taken_where_the_locale_is_ascii(tmp_path):
     study = write_study(tmp_path, study_text(pulses=(SINE | {"name": "Sinus \u00fc"},), cases=(RIGID,)))
     ascii_only = os.environ | {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}

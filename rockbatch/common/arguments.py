@@ -136,7 +136,7 @@ def _is_endless(value: object) -> bool:
 
 def _is_duration(value: object) -> bool:
     """Return whether a value is NumPy's ``timedelta64``, which counts as a whole number though its unit is its own."""
-    return type(value).__name__ == "timedelta64"
+    return getattr(getattr(value, "dtype", None), "kind", "") == "m"
 
 
 def _unfit_for_a_name(value: object) -> str:

@@ -12,13 +12,11 @@ _TABLES = (".csv", ".part", ".tsv", ".txt")
 _HISTORIES = (".h5", ".hdf5")
 _HISTORIES_BEGIN = b"rockbatch histories"
 _MOST_OF_A_HEAD = 16_384  # bytes: more than the heads of all columns
-_SEAL = re.compile(rb"[0-9a-f]{8} ")  # of a line in a journal
 
 _NAMED_TOGETHER: tuple[frozenset[str], ...] = tuple(
     frozenset(names.split())
     for names in (
         "record case polarity scale",
-        "check case verdict",
         "case limit_state",
         "record measure unit unscaled level",
         "case parameter swing",
@@ -53,14 +51,7 @@ def is_own(path: Path) -> bool:
 
 
 def _is_head(begin: bytes) -> bool:
-    """Return whether the first line of a table names columns of ours; of a journal one of the first three, behind digests."""
-    lines = begin.removeprefix(b"\xef\xbb\xbf").splitlines()[:3]
-    heads = lines if lines and _SEAL.match(lines[0]) else lines[:1]
-    return any(_has_our_columns(head) for head in heads)
-
-
-def _has_our_columns(head: bytes) -> bool:
-    cells = {
-        cell.strip(' "') for cell in re.split(r"[,;\t]|\\n", _SEAL.sub(b"", head, count=1).decode(errors="replace"))
-    }
+    """Return whether the first line of a table or a journal, which has a checksum and digests first, names columns of ours."""
+    first = begin.removeprefix(b"\xef\xbb\xbf").partition(b"\n")[0].decode(errors="replace")
+    cells = {cell.strip(' \r"') for cell in re.split("[,;\t]", first)}
     return any(names <= cells for names in _NAMED_TOGETHER)

@@ -2,16 +2,19 @@
 
 import shutil
 
+import numpy as np
 import pytest
 from motion_files import wiggle, write_at2
 from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.batch.journal import Journal
 from rockbatch.commands.cli import main
 from rockbatch.motions import read_motions
 from rockbatch.motions.own_files import is_own
 
 OUTPUT = {"histories": "all", "forces": True, "half_cycles": True, "intensity": True, "sections": 3}
+CHECK = {"name": "upright", "reason": "test", "demand": "theta_max_over_alpha", "at_most": 0.9}
 PARTS = {"width_m": 4.0, "part": [{"mass_t": 1000.0, "height_m": 10.0, "length_m": 20.0, "width_m": 3.0}]}
 
 
@@ -20,7 +23,7 @@ def folder(tmp_path):
     """Two components of a station, and the study that runs them."""
     for seed, name in enumerate(("RSN7_A_B000", "RSN7_A_B090")):
         write_at2(tmp_path, f"{name}.AT2", wiggle(200, seed), title=f"Made-up, 1/17/1994, B, {name[8:]}")
-    text = study_text(pier=PARTS, motions={"path": "."}, pulses=(), cases=(RIGID,), output=OUTPUT)
+    text = study_text(pier=PARTS, motions={"path": "."}, pulses=(), cases=(RIGID,), check=(CHECK,), output=OUTPUT)
     return write_study(tmp_path, text).parent
 
 
@@ -28,7 +31,7 @@ def test_a_study_beside_its_records_reads_no_results_when_it_is_run_again(folder
     study = folder / "study.toml"
     assert main(["run", str(study), "--out", str(folder / "results")]) == 0
     before = {path.name: path.read_bytes() for path in (folder / "results").glob("*.csv")}
-    assert len(before) >= 4
+    assert len(before) >= 5
     assert main(["run", str(study), "--out", str(folder / "results"), "--strict", "--fresh", "--csv", "semicolon"]) == 0
     after = {path.name: path.read_bytes() for path in (folder / "results").glob("*.csv")}
     assert {name: after[name] for name in before} == before
@@ -40,11 +43,10 @@ def test_a_study_beside_its_records_reads_no_results_when_it_is_run_again(folder
 
 
 def test_a_journal_of_a_run_that_was_stopped_is_no_record(tmp_path):
-    from rockbatch.batch.journal import _sealed
-
-    journal = tmp_path / "peaks.csv.part"
-    journal.write_bytes(_sealed(b"digest") + _sealed(b"number,record,case,polarity,scale,status\n"))
-    assert is_own(journal)
+    row = {"record": "a", "case": "b", "polarity": "+", "scale": 1.0, "status": "ok"}
+    with Journal(tmp_path / "peaks.csv.part", [*row], {"cases": "5f1c", "motions": "09ab"}) as journal:
+        journal.add_all({0: row})
+    assert is_own(tmp_path / "peaks.csv.part")
 
 
 @pytest.mark.parametrize("head", ["time,acc", "record,000,090,UP", "time,case 1,case 2", "scale,time,acc", "t_s;case"])
@@ -66,8 +68,6 @@ def test_tables_of_analyses_are_recognised_by_their_heads(tmp_path):
 
 
 def test_samples_of_all_components_are_checked_copied_and_frozen():
-    import numpy as np
-
     samples = np.sin(np.arange(50) / 5.0)
     samples.flags.writeable = False
     motion = rb.Motion("m", 0.01, samples, vertical=samples, across=samples)

@@ -120,7 +120,7 @@ def members(file: TomlFile, stripes: Sequence[StripeRecords], names: Sequence[st
     for n, stripe in enumerate(stripes):
         scales_of_level: dict[int, float | None] = {}
         for place, pattern in enumerate(stripe.records):
-            its = chosen(pattern, names)
+            its = set(chosen(pattern, names))
             fitting = [number for number, name in enumerate(names) if name in its]
             wrong = ""
             if not fitting:
