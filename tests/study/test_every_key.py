@@ -340,7 +340,11 @@ QUIVER = {"motions": {"pulse": [SINE | {"period_s": 0.4, "duration_s": 0.4, "dt_
 """With samples that follow the fastest mode of a shaft."""
 SPRINGY = study(case=ROCK | {"shaft": "elastic"}, pier="parts") | QUIVER
 SPRINGY |= {"pier": PIERS["parts"] | {"part": [SHAFT | {"flexural_rigidity_kNm2": 1e8, "shear_rigidity_kN": 1e7}]}}
-BENDING = study(case=ROCK | {"shaft": "elastic"}) | QUIVER | {"pier": PIERS["deck"] | {"flexural_period_s": 0.5}}
+BENDING = (
+    study(case=ROCK | {"shaft": "elastic", "flexural_damping": 0.01})
+    | QUIVER
+    | {"pier": PIERS["deck"] | {"flexural_period_s": 0.5}}
+)
 UNWEIGHED = {"alpha": 0.2, "p": 1.0}
 IN_SECTION = study(
     output={"sections_m": [0.0, 10.0]},
