@@ -290,6 +290,22 @@ def test_no_unit_is_advised_that_makes_no_earthquake_of_the_numbers():
     assert 'unit = "cm/s2" (PGA' in str(advised_of(in_columns(T, 981.0 * A)))
 
 
+@pytest.mark.parametrize(
+    ("header", "columns", "pga"),
+    [
+        ("t (s), NS (cm/s2), EW, UD (cm/s2)", (981.0 * A, 0.5 * B, 981.0 * C), 0.5 * np.abs(B).max()),
+        ("t (s), NS, EW (mg), UD", (0.5 * A, 1000.0 * B, 0.0 * C), 0.5 * np.abs(A).max()),
+    ],
+)
+def test_a_unit_is_advised_by_the_peak_of_the_columns_that_state_none(tmp_path, header, columns, pga):
+    text = f"{header}\n{in_columns(T, *columns)}"
+    refused = why(tmp_path, text)
+    assert f'write unit = "g" (PGA {pga:.2g} g)' in refused
+    assert "in motions.toml, it would replace the units of its other columns, too" in refused
+    advised = [m.pga for m in read(tmp_path, text, options=ReadOptions(unit="g")).motions]
+    assert pytest.approx(pga, rel=1e-3) in advised
+
+
 def test_nothing_is_advised_that_makes_no_record():
     cut = f"# NPTS = {N + 30}, dt = 0.005\n" + "\n".join(
         " ".join(f"{a:.6f}" for a in A[i : i + 8]) for i in range(0, N, 8)
