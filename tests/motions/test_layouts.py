@@ -135,7 +135,7 @@ def test_a_nameless_first_column_that_grows_as_time_does_is_time(tmp_path):
     [
         ("in/s2", 9.81 / 0.0254), ("in/sec^2", 9.81 / 0.0254), ("inch/s/s", 9.81 / 0.0254), ("ft/s2", 9.81 / 0.3048),
         ("ft/sec**2", 9.81 / 0.3048), ("feet/s²", 9.81 / 0.3048), ("mg", 1000.0), ("milli-g", 1000.0), ("%g", 100.0),
-        ("mGal", 981000.0), ("Gals", 981.0),
+        ("mGal", 981000.0), ("Gals", 981.0), ("m·s⁻²", 9.81), ("g's", 1.0), ("µg", 1e6), ("cm/seg²", 981.0),
     ],
 )  # fmt: skip
 def test_units_of_other_trades_are_understood(tmp_path, unit, in_g):
@@ -143,6 +143,20 @@ def test_units_of_other_trades_are_understood(tmp_path, unit, in_g):
     (tmp_path / "x.csv").write_text(f"t (s),NS ({unit})\n" + in_columns(T, in_g * A))
     (motion,) = read_motions(tmp_path).motions
     assert motion.pga_g == pytest.approx(np.abs(A).max(), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "Zeit;NS;EW;UD\nSekunden;g's;g's;g's", "Zeit [Sekunden];NS [g's];EW [g's];UD [g's]", "Zeit (Sek.);NS (g);EW (g);UD (g)",
+        "Unit: g\nTiempo en segundos;NS;EW;UD", "Unit: g\nSekunden;NS;EW;UD", "時間(秒);NS(G);EW(G);UD(G)",
+    ],
+)  # fmt: skip
+def test_seconds_are_known_in_the_languages_of_directions(tmp_path, header):
+    first, second = read(tmp_path, f"{header}\n{in_columns(T, A, B, C, between=';')}", options=ReadOptions()).motions
+    assert is_a(first)
+    assert (first.azimuth, second.azimuth) == (0.0, 90.0)
+    assert first.vertical == pytest.approx(C)
 
 
 def test_the_header_of_a_matched_record_has_its_unit_beside_other_words_in_brackets(tmp_path):
@@ -177,6 +191,12 @@ def test_a_record_file_of_midas_is_read_by_its_unit_and_type(tmp_path):
         "END",
         "End of file",
         "EOF",
+        "<EOF>",
+        "#end",
+        "# End of data",
+        "$END",
+        "[End]",
+        "- end -",
         "/&  ---- End of Data ----",
         "----- end -----\n\n",
         "*",
