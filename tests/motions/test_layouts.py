@@ -148,10 +148,14 @@ def test_units_of_other_trades_are_understood(tmp_path, unit, in_g):
 @pytest.mark.parametrize(
     "header",
     [
-        "Zeit;NS;EW;UD\nSekunden;g's;g's;g's", "Zeit [Sekunden];NS [g's];EW [g's];UD [g's]", "Zeit (Sek.);NS (g);EW (g);UD (g)",
-        "Unit: g\nTiempo en segundos;NS;EW;UD", "Unit: g\nSekunden;NS;EW;UD", "時間(秒);NS(G);EW(G);UD(G)",
+        "Zeit;NS;EW;UD\nSekunden;g's;g's;g's",
+        "Zeit [Sekunden];NS [g's];EW [g's];UD [g's]",
+        "Zeit (Sek.);NS (g);EW (g);UD (g)",
+        "Unit: g\nTiempo en segundos;NS;EW;UD",
+        "Unit: g\nSekunden;NS;EW;UD",
+        "時間(秒);NS(G);EW(G);UD(G)",
     ],
-)  # fmt: skip
+)
 def test_seconds_are_known_in_the_languages_of_directions(tmp_path, header):
     first, second = read(tmp_path, f"{header}\n{in_columns(T, A, B, C, between=';')}", options=ReadOptions()).motions
     assert is_a(first)
@@ -222,14 +226,38 @@ def test_words_within_the_numbers_and_other_words_behind_them_are_still_refused(
         ("2023-02-06 01:17:35.{:03d}", None),
         ("2023/02/06T03:17:35,{:03d}+02:00", 1675646255.0),
         ("01:17:35.{:03d}", None),
+        ("06.02.2023 01:17:35.{:03d}", None),
+        ("6/2/2023 1:17:35.{:03d}", None),
+        ("06-Feb-23 01:17:35,{:03d}Z", None),
     ],
 )
 @pytest.mark.parametrize("head", ["time;N (g)", ";N (g)", "timestamp;N (g)"])
-def test_clock_times_are_seconds_after_the_first(tmp_path, first, start, head):
-    rows = "".join(f"{first.format(5 * i)};{a:.6f}\n" for i, a in enumerate(A[:190]))
+@pytest.mark.parametrize("point", [".", ","])
+def test_clock_times_are_seconds_after_the_first(tmp_path, first, start, head, point):
+    rows = "".join(f"{first.format(5 * i)};" + f"{a:.6f}\n".replace(".", point) for i, a in enumerate(A[:190]))
     (motion,) = read(tmp_path, f"{head}\n{rows}", "x.csv").motions
     assert (motion.dt, motion.npts, motion.start) == (DT, 190, start)
     assert motion.horizontal == pytest.approx(A[:190])
+
+
+@pytest.mark.parametrize(
+    ("between", "point"), [("\t", ","), (" ", ","), ("; ", ","), (", ", "."), (" , ", "."), (" ", ".")]
+)
+def test_clock_times_stand_between_any_separators(tmp_path, between, point):
+    columns = zip(*np.round([A, B, C], 6)[:, :190], strict=True)
+    rows = [
+        [f"01:17:35{point}{5 * i:03d}", *(f"{a:.6f}".replace(".", point) for a in row)] for i, row in enumerate(columns)
+    ]
+    lines = [["t", "NS(g)", "EW(g)", "UD(g)"], *rows]
+    first, _ = read(tmp_path, "".join(between.join(row) + "\n" for row in lines), options=ReadOptions()).motions
+    assert (first.dt, first.npts) == (DT, 190)
+    assert first.horizontal == pytest.approx(A[:190])
+
+
+@pytest.mark.parametrize("digits", [3, 6, 9])
+def test_seconds_since_1970_have_the_step_of_those_after_the_first(tmp_path, digits):
+    rows = "".join(f"{1675646255.0 + t:.{digits}f},{a:.6f}\n" for t, a in zip(T, A, strict=True))
+    assert is_a(only(tmp_path, f"time,N (g)\n{rows}"))
 
 
 def test_clock_times_go_on_after_midnight_and_may_stand_behind_a_count(tmp_path):
