@@ -5,7 +5,7 @@ import pytest
 from motion_files import wiggle
 from waveform_files import channel_xml, station_xml, trace, write_mseed
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, UnusableRecord
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.colocated import with_gains_compared
 from rockbatch.motions.component import Component, Sensor
@@ -138,6 +138,19 @@ def test_station_xml_is_found_anywhere_in_the_folder_that_is_read(tmp_path, plac
     xml_in(tmp_path / places[1] / "CI.LRL.xml", channel_xml("HNN"))
     assert len(read_motions(tmp_path)) == 1
     assert len(read_motions([records, tmp_path / places[1]])) == 1
+
+
+def test_a_mass_download_is_read_by_the_names_that_its_files_have(tmp_path):
+    (tmp_path / "waveforms").mkdir()
+    for seed, channel in enumerate(("HNN", "HNE", "HNZ", "HHN")):
+        counts = np.round(2e6 * wiggle(500, seed)).astype(np.int32)
+        name = f"CI.LRL..{channel}__20190706T031923Z__20190706T032023Z.mseed"
+        write_mseed(tmp_path / "waveforms" / name, trace(channel, counts))
+    directions = (("HNN", 0.0, 0.0), ("HNE", 90.0, 0.0), ("HNZ", 0.0, -90.0))
+    xml_in(tmp_path / "stations" / "CI.LRL.xml", *(channel_xml(*direction) for direction in directions))
+    found = read_motions(tmp_path)
+    assert [(motion.azimuth, motion.vertical is not None) for motion in found] == [(90.0, True), (0.0, True)]
+    assert [(one.station, one.kind) for one in found.unusable] == [("LRL", UnusableRecord)]
 
 
 def two_sensors(folder, factor: float, noise: float = 0.0, **changed) -> None:
