@@ -356,7 +356,7 @@ def test_a_vertical_that_is_a_share_of_the_horizontal_one_is_used_and_says_so(tm
         (0.2 * wiggle(500, 3), ""),
     ],
 )
-def test_a_vertical_of_another_unit_or_delay_is_a_finding_and_one_of_usual_size_is_not(tmp_path, upright, said):
+def test_a_vertical_of_another_unit_or_delay_is_a_finding_unless_its_size_is_usual(tmp_path, upright, said):
     pair_with(tmp_path, upright)
     found = read_motions(tmp_path)
     assert len(found.motions) == 2

@@ -288,7 +288,7 @@ def test_real_horizontals_of_a_station_are_far_from_five_times_each_other():
 
 @pytest.mark.slow
 @needs_records
-def test_real_components_of_a_station_are_far_from_copies_and_verticals_from_another_unit():
+def test_real_components_are_far_from_copies_and_real_verticals_from_another_unit():
     pytest.importorskip("hdf5plugin")
     alike, ratios = [], []
     for station in by_station(without_doubles(components())[0]):
