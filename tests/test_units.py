@@ -9,6 +9,8 @@ from rockbatch.common.units import Bounds, acceleration_factor, length_factor
     ("spellings", "factor"),
     [
         (("m/s2", "M/S**2", "m/s/s", "m/s^2", "m/s²", "M/SEC**2", "m/(s**2)", "m*s-2", "m*s**-2", "M/S/S"), 1.0),
+        (("m·s⁻²", "m·s^-2", "m s⁻²", "m.s-2", "m⋅s−2", "M/SEG2", "m/sn²", "m/sek^2"), 1.0),
+        (("g's", "gs", "G’s"), 9.81), (("µg", "μg", "ug", "micro g"), 9.81e-6), (("mg", "milli-g"), 9.81e-3),
         (("cm/s**2", "cm/s2", "CM/SEC/SEC", "gal", "Gal", "GAL", "cm/s/s"), 0.01), (("mm/s2", "mm/s/s"), 1e-3),
         (("um/s**2", "µm/s²", "μm/s2"), 1e-6), (("nm/s**2", "NM/S**2", "nm/s/s", "nm/s^2"), 1e-9), (("g", "G"), 9.81),
         (("g/10", "G/10"), 0.981),

@@ -63,8 +63,8 @@ MOST_LINES = 60
 LEAST_LINES = 16
 MOST_GROUPS = 4
 """Most reasons printed under a title, each with an example; rare ones first."""
-_VARIABLE = re.compile(r'"[^"]*"|\([^)]*\)|[^\s;:,]*[\d/][^\s;:,]*')
-"""Names and numbers in a reason, which are ignored when reasons are compared."""
+_VARIABLE = re.compile(r'"[^"]*"|\([^)]*\)|[^\s;:,]*(?:[\d/]|\.[\w.])[^\s;:,]*')
+"""Names, of files and channels too, and numbers in a reason, which are ignored when reasons are compared."""
 
 
 def main(arguments: argparse.Namespace) -> int:

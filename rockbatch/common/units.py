@@ -104,7 +104,7 @@ _ACCELERATION_IN_M_S2 = {
     "in/s2": 0.0254,
     "ft/s2": 0.3048,
 }
-_ACCELERATION_IN_G = {"g": 1.0, "g/10": 0.1, "0.1g": 0.1, "mg": 1e-3, "%g": 0.01}
+_ACCELERATION_IN_G = {"g": 1.0, "g/10": 0.1, "0.1g": 0.1, "mg": 1e-3, "ug": 1e-6, "%g": 0.01}
 _OTHER_SPELLINGS = {
     "inch": "in",
     "inches": "in",
@@ -112,8 +112,12 @@ _OTHER_SPELLINGS = {
     "foot": "ft",
     "milli-g": "mg",
     "millig": "mg",
+    "microg": "ug",
     "gals": "gal",
+    "gs": "g",
 }
+_PLAIN = str.maketrans({"µ": "u", "μ": "u", "²": "2", "⁻": "-", "−": "-", **dict.fromkeys("^() '’", "")})
+_SECOND = re.compile("sec|seg|sek|sn")  # also Spanish, German, Turkish
 
 _LENGTH_IN_M = {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 
@@ -126,13 +130,12 @@ def length_factor(unit: str) -> float | None:
 def acceleration_factor(unit: str, gravity: float = GRAVITY) -> float:
     """Return the factor that turns an acceleration in ``unit`` into m/s².
 
-    Spellings such as ``cm/s/s``, ``cm/s²``, ``CM/SEC**2``, ``nm/(s^2)``, ``m*s**-2`` and ``G`` are understood; "g"
+    Spellings such as ``cm/s/s``, ``cm/s²``, ``CM/SEC**2``, ``nm/(s^2)``, ``m·s⁻²``, ``µg``, ``g's`` and ``G`` are understood; "g"
     is ``gravity`` [m/s²], the same that the pier weighs with, so that ratios ü_g/g survive. Raises ``ValueError`` for
     anything else.
     """
-    key = unit.strip().lower().replace("²", "2").replace("sec", "s")
-    key = re.sub(r"[\^() ]|\*\*", "", key.replace("µ", "u").replace("μ", "u"))
-    key = re.sub(r"/s/s|\*?s-2", "/s2", key)
+    key = _SECOND.sub("s", unit.strip().lower().translate(_PLAIN)).replace("**", "")
+    key = re.sub(r"/s/s|[*.·⋅]?s-2", "/s2", key)
     length, slash, time = key.partition("/")
     key = _OTHER_SPELLINGS.get(length, length) + slash + time
     if key in _ACCELERATION_IN_G:

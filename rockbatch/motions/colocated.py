@@ -1,4 +1,4 @@
-"""Sensors of one station that recorded the same ground motion with different gains: one sensitivity is wrong."""
+"""Sensors of one station that recorded the same ground motion with different gains or signs: one of them is wrong."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -8,7 +8,7 @@ from itertools import combinations
 from rockbatch.common.grouping import grouped
 from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
-from rockbatch.motions.likeness import correlation
+from rockbatch.motions.likeness import alignment
 from rockbatch.motions.motion import Finding
 from rockbatch.motions.orientation import same_azimuth
 
@@ -18,49 +18,62 @@ _ENOUGH = 100  # common samples
 
 
 def with_gains_compared(components: Sequence[Component]) -> list[Component]:
-    """Return the components, with a finding on two sensors of a station whose motions differ by a factor only.
+    """Return the components, with a finding on two sensors of a station whose motions differ by a factor or in sign only.
 
-    Which gain is right cannot be known: both are held back until confirmed, or one is left out by ``use = false``.
+    Which is right cannot be known: both are held back until confirmed, or one is left out by ``use = false``.
     """
     compared = list(components)
-    for i, j in _side_by_side(components):
-        factor = _gain_ratio(components[i], components[j])
+    for i, j, sign in _side_by_side(components):
+        factor = _gain_ratio(components[i], components[j], sign)
         if factor is None:
             continue
+        wrong = "gains" if abs(math.log(abs(factor))) > math.log(_FACTOR) else "signs"
         for place, other, times in ((i, j, factor), (j, i, 1.0 / factor)):
             text = (
                 f"{components[other].source}, of another sensor of the station, has the same motion times {times:.3g}: "
-                "one of their gains is wrong, and the files do not say which; ask their network, and leave out the wrong one by "
-                "use = false in motions.toml"
+                f"one of their {wrong} is wrong, and the files do not say which; ask their network, and leave out the wrong one "
+                "by use = false in motions.toml"
             )
             findings = (*compared[place].findings, Finding("gain", text, gross=True))
             compared[place] = replace(compared[place], findings=findings)
     return compared
 
 
-def _side_by_side(components: Sequence[Component]) -> Iterator[tuple[int, int]]:
-    """Yield places of two components of one direction, time and station, from sensors with different location codes."""
+def _side_by_side(components: Sequence[Component]) -> Iterator[tuple[int, int, float]]:
+    """Yield places of two components of one line, time and station, from sensors with different location codes.
+
+    With them the sign that makes their directions equal.
+    """
     coded = [(i, c) for i, c in enumerate(components) if c.sensor.number and c.sensor.location is not None and c.dated]
     for of_station in grouped(coded, lambda pair: (pair[1].sensor.network, pair[1].sensor.number)).values():
         for (i, a), (j, b) in combinations(of_station, 2):
-            if a.sensor.location != b.sensor.location and _point_alike(a, b) and overlap(a, b):
-                yield i, j
+            sign = _sign_between(a, b)
+            if sign and a.sensor.location != b.sensor.location and overlap(a, b):
+                yield i, j, sign
 
 
-def _point_alike(a: Component, b: Component) -> bool:
-    if a.orientation.vertical or b.orientation.vertical:
-        return a.orientation.vertical == b.orientation.vertical
-    return same_azimuth(a.orientation.azimuth, b.orientation.azimuth)
+def _sign_between(a: Component, b: Component) -> float:
+    """Return the sign that turns the direction of one component into that of the other; 0 if they are not of one line."""
+    mine, others = a.orientation, b.orientation
+    if mine.vertical or others.vertical:
+        return (1.0 if mine.down == others.down else -1.0) if mine.vertical == others.vertical else 0.0
+    if same_azimuth(mine.azimuth, others.azimuth):
+        return 1.0
+    reverse = None if others.azimuth is None else others.azimuth + 180.0
+    return -1.0 if same_azimuth(mine.azimuth, reverse) else 0.0
 
 
-def _gain_ratio(a: Component, b: Component) -> float | None:
-    """Return the amplitude of ``b`` over that of ``a`` if their motions are alike but for it; ``None`` for ratios near 1."""
+def _gain_ratio(a: Component, b: Component, sign: float) -> float | None:
+    """Return the ratio of ``b`` to ``a``, turned by ``sign``, if their motions are alike but for it; ``None`` if near 1."""
     if too_unlike(a, b):
         return None
     common = on_common_samples(a, b, ("one", "other"))
     first, second = (samples - samples.mean() for samples in (common.first, common.second))
     energies = float(first @ first), float(second @ second)
-    if len(first) < _ENOUGH or not all(energies) or correlation(first, second) < _ALIKE:
+    if len(first) < _ENOUGH or not all(energies):
         return None
-    factor = math.sqrt(energies[1] / energies[0])
-    return factor if abs(math.log(factor)) > math.log(_FACTOR) else None
+    alike = sign * alignment(first, second).correlation
+    if abs(alike) < _ALIKE:
+        return None
+    factor = math.copysign(math.sqrt(energies[1] / energies[0]), alike)
+    return None if 1.0 / _FACTOR <= factor <= _FACTOR else factor

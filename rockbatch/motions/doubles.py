@@ -166,12 +166,11 @@ def _is_unit_ratio(factor: float) -> bool:
 def _reason(copy: Component, used: Component, factor: float | None) -> str:
     """Return why ``copy`` is left out for ``used``: the same samples, less corrected, or larger by ``factor``."""
     same = copy.dt == used.dt and np.array_equal(copy.acceleration, used.acceleration)
-    words = "a copy of" if same else "the same recording as"
-    if _CORRECTED[used.processed] < _CORRECTED[copy.processed]:
-        words = "the same recording, less corrected, as"
-    if factor is not None:
-        words = f"{words.removesuffix(' as')}, {factor:.4g} times as large, as"
-    return f"{words} {used.source}"
+    corrected = "" if _CORRECTED[used.processed] >= _CORRECTED[copy.processed] else "less corrected, "
+    larger = "" if factor is None else f"{factor:.4g} times as large, "
+    if corrected or larger:
+        return f"the same recording, {corrected}{larger}as {used.source}"
+    return f"{'a copy of' if same else 'the same recording as'} {used.source}"
 
 
 def tell_use_of_originals(left_out: Iterable[LeftOut], motions: MotionSet) -> list[LeftOut]:

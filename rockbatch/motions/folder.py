@@ -154,7 +154,8 @@ def _with_stations(readings: Sequence[Reading], paired: MotionSet) -> list[Unusa
     station_of_site = {}
     for reading in readings:
         if isinstance(reading, Component) and (file := file_of(reading.source)) in station_of_file:
-            station_of_site[_folder(reading), reading.site] = station_of_file[file]
+            for name in (reading.site, reading.origin.station):
+                station_of_site[_folder(reading), name] = station_of_file[file]
 
     def station(reading: Unusable | LeftOut) -> str:
         by_name = station_of_site.get((_folder(reading), reading.station), reading.station)
@@ -322,7 +323,7 @@ def _readings(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # checked_reading refuses infinite samples
             readings = _readings_of_entries(file, settings)
-        at_site = (r if isinstance(r, Component) else replace(r, station=site) for r in readings)
+        at_site = (r if isinstance(r, Component) or r.station else replace(r, station=site) for r in readings)
         return [with_legible_texts(reading) for reading in at_site]
     except InputError as error:
         reason, kind = "; ".join(error.messages), type(error)

@@ -24,6 +24,7 @@ from rockbatch.motions.stations import is_numbered
 
 _ALIKE = 0.7  # correlation: real files of one recording have 0.98 and more, other records 0.63 at most, halves 0.46
 _CERTAIN = 0.95  # correlation that decides without headers
+_COPIED = 0.98  # correlation of a component with a copy of it in another direction; real ones have 0.54 at most
 _IN_COMMON = 0.8  # least share of the energy of one of two sets that lies in their common time
 _SIGNIFICANT = (
     4.0  # standard deviations of Fisher's transform: random walks have 3 at most, real files of one recording 27
@@ -349,7 +350,7 @@ class _Table:
     def may_be_parts(self, i: int, j: int) -> bool:
         """Return whether two components may be of consecutive parts of a recording: of whole files of one step and stage."""
         a, b = self.components[i], self.components[j]
-        alike = a.processed == b.processed and abs(a.dt - b.dt) <= _SAME_STEP * a.dt
+        alike = a.processed == b.processed and same_step(a.dt, b.dt)
         return bool(self.whole_file[i] and self.whole_file[j]) and alike
 
     def similar_pairs(self) -> Iterator[tuple[int, int]]:
@@ -413,16 +414,19 @@ def likeness_of(a: Component, b: Component) -> float:
 
 
 def _are_one_recording(a: Component, b: Component) -> bool:
-    """Return whether the samples of two components, brought to one step, are so well correlated that they are one recording.
-
-    A few waves of one period look alike in any two records: the inverse hyperbolic tangent of a correlation by chance, of n
-    independent values, has a standard deviation of 1/√(n − 3) (Fisher); the correlation found must lie far above it.
-    """
+    """Return whether the samples of two components, brought to one step, are so well correlated that they are one recording."""
     coarse, fine = sorted((a, b), key=lambda c: -c.dt)
     first, second = coarse.acceleration, _at_step(fine, coarse.dt)
     r = correlation(first, second)
-    if r < _CERTAIN:
-        return False
+    return r >= _CERTAIN and _is_significant(r, first, second)
+
+
+def _is_significant(r: float, first: Samples, second: Samples) -> bool:
+    """Return whether an absolute correlation of two series of one step lies far above those by chance.
+
+    A few waves of one period look alike in any two records: the inverse hyperbolic tangent of a correlation by chance, of n
+    independent values, has a standard deviation of 1/√(n − 3) (Fisher).
+    """
     n = _independent_values(first, second)
     return n > 3.0 and math.atanh(min(r, 1.0 - 1e-12)) * math.sqrt(n - 3.0) >= _SIGNIFICANT
 
@@ -446,10 +450,15 @@ def _strong_samples(values: Samples) -> int:
     return int(last - first)
 
 
+def same_step(a: float, b: float) -> bool:
+    """Return whether two sampling intervals [s] are equal but for their printing."""
+    return abs(a - b) <= _SAME_STEP * b
+
+
 def _at_step(component: Component, dt: float) -> Samples:
     """Return the accelerations at a coarser step ``dt`` [s], without frequencies above its Nyquist frequency."""
     a = component.acceleration
-    if abs(component.dt - dt) <= _SAME_STEP * dt:
+    if same_step(component.dt, dt):
         return a
     spectrum = np.fft.rfft(a)
     spectrum[np.fft.rfftfreq(len(a), component.dt) > 0.5 / dt] = 0.0
@@ -457,21 +466,58 @@ def _at_step(component: Component, dt: float) -> Samples:
     return np.interp(times, np.arange(len(a)) * component.dt, np.fft.irfft(spectrum, len(a)))
 
 
-def correlation(first: Samples, second: Samples) -> float:
-    """Return the largest absolute correlation of two series over all shifts by quarters of their step; 1 if one is constant."""
+class Alignment(NamedTuple):
+    """Two series at the shift of their largest absolute correlation."""
+
+    correlation: float  # with its sign
+    delay: float  # of the first, in steps
+
+
+def alignment(first: Samples, second: Samples, parts: int = 4) -> Alignment:
+    """Return the largest correlation, by its absolute value, over all shifts by 1/``parts`` of a step; 1 if one is constant."""
     first, second = ((x - x.mean()) / (np.abs(x).max() or 1.0) for x in (first, second))
     n = 1 << (len(first) + len(second) - 1).bit_length()
-    shifted = 4.0 * np.fft.irfft(np.fft.rfft(first, n) * np.conj(np.fft.rfft(second, n)), 4 * n)
+    shifted = parts * np.fft.irfft(np.fft.rfft(first, n) * np.conj(np.fft.rfft(second, n)), parts * n)
     norm = float(np.linalg.norm(first) * np.linalg.norm(second))
-    return float(np.abs(shifted).max()) / norm if norm > 0 else 1.0
+    if norm <= 0:
+        return Alignment(1.0, 0.0)
+    best = int(np.abs(shifted).argmax())
+    return Alignment(float(shifted[best]) / norm, best / parts - (n if best >= parts * len(first) else 0))
+
+
+def correlation(first: Samples, second: Samples) -> float:
+    """Return the largest absolute correlation of two series over all shifts by quarters of their step; 1 if one is constant."""
+    return abs(alignment(first, second).correlation)
+
+
+class Copy(NamedTuple):
+    """What makes one series of another one."""
+
+    factor: float
+    delay: float  # in steps
+
+
+def copy_between(first: Samples, second: Samples) -> Copy | None:
+    """Return the factor and the delay in whole steps that make the ``first`` of two series of the ``second``; else ``None``."""
+    if not (np.ptp(first) and np.ptp(second)):
+        return None
+    if factor := _common_factor(first, second):
+        return Copy(factor, 0.0)
+    r, delay = alignment(first, second, parts=1)
+    if abs(r) < _COPIED or not _is_significant(abs(r), first, second):
+        return None
+    return Copy(r * float(np.linalg.norm(first - first.mean()) / np.linalg.norm(second - second.mean())), delay)
+
+
+def _common_factor(first: Samples, second: Samples) -> float:
+    """Return the factor from the ``second`` series to the ``first`` if they are scaled copies; else 0."""
+    if len(first) != len(second) or not second.any():
+        return 0.0
+    factor = float(first @ second) / float(second @ second)
+    return factor if np.abs(first - factor * second).max() <= _SAME_SHAPE * np.abs(first).max() else 0.0
 
 
 def factor_between(a: Component, b: Component) -> float | None:
     """Return the factor other than 1 by which the samples of ``a`` are those of ``b``; ``None`` if there is none."""
-    first, second = a.acceleration, b.acceleration
-    if len(first) != len(second) or abs(a.dt - b.dt) > _SAME_STEP * a.dt or not second.any():
-        return None
-    factor = float(first @ second) / float(second @ second)
-    if abs(factor - 1.0) <= _NO_FACTOR or np.abs(first - factor * second).max() > _SAME_SHAPE * np.abs(first).max():
-        return None
-    return factor or None
+    factor = _common_factor(a.acceleration, b.acceleration) if same_step(a.dt, b.dt) else 0.0
+    return None if not factor or abs(factor - 1.0) <= _NO_FACTOR else factor

@@ -145,15 +145,20 @@ _STATION = re.compile(  # codes of TSMIP, K-NET and KiK-net end in a number, as 
     r"AIC|AKT|AOM|CHB|EHM|FKI|FKO|FKS|GIF|GNM|HKD|HRS|HYG|IBU)H?\d{3}$"
 )
 _CHANNELS = re.compile(r"(?:^|[-_. ])(?:ch|chan|channel|sensor|run|rec|record|no|nr)[-_. ]*\d+$", re.IGNORECASE)
+_MOMENT = (  # in UTC, not vertical, and with ESM's stage: .20090406.013239.U is uncorrected, not up
+    r"(?:\d{8}|\d{4}-\d\d-\d\d)(?:T\d\d[-:_.]?\d\d(?:[-:_.]?\d\d(?:\.\d+)?)?Z?|\.\d{6}\.[A-Z]{1,2})"
+)
+_AT_MOMENT = re.compile(_MOMENT + "$", re.IGNORECASE)
 _PROCESSING = re.compile(
-    _PART + r"(?:(?:un)?(?:cor|corr|corrected|filt|filtered|proc|processed)|raw|acc|accel|acceleration|th|cut|copy|"
+    _PART
+    + rf"(?:{_MOMENT}|(?:un)?(?:cor|corr|corrected|filt|filtered|proc|processed)|raw|acc|accel|acceleration|th|cut|copy|"
     r"g|gal|cm|cms2|ms2|v[0-3][ac]?|\(\d+\))",
     re.IGNORECASE,
 )
 
 
 def split_stem(stem: str) -> tuple[str, Orientation | None]:
-    """Return the station's part of a file's stem and the orientation at its end, before words such as "corrected".
+    """Return the station's part of a file's stem and the orientation at its end, before times and words such as "corrected".
 
     "RSN1063_NORTHR_RRS228" gives "RSN1063_NORTHR_RRS" and 228°, "ABBAR--V" gives "ABBAR" and vertical; a stem without a
     direction gives itself and ``None``. Numbers count as azimuths only with three digits, unless they are dates, times,
@@ -208,7 +213,9 @@ def _contradicted(orientation: Orientation, stem: str) -> bool:
 
 
 def _is_number(site: str, label: str, stem: str) -> bool:
-    """Return whether the digits at the end of a name are no azimuth: a date or time, or the number of a station or file."""
+    """Return whether the end of a name is no direction: of a date or time, or the number of a station or file."""
+    if _AT_MOMENT.search(stem):
+        return True
     if not label.isdigit():
         return False
     if _STATION.search(stem) or _CHANNELS.search(stem):

@@ -73,7 +73,8 @@ class Origin:
             station = _KINDS.sub("", (parts or [station])[-1].strip())
         if len(station) <= _STATION:
             return station
-        return f"{station[:_STATION].rpartition(' ')[0] or station[: _STATION - 1]}…"
+        words = re.match(r"(.*[^ ,])[ ,]", station[:_STATION])
+        return f"{words[1] if words else station[: _STATION - 1]}…"
 
 
 UNKNOWN_ORIGIN = Origin()

@@ -46,14 +46,16 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
         "levee, berm, isolator, isolation, isoltr, isol, midspan, mid span, wingwall, wing wall, shear wall, core wall, "
         "spillway, dam top, top of dam, dam body, upstream face, downstream face, pylon, superstructure, superstr, pier cap, "
         "pier top, top of pier, pier base, base of pier, tower top, top of tower, tower base, base of tower, hinge, pedestal, "
-        "anchor block, tailings dam, mezz",
+        "anchor block, tailings dam, mezz, outlet, outlet works, intake, penstock, gatehouse, gate house",
         "es pt": "techo, azotea, tejado, estribo, coronacion, corona de la presa, coronamiento, encepado, terraplen*, "
-        "aislador*, cuerpo de la presa, telhado, tabuleiro, coroamento, bloco de estacas, isolador*, corpo da barragem",
+        "aislador*, cuerpo de la presa, aliviadero, vertedero, vertedouro, telhado, "
+        "tabuleiro, coroamento, bloco de estacas, isolador*, corpo da barragem",
         "fr it": "toiture, culee, couronnement, semelle, isolateur, appareil d appui, corps du barrage, sottotetto, impalcato, "
-        "coronamento, pila del ponte, isolatore, isolatori, corpo diga",
+        "coronamento, pila del ponte, isolatore, isolatori, corpo diga, evacuateur*, sfioratore",
         "de": "dachgeschoss, ueberbau, uberbau, fahrbahnplatte, widerlager, dammkrone, mauerkrone, fundamentplatte, pfahlkopf*, "
-        "brueckenpfeiler*, bruckenpfeiler*, isolatorebene",
-        "tr el": "catisi, tabliye, kenar ayak, kenar ayagi, orta ayak, kret, kreti, izolator*, taratsa, katastroma, "
+        "brueckenpfeiler*, bruckenpfeiler*, isolatorebene, grundablass, hochwasserentlastung",
+        "tr el": "dolusavak, dipsavak, "
+        "catisi, tabliye, kenar ayak, kenar ayagi, orta ayak, kret, kreti, izolator*, taratsa, katastroma, "
         "akrovathro, mesovathro, epichoma, στεγη, ταρατσα, καταστρωμα, ακροβαθρο, στεψη, υποστυλωμα*, μεσοβαθρο, επιχωμα, "
         "μονωτηρ*",
         "ja zh": "okujo, okujou, kyodai, kyokyaku, menshin, 屋上, 床版, 橋台, 天端, 橋脚, フーチング, 盛土, 免震, "
@@ -121,6 +123,7 @@ _STREETS = (  # behind a word, which is a name then
 )
 _ORDINALS = "second third fourth fifth sixth seventh eighth ninth tenth eleventh twelfth top upper"
 _CARDINAL = re.compile(r"\b(?:north|south|east|west|n|s|e|w|nw|ne|sw|se|northwest|northeast|southwest|southeast)\b")
+_IN_BRACKETS = re.compile(r"\(([^()]+)\)")
 _LEAST_DEPTH = 2.0  # m: vaults of sensors at the surface are less deep
 _FOOT = 0.3048  # m
 _WIDE = r"぀-ヿ一-鿿가-힣؀-ۿ"  # scripts without blanks between words, or whose words have endings and articles joined to them
@@ -136,11 +139,17 @@ _HIGH = re.compile(r"\b(?:elev|el|elevation|alt|altitude|height|h|within|about|~
 
 
 def stand(place: str, name: str) -> tuple[Stand, str]:
-    """Return the location of a sensor and the text, place or station's ``name``, that states it; on the ground, ""."""
-    for text, is_name in ((place, _folded(place) == _folded(name)), (name, True)):
+    """Return the location of a sensor and the text, place or station's ``name``, that states it; on the ground, "".
+
+    What stands in brackets behind a name, "Lower Dam (Gallery)", is a place, unless the name itself says ground.
+    """
+    texts = [(place, _folded(place) == _folded(name)), (name, True)]
+    if not any(_pattern(kind).search(_folded(name)) for kind in ("free field", "ground")):
+        texts += [(text, False) for text in _IN_BRACKETS.findall(name)]
+    for text, is_name in texts:
         where = _stand(text, is_name)
         if where is not Stand.GROUND:
-            return where, text
+            return where, name if text in name else text
     return Stand.GROUND, ""
 
 

@@ -13,6 +13,7 @@ from rockbatch.common.naming import fits
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
 from rockbatch.motions.component import Component
+from rockbatch.motions.likeness import Copy, copy_between, same_step
 from rockbatch.motions.motion import Finding, Motion, Samples
 from rockbatch.motions.places import Stand, stand
 
@@ -37,6 +38,10 @@ FAINT = 20.0
 """Ratio of the PGA of a station's horizontal components to that of its vertical one, beyond which a wrong gain is likelier;
 real records have 0.4 to 3."""
 
+SELDOM_BELOW, SELDOM_ABOVE = 1.0 / 8.0, 3.0
+"""The same ratio, vertical over horizontal, beyond which a unit is in doubt: some three standard deviations (ln 0.5) off the
+usual 0.55."""
+
 STEADY = 0.12
 """Distance of the growth of ∫a² dt from a straight line below which a vertical component is noise, if the horizontal has twice
 as much; real records have 0.24 and more, white noise of a few hundred samples some 0.05."""
@@ -52,7 +57,8 @@ ANY = ("*",)
 """Confirms every record."""
 
 _SWINGS = 7
-_SAME_SHAPE = 1e-3  # of the peak: rounding of a sample in a printed, scaled copy
+_SAME_SHAPE = 1e-3  # of a factor: rounding of a printed copy
+_SAME_SIZE = 0.02  # of a factor: copies that were not scaled on purpose
 _LONG_TOP = 4  # samples: least length of one flat top; several together must have one more
 _ENOUGH = 8  # samples: the mean of fewer says nothing
 
@@ -210,42 +216,51 @@ def unequal_horizontals(candidate: Candidate) -> Finding | None:
 
 
 def copied_horizontal(candidate: Candidate) -> Finding | None:
-    """Return a finding on a horizontal component that is a scaled copy of the station's other one."""
-    others = [c for c, _ in candidate.peaks if c is not candidate.component and len(candidate.peaks) == 2]
-    copied = [c.name for c in others if _common_factor(candidate.component.acceleration, c.acceleration)]
-    text = f"it has the samples of {', '.join(copied)}, square to it: check their files"
-    return Finding("copy", text) if copied else None
+    """Return a finding on a horizontal component that is a copy of the station's other one, perhaps scaled and shifted."""
+    this, others = candidate.component, [c for c, _ in candidate.peaks if c is not candidate.component]
+    if len(candidate.peaks) != 2 or not others or not same_step(this.dt, others[0].dt):
+        return None
+    copy = copy_between(this.acceleration, others[0].acceleration)
+    if copy is None:
+        return None
+    return Finding(
+        "copy", f"it has the samples of {others[0].name}{_changes(copy, this.dt)}, square to it: check their files"
+    )
 
 
 def unlike_vertical(candidate: Candidate) -> Finding | None:
-    """Return a finding on a vertical component that is a copy of a horizontal one, noise, or of another gain."""
+    """Return a finding on a vertical component that is a copy of a horizontal one, noise, or of another gain or unit."""
     motion = candidate.motion
     if motion.vertical is None or not np.any(motion.vertical):
         return None
-    peers = {c.name: c.acceleration for c, _ in candidate.peaks} | {motion.name: motion.horizontal}
-    factors = ((name, factor) for name, a in peers.items() if (factor := _common_factor(motion.vertical, a)))
-    if copied := next(factors, None):
-        name, factor = copied
-        times = "" if (same := abs(abs(factor) - 1.0) <= _SAME_SHAPE) else f" times {abs(factor):.3g}"
-        text = f"its vertical component has the samples of the horizontal one {name}{times}: check the file"
-        return Finding("vertical", text, gross=same)
     most = max([motion.pga, *(peak for _, peak in candidate.peaks)])
-    ratio = np.abs(motion.vertical).max() / max(most, 1e-300)
-    if not 1.0 / FAINT <= ratio <= UNEQUAL:
-        text = f"PGA of its vertical component is {ratio:.3g} times that of the horizontal ones: check their gains"
-        return Finding("vertical", text, gross=True)
+    ratio = float(np.abs(motion.vertical).max() / max(most, 1e-300))
+    faulty = not 1.0 / FAINT <= ratio <= UNEQUAL
+    peers = {c.name: c.acceleration for c, _ in candidate.peaks if same_step(c.dt, motion.dt)}
+    copies = (
+        (name, copy_between(motion.vertical, a)) for name, a in (peers | {motion.name: motion.horizontal}).items()
+    )
+    if copied := next(((name, copy) for name, copy in copies if copy), None):
+        name, copy = copied
+        text = f"its vertical component has the samples of the horizontal one {name}{_changes(copy, motion.dt)}: check the file"
+        return Finding("vertical", text, gross=faulty or abs(abs(copy.factor) - 1.0) <= _SAME_SIZE)
+    size = f"PGA of its vertical component is {ratio:.3g} times that of the horizontal ones"
+    if faulty:
+        return Finding("vertical", f"{size}: check their gains", gross=True)
     if _growth_apart(motion.vertical) < STEADY and _growth_apart(motion.horizontal) > 2.0 * STEADY:
         text = "its vertical component shakes alike from the first to the last sample, and the ground does not: noise"
         return Finding("vertical", text, gross=True)
-    return None
+    if SELDOM_BELOW <= ratio <= SELDOM_ABOVE:
+        return None
+    return Finding(
+        "vertical", f"{size}, as in few records; m/s² under a header of g make it 9.81 times: check its unit"
+    )
 
 
-def _common_factor(a: Samples, b: Samples) -> float:
-    """Return the factor from samples ``b`` to ``a`` if they are scaled copies; else 0."""
-    if len(a) != len(b) or not b.any():
-        return 0.0
-    factor = float(a @ b) / float(b @ b)
-    return factor if np.abs(a - factor * b).max() <= _SAME_SHAPE * np.abs(a).max() else 0.0
+def _changes(copy: Copy, dt: float) -> str:
+    """Return by what a copy differs from its original: " times 0.667, 0.05 s later"; empty for an exact one."""
+    times = "" if abs(copy.factor - 1.0) <= _SAME_SHAPE else f" times {copy.factor:.3g}"
+    return times + (f", {abs(copy.delay) * dt:g} s {'later' if copy.delay > 0 else 'earlier'}" if copy.delay else "")
 
 
 def _growth_apart(samples: Samples) -> float:

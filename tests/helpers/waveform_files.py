@@ -1,6 +1,8 @@
 """MiniSEED files and the StationXML beside them, for tests of ObsPy's readers."""
 
 import io
+from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -20,15 +22,18 @@ def write_mseed(path: Path, *traces: Trace) -> None:
     Stream(list(traces)).write(str(path), format="MSEED")
 
 
-def asdf_bytes(*traces: Trace, xml: str = "", **attributes: float) -> bytes:
-    """Return an ASDF file of traces, with the StationXML of each station; ``attributes`` are instead of those of the traces."""
+def asdf_bytes(*traces: Trace, xml: str = "", tags: Sequence[str] = ("raw",), **attributes: float) -> bytes:
+    """Return an ASDF file of traces, with the StationXML of each station; ``attributes`` are instead of those of the traces.
+
+    Traces are stored once with each of ``tags``.
+    """
     import h5py
 
     held = io.BytesIO()
     with h5py.File(held, "w") as store:
-        for one in traces:
+        for one, tag in product(traces, tags):
             station = store.require_group(f"Waveforms/{one.stats.network}.{one.stats.station}")
-            own = station.create_dataset(f"{one.id}__{one.stats.starttime}__{one.stats.endtime}__raw", data=one.data)
+            own = station.create_dataset(f"{one.id}__{one.stats.starttime}__{one.stats.endtime}__{tag}", data=one.data)
             own.attrs["starttime"] = one.stats.starttime.ns
             own.attrs["sampling_rate"] = one.stats.sampling_rate
             own.attrs.update(attributes)

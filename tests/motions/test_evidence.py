@@ -320,6 +320,9 @@ def test_a_dead_vertical_does_not_count_as_one(tmp_path, upright):
         (-wiggle(500, 1), "has the samples of the horizontal one x000"),
         (20.0 * wiggle(500, 3), "20 times that of the horizontal ones"),
         (wiggle(500, 3) / 96.0, "0.0104 times that of the horizontal ones"),
+        (np.append(np.zeros(4), wiggle(500, 2)), "has the samples of the horizontal one x090, 0.04 s later: check"),
+        (-wiggle(500, 1)[7:], "has the samples of the horizontal one x000 times -1, 0.07 s earlier: check"),
+        (9.81 * wiggle(500, 2), "has the samples of the horizontal one x090 times 9.81: check"),
         (0.01 * np.random.default_rng(1).standard_normal(500), "noise"),
     ],
 )
@@ -338,6 +341,46 @@ def test_a_vertical_that_is_a_share_of_the_horizontal_one_is_used_and_says_so(tm
     found = read_motions(tmp_path)
     assert len(found.motions) == 2
     assert all(finding.text.count("x000 times 0.667") for motion in found.motions for finding in motion.findings)
+
+
+@pytest.mark.parametrize(
+    ("upright", "said"),
+    [
+        (-0.5 * np.append(np.zeros(9), wiggle(500, 1)), "the horizontal one x000 times -0.5, 0.09 s later: check"),
+        (
+            0.5 * 9.81 * wiggle(500, 3),
+            ", as in few records; m/s² under a header of g make it 9.81 times: check its unit",
+        ),
+        (wiggle(500, 3) / 9.81, "is 0.102 times that of the horizontal ones, as in few records; "),
+        (2.5 * wiggle(500, 3), ""),
+        (0.2 * wiggle(500, 3), ""),
+    ],
+)
+def test_a_vertical_of_another_unit_or_delay_is_a_finding_unless_its_size_is_usual(tmp_path, upright, said):
+    pair_with(tmp_path, upright)
+    found = read_motions(tmp_path)
+    assert len(found.motions) == 2
+    for motion in found:
+        texts = [finding.text for finding in motion.findings if finding.what == "vertical"]
+        assert [said in text for text in texts] == ([True] if said else [])
+
+
+def test_a_horizontal_that_is_a_delayed_copy_of_the_other_one_is_a_finding(tmp_path):
+    for way, values in (("000", wiggle(500, 1)), ("090", -0.7 * np.append(np.zeros(5), wiggle(500, 1)))):
+        write_at2(tmp_path, f"x{way}.AT2", values, title=f"Big One, 1/17/1994, Town Hall, {way}")
+    first, second = read_motions(tmp_path)
+    assert any("samples of x090 times -1.43, 0.05 s earlier, square to it" in note for note in first.notes)
+    assert any("samples of x000 times -0.7, 0.05 s later, square to it" in note for note in second.notes)
+
+
+def test_waves_of_one_period_are_no_copies_of_each_other(tmp_path):
+    """A cosine is a sine that comes a quarter of its period earlier."""
+    times = 0.01 * np.arange(1500)
+    burst = np.exp(-np.square((times - 7.0) / 4.0))
+    for way, wave in (("000", np.sin), ("090", np.cos)):
+        title = f"Big One, 1/17/1994, Town Hall, {way}"
+        write_at2(tmp_path, f"x{way}.AT2", 0.2 * burst * wave(2.0 * np.pi * times / 2.0), title=title)
+    assert not [finding for motion in read_motions(tmp_path) for finding in motion.findings if finding.what == "copy"]
 
 
 # Copies

@@ -3,6 +3,7 @@
 import csv
 from dataclasses import replace
 from functools import cache
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -15,11 +16,20 @@ from rockbatch.common.errors import InputError
 from rockbatch.motions import ReadOptions, fema_p695, measures, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import without_doubles
+from rockbatch.motions.likeness import likeness_of
 from rockbatch.motions.manifest_draft import draft
 from rockbatch.motions.motion import Finding, Motion
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.pairing import to_motions
-from rockbatch.motions.plausible import ALTERNATION, UNEQUAL, alternating, flat_tops, unlikely_samples
+from rockbatch.motions.plausible import (
+    ALTERNATION,
+    SELDOM_ABOVE,
+    SELDOM_BELOW,
+    UNEQUAL,
+    alternating,
+    flat_tops,
+    unlikely_samples,
+)
 from rockbatch.motions.stations import by_station
 from rockbatch.results.run_json import describe
 from rockbatch.study import load_study
@@ -274,6 +284,23 @@ def test_real_horizontals_of_a_station_are_far_from_five_times_each_other():
             ratios.append(max(peaks) / min(peaks))
     assert len(ratios) > 60
     assert max(ratios) == pytest.approx(2.75, abs=0.01)  # TCU084
+
+
+@pytest.mark.slow
+@needs_records
+def test_real_components_are_far_from_copies_and_real_verticals_from_another_unit():
+    pytest.importorskip("hdf5plugin")
+    alike, ratios = [], []
+    for station in by_station(without_doubles(components())[0]):
+        if len(station) <= 3:
+            alike += [likeness_of(a, b) for a, b in combinations(station, 2)]
+            peaks = [c.pga for c in station if not c.orientation.vertical]
+            ratios += [c.pga / max(peaks) for c in station if c.orientation.vertical and peaks]
+    assert len(alike) > 80
+    assert max(alike) == pytest.approx(0.54, abs=0.01)
+    assert len(ratios) > 20
+    assert (min(ratios), max(ratios)) == pytest.approx((0.34, 1.85), abs=0.01)
+    assert 2.0 * SELDOM_BELOW < min(ratios) < max(ratios) < SELDOM_ABOVE / 1.5
 
 
 @pytest.mark.slow

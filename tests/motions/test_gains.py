@@ -5,9 +5,12 @@ import pytest
 from motion_files import wiggle
 from waveform_files import channel_xml, station_xml, trace, write_mseed
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, UnusableRecord
 from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions.colocated import with_gains_compared
+from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.manifest_draft import draft
+from rockbatch.motions.orientation import Orientation
 
 RECORD = "n.mseed"
 
@@ -137,6 +140,19 @@ def test_station_xml_is_found_anywhere_in_the_folder_that_is_read(tmp_path, plac
     assert len(read_motions([records, tmp_path / places[1]])) == 1
 
 
+def test_a_mass_download_is_read_by_the_names_that_its_files_have(tmp_path):
+    (tmp_path / "waveforms").mkdir()
+    for seed, channel in enumerate(("HNN", "HNE", "HNZ", "HHN")):
+        counts = np.round(2e6 * wiggle(500, seed)).astype(np.int32)
+        name = f"CI.LRL..{channel}__20190706T031923Z__20190706T032023Z.mseed"
+        write_mseed(tmp_path / "waveforms" / name, trace(channel, counts))
+    directions = (("HNN", 0.0, 0.0), ("HNE", 90.0, 0.0), ("HNZ", 0.0, -90.0))
+    xml_in(tmp_path / "stations" / "CI.LRL.xml", *(channel_xml(*direction) for direction in directions))
+    found = read_motions(tmp_path)
+    assert [(motion.azimuth, motion.vertical is not None) for motion in found] == [(90.0, True), (0.0, True)]
+    assert [(one.station, one.kind) for one in found.unusable] == [("LRL", UnusableRecord)]
+
+
 def two_sensors(folder, factor: float, noise: float = 0.0, **changed) -> None:
     rng = np.random.default_rng(1)
     for location, times in (("00", 1.0), ("10", factor)):
@@ -161,6 +177,31 @@ def test_sensors_side_by_side_that_differ_by_a_factor_are_held_back(tmp_path, fa
     (tmp_path / "motions.toml").write_text('[[record]]\nfile = "10.mseed"\nuse = false\n')
     (motion,) = read_motions(tmp_path, options=stated).motions
     assert not motion.findings[1:]
+
+
+@pytest.mark.parametrize(("azimuth", "factor", "wrong"), [(0.0, -1.0, True), (180.0, 1.0, True), (180.0, -1.0, False)])
+def test_sensors_side_by_side_of_opposite_sign_are_held_back(tmp_path, azimuth, factor, wrong):
+    two_sensors(tmp_path, factor, noise=0.01)
+    channels = channel_xml("HNN"), channel_xml("HNN", azimuth)
+    located = (
+        c.replace('locationCode=""', f'locationCode="{code}"') for c, code in zip(channels, ("00", "10"), strict=True)
+    )
+    station_xml(tmp_path, *located)
+    found = read_motions(tmp_path)
+    assert ["one of their signs is wrong" in one.reason for one in found.unusable] == [True, True] * wrong
+    assert len(found) == (0 if wrong else 2)
+
+
+@pytest.mark.parametrize(
+    ("down", "factor", "agree"), [(False, 1.0, True), (False, -1.0, False), (True, 1.0, False), (True, -1.0, True)]
+)
+def test_verticals_side_by_side_are_compared_as_positive_up(down, factor, agree):
+    def sensor(location: str, samples: np.ndarray, down: bool) -> Component:
+        way = Orientation("Z", vertical=True, down=down)
+        return Component(location, 0.01, samples, way, start=1.5e9, sensor=Sensor("LRL", "CI", location))
+
+    both = sensor("00", wiggle(500), False), sensor("10", factor * wiggle(500), down)
+    assert [len(component.findings) for component in with_gains_compared(both)] == [int(not agree)] * 2
 
 
 @pytest.mark.parametrize(

@@ -135,7 +135,7 @@ def test_a_nameless_first_column_that_grows_as_time_does_is_time(tmp_path):
     [
         ("in/s2", 9.81 / 0.0254), ("in/sec^2", 9.81 / 0.0254), ("inch/s/s", 9.81 / 0.0254), ("ft/s2", 9.81 / 0.3048),
         ("ft/sec**2", 9.81 / 0.3048), ("feet/s²", 9.81 / 0.3048), ("mg", 1000.0), ("milli-g", 1000.0), ("%g", 100.0),
-        ("mGal", 981000.0), ("Gals", 981.0),
+        ("mGal", 981000.0), ("Gals", 981.0), ("m·s⁻²", 9.81), ("g's", 1.0), ("µg", 1e6), ("cm/seg²", 981.0),
     ],
 )  # fmt: skip
 def test_units_of_other_trades_are_understood(tmp_path, unit, in_g):
@@ -143,6 +143,24 @@ def test_units_of_other_trades_are_understood(tmp_path, unit, in_g):
     (tmp_path / "x.csv").write_text(f"t (s),NS ({unit})\n" + in_columns(T, in_g * A))
     (motion,) = read_motions(tmp_path).motions
     assert motion.pga_g == pytest.approx(np.abs(A).max(), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "Zeit;NS;EW;UD\nSekunden;g's;g's;g's",
+        "Zeit [Sekunden];NS [g's];EW [g's];UD [g's]",
+        "Zeit (Sek.);NS (g);EW (g);UD (g)",
+        "Unit: g\nTiempo en segundos;NS;EW;UD",
+        "Unit: g\nSekunden;NS;EW;UD",
+        "時間(秒);NS(G);EW(G);UD(G)",
+    ],
+)
+def test_seconds_are_known_in_the_languages_of_directions(tmp_path, header):
+    first, second = read(tmp_path, f"{header}\n{in_columns(T, A, B, C, between=';')}", options=ReadOptions()).motions
+    assert is_a(first)
+    assert (first.azimuth, second.azimuth) == (0.0, 90.0)
+    assert first.vertical == pytest.approx(C)
 
 
 def test_the_header_of_a_matched_record_has_its_unit_beside_other_words_in_brackets(tmp_path):
@@ -177,6 +195,12 @@ def test_a_record_file_of_midas_is_read_by_its_unit_and_type(tmp_path):
         "END",
         "End of file",
         "EOF",
+        "<EOF>",
+        "#end",
+        "# End of data",
+        "$END",
+        "[End]",
+        "- end -",
         "/&  ---- End of Data ----",
         "----- end -----\n\n",
         "*",
@@ -202,14 +226,38 @@ def test_words_within_the_numbers_and_other_words_behind_them_are_still_refused(
         ("2023-02-06 01:17:35.{:03d}", None),
         ("2023/02/06T03:17:35,{:03d}+02:00", 1675646255.0),
         ("01:17:35.{:03d}", None),
+        ("06.02.2023 01:17:35.{:03d}", None),
+        ("6/2/2023 1:17:35.{:03d}", None),
+        ("06-Feb-23 01:17:35,{:03d}Z", None),
     ],
 )
 @pytest.mark.parametrize("head", ["time;N (g)", ";N (g)", "timestamp;N (g)"])
-def test_clock_times_are_seconds_after_the_first(tmp_path, first, start, head):
-    rows = "".join(f"{first.format(5 * i)};{a:.6f}\n" for i, a in enumerate(A[:190]))
+@pytest.mark.parametrize("point", [".", ","])
+def test_clock_times_are_seconds_after_the_first(tmp_path, first, start, head, point):
+    rows = "".join(f"{first.format(5 * i)};" + f"{a:.6f}\n".replace(".", point) for i, a in enumerate(A[:190]))
     (motion,) = read(tmp_path, f"{head}\n{rows}", "x.csv").motions
     assert (motion.dt, motion.npts, motion.start) == (DT, 190, start)
     assert motion.horizontal == pytest.approx(A[:190])
+
+
+@pytest.mark.parametrize(
+    ("between", "point"), [("\t", ","), (" ", ","), ("; ", ","), (", ", "."), (" , ", "."), (" ", ".")]
+)
+def test_clock_times_stand_between_any_separators(tmp_path, between, point):
+    columns = zip(*np.round([A, B, C], 6)[:, :190], strict=True)
+    rows = [
+        [f"01:17:35{point}{5 * i:03d}", *(f"{a:.6f}".replace(".", point) for a in row)] for i, row in enumerate(columns)
+    ]
+    lines = [["t", "NS(g)", "EW(g)", "UD(g)"], *rows]
+    first, _ = read(tmp_path, "".join(between.join(row) + "\n" for row in lines), options=ReadOptions()).motions
+    assert (first.dt, first.npts) == (DT, 190)
+    assert first.horizontal == pytest.approx(A[:190])
+
+
+@pytest.mark.parametrize("digits", [3, 6, 9])
+def test_seconds_since_1970_have_the_step_of_those_after_the_first(tmp_path, digits):
+    rows = "".join(f"{1675646255.0 + t:.{digits}f},{a:.6f}\n" for t, a in zip(T, A, strict=True))
+    assert is_a(only(tmp_path, f"time,N (g)\n{rows}"))
 
 
 def test_clock_times_go_on_after_midnight_and_may_stand_behind_a_count(tmp_path):
@@ -288,6 +336,22 @@ def test_no_unit_is_advised_that_makes_no_earthquake_of_the_numbers():
     assert 'unit = "g" (PGA' in str(advised_of(in_columns(T, A)))
     assert "cm/s2" not in str(advised_of(in_columns(T, A)))
     assert 'unit = "cm/s2" (PGA' in str(advised_of(in_columns(T, 981.0 * A)))
+
+
+@pytest.mark.parametrize(
+    ("header", "columns", "pga"),
+    [
+        ("t (s), NS (cm/s2), EW, UD (cm/s2)", (981.0 * A, 0.5 * B, 981.0 * C), 0.5 * np.abs(B).max()),
+        ("t (s), NS, EW (mg), UD", (0.5 * A, 1000.0 * B, 0.0 * C), 0.5 * np.abs(A).max()),
+    ],
+)
+def test_a_unit_is_advised_by_the_peak_of_the_columns_that_state_none(tmp_path, header, columns, pga):
+    text = f"{header}\n{in_columns(T, *columns)}"
+    refused = why(tmp_path, text)
+    assert f'write unit = "g" (PGA {pga:.2g} g)' in refused
+    assert "in motions.toml, it would replace the units of its other columns, too" in refused
+    advised = [m.pga for m in read(tmp_path, text, options=ReadOptions(unit="g")).motions]
+    assert pytest.approx(pga, rel=1e-3) in advised
 
 
 def test_nothing_is_advised_that_makes_no_record():

@@ -4,6 +4,7 @@ import numpy as np
 from archive_files import tarred, write_zip
 from damaged_files import SAMPLES
 from motion_files import at2_text, wiggle, write_at2
+from waveform_files import channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.commands.cli import main
 from rockbatch.commands.motions import MOST_LINES
@@ -43,6 +44,17 @@ def test_rare_reasons_stand_first(tmp_path, capsys):
     main(["motions", str(tmp_path / "records")])
     counted = [line.split(" ×")[0].strip() for line in capsys.readouterr().out.splitlines() if " ×: " in line]
     assert counted[:2] == ["1", "5"]
+
+
+def test_a_reason_of_three_channels_stands_once(tmp_path, capsys):
+    for channel in ("HNN", "HNE", "HNZ"):
+        write_mseed(tmp_path / f"{channel}.mseed", trace(channel))
+    both = [channel_xml(channel, value=value) for channel in ("HNN", "HNE", "HNZ") for value in (2e5, 5e5)]
+    station_xml(tmp_path, *both)
+    assert main(["motions", str(tmp_path)]) == 1
+    printed = capsys.readouterr().out
+    assert printed.count("StationXML contradicts itself") == 1
+    assert "3 ×: CI.LRL..HN" in printed
 
 
 def test_a_folder_of_many_agencies_archives_and_junk_is_said_in_a_screen(tmp_path, capsys):

@@ -78,6 +78,10 @@ def test_these_say_nothing(label):
         ("KOBE2040", "KOBE2", "040"),
         ("A-010", "A", "010"),
         ("228", "", "228"),
+        ("CI.LRL..HNZ__20190706T031850Z__20190706T032250Z", "CI.LRL__20190706T031850Z__20190706T032250Z", "HNZ"),
+        ("CI.LRL.10.HN1__20190706T031850Z__20190706T032180Z", "CI.LRL.10__20190706T031850Z__20190706T032180Z", "HN1"),
+        ("IT.AQK..HNE.D.20090406.013239.U.ACC", "IT.AQK.D.20090406.013239.U.ACC", "HNE"),
+        ("LRL_N_2019-07-06T03-18-50", "LRL_2019-07-06T03-18-50", "N"),
     ],
 )
 def test_the_end_of_a_stem_tells_station_and_component(stem, station, label):
@@ -99,6 +103,8 @@ def test_the_end_of_a_stem_tells_station_and_component(stem, station, label):
         "A2019.187",
         "001",
         "SITE_1995_090",
+        "LRL_20190706T031850Z",
+        "LRL_20190706T031090",
     ],
 )
 def test_a_stem_without_component_is_left_whole(stem):

@@ -108,6 +108,27 @@ def test_names_of_streets_towns_and_people_are_no_structures():
     assert [name for name in STATIONS_ON_GROUND if stand(name.upper(), name)[0] is not Stand.GROUND] == []
 
 
+@pytest.mark.parametrize(
+    ("name", "where"),
+    [
+        ("Lower Dam (Outlet)", Stand.STRUCTURE),
+        ("Lower Dam (Gallery)", Stand.STRUCTURE),
+        ("Bridge 7 (Pier 3)", Stand.STRUCTURE),
+        ("Baraj (dolusavak)", Stand.STRUCTURE),
+        ("Some Array (12 m)", Stand.BOREHOLE),
+        ("Lower Dam (Toe)", Stand.GROUND),
+        ("Poe Road (temp)", Stand.GROUND),
+        ("Bridge 7 free field (Pier 3)", Stand.GROUND),
+        ("Outlet Mall", Stand.GROUND),
+        ("Tower Town (Airport)", Stand.GROUND),
+        ("Station (USGS STATION 5054)", Stand.GROUND),
+    ],
+)
+def test_what_stands_in_brackets_behind_a_station_s_name_is_a_place(name, where):
+    assert stand("", name)[0] is where
+    assert stand("", name)[1] in ("", name)
+
+
 def test_a_name_of_a_station_may_say_that_it_is_on_a_structure_or_in_a_borehole():
     assert [name for name in STATIONS_ON_STRUCTURES if stand("", name)[0] is Stand.GROUND] == []
 

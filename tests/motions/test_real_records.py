@@ -1,8 +1,10 @@
 """Real records in agencies' own formats: what a reader must find in them (skipped where they are missing)."""
 
+import hashlib
 import json
 from functools import cache
 from itertools import combinations
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,6 +28,23 @@ READABLE = (
     *(".v1a", ".v2a", ".asc", ".v1", ".v1c", ".v2", ".raw", ".smc"),
 )
 STATED = {".sac": ReadOptions(unit="g"), ".acc": ReadOptions(unit="m/s2")}
+
+
+READINGS = Path(__file__).with_name("real_records.txt")
+"""A line for each component: source, name, step [s], count, unit, azimuth or V or H, digest of its samples."""
+
+
+def reading_of(c: Component) -> str:
+    """Return the line of a component in ``READINGS``."""
+    azimuth = "H" if c.orientation.azimuth is None else f"{c.orientation.azimuth:g}"
+    digest = hashlib.sha256(c.acceleration.tobytes()).hexdigest()[:12]
+    way = "V" if c.orientation.vertical else azimuth
+    return "|".join([c.source, c.name, f"{c.dt:.12g}", str(len(c.acceleration)), c.unit, way, digest])
+
+
+def test_every_sample_name_step_and_unit_is_as_it_was_when_checked():
+    """A line that changes needs its reason in CHANGELOG.md."""
+    assert [reading_of(c) for c in real_components("m/s2")] == READINGS.read_text().splitlines()
 
 
 def described() -> list:

@@ -38,6 +38,30 @@ def test_asdf_without_a_gain_asks_for_it_and_takes_what_is_stated(tmp_path):
     assert len(read_motions(tmp_path, options=ReadOptions(sensitivity=2e5))) == 1
 
 
+def test_of_several_tags_in_an_asdf_file_the_recordings_are_used(tmp_path):
+    xml = XML.format(channel_xml("HNN"))
+    (tmp_path / "x.h5").write_bytes(asdf_bytes(trace("HNN"), xml=xml, tags=("processed", "raw_recording")))
+    (motion,) = read_motions(tmp_path)
+    assert motion.pga == pytest.approx(np.abs(COUNTS - COUNTS.mean()).max() / 2e5)
+    assert "waveforms with the tag processed left out: ASDF states no unit of what was processed" in motion.notes
+
+
+def test_pieces_of_an_asdf_file_that_follow_one_another_are_one_record(tmp_path):
+    whole = trace("HNN")
+    middle = whole.stats.starttime + 100 * whole.stats.delta
+    pieces = whole.slice(endtime=middle), whole.slice(starttime=middle + whole.stats.delta)
+    xml = XML.format(channel_xml("HNN"))
+    (tmp_path / "x.h5").write_bytes(asdf_bytes(*pieces, xml=xml))
+    (motion,) = read_motions(tmp_path)
+    assert motion.npts == len(COUNTS)
+    gap = whole.slice(starttime=middle + 5 * whole.stats.delta)
+    (tmp_path / "x.h5").write_bytes(asdf_bytes(pieces[0], gap, xml=xml))
+    assert "gaps or overlaps: 2 pieces" in reason(tmp_path)
+    other_rate = trace("HNN", start=middle + 0.01, rate=50.0)
+    (tmp_path / "x.h5").write_bytes(asdf_bytes(pieces[0], other_rate, xml=xml))
+    assert "gaps or overlaps: 2 pieces" in reason(tmp_path)
+
+
 def test_two_gains_within_an_asdf_file_contradict_each_other(tmp_path):
     xml = XML.format(channel_xml("HNN") + channel_xml("HNN", value=5e5))
     (tmp_path / "x.h5").write_bytes(asdf_bytes(trace("HNN"), xml=xml))

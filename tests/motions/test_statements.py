@@ -88,7 +88,7 @@ def test_a_step_that_cannot_be_and_two_of_them_are_refused(lines, message):
 @pytest.mark.parametrize(("line", "dt"), STEPS)
 def test_the_step_of_a_header_is_read_as_people_write_it(tmp_path, line, dt):
     width = min(4, len(line.split()))
-    write(tmp_path, f"# {line}\n# unit: g", *[np.roll(A, k) for k in range(width)], name="x.txt")
+    write(tmp_path, f"# {line}\n# unit: g", *[wiggle(len(A), k) for k in range(width)], name="x.txt")
     names = ("000", "090", "up", "-")[:width]
     found = read_motions(tmp_path, options=ReadOptions(columns=names))
     assert not found.unusable

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from agency_files import dyna_text
 from fixed_column_files import A, B, C, cosmos_text, csmip_channel, smc_text
 from motion_files import wiggle, write_at2
 from national_files import unam_text
@@ -74,6 +75,20 @@ def test_the_unscaled_of_two_copies_is_used_and_the_factor_named(tmp_path):
     assert motion.source == "unscaled.AT2"
     assert left_out(found)["scaled.AT2"].startswith("the same recording, 2 times as large, as unscaled.AT2")
     assert [finding.what for finding in motion.findings] == ["factor"]
+
+
+def test_a_copy_that_is_less_corrected_and_larger_is_said_to_be_both(tmp_path):
+    values = 981.0 * wiggle(400)
+    for stage, factor, stated in (
+        ("C", 1.0, {}),
+        ("U", 2.0, {"BASELINE_CORRECTION": "BASELINE NOT REMOVED", "PROCESSING": ""}),
+    ):
+        text = dyna_text(factor * values, **stated)
+        (tmp_path / f"IT.AQK..HNE.D.20090406.013239.{stage}.ACC.ASC").write_text(text)
+    (reason,) = left_out(read_motions(tmp_path)).values()
+    assert reason.startswith(
+        "the same recording, less corrected, 2 times as large, as IT.AQK..HNE.D.20090406.013239.C.ACC.ASC"
+    )
 
 
 def test_where_nothing_tells_which_factor_is_right_it_is_asked_for(tmp_path):

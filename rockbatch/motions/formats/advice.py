@@ -17,10 +17,15 @@ from rockbatch.motions.record_file import ReadOptions
 
 _UNITS = (("g", "m/s2", "cm/s2", "mm/s2"), ("mg", "in/s2", "ft/s2"))  # the second if none of the first is plausible
 _TRIED: Mapping[str, str | float] = {"unit": "m/s2", "dt": 0.01}  # any unit and step show whether a file can be read
+_OTHER_UNIT = "cm/s2"  # read in it, components without a unit of their own differ
 _MOST_LACKS = 3  # readings with more and more statements
 _WHERE = (
     "under [motions] in the study, for all files that state none (the others keep their own), or for this file in motions.toml, "
     "which `rockbatch motions FOLDER --write-manifest` drafts"
+)
+_WHERE_FOR_SOME = (
+    "under [motions] in the study, for all columns and files that state none (the others keep their own); in motions.toml, it "
+    "would replace the units of its other columns, too"
 )
 _MEANING = {"layout": "if it is one series that goes on from line to line", "columns": "if these are its components"}
 
@@ -42,16 +47,27 @@ def with_advice(error: Unstated, read: Read, options: ReadOptions, gravity: floa
     """Return the refusal of a file with the statements that lead to a record when tried, or the reason why none does."""
     choices = error.choices or ({key: _TRIED[key] for key in error.keys if key in _TRIED},)
     trials = [_trial(choice, read, options) for choice in choices]
-    advice = [
-        _advice_text(choice, trial, gravity) for choice, trial in zip(choices, trials, strict=True) if trial.components
-    ]
+    advice, where = [], _WHERE
+    for choice, trial in zip(choices, trials, strict=True):
+        if trial.components:
+            without_unit = _without_unit(trial, read, options)
+            where = _WHERE_FOR_SOME if 0 < len(without_unit) < len(trial.components) else where
+            advice.append(_advice_text(choice, trial, max((c.pga for c in without_unit), default=0.0), gravity))
     problem = "; ".join(error.messages)
     if advice:
-        message = f"{problem}; write {', or '.join(advice)} {_WHERE}"
+        message = f"{problem}; write {', or '.join(advice)} {where}"
     else:
         message = f"{problem}; what could be stated makes no record of it: {trials[0].refusal}"
     stated = dict.fromkeys(key for trial in trials for key in (*trial.stated, *error.keys) if trial.components)
     return type(error)(message, keys=tuple(stated or error.keys))
+
+
+def _without_unit(trial: _Trial, read: Read, options: ReadOptions) -> list[Component]:
+    """Return the components to which a stated unit applies, since they have none of their own."""
+    if "unit" not in trial.stated:
+        return []
+    other = _trial({**trial.stated, "unit": _OTHER_UNIT}, read, options)
+    return [c for c, changed in zip(trial.components, other.components, strict=True) if changed.unit != c.unit]
 
 
 def _trial(statement: Statement, read: Read, options: ReadOptions) -> _Trial:
@@ -83,12 +99,12 @@ def _contradictions(readings: Sequence[Component | Unusable]) -> Iterator[str]:
             yield from (finding.text for finding in reading.findings if finding.gross)
 
 
-def _advice_text(choice: Statement, trial: _Trial, gravity: float) -> str:
-    """Return a statement in the words of TOML with its meaning, and the PGA in plausible units."""
+def _advice_text(choice: Statement, trial: _Trial, peak: float, gravity: float) -> str:
+    """Return a statement in the words of TOML with its meaning, and the PGA in units in which a ``peak`` is plausible."""
     words = []
     for key, value in {**choice, **trial.stated}.items():
         if key == "unit":
-            words.append(_units(max(component.pga for component in trial.components), gravity))
+            words.append(_units(peak, gravity))
         elif key == "dt":
             words.append("dt = …, its sampling interval [s],")
         else:

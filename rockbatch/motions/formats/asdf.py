@@ -6,12 +6,13 @@ with the attributes ``starttime`` [ns since 1970] and ``sampling_rate`` [Hz]. So
 
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from rockbatch.common.errors import InputError
+from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import h5py, obspy
 from rockbatch.motions import stationxml
 from rockbatch.motions.component import Component
@@ -21,8 +22,12 @@ from rockbatch.motions.motion import Unusable
 from rockbatch.motions.record_file import RecordFile
 
 _MAGIC = b"\x89HDF\r\n\x1a\n"
-_NAME = re.compile(r"(?P<network>\w{0,8})\.(?P<station>\w{1,8})\.(?P<location>\w{0,8})\.(?P<channel>\w{1,8})__.*")
+_NAME = re.compile(
+    r"(?P<network>\w{0,8})\.(?P<station>\w{1,8})\.(?P<location>\w{0,8})\.(?P<channel>\w{1,8})__(?:.*__)?(?P<tag>.*)"
+)
+_RAW = "raw"  # begins the tag of recordings in counts, by the definition of the format
 _MOST_TRACES = 1000
+_ADJACENT = -1  # ObsPy's method to join pieces that follow one another without a gap
 _LATEST = 4102444800.0  # s since 1970: 2100
 
 
@@ -42,14 +47,23 @@ def read_asdf(file: RecordFile) -> list[Component | Unusable]:
                 )
             stations = [station for name in waveforms if (station := _group(waveforms, name)) is not None]
             channels = [channel for station in stations for channel in _channels(station)]
-            traces = [trace for station in stations for trace in _traces(station)]
+            tags = {match["tag"] for station in stations for name in station if (match := _NAME.fullmatch(name))}
+            used = {tag for tag in tags if tag.startswith(_RAW)} or tags
+            traces = [trace for station in stations for trace in _traces(station, used)]
     except (OSError, KeyError, OverflowError, RuntimeError, TypeError, ValueError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(f"not an HDF5 file that can be read ({type(error).__name__}); fetch it again") from None
     if not traces:
         raise InputError("holds no waveforms")
-    return components_of_traces(replace(file, inventories=file.inventories.with_channels(channels)), traces)
+    with_channels = replace(file, inventories=file.inventories.with_channels(channels))
+    pieces = grouped(traces, lambda trace: (trace.id, trace.stats.sampling_rate)).values()
+    joined = [trace for of_channel in pieces for trace in obspy.Stream(of_channel).merge(method=_ADJACENT)]
+    readings = components_of_traces(with_channels, joined)
+    if not (others := tags - used):
+        return readings
+    note = f"waveforms with the tag {' or '.join(sorted(others))} left out: ASDF states no unit of what was processed"
+    return [replace(r, notes=(*r.notes, note)) if isinstance(r, Component) else r for r in readings]
 
 
 def _own_member(group: "h5py.Group", name: str) -> object:
@@ -72,11 +86,11 @@ def _channels(station: "h5py.Group") -> list[stationxml.Channel]:
     return stationxml.channels_of(np.asarray(member[()]).tobytes(), name)
 
 
-def _traces(station: "h5py.Group") -> "Iterator[obspy.Trace]":
-    """Yield the waveforms of a station; raise ``InputError`` for one that is no series of numbers, or too long."""
+def _traces(station: "h5py.Group", tags: Container[str]) -> "Iterator[obspy.Trace]":
+    """Yield a station's waveforms with one of the ``tags``; raise ``InputError`` for one that is no series, or too long."""
     for number, name in enumerate(station):
         member, match = _own_member(station, name), _NAME.fullmatch(name)
-        if match is None or not isinstance(member, h5py.Dataset):
+        if match is None or match["tag"] not in tags or not isinstance(member, h5py.Dataset):
             continue
         is_series = member.ndim == 1 and member.dtype.kind in "iuf" and not member.external
         if number > _MOST_TRACES or not is_series or not 0 < member.size <= MOST_SAMPLES:
@@ -85,7 +99,7 @@ def _traces(station: "h5py.Group") -> "Iterator[obspy.Trace]":
         if not (rate > 0 and is_step(1.0 / rate)) or not 0.0 <= start < _LATEST:
             raise InputError(f"{name}: sampling_rate = {rate:g}, starttime = {start:g} s; expected steps of {STEPS}")
         header = {
-            **match.groupdict(),
+            **{key: value for key, value in match.groupdict().items() if key != "tag"},
             "sampling_rate": rate,
             "starttime": obspy.UTCDateTime(ns=int(member.attrs["starttime"])),
         }

@@ -5,10 +5,13 @@ from datetime import UTC, datetime, timedelta
 
 _CLOCK = re.compile(
     r"""^(?P<before>[ \t]*(?:\d+[ \t]*[,;\t][ \t]*)?)"?
-    (?:(?P<date>\d{4}[-/]\d\d[-/]\d\d)[T ])?(?P<clock>\d\d:\d\d:\d\d)(?:[.,](?P<fraction>\d{1,12}))?
+    (?:(?:(?P<date>\d{4}[-/]\d\d[-/]\d\d)|\d{1,2}[-/.](?:\d{1,2}|[a-zA-Z]{3})[-/.]\d{2,4})[T ])?
+    (?P<clock>\d{1,2}:\d\d:\d\d)(?:[.,](?P<fraction>\d{1,12}))?
     (?P<zone>[ ]?(?:Z|UTC|GMT)|[+-]\d\d:?\d\d)?"?(?=[ \t]*(?:[,;\t ]|$))""",
     re.MULTILINE | re.VERBOSE,
 )
+_NO_COMMA = re.compile(r"[ \t]*(?:;|[ \t](?!,))")  # between a time and a number
+_DECIMAL_COMMA = re.compile(r"\d,\d")
 _FEWEST = 3  # lines that begin with a time; a header has one at most
 _DAY = 86400  # s
 
@@ -16,7 +19,8 @@ _DAY = 86400  # s
 def in_seconds(text: str) -> tuple[str, float | None]:
     """Return a text with times at the beginning of lines as seconds after the first, and the first [s since 1970, UTC].
 
-    The first is ``None`` if the times lack a date or a zone; fewer than three times leave the text as it is, with ``None``.
+    The first is ``None`` if the times lack a date or a zone, or the date begins with its day or month, which may be either;
+    fewer than three times leave the text as it is, with ``None``. Seconds have a decimal comma if the numbers behind have.
     """
     if ":" not in text or len(times := list(_CLOCK.finditer(text))) < _FEWEST:
         return text, None
@@ -26,6 +30,7 @@ def in_seconds(text: str) -> tuple[str, float | None]:
         return text, None
     fraction = _nanoseconds(times[0])
     days, latest = 0, first
+    point = "," if any(_has_decimal_commas(text, match.end()) for match in times) else "."
 
     def seconds(match: re.Match[str]) -> str:
         """Return the line's beginning with seconds in place of its time."""
@@ -37,7 +42,7 @@ def in_seconds(text: str) -> tuple[str, float | None]:
         latest = moment
         since = int((moment - first).total_seconds()) * 10**9 + _nanoseconds(match) - fraction
         sign, since = ("-" if since < 0 else ""), abs(since)
-        return f"{match['before']}{sign}{since // 10**9}.{since % 10**9:09d}"
+        return f"{match['before']}{sign}{since // 10**9}{point}{since % 10**9:09d}"
 
     try:
         return _CLOCK.sub(seconds, text), _start(times[0], first, fraction)
@@ -45,10 +50,19 @@ def in_seconds(text: str) -> tuple[str, float | None]:
         return text, None
 
 
+def _has_decimal_commas(text: str, start: int) -> bool:
+    """Return whether the numbers from ``start`` to the end of its line, behind a time, have decimal commas."""
+    if not _NO_COMMA.match(text, start):
+        return False
+    end = text.find("\n", start)
+    line = text[start : end if end >= 0 else len(text)]
+    return "." not in line and _DECIMAL_COMMA.search(line) is not None
+
+
 def _moment(match: re.Match[str]) -> datetime:
-    """Return a time in whole seconds, without its zone; on 1970-01-01 without a date."""
+    """Return a time in whole seconds, without its zone; on 1970-01-01 without a date that begins with its year."""
     date = (match["date"] or "1970-01-01").replace("/", "-")
-    return datetime.fromisoformat(f"{date}T{match['clock']}")
+    return datetime.fromisoformat(f"{date}T{match['clock']:0>8}")
 
 
 def _nanoseconds(match: re.Match[str]) -> int:

@@ -10,7 +10,8 @@ from rockbatch.common.units import acceleration_factor, length_factor
 from rockbatch.motions.limits import HUGE, SAME_STEP
 from rockbatch.motions.orientation import orientation_in, orientation_of
 
-SECONDS = {"s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3, "msec": 1e-3}
+_SECOND = "s sec secs second seconds sek sekunde sekunden seg segundo segundos seconde secondes secondo secondi sn saniye сек 秒"
+SECONDS = dict.fromkeys(_SECOND.split(), 1.0) | {"ms": 1e-3, "msec": 1e-3}
 """Units of time [s]."""
 
 
@@ -52,9 +53,10 @@ _COUNT = re.compile(
     r"\b(?:npts|(?:number|no\.?) of (?:points|samples))\s*[:=]?\s*(?P<npts>[0-9]{1,12})\b", re.IGNORECASE
 )
 _SHORT = {"NORTHSOUTH": "NS", "EASTWEST": "EW", "UPDOWN": "UD"}
-_TIMES = {"time", "times", *(f"{t}{unit}" for t in ("t", "time", "") for unit in ("sec", "secs", "second", "seconds"))}
-_TIMES |= {"timestamp", "datetime", "date", "utc", "timeutc", "utctime", "datetimeutc", "elapsed", "elapsedtime"}
-_TIMES |= {"zeit", "tiempo", "temps", "tempo", "zaman", "時間", "时间"}
+_TIME = {"time", "times", "elapsed", "elapsedtime", "zeit", "tiempo", "temps", "tempo", "zaman", "時間", "时间"}
+_SECONDS = [prefix + word for word in _SECOND.split() if len(word) > 2 for prefix in ("", "in", "en")]
+_TIMES = _TIME | {time + seconds for time in ("", "t", *_TIME) for seconds in _SECONDS}
+_TIMES |= {"timestamp", "datetime", "date", "utc", "timeutc", "utctime", "datetimeutc"}
 _INDEX = re.compile(
     r'^\s*"?(?:unnamed: ?\d+|index|idx|id|no\.?|nr\.?|num(?:ber)?|#|n|i|k|sample(?:[ _]?(?:no\.?|number|index))?|row|point|step)?'
     r'"?\s*[,;\t]\s*',

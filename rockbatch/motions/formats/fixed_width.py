@@ -16,7 +16,8 @@ from rockbatch.motions.motion import Samples
 T = TypeVar("T")
 _LONGEST = 10**6  # characters of a line
 _END_MARK = re.compile(  # "-inf" is none
-    r"[*=/&~_-]+|(?:[*/&!=]|--)[*/&!=~_ -]*[a-z].*|(?:end|eof|eod|fin|fine|ende|stop)(?:[ _.:-]*(?:of|data|file|record)\b.*)?",
+    r"[*=/&~_-]+|(?:[*/&!=]|--)[*/&!=~_ -]*[a-z].*|"
+    r"(?:[#$%@;:<(\[{]+\s*|-\s+)?(?:end|eof|eod|fin|fine|ende|stop)(?:[ _.:-]*(?:of|data|file|record)\b.*)?\W*",
     re.IGNORECASE,
 )
 _MOST_MARKS, _LONGEST_MARK = 10, 300  # lines, and characters of one
@@ -50,7 +51,7 @@ def lines_of(text: str) -> list[str]:
 
 
 def without_end_marks(text: str) -> str:
-    """Return a text without end marks in its last lines: "*** End Data ***", "*ENDDATA", "EOF", "====="."""
+    """Return a text without end marks in its last lines: "*** End Data ***", "*ENDDATA", "<EOF>", "====="."""
     for _ in range(_MOST_MARKS):
         text = text.rstrip()
         last = text[-_LONGEST_MARK:].splitlines()[-1:]

@@ -89,7 +89,8 @@ def components_of_traces(
                 readings.append(replace(component, findings=_BROKEN_OFF) if channel_id in broken else component)
             except InputError as error:
                 lacks = error.keys if isinstance(error, Unstated) else ()
-                readings.append(Unusable(name, source, str(error), channel_id.rpartition(".")[2], lacks))
+                label, station = channel_id.rpartition(".")[2], _station(pieces[0])
+                readings.append(Unusable(name, source, str(error), label, lacks, station=station))
     return readings
 
 
@@ -184,12 +185,15 @@ def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -
         unit="" if entry is not None else unit,
         raw=True,
         processed=False,
-        origin=origin_of(
-            date=stats.starttime.strftime("%Y-%m-%d"), station=f"{stats.network}.{stats.station}".strip(".")
-        ),
+        origin=origin_of(date=stats.starttime.strftime("%Y-%m-%d"), station=_station(trace)),
         sensor=Sensor(stats.station, stats.network, stats.location, depth_as_place(entry.depth if entry else None)),
         notes=(origin,),
     )
+
+
+def _station(trace: "obspy.Trace") -> str:
+    """Return the codes of network and station: "CI.LRL"."""
+    return f"{trace.stats.network}.{trace.stats.station}".strip(".")
 
 
 def _directions(channel_id: str, entry: stationxml.Channel | None) -> tuple[Statement, ...]:

@@ -1,5 +1,7 @@
 """Even sampling intervals from printed times: rounding counts as even; uneven steps are interpolated, with a note."""
 
+import math
+
 import numpy as np
 
 from rockbatch.common.errors import InputError
@@ -38,6 +40,7 @@ def on_even_steps(t: Samples, values: Samples) -> tuple[float, Samples, tuple[st
             f"time does not grow evenly: by {usual:g} as a rule, by {steps[uneven]:g} after sample {uneven + 1} "
             f"(t = {t[uneven]:g}); a gap is not filled, cut the record there or repair it"
         )
+    t = _since_first(t)
     for step in _candidates(t, usual):
         counts = np.concatenate([[0.0], np.cumsum(np.rint(steps / step))])
         if counts[-1] > _GROWTH * len(t) or np.diff(counts).min() < 1:
@@ -72,6 +75,12 @@ def from_pairs(pairs: Samples, channel: str) -> tuple[float, Samples, tuple[str,
     except InputError as error:
         raise InputError(f"{channel}: {error}") from None
     return dt, values[:, 0], notes
+
+
+def _since_first(t: Samples) -> Samples:
+    """Return times after the first, without the digits that floats lose of seconds since 1970."""
+    decimals = math.floor(-math.log10(float(np.spacing(np.abs(t).max()))))
+    return t if decimals > _MOST_DIGITS else np.round(t - t[0], decimals)
 
 
 def _is_growing(t: Samples) -> bool:
