@@ -182,11 +182,13 @@ def highest_within(f0, d0, f1, d1, h):
 
 
 @kernel
-def summit_within(f0, d0, f1, d1, h):
-    """Return the greatest value of the Hermite cubic in the step, also of one that rises, falls and rises again."""
+def summit_within(f0, d0, f1, d1, h, best):
+    """Return the greatest of ``best`` and of the Hermite cubic in the step, also of one that rises, falls and rises again."""
+    if max(max(f0, f1), max(inner_points(f0, d0, f1, d1, h))) <= best:
+        return best
     highest, _ = _extremes(f0, d0, f1, d1, h)
     inside = hermite(f0, d0, f1, d1, h, highest) if highest > 0.0 else f1
-    return max(f0, f1, inside)
+    return max(best, f0, f1, inside)
 
 
 @kernel

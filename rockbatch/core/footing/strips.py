@@ -16,6 +16,9 @@ from rockbatch.core.trigonometry import sine_and_cosine
 SMALLEST = 1e-300
 """Added to a divisor that is 0 where the foot does not touch."""
 
+COUNT = 26
+"""Binary digit of a sum over nodes from which on it holds how many they are; below it is the sum of their numbers."""
+
 UNTOUCHED = 1e200
 """Set of nodes that pad a bed [m]."""
 
@@ -42,9 +45,7 @@ class Sums(NamedTuple):
 
     force: float
     moment: float
-    touched: float
-    nodes: float  # how many
-    numbers: float  # Σ of their numbers
+    nodes: float  # how many, times 2^COUNT, and the sum of their numbers
 
 
 @inlined
@@ -78,22 +79,19 @@ def pressure(m, d, j):
 @summing
 def _sums(m, d):
     """Return the Sums over pressed nodes: the push itself, but for strips that are pressed in part."""
-    force, moment, touched, nodes, total = 0.0, 0.0, 0.0, 0.0, 0.0
+    force, moment, nodes = 0.0, 0.0, 0.0
     level, slope, stiffness, strength = d.level, d.slope, m.stiffness, m.strength
-    rate, slope_rate = m.damping * d.level_rate, m.damping * d.slope_rate
+    constant, linear = stiffness * level + m.damping * d.level_rate, stiffness * slope + m.damping * d.slope_rate
     bed = m.bed
     for j in range(_padded(m.strips)):
-        x = bed[POSITIONS, j]
-        e = level + slope * x - bed[SET, j]
-        by = max(0.0, min(stiffness * e + (rate + slope_rate * x), strength))
-        pressed = 1.0 if e > 0.0 else 0.0
-        by = by if e > 0.0 else 0.0
+        x, plastic = bed[POSITIONS, j], bed[SET, j]
+        pressed = level + slope * x > plastic
+        by = max(0.0, min(constant + linear * x - stiffness * plastic, strength))
+        by = by if pressed else 0.0
         force += bed[WEIGHTS, j] * by
         moment += bed[ARMS, j] * by
-        touched += bed[WEIGHTS, j] * pressed
-        nodes += pressed
-        total += bed[ORDER, j] * pressed
-    return Sums(force, moment, touched, nodes, total)
+        nodes += bed[ORDER, j] * (1.0 if pressed else 0.0)
+    return Sums(force, moment, nodes)
 
 
 @inlined
@@ -103,49 +101,49 @@ def _padded(strips):
 
 
 @inlined
-def _in_part(m, d, j):
-    """Return by how much the Push of strip ``j``, of which a part is pressed, exceeds what its nodes say in the Sums.
+def _in_part(m, d, near, far):
+    """Return by how much the Push of the strip between a pressed node ``near`` and a clear one ``far`` exceeds the Sums.
 
-    The pressure is linear in that part, between 0 and the strength, dashpots included.
+    The pressure is linear in the part that is pressed, between 0 and the strength, dashpots included.
     """
-    left, right, e_left, e_right = (
-        m.bed[POSITIONS, j],
-        m.bed[POSITIONS, j + 1],
-        deflection(m, d, j),
-        deflection(m, d, j + 1),
-    )
-    weight = m.bed[AREA, j]
-    if (e_left > 0.0) == (e_right > 0.0) or weight == 0.0:
-        return Push(0.0, 0.0, 0.0)
-    by_left, by_right, way = pressure(m, d, j), pressure(m, d, j + 1), right - left
-    if e_left > 0.0:
-        share = e_left / (e_left - e_right)
-        inner, outer, x, towards, third = by_left, by_left + share * (by_right - by_left), left, share * way, way
-    else:
-        share = e_right / (e_right - e_left)
-        inner, outer, x, towards, third = by_right, by_right + share * (by_left - by_right), right, -share * way, -way
-    inner, outer = _within(inner, m.strength), _within(outer, m.strength)
-    force = share * 0.5 * (inner + outer)
-    moment = share * (0.5 * (inner + outer) * x + (inner + 2.0 * outer) * towards * (1.0 / 6.0))
-    lumped = 0.5 * inner
-    return Push(
-        weight * (force - lumped), weight * (moment - lumped * (x + third * (1.0 / 3.0))), weight * (share - 0.5)
-    )
+    e_near, e_far, x = deflection(m, d, near), deflection(m, d, far), m.bed[POSITIONS, near]
+    by_near, by_far, way = pressure(m, d, near), pressure(m, d, far), m.bed[POSITIONS, far] - x
+    share, area = _within(e_near / (e_near - e_far + SMALLEST), 1.0), m.bed[AREA, min(near, far)]
+    inner, outer = _within(by_near, m.strength), _within(by_near + share * (by_far - by_near), m.strength)
+    force, lumped = share * 0.5 * (inner + outer), 0.5 * inner
+    moment = force * x + share * share * way * (inner + 2.0 * outer) * (1.0 / 6.0)
+    return Push(area * (force - lumped), area * (moment - lumped * (x + way * (1.0 / 3.0))), area * (share - 0.5))
+
+
+@inlined
+def _first(beyond, count, most):
+    """Return the number of the first of ``count`` nodes whose numbers exceed those from 0 on by ``beyond``; ``most`` at most."""
+    if beyond == 0:
+        return 0
+    return most if beyond == count * most else int(beyond / count + 0.5)
 
 
 @inlined
 def push(m, d):
     """Return the Push of the bed under the Sinking ``d``."""
     sums, strips = _sums(m, d), int(m.strips)
-    force, moment, touched = sums.force, sums.moment, sums.touched
-    if sums.nodes > 0.0 and sums.nodes < strips + 1.0:
-        middle, half = sums.numbers / sums.nodes, 0.5 * (sums.nodes - 1.0)
-        for side in (-1.0, 1.0):
-            end = int(middle + side * half + 0.5)
-            j = end - 1 if side < 0.0 else end
-            if j >= 0 and j < strips:
-                more = _in_part(m, d, j)
-                force, moment, touched = force + more.force, moment + more.moment, touched + more.touched
+    nodes = int(sums.nodes)
+    count = nodes >> COUNT
+    if count == 0:
+        return Push(0.0, 0.0, 0.0)
+    if count > strips:
+        return Push(sums.force, sums.moment, 1.0)
+    beyond = nodes - (count << COUNT) - (count * (count - 1) >> 1)  # of the numbers from 0 on
+    first = _first(beyond, count, strips + 1 - count)
+    last = first + count - 1
+    force, moment = sums.force, sums.moment
+    touched = m.bed[AREA, 0] * (count - (0.5 if first == 0 else 0.0) - (0.5 if last == strips else 0.0))
+    if first > 0:
+        more = _in_part(m, d, first, first - 1)
+        force, moment, touched = force + more.force, moment + more.moment, touched + more.touched
+    if last < strips:
+        more = _in_part(m, d, last, last + 1)
+        force, moment, touched = force + more.force, moment + more.moment, touched + more.touched
     return Push(force, moment, touched)
 
 
@@ -222,13 +220,12 @@ def settle(m, d, d_end, h):
 
 @inlined
 def _growth(m, d, d_end, h, j):
-    """Return by how much the set at node ``j`` grows in a step of ``h`` [s] between two Sinkings; not above 0 if it stays."""
-    x = m.bed[POSITIONS, j]
-    deepest = summit_within(
+    """Return by how much the set at node ``j`` grows in a step of ``h`` [s] between two Sinkings."""
+    x, deepest = m.bed[POSITIONS, j], m.bed[SET, j] + m.strength / m.stiffness
+    return summit_within(
         d.level + d.slope * x, d.level_rate + d.slope_rate * x,
-        d_end.level + d_end.slope * x, d_end.level_rate + d_end.slope_rate * x, h,
-    )  # fmt: skip
-    return deepest - m.strength / m.stiffness - m.bed[SET, j]
+        d_end.level + d_end.slope * x, d_end.level_rate + d_end.slope_rate * x, h, deepest,
+    ) - deepest  # fmt: skip
 
 
 @kernel
@@ -267,7 +264,7 @@ def lay(m):
         m.bed[POSITIONS, j] = b * (2.0 * min(j, n) / n - 1.0)
         m.bed[AREA, j] = 1.0 / n if j < n else 0.0
         m.bed[WEIGHTS, j] = m.bed[ARMS, j] = 0.0
-        m.bed[ORDER, j], m.bed[SET, j] = float(j), 0.0 if j <= n else UNTOUCHED
+        m.bed[ORDER, j], m.bed[SET, j] = float((1 << COUNT) + j), 0.0 if j <= n else UNTOUCHED
     if m.gap > 0.0:  # of three strips the one in the middle is a gap
         m.bed[POSITIONS, 0], m.bed[POSITIONS, 1] = -b * (1.0 + m.gap), -b * (1.0 - m.gap)
         m.bed[POSITIONS, 2], m.bed[POSITIONS, 3] = b * (1.0 - m.gap), b * (1.0 + m.gap)
