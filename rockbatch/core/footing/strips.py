@@ -6,11 +6,12 @@ The set is the greatest of linear functions, hence convex, and e concave: what i
 most are pressed in part.
 """
 
+import math
 from typing import NamedTuple
 
 from rockbatch.core.footing.model import AREA, ARMS, CHUNK, ORDER, POSITIONS, SET, WEIGHTS
 from rockbatch.core.kernel import inlined, kernel, summing
-from rockbatch.core.roots import summit_within
+from rockbatch.core.roots import falls, hermite, hermite_slope, summit_within
 from rockbatch.core.trigonometry import sine_and_cosine
 
 SMALLEST = 1e-300
@@ -18,6 +19,9 @@ SMALLEST = 1e-300
 
 COUNT = 26
 """Binary digit of a sum over nodes from which on it holds how many they are; below it is the sum of their numbers."""
+
+GAUSS = math.sqrt(0.6)
+"""Outer points of Gauss's rule with three, which together with the middle one integrate polynomials of degree 5 from −1 to 1."""
 
 UNTOUCHED = 1e200
 """Set of nodes that pad a bed [m]."""
@@ -211,7 +215,7 @@ def settle(m, d, d_end, h):
     if not _beyond(m, d, d_end, h) > 0.0:
         return False
     for j in range(int(m.strips) + 1):
-        growth = _growth(m, d, d_end, h, j)
+        growth, _ = _growth(m, d, d_end, h, j)
         if growth > 0.0:
             m.bed[SET, j] += growth
             yields = True
@@ -219,28 +223,51 @@ def settle(m, d, d_end, h):
 
 
 @inlined
+def _depths(m, d, d_end, j):
+    """Return the depth at node ``j`` [m] and its rate [m/s] under two Sinkings."""
+    x = m.bed[POSITIONS, j]
+    start, end = d.level + d.slope * x, d_end.level + d_end.slope * x
+    return start, d.level_rate + d.slope_rate * x, end, d_end.level_rate + d_end.slope_rate * x
+
+
+@inlined
 def _growth(m, d, d_end, h, j):
-    """Return by how much the set at node ``j`` grows in a step of ``h`` [s] between two Sinkings."""
-    x, deepest = m.bed[POSITIONS, j], m.bed[SET, j] + m.strength / m.stiffness
-    return summit_within(
-        d.level + d.slope * x, d.level_rate + d.slope_rate * x,
-        d_end.level + d_end.slope * x, d_end.level_rate + d_end.slope_rate * x, h, deepest,
-    ) - deepest  # fmt: skip
+    """Return by how much the set at node ``j`` grows in a step of ``h`` [s] between two Sinkings, and until when."""
+    start, rate, end, rate_end = _depths(m, d, d_end, j)
+    before = m.bed[SET, j] + m.strength / m.stiffness
+    deepest, until = summit_within(start, rate, end, rate_end, h, before)
+    return deepest - before, until
 
 
 @kernel
 def settling_work(m, d, d_end, h):
-    """Return the plastic work [J/kg] of a step that ``settle`` has not brought the set up to: of order 2.
+    """Return the plastic work [J/kg] of a step that ``settle`` has not brought the set up to.
 
     In a strip of which one end yields the push on that end depends on the other one, so that no function of the set is its work.
+    It is integrated over the time in which the node yields, by three points of Gauss.
     """
     work = 0.0
     for j in range(int(m.strips) + 1):
-        growth = _growth(m, d, d_end, h, j)
+        growth, until = _growth(m, d, d_end, h, j)
         if growth > 0.0:
-            for k in (j - 1, j + 1):
-                work += 0.5 * growth * (_push_at(m, d, j, k) + _push_at(m, d_end, j, k))
+            start, rate, end, rate_end = _depths(m, d, d_end, j)
+            before = m.bed[SET, j] + m.strength / m.stiffness
+            since = falls(before - start, -rate, before - end, -rate_end, h) if start < before else 0.0
+            middle, half = 0.5 * (until + since), 0.5 * (until - since)
+            for shift, share in ((-GAUSS, 5.0 / 9.0), (0.0, 8.0 / 9.0), (GAUSS, 5.0 / 9.0)):
+                x = middle + shift * half
+                at = _sinking_at(d, d_end, h, x)
+                force = _push_at(m, at, j, j - 1) + _push_at(m, at, j, j + 1)
+                work += share * half * force * hermite_slope(start, rate, end, rate_end, h, x)
     return work
+
+
+@inlined
+def _sinking_at(d, d_end, h, x):
+    """Return the Sinking ``x`` [s] after the start of a step of ``h`` [s]; its rates are those at the start."""
+    level = hermite(d.level, d.level_rate, d_end.level, d_end.level_rate, h, x)
+    slope = hermite(d.slope, d.slope_rate, d_end.slope, d_end.slope_rate, h, x)
+    return Sinking(level, slope, d.level_rate, d.slope_rate)
 
 
 @inlined
@@ -248,12 +275,12 @@ def _push_at(m, d, j, k):
     """Return the push of the springs of the strip between nodes ``j`` and ``k`` that acts at ``j`` [m/s²]."""
     if k < 0 or k > int(m.strips):
         return 0.0
-    near, far, area = deflection(m, d, j), deflection(m, d, k), m.bed[AREA, min(j, k)]
-    if near <= 0.0:
-        return 0.0
+    most, area = m.strength / m.stiffness, m.bed[AREA, min(j, k)]
+    near, far = min(deflection(m, d, j), most), min(deflection(m, d, k), most)
     share = near / (near - far) if far < 0.0 else 1.0
-    near, far = _within(m.stiffness * near, m.strength), _within(m.stiffness * far, m.strength)
-    return area * share * (0.5 * (near + far) - share * (near + 2.0 * far) * (1.0 / 6.0))
+    return (
+        area * m.stiffness * share * (0.5 * (near + max(far, 0.0)) - share * (near + 2.0 * max(far, 0.0)) * (1.0 / 6.0))
+    )
 
 
 @kernel
