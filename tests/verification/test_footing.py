@@ -31,17 +31,14 @@ def one_sine(amplitude, period, seconds):
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize(
-    ("kinematics", "law"),
-    [
-        *(("first-order", law) for law in ("elastic", "yielding", "damped")),
-        # Damped springs in finite kinematics differ by 5e-7 of α at ζ = 0.1, in proportion to ζ: their supports creep back
-        # before the pivot returns, strips are ready at once
-        *(("finite", law) for law in ("elastic", "yielding")),
-    ],
-)
+@pytest.mark.parametrize("kinematics", ["first-order", "finite"])
+@pytest.mark.parametrize("law", ["elastic", "yielding", "damped"])
 def test_two_strips_at_the_pivots_do_what_two_springs_do(kinematics, law):
-    """With the lever of two springs; strips of a millionth of the width, small steps for there are no events."""
+    """With the lever of two springs; strips of a millionth of the width, small steps for there are no events.
+
+    The lever follows the strips that push. If it followed those with a deflection, it would shift 2ζ/ω_v late at a lift-off from
+    dashpots, the term H H′ ω² of finite kinematics with it, and the damped peak would be off by 5e-7 α at ζ = 0.1, as ζ.
+    """
     pier, beta = rb.Pier.from_size(0.2, 15.3, 3.0), 40.0
     bases = {
         "elastic": rb.ElasticBase(beta, 1.0, kinematics),

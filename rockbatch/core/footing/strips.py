@@ -153,10 +153,13 @@ def push(m, d):
 
 @kernel
 def pressed_middle(m, d):
-    """Return the mean position of the nodes that are pressed, 0 if none is [m]."""
+    """Return the mean position of the nodes that push, 0 if none does [m].
+
+    A pivot on a damped spring leaves it when its push is 0, 2ζ/ω_v before its deflection is.
+    """
     total, area = 0.0, 0.0
     for j in range(int(m.strips) + 1):
-        if deflection(m, d, j) > 0.0:
+        if deflection(m, d, j) > 0.0 and pressure(m, d, j) > 0.0:
             total, area = total + m.bed[WEIGHTS, j] * m.bed[POSITIONS, j], area + m.bed[WEIGHTS, j]
     return total / area if area > 0.0 else 0.0
 
