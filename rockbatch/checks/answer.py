@@ -14,6 +14,7 @@ from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS,
 from rockbatch.common.grouping import grouped
 from rockbatch.common.showing import shown
 from rockbatch.quantities.cases import of_pier
+from rockbatch.quantities.statistics import STATISTICS
 
 MOST_NAMES, MOST_FILES = 3, 6
 """Most names of cases that are listed, since the scorecard has all of them, and of files."""
@@ -201,7 +202,13 @@ class _Cases:
         if closest is not None:
             place = f"{self.case_of(closest)}, {closest.check}" if len(self.every) > 1 else closest.check
             details = (f"Closest to its limit: {place} at {wording.percent(closest.ratio)}.",)
-        details = (*details, *self._cut_short(names), *self._omitted(names), *self._left_out())
+        details = (
+            *details,
+            *self._coverage(names),
+            *self._cut_short(names),
+            *self._omitted(names),
+            *self._left_out(),
+        )
         verdict = NOT_DECIDED if self.unchecked or self.stations.unusable else PASS
         if len(names) == len(self.every):
             return Line(verdict, f"Every check passes in {self._among(names)}", "", details)
@@ -235,6 +242,19 @@ class _Cases:
         """Return a sentence on those of the cases with runs that do not end standing; nothing without any."""
         ended = [name for name in names if name in self.runs and self.runs[name].ended]
         return (f"Not every run ends standing: {self._with_ends(ended)}.",) if ended else ()
+
+    def _coverage(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return a sentence on what share of further records exceeds the statistics by which these cases pass."""
+        passed = [
+            (statistic.coverage(verdict.records), verdict.check)
+            for verdict in self._of(names, PASS)
+            if (statistic := STATISTICS.get(verdict.statistic)) and statistic.coverage
+        ]
+        checks = grouped(passed, lambda pair: pair[0])
+        return tuple(
+            f"{', '.join(dict.fromkeys(check for _, check in of_words))}: {words}."
+            for words, of_words in checks.items()
+        )
 
     def _omitted(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return a sentence for each omission in the demands of checks that these cases pass."""

@@ -9,8 +9,12 @@ from collections.abc import Sequence
 from dataclasses import InitVar, dataclass, field, replace
 from typing import Any, ClassVar, Literal, Self
 
+import numpy as np
+import numpy.typing as npt
+
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import Contradiction, Problem, Superseded, WrongType, refuse
+from rockbatch.pier.bending import MOST_MODES, Modes, modes_of
 from rockbatch.pier.block import Pier
 from rockbatch.pier.first_loading import Curve, Straight
 from rockbatch.pier.footing_base import FootingBase
@@ -24,6 +28,7 @@ from rockbatch.pier.traits import (
     EPSILON_AND_ZETA,
     FLIGHT_LIMIT_MM,
     WITH_EPSILON,
+    FlexuralDamping,
     Flight,
     Impact,
     Kinematics,
@@ -47,9 +52,11 @@ class RigidBase(Traits):
     ``restraints`` are dampers and tendons between the pier and the ground.
     ``friction``, if known, is the coefficient of the interface: a run reports where its forces need more (THEORY.md, Forces).
     ``flight``, ``flight_limit_mm``, ``area_m2`` and ``confirm`` are as on springs (:class:`ElasticBase`).
-    With ``shaft = "elastic"`` the pier bends in one mode, of the period :attr:`Pier.flexural_period_s` and the damping ratio
-    ``flexural_damping``. A blow keeps the momentum of the mode, from which all else follows, so that ``restitution`` does not
-    apply (THEORY.md, A shaft that bends); ``flexural_impact = "momentum"``, which said so, has no effect.
+    With ``shaft = "elastic"`` the pier bends in its ``flexural_modes`` lowest modes, by default in four or as many as its masses
+    have, the first of the period :attr:`Pier.flexural_period_s`. Their damping ratio is ``flexural_damping``; of stiffness as
+    ``flexural_damping_kind`` it is that of the first, and grows with the frequency. A blow keeps the momenta of the modes, from
+    which all else follows, so that ``restitution`` does not apply (THEORY.md, A shaft that bends); ``flexural_impact =
+    "momentum"``, which said so, has no effect.
     ``contact_stiffness_kN_m``, if given, is the stiffness of the ground under one foot [kN/m], by which the column
     ``landing_force_kN`` estimates what the hardest landing presses; it does not affect the run (THEORY.md, Forces).
 
@@ -67,6 +74,8 @@ class RigidBase(Traits):
     area_m2: float | None = field(default=None, kw_only=True)
     shaft: Shaft = field(default="rigid", kw_only=True)
     flexural_damping: float = field(default=0.05, kw_only=True)
+    flexural_damping_kind: FlexuralDamping = field(default="modal", kw_only=True)
+    flexural_modes: int | None = field(default=None, kw_only=True)
     flexural_impact: InitVar[str | None] = field(default=None, kw_only=True)
     contact_stiffness_kN_m: float | None = field(default=None, kw_only=True)  # noqa: N815 (the study's key)
     confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
@@ -92,13 +101,24 @@ class RigidBase(Traits):
         """Return True if the shaft is elastic."""
         return self.shaft == "elastic"
 
+    def modes(self, pier: Pier) -> Modes:
+        """Return the modes of an elastic shaft of ``pier`` that are followed."""
+        return modes_of(pier, self.flexural_modes or MOST_MODES)
+
+    def damping_ratios(self, pier: Pier) -> npt.NDArray[np.float64]:
+        """Return ζ_i of these modes, shape (n,): the same of all, or in proportion to their frequencies, as of stiffness."""
+        frequency = self.modes(pier).frequency
+        of_first = 1.0 if self.flexural_damping_kind == "modal" else frequency / frequency[0]
+        return self.flexural_damping * of_first * np.ones(len(frequency))
+
     def parameters(self, pier: Pier) -> dict[str, object]:
         """Return this base under ``pier`` by the keys of run.json."""
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
         values: dict[str, object] = {"restitution": of_frame if self.restitution is None else self.restitution}
         values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
         if self.bends:
-            values |= {name: getattr(self, name) for name in ("shaft", "flexural_damping")}
+            values |= {name: getattr(self, name) for name in ("shaft", "flexural_damping", "flexural_damping_kind")}
+            values["flexural_modes"] = len(self.modes(pier).frequency)
         if self.contact_stiffness_kN_m is not None:
             values["contact_stiffness_kN_m"] = self.contact_stiffness_kN_m
         return values | interface(self.friction, self.area_m2) | described_restraints(self.restraints)

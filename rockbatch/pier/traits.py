@@ -7,6 +7,7 @@ from typing import ClassVar, Literal, Self, get_args
 from rockbatch.common.errors import Problem, WrongType, refuse
 from rockbatch.common.showing import InNotebook, shown
 from rockbatch.common.units import LEAST, MOST, Bounds, Usual
+from rockbatch.pier.bending import MOST_MODES
 from rockbatch.pier.laws import LAWS
 from rockbatch.pier.places import holds_a_tilt
 from rockbatch.pier.restraints import Restraint
@@ -25,6 +26,7 @@ Kinematics = Literal["first-order", "finite"]
 Flight = Literal["guided", "stop"]
 Impact = Literal["landing", "housner"]
 Shaft = Literal["rigid", "elastic"]
+FlexuralDamping = Literal["modal", "stiffness"]
 
 WITH_EPSILON: tuple[Impact, ...] = ("landing",)
 """Impacts with a restitution ε of the landing pivot; Housner's e follows from the pier."""
@@ -55,8 +57,9 @@ BOUNDS = {
     "flight_limit_mm": Bounds(LEAST, MOST, " [mm], a height of flight"),
     "area_m2": Bounds(LEAST, MOST, " [m²], the area of one support"),
     "flexural_damping": Bounds(
-        0.0, 1.0, why="damping of the shaft's mode, as a share of critical, must be within 0..1"
+        0.0, 1.0, why="damping of the shaft's first mode, as a share of critical, must be within 0..1"
     ),
+    "flexural_modes": Bounds(1, MOST_MODES, why=f"must be within 1..{MOST_MODES}, the number of the shaft's modes"),
     "zeta": Bounds(0.0, 1.0, why="damping of the supports, as a share of critical, must be within 0..1"),
     "epsilon": Bounds(0.0, 1.0, why="the landing pivot's restitution must be within 0..1"),
     "eta": Bounds(LEAST_ETA, MOST, why=_strength),
@@ -69,6 +72,7 @@ WORDS: dict[str, tuple[str, ...]] = {
     "flight": get_args(Flight),
     "spring": tuple(LAWS),
     "shaft": get_args(Shaft),
+    "flexural_damping_kind": get_args(FlexuralDamping),
     "impact": get_args(Impact),
 }
 """Possible words of the fields of bases."""
@@ -111,7 +115,7 @@ class Traits(InNotebook):
     """True if these springs yield, so that the pier may settle."""
 
     bends: bool = False
-    """True if the shaft bends in one mode."""
+    """True if the shaft bends."""
 
     flight: Flight
     flight_limit_mm: float
