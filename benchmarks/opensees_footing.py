@@ -4,8 +4,8 @@
     python benchmarks/opensees_footing.py > benchmarks/opensees_footing.csv
 
 As in benchmarks/opensees.py, but with 40 springs under the foot, at the middles of as many strips, drawn apart until they have
-the rocking stiffness of the bed. Rows: case, peak rotation over α in the motion, the same by rockbatch with as many strips.
-tests/verification/test_against_opensees.py holds rockbatch against them.
+the rocking stiffness of the bed. Rows: case, peak rotation over α in the motion, steps of OpenSees to a sample.
+tests/verification/test_footing.py holds rockbatch against them.
 """
 
 import math

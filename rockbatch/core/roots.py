@@ -33,6 +33,13 @@ def hermite(f0, d0, f1, d1, h, x):
 
 
 @kernel
+def hermite_slope(f0, d0, f1, d1, h, x):
+    """Return the slope at ``x`` of the cubic of :func:`hermite`."""
+    s, mean = x / h, (f1 - f0) / h
+    return d0 + s * (2.0 * (3.0 * mean - 2.0 * d0 - d1) + s * 3.0 * (d0 + d1 - 2.0 * mean))
+
+
+@kernel
 def turning_point(f0, d0, f1, d1, h):
     """Return the time in the step at which the Hermite cubic has an extremum; the slopes d0 and d1 differ in sign, or d0 = 0.
 
@@ -182,11 +189,17 @@ def highest_within(f0, d0, f1, d1, h):
 
 
 @kernel
-def summit_within(f0, d0, f1, d1, h):
-    """Return the greatest value of the Hermite cubic in the step, also of one that rises, falls and rises again."""
+def summit_within(f0, d0, f1, d1, h, best):
+    """Return the greatest of ``best`` and of the Hermite cubic in the step, also of one that rises, falls and rises again.
+
+    And its time; 0 of ``best``.
+    """
+    if max(max(f0, f1), max(inner_points(f0, d0, f1, d1, h))) <= best:
+        return best, 0.0
     highest, _ = _extremes(f0, d0, f1, d1, h)
     inside = hermite(f0, d0, f1, d1, h, highest) if highest > 0.0 else f1
-    return max(f0, f1, inside)
+    summit, at = (inside, highest) if inside > f1 else (f1, h)
+    return (summit, at) if summit > max(f0, best) else (max(f0, best), 0.0)
 
 
 @kernel

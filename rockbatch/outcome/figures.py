@@ -253,7 +253,7 @@ def _standing(one: History, row: int) -> Array:
 def _events(runs: Sequence[Drawn], y: Axis, shown: tuple[float, float]) -> Iterator[Mark]:
     """Yield marks: impacts at the foot, separations at the top, flights, peaks, the largest with its value, and early ends."""
     if len(runs) == 1 and (band := runs[0].history.band):
-        yield Span("y", max(-band, y.low), min(band, y.high), look=Look("band"), label="both supports loaded")
+        yield Span("y", max(-band, y.low), min(band, y.high), look=Look("band"), label="no uplift")
     lane = _lane(len(runs))
     for kind, where in (("impacts", "at the foot"), ("separations", "at the top")) if lane else ():
         times = [getattr(run.history, kind) for run in runs]
@@ -264,7 +264,7 @@ def _events(runs: Sequence[Drawn], y: Axis, shown: tuple[float, float]) -> Itera
             yield Rule("x", own, low, low + 0.9 * lane, look=Look("event", run.look.colour))
     flights = np.concatenate([run.history.flights for run in runs])
     if len(flights):
-        yield Rule("x", flights, look=Look("flown"), label="both pivots off the ground")
+        yield Rule("x", flights, look=Look("flown"), label="off the ground")
     stood = [run for run in runs if run.history.status == "ok" and run.history.peak[1] != 0]
     for run in stood:
         yield Points(*_clipped(run.history.peak, y), look=run.mark, label=_entry(run))

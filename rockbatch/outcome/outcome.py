@@ -165,6 +165,8 @@ class BedDemands:
         Settlements of both edges of the foot at rest [m].
     strips_error : float or None
         Share of the error of ``theta_max`` that the number of strips has [rad].
+    pressure_error : float or None
+        Estimated error of ``pressure`` by the number of strips [MPa].
     """
 
     contact_least: float
@@ -178,6 +180,7 @@ class BedDemands:
     settlement_left: float | None = None
     settlement_right: float | None = None
     strips_error: float | None = None
+    pressure_error: float | None = None
 
     def mirrored(self) -> "BedDemands":
         """Return the demands of the mirror image."""

@@ -1,13 +1,8 @@
 """The pier and its base: a rigid block on rigid ground, elastic or yielding springs, or a footing."""
 
-from rockbatch.pier.bases import LEAST_ETA as LEAST_ETA
 from rockbatch.pier.bases import MOST_NEGLECTED as MOST_NEGLECTED
-from rockbatch.pier.bases import WITH_EPSILON as WITH_EPSILON
 from rockbatch.pier.bases import Base as Base
 from rockbatch.pier.bases import ElasticBase as ElasticBase
-from rockbatch.pier.bases import Flight as Flight
-from rockbatch.pier.bases import FootingBase as FootingBase
-from rockbatch.pier.bases import Kinematics as Kinematics
 from rockbatch.pier.bases import RigidBase as RigidBase
 from rockbatch.pier.bases import YieldingBase as YieldingBase
 from rockbatch.pier.bases import in_kilonewtons as in_kilonewtons
@@ -22,6 +17,7 @@ from rockbatch.pier.dampers import DamperKind as DamperKind
 from rockbatch.pier.devices import doubt as doubt
 from rockbatch.pier.devices import fields_of as fields_of
 from rockbatch.pier.devices import unlikely_devices as unlikely_devices
+from rockbatch.pier.footing_base import FootingBase as FootingBase
 from rockbatch.pier.frequencies import fastest as fastest
 from rockbatch.pier.frequencies import rocking_frequency as rocking_frequency
 from rockbatch.pier.frequencies import static_deflection as static_deflection
@@ -48,3 +44,7 @@ from rockbatch.pier.restraints import restraint_of as restraint_of
 from rockbatch.pier.supports import MOST_ETA as MOST_ETA
 from rockbatch.pier.supports import beta_of as beta_of
 from rockbatch.pier.supports import eta_of as eta_of
+from rockbatch.pier.traits import LEAST_ETA as LEAST_ETA
+from rockbatch.pier.traits import WITH_EPSILON as WITH_EPSILON
+from rockbatch.pier.traits import Flight as Flight
+from rockbatch.pier.traits import Kinematics as Kinematics

@@ -5,10 +5,11 @@ from functools import cached_property
 
 import numpy as np
 
-from rockbatch.pier.bases import Base, FootingBase, static_deflection
+from rockbatch.pier.bases import Base, static_deflection
 from rockbatch.pier.block import Pier
 from rockbatch.pier.equilibrium import NEAR, Equilibria, SlowTurn, bracketed
 from rockbatch.pier.first_loading import Array
+from rockbatch.pier.footing_base import FootingBase
 from rockbatch.pier.places import prestress_over_weight
 from rockbatch.pier.restraints import Restraint
 

@@ -6,11 +6,13 @@ import numpy as np
 
 from rockbatch.common.errors import Contradiction, MissingKey, OutOfRange, Problem
 from rockbatch.common.units import rounded_up
-from rockbatch.pier.bases import LEAST_ETA, Base, ElasticBase, FootingBase, RigidBase, YieldingBase
+from rockbatch.pier.bases import Base, ElasticBase, RigidBase, YieldingBase
 from rockbatch.pier.bending import problems as bending_problems
 from rockbatch.pier.block import Pier
+from rockbatch.pier.footing_base import FootingBase
 from rockbatch.pier.places import places, prestress_over_weight
 from rockbatch.pier.plausibility import wrong_on_springs, wrong_restraints
+from rockbatch.pier.traits import LEAST_ETA
 
 
 def least_beta(pier: Pier, base: Base) -> float:

@@ -53,9 +53,11 @@ OF_FOOTING = (
     _quantity("bed_force_s", "time of it", _of_bed("t_force"), "s"),
     _quantity("bed_pressure_MPa", "greatest pressure at an edge", _of_bed("pressure"), "MPa",
         ReportFormat("pressure [MPa]", ".3g", behind="bed_force_over_weight"), ", if mass_t and length_m are given",
-        sometimes=True, weighed=True, limits=(Limit(),)),
+        sometimes=True, weighed=True, error="bed_pressure_error_MPa", limits=(Limit(),)),
     _quantity("bed_pressure_s", "time of it", _of_bed("t_pressure"), "s"),
     _quantity("bed_pressure_at_m", "place of it to the right of the middle", _of_bed("pressure_at"), "m"),
+    _quantity("bed_pressure_error_MPa", "estimated error of the greatest pressure by the number of strips: its change by half as "
+        "many; empty with a fixed step", _of_bed("pressure_error"), "MPa", sometimes=True, weighed=True, stood=True),
     _quantity("yielding_half_cycles", "number of rocks to one side in which the ground yielded", _of_bed("yielding_rocks"), "1",
         kind="count", limits=(Limit(),)),
     _quantity("bed_work_J_kg", "plastic work of the ground, per unit mass of the pier", _of_bed("work"), "J/kg",

@@ -3,10 +3,11 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from rockbatch.pier.bases import ASKING_TENSION, IMPULSIVE
+from rockbatch.pier.bases import IMPULSIVE
 from rockbatch.pier.block import share_of_shaft
 from rockbatch.pier.laws import RATCHETING
 from rockbatch.pier.restraints import kinds_of
+from rockbatch.pier.traits import ASKING_TENSION
 
 Case = Mapping[str, Any]
 """``case``, ``columns``, ``pier``, ``base``, ``parameters``, and ``across_of`` of one across the axis of another."""

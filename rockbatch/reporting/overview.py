@@ -76,8 +76,8 @@ def _marks_in_words(finished: Finished) -> Iterator[str]:
     stood = finished.runs[finished.runs["status"] == "ok"]
     if lifted := int(stood["flight_s"].notna().sum()):
         height = stood["flight_height_m"].max()
-        most = f", the lower pivot by up to {1000 * height:.3g} mm" if height == height else ""
-        yield f" In {counted(lifted, 'run')} both pivots left the ground{most}; the pier was guided down."
+        most = f", by up to {1000 * height:.3g} mm" if height == height else ""
+        yield f" In {counted(lifted, 'run')} the pier left the ground altogether{most}; it was guided down."
     if leaning := int((stood["theta_max_is"] == LEANS).sum()):
         yield f" In {counted(leaning, 'run')} the peak is mostly the lean of a yielded base, not rocking."
 

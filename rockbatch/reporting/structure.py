@@ -15,9 +15,9 @@ from rockbatch.pier import (
     restraint_of,
 )
 from rockbatch.pier.bases import BASES
-from rockbatch.pier.bases import USUAL as OF_BASE
 from rockbatch.pier.plausibility import wrong_restraints
 from rockbatch.pier.sizes import USUAL as OF_PIER
+from rockbatch.pier.traits import USUAL as OF_BASE
 from rockbatch.quantities.cases import Case
 from rockbatch.results.labels import DEVICE_SYMBOLS, plain, unit_with_exponent
 from rockbatch.study.restraint_keys import KEYS_OF

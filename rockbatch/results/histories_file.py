@@ -47,8 +47,8 @@ from rockbatch.pier import (
     vertical_frequency,
 )
 from rockbatch.pier.bases import BASES
-from rockbatch.pier.bases import USUAL as OF_BASES
 from rockbatch.pier.sizes import USUAL as PIERS
+from rockbatch.pier.traits import USUAL as OF_BASES
 from rockbatch.quantities.demands import FORCES
 from rockbatch.results.columns import StudyRun
 from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from rockbatch.pier.restraints import what_of
 from rockbatch.quantities.cases import Case, devices
+from rockbatch.quantities.quantity import FOOTING
 from rockbatch.study import PIER_KEYS
 
 SYMBOLS = {
@@ -18,6 +19,7 @@ SYMBOLS = {
     "height_m": ("height", "m"),
     "beta": ("β", ""),
     "eta": ("η", ""),
+    "safety_factor": ("FS", ""),
     "epsilon": ("ε", ""),
     "zeta": ("ζ", ""),
     "n": ("n", ""),
@@ -62,6 +64,7 @@ BASE_KEYS = (
     "stiffness_kN_m",
     "eta",
     "yield_kN",
+    "safety_factor",
     "impact",
     "epsilon",
     "zeta",
@@ -197,9 +200,10 @@ def _differing(names: Iterable[str], values: Sequence[Mapping[str, object]]) -> 
 def _constants(cases: Sequence[Case], given: Collection[str]) -> dict[str, object]:
     """Return the parameters of a foundation that are equal on every pier, without equivalents of ``given`` keys.
 
-    With the stiffness given, for example, β depends on the pier and is left out.
+    With the stiffness given, for example, β depends on the pier and is left out; of a footing on soil it says nothing.
     """
     first, *further = [case["parameters"] | case["columns"] for case in cases]
     omitted = {free if unit in given else unit for free, unit in SAME.items()}.union(PIER_KEYS)
+    omitted |= {"beta"} if cases[0]["base"] in FOOTING and "beta" not in given else set()
     kept = {key: value for key, value in first.items() if key not in omitted and value is not None}
     return {key: value for key, value in kept.items() if all(values.get(key) == value for values in further)}

@@ -18,9 +18,10 @@ from rockbatch.motions.motion import Motion, Unusable
 from rockbatch.motions.scaling import verticals
 from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
 from rockbatch.pier import Base, Damper, DeckSpring, Pier, Stop, Tendon, described
-from rockbatch.pier.bases import BASES, BOUNDS, WORDS
+from rockbatch.pier.bases import BASES
 from rockbatch.pier.free_rocking import FreeRocking
 from rockbatch.pier.statics import COMPARED
+from rockbatch.pier.traits import BOUNDS, WORDS
 from rockbatch.results.columns import PEAKS, units
 from rockbatch.results.labelled import Item, Row
 from rockbatch.results.shape import Maybe

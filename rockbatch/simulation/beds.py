@@ -56,7 +56,10 @@ def with_strips_error(outcome: Outcome, fewer: Outcome) -> Outcome:
         unknown = dict.fromkeys(("theta_max_error", "theta_res_error", "settlement_error"))
         return outcome.noted(FEWER_STRIPS.format(status=fewer.status), **unknown)
     share = abs(outcome.theta_max - fewer.theta_max) / ORDER
-    more: dict[str, Any] = {"bed": replace(outcome.bed, strips_error=share)}
+    assert fewer.bed is not None
+    own, other = outcome.bed.pressure, fewer.bed.pressure
+    of_pressure = None if own is None or other is None else abs(own - other)  # of order 1
+    more: dict[str, Any] = {"bed": replace(outcome.bed, strips_error=share, pressure_error=of_pressure)}
     for name in ("theta_max", "theta_res", "settlement"):
         own, other, error = (
             getattr(of, field) for of, field in ((outcome, name), (fewer, name), (outcome, f"{name}_error"))

@@ -10,14 +10,13 @@ from rockbatch.core import types
 from rockbatch.core.flexure.model import FlexibleBlock, Flexing
 from rockbatch.core.flexure.modes import MOST_MODES
 from rockbatch.core.observe.beds import BED_STATE, follow_bed
-from rockbatch.core.observe.ledger import LEDGER
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.half_cycles import HalfCycles, Path, half_cycles
 from rockbatch.outcome.response import EVENT_TYPES, Response
 from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase
 from rockbatch.simulation import restraints
 from rockbatch.simulation.forces import LANDINGS
-from rockbatch.simulation.models import acceleration_at, block, flexible_block, ground_of, model, springs
+from rockbatch.simulation.models import acceleration_at, block, flexible_block, model, springs
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
@@ -145,10 +144,8 @@ def of_modes(rows: np.recarray) -> tuple[Samples, Samples]:
 def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
     """Return state, edges of the foot, forces at them that are equal to the push, and stored energy, at every step."""
     pier, base, nothing = run.pier, run.base, np.full(len(rows), np.nan)
-    plain, pulls = restraints.apart(base, rows)
     bed = np.recarray(len(rows), BED_STATE)
-    balance = np.zeros(len(rows), LEDGER).view(np.recarray)
-    follow_bed(model(pier, base), plain, pulls, ground_of(run.motion), float(run.motion.dt), balance, bed)
+    follow_bed(model(pier, base), restraints.apart(base, rows)[0], bed)
     finite = base.kinematics == "finite"
     rise = pier.half_width * (np.sin(rows.theta) if finite else rows.theta)
     middle = rows.v + (pier.height * (1.0 - np.cos(rows.theta)) if finite else 0.0)

@@ -22,7 +22,7 @@ from rockbatch.pier import (
     least_beta,
     problems,
 )
-from rockbatch.pier.bases import BASES, BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, wrong_blow
+from rockbatch.pier.bases import BASES
 from rockbatch.pier.bending import MOST_MODES
 from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.laws import meanings
@@ -30,6 +30,7 @@ from rockbatch.pier.plausibility import wrong_device
 from rockbatch.pier.possible import enough_eta
 from rockbatch.pier.sizes import BOUNDS as OF_PIER
 from rockbatch.pier.supports import SUPPORTS
+from rockbatch.pier.traits import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, wrong_blow
 from rockbatch.study.footing_keys import FOOTING_KEYS, at_pivots, footing_of, on_foot
 from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.study.piers import PIER, Values, has_mass

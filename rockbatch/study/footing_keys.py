@@ -7,7 +7,7 @@ from typing import Any, get_args
 
 from rockbatch.common.errors import Contradiction, InputError, MissingKey, Problem
 from rockbatch.pier import FootingBase, Pier
-from rockbatch.pier.bases import POISSON, STRIPS
+from rockbatch.pier.footing_base import POISSON, STRIPS
 from rockbatch.pier.restraints import DeckSpring, Restraint
 from rockbatch.pier.soil import Formula
 from rockbatch.toml.kinds import Whole, boolean, choice, positive, within

@@ -5,7 +5,7 @@ import math
 import numba
 import numpy as np
 import pytest
-from footing_reference import GRAVITY, Foot, solve
+from footing_reference import GRAVITY, Foot, bed, solve
 from footing_runs import closed_form, model_of, run
 
 from rockbatch.core.footing.model import SET, State
@@ -92,6 +92,24 @@ def test_what_is_pressed_is_one_interval_after_any_motion():
         d = sinking(m, State(-0.02 * random.random(), 0.005 * random.standard_normal(), 0.0, 0.0))
         pressed = np.array([deflection(m, d, j) > 0.0 for j in range(41)])
         assert np.abs(np.diff(pressed.astype(int))).sum() <= 2
+
+
+def test_push_of_a_yielded_bed_is_the_sum_over_its_strips():
+    """Pressed from an edge, in the middle alone, everywhere or nowhere, with dashpots, against a loop over the strips."""
+    foot = Foot(strips=12)
+    m = model_of(foot)
+    lay(m)
+    m.bed[SET, :13] = foot.settlement * (0.2 + foot.nodes**2)
+    random, seen = np.random.default_rng(4), set()
+    for _ in range(300):
+        d = sinking(m, State(*(random.standard_normal(4) * (0.03, 0.005, 0.05, 0.05))))
+        e, rate = d.level + d.slope * foot.nodes - m.bed[SET, :13], d.level_rate + d.slope_rate * foot.nodes
+        seen.add((bool(e[0] > 0.0), bool(e[-1] > 0.0), bool(e.max() > 0.0)))
+        found = push(m, d)
+        assert found[:2] == pytest.approx(bed(foot, e, rate), rel=1e-13, abs=1e-13)
+        assert (found.touched == 0.0) == (e.max() <= 0.0)
+        assert (found.touched == 1.0) == (e.min() > 0.0)
+    assert len(seen) == 5
 
 
 def test_pier_at_rest_on_a_yielded_bed_leans_further_than_the_bed():

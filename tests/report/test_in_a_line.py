@@ -19,6 +19,8 @@ SHAFT = "α = 0.13, p = 0.38 rad/s"
 ONE, ALL = {"records": FIG7[:1]}, (SHAFT, "6 stations", "6 components")
 TALL = [case_entry("1", {}, Pier(0.13, 0.3 + 0.01 * k), FOUNDATIONS[1][1]) for k in range(4)]
 
+FEET = [TALL[0] | {"base": "footing", "pier": TALL[0]["pier"] | {"half_width_m": 3.0}}]
+
 
 @pytest.mark.parametrize(
     ("results", "pier", "expected"),
@@ -31,6 +33,8 @@ TALL = [case_entry("1", {}, Pier(0.13, 0.3 + 0.01 * k), FOUNDATIONS[1][1]) for k
         (ONE, SIZES, ("20 m high, 4 m wide, 1234.5 t, 300 t of deck", "1 station", "one component", "5 runs, all end standing")),
         (ONE | {"cases": [TALL[0] | {"pier": TALL[0]["pier"] | {"highest_m": 31.25}}]}, PARTS,
          ("31.25 m high, 4 m wide", "1 station", "one component", "one run, all end standing")),
+        (ONE | {"cases": FEET}, SIZES,  # the foot, not the distance of the pivots
+         ("20 m high, 6 m wide, 1234.5 t, 300 t of deck", "1 station", "one component", "one run, all end standing")),
         (ONE | {"cases": TALL}, PARTS, ("4 m wide", "1 station", "one component", "4 runs, all end standing")),
         (ONE | {"cases": three_piers(), "varied": ("p",)}, "",
          ("α = 0.13, p = 0.38, 0.36, 0.35 rad/s", "1 station", "one component", "15 runs, all end standing")),

@@ -48,6 +48,18 @@ def test_a_foundation_is_called_by_the_keys_of_its_study_that_tell_it_apart(tmp_
     assert [label.replace("\u00a0", " ") for label in labels(tmp_path, *cases)] == names
 
 
+def test_a_footing_on_soil_is_called_by_its_safety_factor():
+    """Not by β, which its study does not give; by β if it does."""
+    ground = {"clay": {"beta": 82.0, "safety_factor": 3.0}, "sand": {"beta": 126.0, "safety_factor": 10.0}}
+    cases = {(name,): [{"base": "footing", "parameters": values, "columns": {}}] for name, values in ground.items()}
+    soil, beta = ({name: keys for name in ground} for keys in ({"shear_modulus_MPa"}, {"beta"}))
+    spoken = [
+        [series.label.replace("\u00a0", " ") for series in named(cases, (), given).values()] for given in (soil, beta)
+    ]
+    assert spoken[0] == ["clay: FS = 3", "sand: FS = 10"]
+    assert spoken[1] == ["clay: β = 82, FS = 3", "sand: β = 126, FS = 10"]
+
+
 @pytest.mark.parametrize(
     ("key", "value", "words"),
     [

@@ -31,17 +31,14 @@ def one_sine(amplitude, period, seconds):
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize(
-    ("kinematics", "law"),
-    [
-        *(("first-order", law) for law in ("elastic", "yielding", "damped")),
-        # Damped springs in finite kinematics differ by 5e-7 of α at ζ = 0.1, in proportion to ζ: their supports creep back
-        # before the pivot returns, strips are ready at once
-        *(("finite", law) for law in ("elastic", "yielding")),
-    ],
-)
+@pytest.mark.parametrize("kinematics", ["first-order", "finite"])
+@pytest.mark.parametrize("law", ["elastic", "yielding", "damped"])
 def test_two_strips_at_the_pivots_do_what_two_springs_do(kinematics, law):
-    """With the lever of two springs; strips of a millionth of the width, small steps for there are no events."""
+    """With the lever of two springs; strips of a millionth of the width, small steps for there are no events.
+
+    The lever follows the strips that push. If it followed those with a deflection, it would shift 2ζ/ω_v late at a lift-off from
+    dashpots, the term H H′ ω² of finite kinematics with it, and the damped peak would be off by 5e-7 α at ζ = 0.1, as ζ.
+    """
     pier, beta = rb.Pier.from_size(0.2, 15.3, 3.0), 40.0
     bases = {
         "elastic": rb.ElasticBase(beta, 1.0, kinematics),
@@ -115,14 +112,14 @@ def remainder(base, amplitude, substeps):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("base", [
-    rb.FootingBase(60.0, 3.0), rb.FootingBase(60.0, 1.5), rb.FootingBase(60.0, 3.0, zeta=0.0), rb.FootingBase(60.0),
-])  # fmt: skip
-def test_energy_balance_closes_with_the_square_of_the_step(base):
-    """By four a halving, over five of them: a single one has the luck of where in its step the ground yields."""
-    coarse, fine = (remainder(base, 4.0, substeps) for substeps in (2, 64))
-    assert coarse > 4.0**5 * fine
-    assert fine < 1e-7
+@pytest.mark.parametrize("zeta", [0.0, 0.05])
+@pytest.mark.parametrize("safety", [1.5, 3.0, None])
+def test_energy_balance_closes_with_smaller_steps_through_uplift_and_yield(zeta, safety):
+    """What remains is of the steps, without location of where a node begins to yield; the plastic work adds nothing."""
+    base = rb.FootingBase(60.0, safety, zeta=zeta)
+    assert remainder(base, 4.0, 2) < 1e-5
+    assert remainder(base, 4.0, 64) < 5e-9
+    assert remainder(base, 4.0, 1024) < (1e-11 if zeta == 0.0 else 2e-11)
 
 
 @pytest.mark.slow

@@ -21,7 +21,7 @@ POSITIONS = 0  # to the right of the middle [m]
 WEIGHTS = 1  # shares of the area that pressures at the nodes stand for
 ARMS = 2  # and of its static moment [m]
 AREA = 3  # shares of the area of the strips to the right of the nodes
-ORDER = 4  # numbers of the nodes, 0, 1, …
+ORDER = 4  # numbers of the nodes, and 2^COUNT, which counts them (``strips``)
 SET = 5  # plastic set of the ground under each node [m]
 
 BEDS = (6, NODES)

@@ -1,16 +1,49 @@
 """Equilibria of a pier on its bed as it is (THEORY.md, A footing): the level at a rotation, its energy, where the pier rests."""
 
 import math
+from typing import NamedTuple
 
 from rockbatch.core.footing.model import POSITIONS, SET, State
 from rockbatch.core.footing.strips import push, sinking, stored
-from rockbatch.core.kernel import kernel
+from rockbatch.core.kernel import inlined, kernel
 
-HALVINGS = 60
-"""Of an interval that holds an equilibrium: to rounding."""
+TRIALS = 60
+"""Greatest number of trials for an equilibrium; ten are usual, to rounding."""
 
 FIRST_STEP, LONGER = 0.02, 1.25
 """First step of the search for a stable equilibrium, over the rotation of uplift, and the factor from each to the next."""
+
+
+class Bracket(NamedTuple):
+    """Interval in which a function falls through zero, with its values at both ends, of which one may be weighted."""
+
+    low: float
+    above: float
+    high: float
+    below: float
+    side: float  # of the last trial: 1 if it became the low end, −1 the high one
+
+
+@inlined
+def _trial(bracket):
+    """Return the zero of the chord."""
+    return bracket.low + (bracket.high - bracket.low) * bracket.above / (bracket.above - bracket.below)
+
+
+@inlined
+def _narrowed(bracket, x, value):
+    """Return the Bracket with a trial as an end; the other end counts half if it has stayed before (Illinois method)."""
+    if value > 0.0:
+        below = bracket.below * (0.5 if bracket.side == 1.0 else 1.0)
+        return Bracket(x, value, bracket.high, below, 1.0)
+    above = bracket.above * (0.5 if bracket.side == -1.0 else 1.0)
+    return Bracket(bracket.low, above, x, value, -1.0)
+
+
+@kernel
+def _surplus(m, theta, v, load):
+    """Return by how much the bed bears more than the ``load`` [m/s²] at rotation ``theta`` [rad] and level ``v`` [m]."""
+    return push(m, sinking(m, State(v, theta, 0.0, 0.0))).force - load
 
 
 @kernel
@@ -20,12 +53,14 @@ def level_at(m, theta, load):
     for j in range(int(m.strips) + 1):
         deepest = max(deepest, m.bed[SET, j] + load / m.stiffness)
     reach = m.half_width * (1.0 + m.gap) * abs(theta) + m.height * theta * theta
-    low, high = -deepest - reach - load / m.stiffness, reach
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        bears = push(m, sinking(m, State(middle, theta, 0.0, 0.0))).force >= load
-        low, high = (middle, high) if bears else (low, middle)
-    return 0.5 * (low + high)
+    low, v = -deepest - reach - load / m.stiffness, reach
+    bracket = Bracket(low, _surplus(m, theta, low, load), v, -load, 0.0)
+    for _ in range(TRIALS):
+        v = _trial(bracket)
+        if not bracket.low < v < bracket.high:
+            break
+        bracket = _narrowed(bracket, v, _surplus(m, theta, v, load))
+    return v
 
 
 @kernel
@@ -65,25 +100,28 @@ def tilt(m):
 @kernel
 def lean(m, load):
     """Return the rotation [rad] at which the pier rests on its bed, from the bed's tilt to where it leans; NaN for none."""
-    theta = tilt(m)
-    back = righting(m, theta, load)
+    here = tilt(m)
+    back = righting(m, here, load)
     if back == 0.0:
-        return theta
-    step = FIRST_STEP * load / (m.stiffness * m.half_width) * (-1.0 if back > 0.0 else 1.0)
-    here = theta
+        return here
+    way = -1.0 if back > 0.0 else 1.0  # in which the pier leans
+    step = FIRST_STEP * load / (m.stiffness * m.half_width)
     while abs(here) < 0.5 * math.pi:
-        further = here + step
-        if (righting(m, further, load) > 0.0) != (back > 0.0):
-            return _between(m, here, further, load)
-        here, step = further, step * LONGER
+        further = here + way * step
+        ahead = righting(m, further, load)
+        if (ahead > 0.0) != (back > 0.0):
+            return _between(m, way, Bracket(way * here, abs(back), way * further, -abs(ahead), 0.0), load)
+        here, back, step = further, ahead, step * LONGER
     return math.nan
 
 
 @kernel
-def _between(m, start, end, load):
-    """Return the equilibrium between two rotations [rad] at which the pier goes to either side."""
-    low, high = min(start, end), max(start, end)
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if righting(m, middle, load) > 0.0 else (middle, high)
-    return 0.5 * (low + high)
+def _between(m, way, bracket, load):
+    """Return the equilibrium [rad] in the Bracket of rotations to the side ``way`` (±1)."""
+    theta = bracket.high
+    for _ in range(TRIALS):
+        theta = _trial(bracket)
+        if not bracket.low < theta < bracket.high:
+            break
+        bracket = _narrowed(bracket, theta, -way * righting(m, way * theta, load))
+    return way * theta

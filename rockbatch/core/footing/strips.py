@@ -6,15 +6,22 @@ The set is the greatest of linear functions, hence convex, and e concave: what i
 most are pressed in part.
 """
 
+import math
 from typing import NamedTuple
 
 from rockbatch.core.footing.model import AREA, ARMS, CHUNK, ORDER, POSITIONS, SET, WEIGHTS
 from rockbatch.core.kernel import inlined, kernel, summing
-from rockbatch.core.roots import summit_within
+from rockbatch.core.roots import falls, hermite, hermite_slope, summit_within
 from rockbatch.core.trigonometry import sine_and_cosine
 
 SMALLEST = 1e-300
 """Added to a divisor that is 0 where the foot does not touch."""
+
+COUNT = 26
+"""Binary digit of a sum over nodes from which on it holds how many they are; below it is the sum of their numbers."""
+
+GAUSS = math.sqrt(0.6)
+"""Outer points of Gauss's rule with three, which together with the middle one integrate polynomials of degree 5 from −1 to 1."""
 
 UNTOUCHED = 1e200
 """Set of nodes that pad a bed [m]."""
@@ -42,9 +49,7 @@ class Sums(NamedTuple):
 
     force: float
     moment: float
-    touched: float
-    nodes: float  # how many
-    numbers: float  # Σ of their numbers
+    nodes: float  # how many, times 2^COUNT, and the sum of their numbers
 
 
 @inlined
@@ -78,22 +83,19 @@ def pressure(m, d, j):
 @summing
 def _sums(m, d):
     """Return the Sums over pressed nodes: the push itself, but for strips that are pressed in part."""
-    force, moment, touched, nodes, total = 0.0, 0.0, 0.0, 0.0, 0.0
+    force, moment, nodes = 0.0, 0.0, 0.0
     level, slope, stiffness, strength = d.level, d.slope, m.stiffness, m.strength
-    rate, slope_rate = m.damping * d.level_rate, m.damping * d.slope_rate
+    constant, linear = stiffness * level + m.damping * d.level_rate, stiffness * slope + m.damping * d.slope_rate
     bed = m.bed
     for j in range(_padded(m.strips)):
-        x = bed[POSITIONS, j]
-        e = level + slope * x - bed[SET, j]
-        by = max(0.0, min(stiffness * e + (rate + slope_rate * x), strength))
-        pressed = 1.0 if e > 0.0 else 0.0
-        by = by if e > 0.0 else 0.0
+        x, plastic = bed[POSITIONS, j], bed[SET, j]
+        pressed = level + slope * x > plastic
+        by = max(0.0, min(constant + linear * x - stiffness * plastic, strength))
+        by = by if pressed else 0.0
         force += bed[WEIGHTS, j] * by
         moment += bed[ARMS, j] * by
-        touched += bed[WEIGHTS, j] * pressed
-        nodes += pressed
-        total += bed[ORDER, j] * pressed
-    return Sums(force, moment, touched, nodes, total)
+        nodes += bed[ORDER, j] * (1.0 if pressed else 0.0)
+    return Sums(force, moment, nodes)
 
 
 @inlined
@@ -103,58 +105,61 @@ def _padded(strips):
 
 
 @inlined
-def _in_part(m, d, j):
-    """Return by how much the Push of strip ``j``, of which a part is pressed, exceeds what its nodes say in the Sums.
+def _in_part(m, d, near, far):
+    """Return by how much the Push of the strip between a pressed node ``near`` and a clear one ``far`` exceeds the Sums.
 
-    The pressure is linear in that part, between 0 and the strength, dashpots included.
+    The pressure is linear in the part that is pressed, between 0 and the strength, dashpots included.
     """
-    left, right, e_left, e_right = (
-        m.bed[POSITIONS, j],
-        m.bed[POSITIONS, j + 1],
-        deflection(m, d, j),
-        deflection(m, d, j + 1),
-    )
-    weight = m.bed[AREA, j]
-    if (e_left > 0.0) == (e_right > 0.0) or weight == 0.0:
-        return Push(0.0, 0.0, 0.0)
-    by_left, by_right, way = pressure(m, d, j), pressure(m, d, j + 1), right - left
-    if e_left > 0.0:
-        share = e_left / (e_left - e_right)
-        inner, outer, x, towards, third = by_left, by_left + share * (by_right - by_left), left, share * way, way
-    else:
-        share = e_right / (e_right - e_left)
-        inner, outer, x, towards, third = by_right, by_right + share * (by_left - by_right), right, -share * way, -way
-    inner, outer = _within(inner, m.strength), _within(outer, m.strength)
-    force = share * 0.5 * (inner + outer)
-    moment = share * (0.5 * (inner + outer) * x + (inner + 2.0 * outer) * towards * (1.0 / 6.0))
-    lumped = 0.5 * inner
-    return Push(
-        weight * (force - lumped), weight * (moment - lumped * (x + third * (1.0 / 3.0))), weight * (share - 0.5)
-    )
+    e_near, e_far, x = deflection(m, d, near), deflection(m, d, far), m.bed[POSITIONS, near]
+    by_near, by_far, way = pressure(m, d, near), pressure(m, d, far), m.bed[POSITIONS, far] - x
+    share, area = _within(e_near / (e_near - e_far + SMALLEST), 1.0), m.bed[AREA, min(near, far)]
+    inner, outer = _within(by_near, m.strength), _within(by_near + share * (by_far - by_near), m.strength)
+    force, lumped = share * 0.5 * (inner + outer), 0.5 * inner
+    moment = force * x + share * share * way * (inner + 2.0 * outer) * (1.0 / 6.0)
+    return Push(area * (force - lumped), area * (moment - lumped * (x + way * (1.0 / 3.0))), area * (share - 0.5))
+
+
+@inlined
+def _first(beyond, count, most):
+    """Return the number of the first of ``count`` nodes whose numbers exceed those from 0 on by ``beyond``; ``most`` at most."""
+    if beyond == 0:
+        return 0
+    return most if beyond == count * most else int(beyond / count + 0.5)
 
 
 @inlined
 def push(m, d):
     """Return the Push of the bed under the Sinking ``d``."""
     sums, strips = _sums(m, d), int(m.strips)
-    force, moment, touched = sums.force, sums.moment, sums.touched
-    if sums.nodes > 0.0 and sums.nodes < strips + 1.0:
-        middle, half = sums.numbers / sums.nodes, 0.5 * (sums.nodes - 1.0)
-        for side in (-1.0, 1.0):
-            end = int(middle + side * half + 0.5)
-            j = end - 1 if side < 0.0 else end
-            if j >= 0 and j < strips:
-                more = _in_part(m, d, j)
-                force, moment, touched = force + more.force, moment + more.moment, touched + more.touched
+    nodes = int(sums.nodes)
+    count = nodes >> COUNT
+    if count == 0:
+        return Push(0.0, 0.0, 0.0)
+    if count > strips:
+        return Push(sums.force, sums.moment, 1.0)
+    beyond = nodes - (count << COUNT) - (count * (count - 1) >> 1)  # of the numbers from 0 on
+    first = _first(beyond, count, strips + 1 - count)
+    last = first + count - 1
+    force, moment = sums.force, sums.moment
+    touched = m.bed[AREA, 0] * (count - (0.5 if first == 0 else 0.0) - (0.5 if last == strips else 0.0))
+    if first > 0:
+        more = _in_part(m, d, first, first - 1)
+        force, moment, touched = force + more.force, moment + more.moment, touched + more.touched
+    if last < strips:
+        more = _in_part(m, d, last, last + 1)
+        force, moment, touched = force + more.force, moment + more.moment, touched + more.touched
     return Push(force, moment, touched)
 
 
 @kernel
 def pressed_middle(m, d):
-    """Return the mean position of the nodes that are pressed, 0 if none is [m]."""
+    """Return the mean position of the nodes that push, 0 if none does [m].
+
+    A pivot on a damped spring leaves it when its push is 0, 2ζ/ω_v before its deflection is.
+    """
     total, area = 0.0, 0.0
     for j in range(int(m.strips) + 1):
-        if deflection(m, d, j) > 0.0:
+        if deflection(m, d, j) > 0.0 and pressure(m, d, j) > 0.0:
             total, area = total + m.bed[WEIGHTS, j] * m.bed[POSITIONS, j], area + m.bed[WEIGHTS, j]
     return total / area if area > 0.0 else 0.0
 
@@ -213,7 +218,7 @@ def settle(m, d, d_end, h):
     if not _beyond(m, d, d_end, h) > 0.0:
         return False
     for j in range(int(m.strips) + 1):
-        growth = _growth(m, d, d_end, h, j)
+        growth, _ = _growth(m, d, d_end, h, j)
         if growth > 0.0:
             m.bed[SET, j] += growth
             yields = True
@@ -221,29 +226,51 @@ def settle(m, d, d_end, h):
 
 
 @inlined
-def _growth(m, d, d_end, h, j):
-    """Return by how much the set at node ``j`` grows in a step of ``h`` [s] between two Sinkings; not above 0 if it stays."""
+def _depths(m, d, d_end, j):
+    """Return the depth at node ``j`` [m] and its rate [m/s] under two Sinkings."""
     x = m.bed[POSITIONS, j]
-    deepest = summit_within(
-        d.level + d.slope * x, d.level_rate + d.slope_rate * x,
-        d_end.level + d_end.slope * x, d_end.level_rate + d_end.slope_rate * x, h,
-    )  # fmt: skip
-    return deepest - m.strength / m.stiffness - m.bed[SET, j]
+    start, end = d.level + d.slope * x, d_end.level + d_end.slope * x
+    return start, d.level_rate + d.slope_rate * x, end, d_end.level_rate + d_end.slope_rate * x
+
+
+@inlined
+def _growth(m, d, d_end, h, j):
+    """Return by how much the set at node ``j`` grows in a step of ``h`` [s] between two Sinkings, and until when."""
+    start, rate, end, rate_end = _depths(m, d, d_end, j)
+    before = m.bed[SET, j] + m.strength / m.stiffness
+    deepest, until = summit_within(start, rate, end, rate_end, h, before)
+    return deepest - before, until
 
 
 @kernel
 def settling_work(m, d, d_end, h):
-    """Return the plastic work [J/kg] of a step that ``settle`` has not brought the set up to: of order 2.
+    """Return the plastic work [J/kg] of a step that ``settle`` has not brought the set up to.
 
     In a strip of which one end yields the push on that end depends on the other one, so that no function of the set is its work.
+    It is integrated over the time in which the node yields, by three points of Gauss.
     """
     work = 0.0
     for j in range(int(m.strips) + 1):
-        growth = _growth(m, d, d_end, h, j)
+        growth, until = _growth(m, d, d_end, h, j)
         if growth > 0.0:
-            for k in (j - 1, j + 1):
-                work += 0.5 * growth * (_push_at(m, d, j, k) + _push_at(m, d_end, j, k))
+            start, rate, end, rate_end = _depths(m, d, d_end, j)
+            before = m.bed[SET, j] + m.strength / m.stiffness
+            since = falls(before - start, -rate, before - end, -rate_end, h) if start < before else 0.0
+            middle, half = 0.5 * (until + since), 0.5 * (until - since)
+            for shift, share in ((-GAUSS, 5.0 / 9.0), (0.0, 8.0 / 9.0), (GAUSS, 5.0 / 9.0)):
+                x = middle + shift * half
+                at = _sinking_at(d, d_end, h, x)
+                force = _push_at(m, at, j, j - 1) + _push_at(m, at, j, j + 1)
+                work += share * half * force * hermite_slope(start, rate, end, rate_end, h, x)
     return work
+
+
+@inlined
+def _sinking_at(d, d_end, h, x):
+    """Return the Sinking ``x`` [s] after the start of a step of ``h`` [s]; its rates are those at the start."""
+    level = hermite(d.level, d.level_rate, d_end.level, d_end.level_rate, h, x)
+    slope = hermite(d.slope, d.slope_rate, d_end.slope, d_end.slope_rate, h, x)
+    return Sinking(level, slope, d.level_rate, d.slope_rate)
 
 
 @inlined
@@ -251,12 +278,12 @@ def _push_at(m, d, j, k):
     """Return the push of the springs of the strip between nodes ``j`` and ``k`` that acts at ``j`` [m/s²]."""
     if k < 0 or k > int(m.strips):
         return 0.0
-    near, far, area = deflection(m, d, j), deflection(m, d, k), m.bed[AREA, min(j, k)]
-    if near <= 0.0:
-        return 0.0
+    most, area = m.strength / m.stiffness, m.bed[AREA, min(j, k)]
+    near, far = min(deflection(m, d, j), most), min(deflection(m, d, k), most)
     share = near / (near - far) if far < 0.0 else 1.0
-    near, far = _within(m.stiffness * near, m.strength), _within(m.stiffness * far, m.strength)
-    return area * share * (0.5 * (near + far) - share * (near + 2.0 * far) * (1.0 / 6.0))
+    return (
+        area * m.stiffness * share * (0.5 * (near + max(far, 0.0)) - share * (near + 2.0 * max(far, 0.0)) * (1.0 / 6.0))
+    )
 
 
 @kernel
@@ -267,7 +294,7 @@ def lay(m):
         m.bed[POSITIONS, j] = b * (2.0 * min(j, n) / n - 1.0)
         m.bed[AREA, j] = 1.0 / n if j < n else 0.0
         m.bed[WEIGHTS, j] = m.bed[ARMS, j] = 0.0
-        m.bed[ORDER, j], m.bed[SET, j] = float(j), 0.0 if j <= n else UNTOUCHED
+        m.bed[ORDER, j], m.bed[SET, j] = float((1 << COUNT) + j), 0.0 if j <= n else UNTOUCHED
     if m.gap > 0.0:  # of three strips the one in the middle is a gap
         m.bed[POSITIONS, 0], m.bed[POSITIONS, 1] = -b * (1.0 + m.gap), -b * (1.0 - m.gap)
         m.bed[POSITIONS, 2], m.bed[POSITIONS, 3] = b * (1.0 - m.gap), b * (1.0 + m.gap)

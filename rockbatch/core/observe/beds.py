@@ -134,8 +134,8 @@ def _undamped(m):
 
 
 @entry
-def follow_bed(m, rows, pulls, ground, dt, balance, out):
-    """Compute the energy balance of a run on a footing, and the bed at every row.
+def follow_bed(m, rows, out):
+    """Compute the bed at every row of a run on a footing.
 
     Parameters
     ----------
@@ -143,13 +143,29 @@ def follow_bed(m, rows, pulls, ground, dt, balance, out):
         With a bed that is laid here.
     rows : recarray, shape (n,)
         History as the run wrote it, every step.
-    pulls : ndarray, shape (n, 2)
-        Of devices, as :func:`rockbatch.core.observe.ledger.ledger_on_springs` takes them.
-    ground, dt
-        The motion, likewise.
-    balance : recarray of Energies, zeros, shape (n,)
     out : recarray of BedState, shape (n,)
-        Both are filled at every row.
+        Filled at every row.
+    """
+    y = state_of(m, rows[0])
+    start_on_bed(m, y)
+    kinetic0, potential0, elastic0 = energies(m, y)
+    for i in range(len(rows)):
+        y_end = state_of(m, rows[i])
+        d = sinking(m, y_end)
+        if i > 0 and rows[i].t > rows[i - 1].t:
+            settle(m, sinking(m, y), d, rows[i].t - rows[i - 1].t)
+        kinetic, potential, elastic = energies(m, y_end)
+        bed, at = push(m, d), out[i]
+        at.force, at.moment, at.touched = bed.force, bed.moment, bed.touched
+        at.stored = (kinetic - kinetic0) + (potential - potential0) + (elastic - elastic0)
+        y = y_end
+
+
+@entry
+def ledger_on_footing(m, rows, pulls, ground, dt, out):
+    """Compute the energy balance of a run on a footing ``m``, whose bed is laid here.
+
+    Otherwise as :func:`rockbatch.core.observe.ledger.ledger_on_springs`.
     """
     y = state_of(m, rows[0])
     start_on_bed(m, y)
@@ -171,10 +187,8 @@ def follow_bed(m, rows, pulls, ground, dt, balance, out):
             plastic += settling_work(m, d, d_end, step.length)
             settle(m, d, d_end, step.length)
         kinetic, potential, elastic = energies(m, y_end)
-        bed, line, at = push(m, sinking(m, y_end)), balance[i], out[i]
+        line = out[i]
         line.kinetic, line.potential, line.elastic = kinetic - kinetic0, potential - potential0, elastic - elastic0
         line.input, line.plastic, line.p_delta, line.damping = shaken, plastic, p_delta, damping
         line.remainder = line.kinetic + line.potential + line.elastic - shaken + plastic - p_delta + damping
-        at.force, at.moment, at.touched = bed.force, bed.moment, bed.touched
-        at.stored = line.kinetic + line.potential + line.elastic
         y = y_end

@@ -7,7 +7,7 @@ import numpy as np
 
 from rockbatch.common.lazy import pd
 from rockbatch.core import types
-from rockbatch.core.observe.beds import BED_STATE, follow_bed
+from rockbatch.core.observe.beds import ledger_on_footing
 from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
 from rockbatch.motions.motion import Samples
 from rockbatch.observers.energy_balance.study import Ledger
@@ -62,7 +62,7 @@ def energies(run: Run, rows: np.recarray) -> Samples:
     balance = terms.view(LEDGER)[:, 0].view(np.recarray)  # the same memory, by names
     plain, pulls = restraints.apart(base, rows)
     if isinstance(base, FootingBase):
-        follow_bed(model(pier, base), plain, pulls, ground, dt, balance, np.recarray(len(rows), BED_STATE))
+        ledger_on_footing(model(pier, base), plain, pulls, ground, dt, balance)
     elif base.on_springs:
         ledger_on_springs(springs(pier, base), plain, pulls, ground, dt, balance)
     else:

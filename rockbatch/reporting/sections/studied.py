@@ -1,10 +1,12 @@
 """The study in words and units: pier, foundations and ground motions."""
 
 import math
+from collections.abc import Sequence
 
 from rockbatch.checks.coverage import stations_of
 from rockbatch.pier.figures import devices, sketches
 from rockbatch.quantities.cases import Case, top
+from rockbatch.quantities.quantity import FOOTING
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted, symbol
 from rockbatch.reporting.markup import Markup, join
@@ -78,7 +80,7 @@ def in_a_line(finished: Finished) -> str:
     """Return the line below the title: "20 m high, 4 m wide · 11 stations, 22 components (…) · 44 runs, all end standing"."""
     highest = {case["pier"].get("highest_m") for case in finished.info["cases"]}
     of_parts = {"height_m": highest.pop()} if "part" in finished.pier_as_given and len(highest) == 1 else {}
-    given = finished.pier_as_given | of_parts
+    given = finished.pier_as_given | of_parts | _foot(finished.info["cases"])
     numbers = {key: given[key] for key in IN_A_LINE if type(given.get(key)) in (int, float)}
     sizes = [f"{plain(float(value), 6)} {IN_A_LINE[key]}" for key, value in numbers.items()]
     for symbol_, key, unit in () if sizes else (("α", "alpha", ""), ("p", "p", " rad/s")):
@@ -94,6 +96,13 @@ def in_a_line(finished: Finished) -> str:
     ended = "all end standing" if stood == runs and not finished.not_run else f"{stood:,} end standing"
     parts = (", ".join(sizes), f"{suite}, {motions}", f"{counted(runs + finished.not_run, 'run')}, {ended}")
     return " · ".join(filter(None, parts))
+
+
+def _foot(cases: Sequence[Case]) -> dict[str, float]:
+    """Return the width [m] of the foot if all ``cases`` have one footing, which may be wider than the pier."""
+    widths = {2.0 * case["pier"]["half_width_m"] if case["base"] in FOOTING else None for case in cases}
+    (width,) = widths if len(widths) == 1 else (None,)
+    return {} if width is None else {"width_m": width}
 
 
 def _drawn(finished: Finished) -> list[Markup]:
