@@ -45,8 +45,9 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def report(arguments: argparse.Namespace) -> int:
-    """Rewrite the report of finished results, or compare two studies."""
-    say(str(make_report(arguments.directory, arguments.other, out=arguments.out, whole=arguments.all).path))
+    """Rewrite the report of finished results, write their calculation sheet, or compare two studies."""
+    folders = arguments.directory, arguments.other
+    say(str(make_report(*folders, out=arguments.out, whole=arguments.all, sheet=arguments.sheet).path))
     return 0
 
 

@@ -127,6 +127,11 @@ def sections(contents: Contents) -> list[Section]:
     return [section for section in drawn if section.content]
 
 
+def analyses(contents: Contents) -> list[Section]:
+    """Draw the sections of the analyses whose results a folder has."""
+    return [Section(part.heading, part.anchor, part.content(contents)) for part in _of_analyses()]
+
+
 def page(contents: Contents, whole: bool = False) -> str:
     """Return the report of one folder as HTML; with ``whole`` folded sections are unfolded and printed."""
     title = contents.study["title"] or "Rocking piers"

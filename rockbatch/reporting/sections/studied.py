@@ -65,7 +65,7 @@ def section(finished: Finished, level: str = "h3") -> Markup:
         across=list(across.values()),
         foundations_along=sum(key[0] not in names_across for key in finished.places),
         given=_numbers_of(finished.pier_as_given),
-        drawn=_drawn(finished),
+        drawn=drawings(finished),
         vertical=_vertical(finished),
         scales=sorted(finished.runs["scale"].unique().astype(float)) if len(finished.runs) else [],
         scaled="as recorded" if as_recorded else f"scaled to the target by {' to '.join(ends)}",
@@ -96,7 +96,7 @@ def in_a_line(finished: Finished) -> str:
     return " · ".join(filter(None, parts))
 
 
-def _drawn(finished: Finished) -> list[Markup]:
+def drawings(finished: Finished) -> list[Markup]:
     """Draw each distinct pier with its devices, captioned with its cases if there are several."""
     has_deck = "deck_mass_t" in finished.pier_as_given
     shown: dict[tuple[object, ...], tuple[Row, list[str]]] = {}
