@@ -219,7 +219,7 @@ COMMANDS = {
         "  checks.csv     a row for each verdict\n  report.html    updated with the verdicts",
     ),
     "report": Command(
-        "rewrite the report, write a calculation sheet, or compare two studies",
+        "rewrite the report, or the calculation sheet, or compare two",
         "rockbatch report reports/pier reports/other",
         "commands.check.report",
         {

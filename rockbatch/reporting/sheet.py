@@ -43,16 +43,16 @@ def _of_observers(finished: Finished) -> Iterator[Section]:
         yield Section(part.heading, part.anchor, from_observer(name, "section.section")(finished))
 
 
-_BEFORE = (
+BEFORE = (
     Part("Result", "answer", answer.section),
     Part("Inputs", "inputs", inputs.section),
-    Part("Assumptions", "assumptions", assumptions.section),
+    Part("What is assumed", "assumptions", assumptions.section),
     Part("Ground motions", "records", motions.section),
     Part("The suite against its target spectrum", "target", target.section),
     Part("Checks", "checks", verdicts.section),
     Part("Every run", "peaks", peaks.section),
 )
-_AFTER = (
+AFTER = (
     Part("Devices", "devices", devices.section),
     Part("Compared with published values", "references", published.section),
     Part("Histories", "histories", histories.section),
@@ -67,9 +67,9 @@ def sheet(finished: Finished) -> str:
     """Return the calculation sheet of one folder as HTML; it needs no script, and prints on paper of any size from A5."""
     with on_paper():
         sections = [
-            *(Section(part.heading, part.anchor, part.content(finished)) for part in _BEFORE),
+            *(Section(part.heading, part.anchor, part.content(finished)) for part in BEFORE),
             *_of_observers(finished),
-            *(Section(part.heading, part.anchor, part.content(finished)) for part in _AFTER),
+            *(Section(part.heading, part.anchor, part.content(finished)) for part in AFTER),
             *analyses(finished),
         ]
     info = finished.info

@@ -387,7 +387,11 @@ class Table:
             known = list(other)
         meant, advice = own.advice(name)
         if not advice:
-            meant = own.known_as(name, [key for key in known if key not in self.data]) or own.known_as(name, known)
+            meant = own.known_as(name, [key for key in known if key not in self.data])
+            if not meant and isinstance(
+                self.data[name], dict | list
+            ):  # a key that is there has its value, tables may be several
+                meant = own.known_as(name, known)
         if meant and meant not in self.data:
             self.file.misspelt.add((*self.key_path, meant))
         if advice or meant:
@@ -422,8 +426,21 @@ def _unreadable(path: Path, error: OSError) -> InputError:
     return NotFound(f"{path}: cannot be read: {error.strerror or error}")
 
 
+def with_slashes(written: str) -> str:
+    """Return a path with slashes in place of backslashes, also of those that TOML took for the beginning of a character."""
+    return written.translate(_SLASHED)
+
+
+_SLASHED = str.maketrans({"\\": "/", "\n": "/n", "\t": "/t", "\r": "/r", "\b": "/b", "\f": "/f", "\x1b": "/e"})
+
+
 def nearby(path: Path, written: str) -> str:
-    """Return "; did you mean …?" with a file of similar name beside ``path``, in the form of ``written``; empty if none."""
+    """Return "; did you mean …?" with a file of similar name beside ``path``, in the form of ``written``; empty if none.
+
+    Backslashes begin other characters in a text of TOML, and are meant as slashes.
+    """
+    if (slashed := with_slashes(written)) != written:
+        return f"; did you mean {shown(slashed)}? Slashes do on every system"
     try:
         names = os.listdir(path.parent)
     except OSError:

@@ -46,7 +46,16 @@ def in_browser(directory, text, act=""):
 
 def test_a_sheet_has_its_sections_in_order_and_nothing_folded(tmp_path):
     text = sheet_of(tmp_path)
-    wanted = ["Result", "Inputs", "Assumptions", "Ground motions", "Every run", "Statics", "Digests", "The study file"]
+    wanted = [
+        "Result",
+        "Inputs",
+        "What is assumed",
+        "Ground motions",
+        "Every run",
+        "Statics",
+        "Digests",
+        "The study file",
+    ]
     headings = [re.sub(r"^\d+ ", "", heading) for heading in Page(text).headings]
     places = [headings.index(heading) for heading in wanted]
     assert places == sorted(places)
