@@ -15,7 +15,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.motions.description import digest
 from rockbatch.pier import Damper, Pier, RigidBase, Stop, Tendon, YieldingBase
 from rockbatch.reporting.finished import read
-from rockbatch.reporting.sections import assumptions
+from rockbatch.reporting.sections import assumptions, studied
 from rockbatch.reporting.sheet import sheet
 from rockbatch.reporting.table import PAPER, Head, on_paper, table
 
@@ -130,6 +130,30 @@ def test_what_holds_for_some_cases_only_names_them(tmp_path):
     said = " ".join(assumptions.lines(read(tmp_path)))
     assert "two pivots that keep their place: no crushing of edges (rock)" in said
     assert "two vertical supports that push and never pull, one at each pivot (pads)" in said
+
+
+def test_no_two_different_foundations_have_the_same_row(tmp_path):
+    cases = [
+        entry("bending", RigidBase(), shaft="elastic", flexural_damping=0.02),
+        entry("bending", RigidBase(), shaft="elastic", flexural_damping=0.05),
+        entry("bending", replace(RigidBase(), restraints=(Tendon(psi=0.2),)), shaft="elastic", flexural_damping=0.05),
+        entry("bending", replace(RigidBase(), restraints=(Tendon(psi=0.3),)), shaft="elastic", flexural_damping=0.05),
+    ]
+    for place, case in enumerate(cases):
+        case["case"] = f"{case['case']}{place}"
+    write_results(tmp_path, cases=cases)
+    page = Page(f'<section id="x">{studied.section(read(tmp_path))}</section>')
+    rows = [tuple(row[1:]) for row in page.tables["x"] if row[0].startswith("bending")]
+    assert len(set(rows)) == len(rows) == 4
+    head = next(row for row in page.tables["x"] if row[0] == "case")
+    assert "flexural damping" in head
+    assert "shaft" not in head  # the same in all
+
+
+def test_the_governing_record_of_a_cell_is_seen_without_a_mouse(tmp_path):
+    text = sheet_of(tmp_path)
+    rule = re.search(r"\.card small\.governs \{([^}]*)\}", text)[1]
+    assert "display: none" not in rule
 
 
 def test_the_digest_of_a_record_is_that_of_its_samples():
