@@ -387,11 +387,7 @@ class Table:
             known = list(other)
         meant, advice = own.advice(name)
         if not advice:
-            meant = own.known_as(name, [key for key in known if key not in self.data])
-            if not meant and isinstance(
-                self.data[name], dict | list
-            ):  # a key that is there has its value, tables may be several
-                meant = own.known_as(name, known)
+            meant = own.known_as(name, [key for key in known if key not in self.data]) or own.known_as(name, known)
         if meant and meant not in self.data:
             self.file.misspelt.add((*self.key_path, meant))
         if advice or meant:
