@@ -385,6 +385,68 @@ def test_a_plot_is_drawn_in_axes_of_a_figure_that_exists():
     plt.close(whole)
 
 
+def test_one_panel_is_drawn_into_given_axes_which_are_returned_and_stay_whole():
+    whole, given = plt.subplots(2, 2)
+    panel = Panel(Axis("x", 0.0, 2.0), Axis("y", 0.0, 2.0), MARKS, "second")
+    figure = Figure([replace(panel, caption="first"), panel], "two")
+    assert paper.panel_in(figure, given[0, 0], "second") is given[0, 0]
+    assert given[0, 0].get_title() == "second"
+    assert list(whole.axes) == list(given.flat)  # neither split nor replaced
+    with pytest.raises(rb.InputError, match='there is no panel "third"; there are first, second'):
+        paper.panel_in(figure, None, "third")
+    plt.close(whole)
+
+
+@pytest.mark.parametrize("width_mm", [88.0, 180.0])
+def test_the_legend_of_one_panel_covers_neither_axes_nor_labels_and_is_on_the_paper(width_mm):
+    whole, given = plt.subplots(figsize=(width_mm / 25.4, 0.9 * width_mm / 25.4))
+    panel = Panel(Axis("time [s]", 0.0, 2.0), Axis("y", 0.0, 2.0), MARKS)
+    paper.panel_in(Figure([panel], "one"), given)
+    whole.draw_without_rendering()
+    legend = given.get_legend().get_window_extent()
+    below = given.xaxis.get_tightbbox()
+    assert legend.y1 <= below.y0
+    assert legend.y0 >= 0.0
+    assert given.yaxis.label.get_window_extent().y1 <= whole.bbox.y1
+    sizes = [
+        text.get_fontsize() for text in (given.xaxis.label, *given.get_xticklabels(), *given.get_legend().get_texts())
+    ]
+    assert min(sizes) >= 7.0
+    plt.close(whole)
+
+
+@pytest.mark.parametrize("ax", [3, "axes", [1, 2], plt.Figure()])
+def test_wrong_axes_are_answered_like_any_wrong_argument(ax):
+    figure = Figure([Panel(Axis("x", 0.0, 1.0), Axis("y", 0.0, 1.0), [])], "one")
+    for draw in (lambda: paper.drawn(figure, 88.0, ax), lambda: paper.panel_in(figure, ax)):
+        with pytest.raises(
+            rb.InputError, match=r"^ax = .*: must be an Axes, as matplotlib's subplots\(\) makes, or None$"
+        ):
+            draw()
+
+
+def test_each_function_of_a_single_panel_draws_the_run_or_the_runs(tmp_path):
+    pulses = [SINE | {"name": f"sine {n}"} for n in range(3)]
+    study = write_study(tmp_path, study_text(pulses=pulses, cases=[RIGID, PADS]))
+    rb.run(study, tmp_path / "out")
+    results = rb.open_results(tmp_path / "out")
+    response = results.responses[1]
+    whole, given = plt.subplots(1, 3)
+    assert response.plot_rotation(given[0]) is given[0]
+    theta = max((line.get_ydata() for line in given[0].lines), key=len)
+    assert np.max(np.abs(theta)) == pytest.approx(response.theta_max / response.pier.alpha, rel=1e-3)
+    assert response.plot_loops(given[1], of="right") is given[1]
+    assert given[1].get_title() == "right"
+    assert results.plot_peaks(given[2]) is given[2]
+    drawn = np.concatenate([line.get_ydata() for line in given[2].lines if line.get_linestyle() == "None"])
+    assert sorted(drawn) == pytest.approx(sorted(results.peaks["theta_max_over_alpha"]))
+    with pytest.raises(rb.InputError, match='there is no panel "damper 1"; there are left, right'):
+        response.plot_loops(of="damper 1")
+    with pytest.raises(rb.InputError, match="there are no loops"):
+        next(one for one in results.responses if one.case == "rigid").plot_loops()
+    plt.close(whole)
+
+
 def test_several_panels_do_not_go_into_axes_without_a_grid():
     whole = plt.figure()
     axes = whole.add_axes((0.1, 0.1, 0.8, 0.8))

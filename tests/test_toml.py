@@ -14,6 +14,7 @@ from rockbatch.toml.kinds import Choice, KindError, Number, boolean
 from rockbatch.toml.lines import key_lines
 from rockbatch.toml.meant import known_as, names
 from rockbatch.toml.reader import TomlFile
+from rockbatch.toml.slips import meant_line
 
 AWKWARD = '''\
 # [pier] in a comment = 1
@@ -137,14 +138,16 @@ NOT_TOML = [  # a text, the line that is wrong, and why
 
 
 @pytest.mark.parametrize(("text", "line", "reason"), NOT_TOML)
-def test_what_is_not_toml_is_refused_with_its_line_as_it_reads_and_the_rules(tmp_path, text, line, reason):
+def test_what_is_not_toml_is_refused_with_its_line_and_what_was_meant_or_the_rules(tmp_path, text, line, reason):
     path = tmp_path / "study.toml"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(InputError) as caught:
         TomlFile.read(path)
     (problem,) = caught.value.messages
     assert problem.startswith(f"{path}:{line}: not valid TOML: {reason}")
-    assert problem.endswith(f": {text.splitlines()[line - 1]}; {RULES}")
+    meant = meant_line(text.splitlines()[line - 1])
+    assert problem.endswith(f": {text.splitlines()[line - 1]}; {f'write {meant}' if meant else RULES}")
+    assert not meant or tomllib.loads(meant)
 
 
 def test_a_file_that_is_not_utf8_is_refused_with_its_line(tmp_path):
@@ -226,7 +229,7 @@ def test_advice_is_what_was_meant_and_what_was_expected_if_that_is_short(error, 
     [
         (boolean, "yes", "true or false (without quotes)", ""),
         (boolean, 1.0, "true or false (without quotes)", ""),
-        (Choice((1, 2)), "2", "one of 1, 2", ""),
+        (Choice((1, 2)), "2", "one of 1, 2", "2"),
         (Choice((1, 2)), True, "one of 1, 2", ""),
         (Choice(("left", "right"), listed_by="rockbatch x"), "rihgt", "one that `rockbatch x` lists", '"right"'),
         (Choice(("left", "right"), listed_by="rockbatch x"), "LEFT", "one that `rockbatch x` lists", '"left"'),

@@ -323,11 +323,11 @@ CHECK = Section(
     homes=(Rule,),
     also=names(
         {
-            "at_most": "limit max maximum threshold allowable value lessthan",
+            "at_most": "limit max maximum threshold allowable value lessthan upper upperlimit",
             "at_least": "min minimum greaterthan",
             "demand": "quantity edp measure response parameter variable",
             "statistic": "stat aggregate",
-            "reason": "source reference clause comment note notes description why",
+            "reason": "source reference clause comment note notes description why because",
             "name": "id label title",
         }
     ),

@@ -38,11 +38,15 @@ class Column(NamedTuple):
 
 
 class Cell(NamedTuple):
-    """A verdict in the scorecard: the demand in the unit of its column, and "115 %" of the limit; both empty without numbers."""
+    """A verdict in the scorecard: the demand in the unit of its column, and "115 %" of the limit; both empty without numbers.
+
+    ``bounds`` of the demand, in the same unit, are empty if no digit that is shown differs.
+    """
 
     verdict: Verdict
     value: str
     percent: str
+    bounds: str = ""
 
 
 class Row(NamedTuple):
@@ -167,7 +171,9 @@ def _cell(verdict: Verdict, column: Column) -> Cell:
     bound = "≥\u00a0" if verdict.is_lower_bound else ""
     value = _number(verdict.value * column.factor, verdict.limit * column.factor)
     place = "" if column.at else wording.at(verdict.at_m)
-    return Cell(verdict, bound + value + place, f"{bound}{wording.percent(verdict.ratio)}")
+    low, high = (_number(end * column.factor, verdict.limit * column.factor) for end in (verdict.low, verdict.high))
+    bounds = f"{low} – {high}" if low != high and not verdict.is_lower_bound else ""
+    return Cell(verdict, bound + value + place, f"{bound}{wording.percent(verdict.ratio)}", bounds)
 
 
 def _number(value: float, limit: float = math.nan) -> str:

@@ -219,7 +219,7 @@ COMMANDS = {
         "  checks.csv     a row for each verdict\n  report.html    updated with the verdicts",
     ),
     "report": Command(
-        "rewrite the report, or compare two studies",
+        "rewrite the report, or the calculation sheet, or compare two",
         "rockbatch report reports/pier reports/other",
         "commands.check.report",
         {
@@ -229,6 +229,7 @@ COMMANDS = {
                 Path, "FILE", "file to write (default: DIR/report.html, or DIR/compare-OTHER.html); - is stdout"
             ),
             "--all": flag("unfold every section, so that all are printed"),
+            "--sheet": flag("write DIR/sheet.html instead: the calculation sheet, to print on A4 or Letter"),
         },
     ),
     **{name: _of_analysis(name, door) for name, door in doors().items() if door.help},

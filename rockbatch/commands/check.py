@@ -45,8 +45,9 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def report(arguments: argparse.Namespace) -> int:
-    """Rewrite the report of finished results, or compare two studies."""
-    say(str(make_report(arguments.directory, arguments.other, out=arguments.out, whole=arguments.all).path))
+    """Rewrite the report of finished results, write their calculation sheet, or compare two studies."""
+    folders = arguments.directory, arguments.other
+    say(str(make_report(*folders, out=arguments.out, whole=arguments.all, sheet=arguments.sheet).path))
     return 0
 
 
@@ -86,10 +87,13 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
     def case_of(row: Verdict | CaseRuns) -> str:
         return results.named_case(row.case, row.columns, varied, row.scale)
 
+    def record_of(verdict: Verdict) -> str:
+        return str(labels.get(verdict.record, verdict.record))
+
     cases = saved.info["cases"]
     worst, at_scales = (worst_of_cases(results.runs, cases, at_each_scale=each) for each in (False, True))
     if checked:
-        table = scorecard.of_checks(verdicts, case_of, suites, at_scales)
+        table = scorecard.of_checks(verdicts, case_of, suites, at_scales, record_of)
     else:
         table = scorecard.of_responses(
             worst, results.runs, cases, lambda case: results.named_case(case["case"], case["columns"], varied)
@@ -97,9 +101,7 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
     lines = [table, ""] if table else []
     lines += [filled(words) for words in (weak_supports(cases), pulled_supports(cases)) if words]
     stations = stations_of(saved.info)
-    for line in answer(
-        verdicts, at_scales, case_of, lambda verdict: labels.get(verdict.record, verdict.record), suites, stations
-    ):
+    for line in answer(verdicts, at_scales, case_of, record_of, suites, stations):
         words = " ".join((f"{line.text}: {line.cases}." if line.cases else f"{line.text}.", *line.details))
         lines.append(_coloured(filled(f"{mark(line.verdict).split()[0]} {_plain(words)}"), line.verdict))
     ended, planned = (sum(counts) for counts in zip(*((sum(s.ended.values()), s.runs) for s in suites), strict=True))

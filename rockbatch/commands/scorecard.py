@@ -1,7 +1,8 @@
 """The scorecard in the terminal: cases by checks, or the greatest responses of each case without checks."""
 
 import textwrap
-from collections.abc import Callable, Collection, Sequence
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 from rockbatch.checks import Verdict
 from rockbatch.checks.coverage import CaseRuns
@@ -14,7 +15,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import Case
 from rockbatch.quantities.rows import rows_of_cases
 from rockbatch.reporting.markup import number
-from rockbatch.terminal.streams import in_width, shown
+from rockbatch.terminal.streams import filled, in_width, shown
 
 MOST_COLUMNS = 5
 """Most columns of the scorecard, unless more checks fail or are undecided."""
@@ -25,8 +26,17 @@ _WRAPPED = 13  # characters per line of a head
 Names = Callable[[Verdict | CaseRuns], str]
 
 
-def of_checks(verdicts: Sequence[Verdict], case_of: Names, runs: Sequence[CaseRuns], worst: Sequence[Worst]) -> str:
-    """Return the scorecard as text: a line for each case with value, sign and share of the limit by check."""
+def of_checks(
+    verdicts: Sequence[Verdict],
+    case_of: Names,
+    runs: Sequence[CaseRuns],
+    worst: Sequence[Worst],
+    record_of: Callable[[Verdict], str],
+) -> str:
+    """Return the scorecard as text: a line for each case with value, sign and share of the limit by check.
+
+    The records that govern follow, a line for each check that has a column; ``record_of`` names that of a verdict.
+    """
     card = scorecard(verdicts, case_of, runs, worst)
     columns = card.open_columns(MOST_COLUMNS)
     rest = [i for i in range(len(card.columns)) if i not in columns]
@@ -39,7 +49,21 @@ def of_checks(verdicts: Sequence[Verdict], case_of: Names, runs: Sequence[CaseRu
         more = [f"{SIGNS[PASS]} {passing} more" if passing else ""] if rest else []
         rows.append([row.name, *cells, *more, *([row.in_words] if remarked else [])])
     more_heads = [[""]] * (bool(rest) + remarked)
-    return _table([*heads, *more_heads], rows)
+    governing = _governing([(card.columns[i].check, [row.cells[i] for row in card.rows]) for i in columns], record_of)
+    return "\n".join([_table([*heads, *more_heads], rows), *governing])
+
+
+def _governing(
+    columns: Sequence[tuple[str, Sequence[Cell | None]]], record_of: Callable[[Verdict], str]
+) -> Iterator[str]:
+    """Yield for each check its governing records, the most frequent first, with their cases if there are several."""
+    for check, cells in columns:
+        verdicts = [cell.verdict for cell in cells if cell and cell.verdict.record]
+        records = Counter(map(record_of, verdicts)).most_common()
+        several = len(records) > 1
+        names = [f"{name} ({count} of {len(verdicts)} cases)" if several else name for name, count in records]
+        if names:
+            yield filled(f"governs {check}: {'; '.join(names)}")
 
 
 def of_responses(

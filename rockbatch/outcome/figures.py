@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.figures.description import (
     Array,
     Axis,
@@ -186,6 +187,25 @@ def of_one(response: Response, title: str) -> Figure:
     own = reduced(response, look, 2000, None)
     runs, heights, shown = [Drawn(own, "", "", look, PEAK)], dict(enumerate(HEIGHTS)), (0.0, own.end[0] or 1.0)
     return history(runs, heights, shown, WIDTH, response.record, title, [*own.springs, *own.devices])
+
+
+def rotation(response: Response) -> Figure:
+    """Return the panel of θ/α against time of a single response, with its events and its largest value."""
+    look = Look("curve", int(response.base.on_springs))
+    own = reduced(response, look, 2000, 0)
+    return history([Drawn(own, "", "", look, PEAK)], {0: HEIGHTS[0]}, (0.0, own.end[0] or 1.0), WIDTH, response.record)
+
+
+def loops(response: Response) -> Figure:
+    """Return the loops of all devices, then of the supports, of a single response: a panel each.
+
+    Raises ``InputError`` if it has neither.
+    """
+    own = reduced(response, Look("curve", 1), 2000, None)
+    panels = [*own.devices, *own.springs]
+    if not panels:
+        raise InputError("there are no loops: the pier stands on rigid ground, without devices")
+    return Figure(panels, f"Force against deformation under {response.record}")
 
 
 def history(

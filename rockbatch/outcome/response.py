@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
@@ -261,6 +262,28 @@ class Response(Shown):
         from rockbatch.outcome.figures import of_one
 
         return drawn(of_one(self, self._title), width_mm, ax)
+
+    def plot_rotation(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw θ/α against time into ``ax``, by default in a figure of one column of a paper, 88 mm; return the axes.
+
+        With the events, the band in which both supports stay loaded, and the largest value.
+        """
+        from rockbatch.common.figures.paper import panel_in
+        from rockbatch.outcome.figures import rotation
+
+        return panel_in(rotation(self), ax)
+
+    @checked
+    def plot_loops(self, ax: "Axes | None" = None, of: str = "") -> "Axes":
+        """Draw force against deformation of one device or support into ``ax``, as :meth:`plot_rotation` does; return the axes.
+
+        ``of`` is "damper 1", "left" and so on; by default the first device, or the left support without any. Raises
+        ``InputError`` for another one, with those that there are.
+        """
+        from rockbatch.common.figures.paper import panel_in
+        from rockbatch.outcome.figures import loops
+
+        return panel_in(loops(self), ax, of)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rockbatch.checks import as_table
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import made_folder, write_output, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.outcome.response import Response
@@ -14,11 +15,12 @@ from rockbatch.reporting.finished import Finished, read
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.page import comparison, page
 from rockbatch.reporting.pair import pair
+from rockbatch.reporting.sheet import sheet as sheet_of
 from rockbatch.results.opened import Results
 from rockbatch.results.run_json import describe_study, is_of
 from rockbatch.study import Study
 
-REPORT = "report.html"
+REPORT, SHEET = "report.html", "sheet.html"
 
 __all__ = ["REPORT", "Report", "report", "write_analyses", "write_comparison", "write_report"]
 
@@ -73,20 +75,23 @@ class Report:
         The one or two folders of results.
     peaks, checks : DataFrame
         The rows of ``peaks.csv`` and ``checks.csv``; for two studies with a first column ``study``, "A" or "B".
+    is_sheet : bool
+        Whether the page is the calculation sheet.
     """
 
     path: Path
     folders: tuple[Path, ...]
     peaks: "pd.DataFrame"
     checks: "pd.DataFrame"
+    is_sheet: bool = False
 
     def __repr__(self) -> str:
-        return f"<report of {' and '.join(map(str, self.folders))}: {self.path}>"
+        return f"<{'sheet' if self.is_sheet else 'report'} of {' and '.join(map(str, self.folders))}: {self.path}>"
 
     def save(self, folder: str | os.PathLike[str]) -> Path:
         """Write the page into ``folder`` under its present name; return its path."""
         directory = made_folder(Path(folder))
-        return _write(_finished(self.folders), directory / self.path.name)
+        return _write(_finished(self.folders), directory / self.path.name, sheet=self.is_sheet)
 
 
 @checked
@@ -96,6 +101,7 @@ def report(
     *,
     out: str | os.PathLike[str] | None = None,
     whole: bool = False,
+    sheet: bool = False,
 ) -> Report:
     """Write the report of finished results again, or of two studies side by side.
 
@@ -110,6 +116,8 @@ def report(
         ``compare-OTHER.html``.
     whole : bool, optional
         Whether sections that are folded on the screen are unfolded, and printed.
+    sheet : bool, optional
+        Whether to write the calculation sheet instead, for paper: ``sheet.html`` in the folder, of one study only.
 
     Returns
     -------
@@ -119,7 +127,7 @@ def report(
     Raises
     ------
     InputError
-        If results are missing, damaged or do not belong together.
+        If results are missing, damaged or do not belong together, or a sheet of two studies is asked for.
 
     Examples
     --------
@@ -133,11 +141,15 @@ def report(
     Name: count, dtype: int64
     """
     folders = (Path(directory),) if other is None else (Path(directory), Path(other))
+    if sheet and other is not None:
+        raise InputError(
+            "a calculation sheet is of one study; write one for each folder, or compare the two without it"
+        )
     finished = _finished(folders)
-    path = _write(finished, None if out is None else Path(out), whole)
+    path = _write(finished, None if out is None else Path(out), whole, sheet)
     tables = [(results.saved.peaks, as_table(results.verdicts)) for results in finished]
     peaks, checks = (_stacked(of_studies) for of_studies in zip(*tables, strict=True))
-    return Report(path, folders, peaks, checks)
+    return Report(path, folders, peaks, checks, sheet)
 
 
 def _finished(folders: Sequence[Path]) -> list[Finished]:
@@ -145,9 +157,11 @@ def _finished(folders: Sequence[Path]) -> list[Finished]:
     return [read(folder, () if len(folders) > 1 else None) for folder in folders]
 
 
-def _write(finished: Sequence[Finished], out: Path | None, whole: bool = False) -> Path:
-    """Write the report of one folder or the comparison of two, to ``out`` or into the first folder; return its path."""
-    if len(finished) > 1:
+def _write(finished: Sequence[Finished], out: Path | None, whole: bool = False, sheet: bool = False) -> Path:
+    """Write the report or sheet of one folder or the comparison of two, to ``out`` or into the first folder; return its path."""
+    if sheet:
+        content, target = sheet_of(finished[0]), finished[0].directory / SHEET
+    elif len(finished) > 1:
         content = comparison(pair(*finished), whole)
         target = finished[0].directory / f"compare-{finished[1].directory.resolve().name}.html"
     else:

@@ -14,6 +14,7 @@ from rockbatch.reporting.overview import by_foundation
 from rockbatch.reporting.pair import Pair
 from rockbatch.reporting.sections import (
     answer,
+    assumptions,
     devices,
     distribution,
     histories,
@@ -91,6 +92,7 @@ _OWN = (
     Part("Statistics of the suite", "suite", statistics.section, folded=True),
     Part("One record and the suite", "distribution", distribution.section, folded=True),
     Part("What was studied", "studied", studied.section),
+    Part("What is assumed", "assumptions", assumptions.section),
     Part("Statics", "statics", statics.section, folded=True),
     Part("Ground motions", "records", motions.section),
     Part("The suite against its target spectrum", "target", target.section),
@@ -125,6 +127,11 @@ def sections(contents: Contents) -> list[Section]:
     fitting = [part for part in parts if isinstance(contents, part.kind)]
     drawn = (Section(part.heading, part.anchor, part.content(contents), part.folded) for part in fitting)
     return [section for section in drawn if section.content]
+
+
+def analyses(contents: Contents) -> list[Section]:
+    """Draw the sections of the analyses whose results a folder has."""
+    return [Section(part.heading, part.anchor, part.content(contents)) for part in _of_analyses()]
 
 
 def page(contents: Contents, whole: bool = False) -> str:

@@ -1,8 +1,11 @@
 """Tables of the page."""
 
 import re
-from collections.abc import Callable, Iterable, Sequence
-from itertools import groupby
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from html import unescape
+from itertools import groupby, takewhile
 from typing import NamedTuple
 
 from rockbatch.reporting.markup import Markup, escape, join, number, tag
@@ -14,6 +17,12 @@ LEAST_COMMON = 3
 """A constant column is written above the table if the table has more rows than this."""
 MOST_OPEN = 60
 """Most rows of a table that is not folded; folded ones are not printed."""
+MOST_PRINTED = 100
+"""Most rows of a table on the calculation sheet."""
+PAPER, GAP = 140, 2
+"""Characters in a line of A4 in the size of tables, and those between columns."""
+WRAPPED, WRAPPED_PROSE = 46, 16
+"""Longest text that stays in one line on paper, and in a table of prose."""
 
 
 class Head(NamedTuple):
@@ -52,12 +61,55 @@ def table(
     sentence that says so; tables of more than :data:`MOST_OPEN` are folded unless ``open_``.
     """
     whole = list(rows)
-    rows, total = whole[:MOST_ROWS], worst_of or len(whole)
+    rows, total = whole[: MOST_PRINTED if for_paper() else MOST_ROWS], worst_of or len(whole)
     used = [i for i in range(len(heads)) if i == 0 or any(number(row[i]) for row in rows)]
     same = [i for i in used[1:] if sortable and len(whole) > LEAST_COMMON and len({str(row[i]) for row in whole}) == 1]
     used = [i for i in used if i not in same]
     numeric = {i for i in used if heads[i].form != WHOLE or any(isinstance(row[i], float | int) for row in rows)}
 
+    parts = _parts(heads, rows, used, WRAPPED_PROSE if prose else WRAPPED) if for_paper() else [used]
+    drawn = [_part(heads, rows, part, numeric, class_="sortable" if sortable else None) for part in parts]
+    label = name or "Table"
+    wide = [
+        tag("div", part, class_="wide prose" if prose else "wide", tabindex="0", role="region", aria_label=label)
+        for part in drawn
+    ]
+    shown = join(*wide) if len(wide) == 1 else join(*_numbered(wide, label))
+    if len(rows) > MOST_OPEN and not open_ and not for_paper():
+        shown = tag("details", tag("summary", f"{label}: {len(rows):,} rows"), shown)
+    return join(
+        shown_of(len(rows), total, "worst" if worst_of else "first"),
+        _common([heads[i] for i in same], [whole[0][i] for i in same], len(whole) == total) if same else "",
+        shown,
+    )
+
+
+@contextmanager
+def on_paper() -> Iterator[None]:
+    """Draw the tables made inside for paper: unfolded, wide ones in parts that repeat their first columns, long ones cut."""
+    token = _ON_PAPER.set(True)
+    try:
+        yield
+    finally:
+        _ON_PAPER.reset(token)
+
+
+def for_paper() -> bool:
+    """Return whether what is drawn now is for paper."""
+    return _ON_PAPER.get()
+
+
+_ON_PAPER: ContextVar[bool] = ContextVar("on_paper", default=False)
+
+
+def _part(
+    heads: Sequence[Head],
+    rows: Sequence[Sequence[object]],
+    used: Sequence[int],
+    numeric: Collection[int],
+    class_: str | None,
+) -> Markup:
+    """Return a table of the columns ``used``, those in ``numeric`` aligned to the right."""
     classes = {i: "n" if i in numeric else None for i in used}
     top = [tag("tr", *(_heading(heads[i], classes[i]) for i in used))]
     if any(heads[i].group for i in used):
@@ -69,17 +121,42 @@ def table(
         kind, scope = ("td", None) if i else ("th", "row")
         columns.append(_cells(kind, [row[i] for row in rows], heads[i].form, class_=classes[i], scope=scope))
     body = [tag("tr", *cells) for cells in zip(*columns, strict=True)]
-    drawn = tag("table", tag("thead", *top), tag("tbody", *body), class_="sortable" if sortable else None)
-    wide = tag(
-        "div", drawn, class_="wide prose" if prose else "wide", tabindex="0", role="region", aria_label=name or "Table"
-    )
-    if len(rows) > MOST_OPEN and not open_:
-        wide = tag("details", tag("summary", f"{name or 'Table'}: {len(rows):,} rows"), wide)
-    return join(
-        shown_of(len(rows), total, "worst" if worst_of else "first"),
-        _common([heads[i] for i in same], [whole[0][i] for i in same], len(whole) == total) if same else "",
-        wide,
-    )
+    return tag("table", tag("thead", *top), tag("tbody", *body), class_=class_)
+
+
+def _parts(
+    heads: Sequence[Head], rows: Sequence[Sequence[object]], used: Sequence[int], longest: int
+) -> list[list[int]]:
+    """Return the columns ``used`` in parts as wide as the paper; each begins with the columns that identify a row.
+
+    Texts of more than ``longest`` characters wrap.
+    """
+    wide = {i: _width(heads[i], [row[i] for row in rows], longest) for i in used}
+    keys = [used[0], *takewhile(lambda i: heads[i].filter or heads[i].text == "case", used[1:])]
+    parts = [[*keys]]
+    for i in used[len(keys) :]:
+        if sum(wide[place] for place in parts[-1]) + wide[i] > PAPER and len(parts[-1]) > len(keys):
+            parts.append([*keys])
+        parts[-1].append(i)
+    return parts
+
+
+def _width(head: Head, cells: Iterable[object], longest: int) -> int:
+    """Return the width of a column in characters, with the gap to the next one."""
+    of_head = max((len(word) for word in re.split(r"[ \n]+", _plain(head.text))), default=0)
+    return GAP + max(of_head, max((min(len(_plain(_text(cell, head.form))), longest) for cell in cells), default=0))
+
+
+def _plain(content: str) -> str:
+    """Return HTML as the text that a reader sees."""
+    return unescape(re.sub(r"<[^>]+>", "", content))
+
+
+def _numbered(parts: Sequence[Markup], name: str) -> Iterator[Markup]:
+    """Yield the parts of a table, each below a line that numbers it."""
+    for place, part in enumerate(parts, start=1):
+        yield tag("p", f"{name}, part {place} of {len(parts)}", class_="legend part")
+        yield part
 
 
 def _heading(head: Head, class_: str | None) -> Markup:

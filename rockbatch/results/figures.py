@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -120,6 +121,21 @@ def peaks_of_all(results: Labelled, info: Item) -> Figure:
     every = runs["record"].nunique()
     more = f" ({len(names)} of {every} records, the worst)" if len(names) < every else ""
     return Figure(figure.panels, figure.description, info["study"]["title"] + more)
+
+
+def peaks_of_cases(results: Labelled) -> Figure:
+    """Return one panel of all peaks that have a value or an ending: a column of points for each foundation."""
+    runs = _nonempty(results.runs)
+    ticks = [one.tick for one in results.series]
+    if len(set(ticks)) < len(ticks):  # rigid ones, which are lines elsewhere, have letters of their own
+        ticks = [str(place) for place in range(1, len(ticks) + 1)]
+    series = [
+        replace(one, rigid=False, index=place, tick=tick)
+        for place, (one, tick) in enumerate(zip(results.series, ticks, strict=True))
+    ]
+    sides = [runs.loc[of_group.index, []].assign(side=words) for words, of_group in groups_of(runs, results.piers)]
+    together = runs.assign(side=pd.concat(sides)["side"], record="")
+    return peaks(together, series, {"": ("", "")}, ceiling(runs))
 
 
 def _nonempty(runs: "pd.DataFrame") -> "pd.DataFrame":

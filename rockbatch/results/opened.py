@@ -148,6 +148,16 @@ class Results(Shown, Saved):
         figure = peaks_of_all if axes == "records" else self_similar
         return drawn(figure(self._labelled, self.info), width_mm, ax)
 
+    def plot_peaks(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw θ_max/α of every run into ``ax``, by default in a figure of one column of a paper, 88 mm; return the axes.
+
+        A column of points stands for each foundation, its records in it; marks distinguish piers and scales.
+        """
+        from rockbatch.common.figures.paper import panel_in
+        from rockbatch.results.figures import peaks_of_cases
+
+        return panel_in(peaks_of_cases(self._labelled), ax)
+
     @property
     def _labelled(self) -> Labelled:
         return labelled(self.peaks, self.info, self.directory)

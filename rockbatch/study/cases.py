@@ -277,9 +277,9 @@ CASE = Section(
     homes=(YieldingBase, ElasticBase, RigidBase, FootingBase),
     also=names(
         {
-            "base": "foundation support supports type kind model",
+            "base": "foundation support supports type kind model ground",
             "stiffness_kN_m": "k kv kz springstiffness",
-            "yield_kN": "fy strength capacity yieldforce yieldstrength bearingcapacity",
+            "yield_kN": "fy strength capacity yieldforce yieldstrength bearingcapacity vult qult ultimate",
             "zeta": "damping dampingratio xi",
             ("restitution", "epsilon"): "cor e r coefficientofrestitution",
             "friction": "mu mus coefficientoffriction",
@@ -331,7 +331,7 @@ def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[li
     names: set[str] = set()
     for table in tables:
         case = _read_case(table)
-        if len(tables) > 1 and "name" not in table.data:
+        if len(tables) > 1 and not table.has("name"):
             table.complain('name is missing; of several cases each needs its own, for example name = "soft"')
         elif case.name in names:
             table.complain(f"name = {shown(case.name)}: given twice; give each case its own name", "name")
@@ -468,16 +468,27 @@ def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: 
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(problem.key, "")
     mass = pier.mass_t
     if source in chosen and mass is not None:
-        strength = f"yield_kN above {rounded_up(0.5 * enough_eta(pier, base) * mass * pier.gravity):.4g}"
-        stiffness = f"stiffness_kN_m above {rounded_up(0.5 * (least_beta(pier, base) * pier.p) ** 2 * mass):.4g}"
+        needed = {
+            "yield_kN": rounded_up(0.5 * enough_eta(pier, base) * mass * pier.gravity),
+            "stiffness_kN_m": rounded_up(0.5 * (least_beta(pier, base) * pier.p) ** 2 * mass),
+        }
+        strength, stiffness = (f"{name} above {value:.4g}" for name, value in needed.items())
         remedies = {"eta": strength, "beta": stiffness}
         if "yield_kN" in chosen and base.beta > pier.least_beta:  # β is too low only for springs so near to yielding
             remedies["beta"] = f"{strength}, or {stiffness}"
         weighing = f"mass_t = {mass:g}" if "mass_t" in chosen else f"the {mass:g} t of [pier]"
         derived = f"{source} = {chosen[source].value:g} with {weighing}"
-        text = f"{derived} means {problem}; write {remedies[problem.key]}"
+        unit = _other_unit(source, chosen[source].value, needed[source], pier.gravity)
+        text = f"{derived} means {problem}; {unit}write {remedies[problem.key]}"
         problem = replace(problem, key=source, text=text, named=False)
     complain_where_due(table, chosen, problem)
+
+
+def _other_unit(name: str, value: float, needed: float, gravity: float) -> str:
+    """Return the remedy for a unit by which a stiffness or force would be enough: MN, or kN for the mass; empty for none."""
+    if value * gravity > needed:
+        return f"if a mass is a weight in kN, write it over {gravity:g}; else "
+    return f"if it is in MN, write {name} = {1000.0 * value:g}; else " if 1000.0 * value > needed else ""
 
 
 def _complain_unless_usual(table: Table, chosen: Chosen, pier: Pier) -> None:

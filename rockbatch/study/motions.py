@@ -186,8 +186,8 @@ MOTIONS = Section(
     also=names(
         {
             "path": "file files folder directory dir records record motions source data",
-            "axis_deg": "azimuth angle direction bearing orientation",
-            "scale": "factor factors amplification multiplier scaling",
+            "axis_deg": "azimuth angle direction bearing orientation pierazimuth pieraxis",
+            "scale": "factor factors amplification multiplier scaling sf",
             "dt": "timestep step samplinginterval deltat",
             "polarity": "sign signs",
             "offset": "baseline baselinecorrection detrend",
@@ -277,7 +277,7 @@ PULSE = Section(
             "amplitude_g": "pga ap peak acceleration",
             "period_s": "tp t",
             "shape": "type kind form pulse waveform",
-            "duration_s": "length td",
+            "duration_s": "length td total totaltime",
             "gamma": "cycles",
             "nu": "phase phi",
             "name": "id label title",

@@ -89,7 +89,7 @@ OUTPUT = joined(
             ),
         },
         homes=(Output,),
-        also=names({"histories": "timehistories timehistory"}),
+        also=names({"histories": "timehistories timehistory", "forces": "baseshear internalforces"}),
         instead=names(
             {
                 "write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file",

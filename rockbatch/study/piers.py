@@ -131,10 +131,12 @@ PIER = Section(
     homes=(Pier,),
     also=names(
         {
-            "deck_mass_t": "superstructuremass superstructure topmass tributarymass",
+            "mass_t": "m shaftmass blockmass",
+            "deck_mass_t": "superstructuremass superstructure topmass tributarymass headmass lumpedmass carriedmass",
             "width_m": "diameter breadth basewidth",
             "size_m": "r0 r radius halfdiagonal",
-            "flexural_period_s": "period t1 fundamentalperiod naturalperiod",
+            "flexural_period_s": "period t t1 fundamentalperiod naturalperiod elasticperiod",
+            "height_m": "totalheight overallheight",
             "gravity": "g",
             "alpha": "alfa",
             "p": "frequencyparameter",
@@ -147,8 +149,12 @@ PIER = Section(
         {
             ("mass_t", "the weight in kN over 9.81"): "weight selfweight w",
             ("deck_mass_t", "the weight in kN over 9.81"): "deckweight superstructureweight",
+            ("mass_t", "of the pier without its deck"): "totalmass overallmass",
             ("width_m", "twice the half"): "halfwidth",
+            ("width_m", "the whole width, twice the b of the theory"): "b",
             ("height_m", "twice the half"): "halfheight",
+            ("height_m", "the whole height, twice the h of the theory"): "h",
+            "write deck_mass_t, of what rests on the pier, or a [[pier.part]] for each part of it": "capmass capbeam capbeammass",
             ("size_m", "half the diagonal"): "diagonal",
             "write alpha = atan(width/height), in radians": "slenderness slendernessratio aspectratio",
             "write mu = M R0²/I0, or a [[pier.part]] with its inertia_t_m2": "inertia i0 momentofinertia",

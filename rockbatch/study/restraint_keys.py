@@ -26,7 +26,7 @@ _ALSO_SPRING = _ALSO_AT | names(
     {
         "stiffness_kN_m": "k",
         "lambda": "lamda",
-        "gap_mm": "clearance distance",
+        "gap_mm": "clearance distance opening",
         "restitution": "cor e coefficientofrestitution",
     }
 )
@@ -116,12 +116,12 @@ DAMPER = Section(
     | names(
         {
             "kind": "type",
-            "exponent": "alpha velocityexponent power",
+            "exponent": "alpha velocityexponent power a",
             "brace_kN_m": "bracestiffness kb",
             "coefficient_kN_s_m": "c damping dampingcoefficient dampingconstant",
-            "force_kN": "f fy yieldforce strength capacity slipforce",
+            "force_kN": "f fy yieldforce strength capacity slipforce fd",
             ("force_kN", "yield_mm"): "yield",
-            "yield_mm": "dy uy yielddisplacement yielddeformation",
+            "yield_mm": "dy uy deltay yielddisplacement yielddeformation",
         }
     ),
     instead=_ONE_EACH

@@ -200,6 +200,7 @@ _ALSO = names(
         "hazard_factor": "z hazard",
         "return_period_factor": "r",
         "ag_g": "ag",
+        "type": "spectrumtype",
         "soil_factor": "s",
         "period_range_s": "range periods",
         "fault_km": "faultdistance distance",

@@ -1,6 +1,7 @@
 """Kinds of values: each returns a value as the program uses it, says what it expects, and gives its JSON schema."""
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
@@ -167,7 +168,9 @@ class Choice:
         raise KindError(words, " or ".join(map(shown, self._meant(value))))
 
     def _meant(self, value: object) -> list[object]:
-        """Return the options that a misspelt word may stand for; none for a value that is not text."""
+        """Return the options that a misspelt word, or a number in quotes, may stand for; none for a value that is not text."""
+        if same := [option for option in self.options if not isinstance(option, str) and str(option) == value]:
+            return same
         words = [option for option in self.options if isinstance(option, str)]
         return words_meant(value, words, self.called) if isinstance(value, str) else []
 
@@ -193,10 +196,13 @@ class Other:
         return dict(self.form)
 
 
+_NUMBER = re.compile(r"[-+]?\d+(\.\d+)?([eE][-+]?\d+)?")
+
+
 def _finite_float(value: object) -> float:
     """Return a number as a float. Raises :class:`KindError` for text, a boolean, NaN or an infinite one."""
     if isinstance(value, str):
-        raise KindError("a number (without quotes)")
+        raise KindError("a number (without quotes)", value.strip() if _NUMBER.fullmatch(value.strip()) else None)
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise KindError("a number")
     try:

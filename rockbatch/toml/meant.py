@@ -41,18 +41,30 @@ def _stem(key: str) -> str:
     return plain("_".join(words))
 
 
-def known_as(name: str, keys: Iterable[str], also: Mapping[str, Also]) -> str:
-    """Return the key that ``name`` means, by its spelling but for case and unit, or by ``also``; empty if none is similar."""
+def known_as(name: str, keys: Iterable[str], also: Mapping[str, Also], table: str = "") -> str:
+    """Return the key that ``name`` means, by its spelling but for case and unit, or by ``also``; empty if none is similar.
+
+    The name of its ``table`` may stand before a key: "pier_height_m" is height_m in [pier], and not deck_height_m.
+    """
     keys = list(keys)
-    if nearest := next((key for key in keys if plain(key) == plain(name)), "") or closest(name, keys, _VERY_ALIKE):
-        return nearest
+    if same := next((key for key in keys if plain(key) == plain(name)), ""):
+        return same
+    first, _, rest = name.partition("_")
+    if rest and table and plain(first) == plain(table) and (meant := _same(rest, keys, also)):
+        return meant
+    return closest(name, keys, _VERY_ALIKE) or _same(name, keys, also) or closest(name, keys, _ALIKE) or ""
+
+
+def _same(name: str, keys: Iterable[str], also: Mapping[str, Also]) -> str:
+    """Return the key of this name but for its unit, or of which ``also`` has the name; empty if there is none."""
+    keys = list(keys)
     stems = {_stem(key): key for key in reversed(keys)}
     for word in without_unit(name):
         meant = also.get(word, ())
         for key in (stems.get(word), *((meant,) if isinstance(meant, str) else meant)):
             if key in keys:
                 return key
-    return closest(name, keys, _ALIKE) or ""
+    return ""
 
 
 def words_meant(word: str, options: Iterable[str], called: Mapping[str, object]) -> list[object]:

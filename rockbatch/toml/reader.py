@@ -422,8 +422,21 @@ def _unreadable(path: Path, error: OSError) -> InputError:
     return NotFound(f"{path}: cannot be read: {error.strerror or error}")
 
 
+def with_slashes(written: str) -> str:
+    """Return a path with slashes in place of backslashes, also of those that TOML took for the beginning of a character."""
+    return written.translate(_SLASHED)
+
+
+_SLASHED = str.maketrans({"\\": "/", "\n": "/n", "\t": "/t", "\r": "/r", "\b": "/b", "\f": "/f", "\x1b": "/e"})
+
+
 def nearby(path: Path, written: str) -> str:
-    """Return "; did you mean …?" with a file of similar name beside ``path``, in the form of ``written``; empty if none."""
+    """Return "; did you mean …?" with a file of similar name beside ``path``, in the form of ``written``; empty if none.
+
+    Backslashes begin other characters in a text of TOML, and are meant as slashes.
+    """
+    if (slashed := with_slashes(written)) != written:
+        return f"; did you mean {shown(slashed)}? Slashes do on every system"
     try:
         names = os.listdir(path.parent)
     except OSError:

@@ -142,7 +142,7 @@ class Section(Mapping[str, Key]):
 
     def known_as(self, name: str, names: Iterable[str]) -> str:
         """Return which of ``names`` a name means, as :func:`rockbatch.toml.meant.known_as` does; empty if none."""
-        return known_as(name, names, self.also)
+        return known_as(name, names, self.also, self.at[-1] if self.at else "")
 
     def advice(self, name: str) -> tuple[str, str]:
         """Return the key to write instead of an unknown name, empty if none, and the advice; both empty if none is known."""

@@ -3,6 +3,7 @@
 import math
 import random
 import re
+from dataclasses import replace
 
 import pytest
 from check_samples import RIGID, runs, verdict
@@ -133,11 +134,21 @@ def test_the_text_counts_columns_left_out_and_names_unchecked_cases():
     found = [verdict("a", PASS, check=f"p{i}") for i in range(8)]
     found += [verdict("b", DOES_NOT_APPLY, check=f"p{i}") for i in range(8)]
     a, b = scorecard(found, name_of).rows
-    lines = of_checks(found, name_of, (), ()).splitlines()
+    lines = of_checks(found, name_of, (), (), str).splitlines()
     assert [line.split()[0] for line in lines[-2:]] == ["a", "b"]
     assert "3 more" in lines[-2]
     assert lines[-2].endswith(a.in_words)
     assert lines[-1].endswith(b.in_words)
+
+
+def test_the_text_names_the_records_that_govern_each_check_the_most_frequent_first():
+    found = [
+        replace(verdict(case, PASS), record=record) for case, record in zip("abc", ("r2", "r1", "r1"), strict=True)
+    ]
+    found += [replace(verdict(case, FAIL, check="q"), record="r3") for case in "ab"]
+    text = of_checks(found, name_of, (), (), lambda verdict: verdict.record.upper())
+    said = [line for line in text.splitlines() if line.startswith("governs ")]
+    assert said == ["governs q: R3", f"governs {found[0].check}: R1 (2 of 3 cases); R2 (1 of 3 cases)"]
 
 
 def test_a_response_without_a_limit_on_both_axes_is_named_once():

@@ -478,7 +478,8 @@ def test_sections_come_in_the_order_in_which_they_are_asked_for(drawn):
     page = Page(drawn[1])
     assert page.headings == [
         "Scorecard", "Every run", "Compared with published values", "Histories", "Statistics of the suite",
-        "One record and the suite", "What was studied", "Statics", "Ground motions", "Not used", "Notes", "How to reproduce",
+        "One record and the suite", "What was studied", "What is assumed", "Statics", "Ground motions", "Not used", "Notes",
+        "How to reproduce",
     ]  # fmt: skip
     assert "rockbatch run configs/fig7.toml --jobs 2" in page.text
     assert '[[case]]\nname = "rigid"' in page.text

@@ -10,6 +10,7 @@ from rockbatch.checks.rule_files import load_rules
 from rockbatch.common.errors import InputError
 from rockbatch.motions.manifest import Manifest
 from rockbatch.study import Study, load_study
+from rockbatch.toml.slips import meant_line
 
 STUDY = """\
 title = "Pier 4"
@@ -167,6 +168,124 @@ REPLACED = [  # what is meant, and what is written instead
     ("at_most = 0.05", "max = 0.05"),
     ('basis = "code"', 'basis = "standard"'),
     ('reason = "bearing rotation"', 'source = "bearing rotation"'),
+    # other names, and lines that are no TOML
+    ("mass_t = 1800.0", "pier_mass_t = 1800.0"),
+    ("mass_t = 1800.0", "shaft_mass_t = 1800.0"),
+    ("mass_t = 1800.0", "mass_tonnes = 1800.0"),
+    ("mass_t = 1800.0", "M = 1800.0"),
+    ("mass_t = 1800.0", "m_t = 1800.0"),
+    ("deck_mass_t = 900.0", "head_mass_t = 900.0"),
+    ("deck_mass_t = 900.0", "lumped_mass_t = 900.0"),
+    ("deck_mass_t = 900.0", "added_mass_t = 900.0"),
+    ("deck_mass_t = 900.0", "carried_mass_t = 900.0"),
+    ("width_m = 4.0", "base_width_m = 4.0"),
+    ("width_m = 4.0", "width = 4.0"),
+    ("height_m = 30.0", "pier_height_m = 30.0"),
+    ("height_m = 30.0", "total_height_m = 30.0"),
+    ("flexural_period_s = 0.6", "T_s = 0.6"),
+    ("flexural_period_s = 0.6", "elastic_period_s = 0.6"),
+    ("flexural_period_s = 0.6", "T1_s = 0.6"),
+    ("vertical = true", "use_vertical = true"),
+    ("vertical = true", "vertical_component = true"),
+    ("scale = 1.5", "factor = 1.5"),
+    ("scale = 1.5", "scaling = 1.5"),
+    ("scale = 1.5", "SF = 1.5"),
+    ("dt = 0.01", "sampling_interval = 0.01"),
+    ("dt = 0.01", "delta_t = 0.01"),
+    ("axis_deg = 35", "bearing_deg = 35"),
+    ("axis_deg = 35", "orientation_deg = 35"),
+    ("axis_deg = 35", "pier_azimuth_deg = 35"),
+    ("axis_deg = 35", "angle = 35"),
+    ("amplitude_g = 0.3", "amplitude = 0.3"),
+    ("amplitude_g = 0.3", "ap_g = 0.3"),
+    ("amplitude_g = 0.3", "peak_g = 0.3"),
+    ("duration_s = 8.0", "length_s = 8.0"),
+    ("duration_s = 8.0", "total_s = 8.0"),
+    ('shape = "sine"', 'form = "sine"'),
+    ('shape = "sine"', 'waveform = "sine"'),
+    ("period_s = 1.25", "T = 1.25"),
+    ("tolerance = 1e-3", "tol = 1e-3"),
+    ("forces = true", "base_shear = true"),
+    ("forces = true", "internal_forces = true"),
+    ('name = "rock"', 'label = "rock"'),
+    ('name = "rock"', 'title = "rock"'),
+    ('name = "rock"', 'id = "rock"'),
+    ('base = "rigid"', 'support = "rigid"'),
+    ('base = "rigid"', 'ground = "rigid"'),
+    ('base = "rigid"', 'base = "housner"'),
+    ('base = "rigid"', 'base = "Rigid"'),
+    ('base = "yielding"', 'base = "plastic"'),
+    ('base = "yielding"', 'base = "nonlinear"'),
+    ('base = "yielding"', 'base = "elastoplastic"'),
+    ("restitution = 0.85", "e = 0.85"),
+    ("stiffness_kN_m = 1.5e6", "K_kN_m = 1.5e6"),
+    ("stiffness_kN_m = 1.5e6", "kv_kN_m = 1.5e6"),
+    ("stiffness_kN_m = 1.5e6", "vertical_stiffness_kN_m = 1.5e6"),
+    ("stiffness_kN_m = 1.5e6", "spring_stiffness = 1.5e6"),
+    ("stiffness_kN_m = 1.5e6", "stiffness_kNm = 1.5e6"),
+    ("stiffness_kN_m = 1.5e6", '"stiffness_kN/m" = 1.5e6'),
+    ("yield_kN = [3.0e4, 5.0e4]", "capacity_kN = [3.0e4, 5.0e4]"),
+    ("yield_kN = [3.0e4, 5.0e4]", "strength_kN = [3.0e4, 5.0e4]"),
+    ("yield_kN = [3.0e4, 5.0e4]", "bearing_capacity_kN = [3.0e4, 5.0e4]"),
+    ("yield_kN = [3.0e4, 5.0e4]", "Vult_kN = [3.0e4, 5.0e4]"),
+    ("zeta = 0.07", "xi = 0.07"),
+    ("zeta = 0.07", "damping_ratio = 0.07"),
+    ('spring = "epp"', 'spring = "elastic-perfectly-plastic"'),
+    ('spring = "epp"', 'spring = "elastic perfectly plastic"'),
+    ("coefficient_kN_s_m = 800.0", "c_kN_s_m = 800.0"),
+    ("coefficient_kN_s_m = 800.0", "damping_coefficient_kN_s_m = 800.0"),
+    ("exponent = 0.35", "velocity_exponent = 0.35"),
+    ("exponent = 0.35", "a = 0.35"),
+    ("force_kN = 350.0", "slip_force_kN = 350.0"),
+    ("force_kN = 350.0", "Fd_kN = 350.0"),
+    ("yield_mm = 8.0", "delta_y_mm = 8.0"),
+    ("yield_mm = 8.0", "uy_mm = 8.0"),
+    ("prestress_kN = 4000.0", "force_kN = 4000.0"),
+    ("prestress_kN = 4000.0", "P0_kN = 4000.0"),
+    ("prestress_kN = 4000.0", "initial_force_kN = 4000.0"),
+    ("prestress_kN = 4000.0", "preload_kN = 4000.0"),
+    ("prestress_kN = 4000.0", "post_tension_kN = 4000.0"),
+    ("gap_mm = 120.0", "clearance_mm = 120.0"),
+    ("gap_mm = 120.0", "distance_mm = 120.0"),
+    ("gap_mm = 120.0", "opening_mm = 120.0"),
+    ('demand = "theta_max_rad"', 'quantity = "theta_max_rad"'),
+    ('demand = "theta_max_rad"', 'response = "theta_max_rad"'),
+    ('demand = "theta_max_rad"', 'parameter = "theta_max_rad"'),
+    ('demand = "theta_max_rad"', 'demand = "theta_max"'),
+    ('statistic = "mean"', 'statistic = "avg"'),
+    ("at_most = 0.05", "maximum = 0.05"),
+    ("at_most = 0.05", "upper = 0.05"),
+    ("at_most = 0.05", "threshold = 0.05"),
+    ("at_most = 0.05", "upper_limit = 0.05"),
+    ("at_most = 0.05", "less_than = 0.05"),
+    ('reason = "bearing rotation"', 'comment = "bearing rotation"'),
+    ('reason = "bearing rotation"', 'note = "bearing rotation"'),
+    ('reason = "bearing rotation"', 'because = "bearing rotation"'),
+    ("[output]", "[outputs]"),
+    ("[output]", "[results]"),
+    ("[[case]]", "[[foundation]]"),
+    ("[[case.tendon]]", "[[case.tendons]]"),
+    ("[[case.stop]]", "[case.stops]"),
+    ("[[check]]", "[[limit]]"),
+    ('path = "records"', "path = records"),
+    ('path = "records"', 'path = "records'),
+    ('path = "records"', 'path: "records"'),
+    ('title = "Pier 4"', "title = 'Pier 4\""),
+    ("forces = true", "forces = True"),
+    ("forces = true", "forces = yes"),
+    ("tolerance = 1e-3", "tolerance = 1.e-3"),
+    ("tolerance = 1e-3", "tolerance = .001"),
+    ("mass_t = 1800.0", "mass_t = 1,800.0"),
+    ("mass_t = 1800.0", "mass_t = 1 800.0"),
+    ("mass_t = 1800.0", "mass_t = 1800 t"),
+    ("mass_t = 1800.0", "mass_t = 1800.0;"),
+    ("width_m = 4.0", "width_m = 4."),
+    ("width_m = 4.0", "width_m == 4.0"),
+    ("yield_kN = [3.0e4, 5.0e4]", "yield_kN = (3.0e4, 5.0e4)"),
+    ("yield_kN = [3.0e4, 5.0e4]", "yield_kN = 3.0e4, 5.0e4"),
+    ("yield_kN = [3.0e4, 5.0e4]", "yield_kN = [3.0e4; 5.0e4]"),
+    ("yield_kN = [3.0e4, 5.0e4]", "yield_kN = [3.0e4 5.0e4]"),
+    ('path = "records"', 'path = ".\\records"'),
 ]
 TARGET = STUDY.replace(
     "pga_g = 0.4\n",
@@ -188,6 +307,12 @@ OF_TARGET = [
     ("period_range_s = [0.4, 4.0]", "periods_s = [0.4, 4.0]"),
     ("damping = 0.02", "damping = 2"),
     ("damping = 0.02", "xi = 0.02"),
+    ("ag_g = 0.25", "ag = 0.25"),
+    ("ag_g = 0.25", "agR_g = 0.25"),
+    ('ground = "B"', 'ground_type = "B"'),
+    ('ground = "B"', 'site_class = "B"'),
+    ("type = 1", 'type = "1"'),
+    ("type = 1", "spectrum_type = 1"),
 ]
 MANIFEST = """\
 [[record]]
@@ -253,6 +378,18 @@ TOLD = [  # what stands in the study, what is written instead or too, what the a
     ("at_most = 150", 'at_most = 150\nunit = "mm"', "the unit stands in the name of the demand", "[motions]"),
     ('demand = "heel_uplift_mm"', 'demand = "uplift"', 'did you mean "heel_uplift_m" or "heel_uplift_mm"?', "theta_max_rad"),
     ('unit = "cm/s2"', 'unit = "%"', "expected one of g, g/10, mg, m/s2", "write for example"),
+    ("stiffness_kN_m = 1.5e6", "stiffness_kN_m = 1.5e3", "if it is in MN, write stiffness_kN_m = 1.5e+06; else", "weight in kN"),
+    ("deck_mass_t = 900.0", "cap_mass_t = 900.0", "or a [[pier.part]] for each part of it", "did you mean mass_t"),
+    ("mass_t = 1800.0", "total_mass_t = 2700.0", "write mass_t, of the pier without its deck", "?"),
+    ("width_m = 4.0", "b_m = 2.0", "write width_m, the whole width, twice the b of the theory", "?"),
+    ("height_m = 30.0", "h_m = 15.0", "write height_m, the whole height, twice the h of the theory", "?"),
+    ("mass_t = 1800.0", "mass_t = 1,800", "decimals behind a point", "write"),
+    ("mass_t = 1800.0", "mass_t = 1800,5", "decimals behind a point", "write"),
+    ("mass_t = 1800.0", "mass_t = 1800000 kg", "a number alone", "write"),
+    ("zeta = 0.07", "zeta = 7 %", "a number alone", "write"),
+    ('vertical = true', 'vertical = "yes"', 'expected true, false or "required"', "?"),
+    ('base = "rigid"', "base = rigid block", "texts stand in quotes", "write"),
+    ('path = "records"', 'path = "records\\near"', 'did you mean "records/near"?', "records?"),
 ]  # fmt: skip
 
 
@@ -359,3 +496,33 @@ def test_a_word_without_an_equal_is_refused_and_nothing_suggested(folder, meant,
     messages = problems(folder, STUDY.replace(meant, written, 1))
     (message,) = (each.removeprefix(str(folder)) for each in messages if says in each)
     assert never not in message
+
+
+def test_a_mass_that_is_a_weight_is_suspected_before_the_springs_under_it(folder):
+    """A deck of 1000 t written in kN: stronger springs would carry a pier that is ten times as heavy."""
+    messages = problems(folder, STUDY.replace("deck_mass_t = 900.0", "deck_mass_t = 9810"))
+    assert len(messages) == 2  # one for each of two springs
+    assert all(
+        "; if a mass is a weight in kN, write it over 9.81; else write yield_kN above" in words for words in messages
+    )
+    assert not problems(folder, STUDY.replace("deck_mass_t = 900.0", f"deck_mass_t = {9810 / 9.81}"))
+
+
+def test_a_slip_that_the_parser_notices_later_is_shown_where_it_is(folder):
+    (message,) = problems(folder, STUDY.replace('title = "Pier 4"', "title = 'Pier 4\""))
+    assert ":1: not valid TOML" in message
+    assert message.endswith('write title = "Pier 4"')
+
+
+def test_a_line_that_could_mean_several_things_gets_no_remedy():
+    for line in (
+        "a = 1,5",
+        "a = 1,800",
+        "a_t = 1800 kg",
+        "a = 5 %",
+        "a = rigid block",
+        "a = 'it's'",
+        "a = [1, 2]",
+        "a = 1 8",
+    ):
+        assert meant_line(line) == "", line

@@ -295,7 +295,7 @@ p = 0.5
         25: "[[case]] no. 1: name is missing",
         27: "[[case]] no. 1: restitution = 2: must be within 0..1",
         28: '[[case]] "1": eta is missing',
-        33: '[[case]] "1": beta = "80": expected a number (without quotes)',
+        33: '[[case]] "1": beta = "80": did you mean 80? expected a number (without quotes)',
         34: '[[case]] "1": epsilon = 1.5: ',
         35: '[[case]] "1": kinematics = "finit": did you mean "finite"? expected one of "first-order", "finite"',
         37: '[[case]] "1": name = "1": given twice',

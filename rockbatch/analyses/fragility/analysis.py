@@ -95,6 +95,17 @@ class Fragility(Analysis):
         return drawn(curves(self.info), width_mm, ax)
 
     @checked
+    def plot_fragility(self, ax: "Axes | None" = None, limit: str = "") -> "Axes":
+        """Draw the curves of one limit into ``ax``, by default in a figure of one column of a paper, 88 mm; return the axes.
+
+        ``limit`` is the name of the limit, by default the first. Raises ``InputError`` for another, with those that there are.
+        """
+        from rockbatch.analyses.fragility.figures import curves
+        from rockbatch.common.figures.paper import panel_in
+
+        return panel_in(curves(self.info), ax, limit)
+
+    @checked
     def risk(
         self, hazard: HazardCurve | None = None, *, years: Sequence[float] | None = None, added: float | None = None
     ) -> "pd.DataFrame":

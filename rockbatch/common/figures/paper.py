@@ -25,7 +25,7 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, NullLocator
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, Problem, WrongType, refuse
 from rockbatch.common.figures.description import (
     Area,
     Axis,
@@ -40,6 +40,7 @@ from rockbatch.common.figures.description import (
     Words,
     subscripts,
 )
+from rockbatch.common.showing import shown
 
 PALETTE = ("#1c2126", "#0b62a8", "#b4470c", "#00755a", "#8b3f94", "#806000", "#00788f", "#b01e5b")
 """Ink, and the colours of series."""
@@ -52,6 +53,8 @@ LETTERS, BESIDE = 0.62, 10.0
 """Letters in a line of a caption for each millimetre of the axes, and room beside these [mm]."""
 PROPORTION, NARROWEST, LOWEST = 1.2, 20.0, 9.0
 """Height over width of all panels together, so that the figure fits A4; narrowest panel and lowest axes for its sake [mm]."""
+COLUMN = 88.0
+"""Width of a column of a paper [mm]."""
 LEAST_SIZE = 0.5
 """Height of panels that share their axes, over that on the page."""
 
@@ -127,12 +130,13 @@ class ShownFigure(MatplotlibFigure):
 
 def drawn(figure: Figure, width_mm: float, ax: Axes | None = None) -> MatplotlibFigure:
     """Draw a figure ``width_mm`` wide, or in the place of ``ax``: in it if there is one panel; return the whole figure."""
+    _check_axes(ax)
     with mpl.rc_context(_STYLE):
         if ax is None:
-            shown = ShownFigure(layout="constrained")
-            height = _drawn_in(shown, figure, width_mm, PROPORTION * width_mm)
-            shown.set_size_inches(width_mm / 25.4, height / 25.4)
-            return shown
+            own = ShownFigure(layout="constrained")
+            height = _drawn_in(own, figure, width_mm, PROPORTION * width_mm)
+            own.set_size_inches(width_mm / 25.4, height / 25.4)
+            return own
         parent = ax.figure
         width, height = (25.4 / parent.dpi * length for length in (ax.bbox.width, ax.bbox.height))
         if len(figure.panels) == 1:
@@ -148,6 +152,55 @@ def drawn(figure: Figure, width_mm: float, ax: Axes | None = None) -> Matplotlib
         if whole.get_layout_engine() is None:
             whole.set_layout_engine("constrained")  # or labels of neighbours overlap
         return whole
+
+
+def panel_in(figure: Figure, ax: Axes | None, name: str = "") -> Axes:
+    """Draw one panel of a figure into ``ax``, or into a figure of one column of a paper; return the axes.
+
+    It is the panel with the caption ``name``, or the first one. The legend stands below the axes, where it covers nothing.
+    Raises ``InputError`` for another name, with those that there are.
+    """
+    _check_axes(ax)
+    found = [panel for panel in figure.panels if name in ("", panel.caption)]
+    if not found:
+        captions = ", ".join(dict.fromkeys(panel.caption for panel in figure.panels)) or "none"
+        raise InputError(f"there is no panel {shown(name)}; there are {captions}")
+    with mpl.rc_context(_STYLE):
+        if ax is None:
+            ax = ShownFigure(figsize=(COLUMN / 25.4, 0.8 * COLUMN / 25.4), layout="constrained").add_subplot()
+        elif ax.figure.figure.get_layout_engine() is None:
+            ax.figure.figure.set_layout_engine("constrained")  # or the legend below stands beyond the figure
+        width, height = (25.4 / ax.figure.dpi * length for length in (ax.bbox.width, ax.bbox.height))
+        entries: Entries = {}
+        _panel(ax, found[0], width, entries)
+        if not ax.get_title():
+            ax.set_title(" ", pad=1.5 * _STYLE["axes.labelsize"] + 4.0)  # room for the label above the axes
+        ax.tick_params(labelsize=_STYLE["xtick.labelsize"])
+        for label in (ax.xaxis.label, ax.yaxis.label):
+            label.set_fontsize(_STYLE["axes.labelsize"])
+        if found[0].framed:
+            ax.grid(True, axis="both" if found[0].x.names is None else "y", alpha=_STYLE["grid.alpha"])
+        ax.set_axisbelow(True)
+        _colour_bar(ax.figure, [ax], replace(figure, panels=found[:1]))
+        if entries:
+            longest = 8.0 + 1.4 * max(map(len, entries))
+            below = 4.0 + 4.0 * found[0].x.numbered + 4.0 * bool(found[0].x.label)
+            columns = max(1, min(len(entries), int(width / longest)))
+            ax.legend(
+                **_legend_of(entries),
+                loc="upper left",
+                bbox_to_anchor=(0.0, -below / height),
+                ncols=columns,
+                borderaxespad=0.0,
+            )
+    return ax
+
+
+def _check_axes(ax: object) -> None:
+    """Raise ``InputError`` for what is neither axes nor None."""
+    if ax is not None and not isinstance(ax, Axes):
+        text = f"ax = {repr(ax)[:60]}: must be an Axes, as matplotlib's subplots() makes, or None"
+        refuse([Problem("ax", None, text, kind=WrongType, named=False)])
 
 
 def _alone(axes: Axes, figure: Figure, width_mm: float) -> None:

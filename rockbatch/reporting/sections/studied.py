@@ -1,16 +1,17 @@
 """The study in words and units: pier, foundations and ground motions."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from rockbatch.checks.coverage import stations_of
 from rockbatch.pier.figures import devices, sketches
+from rockbatch.pier.restraints import KINDS
 from rockbatch.quantities.cases import Case, top
 from rockbatch.quantities.quantity import FOOTING
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted, symbol
 from rockbatch.reporting.markup import Markup, join
-from rockbatch.reporting.structure import pier_of, restraints_of
+from rockbatch.reporting.structure import device_in_words, pier_of, restraints_of
 from rockbatch.reporting.svg import sketch
 from rockbatch.reporting.table import Head, sub, table
 from rockbatch.reporting.templates import render
@@ -33,6 +34,8 @@ GIVEN = {
 IN_A_LINE = {"height_m": "m high", "width_m": "m wide", "mass_t": "t", "deck_mass_t": "t of deck"}
 """Keys of [pier] in the line below the title, with their units."""
 MOST_VALUES = 3
+DEVICES = tuple(f"{kind}_" for kind in KINDS)
+"""Beginnings of the keys of devices that are varied."""
 
 
 def section(finished: Finished, level: str = "h3") -> Markup:
@@ -67,7 +70,7 @@ def section(finished: Finished, level: str = "h3") -> Markup:
         across=list(across.values()),
         foundations_along=sum(key[0] not in names_across for key in finished.places),
         given=_numbers_of(finished.pier_as_given),
-        drawn=_drawn(finished),
+        drawn=drawings(finished),
         vertical=_vertical(finished),
         scales=sorted(finished.runs["scale"].unique().astype(float)) if len(finished.runs) else [],
         scaled="as recorded" if as_recorded else f"scaled to the target by {' to '.join(ends)}",
@@ -105,7 +108,7 @@ def _foot(cases: Sequence[Case]) -> dict[str, float]:
     return {} if width is None else {"width_m": width}
 
 
-def _drawn(finished: Finished) -> list[Markup]:
+def drawings(finished: Finished) -> list[Markup]:
     """Draw each distinct pier with its devices, captioned with its cases if there are several."""
     has_deck = "deck_mass_t" in finished.pier_as_given
     shown: dict[tuple[object, ...], tuple[Row, list[str]]] = {}
@@ -148,8 +151,8 @@ def _vertical(finished: Finished) -> str:
 
 def _foundations(finished: Finished) -> Markup:
     """Return a table of the bases: parameters, and the deflections [mm] that follow from them."""
-    varied_pier = [key for key in finished.info["varied"] if key in PIER_KEYS]
-    heads = [Head("case"), *(Head(symbol(key)) for key in varied_pier), Head("base")]
+    varied = [key for key in finished.info["varied"] if key in PIER_KEYS or key.startswith(DEVICES)]
+    heads = [Head("case"), *(Head(symbol(key)) for key in varied), Head("base")]
     weighed = {"stiffness_kN_m": "stiffness of a support", "yield_kN": "force at which a support yields"}
     present = {key for case in finished.info["cases"] for key in case["parameters"]}
     in_kilonewtons = {key: note for key, note in weighed.items() if key in present}
@@ -171,11 +174,27 @@ def _foundations(finished: Finished) -> Markup:
     ]
     keys = ("impact", "epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution", "omega_v")
     names = ("beta", "eta", *in_kilonewtons, *keys)
+    further = _further(finished.info["cases"], {*names, "delta_s_m", "delta_y_m"})
     rows = []
     for case in finished.info["cases"]:
         values = case["parameters"]
         deflections = [values.get(key) for key in ("delta_s_m", "delta_y_m")]
         millimetres = [None if metres is None else 1000 * metres for metres in deflections]
-        pier = [case["columns"].get(key) for key in varied_pier]
-        rows.append([case["case"], *pier, case["base"], *(values.get(key) for key in names), *millimetres])
-    return table(heads, rows, name="Foundations")
+        own = [case["columns"].get(key) for key in varied]
+        cells = [case["case"], *own, case["base"], *(values.get(key) for key in names), *millimetres]
+        rows.append([*cells, *(values.get(key) for key in further), "; ".join(_devices(case))])
+    return table([*heads, *map(Head, further.values()), Head("devices")], rows, name="Foundations")
+
+
+def _devices(case: Case) -> list[str]:
+    """Return the devices of a case in words."""
+    pier = pier_of(case)
+    return [device_in_words(pier, device) for device in restraints_of(case)] if pier else []
+
+
+def _further(cases: Sequence[Case], shown: Collection[str]) -> dict[str, str]:
+    """Return the parameters not ``shown`` in which cases differ, with their heads: no two rows are alike that are not."""
+    parameters = [case["parameters"] for case in cases]
+    keys = dict.fromkeys(key for of_case in parameters for key in of_case if key not in shown)
+    differing = [key for key in keys if len({str(of_case.get(key)) for of_case in parameters}) > 1]
+    return {key: symbol(key).replace("_", " ") for key in differing if key != "restraints"}

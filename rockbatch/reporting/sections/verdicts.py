@@ -15,12 +15,14 @@ from rockbatch.common.grouping import grouped
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, join, number, tag
-from rockbatch.reporting.table import MOST_ROWS, Head, table
+from rockbatch.reporting.table import MOST_ROWS, Head, for_paper, table
 
 BASIS = {"code": "code clause", "literature": "literature", "judgement": "engineering judgement"}
 SAID = {PASS: "passes:", FAIL: "fails:", NOT_DECIDED: "not decided:", DOES_NOT_APPLY: "does not apply"}
 MOST_COLUMNS = 7
 """Most columns of the scorecard, unless more checks fail or are undecided."""
+COLUMNS_ABREAST = 6
+"""Columns of the scorecard that fit side by side on paper."""
 MOST_DRAWN = 200
 """Most cases that a reader can unfold in the scorecard."""
 CLASSES = {PASS: "pass", FAIL: "fail", NOT_DECIDED: "undecided", DOES_NOT_APPLY: "muted"}
@@ -74,27 +76,48 @@ def _namer(finished: Finished) -> Callable[[Verdict | CaseRuns], str]:
 
 
 def scorecard(finished: Finished) -> Markup:
-    """Return a table of demand, share of the limit and a bar (full at twice the limit), by case and check."""
+    """Return a table of demand, share of the limit and a bar (full at twice the limit), by case and check.
+
+    On paper every check has its column, in tables one below the other, and no case is folded.
+    """
     card = of_verdicts(finished.verdicts, _namer(finished), finished.suites, finished.worst_at_scales)
-    columns = card.open_columns(MOST_COLUMNS)
+    best = card.rows[:MOST_DRAWN]
+    if for_paper():
+        places = range(len(card.columns))
+        parts = [places[i : i + COLUMNS_ABREAST] for i in places[::COLUMNS_ABREAST]]
+        tables = [_card(finished, card, part, best, len(best), of_all=False) for part in parts]
+        left_out = f"The best {len(best)} of {len(card.rows):,} cases are shown; all are in {CHECKS}."
+        return join(*tables, tag("p", left_out, class_="legend") if len(best) < len(card.rows) else "")
     shown = MOST_CASES if len(card.rows) <= MOST_CASES else OPEN_CASES
-    folded = len(card.columns) - len(columns)
+    drawn = _card(finished, card, card.open_columns(MOST_COLUMNS), best, shown)
+    if shown >= len(card.rows):
+        return drawn
+    words, button = f"{shown} of {len(card.rows):,} cases, the best first.", f"All {len(card.rows)} cases"
+    if len(best) < len(card.rows):
+        words, button = f"{words} All are in {CHECKS}.", f"The best {len(best)} cases"
+    return join(drawn, tag("p", words, class_="legend rest", data_button=button))
+
+
+def _card(
+    finished: Finished, card: Card, columns: Sequence[int], cases: Sequence[Row], shown: int, of_all: bool = True
+) -> Markup:
+    """Return the scorecard of some columns; cases behind the first ``shown`` are folded.
+
+    With ``of_all`` a last column counts the passes of checks that have none.
+    """
     asked = wording.requirements(finished.verdicts)
     heads = []
     for column in (card.columns[i] for i in columns):
         small = tag("small", ", ".join(filter(None, (column.at, column.limit))))
         heads.append(tag("th", column.check, small, scope="col", title="; ".join(asked[column.check])))
-    more = [tag("th", scope="col")] if folded else []
-    best = card.rows[:MOST_DRAWN]
-    rows = [_row(finished, card, row, columns, "folded" if place >= shown else None) for place, row in enumerate(best)]
+    others = [i for i in range(len(card.columns)) if i not in columns] if of_all else []
+    more = [tag("th", scope="col")] if others else []
+    rows = [
+        _row(finished, card, row, (columns, others), "folded" if place >= shown else None)
+        for place, row in enumerate(cases)
+    ]
     head = tag("thead", tag("tr", tag("th", "Case", scope="col"), *heads, *more))
-    drawn = tag("table", head, tag("tbody", *rows), class_="card")
-    if shown >= len(card.rows):
-        return join(tag("div", drawn, class_="wide"))
-    words, button = f"{shown} of {len(card.rows):,} cases, the best first.", f"All {len(card.rows)} cases"
-    if len(best) < len(card.rows):
-        words, button = f"{words} All are in {CHECKS}.", f"The best {len(best)} cases"
-    return join(tag("div", drawn, class_="wide"), tag("p", words, class_="legend rest", data_button=button))
+    return tag("div", tag("table", head, tag("tbody", *rows), class_="card"), class_="wide")
 
 
 def statistics_in_words(finished: Finished) -> str:
@@ -110,34 +133,45 @@ def statistics_in_words(finished: Finished) -> str:
     return f"{values[0].upper()}{values[1:]}. The mark on a bar is the limit." if values else ""
 
 
-def _row(finished: Finished, card: Card, row: Row, columns: Sequence[int], class_: str | None) -> Markup:
-    """Return the row of a case; checks without a column are counted as "3 more" if passed."""
-    cells = [_cell(finished, card.columns[i], row.cells[i]) for i in columns]
-    others = [cell for i, cell in enumerate(row.cells) if i not in columns]
+def _row(
+    finished: Finished, card: Card, row: Row, columns: tuple[Sequence[int], Sequence[int]], class_: str | None
+) -> Markup:
+    """Return the row of a case; checks of the second ``columns`` are counted as "3 more" if passed."""
+    shown, others = columns
+    cells = [_cell(finished, card.columns[i], row.cells[i]) for i in shown]
     if others:
-        passing = sum(cell is not None and cell.verdict.verdict == PASS for cell in others)
+        passing = sum(cell is not None and cell.verdict.verdict == PASS for cell in (row.cells[i] for i in others))
         cells.append(tag("td", mark(PASS, f"{passing} more") if passing else "", class_="others"))
     return tag("tr", tag("th", row.name, tag("small", row.in_words), scope="row"), *cells, class_=class_)
 
 
 def _cell(finished: Finished, column: Column, cell: Cell | None) -> Markup:
-    """Return a cell: value, sign, share of the limit, bar and, on paper, the governing record."""
+    """Return a cell: value, sign, share of the limit, bar, the governing run and, on paper, bounds that differ."""
     check = " ".join(filter(None, (column.check, column.at, column.limit)))
     if cell is None or cell.verdict.verdict == DOES_NOT_APPLY:
         return tag("td", tag("span", "–", aria_label="does not apply"), class_="na", data_check=check)
     verdict = cell.verdict
     share = min(max(verdict.ratio, 0.0), 2.0) / 2.0 if verdict.ratio == verdict.ratio and not verdict.is_ban else None
     bar = tag("span", class_="bar", style=f"--share:{100 * share:.0f}%") if share is not None else ""
-    record = tag("small", finished.label(verdict.record), class_="governs") if verdict.record else ""
+    bounds = tag("small", cell.bounds, class_="bounds") if cell.bounds and for_paper() else ""
+    record = tag("small", _governs(finished, verdict), class_="governs") if verdict.record else ""
     return tag(
         "td",
         tag("span", tag("strong", cell.value), mark(verdict.verdict, cell.percent), class_="top"),
         bar,
+        bounds,
         record,
         class_=CLASSES[verdict.verdict],
         title=_tooltip(finished, verdict),
         data_check=check,
     )
+
+
+def _governs(finished: Finished, verdict: Verdict) -> str:
+    """Return the record that governs, with its polarity and scale if the study has several."""
+    polarity = f"({verdict.polarity})" if finished.both_directions else ""
+    scale = f"× {verdict.scale:g}" if finished.many_scales else ""
+    return " ".join(filter(None, (finished.label(verdict.record), polarity, scale)))
 
 
 def _tooltip(finished: Finished, verdict: Verdict) -> str:

@@ -1,0 +1,151 @@
+"""What the model assumes of this study, in about ten lines: its values decide which."""
+
+from collections.abc import Callable, Collection, Iterable
+from typing import Any
+
+from rockbatch.quantities.cases import Case, asks_tension, bends, devices, is_frame, lands_by_impulse, stops_by_impulse
+from rockbatch.quantities.quantity import FOOTING, TWO_SPRINGS
+from rockbatch.reporting.finished import Finished
+from rockbatch.reporting.markup import Markup, number, tag
+
+
+def section(finished: Finished) -> Markup:
+    """Return the list of assumptions."""
+    return tag("ul", *(tag("li", line) for line in lines(finished)), class_="assumptions")
+
+
+def lines(finished: Finished) -> list[str]:
+    """Return the assumptions of a study as sentences, in a fixed order."""
+    cases: list[Case] = finished.info["cases"]
+    found = (_plane(cases), _body(cases), _ground(cases), _landings(cases), _flight(cases), _sliding(cases))
+    also = (_damping(cases), _devices(cases), _motions(finished), _numerics(finished.info["numerics"]))
+    return [line for line in (*found, *also) if line]
+
+
+def _plane(cases: Collection[Case]) -> str:
+    if any(case.get("across_of") for case in cases):
+        return "Two planar models of each pier, one for each axis; rolling on a corner and twisting are not modelled."
+    return "Each pier moves in one vertical plane; rolling on a corner and twisting are not modelled."
+
+
+def _body(cases: Collection[Case]) -> str:
+    """Return what bends: nothing, the shaft in one mode, or nothing of a frame with a level deck."""
+    parts = []
+    if any(map(is_frame, cases)):
+        parts.append("The columns of the frame are rigid and alike, and its deck stays level and on them.")
+    if bending := [case for case in cases if bends(case)]:
+        periods = {number(float(case["pier"]["flexural_period_s"])) for case in bending}
+        of_cases = _only(bending, cases)
+        parts.append(
+            f"The shaft bends in one mode, of {_listed(periods)} s{of_cases}; its higher modes are not modelled."
+        )
+    if rigid := [case for case in cases if not bends(case) and not is_frame(case)]:
+        parts.append(f"The pier is one rigid body with the masses that it carries{_only(rigid, cases)}.")
+    return " ".join(parts)
+
+
+def _ground(cases: Collection[Case]) -> str:
+    """Return on what the piers stand; each kind of base has its sentence."""
+    kinds: list[tuple[Callable[[Case], bool], str]] = [
+        (
+            lands_by_impulse,
+            "rigid ground, which does not give, at two pivots that keep their place: no crushing of edges",
+        ),
+        (lambda case: case["base"] in TWO_SPRINGS, "two vertical supports that push and never pull, one at each pivot"),
+        (lambda case: case["base"] in FOOTING, "a footing on a bed of independent strips that push and never pull"),
+    ]
+    stand = [(words, [case for case in cases if of_kind(case)]) for of_kind, words in kinds]
+    return " ".join(f"The pier stands on {words}{_only(some, cases)}." for words, some in stand if some)
+
+
+def _landings(cases: Collection[Case]) -> str:
+    """Return how energy is lost in landings, by the base and its numbers."""
+    parts = []
+    if impulsive := [case for case in cases if lands_by_impulse(case)]:
+        given = {case["parameters"].get("restitution") for case in impulsive}
+        factors = [number(float(value)) for value in sorted(value for value in given if value is not None)]
+        words = ["Housner's factor on the angular velocity, by conservation of its moment"] if None in given else []
+        words += [f"the given factor {_listed(factors)}"] if factors else []
+        parts.append(f"A landing on rigid ground is an impulse without a duration or a force: {' or '.join(words)}.")
+    springs = [case for case in cases if not lands_by_impulse(case)]
+    if pulled := [case for case in springs if asks_tension(case)]:
+        parts.append(
+            f"An impact has Housner's factor on springs, too, for which a support would pull{_only(pulled, cases)}."
+        )
+    stopped = [case for case in springs if "epsilon" in case["parameters"] and stops_by_impulse(case)]
+    if stopped := [case for case in stopped if not asks_tension(case)]:
+        shares = _listed({number(float(case["parameters"]["epsilon"])) for case in stopped})
+        parts.append(f"The pivot that lands keeps ε = {shares} of its speed, by an impulse{_only(stopped, cases)}.")
+    return " ".join(parts)
+
+
+def _flight(cases: Collection[Case]) -> str:
+    """Return what happens when both pivots leave the ground."""
+    flying: dict[str, list[Case]] = {}
+    for case in cases:
+        flying.setdefault(case["parameters"].get("flight", "guided"), []).append(case)
+    words = {
+        "guided": "If both pivots leave the ground, shear keys guide the pier down to where it stood",
+        "stop": "A run ends when both pivots leave the ground",
+    }
+    return " ".join(f"{words[kind]}{_only(some, cases)}." for kind, some in flying.items() if some and kind in words)
+
+
+def _sliding(cases: Collection[Case]) -> str:
+    known = [case for case in cases if case["parameters"].get("friction") is not None]
+    if not known:
+        return "The feet do not slide, whatever the friction that this needs: keys have to bear it."
+    friction = _listed({number(float(case["parameters"]["friction"])) for case in known})
+    return f"The feet do not slide; runs that would, at a friction of {friction}{_only(known, cases)}, are marked."
+
+
+def _damping(cases: Collection[Case]) -> str:
+    """Return which damping there is beside that of landings."""
+    damped = [case for case in cases if case["parameters"].get("zeta")]
+    if not damped:
+        return "Nothing but landings, yielding and devices takes energy."
+    shares = _listed({number(float(case["parameters"]["zeta"])) for case in damped})
+    words = (
+        f"Dashpots beside the supports damp the vertical vibration by ζ = {shares} of critical{_only(damped, cases)}"
+    )
+    return f"{words}; there is no other damping but that of landings, yielding and devices."
+
+
+def _devices(cases: Collection[Case]) -> str:
+    if not any(list(devices(case)) for case in cases):
+        return ""
+    return (
+        "Devices act between the pier and ground or neighbours that move with the ground; their laws do not degrade, and nothing "
+        "of them breaks or reaches the end of its travel."
+    )
+
+
+def _motions(finished: Finished) -> str:
+    """Return how the ground moves: its components, and alike under both pivots."""
+    records = finished.info["records"]
+    vertical = sum(record["pga_v_g"] is not None for record in records)
+    components = "horizontally and vertically" if vertical == len(records) else "horizontally"
+    some = f" (vertically, too, in {vertical} of {len(records)} records)" if 0 < vertical < len(records) else ""
+    return (
+        f"The ground moves {components}{some} and alike under both pivots; the records are the motion at the base, without site "
+        "response and without radiation or kinematic interaction beyond the foundation's own parameters."
+    )
+
+
+def _numerics(numerics: Any) -> str:
+    kept = f"Runs go on for at least {number(float(numerics['quiet_s']))} s beyond the record, until nothing can exceed the peak"
+    if numerics["tolerance"]:
+        largest = number(float(numerics["tolerance"]))
+        return f"{kept}; the step is halved until the estimated error of θ/α is at most {largest}."
+    return f"{kept}; the step is fixed, and its error was not estimated."
+
+
+def _only(some: Collection[Case], cases: Collection[Case]) -> str:
+    """Return the cases of a sentence, " (case pads, piles)"; empty if it is true of all."""
+    if len(some) == len(cases):
+        return ""
+    return f" ({', '.join(dict.fromkeys(str(case['case']) for case in some))})"
+
+
+def _listed(values: Iterable[str]) -> str:
+    return ", ".join(sorted(values))

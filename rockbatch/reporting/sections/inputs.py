@@ -1,0 +1,157 @@
+"""Every constant of the study: piers and their parts, foundations and devices, as given and as derived from it."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from rockbatch.pier import Damper, Pier, Restraint
+from rockbatch.pier.restraints import FIELDS
+from rockbatch.quantities.cases import Case
+from rockbatch.quantities.quantity import ENDINGS
+from rockbatch.reporting.finished import Finished
+from rockbatch.reporting.labels import heading, symbol
+from rockbatch.reporting.markup import Markup, join, tag
+from rockbatch.reporting.sections.studied import drawings
+from rockbatch.reporting.structure import device_in_words, pier_of, restraints_of
+from rockbatch.reporting.table import WHOLE, Head, table
+from rockbatch.results.labelled import Row
+
+DIGITS = ".6g"
+OF_PIER = {
+    "size_m": "R0 [m]",
+    "half_width_m": "half-width b [m]",
+    "height_m": "centre of mass at [m]",
+    "highest_m": "highest point [m]",
+    "top_m": "drift read at [m]",
+    "mass_t": "mass [t]",
+    "deck_height_m": "deck at [m]",
+    "deck_over_columns": "deck over columns",
+    "flexural_period_s": "flexural period [s]",
+    "shaft_share": "share of the shaft in the mass",
+}
+"""Heads of what run.json states of a pier, where a key of the study has another meaning or none."""
+OF_FOUNDATION = {
+    "omega_v": "ω_v [rad/s]",
+    "delta_s_m": "static deflection [m]",
+    "delta_y_m": "yield deflection [m]",
+    "zeta_rocking": "ζ of rocking",
+}
+OF_DEVICE = {
+    "f": "F/(M g)",
+    "nu": "C/(M p)",
+    "yield_m": "yield displacement [m]",
+    "exponent": "exponent",
+    "brace": "brace λ",
+    "psi": "P0/(M g)",
+    "lam": "λ = k b²/(M g R0)",
+    "strength": "Ty/(M g)",
+    "gap_m": "gap [m]",
+    "restitution": "restitution e",
+    "height_m": "height [m]",
+}
+"""Fields of devices and their heads, in the order of the table."""
+_UNIT = re.compile("_(" + "|".join(unit for unit in ("mm", "m2", "kN_m", "MPa", *ENDINGS.values(), "t", "GPa")) + ")$")
+"""Unit at the end of a key that has no symbol of its own."""
+
+
+def section(finished: Finished) -> Markup:
+    """Return the drawings of the piers and a table each of piers, parts, foundations and devices."""
+    drawn = drawings(finished)
+    sketches = tag("div", *drawn, class_="piers") if drawn else ""
+    tables: tuple[tuple[str, list[Row], Mapping[str, str]], ...] = (
+        ("Pier as given", [finished.pier_as_given], {}),
+        ("Parts of the pier", _parts(finished), {}),
+        ("Pier as computed", _piers(finished), OF_PIER),
+        ("Foundations", [_foundation(finished, case) for case in finished.info["cases"]], OF_FOUNDATION),
+        ("Devices", list(_devices(finished)), OF_DEVICE),
+    )
+    shown = [join(tag("h3", name), of_rows(rows, name, heads)) for name, rows, heads in tables if any(rows)]
+    return join(sketches, *shown)
+
+
+def of_rows(rows: Sequence[Mapping[str, object]], name: str, words: Mapping[str, str]) -> Markup:
+    """Return a table of constants with a column for each key of any row, headed by ``words`` or its symbol and unit."""
+    keys = [
+        key for key in dict.fromkeys(key for row in rows for key in row) if any(_single(row.get(key)) for row in rows)
+    ]
+    heads = [Head(heading(words.get(key) or _symbol(key)), _form(rows, key)) for key in keys]
+    cells = ([_written(row.get(key)) for key in keys] for row in rows)
+    return table(heads, cells, name=name, prose=True)
+
+
+def _symbol(key: str) -> str:
+    """Return symbol and unit of a key, or the words of its name: "top [m]", "flight limit [mm]"."""
+    if symbol(key) != key:
+        return symbol(key)
+    unit = _UNIT.search(key)
+    words = key[: unit.start()] if unit else key
+    return words.replace("_", " ") + (f" [{unit[1].replace('kN_m', 'kN/m').replace('_s', '/s')}]" if unit else "")
+
+
+def _form(rows: Sequence[Mapping[str, object]], key: str) -> str:
+    """Return the format of the numbers of a column; a column of texts alone has none."""
+    return DIGITS if any(isinstance(row.get(key), float) for row in rows) else WHOLE
+
+
+def _single(value: object) -> bool:
+    """Return whether a value is a number or a text, or a list of these."""
+    if isinstance(value, list):
+        return bool(value) and all(map(_single, value))
+    return isinstance(value, int | float | str)
+
+
+def _written(value: object) -> object:
+    """Return a value as a cell: a list as the values that are run, tables not at all."""
+    if not _single(value):
+        return None
+    if isinstance(value, list):
+        return ", ".join(map(str, value))
+    return str(value).lower() if isinstance(value, bool) else value
+
+
+def _parts(finished: Finished) -> list[Row]:
+    """Return the tables [[pier.part]] of the study; empty if it has none."""
+    parts = finished.pier_as_given.get("part")
+    return [part for part in parts if isinstance(part, dict)] if isinstance(parts, list) else []
+
+
+def _piers(finished: Finished) -> list[Row]:
+    """Return the distinct piers with what the program computed of them, each with its cases if there are several."""
+    cases_of: dict[tuple[object, ...], list[Case]] = {}
+    for case in finished.info["cases"]:
+        cases_of.setdefault(tuple(case["pier"].items()), []).append(case)
+    piers = []
+    for of_pier in cases_of.values():
+        names = ", ".join(dict.fromkeys(str(case["case"]) for case in of_pier))
+        piers.append(({"case": names} if len(cases_of) > 1 else {}) | of_pier[0]["pier"])
+    return piers
+
+
+def _foundation(finished: Finished, case: Case) -> Row:
+    """Return name, base and every parameter of a foundation, its devices apart."""
+    parameters = {key: value for key, value in case["parameters"].items() if key != "restraints"}
+    return {"case": _name(finished, case), "base": case["base"]} | parameters
+
+
+def _devices(finished: Finished) -> Iterator[Row]:
+    """Yield each device of each case: in words, in kN if the mass is known, and by its numbers over the weight."""
+    for case in finished.info["cases"]:
+        pier = pier_of(case)
+        for device in restraints_of(case) if pier else ():
+            yield {"case": _name(finished, case), "device": _in_words(pier, device)} | _numbers(device)
+
+
+def _in_words(pier: Pier | None, device: Restraint) -> str:
+    return device_in_words(pier, device) if pier else ""
+
+
+def _numbers(device: Restraint) -> dict[str, Any]:
+    """Return the fields that a device uses; those that are infinite or not given are left out."""
+    used = {*FIELDS[device.kind if isinstance(device, Damper) else device.what], "strength", "brace", "height_m"}
+    values = {name: getattr(device, name, None) for name in OF_DEVICE if name in used}
+    return {name: value for name, value in values.items() if value is not None and value < float("inf")}
+
+
+def _name(finished: Finished, case: Case) -> str:
+    """Return the name of a case with the values of it that are varied."""
+    return finished.named_case(case["case"], case["columns"], finished.info["varied"])
