@@ -1,9 +1,10 @@
 """Terms of the energy balance."""
 
+from rockbatch.outcome.outcome import TERMS
 from rockbatch.quantities.quantity import Quantity, ReportFormat, Run
 
 
-def _energy(term: str, form: str = ".4f") -> Quantity:
+def _energy(term: str, form: str) -> Quantity:
     """Return a term of the energy ledger."""
 
     def value(run: Run) -> float | None:
@@ -14,7 +15,4 @@ def _energy(term: str, form: str = ".4f") -> Quantity:
     return Quantity(f"energy_{term}_J_kg", words, value, "J/kg", page, needs="ledger")
 
 
-QUANTITIES = (
-    _energy("kinetic"), _energy("potential"), _energy("elastic"), _energy("input"), _energy("plastic"), _energy("impact"),
-    _energy("p_delta"), _energy("constraint"), _energy("damping"), _energy("remainder", ".0e"),
-)  # fmt: skip
+QUANTITIES = tuple(_energy(term, ".0e" if term == "remainder" else ".4f") for term in TERMS)
