@@ -33,9 +33,9 @@ from rockbatch.core.types import (
     Pull,
 )
 from rockbatch.motions.motion import Motion
+from rockbatch.observers.forces.peaks import at_rows
 from rockbatch.pier import mode_of, shape_at
 from rockbatch.simulation import Run, run_fixed, written_run
-from rockbatch.simulation.forces import at_rows
 from rockbatch.simulation.models import flexible_block
 
 G, DT = 9.81, 0.02

@@ -13,7 +13,7 @@ def _of_work(field: str, per: Callable[[Pier], float | None] = lambda pier: 1.0)
     """Return the number of a ``field`` of ``DeviceWork``, times ``per`` of the pier if that is known."""
 
     def value(run: Run) -> float | None:
-        work = None if run.outcome.device_work is None else getattr(run.outcome.device_work, field)
+        work = getattr(run.outcome.observed.get("devices_work"), field, None)
         times = per(run.pier)
         return None if work is None or times is None else work * times
 

@@ -42,7 +42,7 @@ class EnergyBalance(Observer):
 
     def add(self, run: Run, outcome: Outcome, fine: dict[str, float] | None, coarse: None) -> Outcome:
         """See :class:`Observer`."""
-        return outcome if fine is None else outcome.changed(energies=fine)
+        return outcome if fine is None else outcome.with_observed("energy_balance", fine)
 
     def histories(self, recording: Recording) -> "Mapping[str, pd.DataFrame]":
         """See :class:`Observer`."""

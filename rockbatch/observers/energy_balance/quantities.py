@@ -8,7 +8,8 @@ def _energy(term: str, form: str) -> Quantity:
     """Return a term of the energy ledger."""
 
     def value(run: Run) -> float | None:
-        return None if run.outcome.energies is None else run.outcome.energies[term]
+        energies = run.outcome.observed.get("energy_balance")
+        return None if energies is None else energies[term]
 
     words = "energy ledger at the end, per unit mass, and the greatest remainder on the way"
     page = ReportFormat(f"{term.replace('_', '-')} [J/kg]", form)

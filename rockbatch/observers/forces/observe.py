@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rockbatch.common.lazy import pd
+from rockbatch.observers.forces.peaks import PeakForces, at_rows, forces_table, impacts_table, peak_forces, with_error
 from rockbatch.observers.forces.study import Forces
-from rockbatch.outcome.outcome import Outcome, PeakForces
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.simulation.error_control import CHANCE
-from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
@@ -38,7 +38,7 @@ class PeaksOfForces(Observer):
         if coarse is not None:
             peaks, note = with_error(peaks, coarse[0], run.pier, CHANCE)
             outcome = outcome.noted(note)
-        return outcome.changed(forces=peaks)
+        return outcome.with_observed("forces", peaks)
 
     def histories(self, recording: Recording) -> "Mapping[str, pd.DataFrame]":
         """See :class:`Observer`."""

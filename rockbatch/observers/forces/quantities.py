@@ -20,7 +20,7 @@ def _of_forces(field: str, factor: Callable[[Pier], float | None] | None = None)
     """Return the number of a field of ``PeakForces``, times a factor of the pier if that is known."""
 
     def value(run: Run) -> float | None:
-        force = None if run.outcome.forces is None else getattr(run.outcome.forces, field)
+        force = getattr(run.outcome.observed.get("forces"), field, None)
         times = 1.0 if factor is None else factor(run.pier)
         return None if force is None or times is None else force * times
 

@@ -20,7 +20,7 @@ class OtherLaw(Observer):
     def compare(self, outcome: Outcome, other: Outcome) -> Outcome:
         """See :class:`Observer`."""
         failed = f"by the other spring law: {other.reason}" if other.status == "failed" else ""
-        return outcome.noted(failed, settlement_other_law=other.settlement)
+        return outcome.noted(failed).with_observed("other_law", other.settlement)
 
     def reads(self, run: Run, outcome: Outcome) -> bool:
         """See :class:`Observer`."""

@@ -16,7 +16,7 @@ FIRST = (
         OTHER_LAW,
         "settlement of Bouc–Wen springs by the elastic–perfectly plastic law, the other end of the range; with [output] "
         "both_laws = true, or with a check of a settlement",
-        "settlement_other_law",
+        lambda run: run.outcome.observed.get("other_law"),
         "m",
         ReportFormat("by the other law [mm]", ".2f", 1000, "settlement_m"),
         bases=YIELDING,

@@ -1,16 +1,24 @@
 """Rocking about a base that has yielded, its lean, and their errors."""
 
+from collections.abc import Callable
+
 from rockbatch.quantities.cases import ONE
 from rockbatch.quantities.limits import rotation
-from rockbatch.quantities.quantity import ALL, YIELDING, Quantity, ReportFormat
+from rockbatch.quantities.quantity import ALL, YIELDING, Quantity, ReportFormat, Run
 
 ROCKING, LEAN = "theta_rocking_over_alpha", "theta_lean_over_alpha"
+
+
+def _part(field: str) -> Callable[[Run], float | None]:
+    """Return the number of a ``field`` of ``Parts``."""
+    return lambda run: getattr(run.outcome.observed.get("rocking"), field, None)
+
 
 FIRST = (
     Quantity(
         ROCKING,
         "greatest rotation over α about the current position of rest on the base",
-        "theta_rocking",
+        _part("rocking"),
         page=ReportFormat("rocking/α", ".5f", behind="theta_max_is"),
         over_alpha=True,
         needs="rocking",
@@ -21,7 +29,7 @@ FIRST = (
     Quantity(
         LEAN,
         "rotation over α of that position at the time of the greatest rotation, positive to its side",
-        "theta_lean",
+        _part("lean"),
         page=ReportFormat("lean/α", ".5f", behind=ROCKING),
         over_alpha=True,
         bases=YIELDING,
@@ -31,13 +39,16 @@ FIRST = (
 )
 
 
-def _error(name: str, behind: str, bases: tuple[str, ...] = ALL) -> Quantity:
-    """Return the error of a column, ``behind`` which it stands in the report."""
+def _error(part: str, behind: str, bases: tuple[str, ...] = ALL) -> Quantity:
+    """Return the error of a ``part``, whose column it stands ``behind`` in the report."""
     words = (
         "estimated error of rocking, and of lean, over α: the change when the step was halved; empty with a fixed step"
     )
     page = ReportFormat("±", ".1g", behind=behind)
-    return Quantity(name, words, name, page=page, over_alpha=True, bases=bases, stood=True, needs="rocking")
+    source = _part(f"{part}_error")
+    return Quantity(
+        f"theta_{part}_error", words, source, page=page, over_alpha=True, bases=bases, stood=True, needs="rocking"
+    )
 
 
-ERRORS = (_error("theta_rocking_error", ROCKING), _error("theta_lean_error", LEAN, YIELDING))
+ERRORS = (_error("rocking", ROCKING), _error("lean", LEAN, YIELDING))
