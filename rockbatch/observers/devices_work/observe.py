@@ -75,17 +75,17 @@ class WorkOfDevices(Observer):
     least_stroke: float
 
     def reads(self, run: Run, outcome: Outcome) -> bool:
-        """See :class:`Observer`."""
+        """Return True if the base has devices."""
         return bool(run.base.restraints)
 
     def read(self, recording: Recording, outcome: Outcome) -> DeviceWork:
-        """See :class:`Observer`."""
+        """Return the greatest work of any damper, and strain of any tendon."""
         run = recording.run
         work = restraints.device_work(run.pier, run.base, recording.rows, self.least_stroke)
         return greatest_of(run.pier, run.base, work)
 
     def add(self, run: Run, outcome: Outcome, fine: DeviceWork | None, coarse: DeviceWork | None) -> Outcome:
-        """See :class:`Observer`."""
+        """Return ``outcome`` with the work ``fine``, if any; ``devices_error`` grows to its error by ``coarse``."""
         return outcome if fine is None else with_work(outcome, fine, coarse, run.pier, CHANCE)
 
 

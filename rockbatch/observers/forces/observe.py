@@ -26,11 +26,11 @@ class PeaksOfForces(Observer):
     column = "base_shear_m_s2"
 
     def read(self, recording: Recording, outcome: Outcome) -> Peaks:
-        """See :class:`Observer`."""
+        """Return the design demands and a note."""
         return peak_forces(recording.run, recording.rows, self.least_normal)
 
     def add(self, run: Run, outcome: Outcome, fine: Peaks | None, coarse: Peaks | None) -> Outcome:
-        """See :class:`Observer`."""
+        """Return ``outcome`` with the demands and note of ``fine``, and their error by ``coarse``; unchanged without ``fine``."""
         if fine is None:
             return outcome
         peaks, note = fine
@@ -41,7 +41,7 @@ class PeaksOfForces(Observer):
         return outcome.with_observed("forces", peaks)
 
     def histories(self, recording: Recording) -> "Mapping[str, pd.DataFrame]":
-        """See :class:`Observer`."""
+        """Return the tables ``forces``, at samples and events, and ``impacts``."""
         run, rows = recording.run, recording.at_samples.rows
         moments = at_rows(run, recording.rows)[recording.shown] if run.base.remembers else at_rows(run, rows)
         return {"forces": forces_table(rows.t, moments, run.pier.gravity), "impacts": impacts_table(rows, moments)}

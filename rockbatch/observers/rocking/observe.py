@@ -33,21 +33,21 @@ class Rocking(Observer):
     separates_lean = True
 
     def reads(self, run: Run, outcome: Outcome) -> bool:
-        """See :class:`Observer`."""
+        """Return True on yielding springs, unless the pier overturned."""
         return _may_lean(run, outcome)
 
     def claims_error(self, outcome: Outcome) -> bool:
-        """See :class:`Observer`."""
+        """Return True if θ_max has an error."""
         return outcome.theta_max_error is not None
 
     def read(self, recording: Recording, outcome: Outcome) -> Apart:
-        """See :class:`Observer`."""
+        """Return rocking and lean."""
         base = recording.run.base
         assert isinstance(base, ElasticBase)
         return apart(recording.run.pier, base, recording.rows)
 
     def add(self, run: Run, outcome: Outcome, fine: Apart | None, coarse: Apart | None) -> Outcome:
-        """See :class:`Observer`."""
+        """Return ``outcome`` with Parts: of ``fine``, or all of θ_max as rocking if the pier could not lean; else as it is."""
         if fine is not None:
             lean = None if outcome.status == "flight" else fine.lean
             parts = Parts(fine.rocking, lean)
