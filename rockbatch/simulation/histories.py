@@ -7,6 +7,8 @@ import numpy as np
 
 from rockbatch.common.lazy import pd
 from rockbatch.core import types
+from rockbatch.core.flexure.model import Flexing
+from rockbatch.core.flexure.modes import MOST_MODES
 from rockbatch.core.observe.beds import BED_STATE, follow_bed
 from rockbatch.core.observe.ledger import LEDGER, energy_of_rows
 from rockbatch.motions.motion import Samples
@@ -14,7 +16,7 @@ from rockbatch.outcome.half_cycles import HalfCycles, Path, half_cycles
 from rockbatch.outcome.response import EVENT_TYPES, Response
 from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase
 from rockbatch.simulation import restraints
-from rockbatch.simulation.models import acceleration_at, ground_of, model, springs
+from rockbatch.simulation.models import acceleration_at, flexible_block, ground_of, model, springs
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
@@ -116,8 +118,15 @@ def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Sa
     none = dict.fromkeys(
         ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"), np.full(len(rows), np.nan)
     )
-    bent = {"deflection": rows.u} if base.bends else {}
+    bent = {"deflection": flexible_block(pier, base).end_shape @ of_modes(rows)[0]} if base.bends else {}
     return {"theta": rows.theta, "omega": rows.omega, **none, "energy": _energy(pier, base, rows), **bent}
+
+
+def of_modes(rows: np.recarray) -> tuple[Samples, Samples]:
+    """Return the coordinates [m] of a shaft's modes at ``rows``, and their rates [m/s], shape (modes, rows) each."""
+    first = Flexing._fields.index("u_1")
+    names, rates = Flexing._fields[first : first + MOST_MODES], Flexing._fields[first + MOST_MODES :]
+    return np.array([rows[name] for name in names]), np.array([rows[name] for name in rates])
 
 
 def _footing_state(run: Run, rows: np.recarray) -> np.recarray:

@@ -38,7 +38,9 @@ def messages(tmp_path, **tables):
         ({"cases": [{"name": "soft", "base": "elastic", "beta": 60.0, "shaft": "elastic"}]}, "shaft"),
         ({"cases": [ROCK | {"flexural_damping": 0.02}]}, "flexural_damping"),
         ({"cases": [BENDS | {"flexural_damping": 1.5}]}, "must be within 0..1"),
-        ({"cases": [BENDS], "output": {"sections": 3}}, "sections: their forces are those of a rigid shaft"),
+        ({"cases": [BENDS | {"flexural_modes": 5}]}, "flexural_modes = 5: expected a whole number, 1 to 4"),
+        ({"cases": [BENDS | {"flexural_damping_kind": "mass"}]}, 'flexural_damping_kind = "mass"'),
+        ({"cases": [ROCK | {"flexural_modes": 2}]}, "flexural_modes"),
         ({"cases": [BENDS | {"deck_spring": [{"gap_mm": 50.0, "stiffness_kN_m": 1e4}]}]}, "devices on the deck"),
     ],
 )  # fmt: skip

@@ -389,7 +389,9 @@ USES: dict[str, dict[str, Use]] = {
         **uses(SHAKEN | {"case": [SOFT]}, ("case", 0), {"flight": "stop"}),
         **uses(YIELDING, ("case", 0), {"eta": 3.0, "spring": "epp", "n": 3.0, "kinematics": "finite"}, stepped),
         **uses(study(case=PADS | {"base": "yielding", "yield_kN": 3e4}) | TINY, ("case", 0), {"yield_kN": 4e4}, stepped),
-        **uses(BENDING, ("case", 0), {"shaft": "rigid", "flexural_damping": 0.1}, stepped),
+        **uses(BENDING, ("case", 0), {
+            "shaft": "rigid", "flexural_damping": 0.1, "flexural_damping_kind": "stiffness", "flexural_modes": 2,
+        }, stepped),
         **uses(study(case=PADS | {"mass_t": 900.0}) | {"pier": UNWEIGHED}, ("case", 0), {"mass_t": 1000.0}),
         "base": Use(study(), ("case", 0), "elastic", more={"beta": 40.0}),
         **uses(BOTH_AXES, ("case", 0), {"other_width_m": 6.0}),

@@ -4,7 +4,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rockbatch.common.lazy import pd
-from rockbatch.observers.forces.peaks import PeakForces, at_rows, forces_table, impacts_table, peak_forces, with_error
+from rockbatch.observers.forces.peaks import (
+    PeakForces,
+    at_rows,
+    forces_table,
+    impacts_table,
+    peak_forces,
+    with_error,
+    with_modes_error,
+)
 from rockbatch.observers.forces.study import Forces
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.simulation.error_control import CHANCE
@@ -28,6 +36,10 @@ class PeaksOfForces(Observer):
     def read(self, recording: Recording, outcome: Outcome) -> Peaks:
         """Return the design demands and a note."""
         return peak_forces(recording.run, recording.rows, self.least_normal)
+
+    def beyond(self, run: Run, fine: Peaks, fewer: Peaks) -> Peaks:
+        """Return ``fine`` with the change from ``fewer`` modes as its error."""
+        return with_modes_error(run, fine[0], fewer[0], CHANCE), fine[1]
 
     def add(self, run: Run, outcome: Outcome, fine: Peaks | None, coarse: Peaks | None) -> Outcome:
         """Return ``outcome`` with the demands and note of ``fine``, and their error by ``coarse``; unchanged without ``fine``."""
