@@ -57,8 +57,7 @@ class Pier(InNotebook):
     flexural_period_s : float, optional
         First period of the pier, with its deck, fixed at its base [s]. An elastic shaft (:class:`RigidBase`) vibrates with it,
         unless its parts give their rigidity; runs with a rigid shaft ignore it, and :func:`rockbatch.statics` compares it with
-        the period of rocking.
-        ``dataclasses.replace(pier, flexural_period_s=0.6)`` adds it.
+        the period of rocking. ``dataclasses.replace(pier, flexural_period_s=0.6)`` adds it.
     parts : tuple of Part, optional
         Its parts, by which forces in sections know how the mass is spread over the height; see :meth:`of_parts`. Without
         them the pier is a solid rectangle there, if ``mu`` is 3.
