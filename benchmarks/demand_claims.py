@@ -24,14 +24,13 @@ import numpy as np
 
 import rockbatch as rb
 from rockbatch.motions import Motion
-from rockbatch.observers.devices_work.observe import WorkOfDevices
+from rockbatch.observers.devices_work.observe import OF_WORK, WorkOfDevices
 from rockbatch.observers.forces.observe import PeaksOfForces
+from rockbatch.observers.forces.peaks import OF_FORCES
 from rockbatch.observers.sections.observe import ForcesInSections
 from rockbatch.outcome.changes import FLOOR, OF_DEVICES, Sized, scales_of
-from rockbatch.outcome.device_work import OF_WORK
 from rockbatch.pier import Base, Pier, Restraint, problems
 from rockbatch.simulation.error_control import CHANCE, run_to_tolerance
-from rockbatch.simulation.forces import _SIZED as OF_FORCES
 from rockbatch.simulation.observing import observed
 from rockbatch.simulation.runs import Run, run_fixed
 from rockbatch.simulation.sections import with_errors
@@ -191,8 +190,9 @@ def judge(run: Run) -> list[Claim]:
     about = (run.pier, chaotic)
     outcomes = (found, *(each for each, _ in refined))
     claims = list(compared("", outcomes, OF_DEVICES, found.devices_error, about))
-    claims += compared("", tuple(each.device_work for each in outcomes), OF_WORK, found.devices_error, about)
-    claims += compared("", tuple(each.forces for each in outcomes), OF_FORCES, found.forces.error, about)
+    work, forces = ([each.observed.get(name) for each in outcomes] for name in ("devices_work", "forces"))
+    claims += compared("", tuple(work), OF_WORK, found.devices_error, about)
+    claims += compared("", tuple(forces), OF_FORCES, forces[0].error, about)
     for share, *section in zip(HEIGHTS, sections, *(each for _, each in refined), strict=True):
         claims += compared(f"section {share:g} ", tuple(section), SECTION, section[0].error, about)
     return claims

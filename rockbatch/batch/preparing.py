@@ -167,7 +167,7 @@ def to_be_replaced(directory: Path, study: Study) -> str | None:
 
 
 def run_count(study: Study, motions: MotionSet) -> str:
-    """Return the number of runs as a product: "2 records × 5 cases = 10 runs"."""
+    """Return the number of runs as a product, mirror images of polarities not counted: "2 records × 5 cases = 10 runs"."""
     factors = {"record": len(motions.motions), "scale": len(study.motions.scale), "case": len(study.cases)}
     counted = [count(n, noun) for noun, n in factors.items() if n > 1 or noun in ("record", "case")]
     stations = len({motion.of_station for motion in motions.motions})

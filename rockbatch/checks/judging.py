@@ -120,7 +120,7 @@ def judge(
             judged = []
             for rule in rules:
                 if chooses(rule, str(axes[0].case["case"]), scale, names):
-                    of_rule = [Axis(axis.case, axis.suite.beside(tables[rule.at_m])) for axis in axes]
+                    of_rule = [Axis(axis.case, axis.suite.same_rows_of(tables[rule.at_m])) for axis in axes]
                     judged.append((rule, _verdict(rule, of_rule, scale, rule.count or count, events or {})))
             verdicts += left_open(judged, [axis.suite for axis in axes])
     return verdicts

@@ -100,7 +100,7 @@ class EurocodeSpectrum:
         return f"{self.name}, {symbol} = {self.ag_g:g} g, {100 * self.damping:g} %"
 
     def at(self, periods: Array) -> Array:
-        """See :class:`Spectrum`."""
+        """Return the spectral acceleration [g] at periods [s]; NaN outside ``limits``."""
         s, tb, tc, td = self.shape
         eta = max(math.sqrt(10.0 / (5.0 + 100.0 * self.damping)), 0.55)
         plateau = self.amplification * eta
@@ -126,7 +126,7 @@ class AsceSpectrum:
         return f"ASCE 7, S_DS = {self.sds_g:g} g, S_D1 = {self.sd1_g:g} g, T_L = {self.tl_s:g} s, 5 %"
 
     def at(self, periods: Array) -> Array:
-        """See :class:`Spectrum`."""
+        """Return the spectral acceleration [g] at periods [s]; NaN outside ``limits``."""
         ts = self.sd1_g / self.sds_g
         t0 = 0.2 * ts
         t = np.maximum(periods, 1e-12)
@@ -154,7 +154,7 @@ class AashtoSpectrum:
         return f"AASHTO, A_s = {self.as_g:g} g, S_DS = {self.sds_g:g} g, S_D1 = {self.sd1_g:g} g, 5 %"
 
     def at(self, periods: Array) -> Array:
-        """See :class:`Spectrum`."""
+        """Return the spectral acceleration [g] at periods [s]; NaN outside ``limits``."""
         ts = self.sd1_g / self.sds_g
         t0 = 0.2 * ts
         t = np.maximum(periods, 1e-12)
@@ -222,7 +222,7 @@ class NzsSpectrum:
         )
 
     def at(self, periods: Array) -> Array:
-        """See :class:`Spectrum`."""
+        """Return the spectral acceleration [g] at periods [s]; NaN outside ``limits``."""
         start, plateau, a, b, c = NZS_1170_5[self.subsoil]
         t = np.maximum(periods, 1e-12)
         falling = np.select([t <= 1.5, t <= 3.0], [a * (b / t) ** 0.75, c / t], 3.0 * c / t**2)
@@ -274,7 +274,7 @@ class TableSpectrum:
         return self.periods[0], self.periods[-1]
 
     def at(self, periods: Array) -> Array:
-        """See :class:`Spectrum`."""
+        """Return the spectral acceleration [g] at periods [s]; NaN outside ``limits``."""
         if self.linear:
             return _within(self.limits, periods, np.interp(periods, self.periods, self.sa_g))
         logs = np.interp(np.log(np.maximum(periods, 1e-12)), np.log(self.periods), np.log(self.sa_g))

@@ -82,7 +82,7 @@ UNKNOWN_ORIGIN = Origin()
 
 
 def origin_of(event: str = "", station: str = "", date: str = "") -> Origin:
-    """Return the origin from a header's words for event and station, and its line with the event's date."""
+    """Return the origin by a header's words for ``event`` and ``station``; ``date`` is its text with the event's date."""
     return Origin(_event(event[:_LONGEST], date[:_LONGEST]), _without_capitals(station[:_LONGEST]))
 
 

@@ -8,8 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from rockbatch.motions.motion import Samples
-from rockbatch.outcome.changes import LEAST, Sized, greatest_change
-from rockbatch.outcome.outcome import DeviceWork, Outcome
 from rockbatch.pier import Base, Damper, Pier, Tendon, places
 
 
@@ -99,33 +97,3 @@ def work_of(pier: Pier, base: Base, courses: Courses, least_stroke: float) -> Wo
             strain[j] = max(most, 0.0) / (device.strength * pier.gravity)
     taken = (0.5 * (pull[1:] + pull[:-1]) * np.diff(way, axis=0)).sum(axis=0) if lost is None else lost[-1] - lost[0]
     return Work(np.array(travels), taken, np.array(halves), strain)
-
-
-def greatest_of(pier: Pier, base: Base, work: Work) -> DeviceWork:
-    """Return the greatest ``work`` of any damper, and strain of any tendon; None for either if there is none."""
-    dampers = np.array([isinstance(device, Damper) for device in base.restraints for _ in places(pier, device)])
-    strains = work.strain[np.isfinite(work.strain)]
-    strain = float(strains.max()) if len(strains) else None
-    if not dampers.any():
-        return DeviceWork(tendon_strain=strain)
-    travel, lost, half_cycles = (float(of_each[dampers].max()) for of_each in work[:3])
-    return DeviceWork(travel, lost, int(half_cycles), strain)
-
-
-OF_WORK = {
-    "travel of a damper": Sized(("damper_travel",), "gap"),
-    "work of a damper": Sized(("damper_work",), "energy"),
-    "strain of a tendon": Sized(("tendon_strain",), "share"),
-}
-"""Fields of DeviceWork that have an error, with the scale of each."""
-
-
-def with_work(outcome: Outcome, fine: DeviceWork, coarse: DeviceWork | None, pier: Pier, chance: float) -> Outcome:
-    """Return ``outcome`` with the ``fine`` work of its devices.
-
-    Its ``devices_error`` becomes at least ``chance`` times the change from ``coarse``, by twice the step; unchanged without it.
-    """
-    if coarse is None or outcome.devices_error is None:
-        return outcome.changed(device_work=fine)
-    change = max(greatest_change(OF_WORK, fine, coarse, pier)[1], LEAST)
-    return outcome.changed(device_work=fine, devices_error=max(outcome.devices_error, chance * change))

@@ -46,104 +46,6 @@ LEAST_NORMAL_SHARE = 0.1
 
 
 @dataclass(frozen=True)
-class PeakForces:
-    """Design demands of a run until it ends or the pier leans beyond α for good; SI units, per unit mass of the pier.
-
-    Magnitudes; ``None`` if a demand does not apply (THEORY.md, Results of a run).
-
-    Attributes
-    ----------
-    base_shear, normal_force : float
-        Greatest V/M, and N/M of all supports, without the impulses of impacts [m/s²].
-    base_moment : float
-        Greatest moment over M about the middle of the base, of supports, dampers and tendons, without impulses [m²/s²].
-    friction_demand : float
-        Greatest |V|/N while N is above a share of the weight.
-    pivot_left, pivot_right : float
-        Greatest force of each support over half the weight.
-    heel_gap_left, heel_gap_right : float
-        Greatest gap between each pivot and its support [m].
-    heel_speed_left, heel_speed_right : float
-        Greatest speed at which each gap opens or closes [m/s].
-    deck_acceleration : float
-        Greatest absolute horizontal acceleration of the deck [m/s²].
-    omega_over_p : float
-        Greatest |θ̇|/p.
-    landing_velocity, impulse : float or None
-        Speed of the landing pivot, and vertical impulse over M, at the hardest impact [m/s].
-    impact_friction_demand : float or None
-        Greatest horizontal over vertical impulse of an impact.
-    first_uplift, uplift_ground : float or None
-        Time of the first uplift [s], and magnitude of the horizontal ground acceleration then [m/s²].
-    key_shear : float or None
-        Greatest V/M while N is below the share of ``friction_demand``, which shear keys carry [m/s²].
-    flight_longest : float or None
-        Longest flight that was followed [s].
-    error : float or None
-        Four times the greatest relative change of a demand by halving the step; ``None`` with a fixed step.
-    landing_force : float or None
-        Greatest force of a foot over M at the hardest impact, estimated by a contact stiffness of the base [m/s²].
-    slides : bool or None
-        True if the greatest friction demand, impacts included, exceeds the interface's friction; ``None`` if it is not given.
-    """
-
-    base_shear: float
-    normal_force: float
-    base_moment: float
-    friction_demand: float
-    pivot_left: float
-    pivot_right: float
-    heel_gap_left: float
-    heel_gap_right: float
-    heel_speed_left: float
-    heel_speed_right: float
-    deck_acceleration: float
-    omega_over_p: float
-    landing_velocity: float | None = None
-    impulse: float | None = None
-    impact_friction_demand: float | None = None
-    first_uplift: float | None = None
-    uplift_ground: float | None = None
-    key_shear: float | None = None
-    flight_longest: float | None = None
-    error: float | None = None
-    landing_force: float | None = None
-    slides: bool | None = None
-
-    def mirrored(self) -> "PeakForces":
-        """Return the demands of the mirror image: left and right exchanged."""
-        return replace(
-            self,
-            pivot_left=self.pivot_right,
-            pivot_right=self.pivot_left,
-            heel_gap_left=self.heel_gap_right,
-            heel_gap_right=self.heel_gap_left,
-            heel_speed_left=self.heel_speed_right,
-            heel_speed_right=self.heel_speed_left,
-        )
-
-
-@dataclass(frozen=True)
-class DeviceWork:
-    """Work of the devices until the end of a run; ``None`` without such a device.
-
-    Attributes
-    ----------
-    damper_travel, damper_work : float or None
-        Greatest cumulative travel [m] and greatest energy [J/kg] of a single damper.
-    damper_half_cycles : int or None
-        Greatest number of half cycles of a single damper, of at least the study's least stroke.
-    tendon_strain : float or None
-        Greatest strain over yield strain of the tendons that can yield.
-    """
-
-    damper_travel: float | None = None
-    damper_work: float | None = None
-    damper_half_cycles: int | None = None
-    tendon_strain: float | None = None
-
-
-@dataclass(frozen=True)
 class BedDemands:
     """Demands on the bed of a footing; SI units, per unit mass of the pier.
 
@@ -221,9 +123,6 @@ class Outcome:
         Change of that by halving the step [rad], if it has converged.
     theta_max_is : str
         "lean" if ``theta_max`` is mostly the lean of a base that has yielded; empty if the pier rocks.
-    theta_rocking, theta_lean : float or None
-        Greatest rotation about the rest position on the base as deformed then, and that rest position at ``t_max`` [rad,
-        positive to the side of the peak]; if requested.
     theta_max_error, theta_res_error, settlement_error : float or None
         Estimated errors of ``theta_max`` and ``theta_res`` [rad], and of ``settlement`` on yielding springs [m]; errors of
         residuals include their drift while they were read. ``None`` with a fixed step, or if the result is chaotic.
@@ -251,8 +150,6 @@ class Outcome:
         Plastic work in each spring [J/kg].
     substeps : int
         Steps per sample.
-    settlement_other_law : float or None
-        Settlement [m] of Bouc–Wen springs by the elastic–perfectly plastic law, if requested.
     damper_force, damper_stroke, damper_speed, damper_energy : float or None
         Greatest force over M g, elongation [m] and speed [m/s] of any damper; total energy [J/kg].
     tendon_force, tendon_yield, tendon_slack : float or None
@@ -267,14 +164,11 @@ class Outcome:
         Greatest transverse deflection and horizontal displacement of the top of an elastic shaft [m].
     deflection_max_error, top_drift_max_error : float or None
         Their estimated errors [m].
-    energies : mapping of str to float, or None
-        Energy ledger at the end [J/kg], and the greatest ``remainder`` during the run, if requested.
-    forces : PeakForces or None
-        Design demands, if requested.
-    device_work : DeviceWork or None
-        Work of the devices, if requested.
     bed : BedDemands or None
         Demands on the bed of a footing.
+    observed : mapping
+        Results of observers by their names, which their quantities turn into columns. Results that the direction of the
+        motion changes have a method ``mirrored``.
     tables : mapping
         Rows of tables beside peaks.csv by file, if requested; empty for a mirror image.
     """
@@ -300,7 +194,6 @@ class Outcome:
     ductility_right: float | None = None
     dissipated_left: float | None = None
     dissipated_right: float | None = None
-    settlement_other_law: float | None = None
     damper_force: float | None = None
     damper_stroke: float | None = None
     damper_speed: float | None = None
@@ -316,8 +209,6 @@ class Outcome:
     deck_spring_depth: float | None = None
     deck_spring_blows: int | None = None
     deck_spring_energy: float | None = None
-    energies: Mapping[str, float] | None = None
-    forces: PeakForces | None = None
     note: str = ""
     devices_error: float | None = None
     theta_max_in_motion: float = math.nan
@@ -326,12 +217,7 @@ class Outcome:
     flight_duration: float = 0.0
     flight_height: float = 0.0
     theta_max_is: str = ""
-    theta_rocking: float | None = None
-    theta_lean: float | None = None
-    theta_rocking_error: float | None = None
-    theta_lean_error: float | None = None
     settlement_error: float | None = None
-    device_work: DeviceWork | None = None
     deflection_max: float | None = None
     deflection_max_error: float | None = None
     top_drift_max: float | None = None
@@ -341,6 +227,7 @@ class Outcome:
     chaotic: bool | None = None
     may_overturn: bool | None = None
     beyond_linearised: bool | None = None
+    observed: Mapping[str, Any] = field(default_factory=dict)
     tables: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -371,6 +258,10 @@ class Outcome:
         """Return the outcome with the non-empty ``remarks`` appended to its note, and other ``fields``."""
         return self.changed(note="; ".join(filter(None, (self.note, *remarks))), **fields)
 
+    def with_observed(self, observer: str, results: object) -> "Outcome":
+        """Return the outcome with the ``results`` of an observer."""
+        return self.changed(observed={**self.observed, observer: results})
+
     def with_table(self, file: str, rows: object) -> "Outcome":
         """Return the outcome with the ``rows`` of the table ``file`` beside peaks.csv."""
         return self.changed(tables={**self.tables, file: rows})
@@ -385,8 +276,8 @@ class Outcome:
             ductility_right=self.ductility_left,
             dissipated_left=self.dissipated_right,
             dissipated_right=self.dissipated_left,
-            forces=self.forces and self.forces.mirrored(),
             bed=self.bed and self.bed.mirrored(),
+            observed={name: _mirrored(results) for name, results in self.observed.items()},
             tables={},
         )
 
@@ -435,6 +326,11 @@ class ShockOutcome:
     theta_res: float = math.nan
     settlement: float = math.nan
     moving: float = math.nan
+
+
+def _mirrored(results: Any) -> Any:
+    """Return the results of an observer for the mirror image: the same unless they have a ``mirrored``."""
+    return results.mirrored() if hasattr(results, "mirrored") else results
 
 
 def _reversed(angle: float | None) -> float | None:

@@ -55,8 +55,9 @@ class Pier(InNotebook):
         θ0 [rad], positive to the right, below α: the pier is pulled there slowly, held, and released at the first sample of the
         motion, at rest (THEORY.md, Release from a rotation).
     flexural_period_s : float, optional
-        First period of the pier, with its deck, fixed at its base [s]. It does not affect runs; it is compared with the
-        period of rocking (:func:`rockbatch.statics`). ``dataclasses.replace(pier, flexural_period_s=0.6)`` adds it.
+        First period of the pier, with its deck, fixed at its base [s]. An elastic shaft (:class:`RigidBase`) vibrates with it,
+        unless its parts give their rigidity; runs with a rigid shaft ignore it, and :func:`rockbatch.statics` compares it with
+        the period of rocking. ``dataclasses.replace(pier, flexural_period_s=0.6)`` adds it.
     parts : tuple of Part, optional
         Its parts, by which forces in sections know how the mass is spread over the height; see :meth:`of_parts`. Without
         them the pier is a solid rectangle there, if ``mu`` is 3.

@@ -49,7 +49,7 @@ class Rows:
         """Return the rows for which ``chosen``, shape (n,), is True."""
         return self.at(self.places[chosen], **{name: texts[chosen] for name, texts in self._own.items()})
 
-    def beside(self, wider: "Rows") -> "Rows":
+    def same_rows_of(self, wider: "Rows") -> "Rows":
         """Return the same rows of ``wider``, all rows of a table with further columns."""
         return wider.at(self.places, **self._own)
 

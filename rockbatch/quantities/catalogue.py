@@ -6,7 +6,6 @@ checks, docs/columns.md and the list in configs/checks/stepping_pier.toml follow
 """
 
 from collections.abc import Iterable
-from dataclasses import replace
 from itertools import groupby
 from typing import Any
 
@@ -324,44 +323,76 @@ def _bends(study: Any) -> bool:
     return any(case.base.bends for case in study.cases)
 
 
+def _both_polarities(study: Any) -> bool:
+    return len(study.motions.polarity) > 1
+
+
+def _has_devices(study: Any) -> bool:
+    return any(case.base.restraints for case in study.cases)
+
+
+_MIRROR = Quantity(
+    MIRROR_OF,
+    'with both polarities, "+" in the rows of "-": the run whose mirror image this is',
+    kind="text",
+    sometimes=True,
+    requested=_both_polarities,
+)
+_DEVICES_ERROR = Quantity(
+    "devices_error",
+    "largest relative error among the columns of devices, other than counts (relative to 1 % of the scale of small ones): "
+    "the change when the step was halved; empty with a fixed step",
+    "devices_error",
+    page=ReportFormat("devices ±", ".0e", behind="deck_spring_energy_J_kg"),
+    stood=True,
+    requested=_has_devices,
+)
 _OF_BENDING = (
     Quantity(
-        "deflection_max_m", "greatest deflection of the shaft's top, across the shaft", "deflection_max", "m",
-        ReportFormat("deflection [mm]", ".1f", 1000, "drift_height_m"), bases=BENDING, error="deflection_error_m",
-        limits=LENGTHS, requested=_bends, directed=True,
+        "deflection_max_m",
+        "greatest deflection of the shaft's top, across the shaft",
+        "deflection_max",
+        "m",
+        ReportFormat("deflection [mm]", ".1f", 1000, "drift_height_m"),
+        bases=BENDING,
+        error="deflection_error_m",
+        limits=LENGTHS,
+        requested=_bends,
+        directed=True,
     ),
     Quantity(
-        "deflection_error_m", "estimated error of it: the change when the step was halved; empty with a fixed step",
-        "deflection_max_error", "m", ReportFormat("±", ".1g", 1000, "deflection_max_m"), bases=BENDING, stood=True,
+        "deflection_error_m",
+        "estimated error of it: the change when the step was halved; empty with a fixed step",
+        "deflection_max_error",
+        "m",
+        ReportFormat("±", ".1g", 1000, "deflection_max_m"),
+        bases=BENDING,
+        stood=True,
         requested=_bends,
     ),
     Quantity(
-        "top_drift_error_m", "likewise, of the drift of a shaft that bends", "top_drift_max_error", "m",
-        bases=BENDING, stood=True, requested=_bends,
+        "top_drift_error_m",
+        "likewise, of the drift of a shaft that bends",
+        "top_drift_max_error",
+        "m",
+        bases=BENDING,
+        stood=True,
+        requested=_bends,
     ),
-)  # fmt: skip
+)
 
 OPTIONAL = (
-    Quantity(
-        MIRROR_OF, 'with both polarities, "+" in the rows of "-": the run whose mirror image this is', kind="text",
-        sometimes=True, requested=lambda study: len(study.motions.polarity) > 1,
-    ),
+    _MIRROR,
     *_of_observers("FIRST"),
     *DEVICES,
     *_of_observers("QUANTITIES"),
     *_of_observers("ERRORS"),
-    Quantity(
-        "devices_error",
-        "largest relative error among the columns of devices, other than counts (relative to 1 % of the scale of small ones): "
-        "the change when the step was halved; empty with a fixed step",
-        "devices_error", page=ReportFormat("devices ±", ".0e", behind="deck_spring_energy_J_kg"), stood=True,
-        requested=lambda study: any(case.base.restraints for case in study.cases),
-    ),
+    _DEVICES_ERROR,
     *_of_observers("FURTHER"),
     *_OF_BENDING,
     *_of_observers("LAST"),
     *OF_FOOTING,
-)  # fmt: skip
+)
 """Quantities at the end of a table, on request of the study, in the order in which they came to it."""
 
 COLUMNS = {quantity.name: quantity for quantity in (*FIXED, *TRAILING, *OPTIONAL)}
@@ -374,29 +405,39 @@ COUNTS = tuple(quantity.name for quantity in COLUMNS.values() if quantity.kind i
 UNBOUNDED = tuple(quantity.name for quantity in COLUMNS.values() if quantity.unbounded)
 
 _OTHERS = (
-    event("flight", "both pivots off the ground", lambda runs: ~np.isnan(runs.numbers("flight_s")), "makes the pier fly"),
+    event(
+        "flight", "both pivots off the ground", lambda runs: ~np.isnan(runs.numbers("flight_s")), "makes the pier fly"
+    ),
     event("overturned", "overturned", lambda runs: runs.texts("status") == "overturned", "overturns the pier"),
     event(
-        "failed", "not run, or not settled", lambda runs: runs.texts("status") == "failed",
+        "failed",
+        "not run, or not settled",
+        lambda runs: runs.texts("status") == "failed",
         "has a run that is missing or not settled",
     ),
     parameter(
-        "eta", "bearing capacity index, a support's yield force over its static one", "", YIELDING,
+        "eta",
+        "bearing capacity index, a support's yield force over its static one",
+        "",
+        YIELDING,
         Ceiling(always(MOST_ETA), "is more than any foundation has"),
     ),
     parameter("yield_kN", "yield force of a support", "kN", YIELDING),
     parameter("stiffness_kN_m", "stiffness of a support", "kN/m", TWO_SPRINGS),
     parameter("safety_factor", "strength of a footing's bed over the pier's weight", "", FOOTING),
     parameter(
-        "static_deflection_m", "deflection of the supports under the weight at rest, while elastic", "m", SPRINGS, WIDER,
+        "static_deflection_m",
+        "deflection of the supports under the weight at rest, while elastic",
+        "m",
+        SPRINGS,
+        WIDER,
         "delta_s_m",
     ),
-)  # fmt: skip
+)
 """Demands that are no column of peaks.csv: events, and properties of the foundation."""
 
-_DIRECTED = {name for names in parts("quantities.DIRECTED") for name in names}
 DEMANDS: dict[str, Demand] = {
-    demand.name: replace(demand, directed=True) if demand.name in _DIRECTED else demand
+    demand.name: demand
     for demand in (
         *(demand for quantity in COLUMNS.values() for demand in quantity.demands()),
         *_OTHERS,

@@ -1,7 +1,7 @@
 """Quantities of devices: dampers, tendons, stops and deck springs."""
 
 from collections.abc import Callable
-from typing import Any, Literal
+from typing import Any
 
 from rockbatch.quantities.cases import weight
 from rockbatch.quantities.limits import LENGTHS, WIDER
@@ -9,27 +9,32 @@ from rockbatch.quantities.quantity import Limit, Quantity, ReportFormat, Run
 
 
 def of_device(
-    name: str, words: str, source: str | Callable[[Run], Any], unit: str, head: str, form: str, factor: int = 1,
-    *limits: Limit, device: str, more: str = "", behind: str = "", kind: Literal["number", "count"] = "number",
-    weighed: bool = False,
-) -> Quantity:  # fmt: skip
-    """Return a quantity of a kind of devices; checks limit it as it is unless ``limits`` are given."""
-    error = "" if kind == "count" else "devices_error"
-    page = ReportFormat(head, form, factor, behind)
-    return Quantity(
-        f"{device}_{name}", words, source, unit, page, more, kind, sometimes=True, error=error, limits=limits or (Limit(),),
-        device=device, weighed=weighed,
-    )  # fmt: skip
+    name: str,
+    words: str,
+    source: str | Callable[[Run], Any],
+    unit: str,
+    page: ReportFormat,
+    error: str = "devices_error",
+    limits: tuple[Limit, ...] = (Limit(),),
+    **facts: Any,
+) -> Quantity:
+    """Return a quantity of a kind of devices, given by ``device``; checks limit it as it is unless ``limits`` are given."""
+    return Quantity(name, words, source, unit, page, sometimes=True, error=error, limits=limits, **facts)
 
 
-def _device_force(device: str, symbol: str) -> Quantity:
+def _count(device: str, name: str, words: str, head: str) -> Quantity:
+    """Return a number of events of devices, which has no error."""
+    return of_device(name, words, name, "1", ReportFormat(head, ".0f"), kind="count", error="", device=device)
+
+
+def _force(device: str, symbol: str) -> Quantity:
     """Return the greatest force of a kind of devices over the weight."""
     kind = device.replace("_", " ")
-    words = f"greatest force of a {kind} over the pier's weight"
-    return of_device("force_over_weight", words, f"{device}_force", "1", f"{kind} {symbol}/(M g)", ".4f", device=device)
+    words, page = f"greatest force of a {kind} over the pier's weight", ReportFormat(f"{kind} {symbol}/(M g)", ".4f")
+    return of_device(f"{device}_force_over_weight", words, f"{device}_force", "1", page, device=device)
 
 
-def _device_force_in_kilonewtons(device: str, symbol: str) -> Quantity:
+def _force_in_kilonewtons(device: str, symbol: str) -> Quantity:
     """Return it in kN; checks take it from that over the weight, since earlier results have no other."""
 
     def value(run: Run) -> float | None:
@@ -37,56 +42,74 @@ def _device_force_in_kilonewtons(device: str, symbol: str) -> Quantity:
         return None if force is None or mass is None else force * mass * run.pier.gravity
 
     kind, over_weight = device.replace("_", " "), f"{device}_force_over_weight"
-    limit = Limit(times=weight, columns=(over_weight,))
+    words, page = f"greatest force of a {kind}", ReportFormat(f"{kind} {symbol} [kN]", ".0f", behind=over_weight)
+    limits = (Limit(times=weight, columns=(over_weight,)),)
     return of_device(
-        "force_kN", f"greatest force of a {kind}", value, "kN", f"{kind} {symbol} [kN]", ".0f", 1, limit, device=device,
-        more=", if mass_t is given", behind=over_weight, weighed=True,
-    )  # fmt: skip
+        f"{device}_force_kN",
+        words,
+        value,
+        "kN",
+        page,
+        more=", if mass_t is given",
+        weighed=True,
+        limits=limits,
+        device=device,
+    )
 
+
+def _depth(device: str) -> Quantity:
+    """Return the greatest deflection of a stop or a deck spring."""
+    kind = device.replace("_", " ")
+    words = f"greatest deflection of a {kind} beyond its gap"
+    page = ReportFormat(f"{kind} deflection [mm]", ".1f", 1000)
+    return of_device(f"{device}_deflection_m", words, f"{device}_depth", "m", page, limits=LENGTHS, device=device)
+
+
+def _energy(device: str) -> Quantity:
+    """Return the energy that all devices of a kind dissipate."""
+    kinds = f"{device.replace('_', ' ')}s"
+    words, page = f"energy dissipated by all {kinds}, per unit mass of the pier", ReportFormat(f"{kinds} [J/kg]", ".4f")
+    return of_device(f"{device}_energy_J_kg", words, f"{device}_energy", "J/kg", page, device=device)
+
+
+_STROKE, _SPEED = ReportFormat("damper stroke [mm]", ".1f", 1000), ReportFormat("damper speed [m/s]", ".3f")
+_YIELD = ReportFormat("tendon yield [mm]", ".2f", 1000)
 
 DEVICES = (
-    _device_force("damper", "F"),
+    _force("damper", "F"),
     of_device(
-        "stroke_m", "greatest elongation of a damper", "damper_stroke", "m", "damper stroke [mm]", ".1f", 1000, *LENGTHS,
+        "damper_stroke_m",
+        "greatest elongation of a damper",
+        "damper_stroke",
+        "m",
+        _STROKE,
+        limits=LENGTHS,
         device="damper",
     ),
-    of_device("speed_m_s", "greatest speed of a damper", "damper_speed", "m/s", "damper speed [m/s]", ".3f", device="damper"),
+    of_device("damper_speed_m_s", "greatest speed of a damper", "damper_speed", "m/s", _SPEED, device="damper"),
+    _energy("damper"),
+    _force("tendon", "T"),
     of_device(
-        "energy_J_kg", "energy dissipated by all dampers, per unit mass of the pier", "damper_energy", "J/kg",
-        "dampers [J/kg]", ".4f", device="damper",
+        "tendon_yield_m",
+        "largest permanent elongation of a tendon",
+        "tendon_yield",
+        "m",
+        _YIELD,
+        limits=(Limit(ceiling=WIDER),),
+        device="tendon",
     ),
-    _device_force("tendon", "T"),
-    of_device(
-        "yield_m", "largest permanent elongation of a tendon", "tendon_yield", "m", "tendon yield [mm]", ".2f",
-        1000, Limit(ceiling=WIDER), device="tendon",
-    ),
-    of_device("slack", "number of times tendons went slack", "tendon_slack", "1", "slack", ".0f", device="tendon", kind="count"),
-    _device_force_in_kilonewtons("damper", "F"),
-    _device_force_in_kilonewtons("tendon", "T"),
-    _device_force("stop", "F"),
-    of_device(
-        "deflection_m", "greatest deflection of a stop beyond its gap", "stop_depth", "m", "stop deflection [mm]", ".1f", 1000,
-        *LENGTHS, device="stop",
-    ),
-    of_device("blows", "number of contacts with stops", "stop_blows", "1", "blows", ".0f", device="stop", kind="count"),
-    of_device(
-        "energy_J_kg", "energy dissipated by all stops, per unit mass of the pier", "stop_energy", "J/kg",
-        "stops [J/kg]", ".4f", device="stop",
-    ),
-    _device_force_in_kilonewtons("stop", "F"),
-    _device_force("deck_spring", "F"),
-    of_device(
-        "deflection_m", "greatest deflection of a deck spring beyond its gap", "deck_spring_depth", "m",
-        "deck spring deflection [mm]", ".1f", 1000, *LENGTHS, device="deck_spring",
-    ),
-    of_device(
-        "blows", "number of times gaps at the deck closed", "deck_spring_blows", "1", "closures", ".0f", device="deck_spring",
-        kind="count",
-    ),
-    of_device(
-        "energy_J_kg", "energy dissipated by all deck springs, per unit mass of the pier", "deck_spring_energy",
-        "J/kg", "deck springs [J/kg]", ".4f", device="deck_spring",
-    ),
-    _device_force_in_kilonewtons("deck_spring", "F"),
-)  # fmt: skip
+    _count("tendon", "tendon_slack", "number of times tendons went slack", "slack"),
+    _force_in_kilonewtons("damper", "F"),
+    _force_in_kilonewtons("tendon", "T"),
+    _force("stop", "F"),
+    _depth("stop"),
+    _count("stop", "stop_blows", "number of contacts with stops", "blows"),
+    _energy("stop"),
+    _force_in_kilonewtons("stop", "F"),
+    _force("deck_spring", "F"),
+    _depth("deck_spring"),
+    _count("deck_spring", "deck_spring_blows", "number of times gaps at the deck closed", "closures"),
+    _energy("deck_spring"),
+    _force_in_kilonewtons("deck_spring", "F"),
+)
 """Quantities of devices."""

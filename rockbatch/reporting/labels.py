@@ -25,7 +25,7 @@ def heading(words: str) -> Markup:
 
 
 def head(column: Quantity) -> Head:
-    """Return the head of a column of peaks.csv, its tooltip with the column's name and meaning."""
+    """Return the head of a column that is in the report, its tooltip with the column's name and meaning."""
     assert column.page is not None
     factor = f" × {column.page.factor}" if column.page.factor != 1 else ""
     return Head(heading(column.page.head), column.page.form, f"{column.name}{factor}: {column.meaning}")

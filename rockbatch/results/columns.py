@@ -73,7 +73,7 @@ def cells(runs: Sequence[StudyRun], requested: Container[str] = COLUMNS) -> dict
     table |= zip(_FIELDS, map(list, zip(*(_read_fields(run.outcome) for run in runs), strict=True)), strict=True)
     table |= {name: [function(run) for run in runs] for name, function in _FUNCTIONS.items() if name in requested}
     alpha = [run.case.pier.alpha for run in runs]
-    for name in _OVER_ALPHA:
+    for name in filter(table.__contains__, _OVER_ALPHA):
         table[name] = [None if x is None else x / a for x, a in zip(table[name], alpha, strict=True)]
     for name in table.keys() & FACTS:
         table[name] = [None if holds is None else int(holds) for holds in table[name]]

@@ -49,7 +49,7 @@ def unfit(value: object, shape: object, most: int | None = None) -> Iterator[Mis
 
 
 def fits(value: object, shape: object) -> bool:
-    """Return whether all of ``value`` fits ``shape``."""
+    """Return whether ``value``, read from JSON, has all the parts of ``shape``, of its types."""
     return next(unfit(value, shape), None) is None
 
 

@@ -7,16 +7,17 @@ import numpy as np
 
 from rockbatch.common.lazy import pd
 from rockbatch.core import types
-from rockbatch.core.flexure.model import FlexibleBlock, Flexing
+from rockbatch.core.flexure.model import Flexing
 from rockbatch.core.flexure.modes import MOST_MODES
 from rockbatch.core.observe.beds import BED_STATE, follow_bed
+from rockbatch.core.observe.ledger import LEDGER, energy_of_rows
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.half_cycles import HalfCycles, Path, half_cycles
 from rockbatch.outcome.response import EVENT_TYPES, Response
 from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase
 from rockbatch.simulation import restraints
 from rockbatch.simulation.forces import LANDINGS
-from rockbatch.simulation.models import acceleration_at, block, flexible_block, model, springs
+from rockbatch.simulation.models import acceleration_at, flexible_block, ground_of, model, springs
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
@@ -36,6 +37,9 @@ _EVENTS = {
     types.TAKE_OFF: ("take-off", ""),
     types.DECK: ("deck impact", ""),
 }
+
+LANDINGS = (types.IMPACT_LEFT, types.IMPACT_RIGHT, types.IMPACT_BOTH, types.REST)
+"""Kinds of events at which a pivot comes down."""
 
 
 def cycles_of(base: Base, rows: np.recarray) -> HalfCycles:
@@ -103,35 +107,20 @@ def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str,
     return events
 
 
+def _energy(pier: Pier, base: Base, rows: np.recarray) -> Samples:
+    """Return the energy [J/kg] of a pier and its devices at every row, relative to the first."""
+    energy = np.empty(len(rows))
+    energy_of_rows(model(pier, base), restraints.apart(base, rows)[0], energy)
+    return energy + restraints.stored(pier, base, rows) if base.restraints else energy
+
+
 def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Samples]:
     """Return columns of a history on rigid ground: rotation, rate, energy since the start, and deflection of an elastic shaft."""
-    m, theta, v = block(pier, base), rows.theta, rows.v
-    side = np.where(rows.left != rows.right, rows.right - rows.left, (1.0 - m.deck) * rows.bore + m.deck * rows.top)
-    lever = m.height * np.cos(theta) + side * m.half_width * np.sin(theta)
-    energy = 0.5 * rows.v_rate**2 + 0.5 * (pier.inertia + lever**2) * rows.omega**2 + pier.gravity * (v - v[0])
-    bent = {}
-    if base.bends:
-        energy = _energy_of_bending(flexible_block(pier, base), rows, side)
-        energy, bent = energy - energy[0], {"deflection": flexible_block(pier, base).end_shape @ of_modes(rows)[0]}
-    if base.restraints:
-        energy = energy + restraints.stored(pier, base, rows)
     none = dict.fromkeys(
         ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"), np.full(len(rows), np.nan)
     )
-    return {"theta": theta, "omega": rows.omega, **none, "energy": energy, **bent}
-
-
-def _energy_of_bending(m: FlexibleBlock, rows: np.recarray, key: Samples) -> Samples:
-    """Return kinetic, potential and elastic energy [J/kg] of a pier with an elastic shaft, about the base point at ``key`` b."""
-    b, sine, cosine = key * m.half_width, np.sin(rows.theta), np.cos(rows.theta)
-    u, u_rate = of_modes(rows)
-    moved = m.share @ u
-    turning = m.inertia + m.height**2 + b**2 + (u * u).sum(axis=0) - 2.0 * moved * b
-    slope, rise = (b - moved) * cosine - m.height * sine, rows.v_rate - (b * cosine - m.height * sine) * rows.omega
-    kinetic = 0.5 * ((u_rate * u_rate).sum(axis=0) + turning * rows.omega**2 + rise**2)
-    kinetic += (m.coupling @ u_rate) * rows.omega + rise * (slope * rows.omega - (m.share @ u_rate) * sine)
-    stretched = np.array(m.frequency)[:, None] * u
-    return kinetic + m.gravity * (rows.v - moved * sine) + 0.5 * (stretched * stretched).sum(axis=0)
+    bent = {"deflection": flexible_block(pier, base).end_shape @ of_modes(rows)[0]} if base.bends else {}
+    return {"theta": rows.theta, "omega": rows.omega, **none, "energy": _energy(pier, base, rows), **bent}
 
 
 def of_modes(rows: np.recarray) -> tuple[Samples, Samples]:
@@ -175,21 +164,11 @@ def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str
     m = springs(pier, base)
     v, theta, z_left, z_right = rows.v, rows.theta, rows.z_left, rows.z_right
     b, h = m.half_width, m.height
-    rise, drop, lever = b * theta, np.zeros(len(rows)), np.full(len(rows), h)
+    rise, drop = b * theta, np.zeros(len(rows))
     arm, middle = np.full(len(rows), b), np.zeros(len(rows))
     if m.finite is not None:
         rise, drop = b * np.sin(theta), h * (1.0 - np.cos(theta))
         arm, middle = b * np.cos(theta), h * np.sin(theta)
-        lever = h * np.cos(theta) + (rows.right - rows.left) * rise
-    elastic = z_left**2 + z_right**2
-    energy = (
-        0.5 * rows.v_rate**2
-        + 0.5 * (m.inertia + lever**2) * rows.omega**2
-        + m.gravity * (v - v[0])
-        + 0.5 * m.yield_force * m.yield_deflection * (elastic - elastic[0])
-    )
-    if base.restraints:
-        energy = energy + restraints.stored(pier, base, rows)
     return {
         "theta": theta,
         "omega": rows.omega,
@@ -200,5 +179,5 @@ def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str
         "v_right": v - rise + drop,
         "force_left": rows.left * (m.yield_force * z_left + m.damping * (rows.v_rate + (middle + arm) * rows.omega)),
         "force_right": rows.right * (m.yield_force * z_right + m.damping * (rows.v_rate + (middle - arm) * rows.omega)),
-        "energy": energy,
+        "energy": _energy(pier, base, rows),
     }

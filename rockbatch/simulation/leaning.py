@@ -110,10 +110,8 @@ def _last_borne(unstressed: Samples, borne: Samples, at_first: float) -> Samples
     return np.where(last < 0, at_first, unstressed[last])
 
 
-def with_rocking(outcome: Outcome, parts: Apart, alpha: float) -> Outcome:
-    """Return ``outcome`` with rocking and lean, and a note if the peak is mostly lean, in units of ``alpha`` [rad]."""
-    lean = None if outcome.status == "flight" else parts.lean
-    outcome = outcome.changed(theta_rocking=parts.rocking, theta_lean=lean)
+def noted_lean(outcome: Outcome, parts: Apart, alpha: float) -> Outcome:
+    """Return ``outcome`` with a note if its peak is mostly lean, in units of ``alpha`` [rad]."""
     if outcome.status != "ok" or not parts.leans:
         return outcome
     remark = (
@@ -123,18 +121,10 @@ def with_rocking(outcome: Outcome, parts: Apart, alpha: float) -> Outcome:
     return outcome.noted(remark, theta_max_is=LEANS)
 
 
-def with_error_of_rocking(outcome: Outcome, fine: Apart, coarse: Apart) -> Outcome:
-    """Return ``outcome`` with the errors of rocking and lean: their changes from ``coarse`` to ``fine``."""
-    return outcome.changed(
-        theta_rocking_error=abs(fine.rocking - coarse.rocking),
-        theta_lean_error=None if outcome.theta_lean is None else abs(fine.lean - coarse.lean),
-    )
-
-
 def with_lean(
     runs: Sequence[Run], outcomes: Sequence[Outcome], quiet_s: float, wait: bool = True, stop: Stop | None = None
 ) -> list[Outcome]:
-    """Return ``outcomes`` with rocking and lean of those on yielding springs whose peak is mostly lean.
+    """Return ``outcomes`` with a note on those on yielding springs whose peak is mostly lean.
 
     After the record the rocking does not grow, so that a run to the end of its quiet time, a quarter of the whole, rules most
     candidates out. Runs that are too long to be recorded are not changed, nor those that come after ``stop``.
@@ -145,7 +135,7 @@ def with_lean(
     of_record = _lean_of_runs(runs, found, early, quiet_s, False, stop)
     mixed = [i for i in mixed if i not in early or (i in of_record and of_record[i].leans)]
     for i, parts in _lean_of_runs(runs, found, mixed, quiet_s, wait, stop).items():
-        found[i] = with_rocking(found[i], parts, runs[i].pier.alpha)
+        found[i] = noted_lean(found[i], parts, runs[i].pier.alpha)
     return found
 
 

@@ -445,8 +445,8 @@ def patience(pier: Pier, dt: float) -> int:
 def readings(pier: Pier, base: Base, dt: float) -> tuple[int, int]:
     """Return the samples of ``dt`` [s] from the end of the record to the first reading of residuals, and on to the second.
 
-    The second reading gives their drift, over whole periods of full-contact rocking of at least :data:`READ_AFTER`. 0 and 0
-    unless the springs yield.
+    The first comes :data:`READ_AFTER` periods of vertical vibration after the record; the second, at least as much later, gives
+    their drift over whole periods of full-contact rocking. 0 and 0 unless the springs yield.
     """
     if not isinstance(base, YieldingBase):
         return 0, 0

@@ -27,8 +27,7 @@ from rockbatch.core.observe.peaks import RecordedDevices, recorded_force
 from rockbatch.core.observe.rows import contact_of, state_of
 from rockbatch.core.types import Result
 from rockbatch.motions.motion import Samples
-from rockbatch.outcome.device_work import Courses, greatest_of, work_of
-from rockbatch.outcome.outcome import DeviceWork
+from rockbatch.outcome.device_work import Courses, Work, work_of
 from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase, places
 from rockbatch.simulation.models import elements, footing, model, prestress, springs
 from rockbatch.simulation.starting import start_of
@@ -112,11 +111,11 @@ def loops(pier: Pier, base: Base, rows: np.recarray) -> "pd.DataFrame":
     return pd.DataFrame(table)
 
 
-def device_work(pier: Pier, base: Base, rows: np.recarray, least_stroke: float) -> DeviceWork:
-    """Return the greatest work of devices in a run with ``rows`` at every step; half cycles from ``least_stroke`` [m] up."""
+def device_work(pier: Pier, base: Base, rows: np.recarray, least_stroke: float) -> Work:
+    """Return the work of each device in a run with ``rows`` at every step; half cycles from ``least_stroke`` [m] up."""
     found = _followed(pier, base, rows)
     courses = Courses(found.elongation, found.pull, rows.lost, rows.t, found.speed)
-    return greatest_of(pier, base, work_of(pier, base, courses, least_stroke))
+    return work_of(pier, base, courses, least_stroke)
 
 
 def stored(pier: Pier, base: Base, rows: np.recarray) -> Samples:

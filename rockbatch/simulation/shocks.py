@@ -36,7 +36,7 @@ def of_shocks(run: Run, outcome: Outcome, rows: np.recarray) -> OfShocks:
 
 
 def with_error(fine: OfShocks, coarse: OfShocks) -> list[ShockOutcome]:
-    """Return the effects of each shock with the change of θ_max from ``coarse`` as its error; NaN unless it is "ok"."""
+    """Return the ``fine`` effects of each shock; the error of an "ok" one is the change of θ_max from ``coarse``, else NaN."""
     pairs = zip(fine.outcomes, coarse.peaks, strict=True)
     errors = [abs(finer.theta_max - theta) if finer.status == "ok" else math.nan for finer, (theta, _) in pairs]
     return [replace(finer, theta_max_error=error) for finer, error in zip(fine.outcomes, errors, strict=True)]

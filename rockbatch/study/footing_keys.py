@@ -10,41 +10,73 @@ from rockbatch.pier import FootingBase, Pier
 from rockbatch.pier.footing_base import POISSON, STRIPS
 from rockbatch.pier.restraints import DeckSpring, Restraint
 from rockbatch.pier.soil import Formula
-from rockbatch.toml.kinds import Whole, boolean, choice, positive, within
+from rockbatch.toml.kinds import Kind, Whole, boolean, choice, positive, within
 from rockbatch.toml.section import Key
 
 ON_FOOTING = {"base": ("footing",)}
 _SOIL = ("shear_modulus_MPa", "poisson", "embedment_m", "formula", "radiation", "density_t_m3")
 _FIELDS = ("zeta", "kinematics", "friction", "flight_limit_mm", "strips", "length_m", "safety_factor", "beta")
 
+_WAYS = {
+    "beta": ("beta",),
+    "stiffness_MN_m3": ("stiffness_MN_m3",),
+    "young_GPa with depth_m": ("young_GPa", "depth_m"),
+    "shear_modulus_MPa with poisson": ("shear_modulus_MPa", "poisson"),
+}
+"""Ways to give the stiffness of the bed, and the keys of each."""
+_BESIDE = {
+    "young_GPa": ("depth_m", "length_m"),
+    "depth_m": ("young_GPa",),
+    "shear_modulus_MPa": ("poisson", "length_m"),
+    "poisson": ("shear_modulus_MPa",),
+    "bearing_MPa": ("length_m",),
+    "stiffness_MN_m3": ("length_m",),
+    "embedment_m": ("shear_modulus_MPa",),
+    "formula": ("shear_modulus_MPa",),
+    "radiation": ("shear_modulus_MPa", "density_t_m3"),
+    "density_t_m3": ("radiation",),
+}
+"""Keys that each key requires beside it."""
+
+
+def _key(kind: Kind, example: str, words: str) -> Key:
+    """Return the declaration of a key that only a footing has, and that may be a list."""
+    return Key(kind, example, words, many=True, only=ON_FOOTING)
+
+
 FOOTING_KEYS = {
-    "width_m": Key(positive, "9.0",
+    "width_m": _key(
+        positive,
+        "9.0",
         "Width of the foot in the plane of rocking; default: that of the pier. α of the case is then atan(width_m/2h); devices "
-        "stay at the pivots of `[pier]`.", many=True, only=ON_FOOTING),
-    "length_m": Key(positive, "12.0", "Length of the foot across the plane of rocking.", many=True, only=ON_FOOTING),
-    "stiffness_MN_m3": Key(positive, "60.0", "Stiffness of the bed; or give soil, or `young_GPa` with `depth_m`.", many=True,
-        only=ON_FOOTING),
-    "young_GPa": Key(positive, "30.0", "Young's modulus of toes of concrete or steel, whose bed has the stiffness E/depth.",
-        many=True, only=ON_FOOTING),
-    "depth_m": Key(positive, "0.5", "Depth of that material.", many=True, only=ON_FOOTING),
-    "bearing_MPa": Key(positive, "1.2", "Strength of the bed, uniform; or give `safety_factor`. With neither it is elastic.",
-        many=True, only=ON_FOOTING),
-    "safety_factor": Key(positive, "3.0", "FS: bearing capacity over the weight of pier and deck, above 1.", many=True,
-        only=ON_FOOTING),
-    "shear_modulus_MPa": Key(positive, "60.0", "Shear modulus G of the soil, at the strain that is expected.", many=True,
-        only=ON_FOOTING),
-    "poisson": Key(within(POISSON), "0.45", "Poisson's ratio ν of the soil.", many=True, only=ON_FOOTING),
-    "embedment_m": Key(positive, "2.0", "Depth of the foot's underside below the surface, with walls in contact.", many=True,
-        only=ON_FOOTING),
-    "formula": Key(choice(*get_args(Formula)), '"gazetas"',
-        "Formula of the soil's stiffnesses; the bed has its rocking stiffness, from which its vertical one follows.", many=True,
-        only=ON_FOOTING),
-    "radiation": Key(boolean, "true",
+        "stay at the pivots of `[pier]`.",
+    ),
+    "length_m": _key(positive, "12.0", "Length of the foot across the plane of rocking."),
+    "stiffness_MN_m3": _key(positive, "60.0", "Stiffness of the bed; or give soil, or `young_GPa` with `depth_m`."),
+    "young_GPa": _key(
+        positive, "30.0", "Young's modulus of toes of concrete or steel, whose bed has the stiffness E/depth."
+    ),
+    "depth_m": _key(positive, "0.5", "Depth of that material."),
+    "bearing_MPa": _key(
+        positive, "1.2", "Strength of the bed, uniform; or give `safety_factor`. With neither it is elastic."
+    ),
+    "safety_factor": _key(positive, "3.0", "FS: bearing capacity over the weight of pier and deck, above 1."),
+    "shear_modulus_MPa": _key(positive, "60.0", "Shear modulus G of the soil, at the strain that is expected."),
+    "poisson": _key(within(POISSON), "0.45", "Poisson's ratio ν of the soil."),
+    "embedment_m": _key(positive, "2.0", "Depth of the foot's underside below the surface, with walls in contact."),
+    "formula": _key(
+        choice(*get_args(Formula)),
+        '"gazetas"',
+        "Formula of the soil's stiffnesses; the bed has its rocking stiffness, from which its vertical one follows.",
+    ),
+    "radiation": _key(
+        boolean,
+        "true",
         "Whether dashpots of radiated waves join `zeta`. Strip by strip they overstate the damping of rocking 8 to 100 times.",
-        many=True, only=ON_FOOTING),
-    "density_t_m3": Key(positive, "1.9", "Density of the soil, for `radiation`.", many=True, only=ON_FOOTING),
-    "strips": Key(Whole(), "40", f"Strips of the bed, an even number; default: {STRIPS}.", many=True, only=ON_FOOTING),
-}  # fmt: skip
+    ),
+    "density_t_m3": _key(positive, "1.9", "Density of the soil, for `radiation`."),
+    "strips": _key(Whole(), "40", f"Strips of the bed, an even number; default: {STRIPS}."),
+}
 """Keys of a footing; in a list each value is a case."""
 
 
@@ -77,20 +109,15 @@ def footing_of(
     ``pier`` is that on the foot.
     """
     fields = {name: values[name] for name in _FIELDS if name in values} | {"restraints": devices}
-    ways = [
-        way
-        for way, keys in {
-            "beta": ("beta",), "stiffness_MN_m3": ("stiffness_MN_m3",), "young_GPa with depth_m": ("young_GPa", "depth_m"),
-            "shear_modulus_MPa with poisson": ("shear_modulus_MPa", "poisson"),
-        }.items()
-        if any(key in values for key in keys)
-    ]  # fmt: skip
+    ways = [way for way, keys in _WAYS.items() if any(key in values for key in keys)]
     fallback = FootingBase(4.0 * pier.least_beta, restraints=devices, confirm=("beta",))
     if len(ways) != 1:
-        many = f"{' and '.join(ways)} are given, which fix the same; keep one" if ways else (
+        text = (
             "the stiffness of the bed is missing; write shear_modulus_MPa and poisson of the soil, or stiffness_MN_m3"
-        )  # fmt: skip
-        return fallback, [Problem("base", None, many, kind=Contradiction if ways else MissingKey)]
+        )
+        if ways:
+            text = f"{' and '.join(ways)} are given, which fix the same; keep one"
+        return fallback, [Problem("base", None, text, kind=Contradiction if ways else MissingKey)]
     if wrong := _lacking(values):
         return fallback, wrong
     try:
@@ -100,17 +127,11 @@ def footing_of(
 
 
 def _lacking(values: Mapping[str, Any]) -> list[Problem]:
-    """Return which keys miss another one."""
-    pairs = (
-        ("young_GPa", "depth_m"), ("depth_m", "young_GPa"), ("shear_modulus_MPa", "poisson"), ("poisson", "shear_modulus_MPa"),
-        ("bearing_MPa", "length_m"), ("stiffness_MN_m3", "length_m"), ("young_GPa", "length_m"),
-        ("shear_modulus_MPa", "length_m"),
-        ("embedment_m", "shear_modulus_MPa"), ("formula", "shear_modulus_MPa"), ("radiation", "shear_modulus_MPa"),
-        ("density_t_m3", "radiation"), ("radiation", "density_t_m3"),
-    )  # fmt: skip
+    """Return a problem for each key without another that it requires, and for two that fix the same."""
     wrong = [
         Problem(key, values[key], f"{other} is missing beside it", kind=MissingKey)
-        for key, other in pairs
+        for key, others in _BESIDE.items()
+        for other in others
         if key in values and other not in values
     ]
     if "bearing_MPa" in values and "safety_factor" in values:

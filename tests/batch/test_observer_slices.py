@@ -1,4 +1,4 @@
-"""An observer is one folder and one name in a tuple: each is taken away in a copy of the package, and the rest stays."""
+"""An observer is one folder and one name in a tuple: in a copy of the package each is deleted, and another one added."""
 
 import json
 import os
@@ -9,6 +9,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
+import pandas as pd
 import pytest
 from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
@@ -60,6 +61,22 @@ def delete(package, name):
     listing.write_text("".join(kept), encoding="utf-8")
 
 
+def copy_of_package(tmp_path):
+    """Return a folder with a copy of the package."""
+    copied = tmp_path / "copied"
+    shutil.copytree(Path(rb.__file__).parent, copied / "rockbatch", ignore=shutil.ignore_patterns("*.nb[ci]"))
+    return copied
+
+
+def run_in(copied, *arguments):
+    """Run :data:`RUN` with the package in ``copied``."""
+    command = [sys.executable, "-c", RUN, *map(str, arguments)]
+    environment = os.environ | {"PYTHONPATH": str(copied)}
+    done = subprocess.run(command, cwd=copied, env=environment, text=True, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done
+
+
 def brought(name):
     """Return the parts of the report, the columns and the demands that an observer brings."""
     parts = [part.anchor for owner, part in report_parts() if owner == name]
@@ -103,14 +120,11 @@ def test_an_observer_is_deleted_with_its_folder_and_its_name(tmp_path, name):
         study_of(tmp_path, [name], "own.toml"),
     )
     rb.run(study, tmp_path / "whole")
-    copied = tmp_path / "copied"
-    shutil.copytree(Path(rb.__file__).parent, copied / "rockbatch", ignore=shutil.ignore_patterns("*.nb[ci]"))
+    copied = copy_of_package(tmp_path)
     delete(copied / "rockbatch", name)
-    done = subprocess.run(
-        [sys.executable, "-c", RUN, str(study), str(tmp_path / "rest"), str(asking)],
-        cwd=copied, env=os.environ | {"PYTHONPATH": str(copied)}, text=True, capture_output=True, check=False,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
+    sources = [path.read_text(encoding="utf-8") for path in copied.rglob("*.py")]
+    assert not [source for source in sources if f'observed.get("{name}")' in source or f"observers.{name}" in source]
+    done = run_in(copied, study, tmp_path / "rest", asking)
     assert all(f"{key}: unknown key" in done.stdout for key in KEYS[name])
     parts, columns, demands = (set(own) for own in brought(name))
     assert json.loads(done.stdout.rpartition("seen: ")[2]) == [
@@ -122,3 +136,71 @@ def test_an_observer_is_deleted_with_its_folder_and_its_name(tmp_path, name):
     assert files == [path.name for path in sorted((tmp_path / "rest").glob("*.csv"))]
     for file in files:
         assert (tmp_path / "whole" / file).read_bytes() == (tmp_path / "rest" / file).read_bytes()
+
+
+QUICKEST = {
+    "__init__.py": '"""Greatest speed of rocking."""\n',
+    "study.py": """
+from dataclasses import dataclass
+from rockbatch.toml.kinds import boolean
+from rockbatch.toml.section import Key, Section
+
+@dataclass(frozen=True)
+class Quickest:
+    quickest: bool = False
+
+OUTPUT = Section(("output",), "", {"quickest": Key(boolean, "true", "Whether it is added.")}, homes=(Quickest,))
+""",
+    "observe.py": """
+from dataclasses import dataclass
+import numpy as np
+from rockbatch.observers.quickest.study import Quickest
+from rockbatch.simulation.observing import Observer
+
+@dataclass(frozen=True)
+class GreatestSpeed(Observer):
+    def read(self, recording, outcome):
+        return float(np.abs(recording.rows.omega).max())
+
+    def add(self, run, outcome, fine, coarse):
+        return outcome if fine is None else outcome.with_observed("quickest", fine)
+
+def requested(output):
+    return GreatestSpeed() if output.of(Quickest).quickest else None
+""",
+    "quantities.py": """
+from rockbatch.quantities.quantity import Limit, Quantity, ReportFormat
+
+def _speed(run):
+    return run.outcome.observed.get("quickest")
+
+LAST = (
+    Quantity("omega_max_rad_s", "greatest speed of rocking", _speed, "rad/s", ReportFormat("speed", ".3f"), needs="quickest",
+        limits=(Limit(),)),
+)
+""",
+}
+"""Files of an observer with a column."""
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("no_report")
+def test_an_observer_with_a_column_is_added_by_its_folder_and_its_name(tmp_path):
+    """Its column and its demand are there, next to that of the angular velocity over p, which is the same."""
+    copied = copy_of_package(tmp_path)
+    folder = copied / "rockbatch" / "observers" / "quickest"
+    folder.mkdir()
+    for name, source in QUICKEST.items():
+        (folder / name).write_text(source, encoding="utf-8")
+    listing = copied / "rockbatch" / "common" / "observers.py"
+    text = listing.read_text(encoding="utf-8")
+    listing.write_text(text.replace("OBSERVERS = (\n", 'OBSERVERS = (\n    "quickest",\n'), encoding="utf-8")
+    study = study_text(pier=PIER, pulses=[SINE], cases=[RIGID], output={"quickest": True, "forces": True})
+    path = write_study(tmp_path, study)
+    done = run_in(copied, path, tmp_path / "results", path)
+    demands = json.loads(done.stdout.rpartition("seen: ")[2])[2]
+    assert "omega_max_rad_s" in demands
+    row = pd.read_csv(tmp_path / "results" / "peaks.csv").iloc[0]
+    assert row["omega_max_rad_s"] == pytest.approx(
+        row["omega_max_over_p"] * rb.load_study(study_of(tmp_path, [])).cases[0].pier.p
+    )

@@ -99,3 +99,30 @@ def test_a_signal_falls_at_its_first_crossing_from_above_wherever_it_starts():
     ends = (0.0, within.deriv()(0.0), within(1.0), within.deriv()(1.0), 1.0)
     assert falls(*ends) == pytest.approx(0.4, rel=1e-9)
     assert falls(0.0, 1e-13, -1.0, -3.0, 1.0) == 0.5  # a hump that is rounding shows no time
+
+
+def test_a_signal_that_falls_and_rises_again_within_a_step_has_fallen():
+    """f = s (s − 0.3)(s − 0.6) leaves zero at the start, falls through it at 0.3 and is positive again at the end."""
+    f = Polynomial.fromroots([0.0, 0.3, 0.6])
+    d = f.deriv()
+    assert falls(0.0, d(0.0), f(1.0), d(1.0), 1.0) == pytest.approx(0.3, abs=1e-12)
+    above = Polynomial.fromroots([-0.05, 0.3, 0.6])
+    slope = above.deriv()
+    assert falls(above(0.0), slope(0.0), above(1.0), slope(1.0), 1.0) == pytest.approx(0.3, abs=1e-12)
+    assert falls(1e-3, d(0.0), f(1.0) + 0.1, d(1.0), 1.0) == -1.0
+
+
+def test_the_time_at_which_a_signal_falls_is_the_first_root_of_its_cubic():
+    """Against NumPy's roots, of cubics with one or two in the step, many of them nearly flat beside it."""
+    rng, counts = np.random.default_rng(1), [0, 0, 0]
+    for flat in rng.choice([1e-6, 1e-3, 0.1, 1.0], 1500):
+        at, more, h = rng.uniform(0.01, 0.99), rng.uniform(-1.0, 1.0), rng.uniform(1e-3, 1.0)
+        pair = Polynomial([at * at + flat * more, -2.0 * at, 1.0])  # two roots near the third, or none
+        f = Polynomial([-at + rng.normal() * rng.choice([0.0, 0.1]), 1.0]) * pair
+        f, d = (-f, -f.deriv()) if f(0.0) < 0.0 else (f, f.deriv())
+        roots = [root.real for root in f.roots() if abs(root.imag) < 1e-9 and 0.0 < root.real < 1.0]
+        if len(roots) < 3 and (len(roots) < 2 or abs(roots[0] - roots[1]) > 1e-3):
+            found = falls(f(0.0), d(0.0) / h, f(1.0), d(1.0) / h, h)
+            assert found == pytest.approx(h * min(roots) if roots else -1.0, abs=1e-5 * h)
+            counts[len(roots)] += 1
+    assert min(counts) > 30

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import rockbatch as rb
 from rockbatch.common.units import GRAVITY
 from rockbatch.core.block.equations import normal_force
 from rockbatch.core.block.events import _change_of_normal
@@ -236,6 +237,12 @@ def status_of(m, now, values, devices=()):
         held.goes[:] = 0.0
     found = status_at_sample(of.traits, lanes, 0, held)
     return *map(float, found), {name: float(place[0]) for name, place in places.items()}
+
+
+def half_sine(amplitude_g: float, period: float, duration: float) -> Motion:
+    return rb.pulse(
+        "half-sine", name="half-sine", amplitude=amplitude_g * 9.81, period=period, dt=0.01, duration=duration
+    )
 
 
 def sections_at(run, rows, samples, heights):

@@ -143,7 +143,7 @@ def test_the_page_shows_a_column_in_the_unit_of_its_heading():
 
 def test_every_number_of_an_outcome_has_its_column():
     taken = {column.source for column in COLUMNS.values() if isinstance(column.source, str)}
-    of_functions = {"energies", "forces", "device_work", "bed"}  # each of theirs has a column of its own
+    of_functions = {"observed", "bed"}  # each of their numbers has a column of its own
     of_functions |= {"flight_duration", "flight_height"}  # empty where they are 0
     of_functions |= {"top_drift_max"}  # top_drift_m where the shaft bends
     of_functions |= {"failure"}  # as a plain text

@@ -55,7 +55,7 @@ def test_a_row_that_the_table_lacks_has_nothing_but_what_is_known_of_it():
     some = runs.where(np.array([False, True, True]))
     np.testing.assert_array_equal(some.numbers("theta"), [np.nan, 1.0])
     assert some.texts("record").tolist() == ["c", "a"]
-    wider = some.beside(Rows(table.assign(shear=[5.0, 6.0])))
+    wider = some.same_rows_of(Rows(table.assign(shear=[5.0, 6.0])))
     np.testing.assert_array_equal(wider.numbers("shear"), [np.nan, 5.0])
     assert wider.texts("record").tolist() == ["c", "a"]
 

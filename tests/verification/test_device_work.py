@@ -17,6 +17,7 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, PASS
 from rockbatch.common.errors import InputError
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import Motion
+from rockbatch.observers.devices_work.observe import greatest_of
 from rockbatch.outcome.device_work import Courses, rainflow, with_turns, work_of
 from rockbatch.pier import Damper, RigidBase, Tendon, YieldingBase, places
 from rockbatch.simulation.restraints import _followed, device_work
@@ -169,7 +170,7 @@ def test_travel_and_work_are_those_of_the_reference(device):
     expected = Working(FIG5, base, SHAKEN, 0.0)
     expected.run()
     result, rows = written_run(Run(FIG5, base, SHAKEN), 8, 0.0, 100_000, every_step=True, wait=False)
-    found = device_work(FIG5, base, rows[: result.rows].view(np.recarray), 0.01)
+    found = greatest_of(FIG5, base, device_work(FIG5, base, rows[: result.rows].view(np.recarray), 0.01))
     assert found.damper_travel == pytest.approx(expected.travel[0], rel=1e-4)
     assert found.damper_work == pytest.approx(expected.work[0], rel=1e-4)
     if device.kind == "friction":

@@ -12,11 +12,11 @@ from reference_forces import greatest_forces
 import rockbatch as rb
 from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.observers import observers_of
+from rockbatch.observers.forces.peaks import with_error
 from rockbatch.outcome import changes
 from rockbatch.pier import offsets
 from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.error_control import CHANCE
-from rockbatch.simulation.forces import with_error
 from rockbatch.study import Case, Numerics, Output
 
 G = 9.81
@@ -58,6 +58,10 @@ EVERY_BASE = pytest.mark.parametrize(
 )
 
 
+def forces_of(outcome):
+    return outcome.observed.get("forces")
+
+
 def outcome_of(pier, base, motion, *, forces=True, **numerics):
     run = StudyRun(motion, "+", 1.0, Case("case", pier, base, {}))
     (outcome,) = outcomes_of([run], Numerics(**numerics), observers_of(Output.with_keys(forces=forces)))
@@ -65,7 +69,7 @@ def outcome_of(pier, base, motion, *, forces=True, **numerics):
 
 
 def sized(pier, base, motion, **numerics):
-    return outcome_of(pier, base, motion, **numerics).forces
+    return forces_of(outcome_of(pier, base, motion, **numerics))
 
 
 @pytest.fixture(scope="module")
@@ -147,7 +151,7 @@ def test_friction_demand_under_a_step_of_1_g_is_that_at_its_start(alpha, demand)
     motion = rb.Motion("step", 0.005, np.full(3000, G))
     outcome = outcome_of(rb.Pier(alpha, 1.0), rb.RigidBase(), motion)
     assert outcome.status == "overturned"
-    assert outcome.forces.friction_demand == pytest.approx(demand, abs=1e-9)
+    assert forces_of(outcome).friction_demand == pytest.approx(demand, abs=1e-9)
     c, s = math.cos(alpha), math.sin(alpha)
     assert demand == pytest.approx((1 - 0.75 * c * (c - s)) / (1 + 0.75 * s * (c - s)), abs=1e-9)
 
@@ -463,7 +467,7 @@ def test_peaks_are_those_of_a_history_that_is_many_times_finer(name, responses):
     base, response = BASES[name], responses[name]
     outcome = outcome_of(PIER, base, shaken())
     assert outcome.substeps <= 6
-    found = asdict(outcome.forces)
+    found = asdict(forces_of(outcome))
     fine = response.forces.abs().max()
     if name == "rigid, tied":
         fine = np.fmax(fine, before_turnings(response).abs().max())
@@ -490,10 +494,10 @@ def test_flight_is_as_long_and_as_high_as_both_gaps_say(responses):
     assert outcome.flight_height == pytest.approx(lower.max(), rel=1e-4)
     lands = np.flatnonzero(np.diff(np.concatenate([[0], flying.astype(int), [0]])))
     longest = max(response.t[min(end, len(flying) - 1)] - response.t[start] for start, end in lands.reshape(-1, 2))
-    assert outcome.forces.flight_longest == pytest.approx(longest, abs=2 * FINE)
+    assert forces_of(outcome).flight_longest == pytest.approx(longest, abs=2 * FINE)
     shear = response.forces["base_shear"].abs()[response.forces["normal_force"] < LEAST].max()
-    assert outcome.forces.key_shear == pytest.approx(shear, rel=5e-3)
-    assert outcome.forces.key_shear >= shear * (1.0 - 1e-6)
+    assert forces_of(outcome).key_shear == pytest.approx(shear, rel=5e-3)
+    assert forces_of(outcome).key_shear >= shear * (1.0 - 1e-6)
 
 
 HARD = {
@@ -546,7 +550,7 @@ def test_the_reversed_motion_exchanges_left_and_right_and_keeps_the_rest(name, a
     other_side = tuple(replace(each, at=each.at and -each.at) for each in base.restraints)
     reversed_motion = replace(motion, horizontal=-motion.horizontal)
     back = outcome_of(PIER, replace(base, restraints=other_side), reversed_motion)
-    mirrored, expected = asdict(there.mirrored().forces), asdict(back.forces)
+    mirrored, expected = asdict(forces_of(there.mirrored())), asdict(forces_of(back))
     for field, value in expected.items():
         assert mirrored[field] == (value if value is None else pytest.approx(value, rel=1e-8, abs=1e-12)), field
     assert there.mirrored().mirrored() == there
@@ -559,16 +563,16 @@ def test_who_asks_for_forces_gets_the_same_run(name, numerics):
     for amplitude in (1.0, 3.0):
         motion = shaken(amplitude=amplitude)
         without = outcome_of(PIER, base, motion, forces=False, **numerics)
-        assert without.forces is None
-        assert replace(outcome_of(PIER, base, motion, **numerics), forces=None) == without
+        assert without.observed == {}
+        assert replace(outcome_of(PIER, base, motion, **numerics), observed={}) == without
 
 
 def test_a_fixed_step_has_no_error_of_its_forces():
-    assert outcome_of(PIER, rb.RigidBase(), shaken(), tolerance=None, substeps=4).forces.error is None
+    assert forces_of(outcome_of(PIER, rb.RigidBase(), shaken(), tolerance=None, substeps=4)).error is None
 
 
 def test_forces_that_halving_the_step_still_changes_have_an_error_and_a_note():
-    fine = replace(outcome_of(PIER, BASES["elastic"], shaken()).forces, error=None)
+    fine = replace(forces_of(outcome_of(PIER, BASES["elastic"], shaken())), error=None)
     same, note = with_error(fine, fine, PIER, CHANCE)
     assert (same.error, note) == (CHANCE * changes.LEAST, "")
     coarse = replace(fine, base_shear=fine.base_shear * 0.996, heel_speed_right=fine.heel_speed_right * 1.03)
@@ -584,11 +588,11 @@ def test_friction_counts_from_a_normal_force_that_the_study_chooses(share):
     run = StudyRun(shaken(), "+", 1.0, Case("case", PIER, BASES["elastic"], {}))
     observers = observers_of(Output.with_keys(forces=True, least_normal_share=share))
     (outcome,) = outcomes_of([run], Numerics(), observers)
-    usual = outcome_of(PIER, BASES["elastic"], shaken()).forces
-    less, more = (outcome.forces, usual) if share < 0.1 else (usual, outcome.forces)
+    usual = forces_of(outcome_of(PIER, BASES["elastic"], shaken()))
+    less, more = (forces_of(outcome), usual) if share < 0.1 else (usual, forces_of(outcome))
     assert less.friction_demand > more.friction_demand
     assert less.key_shear <= more.key_shear
-    assert outcome.forces.friction_demand * share * G <= outcome.forces.base_shear * (1 + 1e-9)
+    assert forces_of(outcome).friction_demand * share * G <= forces_of(outcome).base_shear * (1 + 1e-9)
 
 
 @pytest.mark.parametrize(("rotation", "side", "sign"), [(0.1, "left", 1.0), (-0.1, "right", -1.0)])
@@ -607,7 +611,7 @@ def test_a_pier_that_stays_down_has_landed_on_the_pivot_that_was_up(rotation, si
 
 def test_what_could_not_be_run_is_not_run_for_its_forces_either():
     outcome = outcome_of(PIER, rb.ElasticBase(beta=4000.0), shaken(), substeps=1)
-    assert (outcome.status, outcome.was_run, outcome.forces) == ("failed", False, None)
+    assert (outcome.status, outcome.was_run, forces_of(outcome)) == ("failed", False, None)
     assert "too few for the springs' frequency" in outcome.reason
 
 
@@ -619,7 +623,7 @@ def test_an_overturning_pier_counts_until_it_leans_beyond_alpha_for_good():
     motion = rb.Motion("push", 0.01, np.full(300, 0.3 * G))
     outcome = outcome_of(PIER, rb.RigidBase(), motion)
     assert outcome.status == "overturned"
-    forces = outcome.forces
+    forces = forces_of(outcome)
     assert forces.heel_gap_right == pytest.approx(2 * PIER.half_width * math.sin(PIER.alpha), rel=0.1)
     assert forces.heel_gap_right < 2 * PIER.half_width * math.sin(PIER.alpha)
     assert forces.friction_demand < 0.5
@@ -636,22 +640,22 @@ def test_a_run_says_where_it_would_slide():
     assert note.startswith("would slide at ")
     assert float(note.split()[3]) == pytest.approx(first, abs=0.011)
     assert f"the friction demand reaches {least:.3g}, the interface has 0.25; sliding is not followed" in note
-    assert slid.forces.slides
+    assert forces_of(slid).slides
     held = outcome_of(PIER, rb.RigidBase(friction=2 * least), motion)
-    assert (held.forces.slides, held.note) == (False, "")
+    assert (forces_of(held).slides, held.note) == (False, "")
     hops = outcome_of(PIER, replace(BASES["elastic"], friction=5.0, confirm=("friction",)), motion)
-    assert hops.forces.friction_demand < 5.0
-    carried = f"keys have to carry a base shear of up to {hops.forces.key_shear / G:.3g} of the weight"
+    assert forces_of(hops).friction_demand < 5.0
+    carried = f"keys have to carry a base shear of up to {forces_of(hops).key_shear / G:.3g} of the weight"
     assert hops.note == f"where the normal force is below 0.1 of the weight, friction holds little: {carried}"
     weighed = outcome_of(
         replace(PIER, mass_t=3000.0), replace(BASES["elastic"], friction=5.0, confirm=("friction",)), motion
     )
-    assert weighed.note == f"{hops.note}, {3000.0 * hops.forces.key_shear:,.0f} kN"
+    assert weighed.note == f"{hops.note}, {3000.0 * forces_of(hops).key_shear:,.0f} kN"
     hard = outcome_of(
         PIER, rb.RigidBase(restitution=0.1, friction=2.0, confirm=("restitution",)), replace(motion, vertical=None)
     )
-    assert hard.forces.friction_demand < 2.0 < hard.forces.impact_friction_demand
-    assert hard.forces.slides
+    assert forces_of(hard).friction_demand < 2.0 < forces_of(hard).impact_friction_demand
+    assert forces_of(hard).slides
     assert "would slide at an impact" in hard.note
 
 
@@ -666,7 +670,7 @@ def test_a_rigid_base_does_not_pull():
     assert "the ground would have to hold the pier down" not in outcome.note
     response = rb.simulate(PIER, rb.RigidBase(), motion, forces=True)
     assert math.isinf(response.forces["friction"].max())
-    assert outcome.forces.friction_demand < abs(outcome.forces.base_shear) / LEAST
+    assert forces_of(outcome).friction_demand < abs(forces_of(outcome).base_shear) / LEAST
     assert response.forces["normal_force"].min() > -1e-9 * G
 
 

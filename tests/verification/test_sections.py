@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
+from rockbatch.observers.forces.peaks import at_rows
 from rockbatch.observers.sections.observe import ForcesInSections
 from rockbatch.outcome.changes import LEAST
 from rockbatch.outcome.outcome import Section
@@ -14,7 +15,6 @@ from rockbatch.pier.sections import section_heights
 from rockbatch.simulation import recording
 from rockbatch.simulation import sections as of_sections
 from rockbatch.simulation.error_control import CHANCE
-from rockbatch.simulation.forces import at_rows
 from rockbatch.simulation.observing import observed
 from rockbatch.simulation.runs import Run, run_fixed
 from rockbatch.simulation.sections import InBody, InSection, in_body, in_section, sections_of, with_errors

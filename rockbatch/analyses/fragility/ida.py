@@ -121,9 +121,9 @@ def bisect(
     tolerance: float,
     states_of: Look[K],
 ) -> dict[K, dict[float, int]]:
-    """Run each record until its brackets are narrowed to a relative width of ``tolerance``.
+    """Return the states of each record by level: those ``on_levels``, and others until its brackets are narrowed.
 
-    The runs come in waves, one for every bracket that is wider.
+    A bracket is narrowed when its relative width is at most ``tolerance``; the runs come in waves, one for every wider bracket.
     """
     states = {key: dict(looks) for key, looks in on_levels.items()}
     while new := [(key, x) for key, looks in states.items() for x in _middles(capacity(looks, levels), tolerance)]:

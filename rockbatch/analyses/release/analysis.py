@@ -219,7 +219,7 @@ class _Test:
         return self.spec.clock == "first impact"
 
     def row(self, fit: Fit, table: "pd.DataFrame") -> dict[str, object]:
-        """Return the row of the fit."""
+        """Return the row of release.csv: the value with its interval, fits by times or amplitudes alone, residuals, remark."""
         e = self.case.pier.restitution if self.parameter == "restitution" else math.nan
         apart = {"by_times": self._alone(0), "by_amplitudes": self._alone(1)}
         row = {

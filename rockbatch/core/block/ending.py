@@ -84,7 +84,7 @@ def held(m, devices, y):
 
 @kernel
 def set_deadline(lanes, i, run):
-    """Set the sample at which a run ends in any case."""
+    """Set the sample at which a run ends at the latest, and clear the velocity and rotation of its last reversal."""
     lanes.ending.longest[i] = lanes.clock.samples[i] + run.patience
     lanes.ending.omega[i] = lanes.ending.turned[i] = 0.0
 

@@ -73,7 +73,10 @@ def gap(m, s, at, y):
 
 @inlined
 def across(m, of, at, y):
-    """Return the Gap of the device ``of`` at the deck: h_d sin θ, and b (1 − cos θ) more if the pier turns about its pivots."""
+    """Return the Gap of the device ``of`` at the deck, positive along its ``way``.
+
+    It is h_d sin θ, and b (1 − cos θ) more if the pier turns about its pivots; h_d θ with linearised kinematics.
+    """
     if m.finite is None:
         by_theta = of.way * of.height
         return Gap(by_theta * y.theta, by_theta * y.omega, 0.0, by_theta, 0.0, by_theta)

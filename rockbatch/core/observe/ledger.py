@@ -12,11 +12,11 @@ from rockbatch.core.block.model import Block
 from rockbatch.core.flexure.ending import bending_energy, kinetic_and_potential
 from rockbatch.core.flexure.model import FlexibleBlock
 from rockbatch.core.flexure.modes import deflection_rates, deflections, dot, times
-from rockbatch.core.kernel import entry, hook, kernel
+from rockbatch.core.kernel import entry, hook, kernel, optional_hook
 from rockbatch.core.observe.rows import contact_of, ground_within, state_of, step_between, within
 from rockbatch.core.springs.equations import accelerations_at, geometry
 from rockbatch.core.springs.impact import loss
-from rockbatch.core.springs.model import Contact
+from rockbatch.core.springs.model import Contact, Springs
 from rockbatch.core.springs.recovery import forces
 from rockbatch.core.system import ground_power, rates
 from rockbatch.core.table import record, with_pull
@@ -46,13 +46,47 @@ def _lever(at, contact):
     return at.lever + (contact.right - contact.left) * at.swing
 
 
-@kernel
+@hook
 def _stored(m, y, contact):
-    """Return the kinetic, potential and elastic energy per unit mass [J/kg]."""
+    """Return the kinetic, potential and elastic energy of the pier, without its devices [J/kg]."""
+
+
+@_stored.of(Springs)
+def _stored_on_springs(m, y, contact):
     lever = _lever(geometry(m, y.theta), contact) if m.finite is not None else m.height
     kinetic = 0.5 * y.v_rate * y.v_rate + 0.5 * (m.inertia + lever * lever) * y.omega * y.omega
     elastic = 0.5 * m.yield_force * m.yield_deflection * (y.z_left * y.z_left + y.z_right * y.z_right)
     return kinetic, m.gravity * y.v, elastic
+
+
+@_stored.of(Block)
+def _stored_of_block(m, y, contact):
+    arm = lever(m, y, contact)
+    return 0.5 * (y.v_rate * y.v_rate + (m.inertia + arm * arm) * y.omega * y.omega), m.gravity * y.v, 0.0
+
+
+@_stored.of(FlexibleBlock)
+def _stored_of_flexible_block(m, y, contact):
+    kinetic, potential = kinetic_and_potential(m, y, contact)
+    return kinetic, potential, bending_energy(m, deflections(y))
+
+
+@entry
+def energy_of_rows(m, rows, out):
+    """Compute the energy of a pier on springs or on a rigid base, without its devices, relative to the first row.
+
+    Parameters
+    ----------
+    m : Springs, Block or FlexibleBlock
+    rows : recarray of recording.Row, shape (n,)
+        Any rows of a history.
+    out : ndarray, shape (n,)
+        Filled at every row [J/kg].
+    """
+    kinetic0, potential0, elastic0 = _stored(m, state_of(m, rows[0]), contact_of(m, rows[0]))
+    for i in range(len(rows)):
+        kinetic, potential, elastic = _stored(m, state_of(m, rows[i]), contact_of(m, rows[i]))
+        out[i] = kinetic - kinetic0 + (potential - potential0) + (elastic - elastic0)
 
 
 @kernel
@@ -150,22 +184,16 @@ def ledger_on_springs(m, rows, pulls, ground, dt, out):
         y = y_end
 
 
-@hook
-def _on_rigid_base(m, y, contact):
-    """Return kinetic, potential and elastic energy [J/kg], and the power that damping takes [W/kg]."""
+@optional_hook
+def _damping(m, y):
+    """Return the power that the damping of the shaft takes [W/kg]."""
+    return 0.0
 
 
-@_on_rigid_base.of(Block)
-def _of_block(m, y, contact):
-    arm = lever(m, y, contact)
-    return 0.5 * (y.v_rate * y.v_rate + (m.inertia + arm * arm) * y.omega * y.omega), m.gravity * y.v, 0.0, 0.0
-
-
-@_on_rigid_base.of(FlexibleBlock)
-def _of_flexible_block(m, y, contact):
-    kinetic, potential = kinetic_and_potential(m, y, contact)
+@_damping.of(FlexibleBlock)
+def _damping_of_flexible_block(m, y):
     u_rate = deflection_rates(y)
-    return kinetic, potential, bending_energy(m, deflections(y)), dot(times(m.damping, u_rate), u_rate)
+    return dot(times(m.damping, u_rate), u_rate)
 
 
 @entry
@@ -175,11 +203,11 @@ def ledger_on_rigid_base(m, rows, pulls, ground, dt, out):
     Otherwise as :func:`ledger_on_springs`.
     """
     y = state_of(m, rows[0])
-    kinetic, potential0, elastic0, lost = _on_rigid_base(m, y, contact_of(m, rows[0]))
+    kinetic, potential0, elastic0 = _stored(m, y, contact_of(m, rows[0]))
     kinetic0, shaken, impact, damping = kinetic, 0.0, 0.0, 0.0
     for i in range(1, len(rows)):
         y_end, contact = state_of(m, rows[i]), contact_of(m, rows[i])
-        kinetic_end, potential, elastic, lost_end = _on_rigid_base(m, y_end, contact)
+        kinetic_end, potential, elastic = _stored(m, y_end, contact)
         if rows[i].kind > 0:  # the other side of an event
             impact += kinetic - kinetic_end
         else:
@@ -190,9 +218,9 @@ def ledger_on_rigid_base(m, rows, pulls, ground, dt, out):
             s1 = ground_power(m, middle, contact, ground_within(step, 0.5))
             s2 = ground_power(m, y_end, contact, step.ground_end)
             shaken += step.length / 6.0 * (s0 + 4.0 * s1 + s2)
-            damping += step.length / 6.0 * (lost + 4.0 * _on_rigid_base(m, middle, contact)[3] + lost_end)
+            damping += step.length / 6.0 * (_damping(m, y) + 4.0 * _damping(m, middle) + _damping(m, y_end))
         line = out[i]
         line.kinetic, line.potential, line.elastic = kinetic_end - kinetic0, potential - potential0, elastic - elastic0
         line.input, line.impact, line.damping = shaken, impact, damping
         line.remainder = line.kinetic + line.potential + line.elastic - shaken + impact + damping
-        y, kinetic, lost = y_end, kinetic_end, lost_end
+        y, kinetic = y_end, kinetic_end

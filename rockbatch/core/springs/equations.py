@@ -99,7 +99,7 @@ def pivot_acceleration(m, y, contact, side, ground):
 
 @system.share.of(Springs)
 def share(m, h):
-    """Return the factor of z after ``h`` [s] of supports without their pivots."""
+    """Return the factor of z after ``h`` [s] of supports without their pivots; 1 if undamped."""
     return share_left(m, h)
 
 

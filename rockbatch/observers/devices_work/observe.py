@@ -2,9 +2,13 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from rockbatch.observers.devices_work.study import DevicesWork
-from rockbatch.outcome.device_work import with_work
-from rockbatch.outcome.outcome import DeviceWork, Outcome
+from rockbatch.outcome.changes import LEAST, Sized, greatest_change
+from rockbatch.outcome.device_work import Work
+from rockbatch.outcome.outcome import Outcome
+from rockbatch.pier import Base, Damper, Pier, places
 from rockbatch.simulation import restraints
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.observing import Observer
@@ -14,22 +18,74 @@ from rockbatch.study import Output
 
 
 @dataclass(frozen=True)
+class DeviceWork:
+    """Work of the devices until the end of a run; ``None`` without such a device.
+
+    Attributes
+    ----------
+    damper_travel, damper_work : float or None
+        Greatest cumulative travel [m] and greatest energy [J/kg] of a single damper.
+    damper_half_cycles : int or None
+        Greatest number of half cycles of a single damper, of at least the study's least stroke.
+    tendon_strain : float or None
+        Greatest strain over yield strain of the tendons that can yield.
+    """
+
+    damper_travel: float | None = None
+    damper_work: float | None = None
+    damper_half_cycles: int | None = None
+    tendon_strain: float | None = None
+
+
+def greatest_of(pier: Pier, base: Base, work: Work) -> DeviceWork:
+    """Return the greatest ``work`` of any damper, and strain of any tendon; None for either if there is none."""
+    dampers = np.array([isinstance(device, Damper) for device in base.restraints for _ in places(pier, device)])
+    strains = work.strain[np.isfinite(work.strain)]
+    strain = float(strains.max()) if len(strains) else None
+    if not dampers.any():
+        return DeviceWork(tendon_strain=strain)
+    travel, lost, half_cycles = (float(of_each[dampers].max()) for of_each in work[:3])
+    return DeviceWork(travel, lost, int(half_cycles), strain)
+
+
+OF_WORK = {
+    "travel of a damper": Sized(("damper_travel",), "gap"),
+    "work of a damper": Sized(("damper_work",), "energy"),
+    "strain of a tendon": Sized(("tendon_strain",), "share"),
+}
+"""Fields of DeviceWork that have an error, with the scale of each."""
+
+
+def with_work(outcome: Outcome, fine: DeviceWork, coarse: DeviceWork | None, pier: Pier, chance: float) -> Outcome:
+    """Return ``outcome`` with the ``fine`` work of its devices.
+
+    Its ``devices_error`` becomes at least ``chance`` times the change from ``coarse``, by twice the step; unchanged without it.
+    """
+    worked = outcome.with_observed("devices_work", fine)
+    if coarse is None or outcome.devices_error is None:
+        return worked
+    change = max(greatest_change(OF_WORK, fine, coarse, pier)[1], LEAST)
+    return worked.changed(devices_error=max(outcome.devices_error, chance * change))
+
+
+@dataclass(frozen=True)
 class WorkOfDevices(Observer):
     """The work of dampers and tendons; half cycles count from ``least_stroke`` [m] up."""
 
     least_stroke: float
 
     def reads(self, run: Run, outcome: Outcome) -> bool:
-        """See :class:`Observer`."""
+        """Return True if the base has devices."""
         return bool(run.base.restraints)
 
     def read(self, recording: Recording, outcome: Outcome) -> DeviceWork:
-        """See :class:`Observer`."""
+        """Return the greatest work of any damper, and strain of any tendon."""
         run = recording.run
-        return restraints.device_work(run.pier, run.base, recording.rows, self.least_stroke)
+        work = restraints.device_work(run.pier, run.base, recording.rows, self.least_stroke)
+        return greatest_of(run.pier, run.base, work)
 
     def add(self, run: Run, outcome: Outcome, fine: DeviceWork | None, coarse: DeviceWork | None) -> Outcome:
-        """See :class:`Observer`."""
+        """Return ``outcome`` with the work ``fine``, if any; ``devices_error`` grows to its error by ``coarse``."""
         return outcome if fine is None else with_work(outcome, fine, coarse, run.pier, CHANCE)
 
 

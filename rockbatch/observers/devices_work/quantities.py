@@ -1,57 +1,55 @@
 """Quantities of the work of devices."""
 
 from collections.abc import Callable
-from dataclasses import replace
-from typing import Literal
+from typing import Any
 
 from rockbatch.pier import Pier
 from rockbatch.pier.restraints import YIELDING_TENDON
 from rockbatch.quantities.devices import of_device
-from rockbatch.quantities.quantity import Limit, Quantity, Run
+from rockbatch.quantities.quantity import Quantity, ReportFormat, Run
 
 
-def _work(
-    name: str, words: str, field: str, unit: str, head: str, form: str, factor: int = 1, *limits: Limit, device: str,
-    more: str = "", kind: Literal["number", "count"] = "number", per: Callable[[Pier], float | None] = lambda pier: 1.0,
-    behind: str = "",
-) -> Quantity:  # fmt: skip
-    """Return a quantity of a ``field`` of ``DeviceWork``, times ``per`` of the pier if that is known."""
+def _of_work(field: str, per: Callable[[Pier], float | None] = lambda pier: 1.0) -> Callable[[Run], float | None]:
+    """Return the number of a ``field`` of ``DeviceWork``, times ``per`` of the pier if that is known."""
 
     def value(run: Run) -> float | None:
-        work = None if run.outcome.device_work is None else getattr(run.outcome.device_work, field)
+        work = getattr(run.outcome.observed.get("devices_work"), field, None)
         times = per(run.pier)
         return None if work is None or times is None else work * times
 
-    weighed = unit == "kJ"
-    quantity = of_device(
-        name, words, value, unit, head, form, factor, *limits, device=device, more=more, behind=behind, kind=kind,
-        weighed=weighed,
-    )  # fmt: skip
-    return replace(quantity, needs="devices_work")
+    return value
 
+
+def _work(
+    name: str, words: str, source: Callable[[Run], float | None], unit: str, head: str, form: str, **facts: Any
+) -> Quantity:
+    """Return a quantity of the work of devices."""
+    return of_device(name, words, source, unit, ReportFormat(head, form), needs="devices_work", **facts)
+
+
+_TRAVEL, _CYCLES, _STRAIN = _of_work("damper_travel"), _of_work("damper_half_cycles"), _of_work("tendon_strain")
+_WORK, _IN_KILOJOULES = _of_work("damper_work"), _of_work("damper_work", lambda pier: pier.mass_t)
 
 FURTHER = (
     _work(
-        "travel_m", "greatest cumulative travel of a damper", "damper_travel", "m", "damper travel [m]", ".3f", device="damper",
-        more=", the sum of its way to and fro",
+        "damper_travel_m", "greatest cumulative travel of a damper", _TRAVEL, "m", "damper travel [m]", ".3f",
+        device="damper", more=", the sum of its way to and fro",
     ),
     _work(
-        "work_J_kg", "greatest energy that one damper dissipates, per unit mass of the pier", "damper_work", "J/kg",
+        "damper_work_J_kg", "greatest energy that one damper dissipates, per unit mass of the pier", _WORK, "J/kg",
         "damper work [J/kg]", ".4f", device="damper",
     ),
     _work(
-        "work_kJ", "greatest energy that one damper dissipates", "damper_work", "kJ", "damper work [kJ]", ".1f",
-        device="damper", more=", if mass_t is given", per=lambda pier: pier.mass_t,
+        "damper_work_kJ", "greatest energy that one damper dissipates", _IN_KILOJOULES, "kJ", "damper work [kJ]", ".1f",
+        device="damper", more=", if mass_t is given", weighed=True,
     ),
     _work(
-        "half_cycles", "most half cycles of a damper", "damper_half_cycles", "1", "half cycles", ".0f", device="damper",
-        more=", by rainflow counting, from [output] least_stroke_mm from end to end up, 10 mm unless given", kind="count",
+        "damper_half_cycles", "most half cycles of a damper", _CYCLES, "1", "half cycles", ".0f",
+        device="damper", kind="count", error="",
+        more=", by rainflow counting, from [output] least_stroke_mm from end to end up, 10 mm unless given",
     ),
-    replace(
-        _work(
-            "strain_over_yield", "greatest strain of a tendon over its yield strain", "tendon_strain", "1", "tendon ε/ε_y",
-            ".3f", device="tendon", more=", prestress and plastic strain included; of tendons that yield",
-        ),
-        device=YIELDING_TENDON,
+    _work(
+        "tendon_strain_over_yield", "greatest strain of a tendon over its yield strain", _STRAIN, "1", "tendon ε/ε_y", ".3f",
+        more=", prestress and plastic strain included; of tendons that yield", device=YIELDING_TENDON,
     ),
 )  # fmt: skip

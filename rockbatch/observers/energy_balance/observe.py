@@ -31,21 +31,21 @@ class EnergyBalance(Observer):
     histories_of_steps = True
 
     def claims_error(self, outcome: Outcome) -> bool:
-        """See :class:`Observer`."""
+        """Return False: its remainder tells the error."""
         return False
 
     def read(self, recording: Recording, outcome: Outcome) -> dict[str, float]:
-        """See :class:`Observer`."""
+        """Return each term at the end, and the greatest magnitude of the remainder."""
         terms = energies(recording.run, recording.rows)
         at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
         return at_end | {"remainder": float(abs(terms[:, -1]).max())}
 
     def add(self, run: Run, outcome: Outcome, fine: dict[str, float] | None, coarse: None) -> Outcome:
-        """See :class:`Observer`."""
-        return outcome if fine is None else outcome.changed(energies=fine)
+        """Return ``outcome`` with the terms ``fine``, unchanged if they are None."""
+        return outcome if fine is None else outcome.with_observed("energy_balance", fine)
 
     def histories(self, recording: Recording) -> "Mapping[str, pd.DataFrame]":
-        """See :class:`Observer`."""
+        """Return the terms at samples, events and the end as the table ``ledger``."""
         rows = recording.rows
         shown = rows.kind != types.STEP
         shown[-1] = True  # an overturned pier may fall between samples

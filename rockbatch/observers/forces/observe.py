@@ -4,10 +4,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rockbatch.common.lazy import pd
+from rockbatch.observers.forces.peaks import (
+    PeakForces,
+    at_rows,
+    forces_table,
+    impacts_table,
+    peak_forces,
+    with_error,
+    with_modes_error,
+)
 from rockbatch.observers.forces.study import Forces
-from rockbatch.outcome.outcome import Outcome, PeakForces
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.simulation.error_control import CHANCE
-from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error, with_modes_error
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
@@ -26,15 +34,15 @@ class PeaksOfForces(Observer):
     column = "base_shear_m_s2"
 
     def read(self, recording: Recording, outcome: Outcome) -> Peaks:
-        """See :class:`Observer`."""
+        """Return the design demands and a note."""
         return peak_forces(recording.run, recording.rows, self.least_normal)
 
     def beyond(self, run: Run, fine: Peaks, fewer: Peaks) -> Peaks:
-        """See :class:`Observer`."""
+        """Return ``fine`` with the change from ``fewer`` modes as its error."""
         return with_modes_error(run, fine[0], fewer[0], CHANCE), fine[1]
 
     def add(self, run: Run, outcome: Outcome, fine: Peaks | None, coarse: Peaks | None) -> Outcome:
-        """See :class:`Observer`."""
+        """Return ``outcome`` with the demands and note of ``fine``, and their error by ``coarse``; unchanged without ``fine``."""
         if fine is None:
             return outcome
         peaks, note = fine
@@ -42,10 +50,10 @@ class PeaksOfForces(Observer):
         if coarse is not None:
             peaks, note = with_error(peaks, coarse[0], run.pier, CHANCE)
             outcome = outcome.noted(note)
-        return outcome.changed(forces=peaks)
+        return outcome.with_observed("forces", peaks)
 
     def histories(self, recording: Recording) -> "Mapping[str, pd.DataFrame]":
-        """See :class:`Observer`."""
+        """Return the tables ``forces``, at samples and events, and ``impacts``."""
         run, rows = recording.run, recording.at_samples.rows
         moments = at_rows(run, recording.rows)[recording.shown] if run.base.remembers else at_rows(run, rows)
         return {"forces": forces_table(rows.t, moments, run.pier.gravity), "impacts": impacts_table(rows, moments)}

@@ -20,7 +20,7 @@ def _of_forces(field: str, factor: Callable[[Pier], float | None] | None = None)
     """Return the number of a field of ``PeakForces``, times a factor of the pier if that is known."""
 
     def value(run: Run) -> float | None:
-        force = None if run.outcome.forces is None else getattr(run.outcome.forces, field)
+        force = getattr(run.outcome.observed.get("forces"), field, None)
         times = 1.0 if factor is None else factor(run.pier)
         return None if force is None or times is None else force * times
 
@@ -28,13 +28,21 @@ def _of_forces(field: str, factor: Callable[[Pier], float | None] | None = None)
 
 
 def _force(
-    name: str, words: str, field: str, unit: str, head: str, form: str, factor: int = 1, *, more: str = "", behind: str = "",
-    per: Callable[[Pier], float | None] | None = None, **facts: Any,
-) -> Quantity:  # fmt: skip
+    name: str,
+    words: str,
+    field: str,
+    unit: str,
+    head: str,
+    form: str,
+    factor: int = 1,
+    behind: str = "",
+    per: Callable[[Pier], float | None] | None = None,
+    **facts: Any,
+) -> Quantity:
     """Return a quantity of a ``field`` of ``PeakForces``, times ``per`` of the pier."""
     page = ReportFormat(head, form, factor, behind, table="forces")
     source = _of_forces(field, per)
-    return Quantity(name, words, source, unit, page, more, needs="forces", error="forces_error", **facts)
+    return Quantity(name, words, source, unit, page, needs="forces", error="forces_error", **facts)
 
 
 def _in_kilonewtons(
@@ -72,7 +80,7 @@ def _over_mass(
     first, second = f"{name}_{ENDINGS[unit]}", f"{name}_{ENDINGS[_TIMES_MASS[unit]]}"
     limit = Limit(words=words)
     head = f"{symbol}/M [{in_print(unit)}]"
-    entered = {name: facts[name] for name in ("landing", "bending") if name in facts}
+    entered = {name: facts[name] for name in ("landing", "bending", "directed") if name in facts}
     return (
         _force(
             first,
@@ -105,7 +113,7 @@ _SPEED = "greatest speed at which the heel gap opens or closes"
 QUANTITIES = (
     *_over_mass(
         "base_shear", "greatest base shear V", "base_shear", "m/s^2", "V", more=", without the impulses of impacts", landing=True,
-        bending=True,
+        bending=True, directed=True,
     ),
     *_over_mass(
         "normal_force", "greatest normal force N of all supports", "normal_force", "m/s^2", "N", more=", likewise", landing=True,
@@ -113,7 +121,7 @@ QUANTITIES = (
     _force(
         "friction_demand", "greatest V over N at the same time", "friction_demand", "1", "V/N", ".4f", unbounded=True,
         limits=_SLIDES, more=", while N is above [output] least_normal_share of the weight, 0.1 unless given", landing=True,
-        bending=True,
+        bending=True, directed=True,
     ),
     _force(
         "pivot_force_left", _PIVOT.format("each"), "pivot_left", "1", "support L/(Mg/2)", ".3f", more=_PIVOT_MORE, landing=True,
@@ -130,17 +138,17 @@ QUANTITIES = (
     _force("heel_gap_left_m", _GAP.format("each"), "heel_gap_left", "m", "heel gap L [mm]", ".1f", 1000, more=_GAP_MORE),
     _force(
         "heel_gap_right_m", _GAP.format("each"), "heel_gap_right", "m", "heel gap R [mm]", ".1f", 1000, more=_GAP_MORE,
-        limits=greater("heel_gap/_m", _GAP, *LENGTHS),
+        limits=greater("heel_gap/_m", _GAP, *LENGTHS), directed=True,
     ),
     _force("heel_speed_left_m_s", _SPEED, "heel_speed_left", "m/s", "heel speed L [m/s]", ".3f"),
     _force(
         "heel_speed_right_m_s", _SPEED, "heel_speed_right", "m/s", "heel speed R [m/s]", ".3f",
-        limits=greater("heel_speed/_m_s", _SPEED),
+        limits=greater("heel_speed/_m_s", _SPEED), directed=True,
     ),
     _force(
         "deck_acceleration_m_s2", "greatest absolute horizontal acceleration of the deck", "deck_acceleration", "m/s^2",
         "deck [m/s²]", ".3f", more=", or of the top without one", limits=(Limit(), Limit(unit="g", times=per_gravity)),
-        landing=True, bending=True,
+        landing=True, bending=True, directed=True,
     ),
     _force(
         "landing_velocity_m_s", "speed of the landing pivot at the hardest impact", "landing_velocity", "m/s",
@@ -159,10 +167,13 @@ QUANTITIES = (
         "first_uplift_g", "magnitude of the horizontal ground acceleration then, over g", "uplift_ground",
         "standard_gravity", "ground then [g]", ".4f", per=lambda pier: 1.0 / pier.gravity, sometimes=True, least_is_worst=True,
     ),
-    _force("omega_max_over_p", "greatest angular velocity over p", "omega_over_p", "1", "θ̇_max/p", ".4f", limits=(Limit(),)),
+    _force(
+        "omega_max_over_p", "greatest angular velocity over p", "omega_over_p", "1", "θ̇_max/p", ".4f", limits=(Limit(),),
+        directed=True,
+    ),
     *_over_mass(
         "key_shear", "greatest base shear on shear keys", "key_shear", "m/s^2", "V of keys",
-        more=": V while N is below that share, as in flight", sometimes=True, landing=True, bending=True,
+        more=": V while N is below that share, as in flight", sometimes=True, landing=True, bending=True, directed=True,
     ),
     _force(
         "flight_longest_s", "duration of the longest flight", "flight_longest", "s",
@@ -177,7 +188,7 @@ QUANTITIES = (
         "; of the vertical forces of supports, dampers and tendons; for a frame the sum over the columns, each about its own "
         "middle",
         "base_shear_kN",
-        landing=True,
+        landing=True, directed=True,
     ),
 )  # fmt: skip
 """Forces and motions for design, until the run ends or the pier leans beyond α for good."""
@@ -207,16 +218,16 @@ _LANDING_FORCE = replace(
 )
 
 
+def _slides_or_not(study: Any) -> bool:
+    return study.output.has("forces") and any(case.base.friction is not None for case in study.cases)
+
+
 _SLIDES_FACT = fact(
-    "slides", "the friction demand, of impacts too, is more than the interface has",
-    ", as `friction` of the case; with [output] forces = true", _of_forces("slides"),
-    requested=lambda study: study.output.has("forces") and any(case.base.friction is not None for case in study.cases),
-)  # fmt: skip
+    "slides",
+    "the friction demand, of impacts too, is more than the interface has",
+    ", as `friction` of the case; with [output] forces = true",
+    _of_forces("slides"),
+    requested=_slides_or_not,
+)
 
 LAST = (_LANDING_FORCE, _SLIDES_FACT)
-
-DIRECTED = (
-    "heel_gap_m", "heel_gap_mm", "heel_speed_m_s", "omega_max_over_p", "base_shear_m_s2", "base_shear_kN", "base_moment_m2_s2",
-    "base_moment_kNm", "key_shear_m_s2", "key_shear_kN", "friction_demand", "deck_acceleration_m_s2", "deck_acceleration_g",
-)  # fmt: skip
-"""Those that an axis of the pier has by itself."""

@@ -21,19 +21,19 @@ class CyclesOfRocking(Observer):
     every_step = False
 
     def reads(self, run: Run, outcome: Outcome) -> bool:
-        """See :class:`Observer`."""
+        """Return True unless the run failed."""
         return outcome.status != "failed"
 
     def claims_error(self, outcome: Outcome) -> bool:
-        """See :class:`Observer`."""
+        """Return False: half cycles have no error."""
         return False
 
     def read(self, recording: Recording, outcome: Outcome) -> HalfCycles:
-        """See :class:`Observer`."""
+        """Return the half cycles of the whole history."""
         return cycles_of(recording.run.base, recording.rows)
 
     def add(self, run: Run, outcome: Outcome, fine: HalfCycles | None, coarse: None) -> Outcome:
-        """See :class:`Observer`."""
+        """Return ``outcome`` with a row of the table for each half cycle of ``fine``; no rows if it is None."""
         if fine is None:
             return outcome.with_table(self.table, [])
         columns = (*fine, apparent_restitution(run.pier, fine.amplitude))

@@ -14,16 +14,16 @@ class OtherLaw(Observer):
     """Settlement by the other spring law, to the same tolerance; with a note unless that converged."""
 
     def beside(self, run: Run, outcome: Outcome) -> Run | None:
-        """See :class:`Observer`."""
+        """Return the run on springs of the other law; None if the springs do not ratchet, or ``run`` was refused."""
         return replace(run, base=run.base.by_other_law()) if run.base.ratchets and outcome.was_run else None
 
     def compare(self, outcome: Outcome, other: Outcome) -> Outcome:
-        """See :class:`Observer`."""
+        """Return ``outcome`` with the settlement of the ``other``, and a note if that failed."""
         failed = f"by the other spring law: {other.reason}" if other.status == "failed" else ""
-        return outcome.noted(failed, settlement_other_law=other.settlement)
+        return outcome.noted(failed).with_observed("other_law", other.settlement)
 
     def reads(self, run: Run, outcome: Outcome) -> bool:
-        """See :class:`Observer`."""
+        """Return False: histories are not read."""
         return False
 
 

@@ -11,7 +11,7 @@ from rockbatch.results.sections import columns_in
 
 
 def over_height(groups: "Iterable[tuple[str, pd.DataFrame]]", series: Sequence[Series]) -> Figure:
-    """Return the envelopes of forces over the height of the shaft: shear, moment and axial force of each case.
+    """Return the envelopes of forces over the height of the shaft: for each group, panels of shear, moment and axial force.
 
     ``groups`` are runs of a pier at a scale with their rows of sections.csv, and words for them.
     """

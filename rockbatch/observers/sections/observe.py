@@ -24,19 +24,19 @@ class ForcesInSections(Observer):
     table = SECTIONS
 
     def reads(self, run: Run, outcome: Outcome) -> bool:
-        """See :class:`Observer`."""
+        """Return True unless the run failed."""
         return outcome.status != "failed"
 
     def read(self, recording: Recording, outcome: Outcome) -> list[Section]:
-        """See :class:`Observer`."""
+        """Return the greatest forces in each section."""
         return sections_of(recording.run, recording.rows, section_heights(recording.run.pier, self.sections))
 
     def beyond(self, run: Run, fine: list[Section], fewer: list[Section]) -> list[Section]:
-        """See :class:`Observer`."""
+        """Return ``fine`` with the change from ``fewer`` modes as errors."""
         return with_errors(fine, fewer, run.pier, of_last_mode(run, 1.0, CHANCE))
 
     def add(self, run: Run, outcome: Outcome, fine: list[Section] | None, coarse: list[Section] | None) -> Outcome:
-        """See :class:`Observer`."""
+        """Return ``outcome`` with a row of the table for each section of ``fine``, if any, with errors by ``coarse``."""
         if fine is None:
             return outcome.with_table(self.table, [])
         sections = fine if coarse is None else with_errors(fine, coarse, run.pier, CHANCE)

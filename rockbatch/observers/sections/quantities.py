@@ -22,7 +22,7 @@ def _axial(sign: float) -> Evaluate:
 def _in_section(name: str, meaning: str, evaluate: Evaluate | None = None) -> Demand:
     """Return a demand on a section of the shaft, in kN or kN m; the largest of its column unless ``evaluate`` says otherwise.
 
-    Bending is across the axis: axial forces, which ``evaluate`` gives, have none of it.
+    Bending is across the axis: axial forces, which ``evaluate`` gives, have none of it, and the weight in them on either axis.
     """
     unit = "kN m" if name.endswith("kNm") else "kN"
     return Demand(
@@ -34,6 +34,7 @@ def _in_section(name: str, meaning: str, evaluate: Evaluate | None = None) -> De
         weighed=True,
         landing=True,
         bending=evaluate is None,
+        directed=evaluate is None,
     )
 
 
@@ -43,6 +44,3 @@ DEMANDS = (
     _in_section("section_axial_kN", "greatest compression of a section of the shaft", _axial(1.0)),
     _in_section("section_tension_kN", "greatest tension of a section of the shaft, 0 if it has none", _axial(-1.0)),
 )
-
-DIRECTED = ("section_shear_kN", "section_moment_kNm")
-"""Those that an axis of the pier has by itself: axial forces have the weight in them on either."""

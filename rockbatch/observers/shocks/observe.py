@@ -21,28 +21,28 @@ class EffectsOfShocks(Observer):
     every_step = False
 
     def observes(self, motions: Sequence[Motion]) -> bool:
-        """See :class:`Observer`."""
+        """Return True if any of ``motions`` is a sequence of shocks."""
         return any(motion.shocks for motion in motions)
 
     def reads(self, run: Run, outcome: Outcome) -> bool:
-        """See :class:`Observer`."""
+        """Return True for a sequence, unless the run failed."""
         return bool(run.motion.shocks) and outcome.status != "failed"
 
     def claims_error(self, outcome: Outcome) -> bool:
-        """See :class:`Observer`."""
+        """Return True: a run that overturned in a later shock has errors of those before."""
         return True
 
     def quiet_s(self, run: Run, quiet_s: float) -> float:
-        """See :class:`Observer`."""
+        """Return the length [s] of the pause after the last shock, or ``quiet_s`` if that is longer."""
         last = run.motion.shocks[-1]
         return max(quiet_s, last.until - last.end)
 
     def read(self, recording: Recording, outcome: Outcome) -> OfShocks:
-        """See :class:`Observer`."""
+        """Return the effects of each shock, and their peaks."""
         return of_shocks(recording.run, outcome, recording.rows)
 
     def add(self, run: Run, outcome: Outcome, fine: OfShocks | None, coarse: OfShocks | None) -> Outcome:
-        """See :class:`Observer`."""
+        """Return ``outcome`` with a row of the table for each shock: "failed" or "not read" without ``fine``."""
         not_read = "failed" if outcome.status == "failed" else "not read"  # too long to be held in memory
         outcomes = [ShockOutcome(not_read)] * len(run.motion.shocks)
         if fine is not None:

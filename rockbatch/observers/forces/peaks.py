@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -14,17 +14,94 @@ from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
 from rockbatch.core.observe.peaks import NEVER, NOTED, Extremes, Limits, Noted, RecordedRun, forces_of_run
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.changes import LEAST, Sized, greatest_change
-from rockbatch.outcome.outcome import PeakForces
 from rockbatch.outcome.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.pier import Pier, RigidBase, YieldingBase, landing_force
 from rockbatch.simulation.coarser import of_last_mode
+from rockbatch.simulation.histories import LANDINGS
 from rockbatch.simulation.models import acceleration_at, block, elements, ground_of, model, per_mode
 from rockbatch.simulation.restraints import apart, recorded
 from rockbatch.simulation.runs import Run
 from rockbatch.simulation.starting import start_of
 
 _UPLIFTS = (types.SEPARATION_LEFT, types.SEPARATION_RIGHT, types.LIFT_OFF)
-LANDINGS = (types.IMPACT_LEFT, types.IMPACT_RIGHT, types.IMPACT_BOTH, types.REST)
+
+
+@dataclass(frozen=True)
+class PeakForces:
+    """Design demands of a run until it ends or the pier leans beyond α for good; SI units, per unit mass of the pier.
+
+    Magnitudes; ``None`` if a demand does not apply (THEORY.md, Results of a run).
+
+    Attributes
+    ----------
+    base_shear, normal_force : float
+        Greatest V/M, and N/M of all supports, without the impulses of impacts [m/s²].
+    base_moment : float
+        Greatest moment over M about the middle of the base, of supports, dampers and tendons, without impulses [m²/s²].
+    friction_demand : float
+        Greatest |V|/N while N is above a share of the weight.
+    pivot_left, pivot_right : float
+        Greatest force of each support over half the weight.
+    heel_gap_left, heel_gap_right : float
+        Greatest gap between each pivot and its support [m].
+    heel_speed_left, heel_speed_right : float
+        Greatest speed at which each gap opens or closes [m/s].
+    deck_acceleration : float
+        Greatest absolute horizontal acceleration of the deck [m/s²].
+    omega_over_p : float
+        Greatest |θ̇|/p.
+    landing_velocity, impulse : float or None
+        Speed of the landing pivot, and vertical impulse over M, at the hardest impact [m/s].
+    impact_friction_demand : float or None
+        Greatest horizontal over vertical impulse of an impact.
+    first_uplift, uplift_ground : float or None
+        Time of the first uplift [s], and magnitude of the horizontal ground acceleration then [m/s²].
+    key_shear : float or None
+        Greatest V/M while N is below the share of ``friction_demand``, which shear keys carry [m/s²].
+    flight_longest : float or None
+        Longest flight that was followed [s].
+    error : float or None
+        Four times the greatest relative change of a demand by halving the step; ``None`` with a fixed step.
+    landing_force : float or None
+        Greatest force of a foot over M at the hardest impact, estimated by a contact stiffness of the base [m/s²].
+    slides : bool or None
+        True if the greatest friction demand, impacts included, exceeds the interface's friction; ``None`` if it is not given.
+    """
+
+    base_shear: float
+    normal_force: float
+    base_moment: float
+    friction_demand: float
+    pivot_left: float
+    pivot_right: float
+    heel_gap_left: float
+    heel_gap_right: float
+    heel_speed_left: float
+    heel_speed_right: float
+    deck_acceleration: float
+    omega_over_p: float
+    landing_velocity: float | None = None
+    impulse: float | None = None
+    impact_friction_demand: float | None = None
+    first_uplift: float | None = None
+    uplift_ground: float | None = None
+    key_shear: float | None = None
+    flight_longest: float | None = None
+    error: float | None = None
+    landing_force: float | None = None
+    slides: bool | None = None
+
+    def mirrored(self) -> "PeakForces":
+        """Return the demands of the mirror image: left and right exchanged."""
+        return replace(
+            self,
+            pivot_left=self.pivot_right,
+            pivot_right=self.pivot_left,
+            heel_gap_left=self.heel_gap_right,
+            heel_gap_right=self.heel_gap_left,
+            heel_speed_left=self.heel_speed_right,
+            heel_speed_right=self.heel_speed_left,
+        )
 
 
 class Impacts(NamedTuple):
@@ -235,7 +312,7 @@ LARGE_ERROR = 0.01
 
 OF_IMPACTS = "friction demand of impacts"
 
-_SIZED = {
+OF_FORCES = {
     "base shear": Sized(("base_shear",), "force"),
     "normal force": Sized(("normal_force",), "force"),
     "base moment": Sized(("base_moment",), "moment"),
@@ -258,7 +335,7 @@ def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier, chance: float) 
 
     ``coarse`` are the demands with twice the step.
     """
-    worst, most = greatest_change(_SIZED, fine, coarse, pier)
+    worst, most = greatest_change(OF_FORCES, fine, coarse, pier)
     note = f"forces not settled: halving the step still changed the {worst} by {most:.1%}" if most > LARGE_ERROR else ""
     return replace(fine, error=(fine.error or 0.0) + chance * max(most, LEAST)), note
 
@@ -269,5 +346,5 @@ def with_modes_error(run: Run, fine: PeakForces, fewer: PeakForces, chance: floa
     The friction demand of impacts is left out: each further mode takes about half of a landing's horizontal impulse, so that it
     tends to 0, and is too great.
     """
-    of_modes = {name: sized for name, sized in _SIZED.items() if name != OF_IMPACTS}
+    of_modes = {name: sized for name, sized in OF_FORCES.items() if name != OF_IMPACTS}
     return replace(fine, error=of_last_mode(run, greatest_change(of_modes, fine, fewer, run.pier)[1], chance))

@@ -1,0 +1,62 @@
+"""The table of verdicts, checks.csv: written, read back and replaced."""
+
+import math
+
+import pandas as pd
+import pytest
+from check_samples import RIGID, case, folder, runs, verdict
+from rules_of_checks import MARGIN, STUDY, rules_file
+
+import rockbatch as rb
+from rockbatch.checks import read_verdicts, write_verdicts
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
+from rockbatch.results.checking import verdicts
+
+pytestmark = pytest.mark.usefixtures("no_report")
+
+
+def test_checks_csv_gives_the_verdicts_back(tmp_path):
+    """Infinite, missing and varied values included."""
+    table = pd.concat([runs([0.1, 0.4], "pads", beta=40.0, status=["ok", "overturned"]), runs([0.2], "rigid")])
+    out = folder(tmp_path / "out", table, [case(beta=40.0), RIGID])
+    rules = [
+        rb.Rule("margin", "theta_max_over_alpha", 0.5, reason='"quoted", and more'),
+        rb.Rule("bearing", "eta", at_least=2.0),
+    ]
+    written = verdicts(out, rules)
+    assert write_verdicts(out, written) == out / "checks.csv"
+    read = read_verdicts(out)
+    assert [repr(verdict) for verdict in read] == [repr(verdict) for verdict in written]  # NaN is not itself
+    assert read[0].high == math.inf
+    assert read[0].columns == {"beta": 40.0}
+    assert read[2].columns == {}
+
+
+def test_a_text_of_checks_csv_commands_no_terminal_and_no_spreadsheet(tmp_path):
+    write_verdicts(
+        tmp_path,
+        [verdict("pads", "pass", check="=1+1", remarks=("two", "parts")), verdict("pads", "pass", check="drift")],
+    )
+    path = tmp_path / "checks.csv"
+    assert "'=1+1" in path.read_text(encoding="utf-8")
+    path.write_text(path.read_text(encoding="utf-8").replace("drift", "dri\x1bft", 1), encoding="utf-8")
+    assert [each.check for each in read_verdicts(tmp_path)] == ["=1+1", r"dri\x1bft"]
+
+
+def test_a_damaged_checks_csv_is_reported_and_a_missing_one_is_empty(tmp_path):
+    assert read_verdicts(tmp_path) == []
+    (tmp_path / "checks.csv").write_text("check,case\nmargin,pads\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r"checks.csv: damaged .*start `rockbatch check` again"):
+        read_verdicts(tmp_path)
+
+
+def test_new_results_leave_no_verdicts_of_the_old_ones(tmp_path):
+    study, rules = rules_file(tmp_path / "pier.toml", STUDY), rules_file(tmp_path / "rules.toml", MARGIN)
+    run = ["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "1"]
+    assert main(run) == 0
+    assert main(["check", str(tmp_path / "out"), "--rules", str(rules)]) == 0
+    assert main(run) == 0  # nothing is run again: they still hold
+    assert (tmp_path / "out/checks.csv").exists()
+    assert main([*run, "--fresh"]) == 0
+    assert not (tmp_path / "out/checks.csv").exists()
