@@ -10,14 +10,13 @@ from rockbatch.core import types
 from rockbatch.core.flexure.model import Flexing
 from rockbatch.core.flexure.modes import MOST_MODES
 from rockbatch.core.observe.beds import BED_STATE, follow_bed
-from rockbatch.core.observe.ledger import LEDGER, energy_of_rows
+from rockbatch.core.observe.ledger import energy_of_rows
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.half_cycles import HalfCycles, Path, half_cycles
 from rockbatch.outcome.response import EVENT_TYPES, Response
 from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase
 from rockbatch.simulation import restraints
-from rockbatch.simulation.forces import LANDINGS
-from rockbatch.simulation.models import acceleration_at, flexible_block, ground_of, model, springs
+from rockbatch.simulation.models import acceleration_at, flexible_block, model, springs
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
