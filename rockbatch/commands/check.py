@@ -9,7 +9,7 @@ from pathlib import Path
 from rockbatch.checks import Verdict, wording, write_verdicts
 from rockbatch.checks.answer import answer
 from rockbatch.checks.coverage import CaseRuns, runs_of_cases, stations_of
-from rockbatch.checks.remarks import pulled_supports, undamped_settlement, weak_supports
+from rockbatch.checks.remarks import bounds_in_words, pulled_supports, undamped_settlement, weak_supports
 from rockbatch.checks.responses import worst_of_cases
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.checks.wording import SIGNS, Notes
@@ -84,7 +84,7 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
     checked = any(verdict.case for verdict in verdicts)
 
     def case_of(row: Verdict | CaseRuns) -> str:
-        return results.named_case(row.case, row.columns, varied, row.scale)
+        return results.named_design(row.case, row.columns, varied, row.scale)
 
     cases = saved.info["cases"]
     worst, at_scales = (worst_of_cases(results.runs, cases, at_each_scale=each) for each in (False, True))
@@ -107,7 +107,7 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
         lines.append("No limits were set, so nothing was checked. Add some: rockbatch check DIR --rules FILE.")
         if ended:
             lines.append(f"Largest values over {planned - ended} of {planned} runs, those that end standing.")
-    lines += [filled(words) for words in (wording.both_axes(verdicts),) if words]
+    lines += [filled(words) for words in (wording.both_axes(verdicts), *bounds_in_words(saved.info)) if words]
     if undamped := undamped_settlement(worst):
         lines.append(filled(undamped))
     return "\n".join(lines)

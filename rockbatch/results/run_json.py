@@ -129,6 +129,9 @@ SHAPE = {
     "vertical_target": Maybe(_TARGET),
     "count": Maybe(("station", "component")),
     "left_out": Maybe([_OF_FILE]),
+    "bounds": Maybe(
+        [{"bound": str, "source": str, "changes": [str], "lacking": [{"case": str, "keys": [str]}]}],
+    ),
 }
 """Shape of the entries of run.json that programs read; the rest is for people."""
 
@@ -160,6 +163,7 @@ def describe(study: Study, motions: MotionSet) -> Row:
         "count": study.count,
         "units": units(study),
         "cases": [describe_case(case) for case in study.cases],
+        **({"bounds": [bound.as_in_run_json() for bound in study.bounds]} if study.bounds else {}),
         "without_vertical": motions.without_vertical,
         "records": [entry(motion, labels[motion.name], gravity, with_pulse=with_pulses) for motion in motions.motions],
         "spectra": spectra(motions.motions, fitted, gravity, target),

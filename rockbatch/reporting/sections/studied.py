@@ -5,6 +5,7 @@ import math
 from rockbatch.checks.coverage import stations_of
 from rockbatch.pier.figures import devices, sketches
 from rockbatch.quantities.cases import Case, top
+from rockbatch.quantities.design import BOUND
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted, symbol
 from rockbatch.reporting.markup import Markup, join
@@ -168,5 +169,6 @@ def _foundations(finished: Finished) -> Markup:
         deflections = [values.get(key) for key in ("delta_s_m", "delta_y_m")]
         millimetres = [None if metres is None else 1000 * metres for metres in deflections]
         pier = [case["columns"].get(key) for key in varied_pier]
-        rows.append([case["case"], *pier, case["base"], *(values.get(key) for key in names), *millimetres])
+        name = ", ".join(filter(None, (case["case"], case["columns"].get(BOUND))))
+        rows.append([name, *pier, case["base"], *(values.get(key) for key in names), *millimetres])
     return table(heads, rows, name="Foundations")

@@ -7,11 +7,13 @@ from rockbatch.checks import Verdict, wording
 from rockbatch.checks.answer import Line
 from rockbatch.checks.answer import answer as answered
 from rockbatch.checks.coverage import CaseRuns, stations_of
+from rockbatch.checks.remarks import bounds_in_words
 from rockbatch.checks.scorecard import MOST_CASES, OPEN_CASES, Cell, Column, Row
 from rockbatch.checks.scorecard import Scorecard as Card
 from rockbatch.checks.scorecard import scorecard as of_verdicts
 from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import grouped
+from rockbatch.quantities.design import under
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, join, number, tag
@@ -67,17 +69,33 @@ def _line(line: Line) -> Markup:
     return tag("li", tag("strong", mark(line.verdict, line.text)), cases, details)
 
 
-def _namer(finished: Finished) -> Callable[[Verdict | CaseRuns], str]:
-    return lambda row: (
-        finished.named_case(row.case, row.columns, finished.info["varied"], row.scale) if row.case else wording.SUITE
-    )
+def _namer(finished: Finished, *, bounds: bool = False) -> Callable[[Verdict | CaseRuns], str]:
+    """Return a function that names the case of a row, without its bound unless ``bounds`` are named apart."""
+    named = finished.named_case if bounds else finished.named_design
+    return lambda row: named(row.case, row.columns, finished.info["varied"], row.scale) if row.case else wording.SUITE
 
 
-def scorecard(finished: Finished) -> Markup:
-    """Return a table of demand, share of the limit and a bar (full at twice the limit), by case and check."""
-    card = of_verdicts(finished.verdicts, _namer(finished), finished.suites, finished.worst_at_scales)
+def under_each_bound(finished: Finished) -> Markup:
+    """Return the scorecard with a row for each bound of each design, and what the bounds change; empty without bounds."""
+    words = [f"{sentence} " for sentence in bounds_in_words(finished.info)]
+    if not words:
+        return Markup("")
+    drawn = scorecard(finished, bounds=True) if any(verdict.case for verdict in finished.verdicts) else ""
+    return join(drawn, tag("p", *words, class_="legend"))
+
+
+def scorecard(finished: Finished, *, bounds: bool = False) -> Markup:
+    """Return a table of demand, share of the limit and a bar (full at twice the limit), by case and check.
+
+    A design has one row, with the worst of its bounds in each cell, or with ``bounds`` one for each of them.
+    """
+    card = of_verdicts(finished.verdicts, _namer(finished, bounds=bounds), finished.suites, finished.worst_at_scales)
     columns = card.open_columns(MOST_COLUMNS)
     shown = MOST_CASES if len(card.rows) <= MOST_CASES else OPEN_CASES
+    if bounds:  # a design with its bounds, which all are listed
+        order = list(dict.fromkeys(map(_namer(finished, bounds=True), finished.verdicts)))
+        card.rows.sort(key=lambda row: order.index(row.name) if row.name in order else len(order))
+        shown = MOST_DRAWN
     folded = len(card.columns) - len(columns)
     asked = wording.requirements(finished.verdicts)
     heads = []
@@ -86,7 +104,10 @@ def scorecard(finished: Finished) -> Markup:
         heads.append(tag("th", column.check, small, scope="col", title="; ".join(asked[column.check])))
     more = [tag("th", scope="col")] if folded else []
     best = card.rows[:MOST_DRAWN]
-    rows = [_row(finished, card, row, columns, "folded" if place >= shown else None) for place, row in enumerate(best)]
+    rows = [
+        _row(finished, card, row, columns, "folded" if place >= shown else None, named=not bounds)
+        for place, row in enumerate(best)
+    ]
     head = tag("thead", tag("tr", tag("th", "Case", scope="col"), *heads, *more))
     drawn = tag("table", head, tag("tbody", *rows), class_="card")
     if shown >= len(card.rows):
@@ -110,9 +131,11 @@ def statistics_in_words(finished: Finished) -> str:
     return f"{values[0].upper()}{values[1:]}. The mark on a bar is the limit." if values else ""
 
 
-def _row(finished: Finished, card: Card, row: Row, columns: Sequence[int], class_: str | None) -> Markup:
-    """Return the row of a case; checks without a column are counted as "3 more" if passed."""
-    cells = [_cell(finished, card.columns[i], row.cells[i]) for i in columns]
+def _row(
+    finished: Finished, card: Card, row: Row, columns: Sequence[int], class_: str | None, *, named: bool
+) -> Markup:
+    """Return the row of a case, its cells with their bounds if ``named``; checks without a column are counted as "3 more"."""
+    cells = [_cell(finished, card.columns[i], row.cells[i], named=named) for i in columns]
     others = [cell for i, cell in enumerate(row.cells) if i not in columns]
     if others:
         passing = sum(cell is not None and cell.verdict.verdict == PASS for cell in others)
@@ -120,8 +143,8 @@ def _row(finished: Finished, card: Card, row: Row, columns: Sequence[int], class
     return tag("tr", tag("th", row.name, tag("small", row.in_words), scope="row"), *cells, class_=class_)
 
 
-def _cell(finished: Finished, column: Column, cell: Cell | None) -> Markup:
-    """Return a cell: value, sign, share of the limit, bar and, on paper, the governing record."""
+def _cell(finished: Finished, column: Column, cell: Cell | None, *, named: bool) -> Markup:
+    """Return a cell: value, sign, share of the limit, bar, its bound if ``named``, and on paper the governing record."""
     check = " ".join(filter(None, (column.check, column.at, column.limit)))
     if cell is None or cell.verdict.verdict == DOES_NOT_APPLY:
         return tag("td", tag("span", "–", aria_label="does not apply"), class_="na", data_check=check)
@@ -129,10 +152,12 @@ def _cell(finished: Finished, column: Column, cell: Cell | None) -> Markup:
     share = min(max(verdict.ratio, 0.0), 2.0) / 2.0 if verdict.ratio == verdict.ratio and not verdict.is_ban else None
     bar = tag("span", class_="bar", style=f"--share:{100 * share:.0f}%") if share is not None else ""
     record = tag("small", finished.label(verdict.record), class_="governs") if verdict.record else ""
+    bound = tag("small", cell.bound, class_="bound") if named and cell.bound else ""
     return tag(
         "td",
         tag("span", tag("strong", cell.value), mark(verdict.verdict, cell.percent), class_="top"),
         bar,
+        bound,
         record,
         class_=CLASSES[verdict.verdict],
         title=_tooltip(finished, verdict),
@@ -145,7 +170,15 @@ def _tooltip(finished: Finished, verdict: Verdict) -> str:
     between = f"between {_between(verdict)}" if _between(verdict) else ""
     record = f"{finished.label(verdict.record)} ({verdict.polarity})" if verdict.record else ""
     against = "" if verdict.is_ban or math.isnan(verdict.value) else wording.against(verdict)
-    parts = (wording.requirement(verdict), against, between, record, verdict.counted, verdict.note)
+    parts = (
+        wording.requirement(verdict),
+        against,
+        under(verdict.columns),
+        between,
+        record,
+        verdict.counted,
+        verdict.note,
+    )
     return "\n".join(filter(None, parts))
 
 
@@ -178,7 +211,7 @@ def _every(finished: Finished, verdicts: Sequence[Verdict], notes: wording.Notes
         Head("governing run", note="station, component, polarity and demand of that run; for a mean, of the largest"),
         Head("note"),
     ]
-    case_of = _namer(finished)
+    case_of = _namer(finished, bounds=True)
     rows: list[list[object]] = []
     for row in verdicts[:MOST_ROWS]:
         limit = "" if math.isnan(row.value) else wording.limit(row)
