@@ -57,11 +57,10 @@ def bounds_in_words(info: Mapping[str, Any]) -> list[str]:
         return []
     listed = "; ".join(f"{bound['bound']}: {changes_of(bound)}" for bound in bounds)
     sentences = [f"Each case ran as it is nominally and, one at a time, under these bounds: {listed}."]
-    sentences += [
-        f"{lacking['case']} lacks {', '.join(lacking['keys'])}, and ran without this change under {bound['bound']}."
-        for bound in bounds
-        for lacking in bound["lacking"]
-    ]
+    lacking = [(case["case"], ", ".join(case["keys"]), bound["bound"]) for bound in bounds for case in bound["lacking"]]
+    for (name, keys), rows in grouped(lacking, lambda row: row[:2]).items():
+        under = ", ".join(row[2] for row in rows)
+        sentences.append(f"{name} lacks {keys}, and ran without this change under {under}.")
     return sentences
 
 
