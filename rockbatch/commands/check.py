@@ -46,7 +46,12 @@ def main(arguments: argparse.Namespace) -> int:
 
 def report(arguments: argparse.Namespace) -> int:
     """Rewrite the report of finished results, or compare two studies."""
-    say(str(make_report(arguments.directory, arguments.other, out=arguments.out, whole=arguments.all).path))
+    made = make_report(
+        arguments.directory, arguments.other, out=arguments.out, whole=arguments.all, pairs=dict(arguments.pair)
+    )
+    if made.answer and str(arguments.out) != "-":
+        show(filled(_plain(made.answer)))
+    say(str(made.path))
     return 0
 
 

@@ -1,5 +1,6 @@
 """Entries of motions in run.json: sizes, measures and spectra, as numbers and texts only."""
 
+import hashlib
 import math
 from dataclasses import asdict
 from typing import NotRequired, TypedDict
@@ -55,9 +56,18 @@ def entry(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[
         "source": motion.source,
         "vertical_source": motion.vertical_source,
         "processed": motion.processed,
+        "digest": digest(motion),
         "findings": [asdict(finding) for finding in motion.findings],
         "notes": list(motion.notes),
     }
+
+
+def digest(motion: Motion) -> str:
+    """Return a digest of the samples of a motion, their step and the velocity at which they begin."""
+    hashed = hashlib.sha256(repr((motion.dt, motion.npts, motion.initial)).encode())
+    for samples in (motion.horizontal, motion.vertical, motion.across):
+        hashed.update(b"none" if samples is None else samples.tobytes())
+    return hashed.hexdigest()[:16]
 
 
 def _pulse(motion: Motion) -> dict[str, object]:

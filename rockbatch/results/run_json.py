@@ -113,6 +113,7 @@ SHAPE = {
             "factor": Maybe(float),
             "vertical_factor": Maybe(float),
             "processed": Maybe((bool, None)),
+            "digest": Maybe(str),
             "findings": Maybe([{"what": str}]),
         }
     ],

@@ -51,7 +51,7 @@ def answer(finished: Finished) -> Markup:
     lines = answered(
         finished.verdicts,
         finished.worst_at_scales,
-        _namer(finished),
+        named_designs(finished),
         lambda row: finished.label(row.record),
         finished.suites,
         stations_of(finished.info),
@@ -69,7 +69,7 @@ def _line(line: Line) -> Markup:
     return tag("li", tag("strong", mark(line.verdict, line.text)), cases, details)
 
 
-def _namer(finished: Finished, *, bounds: bool = False) -> Callable[[Verdict | CaseRuns], str]:
+def named_designs(finished: Finished, *, bounds: bool = False) -> Callable[[Verdict | CaseRuns], str]:
     """Return a function that names the case of a row, without its bound unless ``bounds`` are named apart."""
     named = finished.named_case if bounds else finished.named_design
     return lambda row: named(row.case, row.columns, finished.info["varied"], row.scale) if row.case else wording.SUITE
@@ -89,11 +89,13 @@ def scorecard(finished: Finished, *, bounds: bool = False) -> Markup:
 
     A design has one row, with the worst of its bounds in each cell, or with ``bounds`` one for each of them.
     """
-    card = of_verdicts(finished.verdicts, _namer(finished, bounds=bounds), finished.suites, finished.worst_at_scales)
+    card = of_verdicts(
+        finished.verdicts, named_designs(finished, bounds=bounds), finished.suites, finished.worst_at_scales
+    )
     columns = card.open_columns(MOST_COLUMNS)
     shown = MOST_CASES if len(card.rows) <= MOST_CASES else OPEN_CASES
     if bounds:  # a design with its bounds, which all are listed
-        order = list(dict.fromkeys(map(_namer(finished, bounds=True), finished.verdicts)))
+        order = list(dict.fromkeys(map(named_designs(finished, bounds=True), finished.verdicts)))
         card.rows.sort(key=lambda row: order.index(row.name) if row.name in order else len(order))
         shown = MOST_DRAWN
     folded = len(card.columns) - len(columns)
@@ -211,7 +213,7 @@ def _every(finished: Finished, verdicts: Sequence[Verdict], notes: wording.Notes
         Head("governing run", note="station, component, polarity and demand of that run; for a mean, of the largest"),
         Head("note"),
     ]
-    case_of = _namer(finished, bounds=True)
+    case_of = named_designs(finished, bounds=True)
     rows: list[list[object]] = []
     for row in verdicts[:MOST_ROWS]:
         limit = "" if math.isnan(row.value) else wording.limit(row)
