@@ -15,6 +15,7 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.showing import shown
 from rockbatch.quantities.cases import of_pier
 from rockbatch.quantities.design import BOUND, under
+from rockbatch.quantities.statistics import STATISTICS
 
 MOST_NAMES, MOST_FILES = 3, 6
 """Most names of cases that are listed, since the scorecard has all of them, and of files."""
@@ -204,7 +205,13 @@ class _Cases:
         details: tuple[str, ...] = ()
         if closest is not None:
             details = (f"Closest to its limit: {self._place(closest)} at {wording.percent(closest.ratio)}.",)
-        details = (*details, *self._cut_short(names), *self._omitted(names), *self._left_out())
+        details = (
+            *details,
+            *self._coverage(names),
+            *self._cut_short(names),
+            *self._omitted(names),
+            *self._left_out(),
+        )
         verdict = NOT_DECIDED if self.unchecked or self.stations.unusable else PASS
         if len(names) == len(self.every):
             return Line(verdict, f"Every check passes in {self._among(names)}{self._under_every_bound}", "", details)
@@ -239,6 +246,19 @@ class _Cases:
         """Return a sentence on those of the cases with runs that do not end standing; nothing without any."""
         ended = [name for name in names if any(runs.ended for runs in self.runs.get(name, ()))]
         return (f"Not every run ends standing: {self._with_ends(ended)}.",) if ended else ()
+
+    def _coverage(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return a sentence on what share of further records exceeds the statistics by which these cases pass."""
+        passed = [
+            (statistic.coverage(verdict.records), verdict.check)
+            for verdict in self._of(names, PASS)
+            if (statistic := STATISTICS.get(verdict.statistic)) and statistic.coverage
+        ]
+        checks = grouped(passed, lambda pair: pair[0])
+        return tuple(
+            f"{', '.join(dict.fromkeys(check for _, check in of_words))}: {words}."
+            for words, of_words in checks.items()
+        )
 
     def _omitted(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return a sentence for each omission in the demands of checks that these cases pass."""

@@ -63,12 +63,16 @@ def tolerance_rank(n: int, q: float = P84, confidence: float = CONFIDENCE) -> in
     return None
 
 
-def _p84_remark(values: Values) -> str:
-    """Return the share of further records that exceed the quantile, in words."""
-    n = len(values)
+def _between_ranks(n: int) -> str:
+    """Return how the quantile of ``n`` records is found, and the share of further records that exceed it."""
     return (
         f"by interpolation between the ranks of {n}, which {100.0 * exceedance(P84, n):.0f} % of further records exceed"
     )
+
+
+def _p84_remark(values: Values) -> str:
+    """Return how the quantile of these values is found, and the share of further records that exceed it."""
+    return _between_ranks(len(values))
 
 
 def _p84_95(values: Values) -> float:
@@ -182,6 +186,9 @@ class Statistic:
         Of the values: a remark on how they were evaluated, or "".
     interval : function or None
         Of the values and of their bounds: the bounds of the statistic, where those are not the statistics of the bounds.
+    coverage : function or None
+        Of the number of records: what share of further ones exceeds the value, in words, without which a check that passes by
+        it would promise more than it holds.
     """
 
     words: str
@@ -191,13 +198,16 @@ class Statistic:
     unchecked: str = ""
     remark: Callable[[Values], str] | None = None
     interval: Callable[[Values, Values, Values], tuple[float, float]] | None = None
+    coverage: Callable[[int], str] | None = None
 
 
 STATISTICS = {
     "max": Statistic("maximum", _max),
     "mean": Statistic("mean", _mean),
     "median": Statistic("median", lambda values: quantile(values, 0.5)),
-    "p84": Statistic("84 % quantile", lambda values: quantile(values, P84), 6, remark=_p84_remark),
+    "p84": Statistic(
+        "84 % quantile", lambda values: quantile(values, P84), 6, remark=_p84_remark, coverage=_between_ranks
+    ),
     "p84_95": Statistic("84 % quantile with 95 % confidence", _p84_95, 18, remark=_p84_95_remark),
     "p84_lognormal": Statistic(
         "84 % quantile of a lognormal distribution",

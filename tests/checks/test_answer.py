@@ -345,3 +345,12 @@ def test_a_sentence_that_holds_for_several_verdicts_is_said_once():
         f"drift, uplift: {few}.",
         "drift, uplift, soil: runs that do not end standing count so: overturned: infinite.",
     ]
+
+
+def test_a_quantile_that_passes_says_how_many_further_records_exceed_it():
+    """As of eight records, (0.84 · 7 + 1)/9 = 0.764; nothing is said of a mean, nor of a quantile that fails."""
+    tilt = {"check": "tilt", "statistic": "p84", "records": 8}
+    (passing,) = lines([verdict("pads", PASS, **tilt), verdict("pads", PASS, check="uplift", statistic="mean")])
+    (said,) = [detail for detail in passing.details if "further records" in detail]
+    assert said == "tilt: by interpolation between the ranks of 8, which 24 % of further records exceed."
+    assert "further" not in " ".join(lines([verdict("pads", FAIL, **tilt)])[0].details)

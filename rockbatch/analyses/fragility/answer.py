@@ -227,7 +227,11 @@ def _overlap(curve: Curve, other: Curve) -> bool:
 
 
 def _records(curve: Curve) -> str:
-    """Return the number of records in words, at each level if it differs between them."""
+    """Return the number of records in words, at each level if it differs between them; of stations where piers share a curve,
+    since the runs of one record on several piers are not independent.
+    """
+    if curve.get("piers", 1) > 1:
+        return f"{counted(curve['stations'], 'station')} on {curve['piers']} piers"
     numbers = [point["records"] for point in curve["points"]]
     least, most = (sum(numbers),) * 2 if "cloud" in curve else (min(numbers), max(numbers))
     return counted(most, "record") if least == most else f"{least} to {most} records a level"

@@ -298,8 +298,8 @@ def _degenerate(capacities: Capacities) -> NoCurve | None:
         return NoCurve(reason, above=highest, below=lowest)
     if highest == lowest:
         return NoCurve(
-            f"some records exceed the limit at {highest:.4g}, none below and all above: levels nearer to it would tell the "
-            "dispersion"
+            f"{highest:.4g} is the only level at which some records exceed the limit and others do not: levels nearer to it "
+            "would tell the dispersion"
         )
     return None
 

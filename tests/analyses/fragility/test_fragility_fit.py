@@ -164,7 +164,7 @@ def test_records_that_are_all_the_same_leave_no_less_open_than_fresh_ones():
     ([0, 0, 0], "no record exceeds the limit up to 0.3: the median is above"),
     ([5, 5, 5], "every record exceeds the limit from 0.1 on: the median is below"),
     ([0, 0, 5], "no record exceeds the limit at 0.2, every one at 0.3: the median is between"),
-    ([0, 2, 5], "some records exceed the limit at 0.2, none below and all above"),
+    ([0, 2, 5], "0.2 is the only level at which some records exceed the limit and others do not"),
     ([3, 2, 1], "does not grow with the intensity"),
     ([2, 2, 2], "does not grow with the intensity"),
     ([5, 0, 0], "does not grow with the intensity"),
