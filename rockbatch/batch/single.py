@@ -12,7 +12,7 @@ from rockbatch.motions import Motion
 from rockbatch.motions.plausible import unlikely_samples
 from rockbatch.outcome.outcome import LEAST_NORMAL_SHARE, Outcome
 from rockbatch.outcome.response import Response
-from rockbatch.pier import NO_SECTIONS, Base, Pier, problems, unlikely_devices
+from rockbatch.pier import Base, Pier, problems, unlikely_devices
 from rockbatch.pier.sections import section_heights
 from rockbatch.results import sections as of_sections
 from rockbatch.results import shocks as of_shocks
@@ -111,8 +111,6 @@ def simulate(
         pier = replace(pier, initial_rotation_rad=initial_rotation_rad)
     numerics, run = Numerics(**steps), Run(pier, foundation, motion)
     _check(run, numerics, least_normal_share, wait)
-    if sections and foundation.bends:
-        raise InputError(NO_SECTIONS)
     if sections:
         section_heights(pier, sections)
     name, outcome, quiet_s = case or foundation.name, _outcome(run, numerics, wait), numerics.quiet_s

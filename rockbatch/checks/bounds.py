@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.checks.omissions import omissions, open_landings
+from rockbatch.checks.omissions import omissions, open_landings, unconverged
 from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.quantities.arrays import Rows, Texts
-from rockbatch.quantities.cases import Case, bends, creeps
+from rockbatch.quantities.cases import Case, creeps
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.demands import Demand
 from rockbatch.quantities.limits import OTHER_LAW
@@ -141,9 +141,9 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
         known = unknown & (status == "failed") & ~np.isnan(error)
         low, estimated = np.where(known, np.maximum(reached - error, 0.0), low), estimated or bool(known.any())
     value, high = np.where(unknown, low, value), np.where(unknown, np.inf, high)
-    if demand.landing and bends(case):
-        low, high = np.where(np.isfinite(low), 0.0, low), np.full(len(runs), np.inf)
-    omitted = omissions(demand, runs.where(counting), case)
+    free = unconverged(demand, error, case)
+    low, high = np.where(free & np.isfinite(low), 0.0, low), np.where(free, np.inf, high)
+    omitted = omissions(demand, runs.where(counting), error[counting], case)
     return Demanded(Bounds(value, low, high, estimated), counting, own, by_other, wild, omitted)
 
 

@@ -5,13 +5,14 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.arrays import Rows, Values
 from rockbatch.quantities.cases import (
     Case,
     bends,
     has_light_shaft,
     is_frame,
     lands_by_impulse,
+    number_of_modes,
     stops_by_impulse,
 )
 from rockbatch.quantities.demands import Demand
@@ -34,8 +35,9 @@ _LANDINGS = "landings are left out, which on rigid ground are impulses without a
 
 OMISSIONS = {
     MODES: Omission(
-        f"forces of a single mode bound nothing: a heavy shaft had {FACTORS} times its rigid base shear by finite elements, 1.1 "
-        "times by one mode, so take them from a program with beam elements",
+        "a force of a shaft that bends is not bounded without what its last mode changes, nor where that has more than a tenth "
+        "of critical damping, whose force at a blow grows with every mode: leave flexural_modes, flexural_damping_kind and "
+        "substeps out",
         decides=False,
     ),
     LANDINGS: Omission(
@@ -60,20 +62,37 @@ def open_landings(demand: Demand, runs: Rows, case: Case) -> npt.NDArray[np.bool
 
     A run without impacts, whose pier never lifted off or never came back, misses none.
     """
-    if not (demand.landing and lands_by_impulse(case)):
+    if not (demand.landing and lands_by_impulse(case)) or _follows_modes(demand, case):
         return np.zeros(len(runs), dtype=bool)
     return runs.numbers("impacts") != 0.0
 
 
-def omissions(demand: Demand, runs: Rows, case: Case) -> list[str]:
-    """Return the names in :data:`OMISSIONS` of the parts that the demand leaves out in these runs of a case."""
-    if demand.landing and bends(case):
-        return [MODES]
+def unconverged(demand: Demand, error: Values, case: Case) -> npt.NDArray[np.bool_]:
+    """Return True for each run in which nothing says what the modes change that a bending shaft is not followed in, shape (n,).
+
+    ``error`` is that of the demand: of two modes or more it has what the last of them changes, and NaN stands for none.
+    """
+    alone = number_of_modes(case) == 1
+    return (np.isnan(error) | alone) & _follows_modes(demand, case)
+
+
+def _follows_modes(demand: Demand, case: Case) -> bool:
+    """Return whether the modes of a bending shaft take up the blow of a landing in the demand.
+
+    The shaft does not give along its axis, so that what stands on end of it, N and the feet's forces, is an impulse as ever.
+    """
+    return demand.landing and demand.bending and bends(case)
+
+
+def omissions(demand: Demand, runs: Rows, error: Values, case: Case) -> list[str]:
+    """Return the names in :data:`OMISSIONS` of what the demand, of this ``error``, leaves out in these runs of a case."""
+    if _follows_modes(demand, case):
+        return [MODES] if unconverged(demand, error, case).any() else []
     omitted = []
     if open_landings(demand, runs, case).any():
         omitted.append(LANDINGS_OF_FRAME if is_frame(case) else LANDINGS)
     if demand.landing and stops_by_impulse(case) and (runs.numbers("impacts") > 0.0).any():
         omitted.append(IMPULSES)
-    if demand.bending and not has_light_shaft(case):
+    if demand.bending and not bends(case) and not has_light_shaft(case):
         omitted.append(BENDING)
     return omitted

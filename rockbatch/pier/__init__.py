@@ -12,10 +12,9 @@ from rockbatch.pier.bases import RigidBase as RigidBase
 from rockbatch.pier.bases import YieldingBase as YieldingBase
 from rockbatch.pier.bases import in_kilonewtons as in_kilonewtons
 from rockbatch.pier.bases import neglected as neglected
-from rockbatch.pier.bending import NO_SECTIONS as NO_SECTIONS
-from rockbatch.pier.bending import Mode as Mode
-from rockbatch.pier.bending import mode_of as mode_of
-from rockbatch.pier.bending import shape_at as shape_at
+from rockbatch.pier.bending import Modes as Modes
+from rockbatch.pier.bending import bent_above as bent_above
+from rockbatch.pier.bending import modes_of as modes_of
 from rockbatch.pier.block import Pier as Pier
 from rockbatch.pier.block import described as described
 from rockbatch.pier.dampers import Damper as Damper

@@ -9,10 +9,14 @@ from collections.abc import Sequence
 from dataclasses import InitVar, dataclass, field, fields, replace
 from typing import Any, ClassVar, Literal, Self, get_args
 
+import numpy as np
+import numpy.typing as npt
+
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import Contradiction, MissingKey, OutOfRange, Problem, Superseded, WrongType, refuse
 from rockbatch.common.showing import InNotebook, shown
 from rockbatch.common.units import LEAST, MOST, POSITIVE, Bounds, Usual
+from rockbatch.pier.bending import MOST_MODES, Modes, modes_of
 from rockbatch.pier.block import Pier
 from rockbatch.pier.first_loading import Curve, Straight
 from rockbatch.pier.frequencies import rocking_frequency, static_deflection, vertical_frequency, yield_deflection
@@ -42,6 +46,7 @@ Kinematics = Literal["first-order", "finite"]
 Flight = Literal["guided", "stop"]
 Impact = Literal["landing", "housner"]
 Shaft = Literal["rigid", "elastic"]
+FlexuralDamping = Literal["modal", "stiffness"]
 
 WITH_EPSILON: tuple[Impact, ...] = ("landing",)
 """Impacts with a restitution ε of the landing pivot; Housner's e follows from the pier."""
@@ -72,8 +77,9 @@ BOUNDS = {
     "flight_limit_mm": Bounds(LEAST, MOST, " [mm], a height of flight"),
     "area_m2": Bounds(LEAST, MOST, " [m²], the area of one support"),
     "flexural_damping": Bounds(
-        0.0, 1.0, why="damping of the shaft's mode, as a share of critical, must be within 0..1"
+        0.0, 1.0, why="damping of the shaft's first mode, as a share of critical, must be within 0..1"
     ),
+    "flexural_modes": Bounds(1, MOST_MODES, why=f"must be within 1..{MOST_MODES}, the number of the shaft's modes"),
     "zeta": Bounds(0.0, 1.0, why="damping of the supports, as a share of critical, must be within 0..1"),
     "epsilon": Bounds(0.0, 1.0, why="the landing pivot's restitution must be within 0..1"),
     "eta": Bounds(LEAST_ETA, MOST, why=_strength),
@@ -86,6 +92,7 @@ WORDS: dict[str, tuple[str, ...]] = {
     "flight": get_args(Flight),
     "spring": tuple(LAWS),
     "shaft": get_args(Shaft),
+    "flexural_damping_kind": get_args(FlexuralDamping),
     "impact": get_args(Impact),
 }
 """Possible words of the fields of bases."""
@@ -128,7 +135,7 @@ class _Traits(InNotebook):
     """True if these springs yield, so that the pier may settle."""
 
     bends: bool = False
-    """True if the shaft bends in one mode."""
+    """True if the shaft bends."""
 
     flight: Flight
     flight_limit_mm: float
@@ -196,9 +203,11 @@ class RigidBase(_Traits):
     ``restraints`` are dampers and tendons between the pier and the ground.
     ``friction``, if known, is the coefficient of the interface: a run reports where its forces need more (THEORY.md, Forces).
     ``flight``, ``flight_limit_mm``, ``area_m2`` and ``confirm`` are as on springs (:class:`ElasticBase`).
-    With ``shaft = "elastic"`` the pier bends in one mode, of the period :attr:`Pier.flexural_period_s` and the damping ratio
-    ``flexural_damping``. A blow keeps the momentum of the mode, from which all else follows, so that ``restitution`` does not
-    apply (THEORY.md, A shaft that bends); ``flexural_impact = "momentum"``, which said so, has no effect.
+    With ``shaft = "elastic"`` the pier bends in its ``flexural_modes`` lowest modes, by default in four or as many as its masses
+    have, the first of the period :attr:`Pier.flexural_period_s`. Their damping ratio is ``flexural_damping``; of stiffness as
+    ``flexural_damping_kind`` it is that of the first, and grows with the frequency. A blow keeps the momenta of the modes, from
+    which all else follows, so that ``restitution`` does not apply (THEORY.md, A shaft that bends); ``flexural_impact =
+    "momentum"``, which said so, has no effect.
     ``contact_stiffness_kN_m``, if given, is the stiffness of the ground under one foot [kN/m], by which the column
     ``landing_force_kN`` estimates what the hardest landing presses; it does not affect the run (THEORY.md, Forces).
 
@@ -216,6 +225,8 @@ class RigidBase(_Traits):
     area_m2: float | None = field(default=None, kw_only=True)
     shaft: Shaft = field(default="rigid", kw_only=True)
     flexural_damping: float = field(default=0.05, kw_only=True)
+    flexural_damping_kind: FlexuralDamping = field(default="modal", kw_only=True)
+    flexural_modes: int | None = field(default=None, kw_only=True)
     flexural_impact: InitVar[str | None] = field(default=None, kw_only=True)
     contact_stiffness_kN_m: float | None = field(default=None, kw_only=True)  # noqa: N815 (the study's key)
     confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
@@ -241,13 +252,24 @@ class RigidBase(_Traits):
         """Return True if the shaft is elastic."""
         return self.shaft == "elastic"
 
+    def modes(self, pier: Pier) -> Modes:
+        """Return the modes of an elastic shaft of ``pier`` that are followed."""
+        return modes_of(pier, self.flexural_modes or MOST_MODES)
+
+    def damping_ratios(self, pier: Pier) -> npt.NDArray[np.float64]:
+        """Return ζ_i of these modes, shape (n,): the same of all, or in proportion to their frequencies, as of stiffness."""
+        frequency = self.modes(pier).frequency
+        of_first = 1.0 if self.flexural_damping_kind == "modal" else frequency / frequency[0]
+        return self.flexural_damping * of_first * np.ones(len(frequency))
+
     def parameters(self, pier: Pier) -> dict[str, object]:
         """Return this base under ``pier`` by the keys of run.json."""
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
         values: dict[str, object] = {"restitution": of_frame if self.restitution is None else self.restitution}
         values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
         if self.bends:
-            values |= {name: getattr(self, name) for name in ("shaft", "flexural_damping")}
+            values |= {name: getattr(self, name) for name in ("shaft", "flexural_damping", "flexural_damping_kind")}
+            values["flexural_modes"] = len(self.modes(pier).frequency)
         if self.contact_stiffness_kN_m is not None:
             values["contact_stiffness_kN_m"] = self.contact_stiffness_kN_m
         return values | _interface(self) | described_restraints(self.restraints)

@@ -107,7 +107,7 @@ def _wrong_bending(pier: Pier, base: Base) -> list[Problem]:
         text = 'devices on the deck are of a rigid shaft; leave them out, or write shaft = "rigid"'
         wrong.append(Problem("shaft", "elastic", text, kind=Contradiction))
     if isinstance(base, RigidBase) and base.restitution is not None:
-        text = "what a blow takes of a shaft that bends follows from the momentum of its mode; leave it out"
+        text = "what a blow takes of a shaft that bends follows from the momenta of its modes; leave it out"
         wrong.append(Problem("restitution", base.restitution, text, kind=Contradiction))
     return wrong
 

@@ -10,7 +10,7 @@ from rockbatch.common.errors import InputError, Problem, refuse
 from rockbatch.pier.block import Pier
 from rockbatch.pier.parts import Part
 
-_ROUNDING = 1e-9
+ROUNDING = 1e-9
 """Distance over the pier's height within which a point mass is at a section, and counts as above it."""
 
 _SAME = 1e-6
@@ -68,7 +68,7 @@ def section_heights(pier: Pier, sections: int | Sequence[float]) -> tuple[float,
                 f"sections = {sections}: must be 2 or above: the foot and the top of the pier are among them"
             )
         return tuple(np.linspace(0.0, top, sections).tolist())
-    outside = [height for height in sections if not 0.0 <= height <= top * (1.0 + _ROUNDING)]
+    outside = [height for height in sections if not 0.0 <= height <= top * (1.0 + ROUNDING)]
     if outside:
         bounds = f"must be within 0 and the top of the pier, {top:g} m"
         raise InputError(*(f"sections_m = {height:g}: {bounds}" for height in outside))
@@ -77,7 +77,7 @@ def section_heights(pier: Pier, sections: int | Sequence[float]) -> tuple[float,
 
 def above(pier: Pier, height: float) -> Above:
     """Return the part of ``pier`` above ``height`` [m]; a mass at that height is above."""
-    return _above_section(parts_of(pier), height, _ROUNDING * pier.highest)
+    return _above_section(parts_of(pier), height, ROUNDING * pier.highest)
 
 
 def parts_of(pier: Pier) -> Sequence[Part]:
@@ -102,15 +102,23 @@ def _above_section(parts: Sequence[Part], height: float, rounding: float) -> Abo
     return Above(share / mass, rise, inertia / mass)
 
 
+def share_above(part: Part, height: float, rounding: float) -> float:
+    """Return the share of a part above ``height`` [m]; a point mass at most ``rounding`` [m] below counts as above."""
+    length, rise = part.length_m or 0.0, part.height_m - height
+    if length == 0.0:
+        return 1.0 if rise >= -rounding else 0.0
+    return min(max(0.5 + rise / length, 0.0), 1.0)
+
+
 def _piece(part: Part, height: float, rounding: float) -> Above:
     """Return mass [t], rise [m] and inertia [t m²] of the piece of a part above ``height``.
 
     The inertia in excess of a rod's is spread evenly over the length, as that of a rectangle's width is.
     """
     length, rise = part.length_m or 0.0, part.height_m - height
+    share = share_above(part, height, rounding)
     if length == 0.0:
-        return Above(part.mass_t, rise, part.inertia_t_m2) if rise >= -rounding else Above(0.0, 0.0, 0.0)
-    share = min(max(0.5 + rise / length, 0.0), 1.0)
+        return Above(part.mass_t, rise, part.inertia_t_m2) if share else Above(0.0, 0.0, 0.0)
     mass, width = share * part.mass_t, part.inertia_t_m2 - part.mass_t * length**2 / 12.0
     top = rise + 0.5 * length
     return Above(mass, top - 0.5 * share * length, share * width + mass * (share * length) ** 2 / 12.0)

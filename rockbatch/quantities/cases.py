@@ -90,6 +90,11 @@ def bends(case: Case) -> bool:
     return bool(case.get("parameters", {}).get("shaft") == "elastic")
 
 
+def number_of_modes(case: Case) -> int:
+    """Return the number of modes in which the shaft of a case bends; 0 of a rigid one, and 1 if an earlier version ran it."""
+    return int(case["parameters"].get("flexural_modes", 1)) if bends(case) else 0
+
+
 LIGHT_SHAFT = 1.0 / 6.0
 """Share of the mass below which a shaft is light: it has less than a fifth of the mass that it carries."""
 

@@ -6,10 +6,10 @@ from rockbatch.core.clock import ON_ITS_SIDE, window_of
 from rockbatch.motions.motion import Motion
 from rockbatch.outcome.changes import change_of_devices
 from rockbatch.outcome.outcome import Failure, Outcome
-from rockbatch.pier import Base, Damper, FootingBase, Pier
+from rockbatch.pier import Base, Damper, Pier
 from rockbatch.simulation.agreement import COUNTS, Agreement, agreement, converged_extent, flight_of, windows
-from rockbatch.simulation.beds import with_fewer_strips, with_strips_error
 from rockbatch.simulation.chaos import MARGIN, look_for_chaos, magnifies, residuals_wander, without_error
+from rockbatch.simulation.coarser import coarser, with_model_error
 from rockbatch.simulation.models import first_substeps, readings
 from rockbatch.simulation.runs import MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
 
@@ -89,22 +89,24 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
             elif len(agreements[i]) == HALVINGS:
                 outcomes[i] = _not_converged(pier, levels.pop(i), tolerance, "")
         look_for_chaos(runs, outcomes, doubtful, tolerance, quiet_s, stop)
-    return _with_strips_error(runs, outcomes, quiet_s, stop)
+    return _with_model_error(runs, outcomes, quiet_s, stop)
 
 
-def _with_strips_error(
+def _with_model_error(
     runs: Sequence[Run], outcomes: Sequence[Outcome | None], quiet_s: float, stop: Stop
 ) -> list[Outcome | None]:
-    """Return ``outcomes`` with the share of the strips in the errors of those on a footing, by a run on half as many."""
+    """Return ``outcomes`` with the share of the bed's strips or the shaft's modes in their errors, by runs with fewer of them."""
     found = list(outcomes)
     fewer = list[tuple[int, Run, int]]()
     for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True)):
-        if isinstance(run.base, FootingBase) and outcome is not None and outcome.status == "ok":
-            fewer.append((i, Run(run.pier, with_fewer_strips(run.base), run.motion), outcome.substeps))
+        if outcome is not None and outcome.status == "ok" and (other := coarser(run)):
+            fewer.append((i, other, outcome.substeps))
     trials = try_all([run for _, run, _ in fewer], [steps for *_, steps in fewer], quiet_s, stop) if fewer else []
     for (i, *_), trial in zip(fewer, trials, strict=True):
         outcome = found[i]
-        found[i] = with_strips_error(outcome, trial.outcome) if trial is not None and outcome is not None else None
+        found[i] = (
+            with_model_error(outcome, trial.outcome, CHANCE) if trial is not None and outcome is not None else None
+        )
     return found
 
 

@@ -16,8 +16,9 @@ from rockbatch.motions.motion import Samples
 from rockbatch.outcome.changes import LEAST, Sized, greatest_change
 from rockbatch.outcome.outcome import PeakForces
 from rockbatch.outcome.response import FORCE_UNITS, IMPACT_UNITS
-from rockbatch.pier import Pier, RigidBase, YieldingBase, landing_force, shape_at
-from rockbatch.simulation.models import acceleration_at, block, elements, ground_of, model
+from rockbatch.pier import Pier, RigidBase, YieldingBase, landing_force
+from rockbatch.simulation.coarser import of_last_mode
+from rockbatch.simulation.models import acceleration_at, block, elements, ground_of, model, per_mode
 from rockbatch.simulation.restraints import apart, recorded
 from rockbatch.simulation.runs import Run
 from rockbatch.simulation.starting import start_of
@@ -83,8 +84,8 @@ def _outline(pier: Pier, base: RigidBase) -> Outline:
     """
     size, width = float(pier.size), 2.0 * float(pier.half_width)
     if pier.deck_over_columns is not None:
-        return Outline(size, width, width / math.sin(pier.alpha) / size, 0.0, 0.0)
-    bent = shape_at(pier, pier.deck) if base.bends else 0.0
+        return Outline(size, width, width / math.sin(pier.alpha) / size, 0.0)
+    bent = per_mode(base.modes(pier).at(pier.deck)) if base.bends else None
     return Outline(size, width, 1.0, float(pier.deck - pier.height), bent)
 
 
@@ -232,6 +233,8 @@ def _in_kilonewtons(pier: Pier, force: float) -> str:
 LARGE_ERROR = 0.01
 """Relative error of a force above which a run has a note."""
 
+OF_IMPACTS = "friction demand of impacts"
+
 _SIZED = {
     "base shear": Sized(("base_shear",), "force"),
     "normal force": Sized(("normal_force",), "force"),
@@ -243,7 +246,7 @@ _SIZED = {
     "acceleration of the deck": Sized(("deck_acceleration",), "force"),
     "landing velocity": Sized(("landing_velocity",), "speed"),
     "impulse": Sized(("impulse",), "speed"),
-    "friction demand of impacts": Sized(("impact_friction_demand",), "friction"),
+    OF_IMPACTS: Sized(("impact_friction_demand",), "friction"),
     "angular velocity": Sized(("omega_over_p",), "rotation"),
     "base shear on the keys": Sized(("key_shear",), "force"),
 }
@@ -257,4 +260,14 @@ def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier, chance: float) 
     """
     worst, most = greatest_change(_SIZED, fine, coarse, pier)
     note = f"forces not settled: halving the step still changed the {worst} by {most:.1%}" if most > LARGE_ERROR else ""
-    return replace(fine, error=chance * max(most, LEAST)), note
+    return replace(fine, error=(fine.error or 0.0) + chance * max(most, LEAST)), note
+
+
+def with_modes_error(run: Run, fine: PeakForces, fewer: PeakForces, chance: float) -> PeakForces:
+    """Return ``fine`` with ``chance`` times the greatest relative change from ``fewer``, by one mode fewer, as its error.
+
+    The friction demand of impacts is left out: each further mode takes about half of a landing's horizontal impulse, so that it
+    tends to 0, and is too great.
+    """
+    of_modes = {name: sized for name, sized in _SIZED.items() if name != OF_IMPACTS}
+    return replace(fine, error=of_last_mode(run, greatest_change(of_modes, fine, fewer, run.pier)[1], chance))

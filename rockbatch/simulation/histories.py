@@ -7,7 +7,8 @@ import numpy as np
 
 from rockbatch.common.lazy import pd
 from rockbatch.core import types
-from rockbatch.core.flexure.model import FlexibleBlock
+from rockbatch.core.flexure.model import FlexibleBlock, Flexing
+from rockbatch.core.flexure.modes import MOST_MODES
 from rockbatch.core.observe.beds import BED_STATE, follow_bed
 from rockbatch.core.observe.ledger import LEDGER
 from rockbatch.motions.motion import Samples
@@ -112,7 +113,7 @@ def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Sa
     bent = {}
     if base.bends:
         energy = _energy_of_bending(flexible_block(pier, base), rows, side)
-        energy, bent = energy - energy[0], {"deflection": rows.u}
+        energy, bent = energy - energy[0], {"deflection": flexible_block(pier, base).end_shape @ of_modes(rows)[0]}
     if base.restraints:
         energy = energy + restraints.stored(pier, base, rows)
     none = dict.fromkeys(
@@ -123,17 +124,22 @@ def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Sa
 
 def _energy_of_bending(m: FlexibleBlock, rows: np.recarray, key: Samples) -> Samples:
     """Return kinetic, potential and elastic energy [J/kg] of a pier with an elastic shaft, about the base point at ``key`` b."""
-    b, sine, cosine, u = key * m.half_width, np.sin(rows.theta), np.cos(rows.theta), rows.u
-    turning = m.inertia + m.height**2 + b**2 + u * (m.second * u - 2.0 * m.first * b)
-    slope, rise = (
-        (b - m.first * u) * cosine - m.height * sine,
-        rows.v_rate - (b * cosine - m.height * sine) * rows.omega,
-    )
-    kinetic = (
-        0.5 * (m.second * rows.u_rate**2 + turning * rows.omega**2 + rise**2) + m.coupling * rows.u_rate * rows.omega
-    )
-    kinetic += rise * (slope * rows.omega - m.first * sine * rows.u_rate)
-    return kinetic + m.gravity * (rows.v - m.first * u * sine) + 0.5 * m.second * (m.frequency * u) ** 2
+    b, sine, cosine = key * m.half_width, np.sin(rows.theta), np.cos(rows.theta)
+    u, u_rate = of_modes(rows)
+    moved = m.share @ u
+    turning = m.inertia + m.height**2 + b**2 + (u * u).sum(axis=0) - 2.0 * moved * b
+    slope, rise = (b - moved) * cosine - m.height * sine, rows.v_rate - (b * cosine - m.height * sine) * rows.omega
+    kinetic = 0.5 * ((u_rate * u_rate).sum(axis=0) + turning * rows.omega**2 + rise**2)
+    kinetic += (m.coupling @ u_rate) * rows.omega + rise * (slope * rows.omega - (m.share @ u_rate) * sine)
+    stretched = np.array(m.frequency)[:, None] * u
+    return kinetic + m.gravity * (rows.v - moved * sine) + 0.5 * (stretched * stretched).sum(axis=0)
+
+
+def of_modes(rows: np.recarray) -> tuple[Samples, Samples]:
+    """Return the coordinates [m] of a shaft's modes at ``rows``, and their rates [m/s], shape (modes, rows) each."""
+    first = Flexing._fields.index("u_1")
+    names, rates = Flexing._fields[first : first + MOST_MODES], Flexing._fields[first + MOST_MODES :]
+    return np.array([rows[name] for name in names]), np.array([rows[name] for name in rates])
 
 
 def _footing_state(run: Run, rows: np.recarray) -> np.recarray:

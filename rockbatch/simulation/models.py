@@ -11,6 +11,7 @@ from rockbatch.core.block.model import Block
 from rockbatch.core.devices.laws import CONTACT, DAMPERS, HYSTERETIC, MAXWELL, SPRING, TENDON, VISCOUS, Element
 from rockbatch.core.flexure import lanes as flexible_lanes
 from rockbatch.core.flexure.model import FlexibleBlock
+from rockbatch.core.flexure.modes import PerMode
 from rockbatch.core.footing import lanes as footing_lanes
 from rockbatch.core.footing.model import BEDS, Footing
 from rockbatch.core.ground import ground_rows
@@ -27,7 +28,7 @@ from rockbatch.pier import (
     DeckSpring,
     ElasticBase,
     FootingBase,
-    Mode,
+    Modes,
     Pier,
     Place,
     Restraint,
@@ -35,10 +36,8 @@ from rockbatch.pier import (
     Tendon,
     YieldingBase,
     fastest,
-    mode_of,
     places,
     rocking_frequency,
-    shape_at,
     vertical_frequency,
     yield_deflection,
 )
@@ -183,9 +182,7 @@ def block(pier: Pier, base: RigidBase) -> Block:
 @lru_cache(maxsize=4096)
 def flexible_block(pier: Pier, base: RigidBase) -> FlexibleBlock:
     """Return the core's numbers for ``pier`` with an elastic shaft on a rigid base, per unit mass."""
-    rigid, mode, period = block(pier, base), mode_of(pier), pier.flexural_period_s
-    assert period is not None
-    frequency = 2.0 * math.pi / period
+    rigid, modes = block(pier, base), base.modes(pier)
     return FlexibleBlock(
         half_width=rigid.half_width,
         height=rigid.height,
@@ -196,21 +193,27 @@ def flexible_block(pier: Pier, base: RigidBase) -> FlexibleBlock:
         guided=rigid.guided,
         rest=rigid.rest,
         deck=0.0,
-        first=mode.first,
-        second=mode.second,
-        coupling=mode.coupling,
-        frequency=frequency,
-        damping=float(2.0 * base.flexural_damping * frequency),
         top=float(pier.top),
-        top_shape=shape_at(pier, pier.top),
-        tipping=_tipping(rigid, mode, frequency),
+        tipping=_tipping(rigid, modes),
         flight_step=0.5 * FREQUENCY_STEP / _vibration(pier, base, rigid.inertia + rigid.height**2),
+        share=per_mode(modes.share),
+        coupling=per_mode(modes.coupling),
+        frequency=per_mode(modes.frequency, float(modes.frequency[-1])),
+        damping=per_mode(2.0 * base.damping_ratios(pier) * modes.frequency),
+        end_shape=per_mode(modes.at(pier.highest)),
+        top_shape=per_mode(modes.at(pier.top)),
     )
 
 
-def _tipping(m: Block, mode: Mode, frequency: float) -> float:
+def per_mode(values: Samples, absent: float = 0.0) -> PerMode:
+    """Return a number of each mode for the core; ``absent`` for modes that a pier lacks, which stay at rest."""
+    lacking = len(PerMode._fields) - len(values)
+    return PerMode(*map(float, values), *[absent] * lacking)
+
+
+def _tipping(m: Block, modes: Modes) -> float:
     """Return the unstable equilibrium [rad] on one pivot with the shaft bent by the weight; it is below α."""
-    leans = m.gravity * mode.first**2 / (mode.second * frequency**2)
+    leans = m.gravity * float(((modes.share / modes.frequency) ** 2).sum())
     low, high = 0.0, m.alpha
     for _ in range(60):
         middle = 0.5 * (low + high)
@@ -279,7 +282,7 @@ def line_of(
     if isinstance(m, Block):
         return block_lanes.line_of(m, start.theta, 0.0, *timing)
     if isinstance(m, FlexibleBlock):
-        return flexible_lanes.line_of(m, start.theta, hanging(m, start.theta), *timing)
+        return flexible_lanes.line_of(m, start.theta, *timing)
     if isinstance(m, Footing):
         return footing_lanes.line_of(m, prestress, start.theta, *timing)
     return spring_lanes.line_of(m, *timing, *readings, prestress, start.v, start.theta, start.z_left, start.z_right)
@@ -378,17 +381,15 @@ def prestress(pier: Pier, base: Base) -> float:
     return sum(law.prestress for law in elements(pier, base))
 
 
-def hanging(m: FlexibleBlock, theta: float) -> float:
-    """Return the deflection [m] of the top by the weight alone, with the base held at ``theta`` [rad]."""
-    return m.gravity * m.first * math.sin(theta) / (m.second * m.frequency**2)
-
-
 def _vibration(pier: Pier, base: RigidBase, turning: float) -> float:
-    """Return the greatest rate [1/s] of the shaft's mode coupled with a rotation of the inertia ``turning`` [m²]."""
-    mode, frequency = mode_of(pier), 2.0 * math.pi / (pier.flexural_period_s or math.inf)
-    share = 1.0 - mode.coupling**2 / (mode.second * turning)
-    fast, decay = frequency / math.sqrt(share), base.flexural_damping * frequency / share
-    return fast if decay <= fast else decay + math.sqrt(decay**2 - fast**2)
+    """Return the greatest rate [1/s] of the shaft's modes coupled with a rotation of the inertia ``turning`` [m²]."""
+    modes = base.modes(pier)
+    n = len(modes.frequency)
+    # Without the rotation, whose acceleration is −Σ λ_i ü_i/J
+    masses = np.eye(n) - np.outer(modes.coupling, modes.coupling) / turning
+    pulls = np.hstack((np.diag(modes.frequency**2), np.diag(2.0 * base.damping_ratios(pier) * modes.frequency)))
+    system = np.vstack((np.hstack((np.zeros((n, n)), np.eye(n))), -np.linalg.solve(masses, pulls)))
+    return float(np.abs(np.linalg.eigvals(system)).max())
 
 
 @lru_cache(maxsize=4096)

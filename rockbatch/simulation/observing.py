@@ -7,6 +7,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.motions.motion import Motion
 from rockbatch.outcome.outcome import Outcome
+from rockbatch.simulation.coarser import with_fewer_modes
 from rockbatch.simulation.recording import Recording, recorded, recorded_side_by_side
 from rockbatch.simulation.runs import Run, Stop, steps_of
 
@@ -67,6 +68,10 @@ class Observer:
     def read(self, recording: Recording, outcome: Outcome) -> Any:
         """Return the results of a history, of the type that :meth:`add` takes."""
 
+    def beyond(self, run: Run, fine: Any, fewer: Any) -> Any:
+        """Return the results ``fine`` with what one mode ``fewer`` of the shaft changes as a part of their errors."""
+        return fine
+
     def add(self, run: Run, outcome: Outcome, fine: Any, coarse: Any) -> Outcome:
         """Return ``outcome`` with the results ``fine`` of its history and ``coarse`` by twice the step; None if not read."""
         return outcome
@@ -107,10 +112,23 @@ def observed(
         if chosen and outcomes[i].substeps % 2 == 0:
             claiming[i] = chosen
     coarse = _read_all(runs, halved, claiming, quiet_s, wait, stop, longer=False)
+    bending = [with_fewer_modes(run) for run in runs] if claiming else []
+    of_modes = {i: chosen for i, chosen in claiming.items() if bending[i] is not None}
+    fewer = _read_all(
+        [own or run for own, run in zip(bending, runs, strict=True)] if of_modes else runs,
+        outcomes,
+        of_modes,
+        quiet_s,
+        wait,
+        stop,
+        longer=False,
+    )
     done = list(outcomes)
     for i, run in enumerate(runs):
         for observer in observers:
-            read, of_twice = (found.get(i, {}).get(observer) for found in (fine, coarse))
+            read, of_twice, of_fewer = (found.get(i, {}).get(observer) for found in (fine, coarse, fewer))
+            if of_fewer is not None:
+                read = observer.beyond(run, read, of_fewer)
             done[i] = observer.add(run, done[i], read, of_twice)
     return done
 

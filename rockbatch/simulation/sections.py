@@ -1,4 +1,4 @@
-"""Shear, axial force and moment in sections of a rigid shaft, from its recorded motion (THEORY.md, Forces in sections)."""
+"""Shear, axial force and moment in sections of the shaft, from its recorded motion (THEORY.md, Forces in sections)."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.core.flexure.modes import MOST_MODES
 from rockbatch.core.kernel import entry
 from rockbatch.core.observe.peaks import Place, RecordedRun, push_deck, push_deck_within, under_devices_within
 from rockbatch.core.observe.rows import (
@@ -17,6 +18,7 @@ from rockbatch.core.observe.rows import (
     state_of,
     step_between,
     within,
+    write_bending,
 )
 from rockbatch.core.system import rates
 from rockbatch.core.table import record, with_pull
@@ -24,7 +26,7 @@ from rockbatch.core.types import LIFT_OFF, TAKE_OFF, Pull
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.changes import LEAST, Sized, greatest_change
 from rockbatch.outcome.outcome import Section
-from rockbatch.pier import Pier
+from rockbatch.pier import Modes, Pier, RigidBase, bent_above
 from rockbatch.pier.sections import above
 from rockbatch.simulation.models import elements, ground_of, model
 from rockbatch.simulation.restraints import apart
@@ -59,16 +61,27 @@ class Recorded(NamedTuple):
     heights: Samples  # of devices on the deck [m]; 0 of those at the base
 
 
+class Bending(NamedTuple):
+    """Modes of an elastic shaft and their coordinates at k instants, rates and accelerations, shape (n, k) each."""
+
+    modes: Modes
+    u: Samples  # [m]
+    u_rate: Samples
+    u_acceleration: Samples
+
+
 class InBody(NamedTuple):
     """Accelerations of a pier at k instants, in the axes of its body, shape (k,) each."""
 
     across: Samples  # of its centre of mass with gravity, across the axis, to the right [m/s²]
     along: Samples  # and along it, upwards
     turning: Samples  # [rad/s²]
+    speed: Samples  # θ̇ [rad/s]
     squared: Samples  # θ̇² [rad²/s²]
     sine: Samples
     cosine: Samples
     on_deck: list[tuple[float, Samples]]  # height [m] of each device there, and its push to the left [m/s²]
+    bending: Bending | None  # of an elastic shaft
 
 
 class InSection(NamedTuple):
@@ -80,8 +93,9 @@ class InSection(NamedTuple):
 
 
 @entry
-def _follow(m, run, numbers, shares, out, pushes):  # type: ignore[no-untyped-def]
-    """Write the Motion at each share of the step to the row of this number, and the pushes on the deck, shape (moments, devices).
+def _follow(m, run, numbers, shares, out, pushes, bending):  # type: ignore[no-untyped-def]
+    """Write the Motion at each share of the step to the row of this number, the pushes on the deck, shape (moments, devices), and
+    the bending of an elastic shaft, shape (moments, 3, modes).
 
     At share 1 they are those of the row itself.
     """
@@ -113,6 +127,7 @@ def _follow(m, run, numbers, shares, out, pushes):  # type: ignore[no-untyped-de
             push_deck(devices, m, i, y, contact, pushes[j])
         k = rates(under, y, contact, shaking)
         line.theta, line.omega, line.v_acceleration, line.turning = y.theta, y.omega, k.v_rate, k.omega
+        write_bending(m, y, k, bending[j])
         line.side, line.horizontal, line.vertical = contact.right - contact.left, shaking.horizontal, shaking.vertical
 
 
@@ -129,7 +144,8 @@ def in_body(of: Recorded, numbers: Places, shares: Samples) -> InBody:
     laws."""
     pier, base = of.run.pier, of.run.base
     motion, pushes = np.recarray(len(numbers), MOTION), np.zeros((len(numbers), len(of.heights)))
-    _follow(model(pier, base), of.plain, numbers, shares, motion, pushes)
+    bending = np.zeros((len(numbers), 3, MOST_MODES))
+    _follow(model(pier, base), of.plain, numbers, shares, motion, pushes, bending)
     # In flight the shear key of a block holds the pivot that was last in contact
     side = (
         motion.side * base.two_springs
@@ -144,7 +160,11 @@ def in_body(of: Recorded, numbers: Places, shares: Samples) -> InBody:
     horizontal, vertical = motion.horizontal + sideways, pier.gravity + motion.vertical + motion.v_acceleration
     across, along = horizontal * cosine - vertical * sine, vertical * cosine + horizontal * sine
     on_deck = [(float(height), push) for height, push in zip(of.heights, pushes.T, strict=True) if height != 0.0]
-    return InBody(across, along, motion.turning, squared, sine, cosine, on_deck)
+    bent = None
+    if isinstance(base, RigidBase) and base.bends:
+        modes = base.modes(pier)
+        bent = Bending(modes, *np.moveaxis(bending, 0, 2)[:, : len(modes.frequency)])
+    return InBody(across, along, motion.turning, motion.omega, squared, sine, cosine, on_deck, bent)
 
 
 def in_section(pier: Pier, body: InBody, height: float) -> InSection:
@@ -154,10 +174,28 @@ def in_section(pier: Pier, body: InBody, height: float) -> InSection:
     shear = part.share * (body.across + centre * body.turning)
     axial = part.share * (body.along - centre * body.squared)
     moment = -part.rise * shear - part.inertia * body.turning
+    if body.bending is not None:
+        shear, moment, axial = _bent(pier, body, body.bending, height, InSection(shear, moment, axial))
     for place, push in body.on_deck:
         if place >= height:
             shear, axial = shear + push * body.cosine, axial + push * body.sine
             moment = moment - (place - height) * push * body.cosine
+    return InSection(shear, moment, axial)
+
+
+def _bent(pier: Pier, body: InBody, bending: Bending, height: float, straight: InSection) -> InSection:
+    """Return the forces in a section of a shaft that bends; ``straight`` are those by the motion of its base.
+
+    A mass at the height z with the deflection w = Σ φ_i u_i has ẅ − w θ̇² across and −2 ẇ θ̇ − w θ̈ along the axis besides, and what
+    it pulls along the axis turns about the section, which is deflected itself.
+    """
+    of = bent_above(pier, bending.modes, height)
+    across = bending.u_acceleration - bending.u * body.squared
+    along = 2.0 * bending.u_rate * body.speed + bending.u * body.turning
+    at_base = body.along + pier.height * body.squared
+    shear, axial = straight.shear + of.share @ across, straight.axial - of.share @ along
+    pulled = np.outer(of.offset, at_base) - np.outer(of.turning, body.squared) - of.both @ along
+    moment = straight.moment - of.lever @ across + (bending.u * pulled).sum(axis=0)
     return InSection(shear, moment, axial)
 
 
@@ -227,7 +265,10 @@ _SIZED = {
 
 
 def with_errors(fine: Sequence[Section], coarse: Sequence[Section], pier: Pier, chance: float) -> list[Section]:
-    """Return ``fine`` with errors: ``chance`` times the greatest relative change from ``coarse``, with twice the step."""
+    """Return ``fine`` with ``chance`` times the greatest relative change from ``coarse`` added to its errors."""
     pairs = zip(fine, coarse, strict=True)
     changes = [max(greatest_change(_SIZED, section, other, pier)[1], LEAST) for section, other in pairs]
-    return [section._replace(error=chance * change) for section, change in zip(fine, changes, strict=True)]
+    return [
+        section._replace(error=(section.error or 0.0) + chance * change)
+        for section, change in zip(fine, changes, strict=True)
+    ]

@@ -23,6 +23,7 @@ from rockbatch.pier import (
     problems,
 )
 from rockbatch.pier.bases import BASES, BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, wrong_blow
+from rockbatch.pier.bending import MOST_MODES
 from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.laws import meanings
 from rockbatch.pier.plausibility import wrong_device
@@ -36,7 +37,7 @@ from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.study.piers import PIER, PierRead, Values, has_mass
 from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices
 from rockbatch.study.spec import Case
-from rockbatch.toml.kinds import KeyValues, KindError, Other, choice, positive, text, within
+from rockbatch.toml.kinds import KeyValues, KindError, Other, Whole, choice, positive, text, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile, in_table
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
@@ -202,14 +203,29 @@ BASE_KEYS = {
     "shaft": Key(
         choice(*WORDS["shaft"]),
         '"rigid"',
-        'Whether the shaft bends: "elastic" follows one mode of the period `flexural_period_s` of `[pier]` beside the rotation.',
+        'Whether the shaft bends: "elastic" follows its modes besides, the first of the period `flexural_period_s` of '
+        "`[pier]`.",
         many=True,
         only=_ON_ROCK,
     ),
     "flexural_damping": Key(
         within(BOUNDS["flexural_damping"]),
         "0.05",
-        "Damping ratio of that mode, of the pier fixed at its base.",
+        "Damping ratio of the first mode, of the pier fixed at its base.",
+        many=True,
+        only=_ON_ROCK | {"shaft": ("elastic",)},
+    ),
+    "flexural_damping_kind": Key(
+        choice(*WORDS["flexural_damping_kind"]),
+        '"modal"',
+        'Damping of the higher modes: "modal", the same ratio as of the first, or "stiffness", in proportion to their frequency.',
+        many=True,
+        only=_ON_ROCK | {"shaft": ("elastic",)},
+    ),
+    "flexural_modes": Key(
+        Whole(1, f"a whole number, 1 to {MOST_MODES}", MOST_MODES),
+        "4",
+        "Number of modes of the shaft; default: four, or as many as its masses have. Errors include what one fewer would change.",
         many=True,
         only=_ON_ROCK | {"shaft": ("elastic",)},
     ),
@@ -405,7 +421,7 @@ def _case_of(case: _WrittenCase, chosen: Chosen, pier: Pier, pier_values: Values
     if not base.has_exponent:
         applying.pop("n", None)
     if not base.bends:
-        for key in ("shaft", "flexural_damping"):
+        for key in ("shaft", "flexural_damping", "flexural_damping_kind", "flexural_modes"):
             applying.pop(key, None)
     return Case(case.name, pier, base, pier_values | applying)
 

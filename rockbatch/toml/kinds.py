@@ -102,18 +102,21 @@ class Number:
 
 @dataclass(frozen=True)
 class Whole:
-    """A whole number from ``low``."""
+    """A whole number from ``low`` to ``high``, if there is a greatest one."""
 
     low: int = 1
     words: str = "a whole number, 1 or above"
+    high: int | None = None
 
     def __call__(self, value: object) -> int:
         if isinstance(value, bool) or not isinstance(value, int) or value < self.low:
             raise KindError(self.words)
+        if self.high is not None and value > self.high:
+            raise KindError(self.words)
         return value
 
     def schema(self) -> Schema:
-        return {"type": "integer", "minimum": self.low}
+        return {"type": "integer", "minimum": self.low} | ({} if self.high is None else {"maximum": self.high})
 
 
 @dataclass(frozen=True)

@@ -117,7 +117,7 @@ def test_a_run_of_a_pier_that_bends_is_over_when_nothing_can_exceed_its_peak(
     b, h = BENT.half_width, BENT.height
     v = b * math.sin(theta) - h * (1.0 - math.cos(theta))
     found, due, _ = uncompiled(
-        status_of, m, Moment(Flexing(v, theta, 0.0, 0.0, 0.0, u_rate), contact, None), FLEXIBLE | values
+        status_of, m, Moment(Flexing(v, theta, *(6 * [0.0]), u_rate, 0.0, 0.0, 0.0), contact, None), FLEXIBLE | values
     )
     assert (found, due) == (status, values.get("clock__sample", 120.0) + 1.0)
 

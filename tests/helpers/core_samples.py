@@ -30,6 +30,7 @@ from rockbatch.core.types import OF_PIER, Ground, Instant, Moment
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
 from rockbatch.simulation.models import IDLE, springs, system_of
+from rockbatch.simulation.sections import InSection, in_body, in_section, recorded
 
 FIG5 = Pier(alpha=0.20, p=1.0)
 FIG6 = Pier(alpha=0.15, p=1.0)
@@ -218,7 +219,8 @@ def status_of(m, now, values, devices=()):
     """
     of = system_of(m)
     lanes, module = table(of.lane)[0][0], importlib.import_module(type(m).__module__)
-    put(lanes.model, 0, module.Numbers(*(getattr(m, name) for name in module.Numbers._fields)))
+    numbers = module.numbers_of(m) if hasattr(module, "numbers_of") else m[: len(module.Numbers._fields)]
+    put(lanes.model, 0, module.Numbers(*numbers))
     if now is None:
         y = static_state(m, m.gravity)
         now = Moment(y, *static_contact(m, y))
@@ -234,3 +236,10 @@ def status_of(m, now, values, devices=()):
         held.goes[:] = 0.0
     found = status_at_sample(of.traits, lanes, 0, held)
     return *map(float, found), {name: float(place[0]) for name, place in places.items()}
+
+
+def sections_at(run, rows, samples, heights):
+    """Return the forces in sections at rows, of each sample in all heights."""
+    body = in_body(recorded(run, rows), samples, np.ones(len(samples)))
+    forces = [in_section(run.pier, body, height) for height in heights]
+    return [[InSection(*(float(values[i]) for values in each)) for each in forces] for i in range(len(samples))]

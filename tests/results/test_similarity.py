@@ -69,7 +69,13 @@ def row(base, length, time):
     ).row
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if "footing" in n else n for n in BASES])
+def marked(name):
+    """Return a base as a parameter: footings compile long, with devices a kernel that no other test needs."""
+    mark = pytest.mark.thorough if "devices" in name else pytest.mark.slow
+    return pytest.param(name, marks=mark) if "footing" in name else name
+
+
+@pytest.mark.parametrize("name", [marked(name) for name in BASES])
 def test_numbers_of_every_column_are_in_its_unit(name):
     here, there = row(BASES[name], 1.0, 1.0), row(BASES[name], LENGTH, TIME)
     assert len(here) > 60

@@ -1,4 +1,7 @@
-"""A support law is added in a copy by the recipe of CONTRIBUTING: two records, after which everything asks for it."""
+"""A support law is added in a copy by the recipe of CONTRIBUTING: two records, after which everything asks for it.
+
+Nothing is compiled, since these runs take seconds without, and their kernels more than a minute.
+"""
 
 import json
 import math
@@ -106,7 +109,8 @@ def add(place, core=CORE, of_pier=PIER, literal=True):
 
 def python(place, script):
     return subprocess.run(
-        [sys.executable, "-c", script], cwd=place, env=os.environ | {"PYTHONPATH": str(place), "HOME": str(place)},
+        [sys.executable, "-c", script], cwd=place,
+        env=os.environ | {"PYTHONPATH": str(place), "HOME": str(place), "NUMBA_DISABLE_JIT": "1"},
         text=True, capture_output=True, check=False,
     )  # fmt: skip
 

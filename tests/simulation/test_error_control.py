@@ -17,7 +17,6 @@ from rockbatch.motions.motion import Motion
 from rockbatch.outcome.changes import Sized, greatest_change
 from rockbatch.outcome.outcome import Failure, Outcome
 from rockbatch.pier import Damper, DeckSpring, ElasticBase, Part, Pier, RigidBase, Tendon, YieldingBase
-from rockbatch.pier.bending import mode_of
 from rockbatch.simulation import (
     Run,
     agreement,
@@ -500,11 +499,11 @@ def test_steps_respect_how_fast_a_shaft_vibrates_or_creeps_beside_a_rotation(dam
         replace(Pier.of_parts(4.0, parts, top_m=20.0), flexural_period_s=0.4),
         RigidBase(shaft="elastic", flexural_damping=damping),
     )
-    mode, frequency, turning = mode_of(pier), 2.0 * math.pi / 0.4, pier.inertia + pier.height**2
-    mass = np.array([[turning, mode.coupling], [mode.coupling, mode.second]])
-    forces = np.diag([0.0, mode.second * frequency**2]), np.diag([0.0, 2.0 * damping * frequency * mode.second])
-    soft, slow = (-np.linalg.solve(mass, each) for each in forces)
-    rates = np.linalg.eigvals(np.block([[np.zeros((2, 2)), np.eye(2)], [soft, slow]]))
+    modes, turning = base.modes(pier), pier.inertia + pier.height**2
+    n, frequency = len(modes.frequency), np.array([0.0, *modes.frequency])
+    mass = np.block([[np.array([[turning]]), modes.coupling[None]], [modes.coupling[:, None], np.eye(n)]])
+    soft, slow = (-np.linalg.solve(mass, np.diag(each)) for each in (frequency**2, 2.0 * damping * frequency))
+    rates = np.linalg.eigvals(np.block([[np.zeros((n + 1, n + 1)), np.eye(n + 1)], [soft, slow]]))
     assert _vibration(pier, base, turning) == pytest.approx(np.abs(rates).max(), rel=1e-6)
 
 

@@ -156,7 +156,7 @@ OTHERS = (True, False, "", " ", "x", "rigid", "+", "left", "EN 1998-1", "g", [],
 def values_of(key):
     """Values at, inside and outside the bounds of a key, words of its own and others, and values of other types."""
     kind = key.kind
-    ends = [end for end in (getattr(kind, "low", 0), getattr(kind, "high", 0)) if abs(end) < 1e14]
+    ends = [end for end in (getattr(kind, "low", 0), getattr(kind, "high", None) or 0) if abs(end) < 1e14]
     if getattr(kind, "bounds", None) is not None:
         ends += [end for end in (kind.bounds.low, kind.bounds.high) if 1e-14 < abs(end) < 1e14]
     near = [end + step for end in ends for step in (0, 1e-6, -1e-6, 1, -1) if end + step == 0 or abs(end + step) > 1e-9]

@@ -18,7 +18,7 @@ def pool():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("base", "number"), [("rigid", 4), ("springs", 0)])
+@pytest.mark.parametrize(("base", "number"), [("rigid", 4), pytest.param("springs", 0, marks=pytest.mark.thorough)])
 def test_demands_between_rows_are_those_of_finer_steps_within_their_errors(pool, base, number):
     """Of cases whose forces in sections were beyond their errors as long as devices pulled linearly within a step."""
     claims = pool.judge(pool.case(base, number, SEED, tiny=False))

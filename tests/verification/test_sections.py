@@ -191,7 +191,7 @@ def test_devices_at_the_deck_push_by_their_laws_between_rows_too():
 def test_a_spring_at_the_deck_pushes_horizontally_however_far_the_shaft_leans():
     """Its force in the axes of the shaft, and its moment about the middle of a section below it."""
     zero, lean, push = np.zeros(1), np.array([0.6]), np.array([2.0])
-    body = InBody(zero, zero, zero, zero, np.sin(lean), np.cos(lean), [(9.0, push)])
+    body = InBody(zero, zero, zero, zero, zero, np.sin(lean), np.cos(lean), [(9.0, push)], None)
     pier = random_pier(np.random.default_rng(1))
     below, above = in_section(pier, body, 4.0), in_section(pier, body, 9.5)
     assert np.hypot(below.shear, below.axial) == pytest.approx(push)

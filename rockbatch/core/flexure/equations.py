@@ -13,7 +13,9 @@ from rockbatch.core.block.equations import (
     side_of,
 )
 from rockbatch.core.flexure.model import FlexibleBlock, Flexing
+from rockbatch.core.flexure.modes import PerMode, deflection_rates, deflections, dot, scaled, times
 from rockbatch.core.kernel import inlined
+from rockbatch.core.table import along
 from rockbatch.core.trigonometry import sine_and_cosine
 
 
@@ -22,59 +24,87 @@ class Masses(NamedTuple):
 
     offset: float  # of that point to the right of the centre of mass, along the base [m]
     turning: float  # of θ̇² [m²]
-    spread: float  # half of its derivative by u [m]
+    spread: PerMode  # half of its derivatives by the coordinates of the modes [m]
 
 
 @inlined
 def masses_about(m, u, key):
-    """Return Masses about the point of the base at the share ``key`` of half its width to the right."""
-    moved, b = m.first * u, key * m.half_width
-    turning = m.inertia + m.height * m.height + b * b + u * (m.second * u - 2.0 * m.first * b)
-    return Masses(b - moved, turning, m.second * u - m.first * b)
+    """Return Masses about the point of the base at the share ``key`` of half its width to the right, with ``u`` of each mode."""
+    moved, b = dot(m.share, u), key * m.half_width
+    turning = m.inertia + m.height * m.height + b * b + dot(u, u) - 2.0 * moved * b
+    return Masses(b - moved, turning, along(u, m.share, -b))
+
+
+@inlined
+def straightening(m, y):
+    """Return the acceleration [m/s²] of each mode by the shaft's stiffness and damping."""
+    stiff = times(times(m.frequency, m.frequency), deflections(y))
+    return scaled(along(stiff, times(m.damping, deflection_rates(y)), 1.0), -1.0)
 
 
 @inlined
 def _accelerations(m, y, contact, ground):
-    """Return v̈ [m/s²], θ̈ [rad/s²] and ü [m/s²]."""
-    spring = m.frequency * m.frequency * y.u + m.damping * y.u_rate
+    """Return v̈ [m/s²], θ̈ [rad/s²] and ü of each mode [m/s²]."""
+    spring = straightening(m, y)
     if contact.left != 0.0 and contact.right != 0.0:
-        return 0.0, 0.0, -spring - ground.horizontal * m.first / m.second
+        return 0.0, 0.0, along(spring, m.share, -ground.horizontal)
     side = side_of(contact)
     key = side if side != 0.0 else key_of(m, contact)
     sine, cosine = sine_and_cosine(y.theta)
-    about, weight = masses_about(m, y.u, key), m.gravity + ground.vertical
+    about, weight, u_rate = masses_about(m, deflections(y), key), m.gravity + ground.vertical, deflection_rates(y)
     slope, arm = about.offset * cosine - m.height * sine, about.offset * sine + m.height * cosine
     straight_slope, straight_arm = arms_about(m, y.theta, key)
     down, back = pull_down(m.pull)
     squared = y.omega * y.omega
-    bending = about.spread * squared - m.second * spring + m.first * (weight * sine - ground.horizontal * cosine)
+    bending = along(along(spring, about.spread, squared), m.share, weight * sine - ground.horizontal * cosine)
     turning = (
-        -2.0 * about.spread * y.u_rate * y.omega
+        -2.0 * dot(about.spread, u_rate) * y.omega
         - ground.horizontal * arm
         - weight * slope
         - back
         - down * straight_slope
     )
-    of_u, of_both, of_theta, lift, falls = m.second, m.coupling, about.turning, 0.0, 0.0
-    if side == 0.0:
-        lift = -m.first * sine
-        falls = weight + down - arm * squared - 2.0 * m.first * cosine * y.u_rate * y.omega
-        of_u, of_both, of_theta = of_u - lift * lift, of_both - lift * slope, of_theta - slope * slope
-        bending, turning = bending + lift * falls, turning + slope * falls
-    determinant = of_u * of_theta - of_both * of_both
-    theta_acceleration = (of_u * turning - of_both * bending) / determinant
-    u_acceleration = (of_theta * bending - of_both * turning) / determinant
-    v_acceleration = straight_slope * theta_acceleration - straight_arm * squared
-    if side == 0.0:
-        v_acceleration -= falls + slope * theta_acceleration + lift * u_acceleration
-    return v_acceleration, theta_acceleration, u_acceleration
+    turning -= dot(m.coupling, bending)
+    inertia = about.turning - dot(m.coupling, m.coupling)
+    if side != 0.0:
+        omega_rate = turning / inertia
+        v_acceleration = straight_slope * omega_rate - straight_arm * squared
+        return v_acceleration, omega_rate, along(bending, m.coupling, -omega_rate)
+    # In flight the corner rises, too: its equation and that of the rotation remain once those of the modes are solved
+    falls = weight + down - arm * squared - 2.0 * dot(m.share, u_rate) * cosine * y.omega
+    lifting = falls - sine * dot(m.share, bending)
+    of_rise, of_both = 1.0 - sine * sine * dot(m.share, m.share), slope + sine * dot(m.share, m.coupling)
+    determinant = of_rise * inertia - of_both * of_both
+    omega_rate = (of_rise * turning + of_both * lifting) / determinant
+    rise_rate = -(inertia * lifting + of_both * turning) / determinant
+    v_acceleration = straight_slope * omega_rate - straight_arm * squared + rise_rate
+    return v_acceleration, omega_rate, along(along(bending, m.coupling, -omega_rate), m.share, sine * rise_rate)
+
+
+@inlined
+def flexing(v, theta, v_rate, omega, u, u_rate):
+    """Return the state with the coordinates ``u`` of the modes and their rates."""
+    return Flexing(
+        v,
+        theta,
+        v_rate,
+        omega,
+        u.first,
+        u.second,
+        u.third,
+        u.fourth,
+        u_rate.first,
+        u_rate.second,
+        u_rate.third,
+        u_rate.fourth,
+    )
 
 
 @system.rates.of(FlexibleBlock)
 def rates(m, y, contact, ground):
     """Return the rates of state ``y``: the right-hand side."""
-    v_acceleration, theta_acceleration, u_acceleration = _accelerations(m, y, contact, ground)
-    return Flexing(y.v_rate, y.omega, v_acceleration, theta_acceleration, y.u_rate, u_acceleration)
+    v_acceleration, theta_acceleration, accelerations = _accelerations(m, y, contact, ground)
+    return flexing(y.v_rate, y.omega, v_acceleration, theta_acceleration, deflection_rates(y), accelerations)
 
 
 @constrained.of(FlexibleBlock)
@@ -83,7 +113,7 @@ def _constrained(m, y, contact):
     if side == 0.0:
         return y
     v, slope = on_pivot(m, y.theta, side)
-    return Flexing(v, y.theta, slope * y.omega, y.omega, y.u, y.u_rate)
+    return flexing(v, y.theta, slope * y.omega, y.omega, deflections(y), deflection_rates(y))
 
 
 @system.end_step.of(FlexibleBlock)
@@ -95,26 +125,36 @@ def end_step(m, y, start, contact, remaining):
 @inlined
 def velocity_of_centre(m, y, contact):
     """Return the velocity of the centre of mass over the ground [m/s], to the right and upwards."""
-    side = side_of(contact)
-    offset = masses_about(m, y.u, side if side != 0.0 else key_of(m, contact)).offset
+    side, u = side_of(contact), deflections(y)
+    offset = masses_about(m, u, side if side != 0.0 else key_of(m, contact)).offset
     sine, cosine = sine_and_cosine(y.theta)
-    along = (offset * sine + m.height * cosine) * y.omega + m.first * cosine * y.u_rate
-    return along, y.v_rate - m.first * (y.u_rate * sine + y.u * cosine * y.omega)
+    moved, rate = dot(m.share, u), dot(m.share, deflection_rates(y))
+    to_right = (offset * sine + m.height * cosine) * y.omega + rate * cosine
+    return to_right, y.v_rate - rate * sine - moved * cosine * y.omega
 
 
 @system.ground_power.of(FlexibleBlock)
 def ground_power(m, y, contact, ground):
     """Return the power of the ground's inertia forces [W/kg]."""
-    along, up = velocity_of_centre(m, y, contact)
-    return -ground.horizontal * along - ground.vertical * up
+    to_right, up = velocity_of_centre(m, y, contact)
+    return -ground.horizontal * to_right - ground.vertical * up
+
+
+@inlined
+def bent_across(shape, y, k):
+    """Return the horizontal acceleration [m/s²] by bending of a point that the modes move by ``shape``; ``k`` are the rates."""
+    sine, cosine = sine_and_cosine(y.theta)
+    return dot(shape, deflection_rates(k)) * cosine - 2.0 * dot(shape, deflection_rates(y)) * y.omega * sine
 
 
 @inlined
 def rise_of_bending(m, y, k):
     """Return the vertical acceleration [m/s²] of the centre of mass less that of a straight shaft."""
     sine, cosine = sine_and_cosine(y.theta)
+    rate = dot(m.share, deflection_rates(y))
     turned = k.omega * cosine - y.omega * y.omega * sine
-    return -m.first * (k.u_rate * sine + 2.0 * y.u_rate * y.omega * cosine + y.u * turned)
+    bent = dot(m.share, deflection_rates(k)) * sine + 2.0 * rate * y.omega * cosine
+    return -bent - dot(m.share, deflections(y)) * turned
 
 
 @normal_force.of(FlexibleBlock)

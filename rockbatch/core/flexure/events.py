@@ -14,8 +14,9 @@ from rockbatch.core.block.events import (
 from rockbatch.core.block.model import Stance
 from rockbatch.core.devices.laws import OPENS
 from rockbatch.core.devices.pull import about_to_turn
-from rockbatch.core.flexure.equations import masses_about
-from rockbatch.core.flexure.model import FlexibleBlock, Flexing
+from rockbatch.core.flexure.equations import flexing, masses_about
+from rockbatch.core.flexure.model import FlexibleBlock
+from rockbatch.core.flexure.modes import deflection_rates, deflections, dot
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import kernel
 from rockbatch.core.roots import NO_ACCELERATION
@@ -40,13 +41,13 @@ system.released.of(FlexibleBlock)(released)
 
 @system.longest_step.of(FlexibleBlock)
 def longest_step(m, start, h):
-    """Return a step [s] of at most ``h`` that shows a bounce, or in flight resolves the mode."""
+    """Return a step [s] of at most ``h`` that shows a bounce, or in flight resolves the modes."""
     return min(h, m.flight_step) if airborne(m, start.contact) else within_bounce(m, start, h)
 
 
 @lift_rate.of(FlexibleBlock)
 def _lift_rate(m, devices, now, side):
-    near, stance = NEARBY / m.frequency, on_side(side)
+    near, stance = NEARBY / m.frequency.fourth, on_side(side)
     under = about_to_turn(devices, m, now.y, stance, OPENS)
     soon = along(now.y, now.k, near)
     change = rates(under, soon, stance, later(now.ground, near)).omega - rates(under, now.y, stance, now.ground).omega
@@ -75,26 +76,26 @@ def transition(m, devices, now, which, ground, dt):
 
 @kernel
 def _after_blow(m, y, key, rise, pivot):
-    """Return θ̇ and u̇ after an impact at ``pivot``; before it the base turned about ``key``, which rose at ``rise`` [m/s].
+    """Return θ̇ and the rates of the modes after an impact at ``pivot``; before it the base turned about ``key``, which rose at
+    ``rise`` [m/s].
 
-    The impulse has no moment about the pivot and does no work on the mode, so that both momenta are conserved.
+    The impulse has no moment about the pivot and does no work on the modes, so that all these momenta are conserved.
     """
     sine, cosine = sine_and_cosine(y.theta)
-    about, b = masses_about(m, y.u, pivot), m.half_width
-    across = (
-        m.inertia + m.height * m.height + key * pivot * b * b + y.u * (m.second * y.u - m.first * (key + pivot) * b)
-    )
-    bending = m.second * y.u_rate + m.coupling * y.omega - m.first * sine * rise
-    turning = m.coupling * y.u_rate + across * y.omega - rise * (m.height * sine - about.offset * cosine)
-    determinant = m.second * about.turning - m.coupling * m.coupling
-    omega = (m.second * turning - m.coupling * bending) / determinant
-    return omega, (about.turning * bending - m.coupling * turning) / determinant
+    u, u_rate, b = deflections(y), deflection_rates(y), m.half_width
+    about, moved = masses_about(m, u, pivot), dot(m.share, u)
+    across = m.inertia + m.height * m.height + key * pivot * b * b + dot(u, u) - moved * (key + pivot) * b
+    bending = along(along(u_rate, m.coupling, y.omega), m.share, -sine * rise)
+    turning = dot(m.coupling, u_rate) + across * y.omega - rise * (m.height * sine - about.offset * cosine)
+    inertia = about.turning - dot(m.coupling, m.coupling)
+    omega = (turning - dot(m.coupling, bending)) / inertia
+    return omega, along(bending, m.coupling, -omega)
 
 
 @kernel
 def _flat(m, y):
-    """Return the state after both pivots stop at once: only the mode moves on, with its momentum."""
-    return Flexing(0.0, 0.0, 0.0, 0.0, y.u, y.u_rate + m.coupling / m.second * y.omega)
+    """Return the state after both pivots stop at once: only the modes move on, with their momenta."""
+    return flexing(0.0, 0.0, 0.0, 0.0, deflections(y), along(deflection_rates(y), m.coupling, y.omega))
 
 
 @kernel
@@ -103,12 +104,12 @@ def _impact(m, y, side):
 
     If the pier would not continue to turn about the new pivot, both pivots stay down.
     """
-    y = Flexing(0.0, 0.0, y.v_rate, y.omega, y.u, y.u_rate)
+    y = flexing(0.0, 0.0, y.v_rate, y.omega, deflections(y), deflection_rates(y))
     omega, u_rate = _after_blow(m, y, side, 0.0, -side)
     if -side * omega <= 0.0:
         return _flat(m, y), RESTING, IMPACT_BOTH
     stance = on_side(-side)
-    landed = constrained(m, Flexing(0.0, 0.0, 0.0, omega, y.u, u_rate), stance)
+    landed = constrained(m, flexing(0.0, 0.0, 0.0, omega, deflections(y), u_rate), stance)
     return landed, stance, IMPACT_LEFT if side == RIGHT else IMPACT_RIGHT
 
 
@@ -123,5 +124,5 @@ def _landing(m, y, contact, pivot):
         return _flat(m, y), RESTING, IMPACT_BOTH
     omega, u_rate = _after_blow(m, y, key, rise, pivot)
     stance = on_side(pivot)
-    landed = constrained(m, Flexing(y.v, y.theta, 0.0, omega, y.u, u_rate), stance)
+    landed = constrained(m, flexing(y.v, y.theta, 0.0, omega, deflections(y), u_rate), stance)
     return landed, stance, IMPACT_LEFT if pivot == LEFT else IMPACT_RIGHT

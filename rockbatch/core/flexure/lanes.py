@@ -8,7 +8,10 @@ from rockbatch.core.block.equations import clearances, constrained, on_side
 from rockbatch.core.block.model import Stance, Tilt
 from rockbatch.core.clock import COMMON, TIMING, include_height
 from rockbatch.core.flexure import ending, events  # noqa: F401  hooks of the flexible block
-from rockbatch.core.flexure.model import NUMBERS, FlexibleBlock, FlexibleTraits, Flexing, Numbers
+from rockbatch.core.flexure.ending import hanging
+from rockbatch.core.flexure.equations import flexing
+from rockbatch.core.flexure.model import NUMBERS, FlexibleBlock, FlexibleTraits, Flexing, Numbers, numbers_of
+from rockbatch.core.flexure.modes import PerMode, deflection_rates, deflections, dot
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.roots import largest_within
 from rockbatch.core.system import System
@@ -40,7 +43,6 @@ LANE = lanes_of(
 LINE = (
     *NUMBERS,
     ("theta", float),  # at the start [rad]
-    ("u", float),  # [m]
     *TIMING,
 )
 """Fields of the request of a run, with their types."""
@@ -62,15 +64,15 @@ def _model(traits, lanes, i):
         m.guided,
         m.rest,
         m.deck,
-        m.first,
-        m.second,
-        m.coupling,
-        m.frequency,
-        m.damping,
         m.top,
-        m.top_shape,
         m.tipping,
         m.flight_step,
+        PerMode(m.share_first, m.share_second, m.share_third, m.share_fourth),
+        PerMode(m.coupling_first, m.coupling_second, m.coupling_third, m.coupling_fourth),
+        PerMode(m.frequency_first, m.frequency_second, m.frequency_third, m.frequency_fourth),
+        PerMode(m.damping_first, m.damping_second, m.damping_third, m.damping_fourth),
+        PerMode(m.end_shape_first, m.end_shape_second, m.end_shape_third, m.end_shape_fourth),
+        PerMode(m.top_shape_first, m.top_shape_second, m.top_shape_third, m.top_shape_fourth),
         traits.pull,
         True,
     )
@@ -86,7 +88,7 @@ def pier_in(traits, lanes, i):
 def _drift(m, y):
     """Return the horizontal displacement of the top from rest, to the right [m], and its rate [m/s]."""
     sine, cosine = math.sin(y.theta), math.cos(y.theta)
-    u, u_rate = m.top_shape * y.u, m.top_shape * y.u_rate
+    u, u_rate = dot(m.top_shape, deflections(y)), dot(m.top_shape, deflection_rates(y))
     return m.top * sine + u * cosine, (m.top * cosine - u * sine) * y.omega + u_rate * cosine
 
 
@@ -96,18 +98,21 @@ def begin(traits, lanes, i, run):
     put(lanes.model, i, taken(run, Numbers))
     contact = Stance(1.0, 1.0, 0.0, 0.0) if run.theta == 0.0 else on_side(RIGHT if run.theta > 0.0 else LEFT)
     m = _model(traits, lanes, i)
-    y = constrained(m, Flexing(0.0, run.theta, 0.0, 0.0, run.u, 0.0), contact)
+    u = hanging(m, run.theta)
+    y = constrained(m, flexing(0.0, run.theta, 0.0, 0.0, u, PerMode(0.0, 0.0, 0.0, 0.0)), contact)
     put(lanes.now, i, y)
     put(lanes.contact, i, contact)
     lanes.ending.longest[i] = lanes.clock.samples[i] + run.patience
-    lanes.ending.deflection[i], lanes.ending.drift[i] = abs(y.u), abs(_drift(m, y)[0])
+    lanes.ending.deflection[i], lanes.ending.drift[i] = abs(dot(m.end_shape, u)), abs(_drift(m, y)[0])
 
 
 @kernel
 def _include_displacements(lanes, i, m, part):
     """Raise the greatest displacements to those of a Part."""
     start, end, kept = part.start.y, part.end, lanes.ending
-    kept.deflection[i] = largest_within(start.u, start.u_rate, end.u, end.u_rate, part.length, kept.deflection[i])[1]
+    bent, rate = dot(m.end_shape, deflections(start)), dot(m.end_shape, deflection_rates(start))
+    bent_end, rate_end = dot(m.end_shape, deflections(end)), dot(m.end_shape, deflection_rates(end))
+    kept.deflection[i] = largest_within(bent, rate, bent_end, rate_end, part.length, kept.deflection[i])[1]
     way, rate = _drift(m, start)
     way_end, rate_end = _drift(m, end)
     kept.drift[i] = largest_within(way, rate, way_end, rate_end, part.length, kept.drift[i])[1]
@@ -135,6 +140,6 @@ def system_of(m):
     return System(FlexibleTraits(), Line, LANE, Flexing._fields + Stance._fields)
 
 
-def line_of(m, theta, u, *timing):
+def line_of(m, theta, *timing):
     """Return the Line of a run of the pier ``m`` (FlexibleBlock); ``timing`` are the fields of Line from ``dt`` on."""
-    return Line(*m[:-2], theta, u, *timing)
+    return Line(*numbers_of(m), theta, *timing)

@@ -1,12 +1,13 @@
-"""A pier on a rigid base whose shaft bends in one mode, and its state (THEORY.md, A shaft that bends)."""
+"""A pier on a rigid base whose shaft bends in up to four modes, and its state (THEORY.md, A shaft that bends)."""
 
 from typing import NamedTuple
 
+from rockbatch.core.flexure.modes import PerMode
 from rockbatch.core.types import Pull
 
 
 class FlexibleBlock(NamedTuple):
-    """A pier on a rigid base whose shaft bends, per unit mass; the mode's shape φ is 1 at the top.
+    """A pier on a rigid base whose shaft bends, per unit mass; ∫φ_i φ_j dm/M of its modes is 1 or 0.
 
     The fields down to ``deck`` are those of a Block.
     """
@@ -20,15 +21,15 @@ class FlexibleBlock(NamedTuple):
     guided: float  # 1: flight goes on, 0: it ends the run
     rest: float  # velocity that counts as zero [m/s]
     deck: float  # 0: no frame
-    first: float  # μ1 = ∫φ dm/M
-    second: float  # μ2 = ∫φ² dm/M
-    coupling: float  # λ = ∫φ z dm/M [m]
-    frequency: float  # ω_f of the shaft on a fixed base [rad/s]
-    damping: float  # 2 ζ_f ω_f [1/s]
     top: float  # height at which drift is read [m]
-    top_shape: float  # φ there
     tipping: float  # rotation beyond which the pier overturns slowly, below α as its shaft leans out [rad]
-    flight_step: float  # longest step in flight, when the mode vibrates fastest [s]
+    flight_step: float  # longest step in flight, when the modes vibrate fastest [s]
+    share: PerMode  # μ_i = ∫φ_i dm/M
+    coupling: PerMode  # λ_i = ∫φ_i z dm/M [m]
+    frequency: PerMode  # ω_i of the shaft on a fixed base [rad/s]
+    damping: PerMode  # 2 ζ_i ω_i [1/s]
+    end_shape: PerMode  # φ_i at the highest point
+    top_shape: PerMode  # and where drift is read
     pull: Pull | None = None  # of dampers and tendons; None: there are none
     finite: bool = True
 
@@ -39,10 +40,28 @@ class FlexibleTraits(NamedTuple):
     pull: Pull | None = None
 
 
-NUMBERS = tuple((name, float) for name in FlexibleBlock._fields[: FlexibleBlock._fields.index("pull")])
-"""Fields of a FlexibleBlock that lanes hold."""
+SINGLE = FlexibleBlock._fields[: FlexibleBlock._fields.index("share")]
+"""Fields of a FlexibleBlock that are one number; those after it, down to ``pull``, have one of each mode."""
+
+PER_MODE = FlexibleBlock._fields[len(SINGLE) : FlexibleBlock._fields.index("pull")]
+
+NUMBERS = tuple(
+    (name, float)
+    for name in (
+        *SINGLE,
+        *(f"{name}_{mode}" for name in PER_MODE for mode in PerMode._fields),
+    )
+)
+"""Numbers of a FlexibleBlock that lanes hold."""
 
 Numbers = NamedTuple("Numbers", NUMBERS)  # type: ignore[misc]
+
+
+def numbers_of(m: FlexibleBlock) -> tuple[float, ...]:
+    """Return the numbers of ``m`` in the order of :data:`NUMBERS`."""
+    values = m._asdict()
+    each = [values[name] for name in SINGLE]
+    return *each, *(number for name in PER_MODE for number in values[name])
 
 
 class Flexing(NamedTuple):
@@ -52,5 +71,11 @@ class Flexing(NamedTuple):
     theta: float  # rotation of the base, positive to the right [rad]
     v_rate: float  # [m/s]
     omega: float  # [rad/s]
-    u: float  # deflection of the top across the shaft [m], positive to the right
-    u_rate: float  # [m/s]
+    u_1: float  # coordinate of a mode [m]
+    u_2: float
+    u_3: float
+    u_4: float
+    u_1_rate: float  # [m/s]
+    u_2_rate: float
+    u_3_rate: float
+    u_4_rate: float

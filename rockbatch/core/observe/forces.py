@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 from rockbatch.core.block.equations import arms_about, clearances, key_of, on_side, side_of
 from rockbatch.core.block.model import Block
-from rockbatch.core.flexure.equations import masses_about, rise_of_bending, velocity_of_centre
+from rockbatch.core.flexure.equations import bent_across, masses_about, rise_of_bending, velocity_of_centre
 from rockbatch.core.flexure.model import FlexibleBlock
+from rockbatch.core.flexure.modes import PerMode, deflection_rates, deflections, dot
 from rockbatch.core.kernel import hook, kernel
 from rockbatch.core.springs.equations import accelerations_at, geometry
 from rockbatch.core.springs.model import Springs, Supports
@@ -50,7 +51,7 @@ class Outline(NamedTuple):
     width: float  # 2b between the corners [m]
     deck_share: float  # horizontal motion of the deck over that of the centre of mass
     deck_above: float  # height of a deck that turns with the block above the centre of mass [m]
-    deck_shape: float  # mode shape of an elastic shaft at the deck
+    deck_shape: PerMode | None = None  # of the modes of an elastic shaft at the deck
 
 
 class Hold(NamedTuple):
@@ -198,18 +199,16 @@ def on_flexible_block(m, body, now, ground):
     k, key = rates(m, y, contact, ground), side if side != 0.0 else key_of(m, contact)
     sine, cosine = sine_and_cosine(y.theta)
     half_sine, half_cosine = sine_and_cosine(0.5 * y.theta)
-    about, squared, b = masses_about(m, y.u, key), y.omega * y.omega, m.half_width
+    about, squared, b = masses_about(m, deflections(y), key), y.omega * y.omega, m.half_width
     slope, arm = about.offset * cosine - m.height * sine, about.offset * sine + m.height * cosine
-    bent = (
-        cosine * k.u_rate - 2.0 * sine * y.u_rate * y.omega
-    )  # acceleration of a point with the mode shape 1 by bending
-    along = arm * k.omega + slope * squared + m.first * bent
+    u_rate = deflection_rates(y)
+    along = arm * k.omega + slope * squared + bent_across(m.share, y, k)
     pull, grounded = m.pull.force * half_cosine, 0.0 if flies else 1.0
     lifted = m.gravity + vertical + k.v_rate + rise_of_bending(m, y, k)
     normal, shear = grounded * (lifted + pull * half_cosine), horizontal + along + grounded * pull * half_sine
     straight_slope, straight_arm = arms_about(m, y.theta, key)
     key_rise = k.v_rate - straight_slope * k.omega + straight_arm * squared
-    spun = m.coupling * k.u_rate + about.turning * k.omega + 2.0 * about.spread * y.u_rate * y.omega
+    spun = dot(m.coupling, deflection_rates(k)) + about.turning * k.omega + 2.0 * dot(about.spread, u_rate) * y.omega
     moment = key * b * lifted - slope * (m.gravity + vertical + key_rise) - arm * horizontal - spun
     left, right = contact.left * normal, contact.right * normal
     if side == 0.0 and not flies:
@@ -217,8 +216,8 @@ def on_flexible_block(m, body, now, ground):
         left, right = 0.5 * (normal + more), 0.5 * (normal - more)
         lacks = max(-left, -right, 0.0)  # tension of a foot, which friction of dampers carries
         left, right = max(left, 0.0) - (lacks if right < 0.0 else 0.0), max(right, 0.0) - (lacks if left < 0.0 else 0.0)
-    high, to_deck = m.height + outline.deck_above, outline.deck_shape * bent
-    place = key * b - outline.deck_shape * y.u
+    high, to_deck = m.height + outline.deck_above, bent_across(outline.deck_shape, y, k)
+    place = key * b - dot(outline.deck_shape, deflections(y))
     to_deck += (high * cosine + place * sine) * k.omega + (place * cosine - high * sine) * squared
     gap_left, gap_right, speed_left, speed_right = clearances(m, y, contact.top)
     off_left, off_right = 1.0 - contact.left, 1.0 - contact.right

@@ -11,6 +11,7 @@ from rockbatch.core.block.equations import lever
 from rockbatch.core.block.model import Block
 from rockbatch.core.flexure.ending import bending_energy, kinetic_and_potential
 from rockbatch.core.flexure.model import FlexibleBlock
+from rockbatch.core.flexure.modes import deflection_rates, deflections, dot, times
 from rockbatch.core.kernel import entry, hook, kernel
 from rockbatch.core.observe.rows import contact_of, ground_within, state_of, step_between, within
 from rockbatch.core.springs.equations import accelerations_at, geometry
@@ -163,7 +164,8 @@ def _of_block(m, y, contact):
 @_on_rigid_base.of(FlexibleBlock)
 def _of_flexible_block(m, y, contact):
     kinetic, potential = kinetic_and_potential(m, y, contact)
-    return kinetic, potential, bending_energy(m, y.u), m.second * m.damping * y.u_rate * y.u_rate
+    u_rate = deflection_rates(y)
+    return kinetic, potential, bending_energy(m, deflections(y)), dot(times(m.damping, u_rate), u_rate)
 
 
 @entry

@@ -3,7 +3,9 @@
 from typing import NamedTuple
 
 from rockbatch.core.block.model import Block, Rocking, Stance
-from rockbatch.core.flexure.model import FlexibleBlock, Flexing
+from rockbatch.core.flexure.equations import flexing
+from rockbatch.core.flexure.model import FlexibleBlock
+from rockbatch.core.flexure.modes import MOST_MODES, PerMode, deflection_rates, deflections
 from rockbatch.core.kernel import hook, kernel, optional_hook
 from rockbatch.core.springs.model import Contact, Springs, State
 from rockbatch.core.system import rates, share, stage
@@ -27,7 +29,14 @@ def _state_of_block(m, row):
 
 @state_of.of(FlexibleBlock)
 def _state_of_flexible_block(m, row):
-    return Flexing(row.v, row.theta, row.v_rate, row.omega, row.u, row.u_rate)
+    return flexing(
+        row.v,
+        row.theta,
+        row.v_rate,
+        row.omega,
+        PerMode(row.u_1, row.u_2, row.u_3, row.u_4),
+        PerMode(row.u_1_rate, row.u_2_rate, row.u_3_rate, row.u_4_rate),
+    )
 
 
 @hook
@@ -46,6 +55,18 @@ def _stance(m, row):
 
 contact_of.of(Block)(_stance)
 contact_of.of(FlexibleBlock)(_stance)
+
+
+@optional_hook
+def write_bending(m, y, k, line):
+    """Write the coordinates of a shaft's modes, their rates and accelerations to ``line``; a rigid shaft has none."""
+
+
+@write_bending.of(FlexibleBlock)
+def _write_bending(m, y, k, line):
+    u, u_rate, u_acceleration = deflections(y), deflection_rates(y), deflection_rates(k)
+    for i in range(MOST_MODES):
+        line[0, i], line[1, i], line[2, i] = u[i], u_rate[i], u_acceleration[i]
 
 
 @optional_hook
@@ -146,11 +167,22 @@ def _within_of_block(m, step, s):
 @within.of(FlexibleBlock)
 def _within_of_flexible_block(m, step, s):
     y, k, end, k_end, h = step.start, step.rates, step.end, step.rates_end, step.length
-    return Flexing(
+    return flexing(
         cubic(y.v, k.v, end.v, k_end.v, h, s),
         cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
         cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s),
         cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
-        cubic(y.u, k.u, end.u, k_end.u, h, s),
-        cubic(y.u_rate, k.u_rate, end.u_rate, k_end.u_rate, h, s),
+        _cubic_of_modes(deflections(y), deflections(k), deflections(end), deflections(k_end), h, s),
+        _cubic_of_modes(deflection_rates(y), deflection_rates(k), deflection_rates(end), deflection_rates(k_end), h, s),
+    )
+
+
+@kernel
+def _cubic_of_modes(start, rate, end, rate_end, h, s):
+    """Return :func:`cubic` of each mode."""
+    return PerMode(
+        cubic(start.first, rate.first, end.first, rate_end.first, h, s),
+        cubic(start.second, rate.second, end.second, rate_end.second, h, s),
+        cubic(start.third, rate.third, end.third, rate_end.third, h, s),
+        cubic(start.fourth, rate.fourth, end.fourth, rate_end.fourth, h, s),
     )

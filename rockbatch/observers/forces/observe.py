@@ -7,7 +7,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.observers.forces.study import Forces
 from rockbatch.outcome.outcome import Outcome, PeakForces
 from rockbatch.simulation.error_control import CHANCE
-from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error
+from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error, with_modes_error
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
@@ -28,6 +28,10 @@ class PeaksOfForces(Observer):
     def read(self, recording: Recording, outcome: Outcome) -> Peaks:
         """See :class:`Observer`."""
         return peak_forces(recording.run, recording.rows, self.least_normal)
+
+    def beyond(self, run: Run, fine: Peaks, fewer: Peaks) -> Peaks:
+        """See :class:`Observer`."""
+        return with_modes_error(run, fine[0], fewer[0], CHANCE), fine[1]
 
     def add(self, run: Run, outcome: Outcome, fine: Peaks | None, coarse: Peaks | None) -> Outcome:
         """See :class:`Observer`."""

@@ -46,7 +46,7 @@ _OF_FORCES = {
 """Keys of a [[case]] that only forces use, and what is missing without them."""
 
 
-def complain(file: TomlFile, settings: Forces, piers: Iterable[Pier], bends: bool) -> None:
+def complain(file: TomlFile, settings: Forces, piers: Iterable[Pier]) -> None:
     """Note keys that only forces use in a study without, which cost a second run with every step."""
     if settings.forces:
         return

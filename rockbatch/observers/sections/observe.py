@@ -6,6 +6,7 @@ from rockbatch.observers.sections.study import Sections
 from rockbatch.outcome.outcome import Outcome, Section
 from rockbatch.pier.sections import section_heights
 from rockbatch.results.sections import SECTIONS, section_rows
+from rockbatch.simulation.coarser import of_last_mode
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
@@ -29,6 +30,10 @@ class ForcesInSections(Observer):
     def read(self, recording: Recording, outcome: Outcome) -> list[Section]:
         """See :class:`Observer`."""
         return sections_of(recording.run, recording.rows, section_heights(recording.run.pier, self.sections))
+
+    def beyond(self, run: Run, fine: list[Section], fewer: list[Section]) -> list[Section]:
+        """See :class:`Observer`."""
+        return with_errors(fine, fewer, run.pier, of_last_mode(run, 1.0, CHANCE))
 
     def add(self, run: Run, outcome: Outcome, fine: list[Section] | None, coarse: list[Section] | None) -> Outcome:
         """See :class:`Observer`."""

@@ -5,7 +5,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from rockbatch.common.errors import InputError
-from rockbatch.pier import NO_SECTIONS, Pier
+from rockbatch.pier import Pier
 from rockbatch.pier.sections import section_heights
 from rockbatch.toml.kinds import Whole, not_negative
 from rockbatch.toml.reader import TomlFile
@@ -50,11 +50,11 @@ OUTPUT = Section(
 )
 
 
-def complain(file: TomlFile, settings: Sections, piers: Iterable[Pier], bends: bool) -> None:
-    """Note sections that some pier does not have, or whose forces are not known, such as those of a shaft that bends."""
+def complain(file: TomlFile, settings: Sections, piers: Iterable[Pier]) -> None:
+    """Note sections that some pier does not have or whose masses are not known."""
     if settings.requested is None:
         return
-    wrong: dict[str, None] = {NO_SECTIONS: None} if bends else {}
+    wrong = dict[str, None]()
     for pier in piers:
         try:
             section_heights(pier, settings.requested)
