@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rockbatch.batch.observers import observers_of
 from rockbatch.motions import Motion, MotionSet
+from rockbatch.motions.description import digest
 from rockbatch.simulation import core_digest
 from rockbatch.study import Study
 
@@ -24,10 +25,8 @@ def digests(motions: Iterable[Motion], **settings: object) -> dict[str, str]:
     hashes = {name: hashlib.sha256(repr(value).encode()) for name, value in settings.items()}
     hashes["motions"] = hashlib.sha256()
     for motion in motions:
-        hashes["motions"].update(repr((motion.name, motion.station, motion.dt, motion.npts, motion.initial)).encode())
-        for samples in (motion.horizontal, motion.vertical, motion.across):
-            hashes["motions"].update(b"none" if samples is None else samples.tobytes())
-    return {name: digest.hexdigest()[:16] for name, digest in hashes.items()} | {"program": program()}
+        hashes["motions"].update(repr((motion.name, motion.station, digest(motion))).encode())
+    return {name: hashed.hexdigest()[:16] for name, hashed in hashes.items()} | {"program": program()}
 
 
 def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:

@@ -7,13 +7,14 @@ from functools import cached_property
 from typing import NamedTuple
 
 from rockbatch.checks import wording
-from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, File, Stations
+from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, File, Stations, joined
 from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
 from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
 from rockbatch.common.showing import shown
 from rockbatch.quantities.cases import of_pier
+from rockbatch.quantities.design import BOUND, under
 from rockbatch.quantities.statistics import STATISTICS
 
 MOST_NAMES, MOST_FILES = 3, 6
@@ -50,7 +51,7 @@ def answer(
     worst : sequence of Worst
         The worst responses of every case at each scale.
     case_of, record_of : function
-        Of a verdict: the name of its case, and of the record that governs it.
+        Of a verdict: the name of its case, the same under all bounds of the design, and of the record that governs it.
     runs : sequence of CaseRuns
         Every case of the study, checked or not; by default those of the verdicts.
     stations : Stations
@@ -60,7 +61,9 @@ def answer(
     of_cases = [verdict for verdict in verdicts if verdict.case]
     cases = grouped(of_cases, case_of)
     names_of = {_key(verdict.case, verdict.columns | {"": verdict.scale}): case_of(verdict) for verdict in of_cases}
-    by_name = {names_of.get(_key(case.case, {**case.columns, "": case.scale})) or case_of(case): case for case in runs}
+    by_name = grouped(
+        runs, lambda case: names_of.get(_key(case.case, {**case.columns, "": case.scale})) or case_of(case)
+    )
     every = _Cases(cases, by_name, case_of, record_of, stations)
     kinds = {name: {verdict.verdict for verdict in of_case} for name, of_case in cases.items()}
     failing = [name for name, of_case in kinds.items() if FAIL in of_case]
@@ -154,9 +157,11 @@ def without_limits(cases: Mapping[str, Sequence[Verdict]], worst: Sequence[Worst
     )
     free: dict[str, list[Worst]] = {}
     for name, verdicts in cases.items():
-        case = verdicts[0]
-        responses = by_case.get((*_key(case.case, case.columns), case.scale), [])
-        if without_limit := unlimited(responses, verdicts):
+        under_bounds = grouped(verdicts, lambda verdict: (*_key(verdict.case, verdict.columns), verdict.scale))
+        without_limit = [
+            response for key, of_case in under_bounds.items() for response in unlimited(by_case.get(key, []), of_case)
+        ]
+        if without_limit:
             free[name] = without_limit
     return free
 
@@ -169,10 +174,10 @@ def _key(case: object, columns: Mapping[str, float | str]) -> tuple[object, ...]
 
 @dataclass(frozen=True)
 class _Cases:
-    """Verdicts and runs by the name of their case, the words for the case and the record of a verdict, and the stations."""
+    """Verdicts and runs by the name of their case, those under its bounds too, the words for a verdict, and the stations."""
 
     verdicts: Mapping[str, Sequence[Verdict]]
-    runs: Mapping[str, CaseRuns]
+    runs: Mapping[str, Sequence[CaseRuns]]
     case_of: CaseWords
     record_of: Words
     stations: Stations
@@ -189,8 +194,7 @@ class _Cases:
 
     def _passes(self, name: str) -> bool:
         """Return whether a check of the case passes, and not only because no run ends standing."""
-        runs = self.runs.get(name)
-        return bool(self._of([name], PASS)) and (runs is None or sum(runs.ended.values()) < runs.runs)
+        return bool(self._of([name], PASS)) and not any(runs.none_stands for runs in self.runs.get(name, ()))
 
     def passing(self, names: Sequence[str]) -> Line | None:
         """Return the line on cases that pass every check, undecided if other cases or stations are left; None for no case."""
@@ -200,8 +204,7 @@ class _Cases:
         closest = max(ratios, key=lambda verdict: verdict.ratio, default=None)
         details: tuple[str, ...] = ()
         if closest is not None:
-            place = f"{self.case_of(closest)}, {closest.check}" if len(self.every) > 1 else closest.check
-            details = (f"Closest to its limit: {place} at {wording.percent(closest.ratio)}.",)
+            details = (f"Closest to its limit: {self._place(closest)} at {wording.percent(closest.ratio)}.",)
         details = (
             *details,
             *self._coverage(names),
@@ -211,10 +214,10 @@ class _Cases:
         )
         verdict = NOT_DECIDED if self.unchecked or self.stations.unusable else PASS
         if len(names) == len(self.every):
-            return Line(verdict, f"Every check passes in {self._among(names)}", "", details)
+            return Line(verdict, f"Every check passes in {self._among(names)}{self._under_every_bound}", "", details)
         passes = f"{self._among(names)} pass{'es' * (len(names) == 1)}"
         if not self.unchecked:
-            return Line(verdict, f"{passes} every check", _few(names), details)
+            return Line(verdict, f"{passes} every check{self._under_every_bound}", _few(names), details)
         rest = f"{len(self.unchecked)} {'is' if len(self.unchecked) == 1 else 'are'} not checked"
         passed = (f"Passes: {_few(names)}.",) if _few(names) else ()
         lists = f"Not checked: {self._with_ends(self.unchecked)}.", *passed
@@ -230,8 +233,9 @@ class _Cases:
 
     def _with_ends(self, names: Sequence[str]) -> str:
         """Return the names of cases, first those with runs that do not end standing, with the number of these."""
-        ends = {name: self.runs[name].in_words if name in self.runs else "" for name in names}
-        order = sorted(names, key=lambda name: -sum(self.runs[name].ended.values()) if ends[name] else 0)
+        runs = {name: joined(self.runs[name]) for name in names if name in self.runs}
+        ends = {name: runs[name].in_words if name in runs else "" for name in names}
+        order = sorted(names, key=lambda name: -sum(runs[name].ended.values()) if ends[name] else 0)
         words = [f"{name}, {ends[name]}" if ends[name] else name for name in order]
         more = sum(bool(ends[name]) for name in order[MOST_NAMES:])
         return _listed(words, most=MOST_NAMES) + (
@@ -240,7 +244,7 @@ class _Cases:
 
     def _cut_short(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return a sentence on those of the cases with runs that do not end standing; nothing without any."""
-        ended = [name for name in names if name in self.runs and self.runs[name].ended]
+        ended = [name for name in names if any(runs.ended for runs in self.runs.get(name, ()))]
         return (f"Not every run ends standing: {self._with_ends(ended)}.",) if ended else ()
 
     def _coverage(self, names: Sequence[str]) -> tuple[str, ...]:
@@ -287,15 +291,35 @@ class _Cases:
         if not names:
             return None
         near = min((max(self._of([name], FAIL), key=_excess) for name in names), key=_excess)
-        place = f"{self.case_of(near)}, {near.check}" if len(self.every) > 1 else near.check
-        details = f"Nearest to passing: {place} at {wording.percent(near.ratio)} of its limit."
+        details = f"Nearest to passing: {self._place(near)} at {wording.percent(near.ratio)} of its limit."
         text = f"{self._among(names)} fail{'s' * (len(names) == 1)}"
         return Line(
             FAIL,
             _capital(text),
             "" if len(names) == len(self.every) else _few(names),
-            (details,) * math.isfinite(_excess(near)),
+            ((details,) * math.isfinite(_excess(near)) + self._failing_bounds(names)),
         )
+
+    def _place(self, verdict: Verdict) -> str:
+        """Return case and check of a verdict in words, without a case that is the only one, and its bound."""
+        case = self.case_of(verdict) if len(self.every) > 1 else ""
+        return ", ".join(filter(None, (case, verdict.check, under(verdict.columns))))
+
+    @property
+    def _under_every_bound(self) -> str:
+        """Words to follow what passes: that it does under every bound of the design; empty without bounds."""
+        return " under every bound" if any(under(verdict.columns) for verdict in self._of(self.every)) else ""
+
+    def _failing_bounds(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return a sentence on those of the failing cases that pass as they are nominally, with the bounds that fail."""
+        sentences = []
+        for name in names:
+            failing = dict.fromkeys(verdict.columns.get(BOUND, "") for verdict in self._of([name], FAIL))
+            if "" not in failing:
+                place = f"{name} " if len(self.every) > 1 else ""
+                sentences.append(f"{place}fails under {_listed([str(bound) for bound in failing], ', ')} only.")
+        few = sentences[:MOST_NAMES]
+        return (*(_capital(words) if len(self.every) == 1 else words for words in few),)
 
     def undecided(self, names: Sequence[str], failing: Sequence[str]) -> Line | None:
         """Return the line on undecided cases, with the reasons; open checks of ``failing`` cases are only listed."""
@@ -325,7 +349,10 @@ class _Cases:
 
     def _reason_of_verdict(self, verdict: Verdict) -> str:
         """Return a sentence on why a check is not decided, with its limit and the run that leaves it open."""
-        case = f" in {self.case_of(verdict)}" if len(self.every) > 1 else ""
+        case = " ".join(
+            filter(None, (f" in {self.case_of(verdict)}" if len(self.every) > 1 else "", under(verdict.columns)))
+        )
+        case = f" {case.strip()}" if case else ""
         is_open = wording.is_left_open(verdict)
         limit = (
             f"limit {wording.number(verdict.limit)} {verdict.unit}".rstrip() if is_open and not verdict.is_ban else ""

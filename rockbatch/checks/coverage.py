@@ -28,6 +28,11 @@ class CaseRuns(NamedTuple):
     ended: Mapping[str, int]
 
     @property
+    def none_stands(self) -> bool:
+        """Return whether no run ends standing."""
+        return sum(self.ended.values()) >= self.runs
+
+    @property
     def in_words(self) -> str:
         """Number of runs that do not end standing, in words: "2 of 10 runs overturned, 1 failed"; empty for 0."""
         counts = [f"{n} {ENDED[status]}" for status, n in self.ended.items()]
@@ -35,6 +40,14 @@ class CaseRuns(NamedTuple):
             return ""
         first, _, rest = counts[0].partition(" ")
         return ", ".join([f"{first} of {self.runs} runs {rest}", *counts[1:]])
+
+
+def joined(cases: Sequence[CaseRuns]) -> CaseRuns:
+    """Return the runs of a case under all bounds of its design together."""
+    ended = {status: sum(case.ended.get(status, 0) for case in cases) for status in ENDED}
+    return cases[0]._replace(
+        runs=sum(case.runs for case in cases), ended={status: n for status, n in ended.items() if n}
+    )
 
 
 class Stations(NamedTuple):

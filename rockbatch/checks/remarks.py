@@ -1,7 +1,8 @@
 """Remarks on the supports of a study's cases, shown before the results: one sentence each, with the cases."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from rockbatch.checks.responses import Worst
 from rockbatch.common.grouping import grouped
@@ -49,6 +50,25 @@ def undamped_settlement(worst: Sequence[Worst]) -> str:
     )
 
 
+def bounds_in_words(info: Mapping[str, Any]) -> list[str]:
+    """Return sentences on the bounds of the design in run.json: what each changes, and cases that lack its keys."""
+    bounds = info.get("bounds", ())
+    if not bounds:
+        return []
+    listed = "; ".join(f"{bound['bound']}: {changes_of(bound)}" for bound in bounds)
+    sentences = [f"Each case ran as it is nominally and, one at a time, under these bounds: {listed}."]
+    lacking = [(case["case"], ", ".join(case["keys"]), bound["bound"]) for bound in bounds for case in bound["lacking"]]
+    for (name, keys), rows in grouped(lacking, lambda row: row[:2]).items():
+        under = ", ".join(row[2] for row in rows)
+        sentences.append(f"{name} lacks {keys}, and ran without this change under {under}.")
+    return sentences
+
+
+def changes_of(bound: Mapping[str, Any]) -> str:
+    """Return the changes of a bound in run.json, with their source."""
+    return ", ".join(bound["changes"]) + (f" ({bound['source']})" if bound["source"] else "")
+
+
 def _borne_alone(case: Case) -> float:
     """Return the yield force of a support over weight and prestress; infinite if it does not yield."""
     eta = case["parameters"].get("eta")
@@ -73,7 +93,7 @@ def _named(cases: Iterable[Case], among: Sequence[Case]) -> str:
     for name, of_name in grouped(cases, lambda case: str(case["case"])).items():
         for case in of_name if len(of_name) < len(every[name]) else of_name[:1]:
             values = case["columns"].items() if len(of_name) < len(every[name]) else ()
-            names.append(" ".join([name, *(f"{key}={_written(value)}" for key, value in values)]))
+            names.append(" ".join([name, *(f"{key}={_written(value)}" for key, value in values if value != "")]))
     return "; ".join(names) if len(names) <= MOST_NAMES else f"{len(names)} of {len(among)} cases"
 
 

@@ -11,6 +11,7 @@ from rockbatch.checks.coverage import CaseRuns
 from rockbatch.checks.responses import RESPONSES, Worst
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
+from rockbatch.quantities.design import BOUND
 
 MOST_CASES, OPEN_CASES = 12, 6
 """Greatest number of cases that are all shown, and number shown first of more."""
@@ -40,13 +41,15 @@ class Column(NamedTuple):
 class Cell(NamedTuple):
     """A verdict in the scorecard: the demand in the unit of its column, and "115 %" of the limit; both empty without numbers.
 
-    ``bounds`` of the demand, in the same unit, are empty if no digit that is shown differs.
+    ``bounds`` of the demand, in the same unit, are empty if no digit that is shown differs. ``design_bound`` is that of a design
+    with several under which the verdict is its worst; empty for the nominal design.
     """
 
     verdict: Verdict
     value: str
     percent: str
     bounds: str = ""
+    design_bound: str = ""
 
 
 class Row(NamedTuple):
@@ -104,20 +107,22 @@ def scorecard(
 ) -> Scorecard:
     """Return the scorecard of verdicts on cases, and of cases with ``runs`` but without any.
 
-    ``case_of`` names a case, and ``worst`` are the worst responses of all cases at each scale, checked or not.
+    ``case_of`` names a case, and ``worst`` are the worst responses of all cases at each scale, checked or not. Of cases with one
+    name, as those under the bounds of a design may have, each cell has the worst verdict.
     """
     of_cases = [verdict for verdict in verdicts if verdict.case]
     by_check = grouped(of_cases, lambda verdict: verdict.check)
     checks = sorted(by_check, key=lambda name: max(map(_badness, by_check[name])), reverse=True)
     columns = [_column(by_check[name]) for name in checks]
-    fallen = {case_of(case) for case in runs if sum(case.ended.values()) >= case.runs}
+    fallen = {case_of(case) for case in runs if case.none_stands}
     rows: list[tuple[tuple[int, float], Row]] = []
     by_case = grouped(of_cases, case_of)
     failing = {verdict.scale for verdict in verdicts if not verdict.case and verdict.verdict == FAIL}
     free = without_limits({name: of_case for name, of_case in by_case.items() if _worst(of_case) == PASS}, worst)
     for name, of_case in by_case.items():
         under = of_case[0].scale in failing
-        own = {verdict.check: _under_failing_suite(verdict) if under else verdict for verdict in of_case}
+        worst_last = sorted(of_case, key=_badness)
+        own = {verdict.check: _under_failing_suite(verdict) if under else verdict for verdict in worst_last}
         cells = [_cell(own[column.check], column) if column.check in own else None for column in columns]
         kind = DOES_NOT_APPLY if name in fallen and _worst(of_case) == PASS else _worst(of_case)
         words = [RESPONSES[response.demand].words for response in free.get(name, ())] if kind == PASS else []
@@ -127,7 +132,9 @@ def scorecard(
         )
     named = {row.name for _, row in rows}
     rows += [
-        ((0, 0.0), Row(name, DOES_NOT_APPLY, [None] * len(columns))) for name in map(case_of, runs) if name not in named
+        ((0, 0.0), Row(name, DOES_NOT_APPLY, [None] * len(columns)))
+        for name in dict.fromkeys(map(case_of, runs))
+        if name not in named
     ]
     rows.sort(key=lambda row: (_ORDER.index(row[1].verdict), row[0]))
     return Scorecard(columns, [row for _, row in rows])
@@ -164,16 +171,17 @@ def _column(verdicts: Sequence[Verdict]) -> Column:
 
 def _cell(verdict: Verdict, column: Column) -> Cell:
     """Return a verdict in a column; without numbers if it does not apply or its value is NaN."""
+    named = str(verdict.columns.get(BOUND, ""))
     if verdict.verdict == DOES_NOT_APPLY or math.isnan(verdict.value):
         return Cell(verdict, "", "")
     if verdict.is_ban:
-        return Cell(verdict, wording.demanded(verdict), "")
+        return Cell(verdict, wording.demanded(verdict), "", named)
     bound = "≥\u00a0" if verdict.is_lower_bound else ""
     value = _number(verdict.value * column.factor, verdict.limit * column.factor)
     place = "" if column.at else wording.at(verdict.at_m)
     low, high = (_number(end * column.factor, verdict.limit * column.factor) for end in (verdict.low, verdict.high))
     bounds = f"{low} – {high}" if low != high and not verdict.is_lower_bound else ""
-    return Cell(verdict, bound + value + place, f"{bound}{wording.percent(verdict.ratio)}", bounds)
+    return Cell(verdict, bound + value + place, f"{bound}{wording.percent(verdict.ratio)}", bounds, named)
 
 
 def _number(value: float, limit: float = math.nan) -> str:

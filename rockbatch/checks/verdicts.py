@@ -14,6 +14,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.files import csv_plain, csv_text, legible, opened_text, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.quantities.design import BOUND
 from rockbatch.quantities.statistics import STATISTICS
 
 PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY = "pass", "fail", "not decided", "does not apply"
@@ -204,7 +205,8 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
             raise ValueError(f"{name} = {values[name]!r}")
     if values.get("omits") and not {*values["omits"].split(", ")} <= OMISSIONS.keys():
         raise ValueError(f"omits = {values['omits']!r}")
-    return Verdict(columns={name: _value(text) for name, text in row.items() if name not in _KINDS and text}, **values)
+    columns = {name: text if name == BOUND else _value(text) for name, text in row.items() if name not in _KINDS}
+    return Verdict(columns={name: value for name, value in columns.items() if value or name == BOUND}, **values)
 
 
 def _value(text: str) -> float | str:

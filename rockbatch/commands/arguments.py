@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.commands.example_studies import FIRST
 from rockbatch.common.analyses import Door, doors
-from rockbatch.common.argument_values import address, flag, place, shard, value, whole
+from rockbatch.common.argument_values import address, case_pair, flag, place, shard, value, whole
 
 if TYPE_CHECKING:
     from rockbatch.study import Study
@@ -227,6 +227,14 @@ COMMANDS = {
             "other": value(Path, "OTHER", "a second folder, to compare with the first", nargs="?"),
             "--out": value(
                 Path, "FILE", "file to write (default: DIR/report.html, or DIR/compare-OTHER.html); - is stdout"
+            ),
+            "--pair": value(
+                case_pair,
+                "A=B",
+                "compare the case A of the first folder with B of the second; by default cases of one name, and those "
+                "that are left by the inputs that differ least",
+                action="append",
+                default=[],
             ),
             "--all": flag("unfold every section, so that all are printed"),
             "--sheet": flag("write DIR/sheet.html instead: the calculation sheet, to print on A4 or Letter"),

@@ -9,7 +9,7 @@ from pathlib import Path
 from rockbatch.checks import Verdict, wording, write_verdicts
 from rockbatch.checks.answer import answer
 from rockbatch.checks.coverage import CaseRuns, runs_of_cases, stations_of
-from rockbatch.checks.remarks import pulled_supports, undamped_settlement, weak_supports
+from rockbatch.checks.remarks import bounds_in_words, pulled_supports, undamped_settlement, weak_supports
 from rockbatch.checks.responses import worst_of_cases
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.checks.wording import SIGNS, Notes
@@ -46,8 +46,17 @@ def main(arguments: argparse.Namespace) -> int:
 
 def report(arguments: argparse.Namespace) -> int:
     """Rewrite the report of finished results, write their calculation sheet, or compare two studies."""
-    folders = arguments.directory, arguments.other
-    say(str(make_report(*folders, out=arguments.out, whole=arguments.all, sheet=arguments.sheet).path))
+    made = make_report(
+        arguments.directory,
+        arguments.other,
+        out=arguments.out,
+        whole=arguments.all,
+        sheet=arguments.sheet,
+        pairs=dict(arguments.pair),
+    )
+    if made.answer and str(arguments.out) != "-":
+        show(filled(_plain(made.answer)))
+    say(str(made.path))
     return 0
 
 
@@ -85,7 +94,7 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
     checked = any(verdict.case for verdict in verdicts)
 
     def case_of(row: Verdict | CaseRuns) -> str:
-        return results.named_case(row.case, row.columns, varied, row.scale)
+        return results.named_design(row.case, row.columns, varied, row.scale)
 
     def record_of(verdict: Verdict) -> str:
         return str(labels.get(verdict.record, verdict.record))
@@ -109,7 +118,7 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
         lines.append("No limits were set, so nothing was checked. Add some: rockbatch check DIR --rules FILE.")
         if ended:
             lines.append(f"Largest values over {planned - ended} of {planned} runs, those that end standing.")
-    lines += [filled(words) for words in (wording.both_axes(verdicts),) if words]
+    lines += [filled(words) for words in (wording.both_axes(verdicts), *bounds_in_words(saved.info)) if words]
     if undamped := undamped_settlement(worst):
         lines.append(filled(undamped))
     return "\n".join(lines)

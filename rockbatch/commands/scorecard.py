@@ -107,7 +107,8 @@ def _head(words: str, *below: str) -> list[str]:
 def _written(cell: Cell | None) -> str:
     if cell is None or cell.verdict.verdict == DOES_NOT_APPLY:
         return SIGNS[DOES_NOT_APPLY]
-    return " ".join(filter(None, (cell.value, SIGNS[cell.verdict.verdict], cell.percent)))
+    words = " ".join(filter(None, (cell.value, SIGNS[cell.verdict.verdict], cell.percent)))
+    return f"{words} ({cell.design_bound})" if cell.design_bound else words
 
 
 def _table(heads: Sequence[Sequence[str]], rows: Sequence[Sequence[str]]) -> str:

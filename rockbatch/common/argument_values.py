@@ -46,6 +46,14 @@ def shard(text: str) -> tuple[int, int]:
     return share, shares
 
 
+def case_pair(text: str) -> tuple[str, str]:
+    """Return the two names of "A=B". Raises ``ArgumentTypeError`` for other texts."""
+    first, sign, second = text.partition("=")
+    if not (first and sign and second):
+        raise argparse.ArgumentTypeError(f"{text}: must be two cases, such as pads=springs")
+    return first, second
+
+
 def flag(text: str) -> dict[str, Any]:
     """Return the keywords of a flag with a help ``text``."""
     return {"action": "store_true", "help": text}

@@ -55,20 +55,19 @@ def entry(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[
         **({} if motion.vertical_factor is None else {"vertical_factor": motion.vertical_factor}),
         "source": motion.source,
         "vertical_source": motion.vertical_source,
-        "sha256": digest(motion),
         "processed": motion.processed,
+        "digest": digest(motion),
         "findings": [asdict(finding) for finding in motion.findings],
         "notes": list(motion.notes),
     }
 
 
 def digest(motion: Motion) -> str:
-    """Return the SHA-256 of a motion as it is run: time step [s], and accelerations [m/s²], little-endian in 64 bits."""
-    components = [motion.horizontal] + ([] if motion.vertical is None else [motion.vertical])
-    of_motion = hashlib.sha256(np.array([motion.dt], dtype="<f8").tobytes())
-    for component in components:
-        of_motion.update(np.asarray(component, dtype="<f8").tobytes())
-    return of_motion.hexdigest()
+    """Return a digest of the samples of a motion, their step and the velocity at which they begin."""
+    hashed = hashlib.sha256(repr((motion.dt, motion.npts, motion.initial)).encode())
+    for samples in (motion.horizontal, motion.vertical, motion.across):
+        hashed.update(b"none" if samples is None else samples.tobytes())
+    return hashed.hexdigest()[:16]
 
 
 def _pulse(motion: Motion) -> dict[str, object]:

@@ -40,6 +40,7 @@ from rockbatch.quantities.demands import (
     tilt,
     toe_settlement,
 )
+from rockbatch.quantities.design import BOUND
 from rockbatch.quantities.devices import DEVICES
 from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR, LENGTHS, OVERTURNS, WIDER, greater, rotation
 from rockbatch.quantities.quantity import (
@@ -398,7 +399,7 @@ OPTIONAL = (
 COLUMNS = {quantity.name: quantity for quantity in (*FIXED, *TRAILING, *OPTIONAL)}
 """All quantities by name, in the order of the file."""
 
-TEXTS = tuple(quantity.name for quantity in COLUMNS.values() if quantity.kind == "text")
+TEXTS = (*(quantity.name for quantity in COLUMNS.values() if quantity.kind == "text"), BOUND)
 FACTS = tuple(quantity.name for quantity in COLUMNS.values() if quantity.kind == "fact")
 COUNTS = tuple(quantity.name for quantity in COLUMNS.values() if quantity.kind in ("count", "fact"))
 """Columns of whole numbers."""

@@ -1,8 +1,8 @@
 """The report of finished results: one self-contained HTML file. Never loads the compiler."""
 
 import os
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from rockbatch.checks import as_table
@@ -13,8 +13,9 @@ from rockbatch.common.lazy import pd
 from rockbatch.outcome.response import Response
 from rockbatch.reporting.finished import Finished, read
 from rockbatch.reporting.finished_analysis import Contents
+from rockbatch.reporting.margins import headline
 from rockbatch.reporting.page import comparison, page
-from rockbatch.reporting.pair import pair
+from rockbatch.reporting.pair import Pair, pair
 from rockbatch.reporting.sheet import sheet as sheet_of
 from rockbatch.results.opened import Results
 from rockbatch.results.run_json import describe_study, is_of
@@ -41,16 +42,24 @@ def write_report(
 
     Raises ``InputError`` if the results are missing, damaged or do not belong together.
     """
-    return _write([read(Path(directory), responses, saved)], out, whole)
+    return _write(read(Path(directory), responses, saved), out, whole)
 
 
-def write_comparison(first: Path, second: Path, *, out: Path | None = None, whole: bool = False) -> Path:
+def write_comparison(
+    first: Path,
+    second: Path,
+    *,
+    out: Path | None = None,
+    whole: bool = False,
+    pairs: Mapping[str, str] | None = None,
+) -> Path:
     """Write one page that compares two studies run by run; return its path.
 
-    ``out`` defaults to ``compare-NAME.html`` in the first folder, NAME being the second folder's. Raises ``InputError``
-    if results are missing or damaged.
+    ``out`` defaults to ``compare-NAME.html`` in the first folder, NAME being the second folder's. ``pairs`` are
+    cases of the second by those of the first with which they are compared. Raises ``InputError`` if results are missing or
+    damaged.
     """
-    return _write([read(Path(first), ()), read(Path(second), ())], out, whole)
+    return _write(_contents((first, second), pairs), out, whole)
 
 
 def write_analyses(directory: Path, study: Study) -> Path:
@@ -77,6 +86,10 @@ class Report:
         The rows of ``peaks.csv`` and ``checks.csv``; for two studies with a first column ``study``, "A" or "B".
     is_sheet : bool
         Whether the page is the calculation sheet.
+    answer : str
+        Which of two studies passes, and by how much; empty for one.
+    pairs : dict
+        Cases of the second study by those of the first with which they are compared, if it was asked for.
     """
 
     path: Path
@@ -84,6 +97,8 @@ class Report:
     peaks: "pd.DataFrame"
     checks: "pd.DataFrame"
     is_sheet: bool = False
+    answer: str = ""
+    pairs: Mapping[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"<{'sheet' if self.is_sheet else 'report'} of {' and '.join(map(str, self.folders))}: {self.path}>"
@@ -91,7 +106,7 @@ class Report:
     def save(self, folder: str | os.PathLike[str]) -> Path:
         """Write the page into ``folder`` under its present name; return its path."""
         directory = made_folder(Path(folder))
-        return _write(_finished(self.folders), directory / self.path.name, sheet=self.is_sheet)
+        return _write(_contents(self.folders, self.pairs), directory / self.path.name, sheet=self.is_sheet)
 
 
 @checked
@@ -102,6 +117,7 @@ def report(
     out: str | os.PathLike[str] | None = None,
     whole: bool = False,
     sheet: bool = False,
+    pairs: Mapping[str, str] | None = None,
 ) -> Report:
     """Write the report of finished results again, or of two studies side by side.
 
@@ -118,6 +134,9 @@ def report(
         Whether sections that are folded on the screen are unfolded, and printed.
     sheet : bool, optional
         Whether to write the calculation sheet instead, for paper: ``sheet.html`` in the folder, of one study only.
+    pairs : dict, optional
+        Cases of the second study by those of the first with which to compare them. By default cases of one name go together,
+        and those that are left by the inputs that differ least.
 
     Returns
     -------
@@ -145,27 +164,34 @@ def report(
         raise InputError(
             "a calculation sheet is of one study; write one for each folder, or compare the two without it"
         )
-    finished = _finished(folders)
-    path = _write(finished, None if out is None else Path(out), whole, sheet)
+    contents = _contents(folders, pairs)
+    path = _write(contents, None if out is None else Path(out), whole, sheet)
+    finished = contents.studies if isinstance(contents, Pair) else (contents,)
     tables = [(results.saved.peaks, as_table(results.verdicts)) for results in finished]
     peaks, checks = (_stacked(of_studies) for of_studies in zip(*tables, strict=True))
-    return Report(path, folders, peaks, checks, sheet)
+    answer = headline(contents) if isinstance(contents, Pair) else ""
+    return Report(path, folders, peaks, checks, sheet, answer, dict(pairs or {}))
 
 
-def _finished(folders: Sequence[Path]) -> list[Finished]:
+def _contents(folders: Sequence[Path], pairs: Mapping[str, str] | None) -> Finished | Pair:
     """Read the results of one folder, or of two without their histories, which a comparison does not show."""
-    return [read(folder, () if len(folders) > 1 else None) for folder in folders]
+    if len(folders) == 1:
+        if pairs:
+            raise InputError("cases are paired between two folders; give the second one, too")
+        return read(Path(folders[0]))
+    first, second = (read(Path(folder), ()) for folder in folders)
+    return pair(first, second, pairs)
 
 
-def _write(finished: Sequence[Finished], out: Path | None, whole: bool = False, sheet: bool = False) -> Path:
+def _write(contents: Finished | Pair, out: Path | None, whole: bool = False, sheet: bool = False) -> Path:
     """Write the report or sheet of one folder or the comparison of two, to ``out`` or into the first folder; return its path."""
-    if sheet:
-        content, target = sheet_of(finished[0]), finished[0].directory / SHEET
-    elif len(finished) > 1:
-        content = comparison(pair(*finished), whole)
-        target = finished[0].directory / f"compare-{finished[1].directory.resolve().name}.html"
+    if isinstance(contents, Pair):
+        first, second = (study.directory for study in contents.studies)
+        content, target = comparison(contents, whole), first / f"compare-{second.resolve().name}.html"
+    elif sheet:
+        content, target = sheet_of(contents), contents.directory / SHEET
     else:
-        content, target = page(finished[0], whole), finished[0].directory / REPORT
+        content, target = page(contents, whole), contents.directory / REPORT
     (write_output if out else write_whole)(out or target, content)
     return out or target
 

@@ -2,13 +2,15 @@
 
 import difflib
 import math
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, standing, worst_of_all
 from rockbatch.quantities.catalogue import COLUMNS
+from rockbatch.reporting.differing import differences
 from rockbatch.reporting.finished import Finished, worst_first
 from rockbatch.reporting.labels import counted, head, symbol
+from rockbatch.reporting.margins import headline, margins
 from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.reporting.overview import drawn_by_record
 from rockbatch.reporting.pair import SIDES, Pair
@@ -17,79 +19,47 @@ from rockbatch.reporting.sections.answer import responses
 from rockbatch.reporting.sections.peaks import on_scale, outcome
 from rockbatch.reporting.table import MOST_ROWS, THETA, THETA_FORMAT, Head, table
 from rockbatch.results.labelled import as_dicts
-from rockbatch.results.labels import digits_that_tell
 from rockbatch.results.suite_statistics import NO_PEAK
 
-LEVEL = 0.02
-"""Largest relative difference of a response that makes neither study better."""
 INDEPENDENT = ("theta_max_over_alpha", "settlement_m", "base_tilt_rad", "ductility")
-"""Responses that decide; drift and uplift go with the rotation."""
-BETTER = {
-    (True, False): "B is better",
-    (False, True): "A is better",
-    (True, True): "Neither is better throughout",
-    (False, False): "Neither is better",
-}
-"""The better study, by whether a response of B is smaller, and whether one is larger."""
-MOST_VALUES = 6
-"""Most values of one input that are shown."""
-PIER = ("alpha", "p", "mu", "gravity", "size_m", "mass_t", "top_m")
-BASE = (
-    "beta",
-    "stiffness_kN_m",
-    "eta",
-    "yield_kN",
-    "impact",
-    "epsilon",
-    "spring",
-    "n",
-    "kinematics",
-    "flight",
-    "flight_limit_mm",
-    "restitution",
-)
-NUMERICS = {"tolerance": "tolerance", "substeps": "steps per sample", "quiet_s": "time at rest after the record [s]"}
+"""Responses that are compared in a sentence; drift and uplift go with the rotation."""
 
 
 def answer(pair: Pair) -> Markup:
-    """Name the better study, with the differences and governing records, over the runs that both have."""
+    """Return which study passes and by how much, then margins by check, and rotations over the runs that both have."""
+    lead = tag("div", tag("strong", headline(pair)), class_="lead")
     in_common = zip(pair.studies, pair.runs, strict=True)
     studies = [replace(study, runs=study.runs.loc[runs.index]) for study, runs in in_common]
     if studies[0].runs.empty:
-        return tag("p", "The two studies have no run in common.")
+        return join(lead, margins(pair), tag("p", "The two studies have no run in common."))
     stood = standing(pair.runs[0]) & standing(pair.runs[1])
     in_both = [worst_of_all(replace(study, runs=study.runs[stood]).worst) for study in studies]
     changed = _pairs(pair)
     return join(
-        tag("div", _better(studies, in_both, int(stood.sum())), class_="lead"),
+        lead,
+        margins(pair),
+        tag("p", _responses(studies, in_both, int(stood.sum()))),
         tag("p", changed) if changed else "",
         _worst_of_both(studies, in_both, int(stood.sum())),
     )
 
 
-def _better(studies: list[Finished], responses: list[dict[str, Worst]], stood: int) -> Markup:
-    """Name the study with fewer runs that do not end standing; if equal, the study with smaller worst responses.
-
-    ``responses`` are the worst of each study over the ``stood`` runs that end standing in both.
-    """
+def _responses(studies: list[Finished], responses: list[dict[str, Worst]], stood: int) -> str:
+    """Return how the worst responses change from A to B, over the ``stood`` runs that end standing in both."""
     lost = [int(study.runs["status"].isin((*NO_PEAK, "failed")).sum()) for study in studies]
-    if lost[0] != lost[1]:
-        good, bad = (0, 1) if lost[0] < lost[1] else (1, 0)
-        lead = f": of {counted(len(studies[0].runs), 'run')} {lost[good]} do not end standing, of {SIDES[bad]} {lost[bad]}."
-        return join(tag("strong", f"{SIDES[good]} is better"), lead)
+    total = counted(len(studies[0].runs), "run")
+    ended = f"Of {total} in common {lost[0]} of A and {lost[1]} of B do not end standing. " if any(lost) else ""
     in_both = {name: [w[name] for w in responses] for name in INDEPENDENT if all(name in w for w in responses)}
-    changes = {name: _change(*(w.value for w in pair)) for name, pair in in_both.items()}
-    smaller, larger = (any(sign * change > LEVEL for change in changes.values()) for sign in (-1, 1))
     parts = []
     for name, pair in in_both.items():
+        change = _change(*(w.value for w in pair))
         labels = (study.label(w.run["record"]) for study, w in zip(studies, pair, strict=True))
-        change = f"{100 * changes[name]:+.3g} %" if math.isfinite(changes[name]) else "from none"
-        parts.append(f"{RESPONSES[name].words} {change} ({'; then '.join(dict.fromkeys(labels))})")
-    lead = f": from A to B, worst {', '.join(parts)}" if parts else ": no run ends standing"
-    if parts and lost[0]:
-        lead += f", of the {stood} of {len(studies[0].runs)} runs that end standing in both"
-    lead += "."
-    return join(tag("strong", BETTER[smaller, larger]), lead)
+        percent = f"{100 * change:+.3g} %" if math.isfinite(change) else "from none"
+        parts.append(f"{RESPONSES[name].words} {percent} ({'; then '.join(dict.fromkeys(labels))})")
+    if not parts:
+        return f"{ended}No run ends standing in both."
+    over = total if stood == len(studies[0].runs) else f"{stood} of {total} that end standing in both"
+    return f"{ended}From A to B, over {over}: worst {', '.join(parts)}."
 
 
 def _change(first: float, second: float) -> float:
@@ -147,54 +117,13 @@ def checks(pair: Pair) -> Markup:
 
 
 def inputs(pair: Pair) -> Markup:
-    """Return a table of the inputs that differ: pier, foundations, motions and numerics."""
-    in_both = set.intersection(*({case["case"] for case in study.info["cases"]} for study in pair.studies))
-    sides = [_inputs(study, in_both) for study in pair.studies]
-    rows = []
-    for name in dict.fromkeys(name for side in sides for name in side):
-        values, others = (side.get(name, []) for side in sides)
-        if values != others:
-            rows.append([name, _shown(values, values + others), _shown(others, values + others)])
+    """Return a table of the inputs that differ: keys of the studies, by value, and motions; with the cases paired by inputs."""
+    others = [f"{first} with {second}" for second, first in pair.names.items() if first != second]
+    words = tag("p", f"Paired cases of A and B: {'; '.join(others)}.") if others else ""
+    rows = differences(*pair.studies, pair.names)
     if not rows:
-        return tag("p", "Pier, foundations, motions and numerics are the same in both.")
-    return table([Head("input"), *map(Head, SIDES)], rows, name="Inputs")
-
-
-def _inputs(study: Finished, compared: Collection[str]) -> dict[str, list[object]]:
-    """Return the distinct values of every input, by its name; base parameters only of the cases ``compared``."""
-    info = study.info
-    records = [record["record"] for record in info["records"]]
-    vertical = sum(record["pga_v_g"] is not None for record in info["records"])
-    values: dict[str, Iterable[object]] = {
-        f"pier: {symbol(key)}": [case["pier"].get(key) for case in info["cases"]] for key in PIER
-    }
-    values["cases"] = names = list(dict.fromkeys(case["case"] for case in info["cases"]))
-    for name in filter(compared.__contains__, names):
-        entries = [case for case in info["cases"] if case["case"] == name]
-        values[f"{name}: base"] = [case["base"] for case in entries]
-        values |= {f"{name}: {symbol(key)}": [case["parameters"].get(key) for case in entries] for key in BASE}
-    values |= {
-        "ground motions": sorted(records),
-        "with the vertical component": [
-            {0: "none", len(records): "all"}.get(vertical, f"{vertical} of {len(records)}")
-        ],
-        "files that could not be used": [len(info["unusable"])],
-        "scale": study.runs["scale"].tolist(),
-        "polarity": study.runs["polarity"].tolist(),
-    }
-    values |= {words: [info["numerics"].get(key)] for key, words in NUMERICS.items()}
-    return {
-        name: list(dict.fromkeys(value for value in entries if value is not None)) for name, entries in values.items()
-    }
-
-
-def _shown(values: Sequence[object], all_values: Iterable[object]) -> str:
-    """Format one study's values with enough digits to distinguish ``all_values``; "none" without any."""
-    digits = digits_that_tell(all_values, least=4)
-    words = [f"{value:.{digits}g}" if isinstance(value, float | int) else str(value) for value in values]
-    if len(words) > MOST_VALUES:
-        return f"{counted(len(words), 'value')}: {', '.join(words[:MOST_VALUES])}, …"
-    return ", ".join(words) or "none"
+        return join(words, tag("p", "Every key of the two studies has the same value, and their motions are the same."))
+    return join(words, table([Head("input"), *map(Head, SIDES)], rows, name="Inputs"))
 
 
 def figures(pair: Pair) -> Markup:
@@ -271,28 +200,13 @@ def _first(names: Sequence[str], most: int) -> str:
 def studies(pair: Pair) -> Markup:
     """Describe both studies: responses, inputs and statics."""
     parts: list[object] = [
-        tag("p", f"{counted(len(pair.runs[0]), 'pair')} of runs with the same ground motion and case name.")
+        tag("p", f"{counted(len(pair.runs[0]), 'pair')} of runs of paired cases under the same ground motion.")
     ]
     for name, study in zip(SIDES, pair.studies, strict=True):
         title = tag("h3", f"{name}: {study.study['title'] or ''} ", tag("code", study.directory))
         parts += [title, responses(study), studied.section(study, level="h4")]
         parts += [tag("h4", "Statics"), statics.section(study)]
-    return join(*parts, _records_that_differ(*pair.studies))
-
-
-def _records_that_differ(a: Finished, b: Finished) -> Markup:
-    """List records that have the same name in both studies but are different motions; empty without any."""
-    keys = ("pga_g", "pga_v_g", "npts", "dt_s")
-    shared = [name for name in a.records if name in b.records]
-    differing = [name for name in shared if any(not _same(a.records[name][key], b.records[name][key]) for key in keys)]
-    if not differing:
-        return Markup("")
-    lead = tag("span", "Different motions under the same name", class_="alarm")
-    return tag("p", lead, f": {_first(differing, 8)}.")
-
-
-def _same(a: float | None, b: float | None) -> bool:
-    return a is b if a is None or b is None else math.isclose(a, b, rel_tol=1e-9)
+    return join(*parts)
 
 
 def difference(pair: Pair) -> Markup:

@@ -81,6 +81,7 @@ def _of_observer(name: str, finished: Finished) -> Markup:
 
 _OWN = (
     Part("Scorecard", "answer", answer.section),
+    Part("Under each bound", "bounds", verdicts.under_each_bound),
     Part("Greatest responses", "responses", answer.responses_beside_checks, folded=True),
     Part("Peaks by foundation", "figure", by_foundation),
     *_of_analyses(),

@@ -13,8 +13,9 @@ import numpy as np
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import Case
+from rockbatch.quantities.design import BOUND, of_design, under
 from rockbatch.quantities.rows import as_in_peaks, simulated, with_case
-from rockbatch.results.labels import Key, Series, digits_that_tell, named, quantity
+from rockbatch.results.labels import Key, Series, digits_that_tell, named, quantity, under_bounds
 from rockbatch.study import PIER_KEYS
 
 Item = Mapping[str, Any]
@@ -67,9 +68,15 @@ class Labelled:
         if key in self.places and pier in self.pier_places:
             words = [self.series[self.places[key]].label, self.piers[self.pier_places[pier]]]
         else:  # without a run
-            words = [case, *(quantity(name, value) for name, value in columns.items())]
+            words = [case, *(quantity(name, value) for name, value in columns.items() if value != "")]
         scaled = f"motions scaled by {scale:g}" if self.many_scales and scale is not None else ""
         return ", ".join(filter(None, (*words, scaled)))
+
+    def named_design(
+        self, case: str, columns: Mapping[str, object], varied: Sequence[str], scale: float | None = None
+    ) -> str:
+        """Return the label of a case as :meth:`named_case`, without the bound under which it ran."""
+        return self.named_case(case, of_design(columns), varied, scale)
 
 
 def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
@@ -86,7 +93,9 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
         entries[key, pier_key(case["columns"], varied)] = case
     given = _keys_given(info["study"]["text"])
     given |= {case["case"]: given.get(case["across_of"], set()) for case in info["cases"] if case.get("across_of")}
-    series = named(grouped, [key for key in varied if _of_foundation(key)], given)
+    nominal = {key: cases for key, cases in grouped.items() if not under(cases[0]["columns"])}
+    series = named(nominal, [key for key in varied if _of_foundation(key)], given)
+    series = under_bounds(series, grouped) if BOUND in varied else series
     places = {key: place for place, key in enumerate(series)}
 
     runs = simulated(with_case(peaks)).copy(deep=False)

@@ -187,9 +187,26 @@ def named(
         case, index = str(key[0]), count[kind]
         count[kind] += 1
         label = ", ".join(words) if words and alone else f"{case}: {', '.join(words)}" if words else case
-        tick = case if short else chr(ord("a") + index) if index < 26 else str(index + 1)
-        series[key] = Series(label, tick, kind, index)
+        series[key] = Series(label, case if short else _tick(index), kind, index)
     return series
+
+
+def under_bounds(designs: Mapping[Key, Series], keys: Iterable[Key]) -> dict[Key, Series]:
+    """Return a series for each of the ``keys``, which end with a bound: the label of its design, and the bound behind it."""
+    series: dict[Key, Series] = {}
+    count = {True: 0, False: 0}
+    for *design, bound in keys:
+        of_design = designs[(*design, "")]
+        kind, index = of_design.rigid, count[of_design.rigid]
+        count[kind] += 1
+        label = f"{of_design.label}, {bound}" if bound else of_design.label
+        series[(*design, bound)] = Series(label, _tick(index), kind, index)
+    return series
+
+
+def _tick(index: int) -> str:
+    """Return the short label of a series: a letter, or a number from the 27th on."""
+    return chr(ord("a") + index) if index < 26 else str(index + 1)
 
 
 def _differing(names: Iterable[str], values: Sequence[Mapping[str, object]]) -> list[str]:

@@ -207,7 +207,8 @@ def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
         if any(cell != text for cell, text in originals.items()):
             table[name] = table[name].map(originals)
     for name in varied:
-        table[name] = numbers_or_words(table[name])
+        if name not in TEXTS:
+            table[name] = numbers_or_words(table[name])
     return table
 
 

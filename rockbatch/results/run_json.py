@@ -114,6 +114,7 @@ SHAPE = {
             "factor": Maybe(float),
             "vertical_factor": Maybe(float),
             "processed": Maybe((bool, None)),
+            "digest": Maybe(str),
             "findings": Maybe([{"what": str}]),
         }
     ],
@@ -131,6 +132,9 @@ SHAPE = {
     "digest": Maybe({str: str}),
     "count": Maybe(("station", "component")),
     "left_out": Maybe([_OF_FILE]),
+    "bounds": Maybe(
+        [{"bound": str, "source": str, "changes": [str], "lacking": [{"case": str, "keys": [str]}]}],
+    ),
 }
 """Shape of the entries of run.json that programs read; the rest is for people."""
 
@@ -162,6 +166,7 @@ def describe(study: Study, motions: MotionSet) -> Row:
         "count": study.count,
         "units": units(study),
         "cases": [describe_case(case) for case in study.cases],
+        **({"bounds": [bound.as_in_run_json() for bound in study.bounds]} if study.bounds else {}),
         "without_vertical": motions.without_vertical,
         "records": [entry(motion, labels[motion.name], gravity, with_pulse=with_pulses) for motion in motions.motions],
         "spectra": spectra(motions.motions, fitted, gravity, target),

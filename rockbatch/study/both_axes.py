@@ -72,7 +72,9 @@ def _case_across(table: Table, case: Case) -> list[Case]:
     pier_table = table.file.table("pier")
     confirmed = {name.replace(KEY, "width_m") for name in table.confirmed}
     try:
-        pier = with_width(case.columns, width, confirmed | (pier_table.confirmed if pier_table else set()))
+        pier = with_width(
+            case.columns | case.changed, width, confirmed | (pier_table.confirmed if pier_table else set())
+        )
         base = across(case.pier, case.base, pier)
         refuse(problems(pier, base))
     except InputError as error:

@@ -31,9 +31,11 @@ from rockbatch.pier.possible import enough_eta
 from rockbatch.pier.sizes import BOUNDS as OF_PIER
 from rockbatch.pier.supports import SUPPORTS
 from rockbatch.pier.traits import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, wrong_blow
+from rockbatch.quantities.design import BOUND
+from rockbatch.study.design_bounds import DesignBound
 from rockbatch.study.footing_keys import FOOTING_KEYS, at_pivots, footing_of, on_foot
 from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
-from rockbatch.study.piers import PIER, Values, has_mass
+from rockbatch.study.piers import PIER, PierRead, Values, has_mass
 from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import KeyValues, KindError, Other, Whole, choice, positive, text, within
@@ -321,8 +323,16 @@ class _WrittenCase(NamedTuple):
     grid: Grid
 
 
-def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[list[Case], tuple[str, ...]]:
-    """Return every [[case]] on every pier, with all keys that apply as columns, and the keys that are lists in any of them."""
+class Cases(NamedTuple):
+    """The cases of a study, the keys that are lists in any of them, and all keys that are written, by the names of cases."""
+
+    cases: list[Case]
+    varied: tuple[str, ...]
+    keys: dict[str, tuple[str, ...]]
+
+
+def read_cases(file: TomlFile, piers: Sequence[PierRead], bounds: Sequence[DesignBound] = ()) -> Cases:
+    """Return every [[case]] on every pier, each followed by itself under the ``bounds``, with all keys that apply as columns."""
     tables = file.tables("case", title="name")
     if file.data.get("case", []) == [] and ("case",) not in file.misspelt:
         file.complain(("case",), '[[case]] is missing; write at least one, for example with base = "rigid"')
@@ -345,14 +355,35 @@ def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[li
         varied |= dict.fromkeys(case.grid.varied)
         if case.base:
             cases.append(case)
-    if message := too_many(max(len(piers), 1) * sum(len(case.grid) for case in cases), "cases"):
+    keys = {case.name: tuple(case.grid.settings) for case in cases}
+    if message := too_many(max(len(piers), 1) * (1 + len(bounds)) * sum(len(case.grid) for case in cases), "cases"):
         file.complain(("case",), message)
-        return [], tuple(varied)
-    expanded = []
-    for pier, pier_values in piers or [(_ANY_PIER, {})]:
+        return Cases([], tuple(varied), keys)
+    expanded: list[Case] = []
+    for pier in piers or [PierRead(_ANY_PIER, {})]:
         for case in cases:
-            expanded += [_case_of(case, chosen, pier, pier_values) for chosen in _without_repeats(case.grid)]
-    return expanded, tuple(varied)
+            for chosen in _without_repeats(case.grid):
+                expanded += _with_bounds(case, chosen, pier, bounds)
+    return Cases(expanded, tuple(varied), keys)
+
+
+def _with_bounds(case: _WrittenCase, chosen: Chosen, pier: PierRead, bounds: Sequence[DesignBound]) -> Iterator[Case]:
+    """Yield the case of one choice of values on a pier, and if that is sound, the same under each bound."""
+    file = case.table.file
+    problems_before = len(file.problems)
+    nominal = _case_of(case, chosen, pier.pier, pier.values)
+    yield replace(nominal, columns=nominal.columns | ({BOUND: ""} if bounds else {}))
+    if not file.is_sound_since(problems_before):
+        return
+    for bound in bounds:
+        gathered = bound.noting(file)
+        table = bound.table(case.table, gathered)
+        devices = [replace(device, table=bound.table(device.table, gathered)) for device in case.devices]
+        changed_pier, pier_values = pier.under.get(bound.name, (pier.pier, pier.values))
+        chosen_then = bound.changed(chosen, table, of_pier=False)
+        changed = _case_of(case._replace(table=table, devices=devices), chosen_then, changed_pier, pier_values)
+        bound.note(file, gathered)
+        yield replace(changed, columns=nominal.columns | {BOUND: bound.name}, changed=changed.columns)
 
 
 def _case_of(case: _WrittenCase, chosen: Chosen, pier: Pier, pier_values: Values) -> Case:

@@ -21,8 +21,11 @@ from rockbatch.motions import MotionSet
 from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.pier import described, symmetric
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
+from rockbatch.quantities.design import BOUND
 from rockbatch.study.both_axes import along_the_axis, with_other_axes
+from rockbatch.study.bound_keys import BOUNDS, read_bounds
 from rockbatch.study.cases import BASE_KEYS, CASE, read_cases
+from rockbatch.study.design_bounds import DesignBound, placed
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
 from rockbatch.study.output import OUTPUT, Output
 from rockbatch.study.piers import PART, PIER, read_piers
@@ -136,6 +139,7 @@ SECTIONS = (
     SEQUENCE,
     CASE,
     *DEVICES.values(),
+    BOUNDS,
     NUMERICS,
     OUTPUT,
     SUITE,
@@ -152,7 +156,8 @@ class Study(Shown):
     ``path`` and ``text`` are the file and its text, ``varied`` the names of the keys that were lists, ``checks`` the
     rules that its results are held against, ``count`` what counts as one record of its suite, one of
     :data:`rockbatch.checks.rules.COUNTS`, ``check_files`` the paths and texts of the files that its [suite] names for checks.
-    ``lined`` is False if the text was made of tables, so that messages give no lines.
+    ``lined`` is False if the text was made of tables, so that messages give no lines. ``bounds`` are those under which every
+    case is run beside the nominal design.
 
     Examples
     --------
@@ -188,6 +193,7 @@ class Study(Shown):
     count: str = "station"
     check_files: tuple[tuple[Path, str], ...] = ()
     lined: bool = True
+    bounds: tuple[DesignBound, ...] = ()
 
     @classmethod
     @checked
@@ -307,27 +313,29 @@ def _checked_study(file: TomlFile, motions: Motions) -> Study:
     top = Table(file, (), "", file.data).read(TOP, other=others)
     motion_spec = read_motions_table(file, as_source(motions))
     numerics = _numerics(file)
-    piers, varied_pier = read_piers(file)
-    cases, varied_case = read_cases(file, piers)
+    bounds = read_bounds(file)
+    piers, varied_pier, keys_of_pier = read_piers(file, bounds)
+    cases, varied_case, keys_of_cases = read_cases(file, piers, bounds)
     cases = with_other_axes(file, cases, motion_spec) if piers else cases
-    varied = varied_pier + varied_case
+    varied = varied_pier + varied_case + ((BOUND,) if bounds else ())
     references = _references(file, cases, varied)
     table = file.table("output")
     output = Output.with_keys(**table.read(OUTPUT)) if table else Output()
     if len(motion_spec.polarity) > 1 and not all(symmetric(case.pier, case.base.restraints) for case in cases):
         message = "devices on one side make another run of the reversed motion, not the mirror image"
         file.complain(("motions", "polarity"), f"[motions]: {message}; keep one polarity")
-    if len(motion_spec.polarity) > 1 and any(pier.initial_rotation_rad for pier, _ in piers):
+    if len(motion_spec.polarity) > 1 and any(read.pier.initial_rotation_rad for read in piers):
         message = "a pier that is let go from a rotation has another run of the reversed motion, not the mirror image"
         file.complain(
             ("motions", "polarity"),
             f"[motions]: {message}; keep one polarity, and list initial_rotation_rad = [0.05, -0.05] for the other side",
         )
     for kind, complain in parts("study.COMPLAINS"):
-        complain(file, output.of(kind), [pier for pier, _ in piers])
+        complain(file, output.of(kind), [read.pier for read in piers])
     along = along_the_axis(cases)
     checks = read_checks(file, partial(_problems_of_rule, along, motion_spec, output, bool(piers)) if along else None)
     output = output.also({key for rule in checks.rules for key in DEMANDS[rule.demand].brings})
+    placed_bounds = placed(file, bounds, keys_of_pier, keys_of_cases)
     file.finish()
     return Study(
         title=top.get("title", file.path.stem),
@@ -344,6 +352,7 @@ def _checked_study(file: TomlFile, motions: Motions) -> Study:
         count=checks.counted,
         check_files=() if checks.file is None else ((checks.file.path, checks.file.text),),
         lined=bool(file.lines),
+        bounds=placed_bounds,
     )
 
 
@@ -406,12 +415,13 @@ def _references(file: TomlFile, cases: Sequence[Case], varied: Iterable[str]) ->
     """Return the references; note values of ``varied`` keys that no case of the name has."""
     named = [table.data.get("name", table.data.get("base")) for table in file.tables("case", title="name")]
     names = choice(*dict.fromkeys(name for name in named if isinstance(name, str)))
-    of_parts = {name: Key(not_negative, "0.0") for name in varied if name not in REFERENCE}
+    of_parts = {name: Key(not_negative, "0.0") for name in varied if name not in (*REFERENCE, BOUND)}
     keys = {**REFERENCE, "case": replace(REFERENCE["case"], kind=names), **of_parts}
     references = []
     for table in file.tables("reference", title="record"):
         read = table.read(keys)
         columns = {name: value for name, value in read.items() if name not in OF_REFERENCE}
+        columns |= {BOUND: ""} if BOUND in varied else {}  # what was published is of the nominal design
         alike = [case.columns for case in cases if case.name == read.get("case")]
         for name, value in columns.items():
             options = dict.fromkeys(values[name] for values in alike if name in values)

@@ -1,12 +1,14 @@
 """The piers of a study file, with every combination of listed values: [pier] and [[pier.part]]."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import asdict, replace
+from typing import NamedTuple
 
 from rockbatch.common.errors import InputError, refuse
 from rockbatch.pier import Part, Pier
 from rockbatch.pier.sizes import BOUNDS, USUAL, unlikely_deck, unlikely_inertia
-from rockbatch.study.lists import Grid, complain_where_due, too_many
+from rockbatch.study.design_bounds import DesignBound
+from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.toml.kinds import KeyValues, Whole, not_negative, positive, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
@@ -311,14 +313,30 @@ PIER_KEYS = tuple(name for name in PIER if name not in ("mass_t", "confirm"))
 Values = dict[str, float | str]
 
 
-def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ...]]:
-    """Return the piers of [pier], each with its values by key, and the keys that are lists; no pier if there are mistakes.
+class PierRead(NamedTuple):
+    """A pier with its values by key, those that are chosen and those that follow; and likewise under bounds, by their names."""
+
+    pier: Pier
+    values: Values
+    under: Mapping[str, tuple[Pier, Values]] = {}
+
+
+class Piers(NamedTuple):
+    """The piers of a study, the keys that are lists, and all keys that are written."""
+
+    piers: Sequence[PierRead]
+    varied: tuple[str, ...]
+    keys: tuple[str, ...]
+
+
+def read_piers(file: TomlFile, bounds: Sequence[DesignBound] = ()) -> Piers:
+    """Return the piers of [pier], each also under those of the ``bounds`` that change it; no pier if there are mistakes.
 
     Keys of the n-th [[pier.part]] are called part_n_mass_t and so on.
     """
     table = file.table("pier", required="[pier] with alpha = 0.13 and p = 0.38, or with width_m and height_m")
     if table is None:
-        return [], ()
+        return Piers([], (), ())
     problems_before = len(file.problems)
     grid = Grid.of(table, PIER, other=("part",))
     _check_one_size(table)
@@ -331,25 +349,48 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
     if message := too_many(len(grid), "piers"):
         table.complain(message)
     if not file.is_sound_since(problems_before):
-        return [], ()
-    piers = []
-    for chosen in grid:
-        values = {name: setting.value for name, setting in chosen.items()}
-        try:
-            pier = _pier(values, len(parts), table.confirmed)
-            pier = replace(
-                pier,
-                flexural_period_s=values.get("flexural_period_s"),
-                initial_rotation_rad=values.get("initial_rotation_rad", 0.0),
-            )
-        except InputError as error:
-            for problem in error.problems:
-                complain_where_due(table, chosen, problem)
-        else:
-            of_pier = asdict(replace(pier, parts=None))  # each key of a part has a column
-            del of_pier["confirm"]
-            piers.append((pier, {name: value for name, value in of_pier.items() if value is not None} | values))
-    return piers, grid.varied
+        return Piers([], (), tuple(grid.settings))
+    piers = [
+        PierRead(*nominal, _under_bounds(table, chosen, len(parts), bounds))
+        for chosen in grid
+        if (nominal := _pier_of(table, chosen, len(parts))) is not None
+    ]
+    return Piers(piers, grid.varied, tuple(grid.settings))
+
+
+def _under_bounds(
+    table: Table, chosen: Chosen, parts: int, bounds: Sequence[DesignBound]
+) -> dict[str, tuple[Pier, Values]]:
+    """Return the pier of one choice of values under each bound that changes it; note what is impossible or unusual then."""
+    piers = {}
+    for bound in bounds:
+        if any(change.of_pier for change in bound.changes):
+            gathered = bound.noting(table.file)
+            own = bound.table(table, gathered)
+            changed = _pier_of(own, bound.changed(chosen, own, of_pier=True), parts)
+            bound.note(table.file, gathered)
+            if changed is not None:
+                piers[bound.name] = changed
+    return piers
+
+
+def _pier_of(table: Table, chosen: Chosen, parts: int) -> tuple[Pier, Values] | None:
+    """Return the pier of one choice of values and its values by key; None for an impossible one, which is noted."""
+    values = {name: setting.value for name, setting in chosen.items()}
+    try:
+        pier = _pier(values, parts, table.confirmed)
+        pier = replace(
+            pier,
+            flexural_period_s=values.get("flexural_period_s"),
+            initial_rotation_rad=values.get("initial_rotation_rad", 0.0),
+        )
+    except InputError as error:
+        for problem in error.problems:
+            complain_where_due(table, chosen, problem)
+        return None
+    of_pier = asdict(replace(pier, parts=None))  # each key of a part has a column
+    del of_pier["confirm"]
+    return pier, {name: value for name, value in of_pier.items() if value is not None} | values
 
 
 def has_mass(file: TomlFile) -> bool:

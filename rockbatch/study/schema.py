@@ -63,7 +63,7 @@ def _table(section: Section) -> Schema:
         "required": [name for name, key in section.items() if key.always_required],
     }
     if section.free:
-        table["patternProperties"] = {section.free: {"type": "number"}}
+        table["patternProperties"] = {section.free: dict(section.free_schema)}
     names = dict.fromkeys(key_name for key in section.values() for key_name in key.only)
     if conditions := [excluded for key_name in names for excluded in _excluded(section, key_name)]:
         table["allOf"] = conditions

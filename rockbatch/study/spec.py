@@ -115,7 +115,8 @@ class Numerics:
 class Case:
     """One pier on one base. ``columns`` has the values of the varied keys that apply to it.
 
-    ``across_of`` is empty, or the name of the case along the axis of the same pier, if this one is across it.
+    ``across_of`` is empty, or the name of the case along the axis of the same pier, if this one is across it. Under a bound
+    ``columns`` has its name, and the values of the nominal design; ``changed`` has the other ones.
     """
 
     name: str
@@ -123,10 +124,11 @@ class Case:
     base: Base
     columns: dict[str, float | str]
     across_of: str = ""
+    changed: dict[str, float | str] = field(default_factory=dict)
 
     def with_columns(self, varied: Iterable[str]) -> "Case":
         """Return the case with no other columns than those of ``varied`` keys."""
-        return replace(self, columns={name: self.columns[name] for name in varied if name in self.columns})
+        return replace(self, columns={name: self.columns[name] for name in varied if name in self.columns}, changed={})
 
 
 @dataclass(frozen=True)

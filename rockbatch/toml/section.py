@@ -103,7 +103,9 @@ class Section(Mapping[str, Key]):
         Whether one of several may also stand under single brackets.
     clashes : tuple of Clash
     free : str
-        Pattern of further keys, numbers that the section cannot list because a study makes their names.
+        Pattern of further keys that the section cannot list because a study makes their names.
+    free_schema : mapping
+        JSON schema of their values.
     numbered : bool
         Whether the same table may go with a number, too: damper_2.
     also : mapping of str to Also
@@ -121,6 +123,7 @@ class Section(Mapping[str, Key]):
     single: bool = False
     clashes: tuple[Clash, ...] = ()
     free: str = ""
+    free_schema: Mapping[str, Any] = field(default_factory=lambda: {"type": "number"})
     numbered: bool = False
     also: Mapping[str, Also] = field(default_factory=dict)
     instead: Mapping[str, str | tuple[str, str]] = field(default_factory=dict)

@@ -162,3 +162,22 @@ def test_the_examples_on_the_page_about_records_come_to_what_they_say(tmp_path, 
     runner.run(test, out=wrong.append)
     assert not wrong, "".join(wrong)
     assert len(test.examples) > 20
+
+
+@pytest.mark.slow
+def test_the_page_of_bounds_quotes_what_is_printed(tmp_path, capsys):
+    (page,) = (text for text in blocks(ROOT / "docs" / "pages" / "questions" / "bounds.md", "text"))
+    main(["run", str(ROOT / "configs" / "pier_with_bounds.toml"), "--out", str(tmp_path / "out")])
+    assert page in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_the_page_of_two_designs_quotes_what_is_printed(tmp_path, capsys):
+    study = rb.load_study(ROOT / "configs" / "pier_with_bounds.toml")
+    for side, case in (("with", "dampers"), ("without", "no dampers")):
+        ground = study.with_(case=case, bound=["soft ground", "stiff ground"])
+        rb.run(ground, tmp_path / side, progress=False)
+    (page,) = blocks(ROOT / "docs" / "pages" / "questions" / "comparison.md", "text")
+    capsys.readouterr()
+    assert main(["report", str(tmp_path / "with"), str(tmp_path / "without")]) == 0
+    assert capsys.readouterr().out == page

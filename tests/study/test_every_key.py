@@ -584,6 +584,18 @@ USES["[[reference]]"] = uses(REFERRED, ("reference", 0), {
     "record": "s*", "case": "q", "theta_max_over_alpha": 0.2, "source": "a book", "alpha": 0.25,
 }, references)  # fmt: skip
 
+STIFF = study(case=SOFT, bound=[{"name": "stiff", "case.beta": {"times": 1.5}}])
+
+
+def bounds_of(tables):
+    """Return the bounds of a study as run.json has them."""
+    return [bound.as_in_run_json() for bound in rb.Study.from_dict(tables).bounds]
+
+
+USES["[[bound]]"] = uses(STIFF, ("bound", 0), {"name": "soft", "source": "tests of the ground"}, bounds_of) | confirms(
+    STIFF, ("bound", 0), **{"case.beta": 5000.0}
+)
+
 
 # Analyses: another table or run.json
 

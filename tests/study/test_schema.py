@@ -117,7 +117,7 @@ NEEDED = {
     "[[pier.part]]": "mass_t height_m", "[[motions.pulse]]": "name shape amplitude_g period_s dt_s duration_s gamma nu",
     "[[motions.fema_p695]]": "station azimuth", "[[motions.sequence]]": "name records", CASE: "base", "[[case.damper]]": "kind",
     "[[case.stop]]": "gap_mm", "[[check]]": "name demand reason",
-    "[[reference]]": "record case theta_max_over_alpha source",
+    "[[bound]]": "name", "[[reference]]": "record case theta_max_over_alpha source",
 }  # fmt: skip
 SINGLE = {  # where every other key takes a list
     "[pier]": "gravity", "[[pier.part]]": "", CASE: "name base other_width_m", "[[case.damper]]": "kind at",
@@ -127,7 +127,7 @@ SEVERAL = {
     "[motions]": "path polarity scale columns confirm confirm_pga leave_out", "[motions.target]": "spectrum confirm",
     "[motions.vertical_target]": "spectrum confirm", "[[motions.pulse]]": "confirm", "[numerics]": "confirm",
     "[[motions.sequence]]": "records factors polarity confirm", "[output]": "sa_periods_s sa_pairs sections_m",
-    "[[check]]": "case scale confirm",
+    "[[bound]]": "confirm", "[[check]]": "case scale confirm",
 }  # fmt: skip
 ALIKE = {
     "[motions]": "columns", "[motions.target]": "spectrum", "[motions.vertical_target]": "spectrum",

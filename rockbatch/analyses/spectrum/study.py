@@ -8,10 +8,11 @@ import numpy as np
 
 from rockbatch.motions.pulses import SHAPES
 from rockbatch.pier import Pier, problems
+from rockbatch.quantities.design import BOUND
 from rockbatch.study.cases import read_cases
 from rockbatch.study.load import Study
 from rockbatch.study.motions import PULSE
-from rockbatch.study.piers import has_mass
+from rockbatch.study.piers import PierRead, has_mass
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import Number, Whole, choice, number, positive, text
 from rockbatch.toml.reader import Table, TomlFile
@@ -197,12 +198,15 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
     values = space(low, high, read.get("points", SPECTRUM["points"].default)).tolist()
     piers = _piers(table, read["alpha"], axis, values, study)
     problems_before = len(table.file.problems)
-    expanded, varied = read_cases(table.file, piers)
+    expanded, varied, _ = read_cases(table.file, piers)
     larger = (
         read_cases(
             table.file,
-            [(replace(pier, p=0.5 * pier.p, confirm=(*pier.confirm, "p")), pier_values) for pier, pier_values in piers],
-        )[0]
+            [
+                read._replace(pier=replace(read.pier, p=0.5 * read.pier.p, confirm=(*read.pier.confirm, "p")))
+                for read in piers
+            ],
+        ).cases
         if axis == SELF_SIMILAR
         else []
     )
@@ -217,7 +221,7 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
             if (alpha, case.name) not in reported:
                 reported.add((alpha, case.name))
                 table.complain(f'alpha = {alpha:g}, case "{case.name}": {problem}', "alpha")
-    apart = [name for name in ("mu", "mass_t") if len({values.get(name) for _, values in piers}) > 1]
+    apart = [name for name in ("mu", "mass_t") if len({values.get(name) for _, values, _ in piers}) > 1]
     intensities = read.get(INTENSITY, ()) if axis == SELF_SIMILAR else ()
     of_axis = (INTENSITY, axis) if intensities else (axis,)
     varied = ("alpha", *apart, *of_axis, *(name for name in varied if name not in apart))
@@ -241,9 +245,7 @@ def _without_size(table: Table, study: Study, names: Sequence[str]) -> None:
         )
 
 
-def _piers(
-    table: Table, alphas: Sequence[float], axis: str, values: list[float], study: Study
-) -> list[tuple[Pier, dict[str, float | str]]]:
+def _piers(table: Table, alphas: Sequence[float], axis: str, values: list[float], study: Study) -> list[PierRead]:
     """Return piers of every slenderness and size, with all else of the study's, and their values by key.
 
     A mass that only a case says is no pier's: the case brings it itself.
@@ -260,8 +262,9 @@ def _piers(
             mass_t=case.pier.mass_t if weighed else None,
         )
         for case in study.cases
+        if not case.columns.get(BOUND)  # the rocking spectrum is of the nominal design
     )
-    piers: list[tuple[Pier, dict[str, float | str]]] = []
+    piers: list[PierRead] = []
     for n, alpha in enumerate(alphas):
         for template in templates:
             mass = {} if template.mass_t is None else {"mass_t": template.mass_t}
@@ -269,7 +272,8 @@ def _piers(
                 for value in values:
                     p = _p(axis, alpha, value, template)
                     values_of_pier: dict[str, float | str] = {"alpha": alpha, "mu": template.mu, axis: value, **mass}
-                    piers.append((replace(template, alpha=alpha, p=p, confirm=("p", "mass_t")), values_of_pier))
+                    pier = replace(template, alpha=alpha, p=p, confirm=("p", "mass_t"))
+                    piers.append(PierRead(pier, values_of_pier))
     return piers
 
 

@@ -7,6 +7,7 @@ from rockbatch.checks.coverage import stations_of
 from rockbatch.pier.figures import devices, sketches
 from rockbatch.pier.restraints import KINDS
 from rockbatch.quantities.cases import Case, top
+from rockbatch.quantities.design import BOUND
 from rockbatch.quantities.quantity import FOOTING
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted, symbol
@@ -181,7 +182,8 @@ def _foundations(finished: Finished) -> Markup:
         deflections = [values.get(key) for key in ("delta_s_m", "delta_y_m")]
         millimetres = [None if metres is None else 1000 * metres for metres in deflections]
         own = [case["columns"].get(key) for key in varied]
-        cells = [case["case"], *own, case["base"], *(values.get(key) for key in names), *millimetres]
+        name = ", ".join(filter(None, (case["case"], case["columns"].get(BOUND))))
+        cells = [name, *own, case["base"], *(values.get(key) for key in names), *millimetres]
         rows.append([*cells, *(values.get(key) for key in further), "; ".join(_devices(case))])
     return table([*heads, *map(Head, further.values()), Head("devices")], rows, name="Foundations")
 

@@ -7,11 +7,13 @@ from rockbatch.checks import Verdict, wording
 from rockbatch.checks.answer import Line
 from rockbatch.checks.answer import answer as answered
 from rockbatch.checks.coverage import CaseRuns, stations_of
+from rockbatch.checks.remarks import bounds_in_words
 from rockbatch.checks.scorecard import MOST_CASES, OPEN_CASES, Cell, Column, Row
 from rockbatch.checks.scorecard import Scorecard as Card
 from rockbatch.checks.scorecard import scorecard as of_verdicts
 from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import grouped
+from rockbatch.quantities.design import under
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, join, number, tag
@@ -51,7 +53,7 @@ def answer(finished: Finished) -> Markup:
     lines = answered(
         finished.verdicts,
         finished.worst_at_scales,
-        _namer(finished),
+        named_designs(finished),
         lambda row: finished.label(row.record),
         finished.suites,
         stations_of(finished.info),
@@ -69,27 +71,42 @@ def _line(line: Line) -> Markup:
     return tag("li", tag("strong", mark(line.verdict, line.text)), cases, details)
 
 
-def _namer(finished: Finished) -> Callable[[Verdict | CaseRuns], str]:
-    return lambda row: (
-        finished.named_case(row.case, row.columns, finished.info["varied"], row.scale) if row.case else wording.SUITE
-    )
+def named_designs(finished: Finished, *, bounds: bool = False) -> Callable[[Verdict | CaseRuns], str]:
+    """Return a function that names the case of a row, without its bound unless ``bounds`` are named apart."""
+    named = finished.named_case if bounds else finished.named_design
+    return lambda row: named(row.case, row.columns, finished.info["varied"], row.scale) if row.case else wording.SUITE
 
 
-def scorecard(finished: Finished) -> Markup:
+def under_each_bound(finished: Finished) -> Markup:
+    """Return the scorecard with a row for each bound of each design, and what the bounds change; empty without bounds."""
+    words = [f"{sentence} " for sentence in bounds_in_words(finished.info)]
+    if not words:
+        return Markup("")
+    drawn = scorecard(finished, bounds=True) if any(verdict.case for verdict in finished.verdicts) else ""
+    return join(drawn, tag("p", *words, class_="legend"))
+
+
+def scorecard(finished: Finished, *, bounds: bool = False) -> Markup:
     """Return a table of demand, share of the limit and a bar (full at twice the limit), by case and check.
 
-    On paper every check has its column, in tables one below the other, and no case is folded.
+    A design has one row, with the worst of its bounds in each cell, or with ``bounds`` one for each of them.
     """
-    card = of_verdicts(finished.verdicts, _namer(finished), finished.suites, finished.worst_at_scales)
+    card = of_verdicts(
+        finished.verdicts, named_designs(finished, bounds=bounds), finished.suites, finished.worst_at_scales
+    )
+    if bounds:  # a design with its bounds, which all are listed
+        order = list(dict.fromkeys(map(named_designs(finished, bounds=True), finished.verdicts)))
+        card.rows.sort(key=lambda row: order.index(row.name) if row.name in order else len(order))
     best = card.rows[:MOST_DRAWN]
     if for_paper():
         places = range(len(card.columns))
         parts = [places[i : i + COLUMNS_ABREAST] for i in places[::COLUMNS_ABREAST]]
-        tables = [_card(finished, card, part, best, len(best), of_all=False) for part in parts]
+        tables = [_card(finished, card, part, best, len(best), named=not bounds, of_all=False) for part in parts]
         left_out = f"The best {len(best)} of {len(card.rows):,} cases are shown; all are in {CHECKS}."
         return join(*tables, tag("p", left_out, class_="legend") if len(best) < len(card.rows) else "")
     shown = MOST_CASES if len(card.rows) <= MOST_CASES else OPEN_CASES
-    drawn = _card(finished, card, card.open_columns(MOST_COLUMNS), best, shown)
+    shown = MOST_DRAWN if bounds else shown
+    drawn = _card(finished, card, card.open_columns(MOST_COLUMNS), best, shown, named=not bounds)
     if shown >= len(card.rows):
         return drawn
     words, button = f"{shown} of {len(card.rows):,} cases, the best first.", f"All {len(card.rows)} cases"
@@ -99,9 +116,16 @@ def scorecard(finished: Finished) -> Markup:
 
 
 def _card(
-    finished: Finished, card: Card, columns: Sequence[int], cases: Sequence[Row], shown: int, of_all: bool = True
+    finished: Finished,
+    card: Card,
+    columns: Sequence[int],
+    cases: Sequence[Row],
+    shown: int,
+    *,
+    named: bool,
+    of_all: bool = True,
 ) -> Markup:
-    """Return the scorecard of some columns; cases behind the first ``shown`` are folded.
+    """Return the scorecard of some columns, cells with their bound if ``named``; cases behind the first ``shown`` are folded.
 
     With ``of_all`` a last column counts the passes of checks that have none.
     """
@@ -113,7 +137,7 @@ def _card(
     others = [i for i in range(len(card.columns)) if i not in columns] if of_all else []
     more = [tag("th", scope="col")] if others else []
     rows = [
-        _row(finished, card, row, (columns, others), "folded" if place >= shown else None)
+        _row(finished, card, row, (columns, others), "folded" if place >= shown else None, named=named)
         for place, row in enumerate(cases)
     ]
     head = tag("thead", tag("tr", tag("th", "Case", scope="col"), *heads, *more))
@@ -134,19 +158,29 @@ def statistics_in_words(finished: Finished) -> str:
 
 
 def _row(
-    finished: Finished, card: Card, row: Row, columns: tuple[Sequence[int], Sequence[int]], class_: str | None
+    finished: Finished,
+    card: Card,
+    row: Row,
+    columns: tuple[Sequence[int], Sequence[int]],
+    class_: str | None,
+    *,
+    named: bool,
 ) -> Markup:
-    """Return the row of a case; checks of the second ``columns`` are counted as "3 more" if passed."""
+    """Return the row of a case, its cells with their bounds if ``named``; checks of the second ``columns`` are counted as
+    "3 more" if passed.
+    """
     shown, others = columns
-    cells = [_cell(finished, card.columns[i], row.cells[i]) for i in shown]
+    cells = [_cell(finished, card.columns[i], row.cells[i], named=named) for i in shown]
     if others:
         passing = sum(cell is not None and cell.verdict.verdict == PASS for cell in (row.cells[i] for i in others))
         cells.append(tag("td", mark(PASS, f"{passing} more") if passing else "", class_="others"))
     return tag("tr", tag("th", row.name, tag("small", row.in_words), scope="row"), *cells, class_=class_)
 
 
-def _cell(finished: Finished, column: Column, cell: Cell | None) -> Markup:
-    """Return a cell: value, sign, share of the limit, bar, the governing run and, on paper, bounds that differ."""
+def _cell(finished: Finished, column: Column, cell: Cell | None, *, named: bool) -> Markup:
+    """Return a cell: value, sign, share of the limit, bar, the bound of the design if ``named``, the governing run and, on paper,
+    bounds of the demand that differ.
+    """
     check = " ".join(filter(None, (column.check, column.at, column.limit)))
     if cell is None or cell.verdict.verdict == DOES_NOT_APPLY:
         return tag("td", tag("span", "–", aria_label="does not apply"), class_="na", data_check=check)
@@ -155,11 +189,13 @@ def _cell(finished: Finished, column: Column, cell: Cell | None) -> Markup:
     bar = tag("span", class_="bar", style=f"--share:{100 * share:.0f}%") if share is not None else ""
     bounds = tag("small", cell.bounds, class_="bounds") if cell.bounds and for_paper() else ""
     record = tag("small", _governs(finished, verdict), class_="governs") if verdict.record else ""
+    bound = tag("small", cell.design_bound, class_="bound") if named and cell.design_bound else ""
     return tag(
         "td",
         tag("span", tag("strong", cell.value), mark(verdict.verdict, cell.percent), class_="top"),
         bar,
         bounds,
+        bound,
         record,
         class_=CLASSES[verdict.verdict],
         title=_tooltip(finished, verdict),
@@ -179,7 +215,15 @@ def _tooltip(finished: Finished, verdict: Verdict) -> str:
     between = f"between {_between(verdict)}" if _between(verdict) else ""
     record = f"{finished.label(verdict.record)} ({verdict.polarity})" if verdict.record else ""
     against = "" if verdict.is_ban or math.isnan(verdict.value) else wording.against(verdict)
-    parts = (wording.requirement(verdict), against, between, record, verdict.counted, verdict.note)
+    parts = (
+        wording.requirement(verdict),
+        against,
+        under(verdict.columns),
+        between,
+        record,
+        verdict.counted,
+        verdict.note,
+    )
     return "\n".join(filter(None, parts))
 
 
@@ -212,7 +256,7 @@ def _every(finished: Finished, verdicts: Sequence[Verdict], notes: wording.Notes
         Head("governing run", note="station, component, polarity and demand of that run; for a mean, of the largest"),
         Head("note"),
     ]
-    case_of = _namer(finished)
+    case_of = named_designs(finished, bounds=True)
     rows: list[list[object]] = []
     for row in verdicts[:MOST_ROWS]:
         limit = "" if math.isnan(row.value) else wording.limit(row)

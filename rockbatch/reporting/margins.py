@@ -1,0 +1,177 @@
+"""Verdicts of two studies side by side: which passes and by how much, in a sentence and check by check."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from rockbatch.checks import Verdict, wording
+from rockbatch.checks.scorecard import Cell, Row, scorecard
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
+from rockbatch.common.grouping import grouped
+from rockbatch.quantities.design import of_design
+from rockbatch.quantities.rows import as_in_peaks
+from rockbatch.reporting.finished import Finished
+from rockbatch.reporting.markup import Markup, tag
+from rockbatch.reporting.pair import SIDES, Pair
+from rockbatch.reporting.sections.verdicts import mark, named_designs
+from rockbatch.reporting.table import Head, table
+
+DIGITS = 1e-3
+"""Difference of demands over limits that is none."""
+
+
+def headline(pair: Pair) -> str:
+    """Return which study passes, by how much, and which fails what: "A passes all, closest 83 % (…); B fails …"."""
+    if not any(verdict.case for study in pair.studies for verdict in study.verdicts):
+        return "Neither study has limits, so that neither passes or fails."
+    return "; ".join(_state(side, study) for side, study in zip(SIDES, pair.studies, strict=True)) + "."
+
+
+def _state(side: str, study: Finished) -> str:
+    """Return what a study comes to: cases that pass with the closest to a limit, and those that do not with the worst."""
+    if not any(verdict.case for verdict in study.verdicts):
+        return f"{side} has no limits"
+    rows = scorecard(study.verdicts, named_designs(study), study.suites, study.worst_at_scales).rows
+    kinds = grouped(rows, lambda row: row.verdict)
+    parts = []
+    for kind, words in _IN_WORDS.items():
+        if of_kind := kinds.get(kind):
+            share = f" in {len(of_kind)} of {len(rows)} cases" if len(of_kind) < len(rows) else ""
+            share = share or (f" in all {len(rows)} cases" if len(rows) > 1 else "")
+            parts.append(words(study, of_kind, share, len(rows) > 1))
+    suite = any(verdict.verdict == FAIL for verdict in study.verdicts if not verdict.case)
+    return f"{side} {', and '.join(parts)}{', under a suite that fails its own checks' if suite else ''}"
+
+
+def _passing(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
+    """Return that cases pass, with the check that is closest to its limit: "passes all, closest 83 % (uplift, Te Mara)"."""
+    cells = [(row, cell) for row, cell in _cells(rows) if not cell.verdict.is_ban]
+    closest = _worst(cells)
+    if closest is None:
+        return f"passes all{share}"
+    row, cell = closest
+    words = ", ".join((cell.verdict.check, *_place(study, cell, row.name if several else "")))
+    return f"passes all{share}, closest {cell.percent} ({words})"
+
+
+def _failing(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
+    """Return which checks cases fail, the worst first, with its share of the limit: "fails the anchor at 196 %"."""
+    cells = [(row, cell) for row, cell in _cells(rows) if cell.verdict.verdict == FAIL]
+    row, cell = _worst(cells) or cells[0]
+    others = len({cell.verdict.check for _, cell in cells}) - 1
+    more = f" and {others} more" if others else ""
+    at = f" at {cell.percent}" if cell.percent else ""
+    place = ", ".join(_place(study, cell, row.name if several else ""))
+    return f"fails {cell.verdict.check}{at}{f' ({place})' if place else ''}{more}{share}"
+
+
+def _undecided(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
+    """Return that cases are not decided, and by which checks or for want of which limits."""
+    checks = [cell.verdict.check for _, cell in _cells(rows) if cell.verdict.verdict == NOT_DECIDED]
+    free = [f"no limit on {words}" for row in rows for words in row.unlimited]
+    reasons = ", ".join(dict.fromkeys((*checks, *free)))
+    return f"is not decided{share}{f' ({reasons})' if reasons else ''}"
+
+
+def _unchecked(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
+    """Return that cases are not checked."""
+    return f"is not checked{share}"
+
+
+_IN_WORDS = {PASS: _passing, FAIL: _failing, NOT_DECIDED: _undecided, DOES_NOT_APPLY: _unchecked}
+"""What is said of cases, by the verdict on them, in this order."""
+
+
+def _cells(rows: Sequence[Row]) -> Iterator[tuple[Row, Cell]]:
+    """Yield the cells of rows, each with its row."""
+    for row in rows:
+        yield from ((row, cell) for cell in row.cells if cell is not None)
+
+
+def _worst(cells: Sequence[tuple[Row, Cell]]) -> tuple[Row, Cell] | None:
+    """Return the cell with the greatest share of its limit, with its row; None without any."""
+    known = [pair for pair in cells if math.isfinite(pair[1].verdict.ratio) and pair[1].percent]
+    return max(known, key=lambda pair: pair[1].verdict.ratio, default=None)
+
+
+def _place(study: Finished, cell: Cell, case: str = "") -> list[str]:
+    """Return the case, if it is given, the governing station and the bound of a cell in words, without what is empty."""
+    label = study.label(cell.verdict.record)
+    name = study.records.get(cell.verdict.record, {}).get("station_name") or label
+    station = min(str(name), label, key=len)
+    return [words for words in (case, station, f"under {cell.design_bound}" if cell.design_bound else "") if words]
+
+
+class Side(NamedTuple):
+    """The cells of a design of one study by the names of their checks, with the limit of each, and the design's label."""
+
+    label: str
+    cells: dict[str, tuple[Cell, str]]
+
+
+def margins(pair: Pair) -> Markup:
+    """Return a table of each check of each pair of designs: demand, share of the limit and record in A and in B."""
+    sides = [_designs(pair, place) for place in range(2)]
+    rows: list[list[object]] = []
+    for key in dict.fromkeys((*sides[0], *sides[1])):
+        designs = [side.get(key) for side in sides]
+        labels = list(dict.fromkeys(design.label for design in designs if design))
+        checks = dict.fromkeys(check for design in designs if design for check in design.cells)
+        for check in checks:
+            cells = [design.cells.get(check) if design else None for design in designs]
+            written = [list(_written(study, cell)) for study, cell in zip(pair.studies, cells, strict=True)]
+            limits = list(dict.fromkeys(limit for _, limit in filter(None, cells)))
+            words = f"{check} {limits[0]}" + (f", in B {limits[1]}" if len(limits) > 1 else "")
+            rows.append([" / ".join(labels), words, *written[0], *written[1], _change(cells)])
+    if not rows:
+        return Markup("")
+    heads = [Head("case"), Head("check")]
+    heads += [Head(words, group=side) for side in SIDES for words in ("demand", "of the limit", "governs")]
+    return table(
+        [*heads, Head("B − A", note="difference of the shares of the limit")], rows, prose=True, name="Margins"
+    )
+
+
+def _designs(pair: Pair, place: int) -> dict[tuple[object, ...], Side]:
+    """Return the designs of a study by case, varied values that both studies have, and scale."""
+    study, of_label = pair.studies[place], named_designs(pair.studies[place])
+    by_label = grouped((verdict for verdict in study.verdicts if verdict.case), of_label)
+    found: dict[tuple[object, ...], Side] = {}
+    for label, verdicts in by_label.items():
+        key = _key(pair, place, verdicts[0])
+        if key in found:  # a value that only one study varies: not to be guessed
+            key = (*key, SIDES[place], label)
+        card = scorecard(verdicts, of_label)
+        cells = zip(card.columns, card.rows[0].cells, strict=True)
+        found[key] = Side(label, {column.check: (cell, column.limit) for column, cell in cells if cell is not None})
+    return found
+
+
+def _key(pair: Pair, place: int, verdict: Verdict) -> tuple[object, ...]:
+    """Return what identifies a design in both studies; a case without a counterpart has its own side in it."""
+    columns = of_design(verdict.columns)
+    values = [as_in_peaks(columns.get(name)) for name in pair.keys if name in columns]
+    names = pair.names if place else {name: name for name in pair.names.values()}
+    own = () if verdict.case in names else (SIDES[place],)
+    return names.get(verdict.case, verdict.case), *values, verdict.scale, *own
+
+
+def _written(study: Finished, cell: tuple[Cell, str] | None) -> Iterator[object]:
+    """Yield demand, share of the limit and governing record of a cell; empty without one."""
+    if cell is None:
+        yield from ("", tag("span", "not checked", class_="muted"), "")
+        return
+    own, _ = cell
+    verdict = own.verdict
+    yield own.value
+    yield mark(verdict.verdict, own.percent or wording.SIGNS[DOES_NOT_APPLY] * (verdict.verdict == DOES_NOT_APPLY))
+    yield tag("span", ", ".join(_place(study, own)), title=study.named(verdict.record))
+
+
+def _change(cells: Sequence[tuple[Cell, str] | None]) -> str:
+    """Return the difference of the shares of the limit, "+12 %"; empty unless both are known."""
+    ratios = [cell[0].verdict.ratio if cell and cell[0].percent else math.nan for cell in cells]
+    change = ratios[1] - ratios[0]
+    if not math.isfinite(change):
+        return ""
+    return "0 %" if abs(change) < DIGITS else f"{100 * change:+.3g} %".replace("-", "−")

@@ -1,0 +1,142 @@
+"""The tables [[bound]] of a study file."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+from rockbatch.common.grouping import closest
+from rockbatch.common.naming import alike
+from rockbatch.common.showing import shown
+from rockbatch.quantities.design import BOUND
+from rockbatch.study.cases import CASE
+from rockbatch.study.design_bounds import Change, DesignBound, parted
+from rockbatch.study.piers import PART, PIER
+from rockbatch.study.restraint_keys import DEVICES
+from rockbatch.toml.kinds import Choice, KindError, Text, text
+from rockbatch.toml.reader import Table, TomlFile
+from rockbatch.toml.section import Key, Section
+
+_FIXED = ("name", "base", "kind", "confirm", "at", "side", "other_width_m")
+"""Keys that make another design, and no bound of one."""
+_TABLES: Mapping[str, Mapping[str, Key]] = {
+    "pier": PIER,
+    "pier.part": PART,
+    "case": CASE,
+    **{f"case.{kind}": keys for kind, keys in DEVICES.items()},
+}
+"""Keys that bounds may change, by the paths of their tables."""
+_MOST = 1e6
+_EXAMPLE = '"case.stiffness_kN_m" = { times = 2.0 }'
+
+
+def _check_name(name: str) -> None:
+    """Raise :class:`KindError` for the name of a bound that tables would read as a number."""
+    try:
+        float(name)
+    except ValueError:
+        return
+    raise KindError(f"a name that is no number in tables, such as {shown(f'times {name}')}")
+
+
+BOUNDS = Section(
+    (BOUND,),
+    "A bound of the design: changes that apply to every case. The nominal design always runs, and each bound beside it, one at "
+    "a time; a case passes if all of them do. The keys of a bound are the full paths of keys of [pier] and [[case]], in quotes: "
+    f'`{_EXAMPLE}`, `"case.damper.f" = {{ times = 1.15 }}` for all dampers, `"case.damper_2.f"` for the second, '
+    '`"pier.deck_mass_t" = 950.0`.',
+    {
+        "name": Key(
+            Text(check=_check_name),
+            '"stiff ground"',
+            "Its name in tables and in the column `bound` of peaks.csv.",
+            required=True,
+        ),
+        "source": Key(text, '"EN 15129, test of 2024"', "Where its factors come from, for the report."),
+        "confirm": Key(
+            text, '["stiffness_kN_m"]', "Keys whose values under this bound are unusual, and correct.", many=True
+        ),
+    },
+    many=True,
+    free=r"^(pier|case)\..+$",
+    free_schema={
+        "anyOf": [
+            {"type": ["number", "string"]},
+            {"type": "object", "properties": {"times": {"type": "number"}}, "required": ["times"]},
+        ]
+    },
+)
+
+
+def read_bounds(file: TomlFile) -> list[DesignBound]:
+    """Return the bounds of a study; note their mistakes, but for keys that no pier and no case has."""
+    bounds: list[DesignBound] = []
+    for place, table in enumerate(file.tables(BOUND, title="name")):
+        flat = replace(table, data=dict(_flat(table.data)))
+        paths = [name for name in flat.data if name.startswith(("pier.", "case."))]
+        read = flat.read(BOUNDS, other=paths)
+        changes = tuple(change for path in paths if (change := _read_change(flat, path)) is not None)
+        for name in flat.confirmed:
+            if not any(name in keys for keys in _TABLES.values()):
+                table.complain(f"confirm = {shown(name)}: there is no such key; leave it out", "confirm")
+        if not paths:
+            table.complain(f"it changes nothing; write for example {_EXAMPLE}")
+        names = [bound.name for bound in bounds]
+        name = str(read.get("name", ""))
+        if name in names or (other := alike(name, sorted(names))):
+            like = "given twice" if name in names else f"is read as the bound {shown(other)}"
+            table.complain(f"name = {shown(name)}: {like}; give each bound its own name", "name")
+        bounds.append(DesignBound(name, changes, str(read.get("source", "")), (), flat.confirmed, place))
+    return bounds
+
+
+def _flat(data: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield keys and values of a table; those of tables within, as TOML reads a path without quotes, by their paths."""
+    for name, value in data.items():
+        path = prefix + name
+        is_table = isinstance(value, dict) and path.split(".")[0] in ("pier", "case") and _key(path) is None
+        yield from _flat(value, f"{path}.") if is_table and value else [(path, value)]
+
+
+def _key(path: str) -> Key | None:
+    """Return the key at a path; None if there is none."""
+    *tables, name = path.split(".")
+    of = ".".join(parted(table)[0] for table in tables)
+    return _TABLES[of].get(name) if of in _TABLES else None
+
+
+def _read_change(table: Table, path: str) -> Change | None:
+    """Return the change of one key; None for a mistake, which is noted."""
+    written, key = table.data[path], _key(path)
+    if key is None:
+        near = closest(path, [f"{of}.{name}" for of, names in _TABLES.items() for name in names if name not in _FIXED])
+        instead = f"did you mean {near}?" if near else f"write a key of [pier] or [[case]], such as {_EXAMPLE}"
+        table.complain(f"{shown(path)}: no such key; {instead}", path)
+        return None
+    if path.rpartition(".")[2] in _FIXED:
+        table.complain(f"{shown(path)}: another value makes another design; write another [[case]]", path)
+        return None
+    if not isinstance(written, dict):
+        try:
+            return Change(path, key, key.kind(written))
+        except KindError as wrong:
+            table.complain(f"{shown(path)} = {shown(written)}: {wrong.advice()}", path)
+            return None
+    times = _factor(written)
+    if times is None:
+        example = f"{shown(path)} = {{ times = 1.2 }}"
+        table.complain(
+            f"{shown(path)} = {shown(written)}: expected a factor above 0; write for example {example}", path
+        )
+        return None
+    if isinstance(key.kind, Choice):
+        table.complain(f"{shown(path)}: times is for numbers, and this is {key.kind.words}; write a value", path)
+        return None
+    return Change(path, key, times=times)
+
+
+def _factor(written: Mapping[str, Any]) -> float | None:
+    """Return the factor of a table { times = 1.2 }; None if it is no such table, or no possible factor."""
+    times = written.get("times")
+    if set(written) != {"times"} or isinstance(times, bool) or not isinstance(times, float | int):
+        return None
+    return float(times) if 1.0 / _MOST < times < _MOST else None

@@ -1,0 +1,160 @@
+"""Bounds of a design: changes of keys, by their full paths, that apply to every case, one bound at a time."""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from rockbatch.common.grouping import closest
+from rockbatch.common.showing import shown
+from rockbatch.quantities.design import BOUND
+from rockbatch.study.lists import Chosen
+from rockbatch.toml.kinds import KindError
+from rockbatch.toml.reader import Table, TomlFile, in_table
+from rockbatch.toml.section import Key
+
+_NUMBERED = re.compile(r"(.+?)(?:_([1-9][0-9]*))?")
+_OF_TABLE = re.compile(r"(.+?)_[1-9][0-9]*_(.+)")
+
+
+@dataclass(frozen=True)
+class Change:
+    """A change of one key: its path, and a value or a factor on that of the nominal design."""
+
+    path: str
+    key: Key = field(repr=False)
+    value: Any = None
+    times: float | None = None
+
+    @property
+    def of_pier(self) -> bool:
+        """Return whether the key is one of the pier."""
+        return self.path.startswith("pier.")
+
+    @property
+    def words(self) -> str:
+        """Return the change in words: "case.damper.f × 1.2", "pier.deck_mass_t = 950"."""
+        if self.times is not None:
+            return f"{self.path} × {self.times:.10g}"
+        return f"{self.path} = {f'{self.value:.10g}' if isinstance(self.value, float) else shown(self.value)}"
+
+    def among(self, names: Iterable[str]) -> list[str]:
+        """Return which of the ``names`` of chosen values are those of its key: of all devices, or of a numbered one."""
+        _, *table, name = self.path.split(".")
+        pattern = re.escape(name)
+        if table:
+            what, number = parted(table[0])
+            pattern = rf"{what}_{number or '[0-9]+'}_{pattern}"
+        return [name for name in names if re.fullmatch(pattern, name)]
+
+    def of(self, value: Any) -> Any:
+        """Return the value of its key, nominally ``value``. Raises :class:`KindError` for an impossible one."""
+        if self.times is None:
+            return self.value
+        changed = value * self.times
+        return self.key.kind(int(changed) if isinstance(value, int) and changed == int(changed) else changed)
+
+
+@dataclass(frozen=True)
+class DesignBound:
+    """A bound of a design: its name, its changes and their source.
+
+    ``lacking`` has the names of cases that lack keys of it, and run with these unchanged, with the paths of the keys.
+    """
+
+    name: str
+    changes: tuple[Change, ...]
+    source: str = ""
+    lacking: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    confirmed: frozenset[str] = frozenset()
+    place: int = 0
+
+    def changed(self, chosen: Chosen, table: Table, *, of_pier: bool) -> Chosen:
+        """Return the chosen values of a pier, or of a case, under this bound; note impossible and unusual ones in ``table``."""
+        result = dict(chosen)
+        for change in (change for change in self.changes if change.of_pier == of_pier):
+            for name in change.among(chosen):
+                try:
+                    value = change.of(chosen[name].value)
+                except KindError as wrong:
+                    table.complain(f"{change.words}, from {shown(chosen[name].value)}: {wrong.advice()}")
+                    continue
+                result[name] = chosen[name]._replace(value=value)
+                key = change.path.rpartition(".")[2]
+                if isinstance(value, float | int) and key not in table.confirmed:
+                    for problem in change.key.doubts(key, value):
+                        table.complain(in_table(problem))
+        return result
+
+    def noting(self, file: TomlFile) -> TomlFile:
+        """Return the ``file`` without its mistakes, to gather those that a design has under this bound."""
+        return replace(file, problems=[], misspelt=set(file.misspelt))
+
+    def table(self, table: Table, file: TomlFile) -> Table:
+        """Return a table of the study with its mistakes gathered in ``file``, and what the bound confirms confirmed."""
+        return replace(table, file=file, data=table.data | {"confirm": [*table.confirmed, *self.confirmed]})
+
+    def note(self, file: TomlFile, gathered: TomlFile) -> None:
+        """Note in ``file``, at this bound, the mistakes that were ``gathered`` under it."""
+        for _, problem in gathered.problems:
+            file.complain((BOUND, self.place), replace(problem, place="", key=""), self.label)
+
+    @property
+    def label(self) -> str:
+        """Return the words by which messages name it: '[[bound]] "stiff ground"'."""
+        return f"[[{BOUND}]] {shown(self.name)}"
+
+    def as_in_run_json(self) -> dict[str, Any]:
+        """Return its entry in run.json."""
+        return {
+            "bound": self.name,
+            "source": self.source,
+            "changes": [change.words for change in self.changes],
+            "lacking": [{"case": case, "keys": list(paths)} for case, paths in self.lacking],
+        }
+
+
+def parted(table: str) -> tuple[str, str]:
+    """Return the name of a table and its number, empty without one: ("damper", "2") of "damper_2"."""
+    match = _NUMBERED.fullmatch(table)
+    return (match[1], match[2] or "") if match else (table, "")
+
+
+def placed(
+    file: TomlFile, bounds: Sequence[DesignBound], of_pier: Sequence[str], cases: Mapping[str, Sequence[str]]
+) -> tuple[DesignBound, ...]:
+    """Return the bounds with the cases that lack some of their keys; note keys that no pier or no case has.
+
+    ``of_pier`` are the names of the chosen values of the pier, and ``cases`` those of each case.
+    """
+    result = []
+    for bound in bounds:
+        lacking: dict[str, list[str]] = {}
+        for change in bound.changes:
+            having = {"[pier]": of_pier} if change.of_pier else cases
+            without = [name for name, keys in having.items() if not change.among(keys)]
+            if any(having.values()) and len(without) == len(having):
+                file.complain((BOUND, bound.place, change.path), _why_none(change, having.values()), bound.label)
+                continue
+            for name in without:
+                lacking.setdefault(name, []).append(change.path)
+        result.append(replace(bound, lacking=tuple((name, tuple(paths)) for name, paths in lacking.items())))
+    return tuple(result)
+
+
+def _why_none(change: Change, having: Iterable[Iterable[str]]) -> str:
+    """Return the message about a change of a key that nothing has; ``having`` are the names of the keys that are there."""
+    where = "[pier]" if change.of_pier else "a [[case]]"
+    state = f"{where} has no such key" if change.of_pier else "no case has this key"
+    if change.times is not None:
+        state += ", so that there is nothing to multiply"
+    top = change.path.partition(".")[0]
+    near = closest(change.path, sorted({_path(top, name) for names in having for name in names}))
+    hint = f", or did you mean {shown(near)}?" if near else ""
+    return f"{change.words}: {state}; write its nominal value in {where}{hint}"
+
+
+def _path(top: str, name: str) -> str:
+    """Return the path of the key of a chosen value: "case.damper.f" of "damper_1_f"."""
+    match = _OF_TABLE.fullmatch(name)
+    return f"{top}.{match[1]}.{match[2]}" if match else f"{top}.{name}"

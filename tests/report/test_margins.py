@@ -1,0 +1,346 @@
+"""Two studies are compared by their verdicts, and by what differs in their text and in the motions that were run."""
+
+import copy
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from report_page import Page
+from studies import SINE
+
+import rockbatch as rb
+from rockbatch.checks import judge, write_verdicts
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
+from rockbatch.quantities.catalogue import FIXED, TRAILING, names
+from rockbatch.reporting import write_comparison
+from rockbatch.reporting.differing import differences
+from rockbatch.reporting.finished import read
+from rockbatch.reporting.margins import headline
+from rockbatch.reporting.pair import pair
+from rockbatch.results.run_json import describe
+from rockbatch.study.suite import ground_motions
+
+PIER = {"width_m": 4.0, "height_m": 20.0, "mass_t": 900.0, "deck_mass_t": 500.0}
+PULSES = [SINE | {"name": name, "period_s": period} for name, period in (("Te Mara", 0.5), ("Lyttelton", 0.7))]
+SPRINGS = {"name": "springs", "base": "elastic", "stiffness_kN_m": 2.0e6, "zeta": 0.05}
+DEVICES = {
+    "damper": [{"kind": "friction", "force_kN": 300.0}],
+    "tendon": [{"prestress_kN": 1000.0, "stiffness_kN_m": 4.0e4}],
+    "stop": [{"gap_mm": 120.0, "stiffness_kN_m": 5.0e5}],
+    "deck_spring": [{"stiffness_kN_m": 5.0e4, "gap_mm": 50.0}],
+}
+UPLIFT = {"name": "uplift", "demand": "heel_uplift_m", "at_most": 0.3, "reason": "agreed"}
+ROTATION = {"name": "rotation", "demand": "theta_max_over_alpha", "at_most": 0.5, "reason": "agreed"}
+
+
+def tables(**changes):
+    study = {
+        "pier": PIER,
+        "motions": {"pulse": PULSES},
+        "case": [SPRINGS | DEVICES],
+        "check": [ROTATION],
+        "numerics": {"tolerance": 1e-4},
+    }
+    return copy.deepcopy(study | changes)
+
+
+def folder(path: Path, study: rb.Study, theta=0.2, **cells) -> Path:
+    """Write a folder as ``rockbatch run`` leaves it, with made-up rotations: a number, or by case and bound or record."""
+    motions = ground_motions(study)
+    info = describe(study, motions)
+    rows = []
+    for motion in motions.motions:
+        for case in study.cases:
+            given = theta
+            for key in (case.name, *case.columns.values(), motion.name):
+                given = given.get(key, given.get("*", 0.2)) if isinstance(given, dict) else given
+            row = {
+                "record": motion.name,
+                "station": motion.of_station,
+                "case": case.name,
+                "polarity": "+",
+                "scale": 1.0,
+            }
+            rows.append(row | case.columns | {"status": "ok", "theta_max_over_alpha": given} | cells)
+    columns = [*names(FIXED), *study.varied, *names(TRAILING)]
+    path.mkdir(parents=True, exist_ok=True)
+    peaks = pd.DataFrame(rows).reindex(columns=columns)
+    peaks.to_csv(path / "peaks.csv", index=False, float_format="%.10g")
+    extra = {
+        "rockbatch": rb.__version__,
+        "created": "",
+        "command": [],
+        "versions": {},
+        "machine": "",
+        "runs": len(rows),
+    }
+    (path / "run.json").write_text(json.dumps(info | extra | {"jobs": 1, "wall_s": 1.0}), encoding="utf-8")
+    saved = rb.open_results(path)
+    if study.checks:
+        write_verdicts(path, judge(study.checks, saved.peaks, saved.info["cases"], count=study.count))
+    return path
+
+
+def two(tmp_path, first, second, thetas=(0.2, 0.2)):
+    sides = zip("ab", (first, second), thetas, strict=True)
+    return [folder(tmp_path / side, rb.Study.from_dict(study), theta) for side, study, theta in sides]
+
+
+def said(folders, asked=None):
+    return headline(pair(*(read(path, ()) for path in folders), asked)).replace("\u00a0", " ")
+
+
+def inputs(folders, asked=None):
+    both = pair(*(read(path, ()) for path in folders), asked)
+    return {row.name: (row.first, row.second) for row in differences(*both.studies, both.names)}
+
+
+# The sentence
+
+
+def test_the_first_line_says_which_passes_with_its_closest_check_and_which_fails(tmp_path):
+    """By hand: 0.41/0.5 = 82 %, under the second record; 0.98/0.5 = 196 %."""
+    thetas = {"springs": {"Lyttelton": 0.41}}, {"springs": {"Te Mara": 0.98}}
+    folders = two(tmp_path, tables(), tables(), thetas)
+    assert said(folders) == "A passes all, closest 82 % (rotation, Lyttelton); B fails rotation at 196 % (Te Mara)."
+
+
+def test_a_study_that_fails_is_not_better_for_a_smaller_rotation(tmp_path):
+    """B rotates less, and its limit is lower: the verdict comes first, the rotation after it."""
+    strict = tables(check=[ROTATION | {"at_most": 0.1}])
+    folders = two(tmp_path, tables(), strict, (0.2, 0.185))
+    text = Page(write_comparison(*folders).read_text(encoding="utf-8")).text.replace("\u00a0", " ")
+    assert "A passes all, closest 40 % (rotation, Lyttelton); B fails rotation at 185 % (Lyttelton)." in text
+    assert "is better" not in text
+    assert "worst rotation -7.5 %" in text
+
+
+def test_cases_that_only_one_study_has_do_not_change_what_the_other_comes_to(tmp_path):
+    more = [SPRINGS | DEVICES, SPRINGS | {"name": "soft"}, {"name": "rock", "base": "rigid"}]
+    folders = two(tmp_path, tables(), tables(case=more), (0.6, {"springs": 0.6, "*": 0.3}))
+    assert said(folders) == (
+        "A fails rotation at 120 % (Lyttelton); B passes all in 2 of 3 cases, closest 60 % (rotation, soft, Lyttelton), "
+        "and fails rotation at 120 % (springs, Lyttelton) in 1 of 3 cases."
+    )
+
+
+def test_bounds_of_a_design_are_one_case_in_the_sentence_and_are_named(tmp_path):
+    bounded = tables(bound=[{"name": "stiff", "case.stiffness_kN_m": {"times": 2.0}}])
+    folders = two(tmp_path, bounded, tables(), ({"springs": {"stiff": 0.45, "": 0.2}}, 0.3))
+    assert said(folders).startswith(
+        "A passes all, closest 90 % (rotation, Lyttelton, under stiff); B passes all, closest 60 %"
+    )
+    matched = pair(*(read(path, ()) for path in folders))
+    assert matched.runs[0]["bound"].tolist() == ["", ""]  # the nominal design is what B has
+
+
+def test_studies_without_limits_are_said_to_have_none(tmp_path):
+    free = tables()
+    del free["check"]
+    assert said(two(tmp_path, free, tables())) == "A has no limits; B passes all, closest 40 % (rotation, Lyttelton)."
+
+
+def test_a_check_that_is_not_decided_is_named(tmp_path):
+    checks = [ROTATION, {"name": "settling", "demand": "settlement_m", "at_most": 0.1, "reason": "agreed"}]
+    folders = two(tmp_path, tables(), tables(check=checks))
+    line = said(folders)
+    assert line.split("; ")[1].startswith(("B is not decided", "B passes all"))
+
+
+def test_margins_stand_side_by_side_check_by_check(tmp_path):
+    """0.2/0.5 = 40 % and 0.3/0.4 = 75 %: 35 points more."""
+    folders = two(tmp_path, tables(), tables(check=[ROTATION | {"at_most": 0.4}]), (0.2, 0.3))
+    page = Page(write_comparison(*folders).read_text(encoding="utf-8"))
+    row = [cell.replace("\u00a0", " ") for cell in page.tables["answer"][2]]
+    assert row[:2] == ["springs", "rotation ≤ 0.5, in B ≤ 0.4"]
+    assert (row[2], row[5]) == ("0.2", "0.3")
+    assert row[3].endswith("40 %")
+    assert row[6].endswith("75 %")
+    assert row[-1] == "+35 %"
+
+
+def test_a_check_of_one_study_only_is_not_checked_in_the_other(tmp_path):
+    folders = two(tmp_path, tables(), tables(check=[ROTATION, ROTATION | {"name": "more", "at_most": 0.9}]))
+    rows = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["answer"]
+    (only,) = (row for row in rows if len(row) > 3 and row[1].startswith("more"))
+    assert "not checked" in only[3]
+
+
+# Pairs of cases
+
+
+def test_cases_of_other_names_are_paired_by_the_inputs_that_differ_least(tmp_path):
+    stiff, soft = SPRINGS | {"name": "x", "stiffness_kN_m": 4.0e6}, SPRINGS | {"name": "y", "zeta": 0.1}
+    first = [SPRINGS | {"name": "p", "stiffness_kN_m": 4.0e6, "zeta": 0.02}, SPRINGS | {"name": "q", "zeta": 0.11}]
+    both = pair(*(read(path, ()) for path in two(tmp_path, tables(case=first), tables(case=[soft, stiff]))))
+    assert both.names == {"x": "p", "y": "q"}
+    assert len(both.runs[0]) == 4
+    assert set(zip(both.runs[0]["case"], both.runs[1]["case"], strict=True)) == {("p", "x"), ("q", "y")}
+
+
+def test_a_name_in_both_comes_before_inputs_and_what_is_asked_before_both(tmp_path):
+    other = SPRINGS | {"name": "other"}
+    first, second = [SPRINGS, other | {"zeta": 0.1}], [SPRINGS | {"zeta": 0.1}, other]
+    studies = [read(path, ()) for path in two(tmp_path, tables(case=first), tables(case=second))]
+    assert pair(*studies).names == {"springs": "springs", "other": "other"}
+    assert pair(*studies, {"springs": "other"}).names == {"other": "springs", "springs": "other"}
+
+
+def test_pairs_are_asked_for_on_the_command_line(tmp_path, capsys):
+    folders = two(tmp_path, tables(), tables(case=[SPRINGS | {"name": "x"}, SPRINGS | {"name": "y", "zeta": 0.1}]))
+    assert main(["report", *map(str, folders), "--pair", "springs=y"]) == 0
+    assert capsys.readouterr().out.startswith(
+        "A passes all, closest 40 % (rotation, Lyttelton); B passes all in all 2 cases"
+    )
+    assert "springs with y" in (folders[0] / "compare-b.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        ({"spring": "springs"}, 'A has no case "spring"; did you mean "springs"?'),
+        ({"springs": "rock"}, 'B has no case "rock"; there is "springs"'),
+    ],
+)
+def test_a_pair_of_cases_that_are_not_there_is_refused(tmp_path, asked, words):
+    with pytest.raises(InputError, match=words.replace("?", r"\?")):
+        rb.report(*two(tmp_path, tables(), tables()), pairs=asked)
+
+
+def test_pairs_without_a_second_folder_are_refused(tmp_path):
+    with pytest.raises(InputError, match="give the second one, too"):
+        rb.report(folder(tmp_path / "a", rb.Study.from_dict(tables())), pairs={"springs": "springs"})
+
+
+# Inputs
+
+
+def changed(path, value):
+    """Return the tables with another value at a path."""
+    study = tables()
+    *outer, key = path
+    inner = study
+    for step in outer:
+        inner = inner[step]
+    inner[key] = value
+    return study
+
+
+CASE = ("case", 0)
+ONE_CHANGE = {
+    "pier.deck_mass_t": (("pier", "deck_mass_t"), 600.0, ("500", "600")),
+    "pier.height_m": (("pier", "height_m"), 20.00001, ("20", "20.00001")),
+    "pier.top_m": (("pier", "top_m"), 22.0, ("–", "22")),
+    "case springs, stiffness_kN_m": ((*CASE, "stiffness_kN_m"), 2.2e6, ("2e+06", "2.2e+06")),
+    "case springs, zeta": ((*CASE, "zeta"), 0.02, ("0.05", "0.02")),
+    "case springs, kinematics": ((*CASE, "kinematics"), "finite", ("first-order", "finite")),
+    "case springs, flight_limit_mm": ((*CASE, "flight_limit_mm"), 9.0, ("5", "9")),
+    "case springs, damper 1, force_kN": ((*CASE, "damper", 0, "force_kN"), 330.0, ("300", "330")),
+    "case springs, tendon 1, prestress_kN": ((*CASE, "tendon", 0, "prestress_kN"), 900.0, ("1000", "900")),
+    "case springs, stop 1, gap_mm": ((*CASE, "stop", 0, "gap_mm"), 100.0, ("120", "100")),
+    "case springs, deck_spring 1, gap_mm": ((*CASE, "deck_spring", 0, "gap_mm"), 60.0, ("50", "60")),
+    "motions.scale": (("motions", "scale"), 1.2, ("–", "1.2")),
+    "motions.polarity": (("motions", "polarity"), "-", ("+", "-")),
+    "motions, pulse Te Mara, amplitude_g": (("motions", "pulse", 0, "amplitude_g"), 0.9, ("1", "0.9")),
+    "numerics.tolerance": (("numerics", "tolerance"), 1e-5, ("0.0001", "1e-05")),
+    "numerics.quiet_s": (("numerics", "quiet_s"), 3.0, ("2", "3")),
+    "output.ledger": (("output",), {"ledger": True}, ("false", "true")),
+    "check rotation, at_most": (("check", 0, "at_most"), 0.6, ("0.5", "0.6")),
+    "suite.count": (("suite",), {"count": "component"}, ("station", "component")),
+    "bound stiff": (("bound",), [{"name": "stiff", "case.zeta": 0.1}], ("–", "written")),
+}
+
+
+@pytest.mark.parametrize("name", ONE_CHANGE)
+def test_another_value_of_one_key_is_the_one_row_that_differs(tmp_path, name):
+    """The dampers, tendon, stops, springs at the deck, zeta and scale were once "the same in both"."""
+    path, value, shown = ONE_CHANGE[name]
+    rows = inputs(two(tmp_path, tables(), changed(path, value)))
+    own = {key: values for key, values in rows.items() if not key.startswith("different motions")}
+    assert own.keys() == {name}
+    if name in ("motions.scale", "output.ledger", "suite.count", "motions.polarity", "case springs, kinematics"):
+        assert own[name][1] == shown[1]  # the default of A follows from the section of the key
+    else:
+        assert own[name] == shown
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        (("numerics", "quiet_s"), 2.0),
+        ((*CASE, "kinematics"), "first-order"),
+        ((*CASE, "stiffness_kN_m"), [2_000_000]),
+        ((*CASE, "damper"), {"kind": "friction", "force_kN": 300}),
+        (("title",), "another name"),
+    ],
+)
+def test_the_same_value_in_other_words_is_no_difference(tmp_path, path, value):
+    assert inputs(two(tmp_path, tables(), changed(path, value))) == {}
+
+
+def test_stronger_motions_under_the_same_names_differ_by_their_digests(tmp_path):
+    study = rb.Study.from_dict(tables())
+    motions = ground_motions(study)
+    stronger = [motion.scaled(1.6) for motion in motions.motions]
+    first = folder(tmp_path / "a", study.with_(motions=list(motions.motions)))
+    second = folder(tmp_path / "b", study.with_(motions=stronger))
+    rows = inputs([first, second])
+    assert rows.keys() == {"different motions under the same name"}
+    first_pga, second_pga = (
+        [f"{motion.name} ({motion.pga / 9.81:.4g} g)" for motion in of_study]
+        for of_study in (motions.motions, stronger)
+    )
+    assert rows["different motions under the same name"] == (", ".join(first_pga), ", ".join(second_pga))
+
+
+def test_a_motion_of_another_shape_and_the_same_peak_differs(tmp_path):
+    study = rb.Study.from_dict(tables())
+    first, *others = ground_motions(study).motions
+    late = first.horizontal.copy()
+    late[-1] = 1e-3
+    moved = rb.Motion(first.name, first.dt, late)
+    sides = [[first, *others], [moved, *others]]
+    folders = [folder(tmp_path / side, study.with_(motions=m)) for side, m in zip("ab", sides, strict=True)]
+    assert list(inputs(folders)) == ["different motions under the same name"]
+
+
+def test_motions_of_one_study_only_are_named(tmp_path):
+    rows = inputs(two(tmp_path, tables(), tables(motions={"pulse": PULSES[:1]})))
+    assert rows["motions in one only"] == ("Lyttelton", "–")
+    assert rows["motions, pulse Lyttelton"] == ("written", "–")
+
+
+def test_cases_paired_by_inputs_differ_in_values_only(tmp_path):
+    rows = inputs(two(tmp_path, tables(), tables(case=[SPRINGS | DEVICES | {"name": "x", "zeta": 0.1}])))
+    assert rows == {"case springs, zeta": ("0.05", "0.1")}
+
+
+@pytest.mark.parametrize("seed", [*range(6), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(6, 40))])
+def test_every_key_that_was_changed_at_random_differs_and_no_other(tmp_path, seed):
+    rng = np.random.default_rng(seed)
+    apart = ("bound stiff", "output.ledger", "suite.count", "motions.scale", "motions.polarity")
+    candidates = [name for name in ONE_CHANGE if name not in apart and name != "motions, pulse Te Mara, amplitude_g"]
+    chosen = rng.choice(candidates, size=int(rng.integers(1, 8)), replace=False)
+    study = tables()
+    for name in chosen:
+        path, value, _ = ONE_CHANGE[name]
+        inner = study
+        for step in path[:-1]:
+            inner = inner[step]
+        inner[path[-1]] = value
+    renamed = rng.random() < 0.5
+    if renamed:
+        study["case"][0]["name"] = "another"
+    theta = [float(value) for value in rng.uniform(0.1, 0.9, 2)]
+    folders = two(tmp_path, tables(), study, theta)
+    assert inputs(folders).keys() == {*chosen}
+    limits = [0.5, study["check"][0]["at_most"]]
+    line = said(folders).split("; ")
+    for words, value, limit in zip(line, theta, limits, strict=True):
+        assert ("passes all" in words) == (value <= limit)
+        percent = int(words.split(" %")[0].rsplit(" ", 1)[1].split(".")[0])
+        assert math.isclose(percent, 100 * value / limit, abs_tol=1.0)
