@@ -79,7 +79,7 @@ def test_every_page_has_study_version_commit_date_and_its_number(tmp_path):
     assert "size:" not in margins  # the paper of the printer, A4 or Letter
 
 
-def test_a_wide_table_is_in_parts_that_repeat_the_columns_of_a_row_and_have_all_others(tmp_path):
+def test_a_wide_table_is_in_parts_that_repeat_its_first_columns(tmp_path):
     heads = [Head("record"), Head("case", filter=True), *(Head(f"quantity {i} [kN m]", ".2f") for i in range(40))]
     rows = [[f"r{row}", "pads", *(row + i / 7 for i in range(40))] for row in range(3)]
     with on_paper():
