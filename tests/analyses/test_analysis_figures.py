@@ -141,6 +141,11 @@ def test_a_fragility_has_its_shares_and_one_look_for_each_case(tmp_path):
     assert not [mark for mark in first.marks if mark.look.colour == looks["soil"].colour and mark.look.dash == 2]
     result = rb.fragility(study(tmp_path, FRAGILITY))
     hold_plot(result, tmp_path)
+    limits = [panel.caption for panel in curves(result.info).panels]
+    alone = result.plot_fragility(limit=limits[-1])
+    assert alone.get_title().startswith(limits[-1])
+    with pytest.raises(rb.InputError, match=f'no panel "colapse"; there are {limits[0]}'):
+        result.plot_fragility(limit="colapse")
 
 
 def test_a_cloud_shows_demands_its_line_with_a_deviation_and_its_limit():

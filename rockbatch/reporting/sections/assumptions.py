@@ -3,9 +3,19 @@
 from collections.abc import Callable, Collection, Iterable
 from typing import Any
 
-from rockbatch.quantities.cases import Case, asks_tension, bends, devices, is_frame, lands_by_impulse, stops_by_impulse
+from rockbatch.quantities.cases import (
+    Case,
+    asks_tension,
+    bends,
+    devices,
+    is_frame,
+    lands_by_impulse,
+    number_of_modes,
+    stops_by_impulse,
+)
 from rockbatch.quantities.quantity import FOOTING, TWO_SPRINGS
 from rockbatch.reporting.finished import Finished
+from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, number, tag
 
 
@@ -29,16 +39,15 @@ def _plane(cases: Collection[Case]) -> str:
 
 
 def _body(cases: Collection[Case]) -> str:
-    """Return what bends: nothing, the shaft in one mode, or nothing of a frame with a level deck."""
+    """Return what bends: nothing, the shaft in its lowest modes, or nothing of a frame with a level deck."""
     parts = []
     if any(map(is_frame, cases)):
         parts.append("The columns of the frame are rigid and alike, and its deck stays level and on them.")
     if bending := [case for case in cases if bends(case)]:
-        periods = {number(float(case["pier"]["flexural_period_s"])) for case in bending}
-        of_cases = _only(bending, cases)
-        parts.append(
-            f"The shaft bends in one mode, of {_listed(periods)} s{of_cases}; its higher modes are not modelled."
-        )
+        known = [period for case in bending if (period := case["pier"].get("flexural_period_s")) is not None]
+        first = f", the first of {_listed({number(float(period)) for period in known})} s" if known else ""
+        modes = _listed({counted(number_of_modes(case), "mode") for case in bending})
+        parts.append(f"The shaft bends in {modes}{first}{_only(bending, cases)}; higher ones are not modelled.")
     if rigid := [case for case in cases if not bends(case) and not is_frame(case)]:
         parts.append(f"The pier is one rigid body with the masses that it carries{_only(rigid, cases)}.")
     return " ".join(parts)
@@ -62,10 +71,11 @@ def _landings(cases: Collection[Case]) -> str:
     """Return how energy is lost in landings, by the base and its numbers."""
     parts = []
     if impulsive := [case for case in cases if lands_by_impulse(case)]:
-        given = {case["parameters"].get("restitution") for case in impulsive}
+        given = {case["parameters"].get("restitution") for case in impulsive if not bends(case)}
         factors = [number(float(value)) for value in sorted(value for value in given if value is not None)]
         words = ["Housner's factor on the angular velocity, by conservation of its moment"] if None in given else []
         words += [f"the given factor {_listed(factors)}"] if factors else []
+        words += ["the momenta of the modes of a shaft that bends are kept"] if any(map(bends, impulsive)) else []
         parts.append(f"A landing on rigid ground is an impulse without a duration or a force: {' or '.join(words)}.")
     springs = [case for case in cases if not lands_by_impulse(case)]
     if pulled := [case for case in springs if asks_tension(case)]:
