@@ -9,6 +9,7 @@ from rockbatch.batch.listening import count
 from rockbatch.checks.suite_target import NAMES
 from rockbatch.common.lazy import pd
 from rockbatch.outcome.outcome import LEANS, Failure
+from rockbatch.pier.bending import flexural_period
 from rockbatch.pier.laws import steady
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR
@@ -106,7 +107,7 @@ def failed_later(runs: "pd.DataFrame") -> str:
 
 def flexible(study: Study) -> list[str]:
     """Return a warning for each case whose given flexural period is too long for a rigid pier."""
-    flexible_cases = [case for case in study.cases if case.pier.flexural_period_s is not None]
+    flexible_cases = [case for case in study.cases if flexural_period(case.pier) is not None]
     if not flexible_cases:
         return []
     from rockbatch.pier.statics import flexure, is_too_soft, sheet_of

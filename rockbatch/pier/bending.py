@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -40,8 +41,9 @@ class Modes:
     frequency: Values
     share: Values
     coupling: Values
+    _stretches: tuple["Stretch", ...]
     _heights: Values  # of masses, shape (k,)
-    _loads: Values  # on a shaft of EI = 1 at these heights, which bend it to the shapes, shape (n, k)
+    _loads: Values  # at these heights, which bend it to the shapes, shape (n, k)
 
     def at(self, height: float) -> Values:
         """Return φ_i at ``height`` [m], shape (n,); above the highest mass along the tangent there."""
@@ -49,34 +51,112 @@ class Modes:
 
     def along(self, heights: Values) -> Values:
         """Return φ_i at ``heights`` [m], shape (n, k)."""
-        return self._loads @ _flexibility(self._heights, heights)
+        return self._loads @ _flexibility(self._stretches, self._heights, heights)
 
 
 def problems(pier: Pier) -> list[Problem]:
     """Return a problem for each reason that the shaft of ``pier`` cannot be taken as elastic; empty if it can."""
-    lacking = "flexural_period_s is missing, the period of the pier fixed at its base; write it in [pier]"
-    texts = [*([lacking] if pier.flexural_period_s is None else []), *unknown_masses(pier)]
+    texts = unknown_masses(pier)
+    rigid = [part for part in pier.parts or () if part.flexural_rigidity_kNm2 is not None]
+    if not rigid and pier.flexural_period_s is None:
+        texts.insert(
+            0,
+            "flexural_period_s is missing, the period of the pier fixed at its base; write it in [pier], or "
+            "flexural_rigidity_kNm2 in each [[pier.part]] with a length",
+        )
+    elif rigid and pier.flexural_period_s is not None:
+        texts.append("flexural_period_s is given, and follows from flexural_rigidity_kNm2 of the parts; leave one out")
+    elif rigid and not texts:
+        texts += _without_rigidity(pier)
     return [Problem("shaft", "elastic", text) for text in texts]
+
+
+def _without_rigidity(pier: Pier) -> list[str]:
+    """Return reasons that the rigidity of the shaft is not known from its foot to its end; empty if it is."""
+    parts = [part for part in parts_of(pier) if part.length_m]
+    wrong = [
+        f"flexural_rigidity_kNm2 is missing of the part at {part.height_m:g} m, which has a length; write it beside it"
+        for part in parts
+        if part.flexural_rigidity_kNm2 is None
+    ]
+    reached = 0.0
+    for part in sorted(parts, key=lambda part: part.upper_end):
+        foot = part.upper_end - float(part.length_m or 0.0)
+        if foot > reached + ROUNDING * pier.highest:
+            wrong.append(f"no part has a rigidity between {reached:g} m and {foot:g} m; write a [[pier.part]] there")
+        reached = max(reached, part.upper_end)
+    return wrong
+
+
+def flexural_period(pier: Pier) -> float | None:
+    """Return the first period of ``pier`` fixed at its base [s], as given or by the rigidity of its parts; None if unknown."""
+    if pier.flexural_period_s is not None or problems(pier):
+        return pier.flexural_period_s
+    return 2.0 * math.pi / float(modes_of(pier, 1).frequency[0])
 
 
 @lru_cache(maxsize=1024)
 def modes_of(pier: Pier, most: int = MOST_MODES) -> Modes:
-    """Return the lowest modes of ``pier`` by its flexural period, ``most`` or as many as its masses have.
+    """Return the lowest modes of ``pier``, ``most`` or as many as its masses have.
 
-    Its shaft has the same flexural rigidity everywhere, and its sections keep their direction in space when they are bent, so
-    that they have no inertia of their own in it.
+    By its flexural period its shaft has the same flexural rigidity everywhere; by rigidities that of its parts, and is rigid
+    above the highest of them. Its sections do not turn in space when it bends, so that they have no inertia of their own.
     """
     heights, masses = (np.concatenate(values) for values in zip(*map(_points, parts_of(pier)), strict=True))
-    masses = masses / masses.sum()
+    total, stretches = masses.sum(), _stretches(pier)
+    masses = masses / total
     root = np.sqrt(masses)
-    flexibility, vectors = np.linalg.eigh(root[:, None] * _flexibility(heights, heights) * root)
-    n = min(most, int(np.count_nonzero(flexibility > _NO_MODE * flexibility[-1])))
-    flexibility, shapes = flexibility[: -n - 1 : -1], vectors.T[: -n - 1 : -1] / root
-    loads = shapes * masses / flexibility[:, None]
+    softness, vectors = np.linalg.eigh(root[:, None] * _flexibility(stretches, heights, heights) * root)
+    n = min(most, int(np.count_nonzero(softness > _NO_MODE * softness[-1])))
+    softness, shapes = softness[: -n - 1 : -1], vectors.T[: -n - 1 : -1] / root
+    loads = shapes * masses / softness[:, None]
     signs = np.sign(shapes[:, heights.argmax()])[:, None]
     shapes, loads = signs * shapes, signs * loads
-    frequency = 2.0 * math.pi / (pier.flexural_period_s or math.inf) * np.sqrt(flexibility[0] / flexibility)
-    return Modes(frequency, shapes @ masses, shapes @ (masses * heights), heights, loads)
+    first = 1.0 / math.sqrt(total * softness[0])
+    if pier.flexural_period_s is not None:
+        first = 2.0 * math.pi / pier.flexural_period_s
+    frequency = first * np.sqrt(softness[0] / softness)
+    return Modes(frequency, shapes @ masses, shapes @ (masses * heights), stretches, heights, loads)
+
+
+class Stretch(NamedTuple):
+    """A stretch of a shaft between two heights [m], with its 1/E I [1/(kN m²)] and 1/G A_s [1/kN]."""
+
+    low: float
+    high: float
+    bends: float
+    shears: float
+
+
+def _stretches(pier: Pier) -> tuple[Stretch, ...]:
+    """Return the shaft by its parts' rigidities, which add up where parts stand beside each other; else of E I = 1."""
+    parts = [part for part in pier.parts or () if part.length_m and part.flexural_rigidity_kNm2]
+    if pier.flexural_period_s is not None or not parts:
+        return (Stretch(0.0, pier.highest, 1.0, 0.0),)
+    spans = [(part, part.upper_end - float(part.length_m or 0.0), part.upper_end) for part in parts]
+    cuts = sorted({cut for _, *ends in spans for cut in ends})
+    found = []
+    for low, high in pairwise(cuts):
+        beside = [part for part, foot, end in spans if foot < 0.5 * (low + high) < end]
+        rigidity = math.fsum(part.flexural_rigidity_kNm2 or 0.0 for part in beside)
+        by_shear = [1.0 / part.shear_rigidity_kN if part.shear_rigidity_kN else 0.0 for part in beside]
+        shears = 0.0 if 0.0 in by_shear else 1.0 / math.fsum(1.0 / each for each in by_shear)
+        found.append(Stretch(low, high, 1.0 / rigidity, shears))
+    return tuple(found)
+
+
+def _flexibility(stretches: tuple[Stretch, ...], heights: Values, loaded: Values) -> Values:
+    """Return the deflections [m] at ``heights``, shape (k,), of a shaft by unit forces at each of ``loaded``, shape (k, n).
+
+    By virtual work, ∫(z − x)(s − x) dx/(E I) + ∫dx/(G A_s) up to the lower of the heights z and s.
+    """
+    product, total = np.multiply.outer(heights, loaded), np.add.outer(heights, loaded)
+    lower, found = np.minimum.outer(heights, loaded), np.zeros((len(heights), len(loaded)))
+    for low, high, bends, shears in stretches:
+        a, b = np.minimum(low, lower), np.minimum(high, lower)
+        bent = product * (b - a) - 0.5 * total * (b**2 - a**2) + (b**3 - a**3) / 3.0
+        found += bends * bent + shears * (b - a)
+    return found
 
 
 class BentAbove(NamedTuple):
@@ -117,12 +197,6 @@ def bent_above(pier: Pier, modes: Modes, height: float) -> BentAbove:
         bent @ (masses * z),
         (bent * masses) @ shapes.T,
     )
-
-
-def _flexibility(heights: Values, loaded: Values) -> Values:
-    """Return the deflections at ``heights``, shape (k,), of a cantilever of EI = 1 by unit forces at each of ``loaded``."""
-    low, high = np.minimum.outer(heights, loaded), np.maximum.outer(heights, loaded)
-    return low**2 * (3.0 * high - low) / 6.0
 
 
 def _points(part: Part, share: float = 1.0) -> tuple[Values, Values]:

@@ -21,6 +21,7 @@ from rockbatch.common.figures.description import (
     Words,
     line_of,
 )
+from rockbatch.pier.bending import flexural_period
 from rockbatch.pier.block import Pier
 from rockbatch.pier.equilibrium import Equilibria
 from rockbatch.pier.free_rocking import Swings
@@ -70,7 +71,7 @@ def statics(sheets: Sequence[Sheet]) -> Figure:
         if len(shown) > 1:
             for i, (words, values) in enumerate(shown, 1):
                 moments.append(Polyline(across, size * values, words, look=line_of(i), label=words))
-    flexural = sheets[0].pier.flexural_period_s if len(sheets) == 1 else None
+    flexural = flexural_period(sheets[0].pier) if len(sheets) == 1 else None
     fixed = []
     if flexural is not None:
         fixed = [Rule("y", np.array([flexural]), look=line_of(4), label="period fixed at its base")]

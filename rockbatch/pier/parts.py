@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import OutOfRange, Problem, refuse
-from rockbatch.common.units import LEAST, MOST
+from rockbatch.common.units import LEAST, MOST, POSITIVE
 from rockbatch.pier.sizes import BOUNDS, out_of_bounds
 
 
@@ -12,18 +12,21 @@ class Part(NamedTuple):
     """A part of a pier, its centre on the axis: mass [t], height above the pivots [m], rotary inertia about it [t m²].
 
     ``length_m`` is the length along the axis over which its mass is spread evenly, 0 of a mass at one height; only forces in
-    sections need it.
+    sections and shafts that bend need it. ``flexural_rigidity_kNm2`` E I of that length takes the place of
+    :attr:`Pier.flexural_period_s`; with ``shear_rigidity_kN`` G A_s it gives by shear, too.
 
     Examples
     --------
-    >>> rb.Part.shaft(width_m=8.0, height_m=30.0, mass_t=2000.0)
-    Part(mass_t=2000.0, height_m=15.0, inertia_t_m2=160666.66666666666, length_m=30.0)
+    >>> rb.Part.shaft(width_m=8.0, height_m=30.0, mass_t=2000.0)[:4]
+    (2000.0, 15.0, 160666.66666666666, 30.0)
     """
 
     mass_t: float
     height_m: float
     inertia_t_m2: float = 0.0
     length_m: float | None = None
+    flexural_rigidity_kNm2: float | None = None  # noqa: N815 (the study's key)
+    shear_rigidity_kN: float | None = None  # noqa: N815
 
     @property
     def upper_end(self) -> float:
@@ -39,21 +42,26 @@ class Part(NamedTuple):
 
     @classmethod
     @checked
-    def rectangle(cls, mass_t: float, height_m: float, length_m: float, width_m: float, apart_m: float = 0.0) -> "Part":
+    def rectangle(
+        cls, mass_t: float, height_m: float, length_m: float, width_m: float, apart_m: float = 0.0, **rigidities: float
+    ) -> "Part":
         """Return a rectangle with its centre at ``height_m`` and ``length_m`` along the pier's axis; with ``apart_m`` two such
         legs, of ``mass_t`` together, whose axes are ``apart_m`` from each other."""
-        return cls(mass_t, height_m, mass_t * (length_m**2 + width_m**2 + 3.0 * apart_m**2) / 12.0, length_m)
+        inertia = mass_t * (length_m**2 + width_m**2 + 3.0 * apart_m**2) / 12.0
+        return cls(mass_t, height_m, inertia, length_m, **rigidities)
 
 
-def in_floats(mass_t: float, height_m: float, inertia_t_m2: float = 0.0, length_m: float | None = None) -> Part:
-    """Return the part with all values converted to float.
+def in_floats(mass_t: float, height_m: float, inertia_t_m2: float = 0.0, *others: float | None) -> Part:
+    """Return the part with all values converted to float; ``others`` are its length and rigidities.
 
     Raises
     ------
     TypeError, ValueError, OverflowError
         If a value is not a number.
     """
-    return Part(float(mass_t), float(height_m), float(inertia_t_m2), None if length_m is None else float(length_m))
+    return Part(
+        float(mass_t), float(height_m), float(inertia_t_m2), *(None if each is None else float(each) for each in others)
+    )
 
 
 def part_problems(n: int, part: Part) -> list[Problem]:
@@ -62,6 +70,10 @@ def part_problems(n: int, part: Part) -> list[Problem]:
     for name, value in (("height_m", part.height_m), ("inertia_t_m2", part.inertia_t_m2)):
         if not (value == 0 or LEAST <= value <= MOST):
             wrong.append(Problem(f"part_{n}_{name}", value, _NOT_NEGATIVE, kind=OutOfRange))
+    for name in ("flexural_rigidity_kNm2", "shear_rigidity_kN"):
+        value = getattr(part, name)
+        if value is not None:
+            wrong += POSITIVE.problems(f"part_{n}_{name}", value)
     return wrong + _length_problems(n, part)
 
 

@@ -11,6 +11,7 @@ from rockbatch.common.errors import refuse
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
 from rockbatch.pier.bases import Base
+from rockbatch.pier.bending import flexural_period
 from rockbatch.pier.block import Pier
 from rockbatch.pier.devices import unlikely_devices
 from rockbatch.pier.equilibrium import ONSET, Array, Equilibria, SlowTurn, without_dampers
@@ -163,7 +164,8 @@ class Statics(Shown):
     def flexural_over_rocking(self) -> float | None:
         """Return the flexural period over that of rocking at θ/α = 0.1; None if either is not known."""
         period = self._at_amplitude(self.swings_at.period)
-        return None if period is None or self.pier.flexural_period_s is None else self.pier.flexural_period_s / period
+        own = flexural_period(self.pier)
+        return None if period is None or own is None else own / period
 
     @property
     def row(self) -> dict[str, float | None]:

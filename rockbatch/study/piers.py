@@ -247,6 +247,19 @@ PART = Section(
             many=True,
             usual=USUAL["height_m"]._replace(least=0.0),
         ),
+        "flexural_rigidity_kNm2": Key(
+            positive,
+            "3.0e7",
+            'E I of the part over its length, for `shaft = "elastic"`; of every part with a length, in place of '
+            "`flexural_period_s`. Parts beside each other add up.",
+            many=True,
+        ),
+        "shear_rigidity_kN": Key(
+            positive,
+            "2.0e7",
+            "G A_s of the part, by which it gives in shear, too; default: it does not.",
+            many=True,
+        ),
         "width_m": Key(
             not_negative,
             "2.4",
@@ -268,6 +281,16 @@ PART = Section(
         Clash(("inertia_t_m2", "width_m"), "inertia_t_m2 and width_m are given, which fix the same; keep one"),
         Clash(
             ("width_m",), "length_m is missing beside width_m; write for example length_m = 20.0", lacking=("length_m",)
+        ),
+        Clash(
+            ("flexural_rigidity_kNm2",),
+            "length_m is missing beside flexural_rigidity_kNm2, over which it extends; write for example length_m = 20.0",
+            lacking=("length_m",),
+        ),
+        Clash(
+            ("shear_rigidity_kN",),
+            "flexural_rigidity_kNm2 is missing beside shear_rigidity_kN; write for example flexural_rigidity_kNm2 = 3.0e7",
+            lacking=("flexural_rigidity_kNm2",),
         ),
         Clash(
             ("apart_m",),

@@ -16,6 +16,17 @@ ROCK = {"name": "rock", "base": "rigid"}
 BENDS = {"name": "bends", "base": "rigid", "shaft": "elastic"}
 
 
+LOWER = {"mass_t": 2000.0, "height_m": 10.0, "length_m": 20.0, "width_m": 8.0, "flexural_rigidity_kNm2": 1e8}
+UPPER = {"mass_t": 1000.0, "height_m": 30.0, "length_m": 20.0, "width_m": 5.0, "flexural_rigidity_kNm2": 5e7}
+RIGIDITIES = {"width_m": 8.0, "part": [LOWER, UPPER]}
+
+
+def test_a_study_with_rigidities_has_the_pier_of_its_parts(tmp_path):
+    (case,) = rb.load_study(write_study(tmp_path, study_text(pier=RIGIDITIES, cases=[BENDS]))).cases
+    assert [part.flexural_rigidity_kNm2 for part in case.pier.parts] == [1e8, 5e7]
+    assert rb.statics(case.pier, case.base).flexural_over_rocking > 0.0
+
+
 def messages(tmp_path, **tables):
     """Return what is said of a study that cannot be run."""
     with pytest.raises(rb.InputError) as error:
@@ -38,6 +49,12 @@ def messages(tmp_path, **tables):
         ({"cases": [{"name": "soft", "base": "elastic", "beta": 60.0, "shaft": "elastic"}]}, "shaft"),
         ({"cases": [ROCK | {"flexural_damping": 0.02}]}, "flexural_damping"),
         ({"cases": [BENDS | {"flexural_damping": 1.5}]}, "must be within 0..1"),
+        ({"pier": RIGIDITIES | {"flexural_period_s": 0.9}, "cases": [BENDS]},
+         "flexural_period_s is given, and follows from flexural_rigidity_kNm2 of the parts; leave one out"),
+        ({"pier": RIGIDITIES | {"part": [LOWER, {key: UPPER[key] for key in UPPER if key[0] != "f"}]}, "cases": [BENDS]},
+         "flexural_rigidity_kNm2 is missing of the part at 30 m"),
+        ({"pier": RIGIDITIES | {"part": [LOWER | {"height_m": 15.0}, UPPER]}, "cases": [BENDS]},
+         "no part has a rigidity between 0 m and 5 m"),
         ({"cases": [BENDS | {"flexural_modes": 5}]}, "flexural_modes = 5: expected a whole number, 1 to 4"),
         ({"cases": [BENDS | {"flexural_damping_kind": "mass"}]}, 'flexural_damping_kind = "mass"'),
         ({"cases": [ROCK | {"flexural_modes": 2}]}, "flexural_modes"),

@@ -336,7 +336,15 @@ YIELDING = study(case=SOFT | {"base": "yielding", "eta": 2.5, "spring": "bouc-we
 FOOT = {"name": "r", "base": "footing", "width_m": 4.0, "length_m": 8.0}
 SOIL = FOOT | {"shear_modulus_MPa": 60.0, "poisson": 0.45, "bearing_MPa": 1.5, "embedment_m": 1.0}
 ON_CLAY, RADIATING = study(case=SOIL), study(case=SOIL | {"radiation": True, "density_t_m3": 1.9})
-BENDING = study(case=ROCK | {"shaft": "elastic"}) | TINY | {"pier": PIERS["deck"] | {"flexural_period_s": 0.5}}
+QUIVER = {"motions": {"pulse": [SINE | {"period_s": 0.4, "duration_s": 0.4, "dt_s": 0.001}]}}
+"""With samples that follow the fastest mode of a shaft."""
+SPRINGY = study(case=ROCK | {"shaft": "elastic"}, pier="parts") | QUIVER
+SPRINGY |= {"pier": PIERS["parts"] | {"part": [SHAFT | {"flexural_rigidity_kNm2": 1e8, "shear_rigidity_kN": 1e7}]}}
+BENDING = (
+    study(case=ROCK | {"shaft": "elastic", "flexural_damping": 0.01})
+    | QUIVER
+    | {"pier": PIERS["deck"] | {"flexural_period_s": 0.5}}
+)
 UNWEIGHED = {"alpha": 0.2, "p": 1.0}
 IN_SECTION = study(
     output={"sections_m": [0.0, 10.0]},
@@ -363,6 +371,7 @@ USES: dict[str, dict[str, Use]] = {
     "[[pier.part]]": {
         **uses(study("parts"), ("pier", "part", 0), {key: OF_PART[key] for key in OF_PART if key != "inertia_t_m2"}),
         **uses(study("lump"), ("pier", "part", 0), {"inertia_t_m2": 5e4}),
+        **uses(SPRINGY, ("pier", "part", 0), {"flexural_rigidity_kNm2": 2e8, "shear_rigidity_kN": 2e7}, stepped),
         **confirms(study("parts"), ("pier", "part", 0), width_m=500.0),
     },
     "[[motions.pulse]]": {
@@ -390,8 +399,9 @@ USES: dict[str, dict[str, Use]] = {
         **uses(YIELDING, ("case", 0), {"eta": 3.0, "spring": "epp", "n": 3.0, "kinematics": "finite"}, stepped),
         **uses(study(case=PADS | {"base": "yielding", "yield_kN": 3e4}) | TINY, ("case", 0), {"yield_kN": 4e4}, stepped),
         **uses(BENDING, ("case", 0), {
-            "shaft": "rigid", "flexural_damping": 0.1, "flexural_damping_kind": "stiffness", "flexural_modes": 2,
+            "flexural_damping": 0.1, "flexural_damping_kind": "stiffness", "flexural_modes": 2,
         }, stepped),
+        **uses(BENDING | {"case": [ROCK | {"shaft": "elastic"}]}, ("case", 0), {"shaft": "rigid"}, stepped),
         **uses(study(case=PADS | {"mass_t": 900.0}) | {"pier": UNWEIGHED}, ("case", 0), {"mass_t": 1000.0}),
         "base": Use(study(), ("case", 0), "elastic", more={"beta": 40.0}),
         **uses(BOTH_AXES, ("case", 0), {"other_width_m": 6.0}),
