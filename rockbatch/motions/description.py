@@ -63,11 +63,18 @@ def entry(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[
 
 
 def digest(motion: Motion) -> str:
-    """Return a digest of the samples of a motion, their step and the velocity at which they begin."""
-    hashed = hashlib.sha256(repr((motion.dt, motion.npts, motion.initial)).encode())
-    for samples in (motion.horizontal, motion.vertical, motion.across):
-        hashed.update(b"none" if samples is None else samples.tobytes())
-    return hashed.hexdigest()[:16]
+    """Return the SHA-256 of a motion as it is run: time step [s], and accelerations [m/s²], little-endian in 64 bits.
+
+    A component across the axis, and a velocity with which the motion begins, follow behind their names.
+    """
+    hashed = hashlib.sha256(np.array([motion.dt], dtype="<f8").tobytes())
+    for samples in (motion.horizontal, motion.vertical):
+        hashed.update(b"" if samples is None else samples.astype("<f8").tobytes())
+    if motion.across is not None:
+        hashed.update(b"across" + motion.across.astype("<f8").tobytes())
+    if motion.initial:
+        hashed.update(b"initial" + np.array([motion.initial], dtype="<f8").tobytes())
+    return hashed.hexdigest()
 
 
 def _pulse(motion: Motion) -> dict[str, object]:

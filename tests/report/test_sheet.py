@@ -180,7 +180,7 @@ def test_digests_of_study_results_program_and_records_are_on_the_sheet(tmp_path)
     of_peaks = hashlib.sha256((tmp_path / "peaks.csv").read_bytes()).hexdigest()
     results.info["peaks"] = {"rows": 30, "sha256": of_peaks}
     for place, record in enumerate(results.info["records"]):
-        record["sha256"] = f"{place:064d}"
+        record["digest"] = f"{place:064d}"
     rows = Page(sheet(results)).tables["digests"]
     assert [row[2] for row in rows if row[0] == "record"] == [f"{place:064d}" for place in range(len(FIG7))]
     found = {row[0]: row[2] for row in rows}

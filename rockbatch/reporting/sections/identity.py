@@ -22,7 +22,11 @@ def section(finished: Finished) -> Markup:
         ["program", f"rockbatch {info['rockbatch']}" + (f", commit {commit}" if commit else ""), _program(finished)],
     ]
     records = [["record", record["record"], record.get("digest", "not noted")] for record in info["records"]]
-    heads = [Head("what"), Head("name"), Head("SHA-256", value="sha256", note="of a record as it is run, the first 16 digits")]
+    heads = [
+        Head("what"),
+        Head("name"),
+        Head("SHA-256", value="sha256", note="of a record: of its samples as it is run"),
+    ]
     return join(
         table(heads, rows + records, name="Digests", prose=True, open_=True),
         tag("p", OF_RECORDS, class_="legend") if records else "",
