@@ -65,15 +65,16 @@ def entry(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[
 def digest(motion: Motion) -> str:
     """Return the SHA-256 of a motion as it is run: time step [s], and accelerations [m/s²], little-endian in 64 bits.
 
-    A component across the axis, and a velocity with which the motion begins, follow behind their names.
+    A component across the axis, and the velocity and displacement with which the ground begins, follow behind their names.
     """
     hashed = hashlib.sha256(np.array([motion.dt], dtype="<f8").tobytes())
     for samples in (motion.horizontal, motion.vertical):
         hashed.update(b"" if samples is None else samples.astype("<f8").tobytes())
     if motion.across is not None:
         hashed.update(b"across" + motion.across.astype("<f8").tobytes())
-    if motion.initial:
-        hashed.update(b"initial" + np.array([motion.initial], dtype="<f8").tobytes())
+    if motion.initial is not None:
+        of_ground = [motion.initial.velocity, motion.initial.displacement]
+        hashed.update(b"initial" + np.array(of_ground, dtype="<f8").tobytes())
     return hashed.hexdigest()
 
 
