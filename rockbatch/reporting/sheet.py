@@ -24,7 +24,7 @@ from rockbatch.reporting.sections import (
 )
 from rockbatch.reporting.svg import markers
 from rockbatch.reporting.table import on_paper
-from rockbatch.reporting.templates import HERE, Section, render
+from rockbatch.reporting.templates import Section, render, styles
 
 Draw = Callable[[Finished], Markup]
 
@@ -82,7 +82,7 @@ def sheet(finished: Finished) -> str:
         date=str(info["created"])[:10],
         sections=[_unfolded(section) for section in sections if section.content],
         markers=markers(),
-        style=Markup("".join((HERE / name).read_text(encoding="utf-8") for name in ("style.css", "sheet.css"))),
+        style=styles("style.css", "sheet.css"),
     )
 
 

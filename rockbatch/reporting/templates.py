@@ -37,6 +37,11 @@ class Section(NamedTuple):
     badge: int = 0
 
 
+def styles(*names: str) -> Markup:
+    """Return the style sheets of these names, one after the other."""
+    return Markup("".join((HERE / name).read_text(encoding="utf-8") for name in names))
+
+
 def document(
     title: str, about: object, sections: Iterable[Section], version: str = __version__, whole: bool = False
 ) -> str:
@@ -45,7 +50,7 @@ def document(
     ``about`` stands below the title. Printed pages bear the title and ``version``, that of the rockbatch that computed the
     results. Folded sections are not printed; with ``whole`` none is folded.
     """
-    style, script = ((HERE / name).read_text(encoding="utf-8") for name in ("style.css", "script.js"))
+    script = (HERE / "script.js").read_text(encoding="utf-8")
     return render(
         "reporting/page.html",
         title=title,
@@ -54,7 +59,7 @@ def document(
         version=f"rockbatch {version}",
         digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
         markers=markers(),
-        style=Markup(style),
+        style=styles("style.css"),
         script=Markup(script),
         whole=whole,
     )

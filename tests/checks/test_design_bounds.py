@@ -78,7 +78,7 @@ def test_a_cell_has_the_worst_verdict_of_a_design_and_its_bound(under_bounds, wo
     verdicts, suites = of_designs(pads=under_bounds)
     card = scorecard(verdicts, lambda row: row.case, suites)
     (row,) = card.rows
-    assert (row.cells[0].bound, row.cells[0].percent) == (worst, f"{percent}\u00a0%")
+    assert (row.cells[0].design_bound, row.cells[0].percent) == (worst, f"{percent}\u00a0%")
     assert row.verdict == (PASS if max(under_bounds) <= 0.5 else FAIL)
 
 
