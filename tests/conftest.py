@@ -53,7 +53,7 @@ def pytest_sessionstart(session):
 
 SLOW = ({"finite"}, {"shaft"})
 """What is compiled by itself in the bases whose kernels slow tests compile beside these; those of all others are thorough."""
-OF_SLOW = [RigidBase(shaft="elastic"), ElasticBase(50.0, kinematics="finite")]
+OF_SLOW = [RigidBase(shaft="elastic", flexural_modes=1), ElasticBase(50.0, kinematics="finite")]
 """Bases whose kernels slow tests compile."""
 
 

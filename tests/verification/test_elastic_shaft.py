@@ -39,6 +39,7 @@ from rockbatch.observers.forces.peaks import at_rows
 from rockbatch.pier import modes_of
 from rockbatch.pier.bending import flexural_period
 from rockbatch.simulation import Run, run_fixed, written_run
+from rockbatch.simulation.coarser import of_last_mode
 from rockbatch.simulation.histories import of_modes
 from rockbatch.simulation.models import flexible_block
 
@@ -414,6 +415,36 @@ def test_a_run_reports_deflection_and_drift_with_errors_that_hold():
         assert abs(run.row[f"{column}_m"] - value) <= error
     assert run.row.top_drift_m > pier.top * run.row.theta_max_over_alpha * pier.alpha
     assert 0.98 * run.row.deflection_max_m < abs(run.history.deflection).max() <= run.row.deflection_max_m
+
+
+@pytest.mark.slow
+def test_errors_of_forces_have_four_times_what_the_last_mode_changes():
+    pier, motion = pier_of(*TOWER), shaken(5.0, 1.4, duration=2.5)
+    one, two = (
+        rb.simulate(pier, rb.RigidBase(shaft="elastic", flexural_modes=n), motion, forces=True, sections=3)
+        for n in (1, 2)
+    )
+    for column in ("base_shear_m_s2", "base_moment_m2_s2", "deck_acceleration_m_s2"):
+        assert 4.0 * abs(two.row[column] / one.row[column] - 1.0) > 0.0
+        assert two.row.forces_error >= 4.0 * abs(1.0 - one.row[column] / two.row[column])
+    shear = "section_shear_m_s2"
+    changed = abs(1.0 - one.sections[shear] / two.sections[shear])
+    assert (two.sections.sections_error >= 4.0 * changed).all()
+    assert one.row.forces_error < 1e-3 < two.row.forces_error  # of a single mode it is that of its steps
+
+
+def test_the_damping_force_of_a_last_mode_beyond_a_tenth_of_critical_bounds_nothing():
+    """2 % of the first mode are far more of the fourth in proportion to stiffness; a tenth in every mode is not beyond."""
+    pier, still = pier_of(*TOWER), shaken(0.0, 1.0)
+    for kind, damping, known in (
+        ("modal", 0.02, True),
+        ("modal", 0.1, True),
+        ("modal", 0.11, False),
+        ("stiffness", 0.02, False),
+    ):
+        base = rb.RigidBase(shaft="elastic", flexural_damping=damping, flexural_damping_kind=kind)
+        found = of_last_mode(Run(pier, base, still), 0.03, 4.0)
+        assert found == 0.12 if known else math.isnan(found)
 
 
 def test_rows_stand_on_both_sides_of_a_lift_off_from_vibration(tower):
