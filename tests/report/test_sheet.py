@@ -172,6 +172,7 @@ def test_the_digest_of_a_record_is_that_of_its_samples():
     assert digest(other) != by_hand
     with_vertical = rb.Motion.from_array([0.0, 0.5, -0.25], 0.02, name="a", unit="m/s2", vertical=[0.0, 0.0, 0.0])
     assert digest(with_vertical) != by_hand
+    assert digest(replace(motion, across=motion.horizontal)) not in (by_hand, digest(with_vertical))
 
 
 def test_digests_of_study_results_program_and_records_are_on_the_sheet(tmp_path):
