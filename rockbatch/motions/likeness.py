@@ -491,7 +491,7 @@ def correlation(first: Samples, second: Samples) -> float:
 
 
 class Copy(NamedTuple):
-    """What makes one series of another one."""
+    """Factor and delay by which a series is a copy of another."""
 
     factor: float
     delay: float  # in steps

@@ -135,14 +135,14 @@ def _stretches(pier: Pier) -> tuple[Stretch, ...]:
         return (Stretch(0.0, pier.highest, 1.0, 0.0),)
     spans = [(part, part.upper_end - float(part.length_m or 0.0), part.upper_end) for part in parts]
     cuts = sorted({cut for _, *ends in spans for cut in ends})
-    found = []
+    stretches = []
     for low, high in pairwise(cuts):
         beside = [part for part, foot, end in spans if foot < 0.5 * (low + high) < end]
         rigidity = math.fsum(part.flexural_rigidity_kNm2 or 0.0 for part in beside)
         by_shear = [1.0 / part.shear_rigidity_kN if part.shear_rigidity_kN else 0.0 for part in beside]
         shears = 0.0 if 0.0 in by_shear else 1.0 / math.fsum(1.0 / each for each in by_shear)
-        found.append(Stretch(low, high, 1.0 / rigidity, shears))
-    return tuple(found)
+        stretches.append(Stretch(low, high, 1.0 / rigidity, shears))
+    return tuple(stretches)
 
 
 def _flexibility(stretches: tuple[Stretch, ...], heights: Values, loaded: Values) -> Values:
@@ -151,12 +151,12 @@ def _flexibility(stretches: tuple[Stretch, ...], heights: Values, loaded: Values
     By virtual work, ∫(z − x)(s − x) dx/(E I) + ∫dx/(G A_s) up to the lower of the heights z and s.
     """
     product, total = np.multiply.outer(heights, loaded), np.add.outer(heights, loaded)
-    lower, found = np.minimum.outer(heights, loaded), np.zeros((len(heights), len(loaded)))
+    lower, deflections = np.minimum.outer(heights, loaded), np.zeros((len(heights), len(loaded)))
     for low, high, bends, shears in stretches:
         a, b = np.minimum(low, lower), np.minimum(high, lower)
         bent = product * (b - a) - 0.5 * total * (b**2 - a**2) + (b**3 - a**3) / 3.0
-        found += bends * bent + shears * (b - a)
-    return found
+        deflections += bends * bent + shears * (b - a)
+    return deflections
 
 
 class BentAbove(NamedTuple):

@@ -1,4 +1,4 @@
-"""What all bases of a pier have: possible and usual values of their fields, and properties that code asks for."""
+"""Traits of all bases of a pier: possible and usual values of their fields, and properties that code asks for."""
 
 from collections.abc import Sequence
 from dataclasses import fields

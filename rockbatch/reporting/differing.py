@@ -1,4 +1,4 @@
-"""What differs between two studies: every key that is written in either, by value, and the motions that were run."""
+"""Differences between two studies: every key that is written in either, by value, and the motions that were run."""
 
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence

@@ -227,6 +227,14 @@ def test_a_mass_on_a_shaft_that_gives_by_shear_has_the_period_of_both_springs():
     assert flexural_period(pier) == pytest.approx(2.0 * math.pi * math.sqrt(1000.0 * gives), rel=1e-6)
 
 
+def test_all_modes_leave_the_inertia_of_sections_and_their_offset_to_a_blow():
+    """J − Σ λ² tends to b² + (2b)²/12 of a rectangle: below 2 b² from two modes on, so that both feet stop."""
+    pier = replace(rb.Pier.rectangle(8.0, 40.0), flexural_period_s=0.9)
+    left = [pier.inertia_about_pivot - (modes_of(pier, n).coupling ** 2).sum() for n in (1, 2, 30)]
+    assert left[0] > 2.0 * pier.half_width**2 > left[1]
+    assert left[2] == pytest.approx(4.0 / 3.0 * pier.half_width**2, rel=1e-4)
+
+
 def test_a_mass_on_a_light_shaft_has_a_mode_that_carries_all_of_it():
     legs = rb.Part.shaft(3.0, 20.0, 1e-6)
     lumped = modes_of(rb.Pier.of_parts(6.0, [legs, rb.Part(1000.0, 22.0, 500.0, 0.0)], top_m=20.0), 1)
