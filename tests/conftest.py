@@ -8,12 +8,15 @@ from importlib import import_module
 from unittest import mock
 
 import pytest
+from short_pages import pages, short_pages
 
 from rockbatch.common.garbage import collect_rarely
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase
 from rockbatch.pier.restraints import Restraint
 from rockbatch.simulation import kept
+
+__all__ = ["pages", "short_pages"]
 
 collect_rarely()
 with suppress(OSError):  # of no home
