@@ -155,9 +155,17 @@ def _of_map(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
         return
     end, outer, best = ("low", "below", min) if find == "least" else ("high", "above", max)
     row = best(passing, key=lambda each: float(each[end]))
-    edge = "" if is_known(row[outer]) else ", where the scan ends"
+    edge = "" if is_known(row[outer]) else ", where its scan ends"
+    second = info["vary"][1]
+    at = f"{other} = {plain(row[other])}"
+    at += ", an end of its scan" if row[other] in (second["low"], second["high"]) else ""
+    beyond = (
+        f" At {plain(row[outer])} it {_STATES[row[f'{outer}_verdict']]}: {governs(row, outer)}."
+        if is_known(row[outer])
+        else ""
+    )
     every = f"passes every check{' under every bound' if info['bounds'] else ''}"
-    yield PASS, f"the {find} {path} found that {every} is {plain(row[end])}{edge}, with {other} = {plain(row[other])}."
+    yield PASS, f"the {find} {path} found that {every} is {plain(row[end])}{edge}, with {at}.{beyond}"
     share = len({each[other] for each in passing})
     if share < number:
         yield NOT_DECIDED, f"at {number - share} of {number} values of {other} no value of {path} that was run passes."

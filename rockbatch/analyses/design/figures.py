@@ -35,6 +35,9 @@ HIGHEST = 2.0
 ROW = 0.05
 """Height of a row of marks above the axis, over that of the axis."""
 
+ROOM = 0.03
+"""Room beside both ends of the scan, over its range."""
+
 OTHER = {NOT_DECIDED: "not decided", REFUSED: "the study is refused"}
 """Words of what neither passes nor fails in a map."""
 
@@ -52,6 +55,12 @@ def axis_label(path: str) -> str:
     label = symbol(f"{kind}_{number or 1}_{name}" if kind else name)
     words = f"{' '.join(filter(None, (kind.replace('_', ' '), number)))}: " if kind else ""
     return words + (label.replace("_", " ") if label == name else label.rpartition(": ")[2])
+
+
+def axis_of(varied: Entry) -> Axis:
+    """Return the axis of a key over its scan, with room for marks at its ends."""
+    room = ROOM * (varied["high"] - varied["low"])
+    return Axis(axis_label(varied["path"]), varied["low"] - room, varied["high"] + room, about=6)
 
 
 def ratios(info: Entry, intervals: Sequence[Entry], checks: Sequence[Entry]) -> Figure:
@@ -87,7 +96,7 @@ def _ratios(info: Entry, label: str, intervals: Sequence[Entry], checks: Sequenc
     for place, (check, rows) in enumerate(by_check.items()):
         marks += _of_check(vary["path"], place, check, rows, top)
     marks.append(Rule("y", np.ones(1), look=Look("limit"), label="limit", title="limit"))
-    x_axis = Axis(axis_label(vary["path"]), vary["low"], vary["high"], about=6)
+    x_axis = axis_of(vary)
     return Panel(
         x_axis, Axis("demand over limit", 0.0, high, about=5, last=top), marks, label, width=460.0, height=210.0
     )
@@ -162,8 +171,7 @@ def _map(info: Entry, label: str, values: Sequence[Entry], checks: Mapping[str, 
                 label=f"passes, closest: {check}",
             )
         )
-    x_axis, y_axis = (Axis(axis_label(axis["path"]), axis["low"], axis["high"], about=6) for axis in (across, up))
-    return Panel(x_axis, y_axis, marks, label, width=460.0, height=260.0)
+    return Panel(axis_of(across), axis_of(up), marks, label, width=460.0, height=260.0)
 
 
 def _outlines(boxes: Sequence[tuple[float, float, float, float]]) -> tuple[np.ndarray, np.ndarray]:
