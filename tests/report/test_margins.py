@@ -3,16 +3,18 @@
 import copy
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+from check_samples import verdict
 from report_page import Page
 from studies import SINE
 
 import rockbatch as rb
-from rockbatch.checks import judge, write_verdicts
+from rockbatch.checks import judge, read_verdicts, write_verdicts
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.quantities.catalogue import FIXED, TRAILING, names
@@ -136,6 +138,29 @@ def test_bounds_of_a_design_are_one_case_in_the_sentence_and_are_named(tmp_path)
     )
     matched = pair(*(read(path, ()) for path in folders))
     assert matched.runs[0]["bound"].tolist() == ["", ""]  # the nominal design is what B has
+
+
+def test_a_check_that_fails_in_two_cases_is_one_check_and_another_is_one_more(tmp_path):
+    """Both cases fail both limits: one check is named, and one is left."""
+    cases = [SPRINGS, SPRINGS | {"name": "soft"}]
+    checks = [ROTATION, ROTATION | {"name": "strict", "at_most": 0.1}]
+    folders = two(tmp_path, tables(), tables(case=cases, check=checks), (0.2, 0.6))
+    assert said(folders).split("; ")[1] == "B fails strict at 600 % (springs, Lyttelton) and 1 more in all 2 cases."
+
+
+def test_a_check_that_an_event_never_happens_is_not_the_closest_to_its_limit(tmp_path):
+    """A ban, of which the ratio is 0 or 1, is no margin, unlike the rotation's 40 %."""
+    never = {"name": "stands", "demand": "overturned", "at_most": 0.9, "reason": "agreed"}
+    folders = two(tmp_path, tables(check=[never]), tables(check=[ROTATION, never]))
+    assert said(folders) == "A is not decided (no limit on rotation); B passes all, closest 40 % (rotation, Lyttelton)."
+
+
+def test_a_suite_that_fails_its_own_checks_is_said_beside_what_passes(tmp_path):
+    folders = two(tmp_path, tables(), tables())
+    write_verdicts(folders[1], [*read_verdicts(folders[1]), verdict("", "fail", check="spectrum")])
+    line = said(folders)
+    assert line.startswith("A passes all, closest 40 % (rotation, Lyttelton); B ")
+    assert line.endswith(", under a suite that fails its own checks.")
 
 
 def test_studies_without_limits_are_said_to_have_none(tmp_path):
@@ -312,6 +337,27 @@ def test_motions_of_one_study_only_are_named(tmp_path):
     rows = inputs(two(tmp_path, tables(), tables(motions={"pulse": PULSES[:1]})))
     assert rows["motions in one only"] == ("Lyttelton", "–")
     assert rows["motions, pulse Lyttelton"] == ("written", "–")
+
+
+def test_files_left_out_or_unusable_of_one_study_are_named_by_their_kind(tmp_path):
+    folders = two(tmp_path, tables(), tables())
+    for path, left_out, unusable in zip(folders, ("ONE", "TWO"), ("BAD", "CUT"), strict=True):
+        file = path / "run.json"
+        info = json.loads(file.read_text(encoding="utf-8"))
+        info["left_out"] = [{"name": left_out, "source": left_out, "reason": "excluded", "station": left_out}]
+        info["unusable"] = [{"name": unusable, "source": unusable, "reason": "the file is cut", "station": unusable}]
+        file.write_text(json.dumps(info), encoding="utf-8")
+    assert inputs(folders) == {"files left out": ("ONE", "TWO"), "files that could not be used": ("BAD", "CUT")}
+
+
+def test_checks_of_a_file_beside_the_study_are_compared_too(tmp_path):
+    folders = []
+    for side, limit in zip("ab", (0.5, 0.6), strict=True):
+        rules = f'[[check]]\nname = "rotation"\ndemand = "theta_max_over_alpha"\nat_most = {limit}\nreason = "agreed"\n'
+        study = rb.Study.from_dict({name: table for name, table in tables().items() if name != "check"})
+        of_file = replace(study, check_files=((Path("checks.toml"), rules),))
+        folders.append(folder(tmp_path / side, of_file))
+    assert inputs(folders) == {"check rotation, at_most": ("0.5", "0.6")}
 
 
 def test_cases_paired_by_inputs_differ_in_values_only(tmp_path):
