@@ -188,6 +188,25 @@ def test_margins_stand_side_by_side_check_by_check(tmp_path):
     assert row[-1] == "+35 %"
 
 
+def test_margins_at_each_scale_stand_in_rows_of_their_own(tmp_path):
+    """0.2/0.5 = 40 % in A at either scale, 0.3/0.5 = 60 % and 0.45/0.5 = 90 % in B."""
+    scaled = tables(motions={"pulse": PULSES[:1], "scale": [1.0, 1.5]})
+    folders = two(tmp_path, scaled, scaled)
+    for path, thetas in zip(folders, ((0.2, 0.2), (0.3, 0.45)), strict=True):
+        peaks = pd.read_csv(path / "peaks.csv")
+        pd.concat(
+            [
+                peaks.assign(scale=scale, theta_max_over_alpha=theta)
+                for scale, theta in zip((1.0, 1.5), thetas, strict=True)
+            ]
+        ).to_csv(path / "peaks.csv", index=False)
+        saved = rb.open_results(path)
+        rules = rb.Study.from_dict(scaled).checks
+        write_verdicts(path, judge(rules, saved.peaks, saved.info["cases"], count="station"))
+    rows = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["answer"]
+    assert [row[-1] for row in rows if row[-1].endswith("%")] == ["+20 %", "+50 %"]
+
+
 def test_a_check_of_one_study_only_is_not_checked_in_the_other(tmp_path):
     folders = two(tmp_path, tables(), tables(check=[ROTATION, ROTATION | {"name": "more", "at_most": 0.9}]))
     rows = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["answer"]
@@ -205,6 +224,14 @@ def test_cases_of_other_names_are_paired_by_the_inputs_that_differ_least(tmp_pat
     assert both.names == {"x": "p", "y": "q"}
     assert len(both.runs[0]) == 4
     assert set(zip(both.runs[0]["case"], both.runs[1]["case"], strict=True)) == {("p", "x"), ("q", "y")}
+
+
+def test_cases_across_are_paired_as_their_cases_along_are(tmp_path):
+    motions = {"motions": {"path": "motions/near_fault", "axis_deg": 0.0}}
+    sides = [tables(case=[{"name": name, "base": "rigid", "other_width_m": 6.0}], **motions) for name in "pq"]
+    both = pair(*(read(path, ()) for path in two(tmp_path, *sides)))
+    assert both.names == {"q": "p", "q across": "p across"}
+    assert set(both.runs[1]["case"]) == {"q", "q across"}
 
 
 def test_a_name_in_both_comes_before_inputs_and_what_is_asked_before_both(tmp_path):
