@@ -91,7 +91,7 @@ def _follows_modes(demand: Demand, case: Case) -> bool:
 
 
 def omissions(demand: Demand, runs: Rows, error: Values, case: Case) -> list[str]:
-    """Return the names in :data:`OMISSIONS` of what the demand, of this ``error``, leaves out in these runs of a case."""
+    """Return the names in :data:`OMISSIONS` of what the demand, of this ``error``, omits in runs of a case; [] for none."""
     if _follows_modes(demand, case):
         return [MODES] if unconverged(demand, error, case).any() else []
     omitted = []

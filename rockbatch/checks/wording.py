@@ -112,7 +112,7 @@ def ratio(verdict: Verdict) -> str:
 
 
 def percent(ratio: float) -> str:
-    """Return a share of the limit as "115 %", with decimals where it would otherwise look like the limit itself."""
+    """Return a share of the limit as "115 %", with decimals if it would look like the limit itself; "∞", and "" for NaN."""
     if not math.isfinite(ratio):
         return "∞" if ratio > 0 else ""
     digits = next((n for n in range(3) if ratio == 1 or f"{100 * ratio:.{n}f}" != f"{100:.{n}f}"), 3)

@@ -51,7 +51,7 @@ def marks_of(place: int, is_open: bool = False) -> Look:
 
 
 def sign_of(status: str) -> Look:
-    """Return the look of a run without a largest rotation."""
+    """Return the look of a run without a largest rotation: the mark of its ``status``, plain if it failed, else in alarm."""
     return Look("none" if status == "failed" else "alarm", shape=status)
 
 
