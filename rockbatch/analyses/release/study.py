@@ -44,7 +44,7 @@ class ReleaseSpec:
     confidence: float = 0.95
 
     def fits(self, case: Case) -> str:
-        """Return what is fitted in a case."""
+        """Return the key fitted in a case: the given one, else "restitution", on springs "zeta" if it has one, or "epsilon"."""
         if self.fit is not None:
             return self.fit
         if not case.base.on_springs:

@@ -49,7 +49,7 @@ def mark(verdict: str, words: str) -> Markup:
 
 
 def answer(finished: Finished) -> Markup:
-    """Return which cases pass, fail, are not decided or not checked, and the number of stations."""
+    """Return lines on cases that pass, fail, are not decided or not checked, and on stations; without checks, how to add some."""
     lines = answered(
         finished.verdicts,
         finished.worst_at_scales,
