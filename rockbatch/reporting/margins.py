@@ -109,7 +109,7 @@ class Side(NamedTuple):
 
 
 def margins(pair: Pair) -> Markup:
-    """Return a table of each check of each pair of designs: demand, share of the limit and record in A and in B."""
+    """Return a table of checks of pairs of designs: demand, share of the limit and record in A and B; empty without checks."""
     sides = [_designs(pair, place) for place in range(2)]
     rows: list[list[object]] = []
     for key in dict.fromkeys((*sides[0], *sides[1])):
