@@ -13,11 +13,11 @@ from rockbatch.batch.plan import Plan
 from rockbatch.batch.waves import Waves
 from rockbatch.checks.judging import judge
 from rockbatch.checks.responses import RESPONSES, unlimited, worst_of_cases
-from rockbatch.checks.rule_choices import is_about
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
+from rockbatch.common.naming import chosen_by
 from rockbatch.motions import MotionSet
 from rockbatch.quantities.design import of_design
 from rockbatch.results.run_json import describe_case
@@ -145,7 +145,8 @@ class Trials:
         study, motions = self.waves.study, self.motions.motions
         described = [describe_case(case) for of_trial in cases.values() for case in of_trial]
         names = frozenset(case.name for case in along_the_axis(self.written.study.cases))
-        rules = [replace(rule, case=()) for rule in study.checks if is_about(rule, name, names)]
+        about = (rule for rule in study.checks if not rule.case or name in chosen_by(tuple(rule.case), names))
+        rules = [replace(rule, case=()) for rule in about]
         runs = peaks[peaks["case"].isin({str(case["case"]) for case in described})]
         sections = self.waves.tables.get(SECTIONS)
         verdicts = judge(
