@@ -44,6 +44,11 @@ def sheet_of(directory, **results):
     return sheet(read(directory))
 
 
+def assumptions_of(directory):
+    finished = read(directory)
+    return assumptions.lines(finished, finished.info["cases"])
+
+
 def in_browser(directory, text, act=""):
     """Return what a script finds on the sheet in a browser, in a window of about the width of A4."""
     path = directory / "sheet.html"
@@ -129,14 +134,14 @@ def test_each_constant_of_each_device_and_part_is_among_the_inputs(tmp_path):
 )
 def test_the_values_of_a_study_decide_its_assumptions(tmp_path, case, words, absent):
     write_results(tmp_path, cases=[case])
-    said = " ".join(assumptions.lines(read(tmp_path)))
+    said = " ".join(assumptions_of(tmp_path))
     assert words in said
     assert absent not in said
 
 
 def test_what_holds_for_some_cases_only_names_them(tmp_path):
     write_results(tmp_path, cases=[entry("rock", RigidBase()), entry("pads", YieldingBase(beta=40.0, eta=2.5))])
-    said = " ".join(assumptions.lines(read(tmp_path)))
+    said = " ".join(assumptions_of(tmp_path))
     assert "two pivots that keep their place: no crushing of edges (rock)" in said
     assert "two vertical supports that push and never pull, one at each pivot (pads)" in said
 
