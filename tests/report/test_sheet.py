@@ -166,13 +166,13 @@ def test_the_number_of_records_with_a_vertical_is_said(tmp_path, verticals, word
     for record, vertical in zip(info["records"], verticals, strict=True):
         record["pga_v_g"] = vertical
     file.write_text(json.dumps(info), encoding="utf-8")
-    assert words in " ".join(assumptions.lines(read(tmp_path)))
+    assert words in " ".join(assumptions_of(tmp_path))
 
 
 def test_devices_of_one_case_of_two_have_their_assumption(tmp_path):
     held = entry("held", replace(RigidBase(), restraints=(Tendon(psi=0.2),)))
     write_results(tmp_path, cases=[entry("rock", RigidBase()), held])
-    assert "nothing of them breaks" in " ".join(assumptions.lines(read(tmp_path)))
+    assert "nothing of them breaks" in " ".join(assumptions_of(tmp_path))
 
 
 def test_no_two_different_foundations_have_the_same_row(tmp_path):

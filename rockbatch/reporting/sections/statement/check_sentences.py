@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from rockbatch.checks import Verdict, wording
-from rockbatch.checks.scorecard import ROUNDING, badness
+from rockbatch.checks.scorecard import badness
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.files import legible
 from rockbatch.common.grouping import grouped
@@ -115,8 +115,7 @@ def _number(value: float, verdict: Verdict) -> str:
     """Return a number with the unit of a verdict, in as many digits as tell it from the limit."""
     if math.isinf(value):
         return "any value"
-    shown_value = 0.0 if abs(value) < ROUNDING * abs(verdict.limit) else value
-    return f"{wording.number(shown_value, verdict.limit)} {verdict.unit}".rstrip()
+    return f"{wording.compared(value, verdict.limit)} {verdict.unit}".rstrip()
 
 
 def _limit(verdict: Verdict) -> str:
