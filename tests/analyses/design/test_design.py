@@ -62,7 +62,7 @@ def test_ends_of_islands_of_a_known_function_are_found_to_the_width():
         assert interval.widest <= 0.1 + 1e-9
 
 
-def test_an_island_between_two_values_of_the_scan_is_missed_and_the_widest_step_says_how_wide():
+def test_an_island_between_two_values_is_missed_and_the_widest_step_says_how_wide():
     (interval,) = intervals(searched(lambda x: FAIL if 0.52 < x < 0.58 else PASS, np.linspace(0.0, 1.0, 11), 1e-3))
     assert (interval.verdict, interval.below, interval.above) == (PASS, None, None)
     assert interval.widest == pytest.approx(0.1)  # the island is 0.06 wide
@@ -160,7 +160,7 @@ def test_a_bound_on_the_key_that_varies_multiplies_each_of_its_values():
     assert ends[0] / ends[1] == pytest.approx(1.1, abs=0.02)
 
 
-def test_each_combination_of_other_lists_is_a_design_and_a_list_of_the_key_is_replaced():
+def test_other_lists_make_designs_and_a_list_of_the_key_is_replaced():
     slender = {"alpha": [0.2, 0.22], "p": [1.0, 1.1]}
     found = rb.design(study(pier=slender))
     assert found.design["alpha"].unique().tolist() == [0.2, 0.22]
@@ -308,7 +308,7 @@ def test_a_finished_search_with_sections_is_read_again(tmp_path, monkeypatch):
     pd.testing.assert_frame_equal(again.design_checks, found.design_checks, check_exact=True)
 
 
-def test_runs_of_a_search_with_other_limits_are_not_taken_for_those_of_this_one(tmp_path, monkeypatch):
+def test_runs_of_a_search_with_other_limits_are_not_those_of_this_one(tmp_path, monkeypatch):
     out, real, calls = tmp_path / "out", rockbatch.batch.threads.outcomes_of, []
 
     def interrupted(runs, *more):
@@ -325,7 +325,7 @@ def test_runs_of_a_search_with_other_limits_are_not_taken_for_those_of_this_one(
         rb.design(study(check=[ROTATION | {"at_most": 0.4}]), out, jobs=1)
 
 
-def test_the_command_says_what_runs_before_it_does_and_prints_answer_and_intervals(tmp_path, capsys):
+def test_the_command_counts_its_runs_beforehand_and_prints_the_answer(tmp_path, capsys):
     text = study_text(pier=PIER, pulses=[PULSE], cases=[RIGID], check=[ROTATION], design=SIZE)
     assert main(["design", str(write_study(tmp_path, text)), "--out", str(tmp_path / "out")]) == 0
     said, printed = (getattr(captured, name) for captured in [capsys.readouterr()] for name in ("err", "out"))
