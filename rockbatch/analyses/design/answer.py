@@ -187,7 +187,7 @@ def _remarks(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
         yield NOT_DECIDED, f"No limit is set on {', '.join(info['without_limit'])}, of designs that pass."
     if info["unusable"]:
         files = counted(info["unusable"], "file")
-        yield NOT_DECIDED, f"{files} of the suite could not be used: what passes does so without it."
+        yield NOT_DECIDED, f"{files} of the suite could not be used: what passes does so without these."
     if info["refused"]:
         first, more = info["refused"][0], len(info["refused"])
         values = zip(info["vary"], first["values"], strict=True)

@@ -10,8 +10,11 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 import rockbatch.batch.threads
+from rockbatch.analyses.design.answer import answer
 from rockbatch.analyses.design.search import intervals, middles
-from rockbatch.analyses.design.study import read_design
+from rockbatch.analyses.design.study import DesignSpec, Varied, read_design
+from rockbatch.analyses.design.tables import intervals_table, values_table
+from rockbatch.analyses.design.trials import Design, Judged, Trial
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
@@ -230,6 +233,53 @@ def test_what_is_not_decided_is_no_pass():
     found = rb.design(study(check=[few]))
     assert rows(found, "verdict") == [["not decided"], ["fail"]]
     assert found.answer[0].startswith("No value of pier.p that was run")
+
+
+def test_under_a_suite_that_fails_its_target_nothing_passes():
+    """A mean spectrum that falls short of the target leaves open what the checks say."""
+    target = {"spectrum": [[0.1, 9.0], [2.0, 9.0]], "period_range_s": [0.2, 1.5], "factors": "none", "at_least": 0.9}
+    text = study_text(
+        pier=PIER, pulses=[PULSE], cases=[RIGID], check=[ROTATION], motions={"target": target}, design=SIZE
+    )
+    found = rb.design(rb.Study.from_toml(text))
+    assert [row["verdict"] for row in found.design.to_dict("records")] == ["not decided", "fail"]
+    assert "suite to target" in found.answer[0]
+
+
+def said_of(verdicts, **more):
+    """The answer about a key "pier.p" of one design, by the verdicts on its values."""
+    design = Design("rigid", ())
+    judged = {Trial(design, (value,)): Judged(verdict, None, "as it is") for value, verdict in verdicts.items()}
+    vary = Varied("pier.p", min(verdicts), max(verdicts), 3)
+    spec = DesignSpec((vary,), "least", 0.1, ("rigid",), ())
+    info = {
+        "vary": [{"path": "pier.p", "low": vary.low, "high": vary.high, "step": vary.step}],
+        "find": "least",
+        "width": 0.1,
+    }
+    info |= {
+        "varied": [],
+        "designs": [{"case": "rigid", "columns": {}}],
+        "lacking": [],
+        "bounds": [],
+        "without_limit": [],
+    }
+    info |= {"unusable": 0, "refused": [], "tried": len(verdicts), "under": []} | more
+    return [
+        words for _, words in answer(info, intervals_table(judged, spec, [], [design]), values_table(judged, spec, []))
+    ]
+
+
+def test_where_what_is_not_decided_adjoins_the_value_found_the_answer_says_how_far():
+    first, beyond, _ = said_of({1.0: FAIL, 1.9: FAIL, 2.0: NOT_DECIDED, 2.9: NOT_DECIDED, 3.0: PASS, 4.0: PASS})
+    assert first == "The least pier.p found that passes every check is 3. At 2.9 it is not decided: as it is."
+    assert beyond == "From 2 to 2.9 nothing is decided, so that the least value that passes may be as low as 2."
+
+
+def test_a_file_of_the_suite_that_cannot_be_used_is_told():
+    assert "2 files of the suite could not be used: what passes does so without these." in said_of(
+        {1.0: PASS}, unusable=2
+    )
 
 
 def test_a_response_without_a_limit_is_named():
