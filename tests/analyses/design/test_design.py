@@ -213,7 +213,7 @@ def test_an_end_of_the_scan_is_not_called_the_greatest_value_that_passes():
     found = rb.design(study({"between": [1.0, 1.2], "points": 2, "width": 0.1}))
     (words,) = [words for words in found.answer if "upper end of the scan" in words]
     assert words.startswith(
-        "Pier.p = 1.2, the upper end of the scan, passes every check (closest to its limit: rotation at "
+        "With pier.p = 1.2, the upper end of the scan, every check passes (closest to its limit: rotation at "
     )
     assert words.endswith(
         "That is where the scan ends, and not the greatest value that passes: no value above it was run."
