@@ -11,6 +11,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 import rockbatch.batch.threads
 from rockbatch.analyses.design.answer import answer
+from rockbatch.analyses.design.figures import figure_of
 from rockbatch.analyses.design.search import intervals, middles
 from rockbatch.analyses.design.study import DesignSpec, Varied, read_design
 from rockbatch.analyses.design.tables import intervals_table, values_table
@@ -18,6 +19,7 @@ from rockbatch.analyses.design.trials import Design, Judged, Trial
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
+from rockbatch.common.figures.description import Area, Points, Polyline
 from rockbatch.common.files import read_table
 
 PIER = {"alpha": 0.2, "p": 1.5}
@@ -310,6 +312,47 @@ def test_of_two_keys_the_first_is_searched_at_each_value_of_the_second():
     )
     (panel,) = found.plot().axes[:1]
     assert panel.get_xlabel()
+
+
+# Figures
+
+
+def test_the_figure_has_the_worst_ratio_of_each_check_over_strips_that_pass():
+    found = rb.design(study(bound=BOUNDS, check=[ROTATION, STANDS]))
+    (panel,) = figure_of(found.info, found.design, found.design_values, found.design_checks).panels
+    lines = {mark.label: mark for mark in panel.marks if isinstance(mark, Polyline)}
+    ratios = found.design_checks.groupby(["check", "pier.p"])["ratio"].max()
+    for check in ("rotation", "stands"):
+        worst = ratios[check]
+        np.testing.assert_array_equal(lines[check].x, worst.index)
+        shown = np.where(worst <= panel.y.last, worst, np.nan)  # what overturns is marked above the axis
+        np.testing.assert_array_equal(lines[check].y, shown)
+    strips = [(mark.x.min(), mark.x.max()) for mark in panel.marks if isinstance(mark, Area)]
+    passing = found.design[found.design["verdict"] == "pass"]
+    assert strips == list(zip(passing["low"], passing["high"], strict=True))
+    above = [mark for mark in panel.marks if isinstance(mark, Points) and (mark.y > panel.y.last).any()]
+    assert [mark.label for mark in above] == ["rotation", "stands"]
+
+
+def test_the_map_fills_what_fails_and_marks_what_passes_by_the_check_that_governs():
+    design = {
+        "vary": ["pier.p", "case.restitution"],
+        "between": [[1.0, 3.0], [0.8, 0.9]],
+        "points": [3, 2],
+        "width": 0.3,
+    }
+    found = rb.design(study(design, cases=[RIGID | {"restitution": 0.9}], check=[STANDS, ROTATION]))
+    (panel,) = figure_of(found.info, found.design, found.design_values, found.design_checks).panels
+    values = found.design_values
+    filled = {mark.label: np.isnan(mark.x).sum() for mark in panel.marks if isinstance(mark, Area)}
+    assert filled == {
+        f"{check} fails": n for check, n in values.query("verdict == 'fail'")["check"].value_counts().items()
+    }
+    marked = {mark.label: len(mark.x) for mark in panel.marks if isinstance(mark, Points)}
+    passing = values.query("verdict == 'pass'")["check"].value_counts()
+    assert marked == {f"passes, closest: {check}": n for check, n in passing.items()}
+    colours = {mark.label.split()[0]: mark.look.colour for mark in panel.marks if isinstance(mark, Area)}
+    assert colours["rotation"] != colours["stands"]
 
 
 # Folders
