@@ -7,7 +7,7 @@ its scan.
 import csv
 import math
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from itertools import product
@@ -41,11 +41,12 @@ from rockbatch.common.files import csv_plain, opened_text, read_table
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.motions import MotionSet
+from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.results.columns import columns
 from rockbatch.results.labelled import as_dicts
-from rockbatch.results.run_json import describe
+from rockbatch.results.run_json import describe, rocking_periods
 from rockbatch.results.sections import SECTIONS as OF_SECTIONS
-from rockbatch.study import Motions, Study
+from rockbatch.study import Case, Motions, Study
 from rockbatch.workflow.analysis import Analysis, AnalysisFolder, run_analysis
 
 if TYPE_CHECKING:
@@ -239,11 +240,20 @@ def _bisected(trials: Trials, spec: DesignSpec) -> Iterator[Trial]:
         yield from (Trial(design, (middle, *others)) for middle in middles(verdicts, spec.width))
 
 
-def _on_suite(study: Study, motions: MotionSet) -> list[Verdict]:
-    """Return the verdicts on the suite by the targets of the study."""
-    if study.motions.target is None and study.motions.vertical_target is None:
-        return []
-    return suite_verdicts(describe(study, motions), study.motions.scale)
+def _on_suite(study: Study, motions: MotionSet) -> Callable[[Sequence[Case]], list[Verdict]]:
+    """Return the function of the cases of a trial to the verdicts on the suite by the targets of the study."""
+    target = study.motions.target
+    if target is None and study.motions.vertical_target is None:
+        return lambda cases: []
+    info = describe(study, motions)
+
+    def verdicts(cases: Sequence[Case]) -> list[Verdict]:
+        own = info.get("target")
+        if own is not None and isinstance(target, SpectrumTarget):  # a code's range is that of the piers
+            own = own | rocking_periods(cases, target)
+        return suite_verdicts(info | {"target": own}, study.motions.scale)
+
+    return verdicts
 
 
 def _described(trials: Trials, spec: DesignSpec, written: Written, study: Study) -> dict[str, Any]:

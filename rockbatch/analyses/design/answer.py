@@ -92,14 +92,17 @@ def _of_line(info: Entry, rows: Sequence[Entry], tried: Sequence[Entry]) -> Iter
     row = passing[0 if find == "least" else -1]
     end, outer, side = ("low", "below", "lower") if find == "least" else ("high", "above", "upper")
     found = next(value for value in tried if value[path] == row[end])
-    every = f"passes every check{' under every bound' if info['bounds'] else ''}"
+    bounds = " under every bound" if info["bounds"] else ""
     closest = f" (closest to its limit: {governs(found)})" if found["ratio"] > 0.0 else ""
     if not is_known(row[outer]):
         edge = f"That is where the scan ends, and not the {find} value that passes: no value {_FURTHER[find]} was run"
-        yield PASS, f"{path} = {plain(row[end])}, the {side} end of the scan, {every}{closest}. {edge}."
+        yield (
+            PASS,
+            f"with {path} = {plain(row[end])}, the {side} end of the scan, every check passes{bounds}{closest}. {edge}.",
+        )
     else:
         beyond = f"At {plain(row[outer])} it {_STATES[row[f'{outer}_verdict']]}: {governs(row, outer)}"
-        yield PASS, f"the {find} {path} found that {every} is {plain(row[end])}{closest}. {beyond}."
+        yield PASS, f"the {find} {path} found that passes every check{bounds} is {plain(row[end])}{closest}. {beyond}."
     if row[f"{outer}_verdict"] == NOT_DECIDED:
         yield _beyond(rows, row, end)
     if len(passing) > 1 or is_known(passing[0]["above" if find == "least" else "below"]):
@@ -187,7 +190,7 @@ def _remarks(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
         yield NOT_DECIDED, f"No limit is set on {', '.join(info['without_limit'])}, of designs that pass."
     if info["unusable"]:
         files = counted(info["unusable"], "file")
-        yield NOT_DECIDED, f"{files} of the suite could not be used: what passes does so without it."
+        yield NOT_DECIDED, f"{files} of the suite could not be used: what passes does so without these."
     if info["refused"]:
         first, more = info["refused"][0], len(info["refused"])
         values = zip(info["vary"], first["values"], strict=True)

@@ -1,7 +1,7 @@
 """Trials: designs with values of the varied keys, run under every motion and bound, and judged by every check."""
 
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -27,6 +27,7 @@ from rockbatch.study.both_axes import along_the_axis
 from rockbatch.study.bound_keys import key_at
 from rockbatch.study.design_bounds import Change
 
+OnSuite = Callable[[Sequence[Case]], Sequence[Verdict]]
 Columns = tuple[tuple[str, float | str], ...]
 
 
@@ -116,14 +117,16 @@ class Written:
 
 
 class Trials:
-    """All trials, each run and judged once; ``verdicts`` has those of every check, ``free`` the responses without a limit."""
+    """All trials, each run and judged once; ``verdicts`` has those of every check, ``free`` the responses without a limit.
 
-    def __init__(self, written: Written, motions: MotionSet, waves: Waves, suite: Sequence[Verdict] = ()) -> None:
-        self.written, self.motions, self.waves = written, motions, waves
+    ``suite`` returns the verdicts on the suite with the cases of a trial: under one that fails nothing is decided.
+    """
+
+    def __init__(self, written: Written, motions: MotionSet, waves: Waves, suite: OnSuite) -> None:
+        self.written, self.motions, self.waves, self.suite = written, motions, waves, suite
         self.judged: dict[Trial, Judged] = {}
         self.verdicts: list[Verdict] = []
         self.free: dict[str, None] = {}
-        self._suite = [replace(verdict, verdict=NOT_DECIDED) for verdict in suite if verdict.verdict != PASS]
 
     def execute(self, requested: Iterable[Trial]) -> None:
         """Run and judge trials that are not yet."""
@@ -164,7 +167,10 @@ class Trials:
         for trial in cases:
             key = trial.values, trial.design.columns
             own = of_values.get(key, [])
-            self.judged[trial] = judged = _judged([*own, *self._suite])
+            of_suite = (verdict for verdict in self.suite(cases[trial]) if verdict.verdict != PASS)
+            self.judged[trial] = judged = _judged(
+                [*own, *(replace(verdict, verdict=NOT_DECIDED) for verdict in of_suite)]
+            )
             if judged.verdict == PASS:
                 free = unlimited(worst.get(key, []), own)
                 self.free |= dict.fromkeys(RESPONSES[each.demand].words for each in free)

@@ -10,11 +10,16 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 import rockbatch.batch.threads
+from rockbatch.analyses.design.answer import answer
+from rockbatch.analyses.design.figures import figure_of
 from rockbatch.analyses.design.search import intervals, middles
-from rockbatch.analyses.design.study import read_design
+from rockbatch.analyses.design.study import DesignSpec, Varied, read_design
+from rockbatch.analyses.design.tables import intervals_table, values_table
+from rockbatch.analyses.design.trials import Design, Judged, Trial
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
+from rockbatch.common.figures.description import Area, Points, Polyline
 from rockbatch.common.files import read_table
 
 PIER = {"alpha": 0.2, "p": 1.5}
@@ -62,7 +67,7 @@ def test_ends_of_islands_of_a_known_function_are_found_to_the_width():
         assert interval.widest <= 0.1 + 1e-9
 
 
-def test_an_island_between_two_values_of_the_scan_is_missed_and_the_widest_step_says_how_wide():
+def test_an_island_between_two_values_is_missed_and_the_widest_step_says_how_wide():
     (interval,) = intervals(searched(lambda x: FAIL if 0.52 < x < 0.58 else PASS, np.linspace(0.0, 1.0, 11), 1e-3))
     assert (interval.verdict, interval.below, interval.above) == (PASS, None, None)
     assert interval.widest == pytest.approx(0.1)  # the island is 0.06 wide
@@ -160,7 +165,7 @@ def test_a_bound_on_the_key_that_varies_multiplies_each_of_its_values():
     assert ends[0] / ends[1] == pytest.approx(1.1, abs=0.02)
 
 
-def test_each_combination_of_other_lists_is_a_design_and_a_list_of_the_key_is_replaced():
+def test_other_lists_make_designs_and_a_list_of_the_key_is_replaced():
     slender = {"alpha": [0.2, 0.22], "p": [1.0, 1.1]}
     found = rb.design(study(pier=slender))
     assert found.design["alpha"].unique().tolist() == [0.2, 0.22]
@@ -210,7 +215,7 @@ def test_an_end_of_the_scan_is_not_called_the_greatest_value_that_passes():
     found = rb.design(study({"between": [1.0, 1.2], "points": 2, "width": 0.1}))
     (words,) = [words for words in found.answer if "upper end of the scan" in words]
     assert words.startswith(
-        "Pier.p = 1.2, the upper end of the scan, passes every check (closest to its limit: rotation at "
+        "With pier.p = 1.2, the upper end of the scan, every check passes (closest to its limit: rotation at "
     )
     assert words.endswith(
         "That is where the scan ends, and not the greatest value that passes: no value above it was run."
@@ -230,6 +235,53 @@ def test_what_is_not_decided_is_no_pass():
     found = rb.design(study(check=[few]))
     assert rows(found, "verdict") == [["not decided"], ["fail"]]
     assert found.answer[0].startswith("No value of pier.p that was run")
+
+
+def test_under_a_suite_that_fails_its_target_nothing_passes():
+    """A mean spectrum that falls short of the target leaves open what the checks say."""
+    target = {"spectrum": [[0.1, 9.0], [2.0, 9.0]], "period_range_s": [0.2, 1.5], "factors": "none", "at_least": 0.9}
+    text = study_text(
+        pier=PIER, pulses=[PULSE], cases=[RIGID], check=[ROTATION], motions={"target": target}, design=SIZE
+    )
+    found = rb.design(rb.Study.from_toml(text))
+    assert [row["verdict"] for row in found.design.to_dict("records")] == ["not decided", "fail"]
+    assert "suite to target" in found.answer[0]
+
+
+def said_of(verdicts, **more):
+    """The answer about a key "pier.p" of one design, by the verdicts on its values."""
+    design = Design("rigid", ())
+    judged = {Trial(design, (value,)): Judged(verdict, None, "as it is") for value, verdict in verdicts.items()}
+    vary = Varied("pier.p", min(verdicts), max(verdicts), 3)
+    spec = DesignSpec((vary,), "least", 0.1, ("rigid",), ())
+    info = {
+        "vary": [{"path": "pier.p", "low": vary.low, "high": vary.high, "step": vary.step}],
+        "find": "least",
+        "width": 0.1,
+    }
+    info |= {
+        "varied": [],
+        "designs": [{"case": "rigid", "columns": {}}],
+        "lacking": [],
+        "bounds": [],
+        "without_limit": [],
+    }
+    info |= {"unusable": 0, "refused": [], "tried": len(verdicts), "under": []} | more
+    return [
+        words for _, words in answer(info, intervals_table(judged, spec, [], [design]), values_table(judged, spec, []))
+    ]
+
+
+def test_where_what_is_not_decided_adjoins_the_value_found_the_answer_says_how_far():
+    first, beyond, _ = said_of({1.0: FAIL, 1.9: FAIL, 2.0: NOT_DECIDED, 2.9: NOT_DECIDED, 3.0: PASS, 4.0: PASS})
+    assert first == "The least pier.p found that passes every check is 3. At 2.9 it is not decided: as it is."
+    assert beyond == "From 2 to 2.9 nothing is decided, so that the least value that passes may be as low as 2."
+
+
+def test_a_file_of_the_suite_that_cannot_be_used_is_told():
+    assert "2 files of the suite could not be used: what passes does so without these." in said_of(
+        {1.0: PASS}, unusable=2
+    )
 
 
 def test_a_response_without_a_limit_is_named():
@@ -260,6 +312,47 @@ def test_of_two_keys_the_first_is_searched_at_each_value_of_the_second():
     )
     (panel,) = found.plot().axes[:1]
     assert panel.get_xlabel()
+
+
+# Figures
+
+
+def test_the_figure_has_the_worst_ratio_of_each_check_over_strips_that_pass():
+    found = rb.design(study(bound=BOUNDS, check=[ROTATION, STANDS]))
+    (panel,) = figure_of(found.info, found.design, found.design_values, found.design_checks).panels
+    lines = {mark.label: mark for mark in panel.marks if isinstance(mark, Polyline)}
+    ratios = found.design_checks.groupby(["check", "pier.p"])["ratio"].max()
+    for check in ("rotation", "stands"):
+        worst = ratios[check]
+        np.testing.assert_array_equal(lines[check].x, worst.index)
+        shown = np.where(worst <= panel.y.last, worst, np.nan)  # what overturns is marked above the axis
+        np.testing.assert_array_equal(lines[check].y, shown)
+    strips = [(mark.x.min(), mark.x.max()) for mark in panel.marks if isinstance(mark, Area)]
+    passing = found.design[found.design["verdict"] == "pass"]
+    assert strips == list(zip(passing["low"], passing["high"], strict=True))
+    above = [mark for mark in panel.marks if isinstance(mark, Points) and (mark.y > panel.y.last).any()]
+    assert [mark.label for mark in above] == ["rotation", "stands"]
+
+
+def test_the_map_fills_what_fails_and_marks_what_passes_by_the_check_that_governs():
+    design = {
+        "vary": ["pier.p", "case.restitution"],
+        "between": [[1.0, 3.0], [0.8, 0.9]],
+        "points": [3, 2],
+        "width": 0.3,
+    }
+    found = rb.design(study(design, cases=[RIGID | {"restitution": 0.9}], check=[STANDS, ROTATION]))
+    (panel,) = figure_of(found.info, found.design, found.design_values, found.design_checks).panels
+    values = found.design_values
+    filled = {mark.label: np.isnan(mark.x).sum() for mark in panel.marks if isinstance(mark, Area)}
+    assert filled == {
+        f"{check} fails": n for check, n in values.query("verdict == 'fail'")["check"].value_counts().items()
+    }
+    marked = {mark.label: len(mark.x) for mark in panel.marks if isinstance(mark, Points)}
+    passing = values.query("verdict == 'pass'")["check"].value_counts()
+    assert marked == {f"passes, closest: {check}": n for check, n in passing.items()}
+    colours = {mark.label.split()[0]: mark.look.colour for mark in panel.marks if isinstance(mark, Area)}
+    assert colours["rotation"] != colours["stands"]
 
 
 # Folders
@@ -308,7 +401,7 @@ def test_a_finished_search_with_sections_is_read_again(tmp_path, monkeypatch):
     pd.testing.assert_frame_equal(again.design_checks, found.design_checks, check_exact=True)
 
 
-def test_runs_of_a_search_with_other_limits_are_not_taken_for_those_of_this_one(tmp_path, monkeypatch):
+def test_runs_of_a_search_with_other_limits_are_not_those_of_this_one(tmp_path, monkeypatch):
     out, real, calls = tmp_path / "out", rockbatch.batch.threads.outcomes_of, []
 
     def interrupted(runs, *more):
@@ -325,7 +418,7 @@ def test_runs_of_a_search_with_other_limits_are_not_taken_for_those_of_this_one(
         rb.design(study(check=[ROTATION | {"at_most": 0.4}]), out, jobs=1)
 
 
-def test_the_command_says_what_runs_before_it_does_and_prints_answer_and_intervals(tmp_path, capsys):
+def test_the_command_counts_its_runs_beforehand_and_prints_the_answer(tmp_path, capsys):
     text = study_text(pier=PIER, pulses=[PULSE], cases=[RIGID], check=[ROTATION], design=SIZE)
     assert main(["design", str(write_study(tmp_path, text)), "--out", str(tmp_path / "out")]) == 0
     said, printed = (getattr(captured, name) for captured in [capsys.readouterr()] for name in ("err", "out"))
