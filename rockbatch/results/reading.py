@@ -82,8 +82,7 @@ def read_saved(directory: Path) -> Saved:
     with _collecting_problems(problems):
         peaks = _read_peaks(directory / PEAKS, info.get("varied", []))
     if len(problems) == 2 and all(isinstance(problem, Problem) and problem.kind is NotFound for problem in problems):
-        lacking = f"not there, or without {INFO} and {PEAKS} of `rockbatch run`"
-        raise NotFound(f"{directory}: {lacking}{_analyses_in(directory)}")
+        raise NotFound(f"{directory}: not there, or without results of `rockbatch run`{_analyses_in(directory)}")
     refuse([*problems, *_other_version(directory)] if problems else [])
     if unknown := {name for case in info["cases"] for name in case["columns"]} - set(info["varied"]):
         raise InputError(
