@@ -161,23 +161,19 @@ def _span(m, line, most, place):
 
 
 @inlined
+def _total(m, column, first, last):
+    """Return the sum over nodes that follow each other of what a ``column`` of the bed sums up."""
+    return m.bed[last + 1, column] - m.bed[first, column]
+
+
+@inlined
 def _sums(m, line, most, first, last):
     """Return force and moment of the pressures of a Line less ``most``, at nodes that follow each other."""
-    bed, end = m.bed, last + 1
-    weight, weighted_position = (
-        bed[end, WEIGHTS] - bed[first, WEIGHTS],
-        bed[end, WEIGHTED_POSITIONS] - bed[first, WEIGHTED_POSITIONS],
-    )
-    arm, armed_position = bed[end, ARMS] - bed[first, ARMS], bed[end, ARMED_POSITIONS] - bed[first, ARMED_POSITIONS]
-    weighted_set, armed_set = (
-        bed[end, WEIGHTED_SETS] - bed[first, WEIGHTED_SETS],
-        bed[end, ARMED_SETS] - bed[first, ARMED_SETS],
-    )
-    level = line.level - most
-    return (
-        level * weight + line.slope * weighted_position - line.sets * weighted_set,
-        level * arm + line.slope * armed_position - line.sets * armed_set,
-    )
+    level, slope, sets = line.level - most, line.slope, line.sets
+    force, moment = level * _total(m, WEIGHTS, first, last), level * _total(m, ARMS, first, last)
+    force += slope * _total(m, WEIGHTED_POSITIONS, first, last) - sets * _total(m, WEIGHTED_SETS, first, last)
+    moment += slope * _total(m, ARMED_POSITIONS, first, last) - sets * _total(m, ARMED_SETS, first, last)
+    return force, moment
 
 
 @inlined
@@ -213,7 +209,8 @@ def push(m, d):
         if from_node <= to_node:
             more_force, more_moment = _sums(m, p, m.strength, from_node, to_node)
             force, moment = force - more_force, moment - more_moment
-    touched = m.bed[FIRST, AREA] * (pressed.last - pressed.first)
+    strips = pressed.last - pressed.first
+    touched = m.bed[FIRST, AREA] * strips if strips < m.strips else 1.0
     if pressed.first > FIRST:
         more = _in_part(m, d, p, pressed.first, pressed.first - 1)
         force, moment, touched = force + more.force, moment + more.moment, touched + more.touched
