@@ -207,28 +207,28 @@ BASE_KEYS = {
         'Whether the shaft bends: "elastic" follows its modes besides, the first of the period `flexural_period_s` of '
         "`[pier]`.",
         many=True,
-        only=_ON_ROCK,
+        only=_NOT_ON_A_BED,
     ),
     "flexural_damping": Key(
         within(BOUNDS["flexural_damping"]),
         "0.05",
         "Damping ratio of the first mode, of the pier fixed at its base.",
         many=True,
-        only=_ON_ROCK | {"shaft": ("elastic",)},
+        only=_NOT_ON_A_BED | {"shaft": ("elastic",)},
     ),
     "flexural_damping_kind": Key(
         choice(*WORDS["flexural_damping_kind"]),
         '"modal"',
         'Damping of the higher modes: "modal", the same ratio as of the first, or "stiffness", in proportion to their frequency.',
         many=True,
-        only=_ON_ROCK | {"shaft": ("elastic",)},
+        only=_NOT_ON_A_BED | {"shaft": ("elastic",)},
     ),
     "flexural_modes": Key(
         Whole(1, f"a whole number, 1 to {MOST_MODES}", MOST_MODES),
         "4",
         "Number of modes of the shaft; default: four, or as many as its masses have. Errors include what one fewer would change.",
         many=True,
-        only=_ON_ROCK | {"shaft": ("elastic",)},
+        only=_NOT_ON_A_BED | {"shaft": ("elastic",)},
     ),
     "flexural_impact": Key(
         Other('"momentum"', _impact_rule, {"enum": ["momentum"]}),
