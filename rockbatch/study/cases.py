@@ -205,7 +205,7 @@ BASE_KEYS = {
         choice(*WORDS["shaft"]),
         '"rigid"',
         'Whether the shaft bends: "elastic" follows its modes besides, the first of the period `flexural_period_s` of '
-        "`[pier]`.",
+        '`[pier]`; on springs with `zeta` and `kinematics = "finite"`.',
         many=True,
         only=_NOT_ON_A_BED,
     ),

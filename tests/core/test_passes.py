@@ -26,7 +26,7 @@ from rockbatch.core.types import Ground, Instant
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.simulation import springs
 
-KINDS = {"block": (BlockTraits(), LANE), "springs": (SpringTraits(None, None, None, None), spring_lanes.LANE)}
+KINDS = {"block": (BlockTraits(), LANE), "springs": (SpringTraits(None, None, None), spring_lanes.LANE)}
 
 
 @pytest.mark.parametrize("lane", [lane for _, lane in KINDS.values()], ids=list(KINDS))

@@ -14,6 +14,10 @@ LONGEST = 0.2
 """Greatest step over the sampling interval, within which a pivot must not leave its support and land."""
 
 
+AT_YIELD = -1.0 + 1e-10
+"""Force over its strength from which a support that yields counts as at it."""
+
+
 @dataclass(frozen=True)
 class Supports:
     """Both supports, per unit mass of the pier: F_y [m/s²], δ_y [m], C [1/s], and ż over the velocity/δ_y at z and velocity."""
@@ -128,8 +132,9 @@ def run(of, supports, ground, dt, until):
 
             events = [lambda t, y, i=i: leaves(t, y, i) for i in (0, 1)]
             turns = [lambda t, y, i=i: pivots(of, y[:n], y[n : 2 * n])[1][i] for i in (0, 1)]
-            yields = [lambda t, y, i=i: y[2 * n + i] + 1.0 + 1e-12 for i in (0, 1)]
-            for event in events:
+            below = supports.share is perfectly_plastic
+            yields = [lambda t, y, i=i: y[2 * n + i] + 1.0 for i in (0, 1) if below and state[2 * n + i] > -1.0]
+            for event in (*events, *yields):
                 event.direction = -1
             watched = events if supports.share is elastic else [*events, *turns, *yields]
             for event in watched:
@@ -138,7 +143,8 @@ def run(of, supports, ground, dt, until):
                 slope, (t, end), state, "DOP853", rtol=1e-10, atol=1e-13, max_step=LONGEST * dt, events=watched
             )
             t, state = found.t[-1], found.y[:, -1].copy()
-            state[2 * n :] = np.maximum(state[2 * n :], -1.0) if supports.share is perfectly_plastic else state[2 * n :]
+            if below:
+                state[2 * n :][state[2 * n :] < AT_YIELD] = -1.0
             for i in (0, 1):
                 if len(found.t_events[i]):
                     if down[i]:

@@ -6,8 +6,10 @@ Fast tests run the kernels uncompiled.
 import math
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 import supported_reference as reference
 from bending_piers import DT, TOWER, G, pier_of, points_of, shaken
@@ -20,7 +22,7 @@ from rockbatch.core.types import SAMPLE, Ground, Moment, Pull
 from rockbatch.motions.motion import Motion
 from rockbatch.simulation import Run, run_fixed, written_run
 from rockbatch.simulation.histories import of_modes
-from rockbatch.simulation.models import springs
+from rockbatch.simulation.models import first_substeps, springs
 
 BENDS = {"shaft": "elastic", "flexural_damping": 0.03, "kinematics": "finite", "zeta": 0.2}
 LAWS = {"epp": reference.perfectly_plastic, "bouc-wen": reference.bouc_wen}
@@ -305,3 +307,34 @@ def test_stiff_supports_tend_to_a_rigid_base_and_a_stiff_shaft_to_a_rigid_one():
 def _packet() -> tuple[np.ndarray, np.ndarray]:
     motion = shaken(5.0, 1.4)
     return np.arange(len(motion.horizontal)) * DT, motion.horizontal
+
+
+OPENSEES = pd.read_csv(Path(__file__).parents[2] / "benchmarks" / "opensees_shaft_on_springs.csv", index_col="case")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "shaft", "top", "period", "shear", "moment"),
+    [
+        ("tower", 3000.0, 1500.0, 0.9, 0.06, 0.04),
+        ("light deck", 3000.0, 300.0, 0.9, 0.07, 0.05),
+        ("even", 2000.0, 2000.0, 0.7, 0.08, 0.05),
+        pytest.param("heavy top", 500.0, 4000.0, 1.2, 0.1, 0.05, marks=pytest.mark.thorough),
+        ("stiff tower", 3000.0, 1500.0, 0.4, 0.25, 0.01),
+    ],
+)
+def test_finite_elements_on_springs_turn_as_far_and_bear_as_much(name, shaft, top, period, shear, moment):
+    """benchmarks/opensees_shaft.py --springs: both half cycles to 2 %, with three modes V at the foot and M at mid-height."""
+    parts = [rb.Part(shaft, 20.0, shaft * 40.0**2 / 12.0, 40.0), rb.Part(top, 40.0, 1e-3 * top, 0.0)]
+    pier, others = replace(rb.Pier.of_parts(8.0, parts, top_m=40.0), flexural_period_s=period), OPENSEES.loc[name]
+    t = np.arange(0.0, 8.5, 0.005)
+    motion = Motion("sine", 0.005, 4.0 * np.sin(math.pi * t) * (t < 2.0))
+    like = {"flexural_damping": 0.01, "flexural_damping_kind": "stiffness", "flexural_modes": 3, "zeta": 0.3}
+    base = base_of(pier=pier, **like)
+    steps = 2 * first_substeps(pier, base, motion.dt)
+    run = rb.simulate(pier, base, motion, forces=True, sections=3, wait=False, substeps=steps)
+    second = int(run.theta.argmax())
+    assert -run.theta[:second].min() == pytest.approx(others.first_rad, rel=0.01)
+    assert run.theta[second] == pytest.approx(others.second_rad, rel=0.02)
+    assert run.row.base_shear_kN == pytest.approx(others.base_shear_kN, rel=shear)
+    assert run.sections.section_moment_kNm.iloc[1] == pytest.approx(others.moment_kNm, rel=moment)

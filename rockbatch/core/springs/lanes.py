@@ -272,7 +272,7 @@ def _write_reversals(lanes, i, m, now, substep, after, history):
 def system_of(m):
     """Return the System of the pier ``m`` (Springs), for which its runs are compiled."""
     if m.shaft is None:
-        return System(SpringTraits(m.exponent, m.finite, m.damped, None), Line, LANE, State._fields + Contact._fields)
+        return System(SpringTraits(m.exponent, m.finite, m.damped), Line, LANE, State._fields + Contact._fields)
     traits = SpringTraits(m.exponent, m.finite, m.damped, LIKE)
     return System(traits, BendingLine, BENDING_LANE, BentState._fields + Contact._fields)
 

@@ -64,7 +64,7 @@ class SpringTraits(NamedTuple):
     exponent: float | int | None
     finite: bool | None
     damped: bool | None
-    shaft: Shaft | None
+    shaft: Shaft | None = None
     pull: Pull | None = None
 
 
