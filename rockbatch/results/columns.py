@@ -105,6 +105,12 @@ def units(study: Study) -> dict[str, str]:
     return {column.name: column.unit for column in described if column.kind != "text"}
 
 
+def with_units(table: "pd.DataFrame", of_columns: Mapping[str, str]) -> "pd.DataFrame":
+    """Return the ``table`` with the units of its columns in ``table.attrs["units"]``."""
+    table.attrs["units"] = dict(of_columns)
+    return table
+
+
 def as_table(rows: Iterable[Mapping[str, object]], study: Study) -> "pd.DataFrame":
     """Return rows of peaks.csv as a DataFrame: "" for missing texts, NaN for numbers, <NA> for counts."""
     return _typed(pd.DataFrame(list(rows), columns=columns(study)), study.varied)
