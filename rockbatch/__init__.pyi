@@ -49,6 +49,7 @@ from rockbatch.pier import YieldingBase as YieldingBase
 from rockbatch.pier.statics import Statics as Statics
 from rockbatch.pier.statics import statics as statics
 from rockbatch.reporting import report as report
+from rockbatch.reporting import statement as statement
 from rockbatch.results.checking import check as check
 from rockbatch.results.opened import open_results as open_results
 from rockbatch.study import Study as Study

@@ -240,6 +240,15 @@ COMMANDS = {
             "--sheet": flag("write DIR/sheet.html instead: the calculation sheet, to print on A4 or Letter"),
         },
     ),
+    "statement": Command(
+        "print a paragraph on each case, for a calculation file",
+        "rockbatch statement reports/pier --case pads > statement.txt",
+        "commands.statement.main",
+        {
+            "directory": _FOLDER,
+            "--case": value(str, "NAME", "only of the case of this name, or of those of a pattern with * and ?"),
+        },
+    ),
     **{name: _of_analysis(name, door) for name, door in doors().items() if door.help},
     "cache": Command(
         "show the cache of compiled kernels, or clear it",
