@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from rockbatch.analyses.design.search import REFUSED, WORSE
-from rockbatch.analyses.design.study import DesignSpec
+from rockbatch.analyses.design.study import DesignSpec, rounded
 from rockbatch.analyses.design.written import with_value
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.waves import Waves
@@ -19,6 +19,7 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.common.naming import chosen_by
 from rockbatch.motions import MotionSet
+from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.quantities.design import of_design
 from rockbatch.results.run_json import describe_case
 from rockbatch.results.sections import SECTIONS
@@ -158,7 +159,7 @@ class Trials:
             described,
             {motion.name: motion.of_station for motion in motions},
             study.count,
-            None if sections is None else pd.DataFrame(sections),
+            None if sections is None else _as_written(sections),
             {motion.name: motion.origin.event or "" for motion in motions},
         )
         self.verdicts += verdicts
@@ -174,6 +175,13 @@ class Trials:
             if judged.verdict == PASS:
                 free = unlimited(worst.get(key, []), own)
                 self.free |= dict.fromkeys(RESPONSES[each.demand].words for each in free)
+
+
+def _as_written(sections: Sequence[Mapping[str, Any]]) -> "pd.DataFrame":
+    """Return rows of sections.csv as a table, their numbers with the digits that they have in the file."""
+    table, numbers = pd.DataFrame(sections), list(OF_SECTIONS)
+    table[numbers] = table[numbers].astype("float64").map(rounded)
+    return table
 
 
 def _values(columns: Mapping[str, Any], spec: DesignSpec) -> tuple[tuple[float, ...], Columns]:
