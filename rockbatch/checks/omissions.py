@@ -18,6 +18,7 @@ from rockbatch.quantities.cases import (
 from rockbatch.quantities.demands import Demand
 
 MODES, LANDINGS, LANDINGS_OF_FRAME = "modes", "landings", "landings of a frame"
+LANDINGS_OF_BENDING = "landings under a bending shaft"
 IMPULSES, BENDING = "impulses", "bending"
 
 FACTORS = "1.6 to 2.9"
@@ -42,6 +43,11 @@ OMISSIONS = {
     ),
     LANDINGS: Omission(
         f'{_LANDINGS}: give the feet a stiffness K, base = "elastic" with zeta, and check K/2, K and 2 K', decides=False
+    ),
+    LANDINGS_OF_BENDING: Omission(
+        f"{_LANDINGS}, and a shaft that bends has no springs under it here: check this demand in a case of its own with a rigid "
+        'shaft on feet of a stiffness K, base = "elastic" with zeta, for K/2, K and 2 K',
+        decides=False,
     ),
     LANDINGS_OF_FRAME: Omission(
         f"{_LANDINGS}: take them from a program with springs under the columns, which a frame cannot have here",
@@ -85,12 +91,12 @@ def _follows_modes(demand: Demand, case: Case) -> bool:
 
 
 def omissions(demand: Demand, runs: Rows, error: Values, case: Case) -> list[str]:
-    """Return the names in :data:`OMISSIONS` of what the demand, of this ``error``, leaves out in these runs of a case."""
+    """Return the names in :data:`OMISSIONS` of what the demand, of this ``error``, omits in runs of a case; [] for none."""
     if _follows_modes(demand, case):
         return [MODES] if unconverged(demand, error, case).any() else []
     omitted = []
     if open_landings(demand, runs, case).any():
-        omitted.append(LANDINGS_OF_FRAME if is_frame(case) else LANDINGS)
+        omitted.append(LANDINGS_OF_FRAME if is_frame(case) else LANDINGS_OF_BENDING if bends(case) else LANDINGS)
     if demand.landing and stops_by_impulse(case) and (runs.numbers("impacts") > 0.0).any():
         omitted.append(IMPULSES)
     if demand.bending and not bends(case) and not has_light_shaft(case):

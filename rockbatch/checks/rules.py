@@ -3,9 +3,11 @@
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import Contradiction, Problem, WrongType, refuse
+from rockbatch.common.grouping import grouped
 from rockbatch.common.showing import shown
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
@@ -144,10 +146,12 @@ class Rule:
         """ "at most" or "at least"."""
         return "at most" if self.at_most is not None else "at least"
 
-    def counts(self, status: str) -> str:
-        """Return the way of counting a run with this status, one of :data:`COUNTING`; the usual one unless the rule gives it."""
-        usual = "infinite" if self.statistic == "asce7-16" else USUAL[status]
-        return getattr(self, status) or usual
+    @cached_property
+    def ways(self) -> dict[str, str]:
+        """Way of counting a run by its status, one of :data:`COUNTING`: overturned, flight and failed."""
+        given = {"overturned": self.overturned, "flight": self.flight, "failed": self.failed}
+        usual = dict.fromkeys(USUAL, "infinite") if self.statistic == "asce7-16" else USUAL
+        return {status: way or usual[status] for status, way in given.items()}
 
     @property
     def on_both_axes(self) -> str:
@@ -186,10 +190,8 @@ class Rule:
         """Ways of counting runs that do not go through, in words; empty for events and properties of the case."""
         if not DEMANDS[self.demand].per_run:
             return ""
-        kinds = dict.fromkeys(self.counts(status) for status in USUAL)
-        return "; ".join(
-            f"{', '.join(status for status in USUAL if self.counts(status) == kind)}: {kind}" for kind in kinds
-        )
+        by_way = grouped(self.ways, self.ways.__getitem__)
+        return "; ".join(f"{', '.join(statuses)}: {way}" for way, statuses in by_way.items())
 
 
 def is_ban(demand: str, statistic: str, limit: float) -> bool:

@@ -22,10 +22,6 @@ _ORDER = (PASS, NOT_DECIDED, FAIL, DOES_NOT_APPLY)
 """Cases in the order of a scorecard."""
 
 
-ROUNDING = 1e-6
-"""Share of a limit below which demands are shown as zero."""
-
-
 class Column(NamedTuple):
     """A check: its name, the limit with its sign and unit, and the factor from the demand's unit to that one.
 
@@ -165,7 +161,7 @@ def _column(verdicts: Sequence[Verdict]) -> Column:
         return Column(first.check, "none", 1.0)
     unit, factor = SMALL[first.unit] if first.unit in SMALL and abs(first.limit) < 1.0 else (first.unit, 1.0)
     sign = "≤" if first.sense == "at most" else "≥"
-    limit = f"{sign}\u00a0{_number(first.limit * factor)}\u00a0{unit}".rstrip("\u00a0")
+    limit = f"{sign}\u00a0{wording.number(first.limit * factor, least=3)}\u00a0{unit}".rstrip("\u00a0")
     return Column(first.check, limit, factor, wording.at(heights.pop()).strip() if len(heights) == 1 else "")
 
 
@@ -177,13 +173,9 @@ def _cell(verdict: Verdict, column: Column) -> Cell:
     if verdict.is_ban:
         return Cell(verdict, wording.demanded(verdict), "", named)
     bound = "≥\u00a0" if verdict.is_lower_bound else ""
-    value = _number(verdict.value * column.factor, verdict.limit * column.factor)
+    limit = verdict.limit * column.factor
+    value = wording.compared(verdict.value * column.factor, limit, 3)
     place = "" if column.at else wording.at(verdict.at_m)
-    low, high = (_number(end * column.factor, verdict.limit * column.factor) for end in (verdict.low, verdict.high))
+    low, high = (wording.compared(end * column.factor, limit, 3) for end in (verdict.low, verdict.high))
     bounds = f"{low} – {high}" if low != high and not verdict.is_lower_bound else ""
     return Cell(verdict, bound + value + place, f"{bound}{wording.percent(verdict.ratio)}", bounds, named)
-
-
-def _number(value: float, limit: float = math.nan) -> str:
-    """Return a value with three significant digits, or as many as differ from its limit; "0" below rounding of that."""
-    return "0" if abs(value) < ROUNDING * abs(limit) else wording.number(value, limit, 3)

@@ -119,7 +119,7 @@ class Verdict:
 
     @property
     def omitted(self) -> list[str]:
-        """Return the names of :data:`rockbatch.checks.omissions.OMISSIONS` in the demand, the gravest first."""
+        """Return the names of :data:`rockbatch.checks.omissions.OMISSIONS` in the demand, the gravest first; [] for none."""
         return self.omits.split(", ") if self.omits else []
 
     @property

@@ -138,7 +138,7 @@ class Response(Shown):
 
     @property
     def theta_max_error(self) -> float:
-        """Estimated error of ``theta_max`` [rad]; NaN with a fixed step, or if the pier did not stand."""
+        """Estimated error of ``theta_max`` [rad]; NaN with a fixed step, of a chaotic peak, or if the pier did not stand."""
         return self.pier.alpha * self._number("theta_max_error")
 
     @property

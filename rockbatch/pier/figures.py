@@ -131,7 +131,7 @@ class _Shape(NamedTuple):
 
 
 def sketches(piers: Sequence[Mapping[str, Any]], bases: Collection[str]) -> list[Figure]:
-    """Return a sketch of each of the first piers, at one scale; ``piers`` as in run.json, ``bases`` the kinds of their bases.
+    """Return sketches of the first possible piers, at one scale; ``piers`` as in run.json, ``bases`` the kinds of their bases.
 
     A pier with impossible values is left out, since run.json may come from anybody.
     """

@@ -103,7 +103,7 @@ def _above_section(parts: Sequence[Part], height: float, rounding: float) -> Abo
 
 
 def share_above(part: Part, height: float, rounding: float) -> float:
-    """Return the share of a part above ``height`` [m]; a point mass at most ``rounding`` [m] below counts as above."""
+    """Return the share of a part above ``height`` [m], 0 to 1; a point mass at most ``rounding`` [m] below counts as above."""
     length, rise = part.length_m or 0.0, part.height_m - height
     if length == 0.0:
         return 1.0 if rise >= -rounding else 0.0

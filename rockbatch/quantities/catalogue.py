@@ -320,7 +320,7 @@ def _of_observers(group: str) -> list[Quantity]:
 
 
 def _bends(study: Any) -> bool:
-    """Return whether the shaft of a case bends."""
+    """Return whether a case of the study has a shaft that bends."""
     return any(case.base.bends for case in study.cases)
 
 

@@ -18,6 +18,7 @@ from rockbatch.reporting.page import comparison, page
 from rockbatch.reporting.pair import Pair, pair
 from rockbatch.reporting.sheet import sheet as sheet_of
 from rockbatch.results.opened import Results
+from rockbatch.results.reading import ANALYSES_PAGE
 from rockbatch.results.run_json import describe_study, is_of
 from rockbatch.study import Study
 
@@ -67,7 +68,7 @@ def write_analyses(directory: Path, study: Study) -> Path:
     description = describe_study(study)
     if is_of(directory, description["sha256"]):
         return write_report(directory)
-    target = directory / "analyses.html"
+    target = directory / ANALYSES_PAGE
     write_whole(target, page(Contents(directory, description)))
     return target
 

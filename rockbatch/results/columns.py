@@ -116,7 +116,7 @@ def read_cells(cells: Mapping[str, str]) -> dict[str, float | str | None]:
 
 
 def _value(name: str, text: str) -> float | str | None:
-    """Convert a cell of column ``name``; words of a varied key stay."""
+    """Return a cell of column ``name`` as the number that it is, None if it is empty; words stay."""
     if name in TEXTS:
         return text
     if text == "":

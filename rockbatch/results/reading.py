@@ -21,6 +21,9 @@ from rockbatch.results.labelled import Item
 from rockbatch.results.run_json import INFO, SHAPE
 from rockbatch.results.shape import unfit
 
+ANALYSES_PAGE = "analyses.html"
+"""Page of the analyses in a folder without runs."""
+
 MOST_PROBLEMS = 20
 MOST_COUNT = 1 << 53
 """Largest integer below which floats hold every integer."""
@@ -78,6 +81,8 @@ def read_saved(directory: Path) -> Saved:
         info = _read_info(directory / INFO)
     with _collecting_problems(problems):
         peaks = _read_peaks(directory / PEAKS, info.get("varied", []))
+    if len(problems) == 2 and all(isinstance(problem, Problem) and problem.kind is NotFound for problem in problems):
+        raise NotFound(f"{directory}: not there, or without results of `rockbatch run`{_analyses_in(directory)}")
     refuse([*problems, *_other_version(directory)] if problems else [])
     if unknown := {name for case in info["cases"] for name in case["columns"]} - set(info["varied"]):
         raise InputError(
@@ -100,6 +105,12 @@ def read_saved(directory: Path) -> Saved:
     if missing:
         warnings.warn(f"{directory / PEAKS}: {saved.missing_in_words}", MissingColumns, stacklevel=2)
     return saved
+
+
+def _analyses_in(directory: Path) -> str:
+    """Return words that name the page of the analyses in a folder; empty without one."""
+    path = directory / ANALYSES_PAGE
+    return f"; its analyses are in {path}" if path.exists() else ""
 
 
 def _other_version(directory: Path) -> list[str]:
@@ -137,7 +148,7 @@ def _as_input_error(path: Path, line: str, kind: str, *damages: type[Exception])
     try:
         yield
     except FileNotFoundError:
-        raise NotFound(f"{path}: not there; give a folder that `rockbatch run` has written") from None
+        raise NotFound(f"{path}: not there; start `rockbatch run` again") from None
     except InputError:
         raise
     except damages as error:

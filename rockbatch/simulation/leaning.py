@@ -56,7 +56,7 @@ def may_lean(outcome: Outcome) -> bool:
 
 
 def apart(pier: Pier, base: ElasticBase, rows: np.recarray) -> Apart:
-    """Return rocking and lean of a run from its ``rows`` at samples and both sides of events."""
+    """Return the greatest swing about the lean of a yielded base, and lean and swing at the peak, from ``rows`` of a run."""
     path = Path(*(np.ascontiguousarray(rows[name]) for name in Path._fields))  # columns are read many times
     theta, lean, t = path.theta, lean_of(pier, base, path), path.t
     swing = theta - lean

@@ -64,7 +64,8 @@ class TomlFile:
     @classmethod
     def read(cls, path: Path, sections: Sequence[Section] = ()) -> "TomlFile":
         """Read and parse a file. Raises :class:`InputError` with the line at which it is no TOML."""
-        return cls.parse(path, cls.text_of(path), sections)
+        text = cls.text_of(path)
+        return cls.parse(path, text, sections)
 
     @staticmethod
     def text_of(path: Path) -> str:

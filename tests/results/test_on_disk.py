@@ -484,8 +484,21 @@ def test_a_name_may_be_begun_where_one_alone_begins_so(results):
 
 
 def test_a_folder_without_results_is_refused():
-    with pytest.raises(rb.InputError, match=r"run\.json: not there"):
+    with pytest.raises(rb.InputError, match="nowhere: not there"):
         rb.open_results("nowhere")
+
+
+@pytest.mark.parametrize("analysed", [True, False])
+def test_a_folder_of_an_analysis_alone_is_refused_in_a_line_that_names_its_page(tmp_path, analysed):
+    if analysed:
+        (tmp_path / "analyses.html").write_text("")
+    with pytest.raises(rb.InputError) as error:
+        rb.report(tmp_path)
+    assert len(error.value.problems) == 1
+    assert ("analyses.html" in str(error.value)) is analysed
+    (tmp_path / "peaks.csv").write_text("")
+    with pytest.raises(rb.InputError, match=r"run\.json: not there"):
+        rb.open_results(tmp_path)
 
 
 def damaged(folder, change):

@@ -10,6 +10,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.common.figures.description import Look, Points, Polyline, Rule, Words, sign_of
 from rockbatch.outcome.figures import MOST_LANES, Drawn, History, of_one, reduced, together
+from rockbatch.simulation import restraints
 
 PIER = rb.Pier(0.2, 1.0)
 PULSE = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=6.0)
@@ -143,6 +144,16 @@ def test_the_figure_shows_histories_in_units_and_loops_of_loaded_springs(respons
         assert [mark.at.tolist() for mark in limit] == ([[-1.0]] if yields else [])
     response.plot().savefig(tmp_path / "response.png")
     assert (tmp_path / "response.png").stat().st_size > 10_000
+
+
+def test_a_history_follows_its_devices_once(monkeypatch):
+    calls = []
+    follow = restraints.device_histories
+    monkeypatch.setattr(restraints, "device_histories", lambda *given: calls.append(given) or follow(*given))
+    device = rb.Damper("hysteretic", f=0.05, yield_m=0.005)
+    response = rb.simulate(PIER, rb.RigidBase(restraints=(device,)), PULSE)
+    assert len(calls) == 1
+    assert not response.restraints.empty
 
 
 @pytest.mark.parametrize("width", [160.0, 88.0])
