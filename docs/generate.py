@@ -78,7 +78,7 @@ TOPICS: dict[str, tuple[str, tuple[str, ...]]] = {
     "runs": ("Single runs", ("simulate", "Response")),
     "analyses": (
         "Analyses",
-        ("fragility", "HazardCurve", "spectrum", "sensitivity", "release", "accuracy"),
+        ("design", "fragility", "HazardCurve", "spectrum", "sensitivity", "release", "accuracy"),
     ),
     "motions": (
         "Ground motions",

@@ -1,6 +1,7 @@
 """The public names, for type checkers and editors."""
 
 from rockbatch.analyses.accuracy.analysis import accuracy as accuracy
+from rockbatch.analyses.design.analysis import design as design
 from rockbatch.analyses.fragility.analysis import fragility as fragility
 from rockbatch.analyses.release.analysis import release as release
 from rockbatch.analyses.sensitivity.analysis import sensitivity as sensitivity

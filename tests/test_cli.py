@@ -378,7 +378,7 @@ def test_prose_is_indented_behind_its_first_line():
     assert all(line.startswith("  word") for line in rest)
 
 
-@pytest.mark.parametrize("name", ["run", "check", "accuracy", "fragility", "spectrum", "sensitivity", "init"])
+@pytest.mark.parametrize("name", ["run", "check", "accuracy", "design", "fragility", "spectrum", "sensitivity", "init"])
 def test_help_says_which_files_come_out(name, capsys):
     with pytest.raises(SystemExit):
         main([name, "--help"])

@@ -5,6 +5,7 @@ time counts. With a concave M_Rd it is greatest at a corner of the envelope of |
 """
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -28,7 +29,7 @@ def problems(curve: Curve) -> Iterator[str]:
         yield (
             f"has a moment below 0 at {', '.join(below)}; write the half with M >= 0, which counts for both directions"
         )
-    for (n, m), (n2, m2) in zip(curve, curve[1:], strict=False):
+    for (n, m), (n2, m2) in pairwise(curve):
         if n2 <= n:
             yield (
                 f"does not go by ascending N from [{n:g}, {m:g}] to [{n2:g}, {m2:g}]; write it from the greatest tension, "

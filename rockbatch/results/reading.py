@@ -82,7 +82,7 @@ def read_saved(directory: Path) -> Saved:
     with _collecting_problems(problems):
         peaks = _read_peaks(directory / PEAKS, info.get("varied", []))
     if len(problems) == 2 and all(isinstance(problem, Problem) and problem.kind is NotFound for problem in problems):
-        raise NotFound(f"{directory}: not there, or without results of `rockbatch run`{_analyses_in(directory)}")
+        raise NotFound(f"{directory}: not there, or without results of `rockbatch run`; {_instead_of(directory)}")
     refuse([*problems, *_other_version(directory)] if problems else [])
     if unknown := {name for case in info["cases"] for name in case["columns"]} - set(info["varied"]):
         raise InputError(
@@ -107,10 +107,10 @@ def read_saved(directory: Path) -> Saved:
     return saved
 
 
-def _analyses_in(directory: Path) -> str:
-    """Return words that name the page of the analyses in a folder; empty without one."""
+def _instead_of(directory: Path) -> str:
+    """Return what to open instead of a folder without runs, in words: the page of its analyses, or another folder."""
     path = directory / ANALYSES_PAGE
-    return f"; its analyses are in {path}" if path.exists() else ""
+    return f"its analyses are in {path}" if path.exists() else "give a folder that it has written"
 
 
 def _other_version(directory: Path) -> list[str]:

@@ -26,7 +26,7 @@ from rockbatch.core.types import LIFT_OFF, TAKE_OFF, Pull
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.changes import LEAST, Sized, greatest_change
 from rockbatch.outcome.outcome import Section
-from rockbatch.pier import Modes, Pier, RigidBase, bent_above
+from rockbatch.pier import Modes, Pier, WithShaft, bent_above
 from rockbatch.pier.sections import above
 from rockbatch.simulation.models import elements, ground_of, model
 from rockbatch.simulation.restraints import apart
@@ -127,7 +127,7 @@ def _follow(m, run, numbers, shares, out, pushes, bending):  # type: ignore[no-u
             push_deck(devices, m, i, y, contact, pushes[j])
         k = rates(under, y, contact, shaking)
         line.theta, line.omega, line.v_acceleration, line.turning = y.theta, y.omega, k.v_rate, k.omega
-        write_bending(m, y, k, bending[j])
+        write_bending(y, k, bending[j])
         line.side, line.horizontal, line.vertical = contact.right - contact.left, shaking.horizontal, shaking.vertical
 
 
@@ -160,11 +160,26 @@ def in_body(of: Recorded, numbers: Places, shares: Samples) -> InBody:
     horizontal, vertical = motion.horizontal + sideways, pier.gravity + motion.vertical + motion.v_acceleration
     across, along = horizontal * cosine - vertical * sine, vertical * cosine + horizontal * sine
     on_deck = [(float(height), push) for height, push in zip(of.heights, pushes.T, strict=True) if height != 0.0]
-    bent = None
-    if isinstance(base, RigidBase) and base.bends:
-        modes = base.modes(pier)
-        bent = Bending(modes, *np.moveaxis(bending, 0, 2)[:, : len(modes.frequency)])
-    return InBody(across, along, motion.turning, motion.omega, squared, sine, cosine, on_deck, bent)
+    body = InBody(across, along, motion.turning, motion.omega, squared, sine, cosine, on_deck, None)
+    if not (isinstance(base, WithShaft) and base.bends):
+        return body
+    modes = base.modes(pier)
+    body = body._replace(bending=Bending(modes, *np.moveaxis(bending, 0, 2)[:, : len(modes.frequency)]))
+    at_once = (h * cosine + b * sine) * motion.turning * cosine - motion.v_acceleration * sine
+    return _by_modes_alone(pier, body, at_once) if base.on_springs else body
+
+
+def _by_modes_alone(pier: Pier, body: InBody, across: Samples) -> InBody:
+    """Return ``body`` with v̈ and θ̈ of its base, ``across`` the axis at the centre of mass, as far as modes follow them.
+
+    The modes that are left out would give way to what a dashpot does in an instant, where a stiff shaft would follow.
+    """
+    assert body.bending is not None
+    modes = body.bending.modes
+    lever = modes.coupling - pier.height * modes.share
+    followed = body.bending.u_acceleration + np.outer(modes.share, across) + np.outer(lever, body.turning)
+    bending = body.bending._replace(u_acceleration=followed)
+    return body._replace(across=body.across - across, turning=np.zeros_like(across), bending=bending)
 
 
 def in_section(pier: Pier, body: InBody, height: float) -> InSection:

@@ -1,6 +1,7 @@
 """The share of a section's capacity that a run uses: of moment and axial force at one moment, against a polygon by hand."""
 
 import math
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -35,7 +36,7 @@ def judged(rows, table=None, *, one=None, **more):
 
 def by_hand(curve, n, m):
     """Return M over the height of the polygon at N, by the side that N is beside; infinite beyond its ends."""
-    for (n1, m1), (n2, m2) in zip(curve, curve[1:], strict=False):
+    for (n1, m1), (n2, m2) in pairwise(curve):
         if n1 <= n <= n2:
             most = m1 + (m2 - m1) * (n - n1) / (n2 - n1)
             return 0.0 if m == 0.0 else m / most if most > 0.0 else math.inf
