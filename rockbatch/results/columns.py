@@ -105,6 +105,12 @@ def units(study: Study) -> dict[str, str]:
     return {column.name: column.unit for column in described if column.kind != "text"}
 
 
+def with_units(table: "pd.DataFrame", of_columns: Mapping[str, str]) -> "pd.DataFrame":
+    """Return the ``table`` with the units of its columns in ``table.attrs["units"]``."""
+    table.attrs["units"] = dict(of_columns)
+    return table
+
+
 def as_table(rows: Iterable[Mapping[str, object]], study: Study) -> "pd.DataFrame":
     """Return rows of peaks.csv as a DataFrame: "" for missing texts, NaN for numbers, <NA> for counts."""
     table, varied = list(rows), set(study.varied)
@@ -118,7 +124,7 @@ def read_cells(cells: Mapping[str, str]) -> dict[str, float | str | None]:
 
 
 def _value(name: str, text: str) -> float | str | None:
-    """Convert a cell of column ``name``; words of a varied key stay."""
+    """Return a cell of column ``name`` as the number that it is, None if it is empty; words stay."""
     if name in TEXTS:
         return text
     if text == "":

@@ -23,6 +23,9 @@ from rockbatch.results.labelled import Item
 from rockbatch.results.run_json import INFO, SHAPE
 from rockbatch.results.shape import unfit
 
+ANALYSES_PAGE = "analyses.html"
+"""Page of the analyses in a folder without runs."""
+
 MOST_PROBLEMS = 20
 MOST_COUNT = 1 << 53
 """Largest integer below which floats hold every integer."""
@@ -80,6 +83,8 @@ def read_saved(directory: Path) -> Saved:
         info = _read_info(directory / INFO)
     with _collecting_problems(problems):
         peaks = _read_peaks(directory / PEAKS, info.get("varied", []))
+    if len(problems) == 2 and all(isinstance(problem, Problem) and problem.kind is NotFound for problem in problems):
+        raise NotFound(f"{directory}: not there, or without results of `rockbatch run`; {_instead_of(directory)}")
     refuse([*problems, *_other_version(directory)] if problems else [])
     if unknown := {name for case in info["cases"] for name in case["columns"]} - set(info["varied"]):
         raise InputError(
@@ -102,6 +107,12 @@ def read_saved(directory: Path) -> Saved:
     if missing:
         warnings.warn(f"{directory / PEAKS}: {saved.missing_in_words}", MissingColumns, stacklevel=2)
     return saved
+
+
+def _instead_of(directory: Path) -> str:
+    """Return what to open instead of a folder without runs, in words: the page of its analyses, or another folder."""
+    path = directory / ANALYSES_PAGE
+    return f"its analyses are in {path}" if path.exists() else "give a folder that it has written"
 
 
 def _other_version(directory: Path) -> list[str]:
@@ -139,7 +150,7 @@ def _as_input_error(path: Path, line: str, kind: str, *damages: type[Exception])
     try:
         yield
     except FileNotFoundError:
-        raise NotFound(f"{path}: not there; give a folder that `rockbatch run` has written") from None
+        raise NotFound(f"{path}: not there; start `rockbatch run` again") from None
     except InputError:
         raise
     except damages as error:
