@@ -14,9 +14,9 @@ from rockbatch.core.observe.ledger import energy_of_rows
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.half_cycles import HalfCycles, Path, half_cycles
 from rockbatch.outcome.response import EVENT_TYPES, Response
-from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase
+from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase, WithShaft
 from rockbatch.simulation import restraints
-from rockbatch.simulation.models import acceleration_at, flexible_block, model, springs
+from rockbatch.simulation.models import acceleration_at, model, springs
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
@@ -76,7 +76,7 @@ def histories(
         state["energy"] = state["energy"] + devices.stored
     vertical = np.zeros(len(t)) if motion.vertical is None else acceleration_at(motion.vertical, motion.dt, t)
     horizontal = acceleration_at(motion.horizontal, motion.dt, t)
-    bent = {"deflection": state.pop("deflection")} if base.bends else {}
+    bent = {"deflection": _deflection(pier, base, rows)} if isinstance(base, WithShaft) and base.bends else {}
     history = pd.DataFrame({"t": t, **state, "ag_h": horizontal, "ag_v": vertical, **bent})
     events = pd.DataFrame(_events(rows, recording.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
     return Response(
@@ -117,12 +117,18 @@ def _energy(pier: Pier, base: Base, rows: np.recarray) -> Samples:
 
 
 def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Samples]:
-    """Return columns of a history on rigid ground: rotation, rate, energy without devices, and deflection of an elastic shaft."""
+    """Return columns of a history on rigid ground: rotation, rate, and energy without devices since the start."""
     none = dict.fromkeys(
         ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"), np.full(len(rows), np.nan)
     )
-    bent = {"deflection": flexible_block(pier, base).end_shape @ of_modes(rows)[0]} if base.bends else {}
-    return {"theta": rows.theta, "omega": rows.omega, **none, "energy": _energy(pier, base, rows), **bent}
+    return {"theta": rows.theta, "omega": rows.omega, **none, "energy": _energy(pier, base, rows)}
+
+
+def _deflection(pier: Pier, base: WithShaft, rows: np.recarray) -> Samples:
+    """Return the deflection of the top of an elastic shaft across it [m]."""
+    shapes = base.modes(pier).at(pier.highest)
+    deflection: Samples = shapes @ of_modes(rows)[0][: len(shapes)]
+    return deflection
 
 
 def of_modes(rows: np.recarray) -> tuple[Samples, Samples]:

@@ -85,7 +85,12 @@ def lean_of(pier: Pier, base: ElasticBase, rows: np.recarray | Path) -> Samples:
     """Return the static rest rotation [rad] on the base as deformed at every row (THEORY.md, eq. 20)."""
     left, right = unstressed(pier, base, rows)
     b = pier.half_width
-    return 0.5 * (left - right) / b / tilt_over_residual(pier.gravity, pier.height, b, vertical_frequency(pier, base))
+    return (
+        0.5
+        * (left - right)
+        / b
+        / tilt_over_residual(pier.gravity, base.leaning_height(pier), b, vertical_frequency(pier, base))
+    )
 
 
 def unstressed(pier: Pier, base: ElasticBase, rows: np.recarray | Path) -> tuple[Samples, Samples]:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from rockbatch.core import system
 from rockbatch.core.clock import CALM, EVENTFUL, ON_ITS_SIDE, STANDS, UNSET, ground_at, peak_at_end
-from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.kernel import hook, inlined, kernel
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import excess
 from rockbatch.core.springs.laws import kept_sign, may_yield
@@ -197,7 +197,18 @@ def _judged(traits, lanes, i, substep, settings):
 
 @system.one_pass.of(SpringTraits)
 def one_pass(traits, lanes, count, substep, settings):
-    """Integrate the first ``count`` lanes over a sub-step.
+    """Integrate the first ``count`` lanes over a sub-step."""
+    pass_of(traits.shaft, traits, lanes, count, substep, settings)
+
+
+@hook
+def pass_of(shaft, traits, lanes, count, substep, settings):
+    """Integrate lanes as :func:`one_pass`; those with a ``shaft`` that bends event by event."""
+
+
+@pass_of.of(type(None))
+def _rigid_pass(shaft, traits, lanes, count, substep, settings):
+    """Integrate lanes with rigid shafts.
 
     Two loops, since the dependency chain of one would be too long for a processor to overlap two lanes. Lanes with reversals
     of springs, a few in a hundred, are corrected one by one.
