@@ -25,6 +25,7 @@ _COMMANDS_MEANT = {
     "motions": "records",
     "check": "verify",
     "report": "plot show view html",
+    "design": "optimise optimize size find",
     "fragility": "ida curves",
     "spectrum": "spectra map",
 }

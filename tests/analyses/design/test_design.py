@@ -473,6 +473,7 @@ def test_the_command_counts_its_runs_beforehand_and_prints_the_answer(tmp_path, 
         ({"points": 1}, "points = 1: expected a whole number from 2 to 1000"),
         ({"points": [4, 3]}, "points: expected one number for each key of vary, or one for all"),
         ({"find": "best"}, 'find = "best": '),
+        ({"find": "smallest"}, 'find = "smallest": did you mean "least"?'),
         ({"steps": 4}, "steps: unknown key"),
     ],
 )
