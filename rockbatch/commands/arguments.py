@@ -147,7 +147,7 @@ _FILES = """\
   run.json       inputs, records and versions
   histories.h5   histories of the worst runs, or as set by [output] histories
   checks.csv     verdicts, if the study has checks
-  intensity.csv, half_cycles.csv, sections.csv   if set in [output]
+  intensity.csv, half_cycles.csv, sections.csv, interaction.csv   if set in [output]
   peaks_semicolon.csv           with --csv semicolon: decimal commas, and 9,99E+307 for infinity"""
 
 

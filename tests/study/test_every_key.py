@@ -507,7 +507,7 @@ USES: dict[str, dict[str, Use]] = {
         ),
         **uses(study(output={}), ("output",), {
             "histories": "none", "ledger": True, "forces": True, "intensity": True, "half_cycles": True, "sections": 3,
-            "sections_m": [0.0, 10.0],
+            "sections_m": [0.0, 10.0], "interaction_m": [0.0, 10.0],
         }, whole_folder),
         **uses(study(output={"forces": True}), ("output",), {"least_normal_share": 0.9999}, whole_folder),
         **uses(study(output={"intensity": True}), ("output",), {"sa_periods_s": [0.7]}, whole_folder),
