@@ -25,7 +25,6 @@ _COMMANDS_MEANT = {
     "run": "simulate compute solve",
     "motions": "records",
     "check": "verify",
-    "report": "plot show view html",
     "design": "optimise optimize size find",
     "report": "plot show view html compare diff sheet",
     "accuracy": "error errors convergence",
