@@ -531,6 +531,7 @@ def test_impossible_devices_are_refused():
     assert problems(frame, base(Tendon(psi=0.1), Damper("viscous", nu=0.1))) == []
 
 
+@pytest.mark.usefixtures("pages")
 def test_what_a_folder_keeps_of_dampers_comes_back(tmp_path):
     """Loops in the file and the report; the energy of a history is that of the ledger."""
     text = """
