@@ -45,7 +45,10 @@ def rigid(share: float, restraints: tuple[Restraint, ...]) -> RigidBase:
     return RigidBase(0.85 + 0.1 * share, restraints)
 
 
-BASES: dict[str, Callable[[float, tuple[Restraint, ...]], YieldingBase | RigidBase]] = {"springs": springs, "rigid": rigid}
+BASES: dict[str, Callable[[float, tuple[Restraint, ...]], YieldingBase | RigidBase]] = {
+    "springs": springs,
+    "rigid": rigid,
+}
 
 
 def batch(base: str, devices: str, motions: Sequence[Motion], size: int) -> list[Run]:

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from rockbatch.core import system
 from rockbatch.core.clock import COMMON, TIMING, ground_at, include_height
+from rockbatch.core.devices.laws import PASSED
 from rockbatch.core.ground import later
 from rockbatch.core.history import Stamp, write
 from rockbatch.core.kernel import inlined, kernel
@@ -232,7 +233,7 @@ def _write_reversals(lanes, i, m, substep, after, history):
 
 def system_of(m):
     """Return the System of the pier ``m`` (Springs), for which its runs are compiled."""
-    return System(SpringTraits(m.exponent, m.finite, m.damped), Line, LANE, State._fields + Contact._fields)
+    return System(SpringTraits(m.exponent, m.finite, m.damped), Line, LANE, State._fields + Contact._fields, PASSED)
 
 
 def line_of(m, *timing):
