@@ -3,6 +3,7 @@
     pip install openseespy
     python benchmarks/opensees_shaft.py > benchmarks/opensees_shaft.csv
     python benchmarks/opensees_shaft.py --forces > benchmarks/opensees_shaft_forces.csv
+    python benchmarks/opensees_shaft.py --springs > benchmarks/opensees_shaft_on_springs.csv
 
 Twenty corotational beams with masses at their nodes, a mass at the top, a stiff base whose middle cannot move sideways, and under
 both its corners a spring of 10⁹ kN/m without tension beside a dashpot. Not damped otherwise: damping by the first stiffness
@@ -10,7 +11,8 @@ would resist rotation, too. HHT with α = 0.9 and steps of 0.5 ms, halved where 
 Rows: case, and the greatest θ [rad] of the first two half cycles, with their times. All modes bend, so that what parts the two
 after an impact is the impact and higher modes; tests/verification/test_elastic_shaft.py holds rockbatch against them.
 With --forces the columns alone have 1 % of critical damping in their first mode, in proportion to their stiffness, two piers are
-added, and rows have the greatest base shear and moment at mid-height of the elements, without the damping force.
+added, and rows have the greatest base shear and moment at mid-height of the elements, without the damping force. With --springs
+they have both, with that damping, on springs of 3·10⁶ kN/m under the corners, whose dashpots act while a corner presses.
 """
 
 import math
@@ -41,12 +43,22 @@ CASES = {
 FURTHER = {"even": Case(2000.0, 2000.0, 0.7), "light deck": Case(3000.0, 300.0, 0.9)}
 DAMPING = 0.01
 """Of the first mode, where forces are asked for."""
+
+
+class Ground(NamedTuple):
+    """Stiffness under a corner [kN/m], and damping ratio of the vertical vibration on both."""
+
+    stiffness: float = CONTACT
+    damping: float = 1.0
+
+
+SPRINGS = Ground(3e6, 0.3)
 COLUMNS = ("case", "first_rad", "t_first_s", "second_rad", "t_second_s")
 OF_FORCES = ("case", "base_shear_kN", "moment_kNm")
 
 
-def build(case: Case, bending: float, *, fixed: bool) -> list[float]:
-    """Build the column with a stiffness in bending [kN m²], fixed at its foot or on its corners; return its nodes' masses [t]."""
+def build(case: Case, bending: float, ground: Ground | None) -> list[float]:
+    """Build the column with a stiffness in bending [kN m²], on its corners or fixed at its foot; return its nodes' masses [t]."""
     import openseespy.opensees as ops
 
     ops.wipe()
@@ -61,12 +73,12 @@ def build(case: Case, bending: float, *, fixed: bool) -> list[float]:
         ops.mass(100 + i, masses[-1], masses[-1], 1e-4 * masses[-1])
         if i > 0:
             ops.element("elasticBeamColumn", 300 + i, 99 + i, 100 + i, axial, 1.0, bending, 1)
-    if fixed:
+    if ground is None:
         ops.fix(100, 1, 1, 1)
         return masses
     ops.fix(100, 1, 0, 0)
-    ops.uniaxialMaterial("ENT", 2, CONTACT)
-    ops.uniaxialMaterial("Elastic", 3, 1e-9 * CONTACT)  # without it the first tangent is singular
+    ops.uniaxialMaterial("ENT", 2, ground.stiffness)
+    ops.uniaxialMaterial("Elastic", 3, 1e-9 * ground.stiffness)  # without it the first tangent is singular
     ops.uniaxialMaterial("Parallel", 1, 2, 3)
     for j, x in enumerate((-B, B)):
         ops.node(1 + j, x, 0.0)
@@ -74,8 +86,8 @@ def build(case: Case, bending: float, *, fixed: bool) -> list[float]:
         ops.fix(11 + j, 1, 1, 1)
         ops.element("elasticBeamColumn", 400 + j, 100, 1 + j, 100.0 * axial, 1.0, 1e4 * bending, 1)
         ops.element("zeroLength", 21 + j, 11 + j, 1 + j, "-mat", 1, "-dir", 2, "-doRayleigh", 1)
-    critical = 2.0 / math.sqrt(2.0 * CONTACT / (case.shaft + case.top))
-    ops.region(1, "-ele", 21, 22, "-rayleigh", 0.0, critical, 0.0, 0.0)
+    by_stiffness = 2.0 * ground.damping / math.sqrt(2.0 * ground.stiffness / (case.shaft + case.top))
+    ops.region(1, "-ele", 21, 22, "-rayleigh", 0.0, by_stiffness, 0.0, 0.0)
     return masses
 
 
@@ -104,13 +116,13 @@ def advance(step: float, halvings: int = 0) -> None:
     advance(0.5 * step, halvings + 1)
 
 
-def follow(case: Case, damping: float, step: float) -> np.ndarray:
+def follow(case: Case, damping: float, step: float, under: Ground) -> np.ndarray:
     """Return t [s], θ [rad], base shear [kN] and moment at mid-height [kN m] after each step, shape (n, 4)."""
     import openseespy.opensees as ops
 
-    build(case, 1e6, fixed=True)
+    build(case, 1e6, None)
     frequency = math.sqrt(ops.eigen("-fullGenLapack", 1)[0])
-    masses = build(case, 1e6 * (2.0 * math.pi / case.period / frequency) ** 2, fixed=False)
+    masses = build(case, 1e6 * (2.0 * math.pi / case.period / frequency) ** 2, under)
     if damping:
         by_stiffness = damping * case.period / math.pi
         ops.region(2, "-ele", *range(301, 301 + ELEMENTS), "-rayleigh", 0.0, by_stiffness, 0.0, 0.0)
@@ -151,12 +163,24 @@ def main() -> None:
         print(",".join(OF_FORCES))
         for name, case in (CASES | FURTHER).items():
             print(
-                ",".join([name, *(f"{value:.5g}" for value in abs(follow(case, DAMPING, 0.5 * STEP)).max(axis=0)[2:])])
+                ",".join(
+                    [
+                        name,
+                        *(f"{value:.5g}" for value in abs(follow(case, DAMPING, 0.5 * STEP, Ground())).max(axis=0)[2:]),
+                    ]
+                )
             )
+        return
+    if sys.argv[1:] == ["--springs"]:
+        print(",".join((*COLUMNS, *OF_FORCES[1:])))
+        for name, case in (CASES | FURTHER).items():
+            rows = follow(case, DAMPING, STEP, SPRINGS)
+            values = *extremes(rows), *abs(rows).max(axis=0)[2:]
+            print(",".join([name, *(f"{value:.5g}" for value in values)]), flush=True)
         return
     print(",".join(COLUMNS))
     for name, case in CASES.items():
-        print(",".join([name, *(f"{value:.5g}" for value in extremes(follow(case, 0.0, STEP)))]))
+        print(",".join([name, *(f"{value:.5g}" for value in extremes(follow(case, 0.0, STEP, Ground())))]))
 
 
 if __name__ == "__main__":

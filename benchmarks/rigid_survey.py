@@ -15,7 +15,7 @@ when the motion is made 10⁻⁸ stronger or weaker. Of the others:
   beyond tolerance |θ_max − truth| > 10⁻⁴ α; "unmarked" where the row claims an error all the same
   beyond claimed   |θ_max − truth| beyond the error that the row claims, and what the truth may be off by itself
   failed           no result, with a reason
-  later            right until the end of the run, whose note says that the pier had still the energy for more
+  later            right until the end of the run, which waited its longest after the record
 
 Marked rows are those whose error is left empty.
 """
@@ -39,6 +39,7 @@ from rockbatch.motions.pairing import to_motions
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Pier, RigidBase
 from rockbatch.simulation import run_all_to_tolerance
+from rockbatch.simulation.models import patience
 from rockbatch.simulation.runs import Run, Stop
 
 TOLERANCE = 1e-4  # of α
@@ -46,7 +47,6 @@ SAME_TIME = 0.01  # over p [s]
 CHANGE = 1e-8  # of the motion
 BLUR = 1e-10  # of α: what the truth may be off by itself
 CARRIED = 1e-4  # share of what CHANGE moves that rounding may move
-RESTLESS = "still the energy for a greater rotation"  # in the note of such a run
 GROUP = 256  # runs side by side
 CASES = 24000
 
@@ -282,7 +282,8 @@ def verdict(case: Case, outcome: Outcome, fact: Truth, blur: float) -> str:
     if outcome.status == "overturned":
         return ""
     error = abs(outcome.theta_max - fact.theta_max)
-    if error > TOLERANCE * case.pier.alpha and fact.t_max > outcome.t_end and RESTLESS in outcome.note:
+    waited = outcome.t_end - case.motion.duration >= patience(case.pier, case.motion.dt) * case.motion.dt
+    if error > TOLERANCE * case.pier.alpha and fact.t_max > outcome.t_end and waited:
         return "later"
     if error > TOLERANCE * case.pier.alpha:
         return "beyond tolerance"

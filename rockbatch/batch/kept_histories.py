@@ -89,7 +89,7 @@ def to_keep(study: Study, runs: Sequence[StudyRun], table: "pd.DataFrame", recor
 
 
 def worst(table: "pd.DataFrame", cases: int) -> list[int]:
-    """Return the number of each case's worst run, in the order of cases, leaving out cases whose runs all failed.
+    """Return the number of each case's worst run, in the order of cases, without cases whose runs all failed; [] without runs.
 
     Overturned runs are worse than any rotation, the earliest worst. A run that stopped in flight counts by its rotation
     until then. Of equal runs the first is taken.

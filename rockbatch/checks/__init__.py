@@ -1,8 +1,8 @@
 """Design checks of finished results: a demand of each record, a statistic over the suite, a limit, and the verdict.
 
-What a rule asks is said by :mod:`rockbatch.checks.rules`, and what may be asked by :mod:`rockbatch.quantities`. Here
-:mod:`bounds` finds between which bounds each record's demand lies, :mod:`judging` decides, :mod:`verdicts` has the result, and
-:mod:`checking` does so for a folder. Never loads the compiler.
+A rule (:mod:`rules`) comes from a file by :mod:`rule_files`, and may ask for what :mod:`rockbatch.quantities` has.
+:mod:`rule_choices` fits it to a study, :mod:`bounds` finds the bounds within which its demand of a suite lies, :mod:`judging`
+decides, and :mod:`verdicts` has the result; :mod:`rockbatch.results.checking` does so for a folder. Never loads the compiler.
 """
 
 from rockbatch.checks.judging import judge

@@ -276,7 +276,7 @@ class _Cases:
         return (f"Left out by name: {_listed(names, ', ')}.",) if names else ()
 
     def without_limit(self, free: Mapping[str, Sequence[Worst]]) -> Line | None:
-        """Return the line on cases that pass only because their governing responses have no limit."""
+        """Return the line on cases that pass only because their governing responses have no limit; None for no case."""
         worst = worst_of_all(response for responses in free.values() for response in responses)
         if not worst:
             return None
@@ -287,7 +287,7 @@ class _Cases:
         return Line(NOT_DECIDED, _capital(text), _few(list(free)), details)
 
     def failing(self, names: Sequence[str]) -> Line | None:
-        """Return the line on cases that fail a check, with the case that is nearest to passing."""
+        """Return the line on cases that fail a check, with the case that is nearest to passing; None for no case."""
         if not names:
             return None
         near = min((max(self._of([name], FAIL), key=_excess) for name in names), key=_excess)
@@ -322,7 +322,7 @@ class _Cases:
         return (*(_capital(words) if len(self.every) == 1 else words for words in few),)
 
     def undecided(self, names: Sequence[str], failing: Sequence[str]) -> Line | None:
-        """Return the line on undecided cases, with the reasons; open checks of ``failing`` cases are only listed."""
+        """Return the line on undecided cases with reasons, and open checks of ``failing`` cases in a list; None for neither."""
         idle = ", ".join(dict.fromkeys(verdict.check for verdict in self._of(failing, NOT_DECIDED)))
         if not names:
             return Line(NOT_DECIDED, "Left undecided", f"{idle}, in cases that fail anyway", ()) if idle else None

@@ -1,5 +1,6 @@
-"""Bounds of demands: of each run of a case at one scale, and of each record."""
+"""Bounds of demands: of each run of a case at one scale, of each record, and of their statistic."""
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
@@ -15,7 +16,7 @@ from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.demands import Demand
 from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.rows import NOT_RUN
-from rockbatch.quantities.statistics import Values
+from rockbatch.quantities.statistics import STATISTICS, Values
 
 SCATTER = 2.0
 """Factor within which a chaotic result is known: of 41, motions 10⁻⁸ stronger or weaker moved five further (THEORY.md)."""
@@ -31,6 +32,13 @@ class Bounds(NamedTuple):
     low: Values
     high: Values
     estimated: bool
+
+
+class Axis(NamedTuple):
+    """A case, along or across the axis of its pier, with its runs at one scale; both axes have the same records."""
+
+    case: Case
+    suite: Rows
 
 
 class Demanded(NamedTuple):
@@ -49,6 +57,24 @@ class Demanded(NamedTuple):
     omitted: list[str]
 
 
+class OfSuite(NamedTuple):
+    """The demand of a rule on a suite of n runs: ``value`` of its statistic, and the bounds within which that lies.
+
+    ``records`` have the bounds of each record, ``axes`` the demands of runs on one or both axes of a pier, ``counting`` the runs
+    that count, shape (n,). ``governing`` is the place of the run that demands most, or may where the limit is within the bounds,
+    and ``demanded`` its demand; None and NaN if no run demands anything.
+    """
+
+    value: float
+    low: float
+    high: float
+    records: Bounds
+    axes: Sequence[Demanded]
+    counting: npt.NDArray[np.bool_]
+    governing: int | None
+    demanded: float
+
+
 _COMBINED: dict[str, Callable[[Values, Values], Values]] = {
     "greater": np.maximum,
     "srss": np.hypot,
@@ -56,7 +82,38 @@ _COMBINED: dict[str, Callable[[Values, Values], Values]] = {
 }
 
 
-def on_both_axes(axes: Sequence[Bounds], how: str) -> Bounds:
+def of_suite(rule: Rule, axes: Sequence[Axis], counted_as: Texts) -> OfSuite:
+    """Return the demand of a rule on a suite; ``counted_as`` has the record under which each run counts, shape (n,)."""
+    of_axes = [of_runs(rule, axis.suite, axis.case) for axis in axes]
+    runs = _on_both_axes([its.bounds for its in of_axes], rule.both_axes or "greater")
+    counting = np.logical_and.reduce([its.counting for its in of_axes])
+    records = _by_record(runs, counting, counted_as)
+    value, low, high = _of_records(rule, records)
+    governing = _governing(runs, counting, by_bound=low <= rule.limit < high)
+    demanded = math.nan if governing is None else float(runs.value[governing])
+    return OfSuite(value, low, high, records, of_axes, counting, governing, demanded)
+
+
+def _of_records(rule: Rule, records: Bounds) -> tuple[float, float, float]:
+    """Return the statistic of the demands of all records, and its bounds; NaN without a record."""
+    interval = STATISTICS[rule.statistic or "max"].interval
+    value, low, high = (_statistic(rule, values) for values in records[:3])
+    if interval is not None and len(records.value):
+        low, high = interval(*records[:3])
+    if rule.statistic == "asce7-16" and np.isinf(records.high).sum() > np.isinf(records.low).sum():
+        high = math.inf  # a response that is not known is not one of the unacceptable
+    return value, low, high
+
+
+def _statistic(rule: Rule, values: Values) -> float:
+    """Return the statistic of values, shape (n,), or the number of those above the threshold; NaN for n = 0."""
+    if len(values) == 0:
+        return math.nan
+    statistic = STATISTICS[rule.statistic or "max"]
+    return float((values > (rule.above or 0.0)).sum()) if statistic.evaluate is None else statistic.evaluate(values)
+
+
+def _on_both_axes(axes: Sequence[Bounds], how: str) -> Bounds:
     """Return the demands of runs on one or both axes of a pier, combined by ``how`` of :data:`rockbatch.checks.rules.BOTH_AXES`.
 
     Every way grows with both demands, so that bounds combine to bounds.
@@ -68,7 +125,7 @@ def on_both_axes(axes: Sequence[Bounds], how: str) -> Bounds:
     return Bounds(combined(*values), combined(*lows), combined(*highs), all(estimated))
 
 
-def by_record(runs: Bounds, counting: npt.NDArray[np.bool_], counted_as: Texts) -> Bounds:
+def _by_record(runs: Bounds, counting: npt.NDArray[np.bool_], counted_as: Texts) -> Bounds:
     """Return the demand of each record: the worst of its runs that are ``counting``. Empty if every run is left out."""
     names, record = np.unique(counted_as[counting], return_inverse=True)
 
@@ -80,7 +137,7 @@ def by_record(runs: Bounds, counting: npt.NDArray[np.bool_], counted_as: Texts) 
     return Bounds(worst(runs.value), worst(runs.low), worst(runs.high), runs.estimated)
 
 
-def governing(runs: Bounds, counting: npt.NDArray[np.bool_], *, by_bound: bool) -> int | None:
+def _governing(runs: Bounds, counting: npt.NDArray[np.bool_], *, by_bound: bool) -> int | None:
     """Return the place of the run that demands most, or may (``by_bound``); None if no run demands anything."""
     first, second = (runs.high, runs.value) if by_bound else (runs.value, runs.high)
     order = [i for i in np.lexsort((-second, -first)) if counting[i]]  # a stable sort: of equal ones the first
@@ -120,16 +177,16 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
         by_other = demand.other_law(runs, case)
         high = np.where(np.isnan(by_other) & rule.other_law, np.inf, np.fmax(high, by_other))
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
-    if rule.counts("overturned") == "infinite":
+    if rule.ways["overturned"] == "infinite":
         high = np.where(runs.facts("may_overturn"), np.inf, high)
     unknown = open_landings(demand, runs, case) & np.isfinite(value)
-    for name in USUAL:
-        ended, kind = status == name, rule.counts(name)
-        if kind == "infinite":
+    for name, way in rule.ways.items():
+        ended = status == name
+        if way == "infinite":
             value, low, high = (np.where(ended, np.inf, bound) for bound in (value, low, high))
-        elif kind == "unknown":
+        elif way == "unknown":
             unknown |= ended
-        elif kind == "left out":
+        elif way == "left out":
             counting &= ~ended
     missing = np.isnan(value)  # such as the residual of a run that was cut short
     unknown |= missing
@@ -166,6 +223,6 @@ def counted(rule: Rule, suites: Iterable[Rows]) -> str:
     parts = []
     for name in (*USUAL, NOT_RUN):
         if n := numbers[name]:
-            kind = f" ({rule.counts('failed' if name == NOT_RUN else name)})" if DEMANDS[rule.demand].per_run else ""
-            parts.append(f"{n} {name}{kind}")
+            way = rule.ways["failed" if name == NOT_RUN else name]
+            parts.append(f"{n} {name} ({way})" if DEMANDS[rule.demand].per_run else f"{n} {name}")
     return ", ".join(parts)

@@ -4,25 +4,15 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
-from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.checks.bounds import (
-    SCATTER,
-    Bounds,
-    Demanded,
-    by_record,
-    counted,
-    governing,
-    lacking,
-    of_runs,
-    on_both_axes,
-)
+from rockbatch.checks.bounds import SCATTER, Axis, Demanded, OfSuite, counted, lacking, of_suite
+from rockbatch.checks.capacity import used
 from rockbatch.checks.endings import left_open
 from rockbatch.checks.events import OfEvent, largest_event
 from rockbatch.checks.omissions import OMISSIONS
-from rockbatch.checks.rule_choices import FAR, Available, chooses, has_section, limit_key, unmet
+from rockbatch.checks.rule_choices import FAR, Available, Fitted, fitted, limit_key
 from rockbatch.checks.rules import Rule
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
@@ -31,23 +21,15 @@ from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
-from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.rows import complete, counts_as, rows_of_cases, simulated, with_case
-from rockbatch.quantities.statistics import STATISTICS, Values
+from rockbatch.quantities.statistics import STATISTICS
 
 MOST_NAMES = 5
 
 
 NOT_WEIGHED = "the study does not state the pier's mass"
 PLANAR = "each axis of the pier is a planar model of its own"
-
-
-class Axis(NamedTuple):
-    """A case, along or across the axis of its pier, with its runs at one scale; both axes have the same records."""
-
-    case: Case
-    suite: Rows
 
 
 def judge(
@@ -58,6 +40,9 @@ def judge(
     count: str = "station",
     sections: "pd.DataFrame | None" = None,
     events: Mapping[str, str] | None = None,
+    *,
+    interaction: "pd.DataFrame | None" = None,
+    doubted: bool = False,
 ) -> list[Verdict]:
     """Evaluate every rule for every case at every scale; a case that was run on both axes of its pier is one.
 
@@ -78,25 +63,34 @@ def judge(
         Rows of sections.csv, for rules about a section.
     events : mapping, optional
         Names of horizontal components, each with the earthquake that it is of, empty if it is not known.
+    interaction : DataFrame, optional
+        Rows of interaction.csv, for rules about the capacity of a section.
+    doubted : bool
+        Whether limits are compared with the piers: those of a study were when it was read.
 
     Raises
     ------
     InputError
-        Where a rule asks for a case, scale or column that the results do not have.
+        If a rule asks for a case, scale or column that the results do not have, or has a doubted limit that decides nothing.
     """
     runs = with_case(peaks)
     if runs.empty:
         raise InputError("there is no run to check")
     with_mirrors, scales = Rows(runs), [float(scale) for scale in runs["scale"].unique()]
     stations = records or dict(zip(with_mirrors.texts("record"), with_mirrors.texts("station"), strict=True))
+    at_heights = {
+        needs: rows for needs, rows in (("sections", sections), ("interaction", interaction)) if rows is not None
+    }
     available = Available(
         cases=list(dict.fromkeys(str(case["case"]) for case in cases if not case.get("across_of"))),
         scales=scales,
         other_law=OTHER_LAW in runs or not any(map(creeps, cases)),
         output=[key for key, columns in BROUGHT.items() if _has_columns(runs, columns)],
-        sections=set() if sections is None else set(sections["height_m"]),
+        sections={needs: set(rows["height_m"]) for needs, rows in at_heights.items()},
+        piers=cases if doubted else (),
     )
-    wrong = [f"check {shown(rule.name)}: {problem}" for rule in rules for problem in unmet(rule, available)]
+    fits = [fitted(rule, available) for rule in rules]
+    wrong = [f"check {shown(fit.rule.name)}: {problem}" for fit in fits for problem in fit.problems]
     if wrong:
         raise InputError(*wrong)
     runs = simulated(runs)
@@ -104,34 +98,35 @@ def judge(
         raise InputError("the table has mirror images only, and not the runs that they mirror")
     table, scale_of = Rows(runs), runs["scale"].to_numpy(np.float64)
     polarities = [*dict.fromkeys(table.texts("polarity"))]
-    tables = dict.fromkeys((rule.at_m for rule in rules), table)
-    if sections is not None:
-        at_heights = {rule.at_m: rule for rule in rules if rule.at_m is not None}
-        tables |= {height: at_section(runs, sections, rule) for height, rule in at_heights.items()}
-    names = frozenset(str(case["case"]) for case in cases)
+    tables = [
+        at_section(runs, at_heights[DEMANDS[fit.rule.demand].needs], fit) if fit.sections else table for fit in fits
+    ]
     verdicts = []
     for _, of_axes in groupby(rows_of_cases(runs, cases), lambda pair: of_pier(pair[0])):
         pier = list(of_axes)
+        name = str(pier[0][0]["case"])
         for scale in scales:
             axes = []
             for case, rows in pier:
                 at_scale = table.at(rows[scale_of[rows] == scale])
                 axes.append(Axis(case, complete(at_scale, stations, polarities)))
             judged = []
-            for rule in rules:
-                if chooses(rule, str(axes[0].case["case"]), scale, names):
-                    of_rule = [Axis(axis.case, axis.suite.same_rows_of(tables[rule.at_m])) for axis in axes]
-                    judged.append((rule, _verdict(rule, of_rule, scale, rule.count or count, events or {})))
+            for fit, own in zip(fits, tables, strict=True):
+                if name in fit.cases and scale in fit.scales:
+                    of_rule = [Axis(axis.case, axis.suite.same_rows_of(own)) for axis in axes]
+                    judged.append((fit.rule, _verdict(fit.rule, of_rule, scale, fit.rule.count or count, events or {})))
             verdicts += left_open(judged, [axis.suite for axis in axes])
     return verdicts
 
 
-def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", rule: Rule) -> Rows:
-    """Return runs with the columns of sections.csv at the height of the rule; NaN for a run without that section."""
-    keys = [name for name in sections if name not in OF_SECTIONS]
-    its = sections[[has_section(rule, [height]) for height in sections["height_m"]]]
+def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", fit: Fitted) -> Rows:
+    """Return runs with the forces in the section of a rule, from the table that it needs; NaN for a run without that section."""
+    its = sections[sections["height_m"].isin(fit.sections)]
+    if fit.rule.capacity is not None:
+        its = used(fit.rule.capacity, its)
+    keys = [name for name in its if name in runs]
     if its.duplicated(keys).any():
-        raise InputError(f"a run has several sections at {rule.at_m:g} m; start `rockbatch run` again")
+        raise InputError(f"a run has several sections at {fit.rule.at_m:g} m; start `rockbatch run` again")
     return Rows(runs.merge(its, how="left", on=keys))
 
 
@@ -243,57 +238,51 @@ def _with_numbers(verdict: Verdict, value: float, low: float, high: float) -> Ve
 def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[str, str]) -> Verdict:
     """Return the verdict on a statistic of a suite, on one or both axes; ``none`` is the verdict without its numbers."""
     suite = axes[0].suite
-    of_axes = [of_runs(rule, axis.suite, axis.case) for axis in axes]
-    runs = on_both_axes([its.bounds for its in of_axes], rule.both_axes or "greater")
-    counting = np.logical_and.reduce([its.counting for its in of_axes])
     counted_as, unknown = counts_as(suite, none.count)
-    bounds = by_record(runs, counting, counted_as)
-    n = len(bounds.value)
-    value, low, high = _of_bounds(rule, bounds)
-    if np.isinf(bounds.high).sum() > np.isinf(bounds.low).sum() and rule.statistic == "asce7-16":
-        high = math.inf  # a response that is not known is not one of the unacceptable
+    demand = of_suite(rule, axes, counted_as)
+    n, counting = len(demand.records.value), demand.counting
     count = "component" if unknown else none.count
     statistic = STATISTICS[none.statistic]
     of_event = largest_event(suite.texts("record")[counting], counted_as[counting], events) if statistic.code else None
-    verdict, few = _decide(rule, low, high, _unmet(rule, count, n, of_event))
-    left_out = {name for its in of_axes for name in its.omitted if verdict != PASS or OMISSIONS[name].decides}
+    verdict, few = _decide(rule, demand.low, demand.high, _unmet(rule, count, n, of_event))
+    left_out = {name for its in demand.axes for name in its.omitted if verdict != PASS or OMISSIONS[name].decides}
     omitted = [name for name in OMISSIONS if name in left_out]
-    open_by = math.isinf(high) and not all(OMISSIONS[name].decides for name in omitted)
-    deciding = governing(runs, counting, by_bound=verdict == NOT_DECIDED and low <= rule.limit < high)
-    laws = [_laws(its, axis.suite, deciding) for its, axis in zip(of_axes, axes, strict=True)]
+    open_by = math.isinf(demand.high) and not all(OMISSIONS[name].decides for name in omitted)
+    laws = [_laws(its, axis.suite, demand.governing) for its, axis in zip(demand.axes, axes, strict=True)]
     remarks = [
-        few or ("" if verdict != NOT_DECIDED or open_by else _between(low, high)),
+        few or ("" if verdict != NOT_DECIDED or open_by else _between(demand.low, demand.high)),
         *(OMISSIONS[name].remark for name in omitted),
-        _far(rule, value) if verdict == PASS else "",
-        _on_each([its.bounds for its in of_axes], axes, deciding),
-        statistic.remark(bounds.high) if statistic.remark and n else "",
+        _far(rule, demand.value) if verdict == PASS else "",
+        _on_each(demand, axes),
+        statistic.remark(demand.records.high) if statistic.remark and n else "",
         unknown,
         *(of_event.remarks if of_event else ()),
         "" if none.count == "component" else _directions(lacking(counting, counted_as)),
         *dict.fromkeys(remark for of_axis in laws for remark in of_axis),
-        "" if bounds.estimated or DEMANDS[rule.demand].event else "no error estimate",
-        *dict.fromkeys(_chaotic(int(its.chaotic.sum())) for its in of_axes),
+        "" if demand.records.estimated or DEMANDS[rule.demand].event else "no error estimate",
+        *dict.fromkeys(_chaotic(int(its.chaotic.sum())) for its in demand.axes),
     ]
     judged = replace(
-        _with_numbers(none, value, low, high),
+        _with_numbers(none, demand.value, demand.low, demand.high),
         records=n,
         verdict=verdict,
         count=count,
         remarks=tuple(filter(None, remarks)),
         omits=", ".join(omitted),
     )
-    if deciding is None:
+    if demand.governing is None:
         return judged
-    station, record, polarity = (suite.texts(name)[deciding] for name in ("station", "record", "polarity"))
-    governs = float(runs.value[deciding])
-    return replace(judged, station=station, record=record, polarity=polarity, governing=governs)
+    station, record, polarity = (suite.texts(name)[demand.governing] for name in ("station", "record", "polarity"))
+    return replace(judged, station=station, record=record, polarity=polarity, governing=demand.demanded)
 
 
-def _on_each(bounds: Sequence[Bounds], axes: Sequence[Axis], deciding: int | None) -> str:
+def _on_each(demand: OfSuite, axes: Sequence[Axis]) -> str:
     """Return the demand of the run that governs on each of two axes; empty on one."""
-    if len(axes) == 1 or deciding is None:
+    run = demand.governing
+    if len(axes) == 1 or run is None:
         return ""
-    return ", ".join(f"{its.value[deciding]:.4g} {_place(axis)}" for its, axis in zip(bounds, axes, strict=True))
+    of_axes = zip(demand.axes, axes, strict=True)
+    return ", ".join(f"{its.bounds.value[run]:.4g} {_place(axis)}" for its, axis in of_axes)
 
 
 def _far(rule: Rule, value: float) -> str:
@@ -331,23 +320,6 @@ def _directions(records: Mapping[str, tuple[int, int]]) -> str:
     names = [f"{name} ({used} of {total})" for name, (used, total) in records.items()]
     more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
     return f"not every direction counts, and the worst may be another: {', '.join(names[:MOST_NAMES])}{more}"
-
-
-def _of_bounds(rule: Rule, bounds: Bounds) -> tuple[float, float, float]:
-    """Return the statistic of the demands of all records, and its bounds; NaN without a record."""
-    interval = STATISTICS[rule.statistic or "max"].interval
-    value, low, high = (_statistic(rule, values) for values in bounds[:3])
-    if interval is not None and len(bounds.value):
-        low, high = interval(*bounds[:3])
-    return value, low, high
-
-
-def _statistic(rule: Rule, values: Values) -> float:
-    """Return the statistic of values, shape (n,), or the number of those above the threshold; NaN for n = 0."""
-    if len(values) == 0:
-        return math.nan
-    statistic = STATISTICS[rule.statistic or "max"]
-    return float((values > (rule.above or 0.0)).sum()) if statistic.evaluate is None else statistic.evaluate(values)
 
 
 def _decide(rule: Rule, low: float, high: float, unmet: str = "") -> tuple[str, str]:

@@ -51,7 +51,7 @@ def undamped_settlement(worst: Sequence[Worst]) -> str:
 
 
 def bounds_in_words(info: Mapping[str, Any]) -> list[str]:
-    """Return sentences on the bounds of the design in run.json: what each changes, and cases that lack its keys."""
+    """Return sentences on the bounds of the design in run.json: what each changes, and cases that lack its keys; [] for none."""
     bounds = info.get("bounds", ())
     if not bounds:
         return []

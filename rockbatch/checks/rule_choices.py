@@ -1,18 +1,20 @@
 """Rules checked against their study: choices that it does not offer, and limits that decide nothing."""
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 from rockbatch.checks.rules import Rule
 from rockbatch.common.errors import MissingKey, Problem, UnknownKey, Unusual
 from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
-from rockbatch.common.naming import chosen, chosen_by
+from rockbatch.common.naming import chosen
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, weight
 from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.quantities.demands import AT_HEIGHTS
 
 FAR = 100.0
 """Greatest plausible ratio of a limit to its demand, or the reverse; beyond it a wrong unit is likelier."""
@@ -24,40 +26,67 @@ LEAST_MM = 1.0
 """Limit of a length [mm] below which it is more probably in metres."""
 
 
-def is_about(rule: Rule, case: str, cases: frozenset[str]) -> bool:
-    """Return whether the rule is about the case of this name, one of ``cases``."""
-    return not rule.case or case in chosen_by(tuple(rule.case), cases)
-
-
-def chooses(rule: Rule, case: str, scale: float, cases: frozenset[str]) -> bool:
-    """Return whether the rule is about the case of this name, one of ``cases``, at this scale."""
-    return is_about(rule, case, cases) and (not rule.scale or any(math.isclose(scale, factor) for factor in rule.scale))
-
-
 class Available(NamedTuple):
     """Choices that a study offers to rules.
 
     ``cases`` are names, ``output`` the keys of [output] whose columns it has, ``sections`` the heights [m] of sections of any
-    pier; ``other_law`` is True if it has the settlement by the other spring law.
+    pier by the ``needs`` of demands; ``other_law`` is True if it has the settlement by the other spring law. ``piers`` are the
+    cases with which limits are compared, as in run.json, with ``case``, ``base``, ``pier`` and ``parameters`` at least; none
+    if limits are not compared.
     """
 
     cases: Collection[str]
     scales: Collection[float]
     other_law: bool
     output: Collection[str]
-    sections: Collection[float] = ()
+    sections: Mapping[str, Collection[float]] = {}
+    piers: Sequence[Case] = ()
 
 
-def unmet(rule: Rule, available: Available) -> Iterator[Problem]:
-    """Yield a problem for each choice of the rule that is not ``available``."""
+class Fitted(NamedTuple):
+    """A rule, what it is about of the cases, scales and sections [m] of a study, and its problems there."""
+
+    rule: Rule
+    cases: frozenset[str]
+    scales: list[float]
+    sections: list[float]
+    problems: list[Problem]
+
+
+def fitted(rule: Rule, available: Available) -> Fitted:
+    """Return a rule fitted to a study: what it chooses of what is ``available``, and a problem for each choice that is not."""
+    matches = {pattern: chosen(pattern, available.cases) for pattern in rule.case}
+    cases = frozenset(chain.from_iterable(matches.values()) if rule.case else available.cases)
+    scales = [scale for scale in available.scales if not rule.scale or _is_among(scale, rule.scale)]
+    heights = available.sections.get(DEMANDS[rule.demand].needs, ())
+    at = [] if rule.at_m is None else [height for height in heights if is_height(height, rule.at_m)]
+    problems = [*_unmet(rule, matches, available), *_no_section(rule, at, heights)]
+    piers = [case for case in available.piers if str(case["case"]) in cases]
+    if available.piers:
+        problems += _without_dead_load(rule, piers) if rule.capacity else _implausible(rule, piers)
+    return Fitted(rule, cases, scales, at, problems)
+
+
+def _is_among(scale: float, scales: Iterable[float]) -> bool:
+    """Return whether a scale is one of these, up to rounding."""
+    return any(math.isclose(scale, factor) for factor in scales)
+
+
+def is_height(height: float, other: float) -> bool:
+    """Return whether two heights [m] are the same, up to rounding."""
+    return math.isclose(height, other, rel_tol=1e-6, abs_tol=1e-9)
+
+
+def _unmet(rule: Rule, matches: Mapping[str, Collection[str]], available: Available) -> Iterator[Problem]:
+    """Yield a problem for each case, scale and column of the rule that is not ``available``; ``matches`` by its patterns."""
     cases, scales = available.cases, available.scales
-    for pattern in rule.case:
-        if not chosen(pattern, cases):
+    for pattern, names in matches.items():
+        if not names:
             nearest = closest(pattern, cases)
             instead = f"did you mean {shown(nearest)}?" if nearest else f"there is {', '.join(map(shown, cases))}"
             yield Problem("case", pattern, f"there is no such case; {instead}", kind=UnknownKey)
     for scale in rule.scale:
-        if not any(math.isclose(scale, factor) for factor in scales):
+        if not _is_among(scale, scales):
             text = f"the motions are scaled by {', '.join(f'{factor:g}' for factor in scales)} only"
             yield Problem("scale", scale, text, kind=UnknownKey)
     if rule.other_law and not available.other_law:
@@ -67,37 +96,45 @@ def unmet(rule: Rule, available: Available) -> Iterator[Problem]:
         )
         yield Problem("other_law", None, text, kind=MissingKey)
     needs = DEMANDS[rule.demand].needs
-    if needs == "sections":
-        yield from _no_section(rule, available.sections)
-    elif needs and needs not in available.output:
+    if needs and needs not in AT_HEIGHTS and needs not in available.output:
         text = f"there is no column of {needs}; write {needs} = true under [output] of the study and run it"
         yield Problem("demand", rule.demand, text, kind=MissingKey)
 
 
-def has_section(rule: Rule, sections: Iterable[float]) -> bool:
-    """Return whether one of these heights [m] is that of the rule, up to rounding."""
-    return any(math.isclose(height, rule.at_m or 0.0, rel_tol=1e-6, abs_tol=1e-9) for height in sections)
-
-
-def _no_section(rule: Rule, sections: Collection[float]) -> Iterator[Problem]:
-    """Yield the problem of a rule whose section is not there, or that there are none at all."""
+def _no_section(rule: Rule, own: Collection[float], sections: Collection[float]) -> Iterator[Problem]:
+    """Yield the problem of a rule about a section that has no ``own`` among ``sections`` [m]."""
+    if not DEMANDS[rule.demand].in_section:
+        return
     if not sections:
         text = (
-            "there are no forces in sections; write sections = 5 under [output] of the study and check the folder that it is "
-            "run into"
+            f"there are no forces in sections; write {AT_HEIGHTS[DEMANDS[rule.demand].needs]} under [output] of the study and "
+            "check the folder that it is run into"
         )
         yield Problem("demand", rule.demand, text, kind=MissingKey)
-    elif not has_section(rule, sections):
+    elif not own:
         text = f"there is no section at this height; there are {', '.join(f'{x:g}' for x in sorted(sections))}"
         yield Problem("at_m", rule.at_m, text, kind=UnknownKey)
 
 
-def implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
-    """Yield the problem of a limit that is too far from possible values to decide anything, unless it is confirmed.
+def _without_dead_load(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
+    """Yield the problem of a capacity that has no moment at the axial force of the dead load of any of the ``cases``.
 
-    ``cases`` are as in run.json, with ``case``, ``base``, ``pier`` and ``parameters`` at least; a limit is implausible if it is
-    so for all cases that the rule is about.
+    That force is the weight in a section at the foot, and less above.
     """
+    ends = [axial for axial, _ in rule.capacity or ()]
+    weights = [weight(case) for case in cases if "mass_t" in case["pier"]]
+    if any(ends[0] <= most and ends[-1] >= (most if rule.at_m == 0.0 else 0.0) for most in weights) or not weights:
+        return
+    at = "is" if rule.at_m == 0.0 else "is above 0 and at most"
+    text = (
+        f"capacity goes from N = {ends[0]:g} to {ends[-1]:g} kN, and that of the dead load {at} {max(weights):.4g} kN: "
+        "write N in kN, positive in compression"
+    )
+    yield Problem("capacity", None, text, kind=Unusual, named=False)
+
+
+def _implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
+    """Yield the problem of a limit too far from possible values in all ``cases`` to decide anything, unless it is confirmed."""
     key = "above" if rule.statistic == "count" else limit_key(rule)
     demand, value = DEMANDS[rule.demand], rule.above if rule.statistic == "count" else rule.limit
     if value is None or key in rule.confirm:
@@ -110,8 +147,7 @@ def implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
     if value < 0:
         passing = "nothing" if key == "at_most" else "all"
         yield odd(f"{rule.demand} is counted without its sign, so that {passing} passes", "sign")
-    names = frozenset(str(case["case"]) for case in cases)
-    mine = [case for case in cases if demand.applies_to(case) and is_about(rule, str(case["case"]), names)]
+    mine = [case for case in cases if demand.applies_to(case)]
     most = max((demand.ceiling.value(case) for case in mine if demand.ceiling), default=math.inf)
     shown = 1e-3 * most if rule.demand in ("top_drift_mm", "heel_uplift_mm") and math.isfinite(most) else 0.0
     if demand.unit == "mm" and 0 < value < max(LEAST_MM, shown):

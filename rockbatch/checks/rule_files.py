@@ -49,9 +49,14 @@ SECTIONS = (TOP, SUITE, CHECK)
 """Tables of a file of checks."""
 
 
-def _opened(path: Path) -> TomlFile:
-    """Return a file of checks, parsed. Raises ``InputError`` if it cannot be read."""
-    return TomlFile.read(path, SECTIONS)
+def given_rules(rules: str | os.PathLike[str] | Iterable[Rule]) -> tuple[Rule, ...]:
+    """Return rules, loaded from their file unless they are rules; ``InputError`` for anything else."""
+    if isinstance(rules, str | os.PathLike):
+        return load_rules(rules)
+    listed = tuple(rules) if isinstance(rules, Iterable) else ()
+    if isinstance(rules, Iterable) and all(isinstance(rule, Rule) for rule in listed):
+        return listed
+    raise InputError("rules: must be a file with [[check]] tables, or a list of Rule")
 
 
 def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
@@ -69,6 +74,11 @@ def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
     return checks.rules
 
 
+def _opened(path: Path) -> TomlFile:
+    """Return a file of checks, parsed. Raises ``InputError`` if it cannot be read."""
+    return TomlFile.read(path, SECTIONS)
+
+
 class Checks(NamedTuple):
     """The rules of a file and of the file that its [suite] names; the way of counting records; and the second file, if any."""
 
@@ -84,14 +94,14 @@ def read_checks(
 ) -> Checks:
     """Read [suite] and [[check]] of ``file``, and [[check]] of the file that [suite] names; mistakes are noted in ``file``.
 
-    ``unmet`` returns problems of choices that the study lacks, as :func:`rockbatch.checks.rule_choices.unmet` does; ``opened``
+    ``unmet`` returns problems of a rule in the study, as :func:`rockbatch.checks.rule_choices.fitted` finds them; ``opened``
     opens the file that [suite] names, or raises ``InputError``.
     """
-    suite = file.table("suite")
+    suite, tables = file.table("suite"), file.tables("check", title="name")
     read = {} if suite is None else suite.read(SUITE)
     usual = {name: value for name, value in read.items() if name != "checks"}
     names: set[str] = set()
-    rules = _rules(file, unmet, usual, names)
+    rules = _rules(tables, unmet, usual, names)
     rules_file = None
     if suite is not None and "checks" in read:
         try:
@@ -102,27 +112,30 @@ def read_checks(
                 suite.complain(Problem("checks", read["checks"], text, kind=problem.kind, named=False), "checks")
         else:
             Table(rules_file, (), "", rules_file.data).read(TOP, other=("check", "suite"))
-            its = rules_file.table("suite")
+            its, tables = rules_file.table("suite"), rules_file.tables("check", title="name")
             own = {} if its is None else its.read({name: key for name, key in SUITE.items() if name != "checks"})
-            rules += _rules(rules_file, unmet, usual | own, names)
+            rules += _rules(tables, unmet, usual | own, names)
             file.adopt(rules_file, (*suite.key_path, "checks"))
     return Checks(tuple(rules), usual.get("count", COUNTS[0]), rules_file)
 
 
 def _rules(
-    file: TomlFile, unmet: Callable[[Rule], Iterable[Problem]] | None, usual: KeyValues, names: set[str]
+    tables: Iterable[Table],
+    unmet: Callable[[Rule], Iterable[Problem]] | None,
+    usual: KeyValues,
+    names: set[str],
 ) -> list[Rule]:
     """Return the rules of the [[check]] tables without mistakes, with ``usual`` values of keys; add their names to ``names``."""
     rules: list[Rule] = []
-    for table in file.tables("check", title="name"):
-        before = len(file.problems)
+    for table in tables:
+        before = len(table.file.problems)
         read = table.read(CHECK)
         name = read.get("name")
         if name in names:
             table.complain(f"name = {shown(name)}: given twice; give each check its own name", "name")
         if name is not None:
             names.add(name)
-        if file.is_sound_since(before):
+        if table.file.is_sound_since(before):
             demand = DEMANDS.get(read.get("demand", ""))
             applying = {"count"} if demand and not demand.per_case else set()
             applying |= {"both_axes"} if demand and demand.directed else set()

@@ -22,10 +22,6 @@ _ORDER = (PASS, NOT_DECIDED, FAIL, DOES_NOT_APPLY)
 """Cases in the order of a scorecard."""
 
 
-ROUNDING = 1e-6
-"""Share of a limit below which demands are shown as zero."""
-
-
 class Column(NamedTuple):
     """A check: its name, the limit with its sign and unit, and the factor from the demand's unit to that one.
 
@@ -112,7 +108,7 @@ def scorecard(
     """
     of_cases = [verdict for verdict in verdicts if verdict.case]
     by_check = grouped(of_cases, lambda verdict: verdict.check)
-    checks = sorted(by_check, key=lambda name: max(map(_badness, by_check[name])), reverse=True)
+    checks = sorted(by_check, key=lambda name: max(map(badness, by_check[name])), reverse=True)
     columns = [_column(by_check[name]) for name in checks]
     fallen = {case_of(case) for case in runs if case.none_stands}
     rows: list[tuple[tuple[int, float], Row]] = []
@@ -121,14 +117,14 @@ def scorecard(
     free = without_limits({name: of_case for name, of_case in by_case.items() if _worst(of_case) == PASS}, worst)
     for name, of_case in by_case.items():
         under = of_case[0].scale in failing
-        worst_last = sorted(of_case, key=_badness)
+        worst_last = sorted(of_case, key=badness)
         own = {verdict.check: _under_failing_suite(verdict) if under else verdict for verdict in worst_last}
         cells = [_cell(own[column.check], column) if column.check in own else None for column in columns]
         kind = DOES_NOT_APPLY if name in fallen and _worst(of_case) == PASS else _worst(of_case)
         words = [RESPONSES[response.demand].words for response in free.get(name, ())] if kind == PASS else []
         verdict = NOT_DECIDED if kind == PASS and (words or under) else kind
         rows.append(
-            (max(map(_badness, of_case)), Row(name, verdict, cells, words, under and kind == PASS and not words))
+            (max(map(badness, of_case)), Row(name, verdict, cells, words, under and kind == PASS and not words))
         )
     named = {row.name for _, row in rows}
     rows += [
@@ -151,7 +147,7 @@ def _worst(verdicts: Sequence[Verdict]) -> str:
     return next(kind for kind in (FAIL, NOT_DECIDED, PASS, DOES_NOT_APPLY) if kind in kinds)
 
 
-def _badness(verdict: Verdict) -> tuple[int, float]:
+def badness(verdict: Verdict) -> tuple[int, float]:
     """Return a sort key that grows with badness: passes, undecided, fails, and within each the share of the limit."""
     kind = (DOES_NOT_APPLY, PASS, NOT_DECIDED, FAIL).index(verdict.verdict)
     ratio = -1.0 if math.isnan(verdict.ratio) else math.inf if verdict.is_ban and kind == 3 else verdict.ratio
@@ -165,7 +161,7 @@ def _column(verdicts: Sequence[Verdict]) -> Column:
         return Column(first.check, "none", 1.0)
     unit, factor = SMALL[first.unit] if first.unit in SMALL and abs(first.limit) < 1.0 else (first.unit, 1.0)
     sign = "≤" if first.sense == "at most" else "≥"
-    limit = f"{sign}\u00a0{_number(first.limit * factor)}\u00a0{unit}".rstrip("\u00a0")
+    limit = f"{sign}\u00a0{wording.number(first.limit * factor, least=3)}\u00a0{unit}".rstrip("\u00a0")
     return Column(first.check, limit, factor, wording.at(heights.pop()).strip() if len(heights) == 1 else "")
 
 
@@ -177,13 +173,9 @@ def _cell(verdict: Verdict, column: Column) -> Cell:
     if verdict.is_ban:
         return Cell(verdict, wording.demanded(verdict), "", named)
     bound = "≥\u00a0" if verdict.is_lower_bound else ""
-    value = _number(verdict.value * column.factor, verdict.limit * column.factor)
+    limit = verdict.limit * column.factor
+    value = wording.compared(verdict.value * column.factor, limit, 3)
     place = "" if column.at else wording.at(verdict.at_m)
-    low, high = (_number(end * column.factor, verdict.limit * column.factor) for end in (verdict.low, verdict.high))
+    low, high = (wording.compared(end * column.factor, limit, 3) for end in (verdict.low, verdict.high))
     bounds = f"{low} – {high}" if low != high and not verdict.is_lower_bound else ""
     return Cell(verdict, bound + value + place, f"{bound}{wording.percent(verdict.ratio)}", bounds, named)
-
-
-def _number(value: float, limit: float = math.nan) -> str:
-    """Return a value with three significant digits, or as many as differ from its limit; "0" below rounding of that."""
-    return "0" if abs(value) < ROUNDING * abs(limit) else wording.number(value, limit, 3)

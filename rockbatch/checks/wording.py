@@ -14,6 +14,8 @@ SIGNS = {PASS: "✓", FAIL: "✗", NOT_DECIDED: "?", DOES_NOT_APPLY: "–"}
 SUITE = "the suite"
 """Name of the case in a verdict on the suite."""
 REPEATED = 3
+ROUNDING = 1e-6
+"""Share of a limit below which demands are shown as zero."""
 MOST = 30
 """Greatest number of verdicts that are all printed; of more only the worst are, below their counts."""
 
@@ -61,6 +63,16 @@ def number(value: float, neighbour: float = math.nan, least: int = 4) -> str:
     return f"{rounded:,.10g}" if rounded == 0 or 1e-4 <= abs(rounded) < 1e7 else f"{rounded:.{digits}g}"
 
 
+def compared(value: float, limit: float, least: int = 4) -> str:
+    """Return a demand, or a bound of it, as a number that shows whether it differs from its limit; "0" if it is nothing."""
+    return "0" if is_nothing(value, limit) else number(value, limit, least)
+
+
+def is_nothing(value: float, limit: float) -> bool:
+    """Return whether a demand is rounding beside its limit."""
+    return abs(value) < ROUNDING * abs(limit)
+
+
 def against(verdict: Verdict) -> str:
     """Return demand and limit with their sign and unit: "1.486 m > 0.5 m"."""
     at_most = verdict.sense == "at most"
@@ -75,7 +87,7 @@ def demanded(verdict: Verdict) -> str:
     if math.isnan(value):
         return ""
     if not verdict.is_ban:
-        return f"≥\u00a0{number(value)}" if verdict.is_lower_bound else number(value, verdict.limit)
+        return f"≥\u00a0{number(value)}" if verdict.is_lower_bound else compared(value, verdict.limit)
     if value > 0:
         return "some"
     return "none" if verdict.high <= 0 else "not known"
@@ -100,7 +112,7 @@ def ratio(verdict: Verdict) -> str:
 
 
 def percent(ratio: float) -> str:
-    """Return a share of the limit as "115 %", with decimals where it would otherwise look like the limit itself."""
+    """Return a share of the limit as "115 %", with decimals if it would look like the limit itself; "∞", and "" for NaN."""
     if not math.isfinite(ratio):
         return "∞" if ratio > 0 else ""
     digits = next((n for n in range(3) if ratio == 1 or f"{100 * ratio:.{n}f}" != f"{100:.{n}f}"), 3)
@@ -108,12 +120,11 @@ def percent(ratio: float) -> str:
 
 
 def margin(verdict: Verdict) -> str:
-    """Return the distance to the limit, without its unit."""
+    """Return the distance to the limit, without its unit; empty for NaN and for a ban."""
     if math.isnan(verdict.margin) or verdict.is_ban:
         return ""
-    if math.isinf(verdict.margin):
-        return "-∞" if verdict.margin < 0 else "∞"
-    return f"≤\u00a0{verdict.margin:.3g}" if verdict.is_lower_bound else f"{verdict.margin:.3g}"
+    shown = number(verdict.margin, least=3)
+    return f"≤\u00a0{shown}" if verdict.is_lower_bound and math.isfinite(verdict.margin) else shown
 
 
 class Notes:
@@ -210,7 +221,7 @@ def requirement(verdict: Verdict) -> str:
     return (
         verdict.words
         if verdict.is_ban
-        else f"{verdict.words} {verdict.sense} {verdict.limit:g} {verdict.unit}".rstrip()
+        else f"{verdict.words} {verdict.sense} {verdict.limit:,g} {verdict.unit}".rstrip()
     )
 
 

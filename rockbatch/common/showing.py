@@ -23,7 +23,7 @@ class InNotebook:
         return type(self).__name__, {name: _short(value) for name, value, default in given if value != default}
 
     def _beneath(self) -> "pd.DataFrame | None":
-        """Return a table whose first rows are shown below the facts."""
+        """Return a table whose first rows are shown below the facts, None without one."""
         return None
 
     def _repr_html_(self) -> str:

@@ -76,11 +76,11 @@ class Usual(NamedTuple):
     least: float = 0.0
 
     def holds(self, value: float) -> bool:
-        """Return whether a value is usual."""
+        """Return whether the size of a value is from ``least`` to ``most``; True for 0 and for what is no number."""
         return not isinstance(value, int | float) or value == 0 or self.least <= abs(value) <= self.most
 
     def doubts(self, name: str, value: float) -> list[Problem]:
-        """Return the problem of a value of the key ``name`` that is unusual, and has to be confirmed."""
+        """Return the problem of a value of the key ``name`` that is unusual, and has to be confirmed; [] for a usual value."""
         if self.holds(value):
             return []
         bound = f"more than {self.most:g}" if abs(value) > self.most else f"less than {self.least:g}"

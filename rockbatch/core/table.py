@@ -72,6 +72,14 @@ def _interpreted_with_pull(m, pull):
     return m._replace(pull=pull)
 
 
+def _interpreted_with_rates(y, v_rate, omega):
+    return y._replace(v_rate=v_rate, omega=omega)
+
+
+def _interpreted_with_z(y, left, right):
+    return y._replace(z_left=left, z_right=right)
+
+
 def _interpreted_along(y, k, h):
     return type(y)(*(a + h * b for a, b in zip(y, k, strict=True)))
 
@@ -160,6 +168,34 @@ def _with_pull(typing_context, m, pull):
     return result(m, pull), generate
 
 
+def _replaced(builder, y, value, numbers):
+    for name, number in numbers.items():
+        value = builder.insert_value(value, number, y.fields.index(name))
+    return value
+
+
+@intrinsic
+def _with_rates(typing_context, y, v_rate, omega):
+    """Return the state ``y`` with its fields ``v_rate`` and ``omega`` replaced."""
+
+    def generate(context, builder, signature, arguments):
+        state, *numbers = arguments
+        return _replaced(builder, y, state, dict(zip(("v_rate", "omega"), numbers, strict=True)))
+
+    return y(y, types.float64, types.float64), generate
+
+
+@intrinsic
+def _with_z(typing_context, y, left, right):
+    """Return the state ``y`` with its fields ``z_left`` and ``z_right`` replaced."""
+
+    def generate(context, builder, signature, arguments):
+        state, *numbers = arguments
+        return _replaced(builder, y, state, dict(zip(("z_left", "z_right"), numbers, strict=True)))
+
+    return y(y, types.float64, types.float64), generate
+
+
 @intrinsic
 def _along(typing_context, y, k, h):
     """Return ``y + h k`` of two named tuples of one kind."""
@@ -196,6 +232,8 @@ get = _get if _COMPILES else _interpreted_get
 taken = _taken if _COMPILES else _interpreted_taken
 with_pull = _with_pull if _COMPILES else _interpreted_with_pull
 take_unless = _take_unless if _COMPILES else _interpreted_take_unless
+with_rates = _with_rates if _COMPILES else _interpreted_with_rates
+with_z = _with_z if _COMPILES else _interpreted_with_z
 put = _put if _COMPILES else _interpreted_put
 along = _along if _COMPILES else _interpreted_along
 weighted = _weighted if _COMPILES else _interpreted_weighted

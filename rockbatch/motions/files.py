@@ -104,7 +104,7 @@ def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
 
 
 def _source_file(path: Path, source: str) -> SourceFile:
-    """Return a regular file, as a companion if its name or suffix is one, or refused if it is an archive not read."""
+    """Return a regular file: a companion by its name, suffix or our own contents, refused as an archive not read, or a record."""
     if path.name.lower() == _SEARCH_RESULTS:
         return SourceFile(path, source, companion="a table about the records")
     suffix = archives.bare(path).suffix.lower()

@@ -69,7 +69,7 @@ class HazardCurve:
         return self.levels[0], self.levels[-1]
 
     def rate(self, x: "Sequence[float] | Values") -> Values:
-        """Return the annual rate at which each intensity ``x`` is exceeded, shape of ``x``."""
+        """Return the annual rate at which each intensity ``x`` is exceeded, shape of ``x``; extrapolated beyond the points."""
         log_x = np.log(np.asarray(x, dtype=np.float64))
         if self.shape == "quadratic":
             return np.exp(np.polyval(self._parabola, np.maximum(log_x, self._summit)))

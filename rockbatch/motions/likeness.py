@@ -335,7 +335,7 @@ class _Table:
         return copies
 
     def same_by_headers(self, i: int) -> list[int]:
-        """Return later components of the same recording by their headers; those in one file are of different sensors."""
+        """Return later components of the same recording by their headers, never those of one file; [] for an unknown sensor."""
         if self.sensor[i] < 0:
             return []
         near = (self.event[i + 1 :] == self.event[i]) | self.dated[i + 1 :]

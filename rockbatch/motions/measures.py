@@ -137,7 +137,7 @@ def bracketed_duration(acceleration: Samples, dt: float, threshold: float) -> fl
         return 0.0
 
     def beyond(last_above: int, outside: int) -> float:
-        """Return the share of the interval towards a sample below the threshold during which it is exceeded."""
+        """Return the share of the interval to a sample ``outside`` that is above the threshold; 0 beyond the record."""
         if not 0 <= outside < len(acceleration):
             return 0.0
         a = acceleration[last_above]

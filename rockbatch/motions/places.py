@@ -154,7 +154,7 @@ def stand(place: str, name: str) -> tuple[Stand, str]:
 
 
 def depth_as_place(depth: float | None) -> str | None:
-    """Return the words for a sensor at a ``depth`` [m] below the surface; ``None`` for one at the surface."""
+    """Return "depth 30 m" for a sensor below the surface [m]; None for one at the surface or hardly below it."""
     return f"depth {depth:g} m" if depth is not None and depth > _LEAST_DEPTH else None
 
 

@@ -74,7 +74,7 @@ class Candidate:
 
 
 def unlikely_peak(candidate: Candidate) -> Finding | None:
-    """Return a finding on a PGA outside 0.001–5 g, so that the unit is probably wrong, or above 2 g in a file in g."""
+    """Return a finding on a PGA outside 0.001–5 g, so that the unit is probably wrong, or above 2 g in a file in g; else None."""
     horizontal = candidate.motion.pga / candidate.gravity
     vertical = (candidate.motion.pga_vertical or 0.0) / candidate.gravity
     if LOWEST <= horizontal <= HIGHEST >= vertical:

@@ -168,7 +168,7 @@ def _finding_names(motions: Sequence[Motion]) -> list[str]:
 
 
 def _other_pga_g(motion: Motion, others: Iterable[Motion]) -> float | None:
-    """Return the PGA across a motion [g]: of its strongest other horizontal component, which may be no motion of its own."""
+    """Return the PGA across a motion [g]: of its strongest other horizontal component, a motion or not; None without one."""
     across = max((other.pga for other in others if other is not motion), default=None)
     if across is None and motion.across is not None:
         across = float(np.abs(motion.across).max())

@@ -52,7 +52,7 @@ class Channel:
 
     @property
     def named(self) -> str:
-        """Return its file and epoch, for people."""
+        """Return its file and epoch: "a.xml, epoch 2010-01-01 to now"."""
         first, last = (_day(time) for time in (self.start, self.end))
         return f"{self.file}, epoch {first or '…'} to {last or 'now'}"
 

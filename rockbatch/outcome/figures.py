@@ -263,7 +263,7 @@ def _entry(run: Drawn) -> str:
 
 
 def _standing(one: History, row: int) -> Array:
-    """Return the values of a quantity until |θ|/α exceeds :data:`OVER`, since later ones would hide the rocking."""
+    """Return the values of a quantity up to the first |θ|/α beyond :data:`OVER`, shorter than those of a pier that stands."""
     t, theta = one.curves[0]
     beyond = np.flatnonzero(np.abs(theta) > OVER)
     times, values = one.curves[row]

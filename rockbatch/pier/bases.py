@@ -9,18 +9,15 @@ from collections.abc import Sequence
 from dataclasses import InitVar, dataclass, field, replace
 from typing import Any, ClassVar, Literal, Self
 
-import numpy as np
-import numpy.typing as npt
-
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import Contradiction, Problem, Superseded, WrongType, refuse
-from rockbatch.pier.bending import MOST_MODES, Modes, modes_of
 from rockbatch.pier.block import Pier
 from rockbatch.pier.first_loading import Curve, Straight
 from rockbatch.pier.footing_base import FootingBase
 from rockbatch.pier.frequencies import static_deflection, vertical_frequency, yield_deflection
 from rockbatch.pier.laws import LAWS, Law, SpringLaw
 from rockbatch.pier.restraints import Restraint, described_restraints
+from rockbatch.pier.shafts import WithShaft
 from rockbatch.pier.supports import beta_of, eta_of, unlikely_supports
 from rockbatch.pier.traits import (
     ASKING_TENSION,
@@ -28,12 +25,9 @@ from rockbatch.pier.traits import (
     EPSILON_AND_ZETA,
     FLIGHT_LIMIT_MM,
     WITH_EPSILON,
-    FlexuralDamping,
     Flight,
     Impact,
     Kinematics,
-    Shaft,
-    Traits,
     interface,
     wrong_blow,
 )
@@ -44,7 +38,7 @@ MOST_NEGLECTED = 0.05
 
 @checked
 @dataclass(frozen=True)
-class RigidBase(Traits):
+class RigidBase(WithShaft):
     """Ground that neither gives nor yields (Housner 1963).
 
     ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means :attr:`Pier.restitution`, Housner's
@@ -72,10 +66,6 @@ class RigidBase(Traits):
     flight: Flight = field(default="guided", kw_only=True)
     flight_limit_mm: float = field(default=FLIGHT_LIMIT_MM, kw_only=True)
     area_m2: float | None = field(default=None, kw_only=True)
-    shaft: Shaft = field(default="rigid", kw_only=True)
-    flexural_damping: float = field(default=0.05, kw_only=True)
-    flexural_damping_kind: FlexuralDamping = field(default="modal", kw_only=True)
-    flexural_modes: int | None = field(default=None, kw_only=True)
     flexural_impact: InitVar[str | None] = field(default=None, kw_only=True)
     contact_stiffness_kN_m: float | None = field(default=None, kw_only=True)  # noqa: N815 (the study's key)
     confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
@@ -96,29 +86,12 @@ class RigidBase(Traits):
         message = 'flexural_impact = "momentum" has no effect, since no other rule of a blow is left; leave it out'
         warnings.warn(message, Superseded, stacklevel=4)
 
-    @property
-    def bends(self) -> bool:  # type: ignore[override]
-        """Return True if the shaft is elastic."""
-        return self.shaft == "elastic"
-
-    def modes(self, pier: Pier) -> Modes:
-        """Return the modes of an elastic shaft of ``pier`` that are followed."""
-        return modes_of(pier, self.flexural_modes or MOST_MODES)
-
-    def damping_ratios(self, pier: Pier) -> npt.NDArray[np.float64]:
-        """Return ζ_i of these modes, shape (n,): the same of all, or in proportion to their frequencies, as of stiffness."""
-        frequency = self.modes(pier).frequency
-        of_first = 1.0 if self.flexural_damping_kind == "modal" else frequency / frequency[0]
-        return self.flexural_damping * of_first * np.ones(len(frequency))
-
     def parameters(self, pier: Pier) -> dict[str, object]:
         """Return this base under ``pier`` by the keys of run.json."""
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
         values: dict[str, object] = {"restitution": of_frame if self.restitution is None else self.restitution}
         values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
-        if self.bends:
-            values |= {name: getattr(self, name) for name in ("shaft", "flexural_damping", "flexural_damping_kind")}
-            values["flexural_modes"] = len(self.modes(pier).frequency)
+        values |= self.of_shaft(pier)
         if self.contact_stiffness_kN_m is not None:
             values["contact_stiffness_kN_m"] = self.contact_stiffness_kN_m
         return values | interface(self.friction, self.area_m2) | described_restraints(self.restraints)
@@ -126,7 +99,7 @@ class RigidBase(Traits):
 
 @checked
 @dataclass(frozen=True)
-class ElasticBase(Traits):
+class ElasticBase(WithShaft):
     """Two elastic springs that take no tension.
 
     Attributes
@@ -150,6 +123,8 @@ class ElasticBase(Traits):
         Devices between the pier and the ground, other than its springs (THEORY.md, Dampers and tendons).
     area_m2 : float, optional
         Area of one support [m²], for bearing stresses (:func:`rockbatch.statics`).
+    shaft, flexural_damping, flexural_damping_kind, flexural_modes
+        Of a pier that bends, as on a rigid base (:class:`RigidBase`); it takes ``zeta`` and finite kinematics.
     impact : "landing" or "housner"
         An impulse at the landing pivot, by ε; or Housner's e on the angular velocity, while the other pivot keeps its velocity,
         for which the supports would have to pull (THEORY.md, Impact by Housner's e). The latter has no ε.
@@ -221,7 +196,7 @@ class ElasticBase(Traits):
         values: dict[str, object] = {"beta": self.beta, **landing, "kinematics": self.kinematics}
         values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
         values |= {"omega_v": vertical_frequency(pier, self), "delta_s_m": static_deflection(pier, self)}
-        values |= in_kilonewtons(pier, self)
+        values |= in_kilonewtons(pier, self) | self.of_shaft(pier)
         return values | interface(self.friction, self.area_m2) | described_restraints(self.restraints)
 
     @classmethod

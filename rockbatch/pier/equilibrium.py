@@ -188,7 +188,7 @@ class SlowTurn:
 
     @property
     def _swing(self) -> float:
-        """Horizontal distance [m] of the deck's axis from the pivot about which the pier turns."""
+        """Horizontal distance [m] of the deck's axis from the pivot about which the pier turns; 0 on springs."""
         return self.b if self.on_pivots else 0.0
 
     def _by_v(self, theta: Array) -> Array:
@@ -364,7 +364,7 @@ class SlowTurn:
         return self.search_unstable()
 
     def search_unstable(self) -> float | None:
-        """Return the rotation from which on the righting moment is negative [rad], by finer and finer grids."""
+        """Return the rotation from which on the righting moment is negative [rad], by finer and finer grids; None if none is."""
         low, high, parts = 0.0, 0.5 * math.pi, 96
         for _ in range(5):
             grid = np.linspace(low, high, parts + 1)[1:]

@@ -19,15 +19,19 @@ def least_beta(pier: Pier, base: Base) -> float:
     """Return β below which the pier topples on its springs under its weight, or at any disturbance (THEORY.md, eq. 13).
 
     A spring at rest at z = −1/η, or −(1 + ψ)/η with tendons, has r = 1 − |z|ⁿ (Bouc–Wen) of its elastic stiffness in further
-    loading, and all of it in unloading; as a pair in rotation the springs have 2r/(1 + r) of the elastic stiffness.
+    loading, and all of it in unloading; as a pair in rotation the springs have 2r/(1 + r) of the elastic stiffness. A shaft that
+    bends hangs over as it leans.
     """
+    over = 1.0
+    if isinstance(base, ElasticBase) and base.bends and not bending_problems(pier):
+        over = math.sqrt(base.leaning_height(pier) / pier.height)
     if not (isinstance(base, YieldingBase) and base.eta > 1 and base.n >= 1):
-        return pier.least_beta
+        return over * pier.least_beta
     carried = base.eta / (1.0 + prestress_over_weight(pier, base.restraints))
     if carried <= 1:
-        return pier.least_beta
+        return over * pier.least_beta
     softer = float(base.first_loading.tangent(np.array(1.0 / carried)))
-    return pier.least_beta * math.sqrt((1.0 + softer) / (2.0 * softer))
+    return over * pier.least_beta * math.sqrt((1.0 + softer) / (2.0 * softer))
 
 
 def least_eta(pier: Pier, base: Base) -> float:
@@ -108,10 +112,24 @@ def _wrong_bending(pier: Pier, base: Base) -> list[Problem]:
     if any(place.height != 0.0 for device in base.restraints for place in places(pier, device)):
         text = 'devices on the deck are of a rigid shaft; leave them out, or write shaft = "rigid"'
         wrong.append(Problem("shaft", "elastic", text, kind=Contradiction))
+    if isinstance(base, ElasticBase):
+        wrong += [Problem("shaft", "elastic", text, kind=Contradiction) for text in _wrong_under_shaft(base)]
     if isinstance(base, RigidBase) and base.restitution is not None:
         text = "what a blow takes of a shaft that bends follows from the momenta of its modes; leave it out"
         wrong.append(Problem("restitution", base.restitution, text, kind=Contradiction))
     return wrong
+
+
+def _wrong_under_shaft(base: ElasticBase) -> list[str]:
+    """Return a text for each property of two springs that a shaft that bends cannot have under it."""
+    texts = []
+    if not base.zeta:
+        texts.append(
+            "a landing on undamped springs is an impulse, which bending does not follow; write zeta, for example 0.2"
+        )
+    if base.kinematics != "finite":
+        texts.append('bending is of finite kinematics; write kinematics = "finite"')
+    return texts
 
 
 def _wrong_contact(pier: Pier, base: RigidBase) -> list[Problem]:
@@ -138,11 +156,15 @@ def _wrong_stiffness(pier: Pier, base: ElasticBase) -> list[Problem]:
             f"sqrt((1+mu) cos(alpha)/mu)/sin(alpha) = {pier.least_beta:.4g}"
             + (f", for these springs above {least:.4g}" if least > pier.least_beta else "")
         )
-    elif not base.beta > least and isinstance(base, YieldingBase):
+    elif base.beta > least:
+        return []
+    elif isinstance(base, YieldingBase):
         text = (
             "the least push topples the pier, because such springs near their yield force "
             f"(eta = {base.eta:g}, n = {base.n:g}) give way on the loaded side; beta must be above {least:.4g}"
         )
     else:
-        return []
+        text = (
+            f"the pier topples on its springs, over which its shaft hangs as it leans; beta must be above {least:.4g}"
+        )
     return [Problem("beta", base.beta, text, kind=OutOfRange)]

@@ -127,7 +127,7 @@ def inputs(pair: Pair) -> Markup:
 
 
 def figures(pair: Pair) -> Markup:
-    """Draw the peaks of both studies side by side, those of the worse polarity."""
+    """Return the figure of peaks of both studies side by side, those of the worse polarity; empty without pairs."""
     named = pair.named
     if pair.runs[0].empty:
         return Markup("")
@@ -139,7 +139,7 @@ def figures(pair: Pair) -> Markup:
 
 
 def pairs(pair: Pair) -> Markup:
-    """Return a table with a row for each pair of runs, worst first."""
+    """Return a table with a row for each pair of runs, worst first; empty without pairs."""
     a, b = pair.runs
     if a.empty:
         return Markup("")
@@ -167,7 +167,7 @@ def pairs(pair: Pair) -> Markup:
 
 
 def suites(pair: Pair) -> Markup:
-    """Return statistics over the runs that both have: those of different suites are not comparable."""
+    """Return statistics over the runs that both have: those of different suites are not comparable; empty without pairs."""
     if pair.runs[0].empty:
         return Markup("")
     vertical = [any(record["pga_v_g"] is not None for record in study.info["records"]) for study in pair.studies]

@@ -45,8 +45,7 @@ def _state(side: str, study: Finished) -> str:
 
 def _passing(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
     """Return that cases pass, with the check that is closest to its limit: "passes all, closest 83 % (uplift, Te Mara)"."""
-    cells = [(row, cell) for row, cell in _cells(rows) if not cell.verdict.is_ban]
-    closest = _worst(cells)
+    closest = _worst(list(_cells(rows)))
     if closest is None:
         return f"passes all{share}"
     row, cell = closest
@@ -89,7 +88,7 @@ def _cells(rows: Sequence[Row]) -> Iterator[tuple[Row, Cell]]:
 
 
 def _worst(cells: Sequence[tuple[Row, Cell]]) -> tuple[Row, Cell] | None:
-    """Return the cell with the greatest share of its limit, with its row; None without any."""
+    """Return the cell with the greatest share of its limit, with its row; None without any, as of bans alone."""
     known = [pair for pair in cells if math.isfinite(pair[1].verdict.ratio) and pair[1].percent]
     return max(known, key=lambda pair: pair[1].verdict.ratio, default=None)
 
@@ -110,7 +109,7 @@ class Side(NamedTuple):
 
 
 def margins(pair: Pair) -> Markup:
-    """Return a table of each check of each pair of designs: demand, share of the limit and record in A and in B."""
+    """Return a table of checks of pairs of designs: demand, share of the limit and record in A and B; empty without checks."""
     sides = [_designs(pair, place) for place in range(2)]
     rows: list[list[object]] = []
     for key in dict.fromkeys((*sides[0], *sides[1])):

@@ -37,7 +37,7 @@ MOST_STRETCH = 2.0
 
 
 def by_record(finished: Finished) -> Markup:
-    """Draw the peaks with a row for each of the worst records, a row for the others, which unfolds, and the checks' limits."""
+    """Return the figure of peaks, a row for each of the worst records and one for all others, with limits; empty without runs."""
     if finished.runs.empty:
         return Markup("")
     columns = _columns(finished)

@@ -1,21 +1,20 @@
 """Design checks on a folder of results, or on a table: :func:`rockbatch.check`."""
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from rockbatch.checks.judging import judge
-from rockbatch.checks.rule_choices import implausible
-from rockbatch.checks.rule_files import Checks, load_rules, read_checks
+from rockbatch.checks.rule_files import Checks, given_rules, read_checks
 from rockbatch.checks.rules import Rule
 from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import Verdict, as_table
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.common.showing import shown
 from rockbatch.quantities.rows import with_case
 from rockbatch.results.columns import given_table
+from rockbatch.results.interaction import INTERACTION, read_interaction
 from rockbatch.results.labelled import Item
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.run_json import INFO, describe_case
@@ -24,6 +23,9 @@ from rockbatch.study import Study, load_study
 from rockbatch.toml.reader import TomlFile
 
 PathLike = str | os.PathLike[str]
+
+_OF_SECTIONS = {"sections": (SECTIONS, read_sections), "interaction": (INTERACTION, read_interaction)}
+"""Tables of forces in sections, by what demands need of them, and functions that read these."""
 
 
 @checked
@@ -76,19 +78,20 @@ def verdicts(
     study: PathLike | Study | None = None,
 ) -> list[Verdict]:
     """Return the verdicts of :func:`check`, one for each row."""
-    given_rules = _rules_of(rules)
+    given = None if rules is None else given_rules(rules)
     records: Mapping[str, str] | None = None
     events: Mapping[str, str] | None = None
     of_suite: list[Verdict] = []
-    sections: pd.DataFrame | None = None
+    in_sections: dict[str, pd.DataFrame] = {}
     if isinstance(results, Saved | str | os.PathLike):
         saved = results if isinstance(results, Saved) else read_saved(Path(results))
-        own_rules, count, _ = _own_checks(saved.info["study"], judged=given_rules is None)
+        own_rules, count, _ = _own_checks(saved.info["study"], judged=given is None)
         table, cases = saved.peaks, saved.info["cases"]
         records = {record["record"]: record.get("station", "") for record in saved.info["records"]}
         events = {record["record"]: record.get("event") or "" for record in saved.info["records"]}
-        if (path := saved.directory / SECTIONS).exists():
-            sections = read_sections(path, saved.info["varied"])
+        for needs, (name, read) in _OF_SECTIONS.items():
+            if (path := saved.directory / name).exists():
+                in_sections[needs] = read(path, saved.info["varied"])
         of_suite = suite_verdicts(saved.info, with_case(table)["scale"])
     else:
         if study is None:
@@ -96,26 +99,16 @@ def verdicts(
         study = study if isinstance(study, Study) else load_study(study)
         own_rules, count = study.checks, study.count
         table, cases = given_table(results, study.varied), [describe_case(case) for case in study.cases]
-    rules = own_rules if given_rules is None else given_rules
-    if not (rules or of_suite):
+    judged = own_rules if given is None else given
+    if not (judged or of_suite):
         raise InputError("no checks: the study has no [[check]]; add some, or pass a file of rules")
-    if given_rules is not None:  # the study's own rules are checked for plausibility when it is read
-        wrong = [f"check {shown(rule.name)}: {problem}" for rule in given_rules for problem in implausible(rule, cases)]
-        if wrong:
-            raise InputError(*wrong)
-    return [*of_suite, *(judge(rules, table, cases, records, count, sections, events) if rules else ())]
-
-
-def _rules_of(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:
-    """Load rules from a file, or check that they are rules; None for None."""
-    if rules is None:
-        return None
-    if isinstance(rules, str | os.PathLike):
-        return load_rules(rules)
-    listed = tuple(rules) if isinstance(rules, Iterable) else ()
-    if isinstance(rules, Iterable) and all(isinstance(rule, Rule) for rule in listed):
-        return listed
-    raise InputError("rules: must be a file with [[check]] tables, or a list of Rule")
+    if not judged:
+        return of_suite
+    # The limits of the study's own rules are compared with its piers when it is read
+    doubted = given is not None
+    sections, interaction = (in_sections.get(needs) for needs in _OF_SECTIONS)
+    of_cases = judge(judged, table, cases, records, count, sections, events, interaction=interaction, doubted=doubted)
+    return [*of_suite, *of_cases]
 
 
 def _own_checks(study: Item, *, judged: bool) -> Checks:

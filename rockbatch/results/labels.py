@@ -3,6 +3,7 @@
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from rockbatch.pier.restraints import what_of
 from rockbatch.quantities.cases import Case, devices
@@ -112,18 +113,37 @@ def quantity(key: str, value: object, digits: int = 10, case: Case | None = None
     symbol, unit = symbol_of(key)
     if not isinstance(value, float | int):
         return f"{symbol} {value}"
-    if case is not None and (device := _OF_DEVICE.fullmatch(key)):
-        unit = unit_with_exponent(unit, _exponent(case, device[1], int(device[2])))
+    if case is not None and (device := of_device(key)):
+        unit = unit_with_exponent(unit, _exponent(case, device.kind, device.number))
     return f"{symbol} = {plain(value, digits)} {unit}".strip().replace(" ", "\u00a0")
 
 
 def symbol_of(key: str) -> tuple[str, str]:
     """Return symbol and unit of a study key, numbered from the second device of a kind: "C", "damper 2: C"."""
-    if key in SYMBOLS or not (device := _OF_DEVICE.fullmatch(key)):
+    if key in SYMBOLS or not (device := of_device(key)):
         return SYMBOLS.get(key, (key, ""))
-    kind, number, of_device = device.groups()
-    symbol, unit = DEVICE_SYMBOLS.get(of_device, (of_device, ""))
-    return (symbol if number == "1" else f"{kind.replace('_', ' ')} {number}: {symbol}"), unit
+    symbol, unit = DEVICE_SYMBOLS.get(device.key, (device.key, ""))
+    return (symbol if device.number == 1 else f"{device.words}: {symbol}"), unit
+
+
+class OfDevice(NamedTuple):
+    """A key of a device: the kind of the device, its number among those of the kind, and the key in its table."""
+
+    kind: str
+    number: int
+    key: str
+
+    @property
+    def words(self) -> str:
+        """Kind and number in words: "damper", "deck spring 2"."""
+        kind = self.kind.replace("_", " ")
+        return kind if self.number == 1 else f"{kind} {self.number}"
+
+
+def of_device(key: str) -> OfDevice | None:
+    """Return kind and number of the device, and its key, of a varied key such as "damper_2_force_kN"; None for other keys."""
+    device = _OF_DEVICE.fullmatch(key)
+    return device and OfDevice(device[1], int(device[2]), device[3])
 
 
 def unit_with_exponent(unit: str, exponent: float) -> str:

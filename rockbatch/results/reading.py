@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import EditedTable, InputError, MissingColumns, NotFound, Problem, refuse
 from rockbatch.common.files import CHANGED, csv_plain, legible, opened, opened_text, read_text, sha256_of
@@ -20,6 +22,9 @@ from rockbatch.results.columns import PEAKS, STATUSES, numbers_or_words
 from rockbatch.results.labelled import Item
 from rockbatch.results.run_json import INFO, SHAPE
 from rockbatch.results.shape import unfit
+
+ANALYSES_PAGE = "analyses.html"
+"""Page of the analyses in a folder without runs."""
 
 MOST_PROBLEMS = 20
 MOST_COUNT = 1 << 53
@@ -78,6 +83,8 @@ def read_saved(directory: Path) -> Saved:
         info = _read_info(directory / INFO)
     with _collecting_problems(problems):
         peaks = _read_peaks(directory / PEAKS, info.get("varied", []))
+    if len(problems) == 2 and all(isinstance(problem, Problem) and problem.kind is NotFound for problem in problems):
+        raise NotFound(f"{directory}: not there, or without results of `rockbatch run`; {_instead_of(directory)}")
     refuse([*problems, *_other_version(directory)] if problems else [])
     if unknown := {name for case in info["cases"] for name in case["columns"]} - set(info["varied"]):
         raise InputError(
@@ -100,6 +107,12 @@ def read_saved(directory: Path) -> Saved:
     if missing:
         warnings.warn(f"{directory / PEAKS}: {saved.missing_in_words}", MissingColumns, stacklevel=2)
     return saved
+
+
+def _instead_of(directory: Path) -> str:
+    """Return what to open instead of a folder without runs, in words: the page of its analyses, or another folder."""
+    path = directory / ANALYSES_PAGE
+    return f"its analyses are in {path}" if path.exists() else "give a folder that it has written"
 
 
 def _other_version(directory: Path) -> list[str]:
@@ -137,7 +150,7 @@ def _as_input_error(path: Path, line: str, kind: str, *damages: type[Exception])
     try:
         yield
     except FileNotFoundError:
-        raise NotFound(f"{path}: not there; give a folder that `rockbatch run` has written") from None
+        raise NotFound(f"{path}: not there; start `rockbatch run` again") from None
     except InputError:
         raise
     except damages as error:
@@ -189,13 +202,16 @@ def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
             table = pd.read_csv(
                 file, keep_default_na=False, na_values=empty, encoding="utf-8", index_col=False, dtype=types
             )
-        for name in table.columns.intersection(list(COUNTS)):
-            wrong_fact = name in FACTS and not table[name].isin([0, 1, math.nan]).all()
-            if wrong_fact or (table[name].abs() > MOST_COUNT).any():
-                raise ValueError(f"{name} is out of range")
+        infinite = np.isinf(table[[name for name in numbers if name not in UNBOUNDED]].to_numpy()).any()
+        counts, facts = ([name for name in numbers if name in kind] for kind in (COUNTS, FACTS))
+        zero_or_one = table[facts].to_numpy()
+        if (np.abs(table[counts].to_numpy()) > MOST_COUNT).any() or np.nan_to_num(
+            zero_or_one * (zero_or_one - 1.0)
+        ).any():
+            raise ValueError("a count is out of range")
+        for name in counts:
             table[name] = table[name].astype("Int64")
-        finite = [name for name in numbers if name not in UNBOUNDED]
-        sound = table["status"].isin(STATUSES).all() and not table[finite].isin([math.inf, -math.inf]).any(axis=None)
+        sound = table["status"].isin(STATUSES).all() and not infinite
         sound = sound and not (table["scale"].isna() & (table["case"] != "")).any()
     except (ValueError, TypeError, pd.errors.ParserWarning) as error:
         bad = _bad_cells(path, head, numbers)

@@ -135,7 +135,7 @@ def _with_residuals_of(probe: Outcome, outcome: Outcome, tolerance: float, pier:
 
 
 def _residual_difference(one: Outcome, other: Outcome, pier: Pier) -> float:
-    """Return the greatest difference of the residuals of two outcomes [rad], settlements over half the width."""
+    """Return the greatest difference of residual rotation [rad] and of settlement over half the width between two outcomes."""
     return max(_difference(one, other, "theta_res"), _difference(one, other, "settlement") / pier.half_width)
 
 

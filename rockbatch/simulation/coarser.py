@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from rockbatch.outcome.outcome import Outcome
-from rockbatch.pier import FootingBase, RigidBase
+from rockbatch.pier import FootingBase, WithShaft
 from rockbatch.simulation.beds import with_fewer_strips, with_strips_error
 from rockbatch.simulation.runs import Run
 
@@ -16,7 +16,7 @@ _OF_SHAFT = ("theta_max", "deflection_max", "top_drift_max")
 def with_fewer_modes(run: Run) -> Run | None:
     """Return a run with the shaft in one mode fewer; None if it does not bend, or in one alone."""
     base = run.base
-    if not (isinstance(base, RigidBase) and base.bends):
+    if not (isinstance(base, WithShaft) and base.bends):
         return None
     n = len(base.modes(run.pier).frequency)
     return Run(run.pier, replace(base, flexural_modes=n - 1), run.motion) if n > 1 else None
@@ -61,5 +61,5 @@ def of_last_mode(run: Run, change: float, chance: float) -> float:
     has no limit.
     """
     base = run.base
-    assert isinstance(base, RigidBase)
+    assert isinstance(base, WithShaft)
     return chance * change if base.damping_ratios(run.pier)[-1] <= MOST_DAMPING else math.nan

@@ -14,9 +14,9 @@ from rockbatch.core.observe.ledger import energy_of_rows
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.half_cycles import HalfCycles, Path, half_cycles
 from rockbatch.outcome.response import EVENT_TYPES, Response
-from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase
+from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase, WithShaft
 from rockbatch.simulation import restraints
-from rockbatch.simulation.models import acceleration_at, flexible_block, model, springs
+from rockbatch.simulation.models import acceleration_at, model, springs
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
@@ -64,16 +64,19 @@ def histories(
     run, rows = recording.run, recording.at_samples.rows
     pier, base, motion = run.pier, run.base, run.motion
     added: dict[str, Any] = dict(item for observer in observers for item in observer.histories(recording).items())
-    devices = restraints.loops(pier, base, rows) if base.restraints else None
     if isinstance(base, FootingBase):
         of_bed = _footing_state(run, recording.rows)[recording.shown]
         state = {name: of_bed[name].copy() for name in of_bed.dtype.names or ()}
     else:
         state = _springs_state(pier, base, rows) if base.on_springs else _rigid_state(pier, base, rows)
-    t = rows.t.copy()
+    t, loops = rows.t.copy(), None
+    if base.restraints:
+        devices = restraints.device_histories(pier, base, rows)
+        loops = restraints.loops(pier, base, t, devices)
+        state["energy"] = state["energy"] + devices.stored
     vertical = np.zeros(len(t)) if motion.vertical is None else acceleration_at(motion.vertical, motion.dt, t)
     horizontal = acceleration_at(motion.horizontal, motion.dt, t)
-    bent = {"deflection": state.pop("deflection")} if base.bends else {}
+    bent = {"deflection": _deflection(pier, base, rows)} if isinstance(base, WithShaft) and base.bends else {}
     history = pd.DataFrame({"t": t, **state, "ag_h": horizontal, "ag_v": vertical, **bent})
     events = pd.DataFrame(_events(rows, recording.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
     return Response(
@@ -87,7 +90,7 @@ def histories(
         events,
         polarity=polarity,
         scale=scale,
-        restraints=devices,
+        restraints=loops,
         **added,
     )
 
@@ -107,19 +110,25 @@ def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str,
 
 
 def _energy(pier: Pier, base: Base, rows: np.recarray) -> Samples:
-    """Return the energy [J/kg] of a pier and its devices at every row, relative to the first."""
+    """Return the energy [J/kg] of a pier without its devices at every row, relative to the first."""
     energy = np.empty(len(rows))
     energy_of_rows(model(pier, base), restraints.apart(base, rows)[0], energy)
-    return energy + restraints.stored(pier, base, rows) if base.restraints else energy
+    return energy
 
 
 def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Samples]:
-    """Return columns of a history on rigid ground: rotation, rate, energy since the start, and deflection of an elastic shaft."""
+    """Return columns of a history on rigid ground: rotation, rate, and energy without devices since the start."""
     none = dict.fromkeys(
         ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"), np.full(len(rows), np.nan)
     )
-    bent = {"deflection": flexible_block(pier, base).end_shape @ of_modes(rows)[0]} if base.bends else {}
-    return {"theta": rows.theta, "omega": rows.omega, **none, "energy": _energy(pier, base, rows), **bent}
+    return {"theta": rows.theta, "omega": rows.omega, **none, "energy": _energy(pier, base, rows)}
+
+
+def _deflection(pier: Pier, base: WithShaft, rows: np.recarray) -> Samples:
+    """Return the deflection of the top of an elastic shaft across it [m]."""
+    shapes = base.modes(pier).at(pier.highest)
+    deflection: Samples = shapes @ of_modes(rows)[0][: len(shapes)]
+    return deflection
 
 
 def of_modes(rows: np.recarray) -> tuple[Samples, Samples]:
@@ -130,16 +139,14 @@ def of_modes(rows: np.recarray) -> tuple[Samples, Samples]:
 
 
 def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
-    """Return state, edges of the foot, forces at them that are equal to the push, and stored energy, at every step."""
+    """Return state, edges of the foot, forces at them equal to the push, and energy without devices, at every step."""
     pier, base, nothing = run.pier, run.base, np.full(len(rows), np.nan)
     bed = np.recarray(len(rows), BED_STATE)
     follow_bed(model(pier, base), restraints.apart(base, rows)[0], bed)
     finite = base.kinematics == "finite"
     rise = pier.half_width * (np.sin(rows.theta) if finite else rows.theta)
     middle = rows.v + (pier.height * (1.0 - np.cos(rows.theta)) if finite else 0.0)
-    energy, of_edges = bed.stored, bed.moment / pier.half_width
-    if base.restraints:
-        energy = energy + restraints.stored(pier, base, rows)
+    of_edges = bed.moment / pier.half_width
     columns = {
         "theta": rows.theta,
         "omega": rows.omega,
@@ -150,7 +157,7 @@ def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
         "v_right": middle - rise,
         "force_left": -0.5 * (bed.force - of_edges),
         "force_right": -0.5 * (bed.force + of_edges),
-        "energy": energy,
+        "energy": bed.stored,
     }
     state = np.recarray(len(rows), np.dtype([(name, "f8") for name in columns]))
     for name, values in columns.items():
@@ -159,7 +166,7 @@ def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
 
 
 def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str, Samples]:
-    """Return columns of a history on springs: state, pivots, forces, and energy since the start (THEORY.md, Results of a run)."""
+    """Return columns of a history on springs: state, pivots, forces, energy without devices (THEORY.md, Results of a run)."""
     m = springs(pier, base)
     v, theta, z_left, z_right = rows.v, rows.theta, rows.z_left, rows.z_right
     b, h = m.half_width, m.height

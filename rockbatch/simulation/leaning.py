@@ -56,7 +56,7 @@ def may_lean(outcome: Outcome) -> bool:
 
 
 def apart(pier: Pier, base: ElasticBase, rows: np.recarray) -> Apart:
-    """Return rocking and lean of a run from its ``rows`` at samples and both sides of events."""
+    """Return the greatest swing about the lean of a yielded base, and lean and swing at the peak, from ``rows`` of a run."""
     path = Path(*(np.ascontiguousarray(rows[name]) for name in Path._fields))  # columns are read many times
     theta, lean, t = path.theta, lean_of(pier, base, path), path.t
     swing = theta - lean
@@ -85,7 +85,12 @@ def lean_of(pier: Pier, base: ElasticBase, rows: np.recarray | Path) -> Samples:
     """Return the static rest rotation [rad] on the base as deformed at every row (THEORY.md, eq. 20)."""
     left, right = unstressed(pier, base, rows)
     b = pier.half_width
-    return 0.5 * (left - right) / b / tilt_over_residual(pier.gravity, pier.height, b, vertical_frequency(pier, base))
+    return (
+        0.5
+        * (left - right)
+        / b
+        / tilt_over_residual(pier.gravity, base.leaning_height(pier), b, vertical_frequency(pier, base))
+    )
 
 
 def unstressed(pier: Pier, base: ElasticBase, rows: np.recarray | Path) -> tuple[Samples, Samples]:

@@ -18,7 +18,7 @@ from rockbatch.core.ground import ground_rows
 from rockbatch.core.powers import LARGEST_WHOLE
 from rockbatch.core.springs import lanes as spring_lanes
 from rockbatch.core.springs.laws import CODES
-from rockbatch.core.springs.model import IMPACTS, Springs
+from rockbatch.core.springs.model import IMPACTS, Shaft, Springs
 from rockbatch.core.system import System
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
@@ -146,6 +146,22 @@ def springs(pier: Pier, base: ElasticBase) -> Springs:
         exponent=exponent,
         finite=True if base.kinematics == "finite" else None,
         damped=True if base.zeta else None,
+        shaft=_shaft(pier, base) if base.bends else None,
+    )
+
+
+def _shaft(pier: Pier, base: ElasticBase) -> Shaft:
+    """Return the core's numbers for the modes of ``pier``."""
+    modes = base.modes(pier)
+    return Shaft(
+        share=per_mode(modes.share),
+        lever=per_mode(modes.coupling - pier.height * modes.share),
+        frequency=per_mode(modes.frequency, float(modes.frequency[-1])),
+        damping=per_mode(2.0 * base.damping_ratios(pier) * modes.frequency),
+        end_shape=per_mode(modes.at(pier.highest)),
+        top_shape=per_mode(modes.at(pier.top)),
+        deck_shape=per_mode(modes.at(pier.deck)),
+        top=float(pier.top),
     )
 
 
@@ -362,7 +378,26 @@ def _linear_part(pier: Pier, base: Base, element: Element, coefficient: float, e
 
 def _fastest(pier: Pier, base: Base) -> float:
     """Return the greatest rate [1/s] of a pier without devices on springs; on rigid ground the bound for dampers, STEEP p."""
-    return fastest(pier, base) if base.on_springs else STEEP * pier.p
+    if not base.on_springs:
+        return STEEP * pier.p
+    return _fastest_on_springs(springs(pier, base)) if base.bends else fastest(pier, base)
+
+
+def _fastest_on_springs(m: Springs) -> float:
+    """Return the greatest rate [1/s] of a pier whose shaft bends, on both springs, on one, and in flight."""
+    shaft, greatest = m.shaft, 0.0
+    assert shaft is not None
+    n = 2 + len(shaft.share)
+    masses = np.diag([1.0, m.inertia + m.height**2, *np.ones(n - 2)])
+    masses[1, 2:] = masses[2:, 1] = np.array(shaft.lever) + m.height * np.array(shaft.share)
+    for pivots in ((-1.0, 1.0), (1.0,), ()):
+        arms = np.array([[1.0, -pivot * m.half_width, *np.zeros(n - 2)] for pivot in pivots]).reshape(-1, n)
+        stiffness = np.diag([0.0, 0.0, *np.square(shaft.frequency)]) + m.yield_force * m.stiffness * arms.T @ arms
+        damping = np.diag([0.0, 0.0, *shaft.damping]) + m.damping * arms.T @ arms
+        rates = np.linalg.solve(masses, np.hstack((stiffness, damping)))
+        system = np.vstack((np.hstack((np.zeros((n, n)), np.eye(n))), -rates))
+        greatest = max(greatest, float(np.abs(np.linalg.eigvals(system)).max()))
+    return greatest
 
 
 def _lever(pier: Pier, base: Base, element: Element) -> float:

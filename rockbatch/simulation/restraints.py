@@ -84,7 +84,7 @@ def _follow(m, devices, rows, moves, elongation, speed, pull, energy):  # type: 
             energy[i, j] = stored_in(law, gap.elongation, state)
 
 
-class _Followed(NamedTuple):
+class DeviceHistories(NamedTuple):
     """Histories of devices, shape (rows, devices) each; see :func:`_follow`."""
 
     elongation: Samples
@@ -92,43 +92,42 @@ class _Followed(NamedTuple):
     pull: Samples
     energy: Samples
 
+    @property
+    def stored(self) -> Samples:
+        """The elastic energy [J/kg] stored in all devices at every row, relative to the start."""
+        energy: Samples = self.energy.sum(axis=1)
+        return energy - energy[0]
 
-def _followed(pier: Pier, base: Base, rows: np.recarray) -> _Followed:
+
+def device_histories(pier: Pier, base: Base, rows: np.recarray) -> DeviceHistories:
     """Return elongation, its rate, force and stored energy of each device at each row."""
     devices = recorded(pier, base, rows)
-    found = _Followed(*(np.zeros((len(rows), len(devices.elements))) for _ in _Followed._fields))
+    found = DeviceHistories(*(np.zeros((len(rows), len(devices.elements))) for _ in DeviceHistories._fields))
     moves = AT_REST * pier.size * pier.alpha * pier.p
     _follow(model(pier, base), devices, apart(base, rows)[0], float(moves), *found)
     return found
 
 
-def loops(pier: Pier, base: Base, rows: np.recarray) -> "pd.DataFrame":
-    """Return a table of elongation [m] and force [N/kg] of every device at every row, after the time."""
-    found = _followed(pier, base, rows)
-    table = {"t": rows.t}
+def loops(pier: Pier, base: Base, t: Samples, histories: DeviceHistories) -> "pd.DataFrame":
+    """Return a table of elongation [m] and force [N/kg] of every device at every time ``t`` [s]."""
+    table = {"t": t}
     for j, name in enumerate(names(pier, base)):
-        table |= {f"{name} elongation": found.elongation[:, j], f"{name} force": found.pull[:, j]}
+        table |= {f"{name} elongation": histories.elongation[:, j], f"{name} force": histories.pull[:, j]}
     return pd.DataFrame(table)
 
 
 def device_work(pier: Pier, base: Base, rows: np.recarray, least_stroke: float) -> Work:
     """Return the work of each device in a run with ``rows`` at every step; half cycles from ``least_stroke`` [m] up."""
-    found = _followed(pier, base, rows)
+    found = device_histories(pier, base, rows)
     courses = Courses(found.elongation, found.pull, rows.lost, rows.t, found.speed)
     return work_of(pier, base, courses, least_stroke)
-
-
-def stored(pier: Pier, base: Base, rows: np.recarray) -> Samples:
-    """Return the elastic energy [J/kg] stored in all devices at every row, relative to the start."""
-    energy = _followed(pier, base, rows).energy.sum(axis=1)
-    return energy - energy[0]
 
 
 def with_devices(pier: Pier, base: Base, rows: np.recarray, terms: Samples) -> Samples:
     """Add dampers and tendons to the energy balance [J/kg] of a run, whose ``terms`` are changed in place and returned."""
     table = terms.view(LEDGER)[:, 0].view(np.recarray)  # the same memory, by names
     kinds = np.array([law.kind == TENDON for law in elements(pier, base)])
-    table.elastic += stored(pier, base, rows)
+    table.elastic += device_histories(pier, base, rows).stored
     table.plastic += rows.lost[:, kinds].sum(axis=1)
     table.damping += rows.lost[:, ~kinds].sum(axis=1)
     table.p_delta += rows.p_delta

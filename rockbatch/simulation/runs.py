@@ -353,8 +353,8 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
         more = of_bed(pier, base, result, survived=status == "ok")
     elif base.on_springs:
         more = _spring_results(pier, base, result, survived=status == "ok")
-    elif base.bends:
-        more = {"deflection_max": result.deflection_max, "top_drift_max": result.drift_max}
+    if base.bends:
+        more = {**more, "deflection_max": result.deflection_max, "top_drift_max": result.drift_max}
     if result.status == types.FLIGHT:
         omega_v, zeta = (vertical_frequency(pier, base), base.zeta or 0.0) if base.on_springs else (None, 0.0)
         reason = cause_of_flight(run.motion, omega_v, pier.gravity, result.t_flight, result.t_impact, zeta)
@@ -420,7 +420,8 @@ def _spring_results(pier: Pier, base: ElasticBase, result: Result, survived: boo
     if survived:
         # From the base's tilt to the rotation, static on the deformed base (THEORY.md, eq. 20)
         half_width = pier.half_width
-        lean = 1.0 / tilt_over_residual(pier.gravity, pier.height, half_width, vertical_frequency(pier, base))
+        leaning = base.leaning_height(pier)
+        lean = 1.0 / tilt_over_residual(pier.gravity, leaning, half_width, vertical_frequency(pier, base))
         tilt = 0.5 * (result.base_left - result.base_right) / half_width
         more |= {
             "settlement": -0.5 * (result.base_left + result.base_right),

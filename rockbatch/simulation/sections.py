@@ -1,6 +1,6 @@
 """Shear, axial force and moment in sections of the shaft, from its recorded motion (THEORY.md, Forces in sections)."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +26,7 @@ from rockbatch.core.types import LIFT_OFF, TAKE_OFF, Pull
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.changes import LEAST, Sized, greatest_change
 from rockbatch.outcome.outcome import Section
-from rockbatch.pier import Modes, Pier, RigidBase, bent_above
+from rockbatch.pier import Modes, Pier, WithShaft, bent_above
 from rockbatch.pier.sections import above
 from rockbatch.simulation.models import elements, ground_of, model
 from rockbatch.simulation.restraints import apart
@@ -127,7 +127,7 @@ def _follow(m, run, numbers, shares, out, pushes, bending):  # type: ignore[no-u
             push_deck(devices, m, i, y, contact, pushes[j])
         k = rates(under, y, contact, shaking)
         line.theta, line.omega, line.v_acceleration, line.turning = y.theta, y.omega, k.v_rate, k.omega
-        write_bending(m, y, k, bending[j])
+        write_bending(y, k, bending[j])
         line.side, line.horizontal, line.vertical = contact.right - contact.left, shaking.horizontal, shaking.vertical
 
 
@@ -160,11 +160,26 @@ def in_body(of: Recorded, numbers: Places, shares: Samples) -> InBody:
     horizontal, vertical = motion.horizontal + sideways, pier.gravity + motion.vertical + motion.v_acceleration
     across, along = horizontal * cosine - vertical * sine, vertical * cosine + horizontal * sine
     on_deck = [(float(height), push) for height, push in zip(of.heights, pushes.T, strict=True) if height != 0.0]
-    bent = None
-    if isinstance(base, RigidBase) and base.bends:
-        modes = base.modes(pier)
-        bent = Bending(modes, *np.moveaxis(bending, 0, 2)[:, : len(modes.frequency)])
-    return InBody(across, along, motion.turning, motion.omega, squared, sine, cosine, on_deck, bent)
+    body = InBody(across, along, motion.turning, motion.omega, squared, sine, cosine, on_deck, None)
+    if not (isinstance(base, WithShaft) and base.bends):
+        return body
+    modes = base.modes(pier)
+    body = body._replace(bending=Bending(modes, *np.moveaxis(bending, 0, 2)[:, : len(modes.frequency)]))
+    at_once = (h * cosine + b * sine) * motion.turning * cosine - motion.v_acceleration * sine
+    return _by_modes_alone(pier, body, at_once) if base.on_springs else body
+
+
+def _by_modes_alone(pier: Pier, body: InBody, across: Samples) -> InBody:
+    """Return ``body`` with v̈ and θ̈ of its base, ``across`` the axis at the centre of mass, as far as modes follow them.
+
+    The modes that are left out would give way to what a dashpot does in an instant, where a stiff shaft would follow.
+    """
+    assert body.bending is not None
+    modes = body.bending.modes
+    lever = modes.coupling - pier.height * modes.share
+    followed = body.bending.u_acceleration + np.outer(modes.share, across) + np.outer(lever, body.turning)
+    bending = body.bending._replace(u_acceleration=followed)
+    return body._replace(across=body.across - across, turning=np.zeros_like(across), bending=bending)
 
 
 def in_section(pier: Pier, body: InBody, height: float) -> InSection:
@@ -199,8 +214,8 @@ def _bent(pier: Pier, body: InBody, bending: Bending, height: float, straight: I
     return InSection(shear, moment, axial)
 
 
-def sections_of(run: Run, rows: np.recarray, heights: Sequence[float]) -> list[Section]:
-    """Return the greatest forces in sections at ``heights`` [m] of a run recorded at every step.
+def forces_in_sections(run: Run, rows: np.recarray, heights: Sequence[float]) -> Iterator[InSection]:
+    """Yield the forces in sections at ``heights`` [m] of a run recorded at every step, at all instants that are evaluated.
 
     They are taken until the pier leans beyond α for good, at the ends and the middle of each step, and at the vertex of a
     parabola through these if it may exceed them (THEORY.md, Forces).
@@ -211,19 +226,27 @@ def sections_of(run: Run, rows: np.recarray, heights: Sequence[float]) -> list[S
     steps = ends[1:][(rows.t[1:] > rows.t[:-1]) & (rows.kind[1:] <= 0.0)]
     at_ends = in_body(of, ends, np.ones(len(ends)))
     middles = in_body(of, steps, np.full(len(steps), 0.5))
-    return [_section(of, at_ends, middles, steps, height) for height in heights]
+    for height in heights:
+        yield _at_instants(of, at_ends, middles, steps, height)
 
 
-def _section(of: Recorded, at_ends: InBody, middles: InBody, steps: Places, height: float) -> Section:
-    """Return the greatest forces in the section at ``height`` [m]; ``middles`` are accelerations amid the ``steps``."""
+def sections_of(run: Run, rows: np.recarray, heights: Sequence[float]) -> list[Section]:
+    """Return the greatest forces in sections at ``heights`` [m] of a run recorded at every step."""
+    sections = []
+    for height, (shear, moment, axial) in zip(heights, forces_in_sections(run, rows, heights), strict=True):
+        bent = int(np.abs(moment).argmax())
+        forces = np.abs(shear).max(), np.abs(moment).max(), axial.min(), axial.max(), axial[bent]
+        sections.append(Section(height, *map(float, forces)))
+    return sections
+
+
+def _at_instants(of: Recorded, at_ends: InBody, middles: InBody, steps: Places, height: float) -> InSection:
+    """Return the forces in the section at ``height`` [m]; ``middles`` are accelerations amid the ``steps``."""
     pier = of.run.pier
     ends, halves = in_section(pier, at_ends, height), in_section(pier, middles, height)
     _let_go(of.rows, ends)
     turns = in_section(pier, in_body(of, *_promising(ends, halves, steps)), height)
-    shear, moment, axial = (np.concatenate(values) for values in zip(ends, halves, turns, strict=True))
-    bent = int(np.abs(moment).argmax())
-    forces = np.abs(shear).max(), np.abs(moment).max(), axial.min(), axial.max(), axial[bent]
-    return Section(height, *map(float, forces))
+    return InSection(*map(np.concatenate, zip(ends, halves, turns, strict=True)))
 
 
 def _let_go(rows: np.recarray, forces: InSection) -> None:

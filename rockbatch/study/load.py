@@ -3,12 +3,12 @@
 import os
 import tomllib
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
-from rockbatch.checks.rule_choices import Available, implausible, unmet
+from rockbatch.checks.rule_choices import Available, fitted
 from rockbatch.checks.rule_files import SUITE, read_checks
 from rockbatch.checks.rules import CHECK, Rule
 from rockbatch.common.analyses import doors
@@ -21,6 +21,7 @@ from rockbatch.motions import MotionSet
 from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.pier import described, symmetric
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
+from rockbatch.quantities.demands import AT_HEIGHTS
 from rockbatch.quantities.design import BOUND
 from rockbatch.study.both_axes import along_the_axis, with_other_axes
 from rockbatch.study.bound_keys import BOUNDS, read_bounds
@@ -365,19 +366,17 @@ def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) 
 
 def _problems_of_rule(
     cases: Sequence[Case], motions: MotionSpec, output: Output, known_piers: bool, rule: Rule
-) -> Iterator[Problem]:
-    """Yield problems of a check: choices that the study lacks, and implausible limits if its piers are known."""
+) -> list[Problem]:
+    """Return problems of a check: choices that the study lacks, and implausible limits if its piers are known."""
     available = Available(
         cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
         other_law=True,  # a check that takes it brings it
         output=[key for key in BROUGHT if output.has(key) or not _adds_columns(key, cases)],
-        sections=_heights(cases, output) if known_piers else {rule.at_m or 0.0},
+        sections=_heights(cases, output) if known_piers else {needs: {rule.at_m or 0.0} for needs in AT_HEIGHTS},
+        piers=[_as_in_run_json(case) for case in cases] if known_piers else (),
     )
-    yield from unmet(rule, available)
-    if not known_piers:
-        return
-    yield from implausible(rule, [_as_in_run_json(case) for case in cases])
+    return fitted(rule, available).problems
 
 
 def _as_in_run_json(case: Case) -> dict[str, object]:
@@ -386,10 +385,10 @@ def _as_in_run_json(case: Case) -> dict[str, object]:
     return {"case": case.name, "base": base.name, "pier": described(pier), "parameters": base.parameters(pier)}
 
 
-def _heights(cases: Sequence[Case], output: Output) -> set[float]:
-    """Return the heights [m] at which rules may be about sections of the cases' piers."""
+def _heights(cases: Sequence[Case], output: Output) -> dict[str, set[float]]:
+    """Return the heights [m] at which rules may be about sections of the cases' piers, by what their demands need."""
     piers = {case.pier for case in cases}
-    return {height for kind, heights in parts("study.HEIGHTS") for height in heights(output.of(kind), piers)}
+    return {needs: heights(output.of(kind), piers) for needs, kind, heights in parts("study.HEIGHTS")}
 
 
 def _numerics(file: TomlFile) -> Numerics:

@@ -29,7 +29,7 @@ class Parameter(NamedTuple):
 
 
 def is_of_restraint(name: str) -> bool:
-    """Return whether the name of an input is that of a device's parameter, such as "damper.f"."""
+    """Return whether the name of an input is that of a device's parameter, as "damper.f": it has a dot."""
     return "." in name
 
 

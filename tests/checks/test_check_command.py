@@ -65,7 +65,7 @@ def test_rules_of_a_file_take_the_place_of_those_of_the_study(passing, tmp_path,
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["nowhere"], "run.json"),
+        (["nowhere"], "nowhere: not there, or without results of `rockbatch run`"),
         (["out"], "no [[check]]"),
         (["out", "--rules", "none.toml"], "no such file"),
         (["out", "--rules", "bad.toml"], 'bad.toml:3: [[check]] "a": demand'),

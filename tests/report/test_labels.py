@@ -1,5 +1,6 @@
 """Names of foundations: by what distinguishes them, in the study's own keys and units, with no more digits than necessary."""
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -11,6 +12,7 @@ import rockbatch as rb
 from rockbatch.pier import RigidBase, Tendon, YieldingBase
 from rockbatch.reporting.finished import read
 from rockbatch.results.labels import digits_that_tell, named, quantity
+from rockbatch.terminal.naming import named as named_in_terminal
 
 MASS = {"width_m": 4.0, "height_m": 20.0, "mass_t": 1000.0}
 
@@ -72,6 +74,18 @@ def test_a_footing_on_soil_is_called_by_its_safety_factor():
 )  # fmt: skip
 def test_varied_values_are_called_by_symbol_and_unit(key, value, words):
     assert quantity(key, value).replace("\u00a0", " ") == words
+
+
+def test_the_terminal_names_the_device_of_a_varied_key_in_words():
+    values = {
+        "damper_1_f": 0.05,
+        "deck_spring_2_gap_mm": 20.0,
+        "beta": 80.0,
+        "kinematics": "finite",
+        "tendon_1_psi": math.nan,
+    }
+    words = "damper f=0.05 deck spring 2 gap_mm=20 beta=80 kinematics=finite"
+    assert named_in_terminal(values, values.values()) == words
 
 
 PAD, HARD, SOFT = YieldingBase(50.0, eta=2.5), RigidBase(), RigidBase(restitution=0.5)

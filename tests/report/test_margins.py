@@ -3,16 +3,18 @@
 import copy
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+from check_samples import verdict
 from report_page import Page
 from studies import SINE
 
 import rockbatch as rb
-from rockbatch.checks import judge, write_verdicts
+from rockbatch.checks import judge, read_verdicts, write_verdicts
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.quantities.catalogue import FIXED, TRAILING, names
@@ -138,6 +140,29 @@ def test_bounds_of_a_design_are_one_case_in_the_sentence_and_are_named(tmp_path)
     assert matched.runs[0]["bound"].tolist() == ["", ""]  # the nominal design is what B has
 
 
+def test_a_check_that_fails_in_two_cases_is_one_check_and_another_is_one_more(tmp_path):
+    """Both cases fail both limits: one check is named, and one is left."""
+    cases = [SPRINGS, SPRINGS | {"name": "soft"}]
+    checks = [ROTATION, ROTATION | {"name": "strict", "at_most": 0.1}]
+    folders = two(tmp_path, tables(), tables(case=cases, check=checks), (0.2, 0.6))
+    assert said(folders).split("; ")[1] == "B fails strict at 600 % (springs, Lyttelton) and 1 more in all 2 cases."
+
+
+def test_a_check_that_an_event_never_happens_is_not_the_closest_to_its_limit(tmp_path):
+    """A ban, of which the ratio is 0 or 1, is no margin, unlike the rotation's 40 %."""
+    never = {"name": "stands", "demand": "overturned", "at_most": 0.9, "reason": "agreed"}
+    folders = two(tmp_path, tables(check=[never]), tables(check=[ROTATION, never]))
+    assert said(folders) == "A is not decided (no limit on rotation); B passes all, closest 40 % (rotation, Lyttelton)."
+
+
+def test_a_suite_that_fails_its_own_checks_is_said_beside_what_passes(tmp_path):
+    folders = two(tmp_path, tables(), tables())
+    write_verdicts(folders[1], [*read_verdicts(folders[1]), verdict("", "fail", check="spectrum")])
+    line = said(folders)
+    assert line.startswith("A passes all, closest 40 % (rotation, Lyttelton); B ")
+    assert line.endswith(", under a suite that fails its own checks.")
+
+
 def test_studies_without_limits_are_said_to_have_none(tmp_path):
     free = tables()
     del free["check"]
@@ -163,6 +188,25 @@ def test_margins_stand_side_by_side_check_by_check(tmp_path):
     assert row[-1] == "+35 %"
 
 
+def test_margins_at_each_scale_stand_in_rows_of_their_own(tmp_path):
+    """0.2/0.5 = 40 % in A at either scale, 0.3/0.5 = 60 % and 0.45/0.5 = 90 % in B."""
+    scaled = tables(motions={"pulse": PULSES[:1], "scale": [1.0, 1.5]})
+    folders = two(tmp_path, scaled, scaled)
+    for path, thetas in zip(folders, ((0.2, 0.2), (0.3, 0.45)), strict=True):
+        peaks = pd.read_csv(path / "peaks.csv")
+        pd.concat(
+            [
+                peaks.assign(scale=scale, theta_max_over_alpha=theta)
+                for scale, theta in zip((1.0, 1.5), thetas, strict=True)
+            ]
+        ).to_csv(path / "peaks.csv", index=False)
+        saved = rb.open_results(path)
+        rules = rb.Study.from_dict(scaled).checks
+        write_verdicts(path, judge(rules, saved.peaks, saved.info["cases"], count="station"))
+    rows = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["answer"]
+    assert [row[-1] for row in rows if row[-1].endswith("%")] == ["+20 %", "+50 %"]
+
+
 def test_a_check_of_one_study_only_is_not_checked_in_the_other(tmp_path):
     folders = two(tmp_path, tables(), tables(check=[ROTATION, ROTATION | {"name": "more", "at_most": 0.9}]))
     rows = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["answer"]
@@ -180,6 +224,14 @@ def test_cases_of_other_names_are_paired_by_the_inputs_that_differ_least(tmp_pat
     assert both.names == {"x": "p", "y": "q"}
     assert len(both.runs[0]) == 4
     assert set(zip(both.runs[0]["case"], both.runs[1]["case"], strict=True)) == {("p", "x"), ("q", "y")}
+
+
+def test_cases_across_are_paired_as_their_cases_along_are(tmp_path):
+    motions = {"motions": {"path": "motions/near_fault", "axis_deg": 0.0}}
+    sides = [tables(case=[{"name": name, "base": "rigid", "other_width_m": 6.0}], **motions) for name in "pq"]
+    both = pair(*(read(path, ()) for path in two(tmp_path, *sides)))
+    assert both.names == {"q": "p", "q across": "p across"}
+    assert set(both.runs[1]["case"]) == {"q", "q across"}
 
 
 def test_a_name_in_both_comes_before_inputs_and_what_is_asked_before_both(tmp_path):
@@ -312,6 +364,27 @@ def test_motions_of_one_study_only_are_named(tmp_path):
     rows = inputs(two(tmp_path, tables(), tables(motions={"pulse": PULSES[:1]})))
     assert rows["motions in one only"] == ("Lyttelton", "–")
     assert rows["motions, pulse Lyttelton"] == ("written", "–")
+
+
+def test_files_left_out_or_unusable_of_one_study_are_named_by_their_kind(tmp_path):
+    folders = two(tmp_path, tables(), tables())
+    for path, left_out, unusable in zip(folders, ("ONE", "TWO"), ("BAD", "CUT"), strict=True):
+        file = path / "run.json"
+        info = json.loads(file.read_text(encoding="utf-8"))
+        info["left_out"] = [{"name": left_out, "source": left_out, "reason": "excluded", "station": left_out}]
+        info["unusable"] = [{"name": unusable, "source": unusable, "reason": "the file is cut", "station": unusable}]
+        file.write_text(json.dumps(info), encoding="utf-8")
+    assert inputs(folders) == {"files left out": ("ONE", "TWO"), "files that could not be used": ("BAD", "CUT")}
+
+
+def test_checks_of_a_file_beside_the_study_are_compared_too(tmp_path):
+    folders = []
+    for side, limit in zip("ab", (0.5, 0.6), strict=True):
+        rules = f'[[check]]\nname = "rotation"\ndemand = "theta_max_over_alpha"\nat_most = {limit}\nreason = "agreed"\n'
+        study = rb.Study.from_dict({name: table for name, table in tables().items() if name != "check"})
+        of_file = replace(study, check_files=((Path("checks.toml"), rules),))
+        folders.append(folder(tmp_path / side, of_file))
+    assert inputs(folders) == {"check rotation, at_most": ("0.5", "0.6")}
 
 
 def test_cases_paired_by_inputs_differ_in_values_only(tmp_path):

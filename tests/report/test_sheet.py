@@ -1,6 +1,7 @@
 """The calculation sheet has every value of the report in a layout for paper, and all names on it are words."""
 
 import hashlib
+import json
 import re
 from dataclasses import replace
 
@@ -15,9 +16,11 @@ from rockbatch.common.errors import InputError
 from rockbatch.motions.description import digest
 from rockbatch.pier import Damper, Pier, RigidBase, Stop, Tendon, YieldingBase
 from rockbatch.reporting.finished import read
+from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.sections import assumptions, studied
 from rockbatch.reporting.sheet import sheet
 from rockbatch.reporting.table import PAPER, Head, on_paper, table
+from rockbatch.reporting.templates import Section
 
 PIER = Pier(alpha=0.13, p=0.38)
 
@@ -42,6 +45,11 @@ def bending(**parameters):
 def sheet_of(directory, **results):
     write_results(directory, **results)
     return sheet(read(directory))
+
+
+def assumptions_of(directory):
+    finished = read(directory)
+    return assumptions.lines(finished, finished.info["cases"])
 
 
 def in_browser(directory, text, act=""):
@@ -122,6 +130,7 @@ def test_each_constant_of_each_device_and_part_is_among_the_inputs(tmp_path):
         (entry("a", RigidBase()), "whatever the friction", "are marked"),
         (entry("a", RigidBase(), flight="stop"), "A run ends when both pivots leave", "shear keys guide"),
         (entry("a", replace(RigidBase(), restraints=(Tendon(psi=0.2),))), "nothing of them breaks", "are marked"),
+        (entry("a", RigidBase()), "Nothing but landings", "nothing of them breaks"),
         (bending(flexural_modes=3), "The shaft bends in 3 modes, the first of 1.5 s; higher ones", "one rigid body"),
         (bending(), "bends in one mode, the first of 1.5 s", "Housner's factor"),
         (entry("a", RigidBase()) | {"across_of": "b"}, "Two planar models", "one vertical plane"),
@@ -129,16 +138,41 @@ def test_each_constant_of_each_device_and_part_is_among_the_inputs(tmp_path):
 )
 def test_the_values_of_a_study_decide_its_assumptions(tmp_path, case, words, absent):
     write_results(tmp_path, cases=[case])
-    said = " ".join(assumptions.lines(read(tmp_path)))
+    said = " ".join(assumptions_of(tmp_path))
     assert words in said
     assert absent not in said
 
 
 def test_what_holds_for_some_cases_only_names_them(tmp_path):
     write_results(tmp_path, cases=[entry("rock", RigidBase()), entry("pads", YieldingBase(beta=40.0, eta=2.5))])
-    said = " ".join(assumptions.lines(read(tmp_path)))
+    said = " ".join(assumptions_of(tmp_path))
     assert "two pivots that keep their place: no crushing of edges (rock)" in said
     assert "two vertical supports that push and never pull, one at each pivot (pads)" in said
+    assert "breaks" not in said
+
+
+@pytest.mark.parametrize(
+    ("verticals", "words"),
+    [
+        ([None] * 3, "The ground moves horizontally and alike"),
+        ([0.2] * 3, "The ground moves horizontally and vertically and alike"),
+        ([0.2, None, None], "The ground moves horizontally (vertically, too, in 1 of 3 records) and alike"),
+    ],
+)
+def test_the_number_of_records_with_a_vertical_is_said(tmp_path, verticals, words):
+    write_results(tmp_path, records=FIG7[:3])
+    file = tmp_path / "run.json"
+    info = json.loads(file.read_text(encoding="utf-8"))
+    for record, vertical in zip(info["records"], verticals, strict=True):
+        record["pga_v_g"] = vertical
+    file.write_text(json.dumps(info), encoding="utf-8")
+    assert words in " ".join(assumptions_of(tmp_path))
+
+
+def test_devices_of_one_case_of_two_have_their_assumption(tmp_path):
+    held = entry("held", replace(RigidBase(), restraints=(Tendon(psi=0.2),)))
+    write_results(tmp_path, cases=[entry("rock", RigidBase()), held])
+    assert "nothing of them breaks" in " ".join(assumptions_of(tmp_path))
 
 
 def test_no_two_different_foundations_have_the_same_row(tmp_path):
@@ -244,3 +278,16 @@ def test_no_table_of_a_sheet_is_wider_than_the_sheet(tmp_path):
     found = in_browser(tmp_path, sheet_of(tmp_path), act)
     assert len(found["beyond"]) > 8
     assert max(found["beyond"]) < 2
+
+
+def test_devices_observers_and_analyses_of_a_folder_have_their_sections_on_the_sheet(tmp_path, monkeypatch):
+    """Whatever the report has of them, paper has too."""
+    pulse = {"name": "sine", "shape": "sine", "amplitude_g": 0.4, "period_s": 0.8, "dt_s": 0.01, "duration_s": 3.0}
+    case = {"name": "rock", "base": "rigid", "damper": [{"kind": "friction", "force_kN": 300.0}]}
+    pier = {"width_m": 4.0, "height_m": 20.0, "mass_t": 900.0}
+    tables = {"pier": pier, "motions": {"pulse": [pulse]}, "case": [case], "output": {"forces": True}}
+    rb.run(rb.Study.from_dict(tables), out=tmp_path, jobs=1, progress=False)
+    drawn = [Section("Free rocking", "release", Markup("<p>θ</p>"))]
+    monkeypatch.setattr("rockbatch.reporting.sheet.analyses", lambda contents: drawn)
+    headings = {re.sub(r"^\d+ ", "", heading) for heading in Page(sheet(read(tmp_path))).headings}
+    assert {"Devices", "Forces", "Free rocking"} <= headings

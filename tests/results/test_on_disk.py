@@ -23,7 +23,7 @@ from rockbatch.batch.threads import Threads
 from rockbatch.outcome.outcome import TERMS
 from rockbatch.results import histories_file
 from rockbatch.results.columns import columns
-from rockbatch.results.histories_file import FORMAT, UNITS, Responses, history_bytes, seal, write
+from rockbatch.results.histories_file import FORMAT, HISTORY_UNITS, Responses, history_bytes, seal, write
 from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe, write_info
 from rockbatch.simulation import Run, run_to_tolerance
@@ -263,7 +263,7 @@ def test_the_file_says_what_it_is_and_what_made_it(results):
             *("base", "events", "forces", "impacts", "ledger", "pier", "varied"),
             *("t", "theta", "omega", "energy", "ag_h", "ag_v"),
         }  # fmt: skip
-        assert set(file["runs/000001"]) >= set(UNITS) - {"deflection"}
+        assert set(file["runs/000001"]) >= set(HISTORY_UNITS) - {"deflection"}
         assert set(run["ledger"]) == set(TERMS)
 
 
@@ -484,8 +484,21 @@ def test_a_name_may_be_begun_where_one_alone_begins_so(results):
 
 
 def test_a_folder_without_results_is_refused():
-    with pytest.raises(rb.InputError, match=r"run\.json: not there"):
+    with pytest.raises(rb.InputError, match="nowhere: not there"):
         rb.open_results("nowhere")
+
+
+@pytest.mark.parametrize("analysed", [True, False])
+def test_a_folder_of_an_analysis_alone_is_refused_in_a_line_that_names_its_page(tmp_path, analysed):
+    if analysed:
+        (tmp_path / "analyses.html").write_text("")
+    with pytest.raises(rb.InputError) as error:
+        rb.report(tmp_path)
+    assert len(error.value.problems) == 1
+    assert ("analyses.html" in str(error.value)) is analysed
+    (tmp_path / "peaks.csv").write_text("")
+    with pytest.raises(rb.InputError, match=r"run\.json: not there"):
+        rb.open_results(tmp_path)
 
 
 def damaged(folder, change):

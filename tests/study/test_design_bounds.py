@@ -67,6 +67,18 @@ def test_devices_are_changed_all_or_by_their_number(path, forces):
     assert [friction.f * weight, viscous.nu] == pytest.approx(forces)
 
 
+@pytest.mark.parametrize(("path", "forces"), [("damper", [360.0, 240.0]), ("damper_2", [300.0, 240.0])])
+def test_of_two_devices_with_the_key_only_the_numbered_one_is_changed(path, forces):
+    pair = [
+        {"kind": "friction", "force_kN": 300.0, "at": "left"},
+        {"kind": "friction", "force_kN": 200.0, "at": "right"},
+    ]
+    (case,) = under(
+        "b", study({"name": "b", f"case.{path}.force_kN": {"times": 1.2}}, cases=[SPRINGS | {"damper": pair}])
+    )
+    assert [damper.f * 1300.0 * 9.81 for damper in case.base.restraints] == pytest.approx(forces)
+
+
 def test_the_nominal_design_runs_and_then_each_bound_alone():
     bounds = {"name": "stiff", "case.stiffness_kN_m": {"times": 2.0}}, {"name": "light", "pier.deck_mass_t": 400.0}
     soft = {"stiffness_kN_m": [1.0e6, 2.0e6]}
@@ -96,7 +108,16 @@ def test_a_case_that_lacks_the_key_runs_unchanged_and_is_named():
         ({"pier.top_m": 21.0}, "pier.top_m = 21: [pier] has no such key; write its nominal value in [pier]"),
         ({"case.damper.force_kN": 300.0}, "case.damper.force_kN = 300: no case has this key"),
         ({"case.stiffness_kNm": 3.0}, '"case.stiffness_kNm": no such key; did you mean case.stiffness_kN_m?'),
-        ({"case.base": "rigid"}, '"case.base": another value makes another design; write another [[case]]'),
+        *(
+            ({path: value}, f'"{path}": another value makes another design; write another [[case]]')
+            for path, value in {
+                "case.base": "rigid",
+                "case.name": "other",
+                "case.other_width_m": 6.0,
+                "case.damper.kind": "viscous",
+                "case.damper.at": "right",
+            }.items()
+        ),
         ({"case.kinematics": {"times": 2.0}}, "times is for numbers"),
         ({"case.zeta": {"times": -1.0}}, "expected a factor above 0"),
         ({"case.zeta": {"time": 1.2}}, 'expected a factor above 0; write for example "case.zeta" = { times = 1.2 }'),
@@ -127,6 +148,34 @@ def test_the_advice_to_confirm_an_unusual_value_is_taken():
         study(unusual, cases=[ROCK])
     confirmed = study(unusual | {"confirm": ["deck_mass_t"]}, cases=[ROCK])
     assert under("b", confirmed)[0].pier.mass_t == pytest.approx(100_800.0)
+
+
+@pytest.mark.parametrize("value", [35.0, {"times": 100.0}])
+def test_an_unusual_value_of_a_case_is_asked_to_be_confirmed(value):
+    """Friction of 35 or 30 is a slip of degrees; the nominal 0.3 is usual."""
+    unusual = {"name": "b", "case.friction": value}
+    rough = {"cases": [ROCK | {"friction": 0.3}], "output": {"forces": True}}
+    with pytest.raises(InputError, match=r'write confirm = \["friction"\] in this table'):
+        study(unusual, **rough)
+    confirmed = study(unusual | {"confirm": ["friction"]}, **rough)
+    assert under("b", confirmed)[0].base.friction >= 30.0
+
+
+def test_two_bounds_whose_names_look_alike_are_refused():
+    with pytest.raises(InputError, match=r'"soft  ground": is read as the bound "soft ground"'):
+        study({"name": "soft ground", "case.zeta": 0.02}, {"name": "soft  ground", "case.zeta": 0.1})
+
+
+def test_every_key_that_a_case_lacks_is_named_once_with_the_source_of_the_bound():
+    two = {"case.zeta": 0.02, "case.stiffness_kN_m": {"times": 2.0}}
+    of_study = study({"name": "stiff", "source": "tests of 2024", **two}, cases=[SPRINGS, ROCK])
+    (entry,) = (bound.as_in_run_json() for bound in of_study.bounds)
+    assert entry == {
+        "bound": "stiff",
+        "source": "tests of 2024",
+        "changes": ["case.zeta = 0.02", "case.stiffness_kN_m × 2"],
+        "lacking": [{"case": "rock", "keys": ["case.zeta", "case.stiffness_kN_m"]}],
+    }
 
 
 def test_a_path_without_quotes_is_read_likewise():

@@ -13,6 +13,7 @@ pytestmark = pytest.mark.usefixtures("no_report")
 
 SHAFT = {"width_m": 8.0, "height_m": 40.0, "mass_t": 3000.0, "flexural_period_s": 0.9}
 ROCK = {"name": "rock", "base": "rigid"}
+SOFT = {"name": "soft", "base": "elastic", "beta": 60.0, "shaft": "elastic"}
 BENDS = {"name": "bends", "base": "rigid", "shaft": "elastic"}
 
 
@@ -46,7 +47,11 @@ def messages(tmp_path, **tables):
          'flexural_impact = "rate": to carry the rate of the deflection over would create energy'),
         ({"cases": [BENDS | {"flexural_impact": "rates"}]},
          'flexural_impact = "rates": a blow keeps the "momentum" of the mode'),
-        ({"cases": [{"name": "soft", "base": "elastic", "beta": 60.0, "shaft": "elastic"}]}, "shaft"),
+        ({"cases": [SOFT | {"kinematics": "finite"}]}, 'shaft = "elastic": a landing on undamped springs is an impulse'),
+        ({"cases": [SOFT | {"zeta": 0.2}]}, 'shaft = "elastic": bending is of finite kinematics'),
+        ({"cases": [SOFT | {"base": "footing"}]}, 'shaft = "elastic": does not apply to base = "footing"'),
+        ({"pier": SHAFT | {"flexural_period_s": 4.0}, "cases": [SOFT | {"beta": 6.0, "zeta": 0.2, "kinematics": "finite"}]},
+         "over which its shaft hangs as it leans; beta must be above 6.1"),
         ({"cases": [ROCK | {"flexural_damping": 0.02}]}, "flexural_damping"),
         ({"cases": [BENDS | {"flexural_damping": 1.5}]}, "must be within 0..1"),
         ({"pier": RIGIDITIES | {"flexural_period_s": 0.9}, "cases": [BENDS]},

@@ -20,7 +20,7 @@ from rockbatch.motions.motion import Motion
 from rockbatch.observers.devices_work.observe import greatest_of
 from rockbatch.outcome.device_work import Courses, rainflow, with_turns, work_of
 from rockbatch.pier import Damper, RigidBase, Tendon, YieldingBase, places
-from rockbatch.simulation.restraints import _followed, device_work
+from rockbatch.simulation.restraints import device_histories, device_work
 from rockbatch.simulation.runs import Run, written_run
 
 PADS = YieldingBase(50.0, 0.3, eta=3.0, flight="guided")
@@ -85,7 +85,7 @@ def test_the_speed_of_a_braced_damper_is_the_rate_of_its_own_way():
     base = RigidBase(restraints=dampers)
     result, rows = written_run(Run(FIG5, base, SHAKEN), 20, 0.0, 100_000, every_step=True, wait=False)
     rows = rows[: result.rows].view(np.recarray)
-    found = _followed(FIG5, base, rows)
+    found = device_histories(FIG5, base, rows)
     braces = PER_LAMBDA * np.array([device.brace for device in dampers for _ in places(FIG5, device)])
     way, step = found.elongation - found.pull / braces, np.diff(rows.t)
     even = np.flatnonzero((np.abs(step[1:] - step[:-1]) < 1e-12) & (step[1:] > 1e-5) & (rows.kind[1:-1] <= 0.0)) + 1

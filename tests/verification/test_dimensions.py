@@ -23,12 +23,15 @@ from rockbatch.core.flexure import events as flexure_events
 from rockbatch.core.flexure.model import FlexibleBlock, Flexing
 from rockbatch.core.flexure.modes import PerMode
 from rockbatch.core.observe import forces
+from rockbatch.core.springs import bending as bending_on_springs
 from rockbatch.core.springs import equations, events, impact, laws, recovery
 from rockbatch.core.springs.model import (
     HOUSNER,
     LANDING,
+    BentState,
     Contact,
     Geometry,
+    Shaft,
     Springs,
     State,
     Supports,
@@ -42,6 +45,8 @@ SPEED, ACCELERATION, JERK = M / S, M / S**2, M / S**3
 UNITS = {  # of the fields, by the tuples' own comments
     Springs: (M, M, M**2, ACCELERATION, M, 1 / M, ACCELERATION, ONE, ONE, ONE, 1 / S),
     State: (M, RAD, SPEED, RAD / S, ONE, ONE),
+    BentState: (M, RAD, SPEED, RAD / S, ONE, ONE, *4 * (M,), *4 * (SPEED,)),
+    Shaft: (ONE, M, 1 / S, 1 / S, ONE, ONE, ONE),  # of each mode
     Ground: (ACCELERATION, JERK, ACCELERATION, JERK),
     Geometry: (M,) * 12,
     Block: (M, M, M**2, ACCELERATION, RAD, 1 / S, ONE, ONE, ONE, 1 / M**2, SPEED, ONE),
@@ -127,7 +132,7 @@ def plain_python(monkeypatch):
     """
     modules: tuple[ModuleType, ...] = (
         laws, recovery, equations, impact, events, trigonometry, block, block_events, forces, device_laws, elongation, pull, rk4,
-        flexure, flexure_events,
+        flexure, flexure_events, bending_on_springs,
     )  # fmt: skip
     compiled_geometry = equations.geometry
 
@@ -141,7 +146,7 @@ def plain_python(monkeypatch):
                 monkeypatch.setattr(module, name, geometry)
             elif isinstance(kernel, CPUDispatcher):
                 monkeypatch.setattr(module, name, kernel.py_func)
-            elif kernel in (table.along, table.weighted, table.with_pull):
+            elif kernel in (table.along, table.weighted, table.with_pull, table.with_rates, table.with_z):
                 monkeypatch.setattr(module, name, getattr(table, f"_interpreted_{name}"))
     for module in (block_events, device_laws, elongation):
         monkeypatch.setattr(module, "math", MATH)
@@ -355,6 +360,26 @@ def test_forces_gaps_and_speeds_have_their_units_on_a_rigid_base(stance):
     y = block.constrained(m, Rocking(*quantities(Rocking, (0.0,) * 4 if rests else ROCKS)), stance)
     found = forces.on_block(m, forces.Body(outline, hold), Moment(y, stance, None), ground())
     assert_units(found, FORCES)
+
+
+def bending_pier():
+    """A pier on damped springs whose shaft has the modes of FLEXIBLE."""
+    values = (*OF_MODES, OF_MODES[-1])
+    modes = [PerMode(*(x * unit for x in each)) for each, unit in zip(values, UNITS[Shaft], strict=True)]
+    return pier(True, damped=True)._replace(shaft=Shaft(*modes, 12.0 * M))
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_a_bending_shaft_on_springs_has_rates_energies_and_forces(contact):
+    m, y, shaking = bending_pier(), BentState(*quantities(BentState, (*MOVING, *FLEXES[4:]))), ground()
+    k = system.rates(m, y, contact, shaking)
+    assert_units(k, (*RATES, *4 * (SPEED,), *4 * (ACCELERATION,)))
+    assert_units(rk4.rk4(m, None, Instant(y, k, contact, WAITING, shaking), 0.001 * S), UNITS[BentState])
+    up, turning, modes = bending_on_springs.momenta(m, y, 7.0 * M)
+    assert_units([up, turning, *modes], [SPEED, M * SPEED, *4 * (SPEED,)])
+    assert_units([bending_on_springs.kinetic_of_modes(m, y, 7.0 * M)], [SPEED**2])
+    assert_units([system.ground_power(m, y, contact, shaking)], [ACCELERATION * SPEED])
+    assert_units(forces.on_springs(m, 31.0 * M, Moment(y, contact, WAITING), shaking), FORCES)
 
 
 # What they refuse

@@ -5,8 +5,8 @@ import numpy.typing as npt
 
 from rockbatch.analyses.fragility.study import OVERTURNING
 from rockbatch.checks.bounds import of_runs
-from rockbatch.checks.rule_choices import chooses
 from rockbatch.checks.rules import Rule
+from rockbatch.common.naming import chosen_by
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, has_device
 from rockbatch.quantities.catalogue import DEMANDS
@@ -20,10 +20,11 @@ overturned and the check counts that as unknown; it is left out if the check say
 
 
 def applies(rule: Rule, case: Case, names: frozenset[str]) -> bool:
-    """Return whether a limit applies to a case, given as in run.json; ``names`` are those of all cases."""
+    """Return whether a limit, which is of all scales, applies to a case as in run.json; ``names`` are those of all cases."""
     demand = DEMANDS[rule.demand]
     equipped = not demand.device or has_device(case, demand.device)
-    return chooses(rule, str(case["case"]), 1.0, names) and demand.applies_to(case) and equipped
+    about = not rule.case or case["case"] in chosen_by(tuple(rule.case), names)
+    return about and demand.applies_to(case) and equipped
 
 
 def threshold(rule: Rule) -> float:

@@ -85,7 +85,7 @@ class Capacities:
 
     @classmethod
     def of_brackets(cls, low: Values, high: Values, station: Numbers | None = None) -> "Capacities":
-        """Return the capacities of m records with one bracket each, shape (m,), leaving out those of unknown capacity."""
+        """Return the capacities of m records with one bracket each, shape (m,), without those between 0 and infinity."""
         known = (low > 0) | np.isfinite(high)
         station = np.arange(len(low)) if station is None else station
         return cls(low[known], high[known], np.ones(known.sum()), None, station[known])

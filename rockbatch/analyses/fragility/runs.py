@@ -91,7 +91,7 @@ class LevelPlan(NamedTuple):
 
 
 def level_plans(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) -> list[LevelPlan]:
-    """Return the levels of every motion for each case: the same ones, unless intensities are relative to its pier.
+    """Return the levels of every motion, a plan for each case: the same plan, unless intensities are relative to its pier.
 
     Raises ``InputError`` if there is no run at all, or a stripe names no record.
     """

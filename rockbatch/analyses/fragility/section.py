@@ -61,7 +61,7 @@ def _notes(entries: Iterable[Curve]) -> Markup:
 
 
 def _factors(info: Entry) -> Markup:
-    """Return a folded table of the factors on every record at every level; those that are not used in brackets."""
+    """Return a folded table of the factors on every record at every level, unused ones in brackets; empty without factors."""
     scales = info.get("scales")
     if not scales or not scales["records"]:
         return Markup("")

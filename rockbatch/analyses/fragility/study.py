@@ -361,7 +361,5 @@ def _of_one_record(rule: Rule) -> Rule:
     limit = replace(rule, scale=(), statistic=statistic)
     if not DEMANDS[rule.demand].per_run:
         return limit
-    flight, failed = (
-        "left out" if limit.counts(status) == "left out" else "unknown" for status in ("flight", "failed")
-    )
+    flight, failed = ("left out" if limit.ways[status] == "left out" else "unknown" for status in ("flight", "failed"))
     return replace(limit, flight=flight, failed=failed)

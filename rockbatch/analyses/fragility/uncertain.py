@@ -50,7 +50,7 @@ class Input:
 
     @property
     def at(self) -> tuple[str, str]:
-        """Return its place under [fragility.uncertain]."""
+        """Return its table and key under [fragility.uncertain], as ("dispersion", "zeta")."""
         return self.spread, self.name
 
     @property

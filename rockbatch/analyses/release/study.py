@@ -44,7 +44,7 @@ class ReleaseSpec:
     confidence: float = 0.95
 
     def fits(self, case: Case) -> str:
-        """Return what is fitted in a case."""
+        """Return the key fitted in a case: the given one, else "restitution", on springs "zeta" if it has one, or "epsilon"."""
         if self.fit is not None:
             return self.fit
         if not case.base.on_springs:
@@ -133,7 +133,7 @@ def _padded(times: Sequence[float], amplitudes: Sequence[float], clock: str | No
 
 
 def _of_file(table: Table, name: str) -> dict[str, tuple[float, ...]]:
-    """Return the columns of a CSV of measured values; mistakes in it are noted with their line."""
+    """Return the columns of a CSV of measured values; {} after a mistake in it, which is noted with its line."""
     path = table.file.path.parent / Path(name).expanduser()
     with table.noting("measured"):
         columns = columns_of(path, dict.fromkeys(UNITS, not_negative), gaps=True)

@@ -159,7 +159,7 @@ def read_sensitivity(study: Study) -> SensitivitySpec:
 
 
 def _inputs(file: TomlFile, spread: str, keys: Mapping[str, Key]) -> list[Input]:
-    """Return the inputs under [sensitivity.SPREAD], also of restraints in tables within."""
+    """Return the inputs under [sensitivity.SPREAD], also of restraints in tables within; [] without that table."""
     table = file.table("sensitivity", spread)
     if table is None:
         return []

@@ -153,7 +153,7 @@ def _worst(regions: "pd.DataFrame") -> "pd.DataFrame":
 
 
 def _least_of(regions: "pd.DataFrame", keys: list[str], of: str) -> str:
-    """Return the sentence about a map."""
+    """Return a sentence on the least pulse of a map that overturns the pier, or that none does."""
     name, worst, cases = regions["map"].iloc[0], _worst(regions), regions.groupby(keys, dropna=False).ngroups
     if worst.empty:
         ends = f"ω_p/p = {_span(regions['omega_p_over_p'])}, up to a_p/(g tan α) = {plain(float(regions['high'].max()), 3)}"

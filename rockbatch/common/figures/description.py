@@ -51,7 +51,7 @@ def marks_of(place: int, is_open: bool = False) -> Look:
 
 
 def sign_of(status: str) -> Look:
-    """Return the look of a run without a largest rotation."""
+    """Return the look of a run without a largest rotation: the mark of its ``status``, plain if it failed, else in alarm."""
     return Look("none" if status == "failed" else "alarm", shape=status)
 
 
@@ -275,7 +275,7 @@ class Figure:
 
     @property
     def rows(self) -> list[list[Panel]]:
-        """Return the rows of panels that are stacked."""
+        """Return the panels in rows, one below another: in each as many side by side as the widest panel is wide."""
         widest = max((panel.width for panel in self.panels), default=0.0)
         rows: list[list[Panel]] = []
         for panel in self.panels:

@@ -36,9 +36,8 @@ def kinetic_and_potential(m, y, contact):
 
 
 @inlined
-def hanging(m, theta):
-    """Return the coordinates of the modes [m] under the weight alone, with the base held at ``theta`` [rad]."""
-    weight = m.gravity * math.sin(theta)
+def hanging(m, weight):
+    """Return the coordinates of the modes [m] under the ``weight`` across the shaft [m/s²] alone, with the base held."""
     return PerMode(
         weight * m.share.first / (m.frequency.first * m.frequency.first),
         weight * m.share.second / (m.frequency.second * m.frequency.second),
@@ -51,7 +50,7 @@ def hanging(m, theta):
 def _leaning(m, theta):
     """Return the least energy [J/kg] of weight and shaft at the rotation ``theta``, and the modes' coordinates there [m]."""
     side = 1.0 if theta > 0.0 else -1.0
-    u = hanging(m, theta)
+    u = hanging(m, m.gravity * math.sin(theta))
     return m.gravity * on_pivot(m, theta, side)[0] - bending_energy(m, u), u
 
 

@@ -8,23 +8,21 @@ from rockbatch.core.block.equations import clearances, constrained, on_side
 from rockbatch.core.block.model import Stance, Tilt
 from rockbatch.core.clock import COMMON, TIMING, include_height
 from rockbatch.core.flexure import ending, events  # noqa: F401  hooks of the flexible block
+from rockbatch.core.flexure.displacements import Displacements, displacements_in, displacements_within
 from rockbatch.core.flexure.ending import hanging
 from rockbatch.core.flexure.equations import flexing
 from rockbatch.core.flexure.model import NUMBERS, FlexibleBlock, FlexibleTraits, Flexing, Numbers, numbers_of
-from rockbatch.core.flexure.modes import PerMode, deflection_rates, deflections, dot
-from rockbatch.core.kernel import inlined, kernel
-from rockbatch.core.roots import largest_within
+from rockbatch.core.flexure.modes import PerMode
+from rockbatch.core.kernel import inlined
 from rockbatch.core.system import System
 from rockbatch.core.table import get, lanes_of, put, taken
 from rockbatch.core.types import LEFT, RIGHT, Moment
 
 
 class Ending(NamedTuple):
-    """Number that decides when the run is over, and its greatest displacements so far."""
+    """Number that decides when the run is over."""
 
     longest: float  # sample at which the run ends in any case
-    deflection: float  # of the top across the shaft [m]
-    drift: float  # horizontal displacement of the top from rest [m]
 
 
 LANE = lanes_of(
@@ -36,6 +34,7 @@ LANE = lanes_of(
         "rates": Flexing,
         "contact": Stance,
         "ending": Ending,
+        "displaced": Displacements,
     }
 )
 
@@ -84,44 +83,24 @@ def pier_in(traits, lanes, i):
     return _model(traits, lanes, i), Moment(get(lanes.now, i, Flexing), get(lanes.contact, i, Stance), None)
 
 
-@inlined
-def _drift(m, y):
-    """Return the horizontal displacement of the top from rest, to the right [m], and its rate [m/s]."""
-    sine, cosine = math.sin(y.theta), math.cos(y.theta)
-    u, u_rate = dot(m.top_shape, deflections(y)), dot(m.top_shape, deflection_rates(y))
-    return m.top * sine + u * cosine, (m.top * cosine - u * sine) * y.omega + u_rate * cosine
-
-
 @system.begin.of(FlexibleTraits)
 def begin(traits, lanes, i, run):
     """Put the model and the start of ``run`` into lane ``i``."""
     put(lanes.model, i, taken(run, Numbers))
     contact = Stance(1.0, 1.0, 0.0, 0.0) if run.theta == 0.0 else on_side(RIGHT if run.theta > 0.0 else LEFT)
     m = _model(traits, lanes, i)
-    u = hanging(m, run.theta)
+    u = hanging(m, m.gravity * math.sin(run.theta))
     y = constrained(m, flexing(0.0, run.theta, 0.0, 0.0, u, PerMode(0.0, 0.0, 0.0, 0.0)), contact)
     put(lanes.now, i, y)
     put(lanes.contact, i, contact)
     lanes.ending.longest[i] = lanes.clock.samples[i] + run.patience
-    lanes.ending.deflection[i], lanes.ending.drift[i] = abs(dot(m.end_shape, u)), abs(_drift(m, y)[0])
-
-
-@kernel
-def _include_displacements(lanes, i, m, part):
-    """Raise the greatest displacements to those of a Part."""
-    start, end, kept = part.start.y, part.end, lanes.ending
-    bent, rate = dot(m.end_shape, deflections(start)), dot(m.end_shape, deflection_rates(start))
-    bent_end, rate_end = dot(m.end_shape, deflections(end)), dot(m.end_shape, deflection_rates(end))
-    kept.deflection[i] = largest_within(bent, rate, bent_end, rate_end, part.length, kept.deflection[i])[1]
-    way, rate = _drift(m, start)
-    way_end, rate_end = _drift(m, end)
-    kept.drift[i] = largest_within(way, rate, way_end, rate_end, part.length, kept.drift[i])[1]
+    put(lanes.displaced, i, displacements_in(m, y))
 
 
 @system.take_in_part.of(FlexibleTraits)
 def take_in_part(traits, lanes, i, m, part, after):
     """Record displacements and the height of flight, and set state and stance."""
-    _include_displacements(lanes, i, m, part)
+    put(lanes.displaced, i, displacements_within(m, part, get(lanes.displaced, i, Displacements)))
     if system.airborne(m, part.start.contact):
         start, top = part.start, part.start.contact.top
         include_height(lanes, i, clearances(m, start.y, top), clearances(m, part.end, top), part.length)
@@ -132,7 +111,7 @@ def take_in_part(traits, lanes, i, m, part, after):
 @system.finish.of(FlexibleTraits)
 def finish(traits, lanes, i, t, result):
     """Write the greatest displacements."""
-    result.deflection_max, result.drift_max = lanes.ending.deflection[i], lanes.ending.drift[i]
+    result.deflection_max, result.drift_max = lanes.displaced.deflection[i], lanes.displaced.drift[i]
 
 
 def system_of(m):

@@ -9,11 +9,13 @@ from rockbatch.core.flexure.equations import bent_across, masses_about, rise_of_
 from rockbatch.core.flexure.model import FlexibleBlock
 from rockbatch.core.flexure.modes import PerMode, deflection_rates, deflections, dot
 from rockbatch.core.kernel import hook, kernel
+from rockbatch.core.springs.bending import accelerations
+from rockbatch.core.springs.bending import velocity_of_centre as velocity_on_springs
 from rockbatch.core.springs.equations import accelerations_at, geometry
-from rockbatch.core.springs.model import Springs, Supports
+from rockbatch.core.springs.model import Shaft, Springs, Supports
 from rockbatch.core.springs.recovery import forces, quickness, top, velocity_of_top
 from rockbatch.core.system import airborne, rates, shift
-from rockbatch.core.table import record
+from rockbatch.core.table import along, record
 from rockbatch.core.trigonometry import sine_and_cosine
 from rockbatch.core.types import LEFT, RIGHT
 
@@ -76,10 +78,24 @@ def friction_demand(gravity, shear, normal):
     return abs(shear) / normal if normal > LIFTED * gravity else math.inf
 
 
-@kernel
-def on_springs(m, deck, now, ground):
-    """Return the forces in the Moment ``now``; the deck is at the height ``deck`` [m]."""
-    (y, contact, supports), horizontal, vertical = now, ground.horizontal, ground.vertical
+class Inertia(NamedTuple):
+    """Forces of a pier's mass and weight on its base, and what the mass moves at."""
+
+    shear: float  # [m/s²], as of Forces
+    moment: float  # [m²/s²]
+    deck: float  # [m/s²]
+    along: float  # [m/s]
+    up: float
+
+
+@hook
+def _inertia_on_springs(shaft, m, deck, y, contact, ground):
+    """Return the Inertia of a pier on springs, whose ``shaft`` is None if it is rigid."""
+
+
+@_inertia_on_springs.of(type(None))
+def _inertia_of_rigid_shaft(shaft, m, deck, y, contact, ground):
+    horizontal, vertical = ground.horizontal, ground.vertical
     at = geometry(m, y.theta)
     v_acceleration, turning = accelerations_at(m, y, contact, at, ground)
     squared = y.omega * y.omega
@@ -95,6 +111,41 @@ def on_springs(m, deck, now, ground):
     shear = horizontal + lever * turning + bend * squared
     moment = place * (m.gravity + vertical + v_acceleration) - lever * (shear - horizontal) - m.inertia * turning
     moment -= ground_lever * horizontal
+    return Inertia(shear, moment, shear + swung, at.lever * y.omega, y.v_rate)
+
+
+@_inertia_on_springs.of(Shaft)
+def _inertia_of_bending_shaft(shaft, m, deck, y, contact, ground):
+    at, side = geometry(m, y.theta), contact.right - contact.left
+    k, squared = accelerations(m, y, contact, at, ground), y.omega * y.omega
+    sine, cosine = sine_and_cosine(y.theta)
+    lever, bend = at.lever + side * at.swing, at.lever_slope + side * at.swing_slope
+    weight, u, u_rate = m.gravity + ground.vertical, deflections(y), deflection_rates(y)
+    to_right, up = ground.horizontal + lever * k.theta + bend * squared, weight + k.v
+    moved, speed, pushed = dot(shaft.share, u), dot(shaft.share, u_rate), dot(shaft.share, k.u)
+    shear = to_right + cosine * pushed - 2.0 * sine * y.omega * speed - moved * (sine * k.theta + cosine * squared)
+    normal = up - sine * pushed - 2.0 * cosine * y.omega * speed - moved * (cosine * k.theta - sine * squared)
+    spun = (m.inertia + dot(u, u)) * k.theta + dot(shaft.lever, k.u) + 2.0 * dot(u, u_rate) * y.omega
+    spun -= moved * (sine * to_right + cosine * up)
+    moment = (side * m.half_width - bend) * normal - lever * shear - spun
+    # What the base does in an instant reaches the shaft by its modes alone
+    followed = along(along(k.u, shaft.share, cosine * lever * k.theta - sine * k.v), shaft.lever, k.theta)
+    steady = cosine * (ground.horizontal + bend * squared)
+    across = steady - sine * weight + dot(shaft.share, followed) - moved * squared
+    bent, bent_rate = dot(shaft.deck_shape, u), dot(shaft.deck_shape, u_rate)
+    deck_across = steady - sine * ground.vertical + dot(shaft.deck_shape, followed) - bent * squared
+    deck_along = sine * to_right + cosine * (up - m.gravity) - (deck - m.height) * squared
+    deck_along -= 2.0 * bent_rate * y.omega + bent * k.theta
+    moves = velocity_on_springs(m, y, at.lever)
+    shaken = cosine * deck_across + sine * deck_along
+    return Inertia((across + sine * normal) / cosine, moment, shaken, moves[0], moves[1])
+
+
+@kernel
+def on_springs(m, deck, now, ground):
+    """Return the forces in the Moment ``now``; the deck is at the height ``deck`` [m]."""
+    y, contact, supports = now
+    at, of = geometry(m, y.theta), _inertia_on_springs(m.shaft, m, deck, y, contact, ground)
     pull_left, pull_right = forces(m, y, contact, at)
     left, right = -pull_left, -pull_right
     free_left = 1.0 if contact.left == 0.0 and contact.held != LEFT else 0.0
@@ -102,11 +153,11 @@ def on_springs(m, deck, now, ground):
     gap_left = free_left * (y.v + at.lift_left - top(m, supports.left, y.z_left))
     gap_right = free_right * (y.v + at.lift_right - top(m, supports.right, y.z_right))
     return Forces(
-        shear, left + right, moment, left, right, gap_left, gap_right,
+        of.shear, left + right, of.moment, left, right, gap_left, gap_right,
         free_left * (y.v_rate + at.arm_left * y.omega - velocity_of_top(m, y.z_left)),
         free_right * (y.v_rate + at.arm_right * y.omega - velocity_of_top(m, y.z_right)),
-        shear + swung, at.lever * y.omega, y.v_rate, y.omega,
-        friction_demand(m.gravity, shear, left + right), min(gap_left, gap_right),
+        of.deck, of.along, of.up, y.omega,
+        friction_demand(m.gravity, of.shear, left + right), min(gap_left, gap_right),
     )  # fmt: skip
 
 
@@ -202,10 +253,10 @@ def on_flexible_block(m, body, now, ground):
     about, squared, b = masses_about(m, deflections(y), key), y.omega * y.omega, m.half_width
     slope, arm = about.offset * cosine - m.height * sine, about.offset * sine + m.height * cosine
     u_rate = deflection_rates(y)
-    along = arm * k.omega + slope * squared + bent_across(m.share, y, k)
+    to_side = arm * k.omega + slope * squared + bent_across(m.share, y, k)
     pull, grounded = m.pull.force * half_cosine, 0.0 if flies else 1.0
     lifted = m.gravity + vertical + k.v_rate + rise_of_bending(m, y, k)
-    normal, shear = grounded * (lifted + pull * half_cosine), horizontal + along + grounded * pull * half_sine
+    normal, shear = grounded * (lifted + pull * half_cosine), horizontal + to_side + grounded * pull * half_sine
     straight_slope, straight_arm = arms_about(m, y.theta, key)
     key_rise = k.v_rate - straight_slope * k.omega + straight_arm * squared
     spun = dot(m.coupling, deflection_rates(k)) + about.turning * k.omega + 2.0 * dot(about.spread, u_rate) * y.omega

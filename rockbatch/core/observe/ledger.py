@@ -10,16 +10,18 @@ from typing import NamedTuple
 from rockbatch.core.block.equations import lever
 from rockbatch.core.block.model import Block
 from rockbatch.core.flexure.ending import bending_energy, kinetic_and_potential
-from rockbatch.core.flexure.model import FlexibleBlock
+from rockbatch.core.flexure.model import FlexibleBlock, Flexing
 from rockbatch.core.flexure.modes import deflection_rates, deflections, dot, times
 from rockbatch.core.kernel import entry, hook, kernel, optional_hook
 from rockbatch.core.observe.rows import contact_of, ground_within, state_of, step_between, within
+from rockbatch.core.springs.bending import accelerations, kinetic_of_modes, momenta
 from rockbatch.core.springs.equations import accelerations_at, geometry
+from rockbatch.core.springs.free_vibration import energy_of_modes
 from rockbatch.core.springs.impact import loss
-from rockbatch.core.springs.model import Contact, Springs
+from rockbatch.core.springs.model import BentState, Contact, Shaft, Springs
 from rockbatch.core.springs.recovery import forces
 from rockbatch.core.system import ground_power, rates
-from rockbatch.core.table import record, with_pull
+from rockbatch.core.table import along, record, with_pull
 from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT, Pull
 
 
@@ -51,12 +53,25 @@ def _stored(m, y, contact):
     """Return the kinetic, potential and elastic energy of the pier, without its devices [J/kg]."""
 
 
+@optional_hook
+def _of_modes(shaft, m, y, lever):
+    """Return what the modes of the shaft add to the kinetic, potential and elastic energy [J/kg]; ``lever`` is H [m]."""
+    return 0.0, 0.0, 0.0
+
+
+@_of_modes.of(Shaft)
+def _of_bending(shaft, m, y, lever):
+    elastic, kinetic = bending_energy(shaft, deflections(y)), kinetic_of_modes(m, y, lever)
+    return kinetic, energy_of_modes(shaft, m, y, lever) - kinetic - elastic, elastic
+
+
 @_stored.of(Springs)
 def _stored_on_springs(m, y, contact):
     lever = _lever(geometry(m, y.theta), contact) if m.finite is not None else m.height
+    by_motion, by_height, by_bending = _of_modes(m.shaft, m, y, lever)
     kinetic = 0.5 * y.v_rate * y.v_rate + 0.5 * (m.inertia + lever * lever) * y.omega * y.omega
     elastic = 0.5 * m.yield_force * m.yield_deflection * (y.z_left * y.z_left + y.z_right * y.z_right)
-    return kinetic, m.gravity * y.v, elastic
+    return kinetic + by_motion, m.gravity * y.v + by_height, elastic + by_bending
 
 
 @_stored.of(Block)
@@ -89,6 +104,21 @@ def energy_of_rows(m, rows, out):
         out[i] = kinetic - kinetic0 + (potential - potential0) + (elastic - elastic0)
 
 
+@optional_hook
+def _damping(y, shaft):
+    """Return the power that the damping of the shaft takes in state ``y`` [W/kg]; ``shaft`` has that of its modes."""
+    return 0.0
+
+
+def _damping_of_modes(y, shaft):
+    u_rate = deflection_rates(y)
+    return dot(times(shaft.damping, u_rate), u_rate)
+
+
+_damping.of(Flexing)(_damping_of_modes)
+_damping.of(BentState)(_damping_of_modes)
+
+
 @kernel
 def _powers(m, y, k, contact, ground):
     """Return the powers [W/kg] of input, plastic work, P–Δ, constraint and dashpots; 0 for terms that do not occur."""
@@ -105,10 +135,30 @@ def _powers(m, y, k, contact, ground):
     constraint = 0.0
     if contact.held != 0:
         released = Contact(contact.left, contact.right, contact.left_yields, contact.right_yields, 0)
-        _, free = accelerations_at(m, y, released, at, ground)
-        lever = _lever(at, contact) if m.finite is not None else m.height
-        constraint = (m.inertia + lever * lever) * (k.omega - free) * y.omega
-    return shaken, plastic, p_delta, constraint, damping
+        constraint = _holding(m.shaft, m, y, k, released, ground)
+    return shaken, plastic, p_delta, constraint, damping + _damping(y, m.shaft)
+
+
+@hook
+def _holding(shaft, m, y, k, contact, ground):
+    """Return the power [W/kg] by which a grazing pivot changes the motion that the pier would have with ``contact`` alone."""
+
+
+@_holding.of(type(None))
+def _holding_rigid_shaft(shaft, m, y, k, contact, ground):
+    at = geometry(m, y.theta)
+    _, free = accelerations_at(m, y, contact, at, ground)
+    lever = _lever(at, contact) if m.finite is not None else m.height
+    return (m.inertia + lever * lever) * (k.omega - free) * y.omega
+
+
+@_holding.of(Shaft)
+def _holding_bending_shaft(shaft, m, y, k, contact, ground):
+    at = geometry(m, y.theta)
+    free, lever = accelerations(m, y, contact, at, ground), _lever(at, contact)
+    v, turning, u = momenta(m, y, lever)
+    changed = along(deflection_rates(k), free.u, -1.0)
+    return v * (k.v_rate - free.v) + turning * (k.omega - free.theta) + dot(u, changed)
 
 
 @kernel
@@ -160,6 +210,7 @@ def ledger_on_springs(m, rows, pulls, ground, dt, out):
                 was, now = _lever(at, contact_of(m, rows[i - 1])), _lever(at, contact)
                 both = at.lever * at.lever * (y_end.omega * y_end.omega - y.omega * y.omega)
                 constraint += 0.5 * (now * now * y_end.omega * y_end.omega - was * was * y.omega * y.omega - both)
+                constraint += _of_modes(m.shaft, m, y_end, now)[0] - _of_modes(m.shaft, m, y, was)[0]
         else:
             start, half_way, stop = pulled(m, pulls, i)
             step = step_between(start, stop, rows[i - 1], rows[i], ground, dt)
@@ -184,18 +235,6 @@ def ledger_on_springs(m, rows, pulls, ground, dt, out):
         y = y_end
 
 
-@optional_hook
-def _damping(m, y):
-    """Return the power that the damping of the shaft takes [W/kg]."""
-    return 0.0
-
-
-@_damping.of(FlexibleBlock)
-def _damping_of_flexible_block(m, y):
-    u_rate = deflection_rates(y)
-    return dot(times(m.damping, u_rate), u_rate)
-
-
 @entry
 def ledger_on_rigid_base(m, rows, pulls, ground, dt, out):
     """Compute the energy balance of a run of a Block or FlexibleBlock ``m`` with the history ``rows``.
@@ -218,7 +257,7 @@ def ledger_on_rigid_base(m, rows, pulls, ground, dt, out):
             s1 = ground_power(m, middle, contact, ground_within(step, 0.5))
             s2 = ground_power(m, y_end, contact, step.ground_end)
             shaken += step.length / 6.0 * (s0 + 4.0 * s1 + s2)
-            damping += step.length / 6.0 * (_damping(m, y) + 4.0 * _damping(m, middle) + _damping(m, y_end))
+            damping += step.length / 6.0 * (_damping(y, m) + 4.0 * _damping(middle, m) + _damping(y_end, m))
         line = out[i]
         line.kinetic, line.potential, line.elastic = kinetic_end - kinetic0, potential - potential0, elastic - elastic0
         line.input, line.impact, line.damping = shaken, impact, damping

@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 from rockbatch.core.block.model import Block, Rocking, Stance
 from rockbatch.core.flexure.equations import flexing
-from rockbatch.core.flexure.model import FlexibleBlock
+from rockbatch.core.flexure.model import FlexibleBlock, Flexing
 from rockbatch.core.flexure.modes import MOST_MODES, PerMode, deflection_rates, deflections
-from rockbatch.core.kernel import hook, kernel, optional_hook
-from rockbatch.core.springs.model import Contact, Springs, State
+from rockbatch.core.kernel import hook, inlined, kernel, optional_hook
+from rockbatch.core.springs.bending import bent_state
+from rockbatch.core.springs.model import BentState, Contact, Shaft, Springs, State
 from rockbatch.core.system import rates, share, stage
 from rockbatch.core.types import Ground
 
@@ -17,9 +18,25 @@ def state_of(m, row):
     """Return the state in a row."""
 
 
+@hook
+def _row_on_springs(shaft, row):
+    """Return the state of a pier on springs in a row, with the coordinates of the modes if its ``shaft`` bends."""
+
+
+@_row_on_springs.of(type(None))
+def _straight_row(shaft, row):
+    return State(row.v, row.theta, row.v_rate, row.omega, row.z_left, row.z_right)
+
+
+@_row_on_springs.of(Shaft)
+def _bent_row(shaft, row):
+    u, u_rate = _modes_in(row)
+    return bent_state(_row_on_springs(None, row), u, u_rate)
+
+
 @state_of.of(Springs)
 def _state_on_springs(m, row):
-    return State(row.v, row.theta, row.v_rate, row.omega, row.z_left, row.z_right)
+    return _row_on_springs(m.shaft, row)
 
 
 @state_of.of(Block)
@@ -27,16 +44,17 @@ def _state_of_block(m, row):
     return Rocking(row.v, row.theta, row.v_rate, row.omega)
 
 
+@inlined
+def _modes_in(row):
+    """Return the coordinates of the modes in a row, and their rates."""
+    u_rate = PerMode(row.u_1_rate, row.u_2_rate, row.u_3_rate, row.u_4_rate)
+    return PerMode(row.u_1, row.u_2, row.u_3, row.u_4), u_rate
+
+
 @state_of.of(FlexibleBlock)
 def _state_of_flexible_block(m, row):
-    return flexing(
-        row.v,
-        row.theta,
-        row.v_rate,
-        row.omega,
-        PerMode(row.u_1, row.u_2, row.u_3, row.u_4),
-        PerMode(row.u_1_rate, row.u_2_rate, row.u_3_rate, row.u_4_rate),
-    )
+    u, u_rate = _modes_in(row)
+    return flexing(row.v, row.theta, row.v_rate, row.omega, u, u_rate)
 
 
 @hook
@@ -58,15 +76,18 @@ contact_of.of(FlexibleBlock)(_stance)
 
 
 @optional_hook
-def write_bending(m, y, k, line):
-    """Write the coordinates of a shaft's modes, their rates and accelerations to ``line``; a rigid shaft has none."""
+def write_bending(y, k, line):
+    """Write the coordinates of a shaft's modes, their rates and accelerations to ``line``; states of a rigid one have none."""
 
 
-@write_bending.of(FlexibleBlock)
-def _write_bending(m, y, k, line):
+def _write_bending(y, k, line):
     u, u_rate, u_acceleration = deflections(y), deflection_rates(y), deflection_rates(k)
     for i in range(MOST_MODES):
         line[0, i], line[1, i], line[2, i] = u[i], u_rate[i], u_acceleration[i]
+
+
+write_bending.of(Flexing)(_write_bending)
+write_bending.of(BentState)(_write_bending)
 
 
 @optional_hook
@@ -142,7 +163,17 @@ def within(m, step, s):
 @within.of(Springs)
 def _within_on_springs(m, step, s):
     y, k, end, k_end, h = step.start, step.rates, step.end, step.rates_end, step.length
-    y_within = State(
+    return stage(m, cubics(y, k, end, k_end, h, s), y, step.contact, share(m, s * h))
+
+
+@hook
+def cubics(y, k, end, k_end, h, s):
+    """Return :func:`cubic` of each variable of a state on springs."""
+
+
+@cubics.of(State)
+def _straight_cubics(y, k, end, k_end, h, s):
+    return State(
         cubic(y.v, k.v, end.v, k_end.v, h, s),
         cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
         cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s),
@@ -150,7 +181,20 @@ def _within_on_springs(m, step, s):
         cubic(y.z_left, k.z_left, end.z_left, k_end.z_left, h, s),
         cubic(y.z_right, k.z_right, end.z_right, k_end.z_right, h, s),
     )
-    return stage(m, y_within, y, step.contact, share(m, s * h))
+
+
+@cubics.of(BentState)
+def _bent_cubics(y, k, end, k_end, h, s):
+    straight = State(
+        cubic(y.v, k.v, end.v, k_end.v, h, s),
+        cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
+        cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s),
+        cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
+        cubic(y.z_left, k.z_left, end.z_left, k_end.z_left, h, s),
+        cubic(y.z_right, k.z_right, end.z_right, k_end.z_right, h, s),
+    )
+    u, u_rate = _cubics_of_modes(y, k, end, k_end, h, s)
+    return bent_state(straight, u, u_rate)
 
 
 @within.of(Block)
@@ -167,14 +211,23 @@ def _within_of_block(m, step, s):
 @within.of(FlexibleBlock)
 def _within_of_flexible_block(m, step, s):
     y, k, end, k_end, h = step.start, step.rates, step.end, step.rates_end, step.length
+    u, u_rate = _cubics_of_modes(y, k, end, k_end, h, s)
     return flexing(
         cubic(y.v, k.v, end.v, k_end.v, h, s),
         cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
         cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s),
         cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
-        _cubic_of_modes(deflections(y), deflections(k), deflections(end), deflections(k_end), h, s),
-        _cubic_of_modes(deflection_rates(y), deflection_rates(k), deflection_rates(end), deflection_rates(k_end), h, s),
+        u,
+        u_rate,
     )
+
+
+@inlined
+def _cubics_of_modes(y, k, end, k_end, h, s):
+    """Return :func:`cubic` of the coordinates of the modes, and of their rates."""
+    u = _cubic_of_modes(deflections(y), deflections(k), deflections(end), deflections(k_end), h, s)
+    rates, changes = (deflection_rates(y), deflection_rates(end)), (deflection_rates(k), deflection_rates(k_end))
+    return u, _cubic_of_modes(rates[0], changes[0], rates[1], changes[1], h, s)
 
 
 @kernel

@@ -141,7 +141,7 @@ def _peak_is_final(lanes, i, m, now, devices):
     if not ground_rests(lanes, i):
         return False
     waiting = lanes.waiting
-    calm = devices is None and _stands(lanes, i, now.contact)
+    calm = devices is None and m.shaft is None and _stands(lanes, i, now.contact)
     on_base = Moment(now.y, now.contact, _base_and_yield_points(m, now))
     drift = Drift(waiting.further_right[i], waiting.further_left[i], waiting.further_growth[i])
     load = Load(waiting.load[i], waiting.stored[i], waiting.growth[i])

@@ -2,10 +2,11 @@
 
 from rockbatch.core import system
 from rockbatch.core.clock import Clearances
-from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.kernel import hook, inlined, kernel
 from rockbatch.core.springs.laws import within_yield, z_rate
 from rockbatch.core.springs.model import Contact, Geometry, Springs, State
 from rockbatch.core.springs.recovery import acceleration_of_top, forces, recovery_rate, share_left, top, with_recovery
+from rockbatch.core.table import with_z
 from rockbatch.core.trigonometry import sine_and_cosine
 from rockbatch.core.types import LEFT
 
@@ -46,9 +47,19 @@ def with_forces(pull, force, moment):
     return force - pull.force, moment - pull.moment
 
 
+@hook
+def accelerations_of(shaft, m, y, contact, at, ground):
+    """Return v̈ [m/s²] and θ̈ [rad/s²] of state ``y`` with the Geometry ``at``; ``shaft`` is that of ``m``, None if rigid."""
+
+
 @inlined
 def accelerations_at(m, y, contact, at, ground):
     """Return v̈ [m/s²] and θ̈ [rad/s²] of state ``y`` with the Geometry ``at``."""
+    return accelerations_of(m.shaft, m, y, contact, at, ground)
+
+
+@accelerations_of.of(type(None))
+def _rigid_accelerations(shaft, m, y, contact, at, ground):
     force_left, force_right = forces(m, y, contact, at)
     side = contact.right - contact.left
     lever = at.lever + side * at.swing
@@ -68,21 +79,26 @@ def accelerations_at(m, y, contact, at, ground):
     return v_acceleration, -(free + at.bend_right * y.omega * y.omega) / at.arm_right
 
 
+@hook
+def rates_of(shaft, m, y, contact, ground, z_rates):
+    """Return the rates of all state variables, with those of both springs' z given."""
+
+
+@rates_of.of(type(None))
+def _rigid_rates(shaft, m, y, contact, ground, z_rates):
+    v_acceleration, theta_acceleration = accelerations_at(m, y, contact, geometry(m, y.theta), ground)
+    return State(y.v_rate, y.omega, v_acceleration, theta_acceleration, z_rates[0], z_rates[1])
+
+
 @system.rates.of(Springs)
 def rates(m, y, contact, ground):
     """Return the right-hand side: the rates of all state variables."""
     at = geometry(m, y.theta)
-    v_acceleration, theta_acceleration = accelerations_at(m, y, contact, at, ground)
     left = contact.left * (y.v_rate + at.arm_left * y.omega)
     right = contact.right * (y.v_rate + at.arm_right * y.omega)
-    return State(
-        y.v_rate,
-        y.omega,
-        v_acceleration,
-        theta_acceleration,
-        recovery_rate(m, z_rate(m, y.z_left, left, contact.left_yields), y.z_left, contact.left),
-        recovery_rate(m, z_rate(m, y.z_right, right, contact.right_yields), y.z_right, contact.right),
-    )
+    z_left = recovery_rate(m, z_rate(m, y.z_left, left, contact.left_yields), y.z_left, contact.left)
+    z_right = recovery_rate(m, z_rate(m, y.z_right, right, contact.right_yields), y.z_right, contact.right)
+    return rates_of(m.shaft, m, y, contact, ground, (z_left, z_right))
 
 
 @kernel
@@ -113,15 +129,24 @@ def stage(m, y, start, contact, remaining):
 def end_step(m, y, start, contact, remaining):
     """Return the end of a step, with z limited to −1, and in closed form without pivots."""
     z_left, z_right = within_yield(y.z_left, contact.left_yields), within_yield(y.z_right, contact.right_yields)
-    return with_recovery(m, State(y.v, y.theta, y.v_rate, y.omega, z_left, z_right), start, contact, remaining)
+    return with_recovery(m, with_z(y, z_left, z_right), start, contact, remaining)
+
+
+@hook
+def power_of_ground(shaft, m, y, lever, ground):
+    """Return the power of the ground's inertia forces [W/kg]; the centre of a straight shaft moves at ``lever`` [m] θ̇."""
+
+
+@power_of_ground.of(type(None))
+def _on_rigid_pier(shaft, m, y, lever, ground):
+    return -ground.horizontal * lever * y.omega - ground.vertical * y.v_rate
 
 
 @system.ground_power.of(Springs)
 def ground_power(m, y, contact, ground):
     """Return the power of the ground's inertia forces [W/kg]."""
     at = geometry(m, y.theta)
-    lever = at.lever + (contact.right - contact.left) * at.swing
-    return -ground.horizontal * lever * y.omega - ground.vertical * y.v_rate
+    return power_of_ground(m.shaft, m, y, at.lever + (contact.right - contact.left) * at.swing, ground)
 
 
 @system.airborne.of(Springs)

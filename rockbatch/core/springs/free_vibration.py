@@ -8,7 +8,7 @@ mass [J/kg]. ``load`` is the load of the supports at rest [m/s²]: g and the ten
 import math
 from typing import NamedTuple
 
-from rockbatch.core.kernel import kernel
+from rockbatch.core.kernel import kernel, optional_hook
 from rockbatch.core.springs.equations import geometry
 from rockbatch.core.springs.laws import give, limited
 from rockbatch.core.springs.model import HOUSNER
@@ -23,6 +23,18 @@ SEEN = 1e-6
 """Relative amount by which the extremes of a sampled vibration may lie below its amplitude."""
 
 
+@optional_hook
+def leaning_height(shaft, m):
+    """Return the height [m] that times M g sin θ bounds the weight's moment: that of the centre of mass of a rigid shaft."""
+    return m.height
+
+
+@optional_hook
+def energy_of_modes(shaft, m, y, lever):
+    """Return the energy [J/kg] of bending, and what it adds to that of a straight shaft; ``lever`` is H [m]."""
+    return 0.0
+
+
 @kernel
 def _capacity(m, load):
     """Return the supports' greatest moment about the base's centre over load · b; below 1 if one cannot carry all."""
@@ -32,14 +44,14 @@ def _capacity(m, load):
 @kernel
 def unstable_equilibrium(m, load):
     """Return the unstable equilibrium: the rotation [rad] at which the weight's moment equals the greatest of the supports."""
-    tangent = _capacity(m, load) * (load / m.gravity) * m.half_width / m.height
+    tangent = _capacity(m, load) * (load / m.gravity) * m.half_width / leaning_height(m.shaft, m)
     return math.atan(tangent) if m.finite is not None else tangent
 
 
 @kernel
 def rocking_stiffness(m):
     """Return the restoring moment per rotation in full contact, on elastic springs [m²/s²]."""
-    return 2.0 * m.yield_force * m.stiffness * m.half_width * m.half_width - m.gravity * m.height
+    return 2.0 * m.yield_force * m.stiffness * m.half_width * m.half_width - m.gravity * leaning_height(m.shaft, m)
 
 
 @kernel
@@ -57,7 +69,7 @@ def _travel(m, theta):
 @kernel
 def _weight_moment(m, travel):
     """Return the moment of the weight about the centre of the base over g, per b cos θ of the supports' arm [m]."""
-    return m.height * (travel / math.sqrt(1.0 - travel * travel) if m.finite is not None else travel)
+    return leaning_height(m.shaft, m) * (travel / math.sqrt(1.0 - travel * travel) if m.finite is not None else travel)
 
 
 @kernel
@@ -71,7 +83,7 @@ def _climb(m, lean, target, load, point):
     """
     if lean >= target:
         return -math.inf
-    b, weight = m.half_width, m.gravity / load
+    b, weight, height = m.half_width, m.gravity / load, leaning_height(m.shaft, m)
     static_force = 0.5 * load / m.yield_force
     deflection = static_force * m.yield_deflection
     capacity = _capacity(m, load)
@@ -96,9 +108,9 @@ def _climb(m, lean, target, load, point):
         return work
     if m.finite is not None:
         return work + load * (
-            capacity * b * (math.sin(end) - math.sin(theta)) + weight * m.height * (math.cos(end) - math.cos(theta))
+            capacity * b * (math.sin(end) - math.sin(theta)) + weight * height * (math.cos(end) - math.cos(theta))
         )
-    return work + load * (capacity * b * (end - theta) - 0.5 * weight * m.height * (end * end - theta * theta))
+    return work + load * (capacity * b * (end - theta) - 0.5 * weight * height * (end * end - theta * theta))
 
 
 @kernel
@@ -145,7 +157,7 @@ def further(m, right, left, sinking):
     right, left = max(right * amplification, 0.0), max(left * amplification, 0.0)
     if m.creep == 0.0:
         return Drift(right, left, 0.0)
-    grows = m.creep * m.height * amplification * sinking / (m.half_width * m.half_width)
+    grows = m.creep * leaning_height(m.shaft, m) * amplification * sinking / (m.half_width * m.half_width)
     if grows <= 1e-6:
         return Drift(right, left, 0.0)
     growth = math.expm1(min(grows, 50.0))
@@ -156,7 +168,7 @@ def further(m, right, left, sinking):
 def _amplification(m):
     """Return the rotation of a pier at rest over the tilt of its base, above 1 by its P–Δ moment."""
     stiffness = rocking_stiffness(m)
-    return (stiffness + m.gravity * m.height) / stiffness
+    return (stiffness + m.gravity * leaning_height(m.shaft, m)) / stiffness
 
 
 @kernel
@@ -200,14 +212,14 @@ def peak_is_final(m, now, carried, peak, calm, drift):
     unstable = unstable_equilibrium(m, load)
     if max(abs(lean), abs(y.theta)) >= unstable:
         return False
-    b, h, g, limit = m.half_width, m.height, m.gravity, min(peak, unstable)
+    b, h, g, limit = m.half_width, leaning_height(m.shaft, m), m.gravity, min(peak, unstable)
     stiffness = rocking_stiffness(m)
     softness = 0.5 * load / (m.yield_force * m.stiffness)  # static deflection
     middle = 0.5 * (base.left + base.right)
     if calm:
         mean = middle - softness  # of v
         if m.finite is not None:
-            mean -= _drop(m, y.theta)
+            mean -= _drop(h, y.theta)
         swing = math.sqrt((y.v - mean) * (y.v - mean) + y.v_rate * y.v_rate * softness / load)  # vertical
         swing /= softness  # of the load
         softened = stiffness - load * h * swing
@@ -225,8 +237,9 @@ def peak_is_final(m, now, carried, peak, calm, drift):
     lever, gained, at_lean = h, -0.5 * g * h * y.theta * y.theta, -0.5 * g * h * lean * lean
     if m.finite is not None:
         lever = at.lever + (contact.right - contact.left) * at.swing
-        gained, at_lean = (load - g) * _drop(m, y.theta), -g * _drop(m, lean)
+        gained, at_lean = (load - g) * _drop(m.height, y.theta), -g * _drop(h, lean)
     kinetic = 0.5 * y.v_rate * y.v_rate + 0.5 * (m.inertia + lever * lever) * y.omega * y.omega
+    kinetic += energy_of_modes(m.shaft, m, y, lever)
     spring = m.yield_force * m.yield_deflection
     stored = load * y.v + gained + 0.5 * spring * (y.z_left * y.z_left + y.z_right * y.z_right) + carried.stored
     at_lean += load * (middle - softness) + 0.5 * load * softness * (1.0 + uneven * uneven)
@@ -237,7 +250,7 @@ def peak_is_final(m, now, carried, peak, calm, drift):
 
 
 @kernel
-def _drop(m, theta):
+def _drop(h, theta):
     """Return h (1 − cos θ) [m]."""
     half = math.sin(0.5 * theta)
-    return 2.0 * m.height * half * half
+    return 2.0 * h * half * half

@@ -2,7 +2,8 @@
 
 from rockbatch.core.kernel import kernel
 from rockbatch.core.springs.equations import geometry
-from rockbatch.core.springs.model import HOUSNER, State
+from rockbatch.core.springs.model import HOUSNER
+from rockbatch.core.table import with_rates
 from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, LEFT, RIGHT
 
 
@@ -33,10 +34,10 @@ def land(m, y, side, contact):
         v_rate, omega = y.v_rate, m.restitution * y.omega
         if supported(contact, -side):
             v_rate += other * (y.omega - omega)
-        return State(y.v, y.theta, v_rate, omega, y.z_left, y.z_right), v_rate + arm * omega
+        return with_rates(y, v_rate, omega), v_rate + arm * omega
     velocity = y.v_rate + arm * y.omega
     impulse = -(1.0 - m.epsilon) * velocity / (1.0 + arm * arm / inertia)
-    landed = State(y.v, y.theta, y.v_rate + impulse, y.omega + impulse * arm / inertia, y.z_left, y.z_right)
+    landed = with_rates(y, y.v_rate + impulse, y.omega + impulse * arm / inertia)
     return landed, m.epsilon * velocity
 
 
@@ -47,8 +48,8 @@ def land_flat(m, y):
     By Housner's e θ̇ is multiplied by e, and v̇ is kept.
     """
     if m.impact == HOUSNER:
-        return State(y.v, y.theta, y.v_rate, m.restitution * y.omega, y.z_left, y.z_right)
-    return State(y.v, y.theta, m.epsilon * y.v_rate, m.epsilon * y.omega, y.z_left, y.z_right)
+        return with_rates(y, y.v_rate, m.restitution * y.omega)
+    return with_rates(y, m.epsilon * y.v_rate, m.epsilon * y.omega)
 
 
 @kernel

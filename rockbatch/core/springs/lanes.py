@@ -1,21 +1,46 @@
 """Lanes of piers on springs: their table, and the start and the results of their runs."""
 
+from itertools import repeat
 from typing import NamedTuple
 
 from rockbatch.core import system
 from rockbatch.core.clock import COMMON, TIMING, ground_at, include_height
 from rockbatch.core.devices.laws import PASSED
+from rockbatch.core.flexure.displacements import Displacements
+from rockbatch.core.flexure.modes import PerMode
 from rockbatch.core.ground import later
 from rockbatch.core.history import Stamp, write
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import lowest_within
 from rockbatch.core.springs import events  # noqa: F401  hooks of the springs
+from rockbatch.core.springs.bending import (
+    at_start,
+    begin_displacements,
+    begin_shaft,
+    include_bending,
+    state_in,
+    write_displacements,
+)
 from rockbatch.core.springs.ending import Waiting, base_of, set_deadline
 from rockbatch.core.springs.equations import clearances
 from rockbatch.core.springs.laws import yield_point, yields_at_first, yields_when_pressed
 from rockbatch.core.springs.loading import BranchChange, Loading, branch_change, branches
-from rockbatch.core.springs.model import NUMBERS, Contact, Numbers, SpringTraits, State, Supports, model_in
+from rockbatch.core.springs.model import (
+    NUMBERS,
+    OF_MODES,
+    SHAFT_NUMBERS,
+    BentState,
+    Contact,
+    Numbers,
+    Shaft,
+    ShaftNumbers,
+    SpringTraits,
+    State,
+    Supports,
+    model_in,
+    shaft_numbers,
+)
 from rockbatch.core.springs.passing import Reversals
 from rockbatch.core.springs.reversal import pivots
 from rockbatch.core.springs.transitions import with_yield_points
@@ -32,21 +57,26 @@ class Lowest(NamedTuple):
     plastic: float  # unstressed position of both supports at the start [m]
 
 
-LANE = lanes_of(
-    COMMON
-    | {
-        "model": Numbers,
-        "now": State,
-        "end": State,
-        "rates": State,
-        "contact": Contact,
-        "supports": Supports,
-        "loading": Loading,
-        "lowest": Lowest,
-        "reversals": Reversals,
-        "waiting": Waiting,
-    }
+LANE_PARTS = COMMON | {
+    "model": Numbers,
+    "now": State,
+    "end": State,
+    "rates": State,
+    "contact": Contact,
+    "supports": Supports,
+    "loading": Loading,
+    "lowest": Lowest,
+    "reversals": Reversals,
+    "waiting": Waiting,
+}
+
+LANE = lanes_of(LANE_PARTS)
+
+
+BENDING_LANE = lanes_of(
+    LANE_PARTS | dict.fromkeys(("now", "end", "rates"), BentState) | {"shaft": ShaftNumbers, "displaced": Displacements}
 )
+"""A table of piers whose shafts bend."""
 
 
 LINE = (
@@ -64,11 +94,16 @@ LINE = (
 
 Line = NamedTuple("Line", LINE)  # type: ignore[misc]
 
+BendingLine = NamedTuple("BendingLine", (*LINE, *SHAFT_NUMBERS))  # type: ignore[misc]
+
+LIKE = Shaft(*repeat(PerMode(0.0, 0.0, 0.0, 0.0), len(OF_MODES)), top=0.0)  # type: ignore[arg-type, misc]
+"""Trait of all piers whose shafts bend: its value does not matter."""
+
 
 @system.pier_in.of(SpringTraits)
 def pier_in(traits, lanes, i):
     """Return the Springs of lane ``i`` and its Moment."""
-    now = Moment(get(lanes.now, i, State), get(lanes.contact, i, Contact), get(lanes.supports, i, Supports))
+    now = Moment(state_in(traits.shaft, lanes.now, i), get(lanes.contact, i, Contact), get(lanes.supports, i, Supports))
     return model_in(traits, lanes, i), now
 
 
@@ -113,6 +148,7 @@ def held_contact(m, y, z_static, plastic):
 def begin(traits, lanes, i, run):
     """Set the model of ``run`` in lane ``i``, and its state: static, or held at a rotation."""
     put(lanes.model, i, taken(run, Numbers))
+    begin_shaft(traits.shaft, lanes, i, run)
     pier = model_in(traits, lanes, i)
     y = static_state(pier, run.gravity + run.prestress)
     level, plastic = y.v, y.v - run.yield_deflection * y.z_left
@@ -123,7 +159,8 @@ def begin(traits, lanes, i, run):
     left, right = pivots(pier, y)
     unstressed_left = left.position - run.yield_deflection * y.z_left
     unstressed_right = right.position - run.yield_deflection * y.z_right
-    _put_moment(lanes, i, Moment(y, contact, supports))
+    _put_moment(lanes, i, Moment(at_start(pier.shaft, pier, y), contact, supports))
+    begin_displacements(traits.shaft, lanes, i)
     put(lanes.loading, i, Loading(unstressed_left, y.z_left, 0.0, unstressed_right, y.z_right, 0.0))
     put(lanes.lowest, i, Lowest(min(level, left.position), min(level, right.position), plastic))
     set_deadline(lanes, i, pier, run)
@@ -152,6 +189,7 @@ def _include_extremes(lanes, i, m, part):
 def take_in_part(traits, lanes, i, m, part, after):
     """Record extremes, the starts of the springs' branches, and the plastic work of those that have ended."""
     _include_extremes(lanes, i, m, part)
+    include_bending(m.shaft, lanes, i, part)
     loading, before = get(lanes.loading, i, Loading), part.start.contact
     put(lanes.loading, i, branches(m, loading, before, after.contact, branch_change(m, after.y)))
     _put_moment(lanes, i, after)
@@ -161,7 +199,7 @@ def take_in_part(traits, lanes, i, m, part, after):
 def take_in_step(traits, lanes, i, substep, history):
     """Record extremes and reversals of a sub-step of lane ``i`` that stands, and advance the lane to its end."""
     m, now = pier_in(traits, lanes, i)
-    end = get(lanes.end, i, State)
+    end = state_in(traits.shaft, lanes.end, i)
     _include_extremes(lanes, i, m, Part(now, end, lanes.clock.step[i]))
     if lanes.reversals.keeps[i] < 0.0:
         _change_branches(lanes, i, m, now, substep, history)
@@ -177,7 +215,7 @@ def _change_branches(lanes, i, m, now, substep, history):
     right_after = 1.0 - right if reversals.right[i] >= 0.0 else right
     after = Contact(before.left, before.right, left_after, right_after, 0.0)
     if history.rows.shape[0] > 0:
-        _write_reversals(lanes, i, m, substep, after, history)
+        _write_reversals(lanes, i, m, now, substep, after, history)
     put(lanes.contact, i, after)
     put(lanes.loading, i, branches(m, get(lanes.loading, i, Loading), before, after, at))
     put(lanes.supports, i, with_yield_points(m, at, before, after, now.supports))
@@ -203,14 +241,15 @@ def finish(traits, lanes, i, t, result):
     result.t_read = t_read
     result.drift_left = waiting.drift_left[i]
     result.drift_right = waiting.drift_right[i]
+    write_displacements(traits.shaft, lanes, i, result)
 
 
 @kernel
-def _write_reversals(lanes, i, m, substep, after, history):
+def _write_reversals(lanes, i, m, now, substep, after, history):
     """Write rows before and after each reversal that leads to the contact ``after`` the sub-step of lane ``i``."""
     start, number = substep * lanes.clock.step[i], int(lanes.clock.number[i])
     t, ground = lanes.clock.sample[i] * lanes.clock.dt[i] + start, ground_at(lanes, i, start)
-    y, contact, supports = get(lanes.now, i, State), get(lanes.contact, i, Contact), get(lanes.supports, i, Supports)
+    y, contact, supports = now
     left, right, at = lanes.reversals.left[i], lanes.reversals.right[i], 0.0
     for _ in range(2):
         of_left = left >= 0.0 and (right < 0.0 or left <= right)
@@ -233,10 +272,14 @@ def _write_reversals(lanes, i, m, substep, after, history):
 
 def system_of(m):
     """Return the System of the pier ``m`` (Springs), for which its runs are compiled."""
-    return System(SpringTraits(m.exponent, m.finite, m.damped), Line, LANE, State._fields + Contact._fields, PASSED)
+    if m.shaft is None:
+        return System(SpringTraits(m.exponent, m.finite, m.damped), Line, LANE, State._fields + Contact._fields, PASSED)
+    traits = SpringTraits(m.exponent, m.finite, m.damped, LIKE)
+    return System(traits, BendingLine, BENDING_LANE, BentState._fields + Contact._fields)
 
 
 def line_of(m, *timing):
     """Return the Line of a run of the pier ``m`` (Springs); ``timing`` are the fields of Line from ``dt`` on."""
     exponent = 5.0 if m.exponent is None else float(m.exponent)
-    return Line(*m[:-4], exponent, *timing)
+    numbers = *m[: m._fields.index("exponent")], exponent, *timing
+    return Line(*numbers) if m.shaft is None else BendingLine(*numbers, *shaft_numbers(m.shaft))

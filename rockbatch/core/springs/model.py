@@ -2,7 +2,8 @@
 
 from typing import NamedTuple
 
-from rockbatch.core.kernel import inlined
+from rockbatch.core.flexure.modes import PerMode
+from rockbatch.core.kernel import hook, inlined
 from rockbatch.core.table import get
 from rockbatch.core.types import Pull
 
@@ -14,10 +15,23 @@ IMPACTS = {"landing": LANDING, "housner": HOUSNER}
 """Rules of impact by the names in studies."""
 
 
+class Shaft(NamedTuple):
+    """Modes of a shaft that bends, of the pier fixed at its foot; ∫φ_i φ_j dm/M is 1 or 0."""
+
+    share: PerMode  # μ_i = ∫φ_i dm/M
+    lever: PerMode  # λ_i − h μ_i = ∫φ_i (z − h) dm/M [m]
+    frequency: PerMode  # ω_i [rad/s]
+    damping: PerMode  # 2 ζ_i ω_i [1/s]
+    end_shape: PerMode  # φ_i at the highest point
+    top_shape: PerMode  # where drift is read
+    deck_shape: PerMode  # and at the deck
+    top: float  # height at which drift is read [m]
+
+
 class Springs(NamedTuple):
     """A pier on two springs, per unit mass.
 
-    The types of the last four select code when kernels are compiled: a call of ``pow``, ``sin`` or ``cos`` in an unused
+    The types of the last five select code when kernels are compiled: a call of ``pow``, ``sin`` or ``cos`` in an unused
     branch would keep the common model, n = 5, first-order and undamped, from being vectorised.
     """
 
@@ -41,6 +55,7 @@ class Springs(NamedTuple):
     finite: bool | None  # True: finite kinematics; None: first-order
     damped: bool | None = None  # True: a dashpot beside each spring; None: none
     pull: Pull | None = None  # of dampers and tendons; None: there are none
+    shaft: Shaft | None = None  # one that bends, in finite kinematics on damped supports; None: it is rigid
 
 
 class SpringTraits(NamedTuple):
@@ -49,6 +64,7 @@ class SpringTraits(NamedTuple):
     exponent: float | int | None
     finite: bool | None
     damped: bool | None
+    shaft: Shaft | None = None
     pull: Pull | None = None
 
 
@@ -66,6 +82,45 @@ def _typed(exponent, value):
     if isinstance(exponent, float):
         return value
     return None
+
+
+OF_MODES = Shaft._fields[: Shaft._fields.index("top")]
+"""Fields of a Shaft that have a number of each mode."""
+
+SHAFT_NUMBERS = (*((f"{name}_{mode}", float) for name in OF_MODES for mode in PerMode._fields), ("top", float))
+
+ShaftNumbers = NamedTuple("ShaftNumbers", SHAFT_NUMBERS)  # type: ignore[misc]
+"""Numbers of a Shaft that lanes hold."""
+
+
+def shaft_numbers(shaft: Shaft) -> tuple[float, ...]:
+    """Return the numbers of ``shaft`` in the order of ShaftNumbers."""
+    return *(number for name in OF_MODES for number in getattr(shaft, name)), shaft.top
+
+
+@hook
+def shaft_in(shaft, lanes, i):
+    """Return the Shaft of lane ``i``, like ``shaft`` of the traits; None of a rigid one."""
+
+
+@shaft_in.of(type(None))
+def _rigid_shaft(shaft, lanes, i):
+    return None
+
+
+@shaft_in.of(Shaft)
+def _bending_shaft(shaft, lanes, i):
+    m = get(lanes.shaft, i, ShaftNumbers)
+    return Shaft(
+        PerMode(m.share_first, m.share_second, m.share_third, m.share_fourth),
+        PerMode(m.lever_first, m.lever_second, m.lever_third, m.lever_fourth),
+        PerMode(m.frequency_first, m.frequency_second, m.frequency_third, m.frequency_fourth),
+        PerMode(m.damping_first, m.damping_second, m.damping_third, m.damping_fourth),
+        PerMode(m.end_shape_first, m.end_shape_second, m.end_shape_third, m.end_shape_fourth),
+        PerMode(m.top_shape_first, m.top_shape_second, m.top_shape_third, m.top_shape_fourth),
+        PerMode(m.deck_shape_first, m.deck_shape_second, m.deck_shape_third, m.deck_shape_fourth),
+        m.top,
+    )
 
 
 @inlined
@@ -93,6 +148,7 @@ def model_in(traits, lanes, i):
         traits.finite,
         traits.damped,
         traits.pull,
+        shaft_in(traits.shaft, lanes, i),
     )
 
 
@@ -105,6 +161,25 @@ class State(NamedTuple):
     omega: float  # [rad/s]
     z_left: float  # F_L/F_y, −1..0
     z_right: float
+
+
+class BentState(NamedTuple):
+    """State of a pier whose shaft bends: that of the straight one, v of its centre of mass, and the coordinates of modes."""
+
+    v: float
+    theta: float
+    v_rate: float
+    omega: float
+    z_left: float
+    z_right: float
+    u_1: float  # coordinate of a mode [m]
+    u_2: float
+    u_3: float
+    u_4: float
+    u_1_rate: float  # [m/s]
+    u_2_rate: float
+    u_3_rate: float
+    u_4_rate: float
 
 
 class Contact(NamedTuple):

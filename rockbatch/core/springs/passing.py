@@ -10,7 +10,7 @@ from typing import NamedTuple
 from rockbatch.core import system
 from rockbatch.core.clock import CALM, EVENTFUL, ON_ITS_SIDE, STANDS, UNSET, ground_at, peak_at_end
 from rockbatch.core.devices.passing import integrate, settle
-from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.kernel import hook, inlined, kernel
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import excess
 from rockbatch.core.springs.laws import kept_sign, may_yield
@@ -199,7 +199,18 @@ def _judged(traits, lanes, i, substep, settings, sure):
 
 @system.one_pass.of(SpringTraits)
 def one_pass(traits, lanes, count, substep, settings):
-    """Integrate the first ``count`` lanes over a sub-step.
+    """Integrate the first ``count`` lanes over a sub-step."""
+    pass_of(traits.shaft, traits, lanes, count, substep, settings)
+
+
+@hook
+def pass_of(shaft, traits, lanes, count, substep, settings):
+    """Integrate lanes as :func:`one_pass`; those with a ``shaft`` that bends event by event."""
+
+
+@pass_of.of(type(None))
+def _rigid_pass(shaft, traits, lanes, count, substep, settings):
+    """Integrate lanes with rigid shafts.
 
     Two loops, since the dependency chain of one would be too long for a processor to overlap two lanes. Lanes with reversals
     of springs, a few in a hundred, are corrected one by one.
@@ -222,7 +233,18 @@ def in_pass(traits, lanes, i):
 
 @system.pass_with_devices.of(SpringTraits)
 def pass_with_devices(traits, lanes, equipment, count, substep, settings):
-    """Integrate the first ``count`` lanes over a sub-step; one in which a spring's velocity reverses is eventful."""
+    """Integrate the first ``count`` lanes over a sub-step."""
+    pass_with_devices_of(traits.shaft, traits, lanes, equipment, count, substep, settings)
+
+
+@hook
+def pass_with_devices_of(shaft, traits, lanes, equipment, count, substep, settings):
+    """Integrate lanes as :func:`pass_with_devices`; those with a ``shaft`` that bends event by event."""
+
+
+@pass_with_devices_of.of(type(None))
+def _rigid_pass_with_devices(shaft, traits, lanes, equipment, count, substep, settings):
+    """Integrate lanes with rigid shafts; a sub-step in which a spring's velocity reverses is eventful."""
     shared = equipment.shared[0]
     whole = integrate(traits, lanes, equipment, count, substep)
     for i in range(whole):

@@ -6,7 +6,7 @@ the springs are unstable for short τ. For an undamped model, functions of ``m``
 """
 
 from rockbatch.core.kernel import inlined
-from rockbatch.core.springs.model import State
+from rockbatch.core.table import with_z
 
 _HALVINGS = 6
 _LARGEST = 40.0  # e⁻⁴⁰ is less than rounding
@@ -78,7 +78,7 @@ def with_recovery(m, y, start, contact, share):
         return y
     left = y.z_left if contact.left != 0.0 else share * start.z_left
     right = y.z_right if contact.right != 0.0 else share * start.z_right
-    return State(y.v, y.theta, y.v_rate, y.omega, left, right)
+    return with_z(y, left, right)
 
 
 @inlined

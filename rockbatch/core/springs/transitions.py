@@ -17,7 +17,7 @@ from rockbatch.core.springs.laws import (
 )
 from rockbatch.core.springs.model import Contact, Springs, State, Supports
 from rockbatch.core.springs.recovery import lag, velocity_of_top
-from rockbatch.core.table import with_pull
+from rockbatch.core.table import with_pull, with_z
 from rockbatch.core.types import (
     CONTACT_LEFT,
     HELD_LEFT,
@@ -40,8 +40,13 @@ from rockbatch.core.types import (
 )
 
 
-@kernel
-def _mirrored(y):
+@hook
+def mirrored(y):
+    """Return the mirror image of a state."""
+
+
+@mirrored.of(State)
+def _mirrored_state(y):
     return State(y.v, -y.theta, y.v_rate, -y.omega, y.z_right, y.z_left)
 
 
@@ -84,7 +89,7 @@ def _mirrored_kind(kind):
 
 @kernel
 def _mirrored_moment(now):
-    return Moment(_mirrored(now.y), _mirrored_contact(now.contact), _mirrored_supports(now.supports))
+    return Moment(mirrored(now.y), _mirrored_contact(now.contact), _mirrored_supports(now.supports))
 
 
 @system.transition.of(Springs)
@@ -140,8 +145,7 @@ def _transition_of_left(m, now, of_law, ground):
         return Moment(y, without(contact, LEFT), waiting), SEPARATION_LEFT
     if of_law:  # the spring changes its branch
         yields, z = after_switch(m.law, contact.left_yields, supports.yield_left, y.z_left)
-        changed = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
-        return Moment(changed, touching(contact, LEFT, yields), supports), SPRING_LEFT
+        return Moment(with_z(y, z, y.z_right), touching(contact, LEFT, yields), supports), SPRING_LEFT
     if contact.left != 0.0:
         return _separation(m, now, ground)
     return _landing(m, now, ground)
@@ -154,7 +158,7 @@ def _separation(m, now, ground):
     at = geometry(m, y.theta)
     velocity = y.v_rate + at.arm_left * y.omega
     z = 0.0 if m.damped is None else -lag(m) * max(velocity, 0.0)
-    unborne = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
+    unborne = with_z(y, z, y.z_right)
     waiting = _left_moved(supports, y.v + at.lift_left - m.yield_deflection * z)
     if m.damped is None and velocity > m.rest:
         return Moment(unborne, without(contact, LEFT), waiting), SEPARATION_LEFT

@@ -92,7 +92,7 @@ def _steps(sampled: Sampled, stated: Stated) -> list[float]:
 
 
 def _rates(sampled: Sampled, stated: Stated) -> list[float]:
-    """Return the sampling rate."""
+    """Return the sampling rate [1/s], alone in a list."""
     return [1.0 / sampled.dt]
 
 

@@ -17,7 +17,7 @@ from rockbatch.reporting.templates import render
 
 
 def section(finished: Finished) -> Markup:
-    """Report forces if the study asks for them."""
+    """Return the report's section of forces; empty if the study has none."""
     shown = [column for column in report_columns("forces") if column.name in finished.runs]
     if not shown or finished.runs.empty:
         return Markup("")

@@ -47,7 +47,7 @@ def section(finished: Finished) -> Markup:
 
 
 def outcome(run: Row | None, worst: float = math.nan) -> object:
-    """Return θ_max/α of a run, bold if it equals ``worst``, or its status if it did not end standing; "" for None."""
+    """Return θ_max/α of a run, bold if it equals ``worst``; its status and lower bound if it did not stand; "" for None."""
     if run is None:
         return ""
     status, theta, flight = run["status"], float(run["theta_max_over_alpha"]), run["flight_s"]

@@ -49,7 +49,7 @@ def mark(verdict: str, words: str) -> Markup:
 
 
 def answer(finished: Finished) -> Markup:
-    """Return which cases pass, fail, are not decided or not checked, and the number of stations."""
+    """Return lines on cases that pass, fail, are not decided or not checked, and on stations; without checks, how to add some."""
     lines = answered(
         finished.verdicts,
         finished.worst_at_scales,
@@ -269,5 +269,6 @@ def _every(finished: Finished, verdicts: Sequence[Verdict], notes: wording.Notes
 
 def _between(verdict: Verdict) -> str:
     """Return the bounds of a demand, "0.1 – 0.2"; empty if equal, or for a check that bans something."""
-    low, high = ("∞" if math.isinf(value) else number(value) for value in (verdict.low, verdict.high))
+    ends = (0.0 if wording.is_nothing(end, verdict.limit) else end for end in (verdict.low, verdict.high))
+    low, high = ("∞" if math.isinf(end) else number(end) for end in ends)
     return f"{low} – {high}" if low != high and not verdict.is_ban else ""

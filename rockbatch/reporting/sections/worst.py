@@ -29,7 +29,7 @@ def of_cases(finished: Finished, shown: list[Quantity], name: str) -> Markup:
 
 
 def _worst(column: Quantity, runs: "pd.DataFrame", cut_short: bool) -> object:
-    """Return the worst of the runs, with ≥ or ≤ if it is only a bound."""
+    """Return the worst value of a column, with ≥ or ≤ if runs were ``cut_short``; None without a value."""
     values = runs[column.name].dropna()
     if values.empty:
         return None
