@@ -283,7 +283,7 @@ def test_completion_offers_the_commands_and_options_that_may_come_next(tmp_path)
         subprocess.run([sys.executable, "-c", code], env=os.environ | asked, check=True, capture_output=True)
         return (tmp_path / "told").read_text(encoding="utf-8").split()
 
-    assert completed("rockbatch s") == ["statics", "spectrum", "sensitivity"]
+    assert completed("rockbatch s") == ["statics", "statement", "spectrum", "sensitivity"]
     assert "--seconds" in completed("rockbatch accuracy --sec")
 
 

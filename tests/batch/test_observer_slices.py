@@ -26,6 +26,7 @@ KEYS = {
     "devices_work": {"devices_work": True},
     "half_cycles": {"half_cycles": True},
     "sections": {"sections": 3},
+    "interaction": {"interaction_m": [0.0]},
     "shocks": {},
     "intensity": {"intensity": True},
 }
@@ -95,7 +96,8 @@ def output_of(names):
 def study_of(folder, names, name="study.toml"):
     damper = {"kind": "friction", "f": 0.05, "at": "left"}
     cases = [RIGID, PADS, RIGID | {"name": "damped", "damper": [damper]}]
-    text = study_text(pier=PIER, pulses=[SINE | {"duration_s": 2.0}], cases=cases, output=output_of(names))
+    pier = PIER | {"mass_t": 400.0}
+    text = study_text(pier=pier, pulses=[SINE | {"duration_s": 2.0}], cases=cases, output=output_of(names))
     return write_study(folder, text, name)
 
 
@@ -106,9 +108,16 @@ def test_every_observer_is_deleted_below():
         "shocks",
         "half_cycles",
         "sections",
+        "interaction",
         "intensity",
     }
-    assert {name for name in OBSERVERS if brought(name)[2]} == {"rocking", "forces", "devices_work", "sections"}
+    assert {name for name in OBSERVERS if brought(name)[2]} == {
+        "rocking",
+        "forces",
+        "devices_work",
+        "sections",
+        "interaction",
+    }
 
 
 @pytest.mark.parametrize("name", [n if n in FAST else pytest.param(n, marks=pytest.mark.slow) for n in OBSERVERS])
