@@ -5,6 +5,8 @@ import errno
 import io
 import json
 import os
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -25,6 +27,7 @@ from rockbatch.commands.motions import _by_reason
 from rockbatch.commands.summary import summary
 from rockbatch.reporting import write_report
 from rockbatch.results.beside_peaks import write_semicolons
+from rockbatch.study import load_study
 from rockbatch.terminal import messages
 from rockbatch.terminal.streams import filled, in_width, is_lost, show
 
@@ -64,6 +67,7 @@ def test_run_writes_the_table_the_report_and_what_was_run(study, tmp_path, capsy
     assert "2 of 2" not in printed.out  # progress goes to stderr
 
 
+@pytest.mark.usefixtures("pages")
 def test_histories_of_another_record_are_added_on_demand_and_no_run_is_repeated(tmp_path, capsys):
     pulses = [
         SINE | {"name": name, "amplitude_g": size, "duration_s": 2.0} for name, size in (("weak", 0.3), ("strong", 0.5))
@@ -119,6 +123,7 @@ def test_the_most_frequent_reasons_of_failed_runs_are_named(study, tmp_path, cap
     assert "2 runs failed: see the column reason of peaks.csv\n  1 ×: would take " in printed
 
 
+@pytest.mark.usefixtures("pages")
 def test_motions_replace_those_of_the_study_and_a_bad_file_is_a_row_with_its_reason(study, tmp_path, capsys):
     records = tmp_path / "records"
     records.mkdir()
@@ -143,6 +148,7 @@ def test_motions_replace_those_of_the_study_and_a_bad_file_is_a_row_with_its_rea
     assert "BAD090" in (tmp_path / "out/report.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.usefixtures("pages")
 def test_a_run_that_is_refused_is_a_row_with_its_reason_and_has_no_history(study, tmp_path, monkeypatch):
     """One step a sample is beyond the stability of β = 5000: nothing of it is run, not for its picture either."""
     extra = '[numerics]\nsubsteps = 1\n[output]\nhistories = "all"\n'
@@ -277,7 +283,7 @@ def test_completion_offers_the_commands_and_options_that_may_come_next(tmp_path)
         subprocess.run([sys.executable, "-c", code], env=os.environ | asked, check=True, capture_output=True)
         return (tmp_path / "told").read_text(encoding="utf-8").split()
 
-    assert completed("rockbatch s") == ["statics", "spectrum", "sensitivity"]
+    assert completed("rockbatch s") == ["statics", "statement", "spectrum", "sensitivity"]
     assert "--seconds" in completed("rockbatch accuracy --sec")
 
 
@@ -437,6 +443,7 @@ def test_to_a_stream_that_has_failed_nothing_more_is_written(monkeypatch, capsys
 
 @pytest.mark.skipif(sys.platform == "win32", reason="shells of Unix")
 @pytest.mark.parametrize(("redirected", "told"), [("| true", ""), ("> /dev/full", "cannot be printed (No space left")])
+@pytest.mark.usefixtures("pages")
 def test_checks_and_their_report_do_not_need_a_reader(tmp_path, redirected, told):
     rules = tmp_path / "rules.toml"
     rules.write_text(
@@ -547,6 +554,71 @@ def test_a_mistake_in_a_command_line_is_answered_in_one_line_with_what_was_meant
     except SystemExit as exit_:
         code = exit_.code
     assert (code, capsys.readouterr().err) == (2, f"{answer}\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "wrong", "right"),
+    [
+        ("static pier.toml", "static", "statics pier.toml"),
+        ("statics pier", "pier", "statics pier.toml"),
+        ("statics peir.toml", "peir.toml", "statics pier.toml"),
+        ("statics .", ".", "statics pier.toml"),
+        ("statics sub", "sub", "statics sub/other.toml"),
+        (r"statics sub\other.toml", r"sub\other.toml", "statics sub/other.toml"),
+        ("statics pier.toml --curve c.csv", "--curve", "statics pier.toml --curves c.csv"),
+        ("statics pier.toml --cvs=c.csv", "--cvs", "statics pier.toml --csv=c.csv"),
+        ("compare --help", "compare", "report --help"),
+        ("join --help", "join", "merge --help"),
+    ],
+)
+def test_a_command_line_mended_as_its_answer_says_is_the_one_that_was_meant(
+    words, wrong, right, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "sub").mkdir()
+    write_study(tmp_path, study_text(), "pier.toml")
+    for folder, name in ((tmp_path, "checks.toml"), (tmp_path / "sub", "rules.toml")):
+        write_study(folder, '[[check]]\nname = "no study"\n', name)
+    write_study(tmp_path / "sub", study_text(), "other.toml")
+    assert exit_code(words.split()) == 2
+    (meant,) = re.findall(r"; did you mean (.*?)\?", capsys.readouterr().err)
+    assert [shlex.split(words.replace(wrong, each, 1)) for each in meant.split(" or ")] == [right.split()]
+    assert exit_code(right.split()) == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "keys"),
+    [
+        ("run pier.toml --tolerance 1e-5", {"tolerance": 1e-5}),
+        ("run pier.toml --quiet-s=5", {"quiet_s": 5.0}),
+        ("accuracy pier.toml --quiet_s many", {"quiet_s": 2.0}),
+        ("run pier.toml --intensity true", {"intensity": True}),
+        ("run pier.toml --forces", {"forces": True}),
+    ],
+)
+def test_an_option_that_is_a_key_of_the_study_is_answered_with_its_line_and_table(words, keys, tmp_path, capsys):
+    assert exit_code(words.split()) == 2
+    ((line, table),) = re.findall(r"write (.*) under (\[\w+\]); see", capsys.readouterr().err)
+    study = load_study(write_study(tmp_path, f"{study_text()}\n{table}\n{line}\n"))
+    for name, value in keys.items():
+        assert getattr(study.numerics, name, None) == value or study.output.keys.get(name) == value
+
+
+def test_a_folder_behind_a_study_is_answered_with_both_that_it_may_be(tmp_path, capsys):
+    study = write_study(tmp_path, study_text())
+    for words in (["run", str(study), "there"], ["fragility", str(study), "there"]):
+        assert exit_code(words) == 2
+        assert capsys.readouterr().err.endswith(
+            "did you mean --out there for the results, or --motions there for the records?\n"
+        )
+
+
+def exit_code(words):
+    """Exit code of a command line, also of one that the parser refuses."""
+    try:
+        return main(words)
+    except SystemExit as exit_:
+        return exit_.code
 
 
 @pytest.mark.parametrize(("words", "begin"), [("help", "usage: rockbatch [-h]"), ("help run", "usage: rockbatch run"),

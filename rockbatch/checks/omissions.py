@@ -17,7 +17,8 @@ from rockbatch.quantities.cases import (
 )
 from rockbatch.quantities.demands import Demand
 
-MODES, LANDINGS, LANDINGS_OF_FRAME = "modes", "landings", "landings of a frame"
+MODES, POINTS = "modes", "modes at a point"
+LANDINGS, LANDINGS_OF_FRAME = "landings", "landings of a frame"
 LANDINGS_OF_BENDING = "landings under a bending shaft"
 IMPULSES, BENDING = "impulses", "bending"
 
@@ -41,12 +42,17 @@ OMISSIONS = {
         "substeps out",
         decides=False,
     ),
+    POINTS: Omission(
+        "the acceleration of a point of a shaft that bends on dashpots may grow with every mode, by more than its error has: "
+        "take it from a program with finite elements",
+        decides=False,
+    ),
     LANDINGS: Omission(
         f'{_LANDINGS}: give the feet a stiffness K, base = "elastic" with zeta, and check K/2, K and 2 K', decides=False
     ),
     LANDINGS_OF_BENDING: Omission(
-        f"{_LANDINGS}, and a shaft that bends has no springs under it here: check this demand in a case of its own with a rigid "
-        'shaft on feet of a stiffness K, base = "elastic" with zeta, for K/2, K and 2 K',
+        f'{_LANDINGS}: give the feet a stiffness K, base = "elastic" with zeta and kinematics = "finite", and check K/2, K '
+        "and 2 K",
         decides=False,
     ),
     LANDINGS_OF_FRAME: Omission(
@@ -79,7 +85,12 @@ def unconverged(demand: Demand, error: Values, case: Case) -> npt.NDArray[np.boo
     ``error`` is that of the demand: of two modes or more it has what the last of them changes, and NaN stands for none.
     """
     alone = number_of_modes(case) == 1
-    return (np.isnan(error) | alone) & _follows_modes(demand, case)
+    return (np.isnan(error) | alone | _at_a_point(demand, case)) & _follows_modes(demand, case)
+
+
+def _at_a_point(demand: Demand, case: Case) -> bool:
+    """Return whether the demand is an acceleration of a point, which modes give slowly where dashpots stop the foot."""
+    return demand.pointwise and bends(case) and not lands_by_impulse(case)
 
 
 def _follows_modes(demand: Demand, case: Case) -> bool:
@@ -93,6 +104,8 @@ def _follows_modes(demand: Demand, case: Case) -> bool:
 def omissions(demand: Demand, runs: Rows, error: Values, case: Case) -> list[str]:
     """Return the names in :data:`OMISSIONS` of what the demand, of this ``error``, omits in runs of a case; [] for none."""
     if _follows_modes(demand, case):
+        if _at_a_point(demand, case):
+            return [POINTS]
         return [MODES] if unconverged(demand, error, case).any() else []
     omitted = []
     if open_landings(demand, runs, case).any():

@@ -78,6 +78,8 @@ class Demand:
         Of a case: the height above the pivots at which it is read [m].
     landing, bending : bool
         True if the blow of a landing, or the bending of the shaft, enters it (THEORY.md, Forces).
+    pointwise : bool
+        True if it is an acceleration of one point of the shaft.
     directed : bool
         True if each axis of the pier has one by itself, so that those of two axes add up. Of others, such as settlements,
         axial forces and counts, which have the weight or the whole pier in them on either axis, the greater counts.
@@ -101,6 +103,7 @@ class Demand:
     height: Lever | None = None
     landing: bool = False
     bending: bool = False
+    pointwise: bool = False
     directed: bool = False
 
     def applies_to(self, case: Case) -> bool:

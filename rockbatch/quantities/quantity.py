@@ -159,6 +159,8 @@ class Quantity:
         True if the blow of a landing enters it: on rigid ground, where a landing is an impulse, it is a lower bound.
     bending : bool
         True if the bending of the shaft enters it, which a rigid shaft leaves out.
+    pointwise : bool
+        True if it is an acceleration of one point of the shaft.
     directed : bool
         True if each axis of the pier has one by itself, so that those of two axes add up.
     least_is_worst : bool
@@ -186,6 +188,7 @@ class Quantity:
     requested: Callable[[Any], bool] | None = None
     landing: bool = False
     bending: bool = False
+    pointwise: bool = False
     directed: bool = False
     least_is_worst: bool = False
 
@@ -241,6 +244,7 @@ class Quantity:
             height=limit.height,
             landing=self.landing,
             bending=self.bending,
+            pointwise=self.pointwise,
             directed=self.directed,
         )
 

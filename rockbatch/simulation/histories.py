@@ -117,7 +117,7 @@ def _energy(pier: Pier, base: Base, rows: np.recarray) -> Samples:
 
 
 def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Samples]:
-    """Return columns of a history on rigid ground: rotation, rate, and energy since the start without devices."""
+    """Return columns of a history on rigid ground: rotation, rate, and energy without devices since the start."""
     none = dict.fromkeys(
         ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"), np.full(len(rows), np.nan)
     )

@@ -121,7 +121,6 @@ def test_every_observer_is_deleted_below():
 
 
 @pytest.mark.parametrize("name", [n if n in FAST else pytest.param(n, marks=pytest.mark.slow) for n in OBSERVERS])
-@pytest.mark.usefixtures("no_report")
 def test_an_observer_is_deleted_with_its_folder_and_its_name(tmp_path, name):
     """Tables of a study that asks for all others are the same to the byte, and its key is unknown."""
     study, asking = (
@@ -193,7 +192,6 @@ LAST = (
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("no_report")
 def test_an_observer_with_a_column_is_added_by_its_folder_and_its_name(tmp_path):
     """Its column and its demand are there, next to that of the angular velocity over p, which is the same."""
     copied = copy_of_package(tmp_path)

@@ -14,6 +14,9 @@ LONGEST = 0.2
 """Greatest step over the sampling interval, within which a pivot must not leave its support and land."""
 
 
+STILL, SOON = 1e-9, 1e-5
+"""Velocity of a pivot [m/s] that has just turned, and time [s] after which it moves."""
+
 AT_YIELD = -1.0 + 1e-10
 """Force over its strength from which a support that yields counts as at it."""
 
@@ -131,7 +134,9 @@ def run(of, supports, ground, dt, until):
                 return pivots(of, q, rates)[0][i] - free[i] - supports.deflection * z[i]
 
             events = [lambda t, y, i=i: leaves(t, y, i) for i in (0, 1)]
-            turns = [lambda t, y, i=i: pivots(of, y[:n], y[n : 2 * n])[1][i] for i in (0, 1)]
+            moving = abs(pivots(of, state[:n], state[n : 2 * n])[1]) > STILL
+            turns = [lambda t, y, i=i: pivots(of, y[:n], y[n : 2 * n])[1][i] for i in (0, 1) if moving[i]]
+            until = end if moving.all() or supports.share is elastic else min(end, t + SOON)
             below = supports.share is perfectly_plastic
             yields = [lambda t, y, i=i: y[2 * n + i] + 1.0 for i in (0, 1) if below and state[2 * n + i] > -1.0]
             for event in (*events, *yields):
@@ -140,7 +145,7 @@ def run(of, supports, ground, dt, until):
             for event in watched:
                 event.terminal = True
             found = solve_ivp(
-                slope, (t, end), state, "DOP853", rtol=1e-10, atol=1e-13, max_step=LONGEST * dt, events=watched
+                slope, (t, until), state, "DOP853", rtol=1e-10, atol=1e-13, max_step=LONGEST * dt, events=watched
             )
             t, state = found.t[-1], found.y[:, -1].copy()
             if below:

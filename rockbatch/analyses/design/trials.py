@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from rockbatch.analyses.design.search import REFUSED, WORSE
-from rockbatch.analyses.design.study import DesignSpec
+from rockbatch.analyses.design.study import DesignSpec, rounded
 from rockbatch.analyses.design.written import with_value
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.waves import Waves
@@ -19,6 +19,7 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.common.naming import chosen_by
 from rockbatch.motions import MotionSet
+from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.quantities.design import of_design
 from rockbatch.results.run_json import describe_case
 from rockbatch.results.sections import SECTIONS
@@ -117,9 +118,11 @@ class Written:
 
 
 class Trials:
-    """All trials, each run and judged once; ``verdicts`` has those of every check, ``free`` the responses without a limit.
+    """All trials, each run and judged once; ``verdicts`` has those of every check.
 
-    ``suite`` returns the verdicts on the suite with the cases of a trial: under one that fails nothing is decided.
+    Of those that pass ``free`` has the responses without a limit, and ``omitted`` the checks whose demands leave something out,
+    by its name in :data:`rockbatch.checks.omissions.OMISSIONS`. ``suite`` returns the verdicts on the suite with the cases of a
+    trial: under one that fails nothing is decided.
     """
 
     def __init__(self, written: Written, motions: MotionSet, waves: Waves, suite: OnSuite) -> None:
@@ -127,6 +130,7 @@ class Trials:
         self.judged: dict[Trial, Judged] = {}
         self.verdicts: list[Verdict] = []
         self.free: dict[str, None] = {}
+        self.omitted: dict[str, dict[str, None]] = {}
 
     def execute(self, requested: Iterable[Trial]) -> None:
         """Run and judge trials that are not yet."""
@@ -158,7 +162,7 @@ class Trials:
             described,
             {motion.name: motion.of_station for motion in motions},
             study.count,
-            None if sections is None else pd.DataFrame(sections),
+            None if sections is None else _as_written(sections),
             {motion.name: motion.origin.event or "" for motion in motions},
         )
         self.verdicts += verdicts
@@ -174,6 +178,16 @@ class Trials:
             if judged.verdict == PASS:
                 free = unlimited(worst.get(key, []), own)
                 self.free |= dict.fromkeys(RESPONSES[each.demand].words for each in free)
+                for verdict in own:
+                    for name in verdict.omitted:
+                        self.omitted.setdefault(name, {})[verdict.check] = None
+
+
+def _as_written(sections: Sequence[Mapping[str, Any]]) -> "pd.DataFrame":
+    """Return rows of sections.csv as a table, their numbers with the digits that they have in the file."""
+    table, numbers = pd.DataFrame(sections), list(OF_SECTIONS)
+    table[numbers] = table[numbers].astype("float64").map(rounded)
+    return table
 
 
 def _values(columns: Mapping[str, Any], spec: DesignSpec) -> tuple[tuple[float, ...], Columns]:

@@ -148,7 +148,7 @@ QUANTITIES = (
     _force(
         "deck_acceleration_m_s2", "greatest absolute horizontal acceleration of the deck", "deck_acceleration", "m/s^2",
         "deck [m/s²]", ".3f", more=", or of the top without one", limits=(Limit(), Limit(unit="g", times=per_gravity)),
-        landing=True, bending=True, directed=True,
+        landing=True, bending=True, pointwise=True, directed=True,
     ),
     _force(
         "landing_velocity_m_s", "speed of the landing pivot at the hardest impact", "landing_velocity", "m/s",

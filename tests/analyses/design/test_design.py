@@ -185,27 +185,42 @@ def test_a_case_without_the_key_is_left_out_and_named():
     assert found.answer[-1] == "Left out, without case.restitution: rigid."
 
 
-def test_a_check_of_one_case_and_one_of_a_section_count():
-    pier = {"width_m": 4.0, "height_m": 20.0, "mass_t": 800.0}
-    moment = {
-        "name": "moment",
-        "demand": "section_moment_kNm",
-        "at_m": 10.0,
-        "at_most": 1e6,
-        "case": "soft",
-        "reason": "r",
-    }
-    moment["confirm"] = ["at_most"]
-    soft = {"name": "soft", "base": "elastic", "stiffness_kN_m": 1e6}
-    design = {"vary": "case.stiffness_kN_m", "between": [1e6, 2e6], "points": 2, "width": 5e5}
-    of_study = study(
-        design, cases=[soft, soft | {"name": "other"}], check=[moment], pier=pier, output={"sections_m": [10.0]}
-    )
+TALL = {"width_m": 4.0, "height_m": 20.0, "mass_t": 800.0}
+SPRINGS = {"name": "soft", "base": "elastic", "stiffness_kN_m": 1e6}
+MOMENT = {
+    "name": "moment",
+    "demand": "section_moment_kNm",
+    "at_m": 10.0,
+    "at_most": 1e6,
+    "reason": "r",
+    "confirm": ["at_most"],
+}
+STIFF = {"name": "stiff", "demand": "stiffness_kN_m", "at_least": 1.3e6, "reason": "r"}
+OF_SPRINGS = {"vary": "case.stiffness_kN_m", "between": [1e6, 2e6], "find": "least", "points": 2, "width": 2e5}
+SECTIONS = {"sections_m": [10.0]}
+
+
+def test_checks_of_sections_are_judged_by_the_forces_of_each_value(tmp_path):
+    of_study = study(OF_SPRINGS, cases=[SPRINGS], check=[MOMENT, STIFF], pier=TALL, output=SECTIONS)
+    found = rb.design(of_study)
+    own = found.design_checks.query("check == 'moment'").set_index("case.stiffness_kN_m")["value"]
+    assert len(own) == 5  # two of the scan, and three bisections
+    assert own.nunique() == 5
+    assert any(words.startswith("moment: bending of the shaft is left out") for words in found.answer)
+    for stiffness, value in own.items():
+        written = of_study.with_(case={"soft": {"stiffness_kN_m": stiffness}})
+        rb.run(written, tmp_path / str(stiffness))
+        (judged,) = rb.check(tmp_path / str(stiffness)).query("check == 'moment'")["value"]
+        assert value == judged
+
+
+def test_a_check_of_one_case_is_not_one_of_another():
+    soft = MOMENT | {"case": "soft"}
+    of_study = study(OF_SPRINGS, cases=[SPRINGS, SPRINGS | {"name": "other"}], check=[soft], pier=TALL, output=SECTIONS)
     found = rb.design(of_study)
     assert dict(rows(found, "case", "verdict")) == {"soft": "pass", "other": "not decided"}  # no check is about it
-    alone = rb.design(study(design, cases=[soft], check=[moment], pier=pier, output={"sections_m": [10.0]}))
+    alone = rb.design(study(OF_SPRINGS, cases=[SPRINGS], check=[soft], pier=TALL, output=SECTIONS))
     np.testing.assert_array_equal(alone.design_checks["value"], found.design_checks["value"])
-    assert (alone.design_sections["height_m"] == 10.0).all()
 
 
 # What an answer must not hide
@@ -265,6 +280,7 @@ def said_of(verdicts, **more):
         "lacking": [],
         "bounds": [],
         "without_limit": [],
+        "omitted": [],
     }
     info |= {"unusable": 0, "refused": [], "tried": len(verdicts), "under": []} | more
     return [
@@ -389,12 +405,7 @@ def test_an_interrupted_search_runs_only_what_is_missing(tmp_path, monkeypatch):
 
 
 def test_a_finished_search_with_sections_is_read_again(tmp_path, monkeypatch):
-    moment = {"name": "moment", "demand": "section_moment_kNm", "at_m": 10.0, "at_most": 1e6, "reason": "r"}
-    moment["confirm"] = ["at_most"]
-    soft = {"name": "soft", "base": "elastic", "stiffness_kN_m": 1e6}
-    design = {"vary": "case.stiffness_kN_m", "between": [1e6, 2e6], "points": 2, "width": 5e5}
-    pier = {"width_m": 4.0, "height_m": 20.0, "mass_t": 800.0}
-    of_study = study(design, cases=[soft], check=[moment], pier=pier, output={"sections_m": [10.0]})
+    of_study = study(OF_SPRINGS, cases=[SPRINGS], check=[MOMENT, STIFF], pier=TALL, output=SECTIONS)
     found = rb.design(of_study, tmp_path)
     monkeypatch.setattr(rockbatch.batch.threads, "outcomes_of", None)
     again = rb.design(of_study, tmp_path)
@@ -462,6 +473,7 @@ def test_the_command_counts_its_runs_beforehand_and_prints_the_answer(tmp_path, 
         ({"points": 1}, "points = 1: expected a whole number from 2 to 1000"),
         ({"points": [4, 3]}, "points: expected one number for each key of vary, or one for all"),
         ({"find": "best"}, 'find = "best": '),
+        ({"find": "smallest"}, 'find = "smallest": did you mean "least"?'),
         ({"steps": 4}, "steps: unknown key"),
     ],
 )
