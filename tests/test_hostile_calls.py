@@ -63,6 +63,7 @@ CALLS = {  # what is called, and arguments that it takes
     "simulate": (rb.simulate, {"pier": PIER, "foundation": rb.RigidBase(), "motion": SHAKE}),
     "open_results": (rb.open_results, {"directory": "nowhere"}),
     "report": (rb.report, {"directory": "nowhere"}),
+    "statement": (rb.statement, {"directory": "nowhere"}),
     "load_study": (rb.load_study, {"path": "study.toml"}),
     **{name: (getattr(rb, name), MISSING) for name in (*ANALYSES, "run")},
 }  # fmt: skip

@@ -242,7 +242,7 @@ COMMANDS = {
     ),
     "statement": Command(
         "print a paragraph on each case, for a calculation file",
-        "rockbatch statement reports/pier --case pads > statement.txt",
+        "rockbatch statement reports/pier --case pads",
         "commands.statement.main",
         {
             "directory": _FOLDER,

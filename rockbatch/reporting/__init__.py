@@ -205,7 +205,7 @@ def statement(directory: str | os.PathLike[str], case: str | None = None) -> str
     Examples
     --------
     >>> print(rb.statement("reports/pier4", case="pads"))
-    Case "pads" passes its only check. It was run under 10 horizontal components of 5 stations in 3 earthquakes ...
+    Case "pads" meets its only check, but is not decided: no check limits its mean settlement, residual tilt, ductility. ...
     """
     finished = read(Path(directory), ())
     names = list(dict.fromkeys(str(entry["case"]) for entry in finished.info["cases"] if not entry.get("across_of")))

@@ -350,6 +350,18 @@ IN_SECTION = study(
     output={"sections_m": [0.0, 10.0]},
     check=[CHECK | {"demand": "section_moment_kNm", "at_m": 0.0, "at_most": 1e4}],
 )
+OF_CAPACITY = study(
+    output={"interaction_m": [0.0]},
+    check=[
+        CHECK
+        | {
+            "demand": "section_moment_over_capacity",
+            "at_m": 0.0,
+            "at_most": 1.0,
+            "capacity": [[-1e3, 0.0], [0.0, 5e4], [1e6, 0.0]],
+        }
+    ],
+)
 IN_SEQUENCE = study() | {
     "motions": {
         "pulse": [SINE, SINE | {"name": "t", "amplitude_g": 0.3}],
@@ -445,6 +457,7 @@ USES: dict[str, dict[str, Use]] = {
     "[[check]]": {
         **uses(study(check=[CHECK]) | {"case": [ROCK, SOFT | {"name": "q"}]}, ("check", 0), {"case": ["q*"]}, verdicts),
         **uses(IN_SECTION, ("check", 0), {"at_m": 10.0}, whole_folder),
+        **uses(OF_CAPACITY, ("check", 0), {"capacity": [[-1e3, 0.0], [0.0, 6e4], [1e6, 0.0]]}, whole_folder),
         **uses(CHECKED, ("check", 0), {
             "name": "n", "demand": "omega_max_over_p", "statistic": "mean", "least": 9, "count": "component", "at_most": 0.4,
             "basis": "code", "reason": "b",  "scale": [1.0], "overturned": "left out",
