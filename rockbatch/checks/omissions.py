@@ -43,15 +43,15 @@ OMISSIONS = {
         decides=False,
     ),
     POINTS: Omission(
-        "the acceleration of a point of a shaft that bends on dashpots may grow with every mode, by more than its error has: take "
-        "it from a program with finite elements",
+        "the acceleration of a point of a shaft that bends on dashpots may grow with every mode, by more than its error has: "
+        "take it from a program with finite elements",
         decides=False,
     ),
     LANDINGS: Omission(
         f'{_LANDINGS}: give the feet a stiffness K, base = "elastic" with zeta, and check K/2, K and 2 K', decides=False
     ),
     LANDINGS_OF_BENDING: Omission(
-        f'{_LANDINGS}: give the feet a stiffness K, base = "elastic" with zeta and kinematics = "finite", and check K/2, K and 2 K',
+        f'{_LANDINGS}: give the feet a stiffness K, base = "elastic" with zeta, kinematics = "finite", and check K/2, K and 2 K',
         decides=False,
     ),
     LANDINGS_OF_FRAME: Omission(
