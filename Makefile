@@ -18,8 +18,10 @@ run: $(VENV)/.run
 	$(BIN)/rockbatch run configs/near_fault.toml
 	$(BIN)/rockbatch run configs/fig7.toml
 
+# With MARKS="not thorough" the slow tests, too, in one session: collection takes 20 s of each core.
+test: MARKS ?= not slow
 test: $(VENV)/.test
-	$(BIN)/python -m pytest -n auto --dist loadfile -m "not slow"
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "$(MARKS)"
 
 # Most files have one or two slow tests: in the order of their names these fill the workers better than in that of their counts.
 slow: $(VENV)/.test

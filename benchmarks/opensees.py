@@ -21,6 +21,7 @@ import rockbatch as rb
 NEAR_FAULT = Path(__file__).parents[1] / "motions" / "near_fault"
 LINK = 1e4
 """Stiffness of the links over that of the springs."""
+WITHIN = 1e-11
 
 COLUMNS = ("case", "theta_max_over_alpha", "t_max_s", "left_over_delta_s", "right_over_delta_s", "steps_per_sample")
 
@@ -75,63 +76,32 @@ def cases() -> dict[str, Case]:
 
 def model(case: Case) -> None:
     """Build the block, and let it come to rest under its weight."""
-    import openseespy.opensees as ops
+    from independent.plane_frame import BEAM, begin, come_to_rest, ops, without_tension
 
     pier, base = case.pier, case.base
     b, h = pier.half_width, pier.height
     stiffness = 0.5 * (base.beta * pier.p) ** 2
-    ops.wipe()
-    ops.model("basic", "-ndm", 2, "-ndf", 3)
+    begin()
     for tag, x, y in ((1, -b, 0.0), (2, -b, 0.0), (3, b, 0.0), (4, b, 0.0), (5, 0.0, h), (6, 0.0, 0.0)):
         ops.node(tag, x, y)
     for tag, fixed in ((1, (1, 1, 1)), (3, (1, 1, 1)), (6, (1, 0, 0))):
         ops.fix(tag, *fixed)
     ops.mass(5, 1.0, 1.0, pier.inertia)
-    ops.geomTransf("Corotational", 1)
     for tag, (start, end) in enumerate(((6, 5), (2, 6), (6, 4)), start=1):
-        ops.element("elasticBeamColumn", tag, start, end, LINK * stiffness * h, 1.0, LINK * stiffness * h**3, 1)
-    if base.yields:
-        strength = 0.5 * base.eta * pier.gravity
-        ops.uniaxialMaterial("ElasticPPGap", 2, stiffness, -strength, 0.0, 0.0, "damage")
-    else:
-        ops.uniaxialMaterial("ENT", 2, stiffness)
-    ops.uniaxialMaterial("Elastic", 3, 1e-7 * stiffness)  # without it the first tangent is singular
-    ops.uniaxialMaterial("Parallel", 1, 2, 3)
+        ops.element("elasticBeamColumn", tag, start, end, LINK * stiffness * h, 1.0, LINK * stiffness * h**3, BEAM)
+    without_tension(1, stiffness, 0.5 * base.eta * pier.gravity if base.yields else None)
     ops.element("zeroLength", 11, 1, 2, "-mat", 1, "-dir", 2)
     ops.element("zeroLength", 12, 3, 4, "-mat", 1, "-dir", 2)
-    ops.timeSeries("Linear", 1)
-    ops.pattern("Plain", 1, 1)
-    ops.load(5, 0.0, -pier.gravity, 0.0)
-    solve("LoadControl", 0.1)
-    ops.analysis("Static")
-    assert ops.analyze(10) == 0
-    ops.loadConst("-time", 0.0)
-    ops.wipeAnalysis()
-
-
-def solve(integrator: str, *parameters: float) -> None:
-    """Choose how OpenSees solves each step."""
-    import openseespy.opensees as ops
-
-    ops.constraints("Plain")
-    ops.numberer("RCM")
-    ops.system("BandGeneral")
-    ops.test("NormDispIncr", 1e-11, 50)
-    ops.algorithm("Newton")
-    ops.integrator(integrator, *parameters)
+    come_to_rest({5: pier.gravity}, WITHIN)
 
 
 def history(case: Case, steps: int) -> np.ndarray:
     """Return t, θ, v_L and v_R at each sample of the motion, shape (n, 4), by ``steps`` a sample."""
-    import openseespy.opensees as ops
+    from independent.plane_frame import ops, shake, solve
 
     model(case)
-    ops.timeSeries("Path", 2, "-dt", case.motion.dt, "-values", *case.motion.horizontal.tolist())
-    ops.pattern("UniformExcitation", 2, 1, "-accel", 2)
-    if case.motion.vertical is not None:
-        ops.timeSeries("Path", 3, "-dt", case.motion.dt, "-values", *case.motion.vertical.tolist())
-        ops.pattern("UniformExcitation", 3, 2, "-accel", 3)
-    solve("Newmark", 0.5, 0.25)
+    shake(case.motion.dt, case.motion.horizontal, case.motion.vertical)
+    solve("Newmark", 0.5, 0.25, within=WITHIN)
     ops.analysis("Transient")
     rows = np.zeros((case.samples, 4))
     for i in range(1, case.samples):

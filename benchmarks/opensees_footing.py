@@ -22,6 +22,7 @@ NEAR_FAULT = Path(__file__).parents[1] / "motions" / "near_fault"
 STRIPS = 40
 LINK = 1e4
 """Stiffness of the links over that of all springs."""
+WITHIN = 1e-10
 
 COLUMNS = ("case", "theta_max_over_alpha", "steps_per_sample")
 
@@ -64,29 +65,20 @@ def cases() -> dict[str, Case]:
 
 def build(case: Case) -> None:
     """Build the pier, and let it come to rest under its weight."""
-    import openseespy.opensees as ops
+    from independent.plane_frame import BEAM, begin, come_to_rest, ops, without_tension
 
     pier, base = case.pier, case.base
     h, total = pier.height, (base.beta * pier.p) ** 2
     places = pier.half_width * ((2.0 * np.arange(STRIPS) + 1.0) / STRIPS - 1.0) / math.sqrt(1.0 - 1.0 / STRIPS**2)
-    ops.wipe()
-    ops.model("basic", "-ndm", 2, "-ndf", 3)
+    begin()
     ops.node(1, 0.0, 0.0)
     ops.node(2, 0.0, h)
     ops.fix(1, 1, 0, 0)
     ops.mass(2, 1.0, 1.0, pier.inertia)
-    ops.geomTransf("Corotational", 1)
-    ops.element("elasticBeamColumn", 1, 1, 2, LINK * total * h, 1.0, LINK * total * h**3, 1)
-    stiffness = total / STRIPS
-    if base.safety_factor is None:
-        ops.uniaxialMaterial("ENT", 2, stiffness)
-    else:
-        ops.uniaxialMaterial(
-            "ElasticPPGap", 2, stiffness, -base.safety_factor * pier.gravity / STRIPS, 0.0, 0.0, "damage"
-        )
-    ops.uniaxialMaterial("Elastic", 3, 1e-7 * stiffness)
-    ops.uniaxialMaterial("Parallel", 4, 2, 3)
-    tags, links = [], (LINK * total * h, 1.0, LINK * total * h**3, 1)
+    tags, links = [], (LINK * total * h, 1.0, LINK * total * h**3, BEAM)
+    ops.element("elasticBeamColumn", 1, 1, 2, *links)
+    strength = None if base.safety_factor is None else base.safety_factor * pier.gravity / STRIPS
+    without_tension(4, total / STRIPS, strength)
     for i, x in enumerate(places.tolist()):
         foot, ground = 10 + i, 1000 + i
         ops.node(foot, x, 0.0)
@@ -96,35 +88,16 @@ def build(case: Case) -> None:
         tags += [1, foot] if i == STRIPS // 2 else [foot]
     for link, (start, end) in enumerate(pairwise(tags), start=10):
         ops.element("elasticBeamColumn", link, start, end, *links)
-    ops.timeSeries("Linear", 1)
-    ops.pattern("Plain", 1, 1)
-    ops.load(2, 0.0, -pier.gravity, 0.0)
-    _solve("LoadControl", 0.1)
-    ops.analysis("Static")
-    assert ops.analyze(10) == 0
-    ops.loadConst("-time", 0.0)
-    ops.wipeAnalysis()
-
-
-def _solve(integrator: str, *parameters: float) -> None:
-    import openseespy.opensees as ops
-
-    ops.constraints("Plain")
-    ops.numberer("RCM")
-    ops.system("BandGeneral")
-    ops.test("NormDispIncr", 1e-10, 50)
-    ops.algorithm("Newton")
-    ops.integrator(integrator, *parameters)
+    come_to_rest({2: pier.gravity}, WITHIN)
 
 
 def peak(case: Case, steps: int) -> float:
     """Return the greatest rotation over α at the samples of the motion, by ``steps`` a sample."""
-    import openseespy.opensees as ops
+    from independent.plane_frame import ops, shake, solve
 
     build(case)
-    ops.timeSeries("Path", 2, "-dt", case.motion.dt, "-values", *case.motion.horizontal.tolist())
-    ops.pattern("UniformExcitation", 2, 1, "-accel", 2)
-    _solve("Newmark", 0.5, 0.25)
+    shake(case.motion.dt, case.motion.horizontal)
+    solve("Newmark", 0.5, 0.25, within=WITHIN)
     ops.analysis("Transient")
     greatest = 0.0
     for _ in range(case.motion.npts - 1):

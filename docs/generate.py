@@ -56,7 +56,7 @@ def _is_error(name: str) -> bool:
 TOPICS: dict[str, tuple[str, tuple[str, ...]]] = {
     "studies": (
         "Studies and results",
-        ("load_study", "Study", "run", "open_results", "report", "check", "Rule"),
+        ("load_study", "Study", "run", "open_results", "report", "statement", "check", "Rule"),
     ),
     "piers": (
         "Piers and bases",
@@ -78,7 +78,7 @@ TOPICS: dict[str, tuple[str, tuple[str, ...]]] = {
     "runs": ("Single runs", ("simulate", "Response")),
     "analyses": (
         "Analyses",
-        ("fragility", "HazardCurve", "spectrum", "sensitivity", "release", "accuracy"),
+        ("design", "fragility", "HazardCurve", "spectrum", "sensitivity", "release", "accuracy"),
     ),
     "motions": (
         "Ground motions",

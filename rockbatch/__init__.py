@@ -18,7 +18,7 @@ _NAMES = {
     "motions.hazard": "HazardCurve",
     "pier": "Damper DeckSpring ElasticBase FootingBase Part Pier RigidBase Stop Tendon YieldingBase",
     "pier.statics": "Statics statics",
-    "reporting": "report",
+    "reporting": "report statement",
     "results.opened": "open_results",
     "outcome.response": "Response",
     "study": "Study load_study",

@@ -1,6 +1,7 @@
 """The public names, for type checkers and editors."""
 
 from rockbatch.analyses.accuracy.analysis import accuracy as accuracy
+from rockbatch.analyses.design.analysis import design as design
 from rockbatch.analyses.fragility.analysis import fragility as fragility
 from rockbatch.analyses.release.analysis import release as release
 from rockbatch.analyses.sensitivity.analysis import sensitivity as sensitivity
@@ -48,6 +49,7 @@ from rockbatch.pier import YieldingBase as YieldingBase
 from rockbatch.pier.statics import Statics as Statics
 from rockbatch.pier.statics import statics as statics
 from rockbatch.reporting import report as report
+from rockbatch.reporting import statement as statement
 from rockbatch.results.checking import check as check
 from rockbatch.results.opened import open_results as open_results
 from rockbatch.study import Study as Study

@@ -5,6 +5,8 @@ import errno
 import io
 import json
 import os
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -25,6 +27,7 @@ from rockbatch.commands.motions import _by_reason
 from rockbatch.commands.summary import summary
 from rockbatch.reporting import write_report
 from rockbatch.results.beside_peaks import write_semicolons
+from rockbatch.study import load_study
 from rockbatch.terminal import messages
 from rockbatch.terminal.streams import filled, in_width, is_lost, show
 
@@ -378,7 +381,7 @@ def test_prose_is_indented_behind_its_first_line():
     assert all(line.startswith("  word") for line in rest)
 
 
-@pytest.mark.parametrize("name", ["run", "check", "accuracy", "fragility", "spectrum", "sensitivity", "init"])
+@pytest.mark.parametrize("name", ["run", "check", "accuracy", "design", "fragility", "spectrum", "sensitivity", "init"])
 def test_help_says_which_files_come_out(name, capsys):
     with pytest.raises(SystemExit):
         main([name, "--help"])
@@ -547,6 +550,71 @@ def test_a_mistake_in_a_command_line_is_answered_in_one_line_with_what_was_meant
     except SystemExit as exit_:
         code = exit_.code
     assert (code, capsys.readouterr().err) == (2, f"{answer}\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "wrong", "right"),
+    [
+        ("static pier.toml", "static", "statics pier.toml"),
+        ("statics pier", "pier", "statics pier.toml"),
+        ("statics peir.toml", "peir.toml", "statics pier.toml"),
+        ("statics .", ".", "statics pier.toml"),
+        ("statics sub", "sub", "statics sub/other.toml"),
+        (r"statics sub\other.toml", r"sub\other.toml", "statics sub/other.toml"),
+        ("statics pier.toml --curve c.csv", "--curve", "statics pier.toml --curves c.csv"),
+        ("statics pier.toml --cvs=c.csv", "--cvs", "statics pier.toml --csv=c.csv"),
+        ("compare --help", "compare", "report --help"),
+        ("join --help", "join", "merge --help"),
+    ],
+)
+def test_a_command_line_mended_as_its_answer_says_is_the_one_that_was_meant(
+    words, wrong, right, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "sub").mkdir()
+    write_study(tmp_path, study_text(), "pier.toml")
+    for folder, name in ((tmp_path, "checks.toml"), (tmp_path / "sub", "rules.toml")):
+        write_study(folder, '[[check]]\nname = "no study"\n', name)
+    write_study(tmp_path / "sub", study_text(), "other.toml")
+    assert exit_code(words.split()) == 2
+    (meant,) = re.findall(r"; did you mean (.*?)\?", capsys.readouterr().err)
+    assert [shlex.split(words.replace(wrong, each, 1)) for each in meant.split(" or ")] == [right.split()]
+    assert exit_code(right.split()) == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "keys"),
+    [
+        ("run pier.toml --tolerance 1e-5", {"tolerance": 1e-5}),
+        ("run pier.toml --quiet-s=5", {"quiet_s": 5.0}),
+        ("accuracy pier.toml --quiet_s many", {"quiet_s": 2.0}),
+        ("run pier.toml --intensity true", {"intensity": True}),
+        ("run pier.toml --forces", {"forces": True}),
+    ],
+)
+def test_an_option_that_is_a_key_of_the_study_is_answered_with_its_line_and_table(words, keys, tmp_path, capsys):
+    assert exit_code(words.split()) == 2
+    ((line, table),) = re.findall(r"write (.*) under (\[\w+\]); see", capsys.readouterr().err)
+    study = load_study(write_study(tmp_path, f"{study_text()}\n{table}\n{line}\n"))
+    for name, value in keys.items():
+        assert getattr(study.numerics, name, None) == value or study.output.keys.get(name) == value
+
+
+def test_a_folder_behind_a_study_is_answered_with_both_that_it_may_be(tmp_path, capsys):
+    study = write_study(tmp_path, study_text())
+    for words in (["run", str(study), "there"], ["fragility", str(study), "there"]):
+        assert exit_code(words) == 2
+        assert capsys.readouterr().err.endswith(
+            "did you mean --out there for the results, or --motions there for the records?\n"
+        )
+
+
+def exit_code(words):
+    """Exit code of a command line, also of one that the parser refuses."""
+    try:
+        return main(words)
+    except SystemExit as exit_:
+        return exit_.code
 
 
 @pytest.mark.parametrize(("words", "begin"), [("help", "usage: rockbatch [-h]"), ("help run", "usage: rockbatch run"),

@@ -23,6 +23,7 @@ STUDY = study_text(
     cases=[RIGID, PADS],
     check=[{"name": "rotation", "demand": "theta_max_over_alpha", "at_most": 0.5, "reason": "what the joints follow"}],
     output={"histories": "all", "both_laws": False},
+    design={"vary": "pier.p", "between": [0.8, 2.0], "find": "greatest", "points": 3, "width": 0.3},
     fragility={"measure": "PGA", "levels_g": [0.4, 0.8, 1.6, 3.2]},
     spectrum={"alpha": [0.15], "two_pi_over_p_s": [3.0, 8.0], "points": 3},
     sensitivity={"samples": 4, "uniform": {"alpha": [0.18, 0.22], "eta": [2.2, 3.0]}},

@@ -143,3 +143,12 @@ def test_error_of_the_pressure_is_its_change_by_half_as_many_strips():
     assert found.bed.strips_error == pytest.approx(0.0002)
     assert found.theta_max_error == pytest.approx(0.00021)
     assert with_strips_error(whole, replace(fewer, status="overturned")).bed.pressure_error is None
+
+
+def test_error_of_an_edge_is_that_of_the_middle_and_of_the_rotation_at_rest(study):
+    loaded = study(length_m=10.0, stiffness_MN_m3=50.0, safety_factor=1.5)
+    row = rb.run(loaded).iloc[0]
+    b = loaded.cases[0].pier.half_width
+    rotation = row["theta_res_error"] * loaded.cases[0].pier.alpha
+    assert row["edge_settlement_error_m"] == pytest.approx(row["settlement_error_m"] + b * rotation, rel=1e-9)
+    assert row["settlement_error_m"] > 0.0

@@ -10,6 +10,7 @@ from studies import study_text, write_study
 
 import rockbatch as rb
 import rockbatch.batch.single
+from rockbatch.common.analyses import ANALYSES
 
 PIER = rb.Pier.rectangle(8, 30, mass_t=3000)
 SHAKE = rb.pulse("sine", name="s", amplitude=3.0, period=1.0, dt=0.01, duration=2.0)
@@ -63,7 +64,7 @@ CALLS = {  # what is called, and arguments that it takes
     "open_results": (rb.open_results, {"directory": "nowhere"}),
     "report": (rb.report, {"directory": "nowhere"}),
     "load_study": (rb.load_study, {"path": "study.toml"}),
-    **{name: (getattr(rb, name), MISSING) for name in ("run", "fragility", "spectrum", "sensitivity", "accuracy", "release")},
+    **{name: (getattr(rb, name), MISSING) for name in (*ANALYSES, "run")},
 }  # fmt: skip
 ERRORS = {name for name in rb.__all__ if isinstance(kind := getattr(rb, name), type) and issubclass(kind, Exception)}
 MADE_BY_OTHERS = {*ERRORS, "Problem", "Part", "MotionSet", "Response", "Statics", "Study"}

@@ -39,11 +39,12 @@ def test_the_workflow_tests_every_python_that_is_promised_on_every_system():
 
 def test_the_workflow_runs_the_tests_of_make_test_and_all_that_a_checkout_does():
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    (command,) = re.findall(r'pytest (-n auto .*"not slow")', makefile)
-    assert f"pytest {command}" in WORKFLOW
+    (marks,), (command,) = re.findall(r"MARKS \?= (.*)", makefile), re.findall(r'pytest (-n .*)"\$\(MARKS\)"', makefile)
+    assert f'pytest {command}"{marks}"' in WORKFLOW
     assert "run: bash .ci/run\n" in WORKFLOW
     steps = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
-    assert {"run", "lint", "docs", "test", "slow"} <= set(re.findall(r"^make (\w+)", steps, re.MULTILINE))
+    assert {"run", "lint", "docs", "test"} <= set(re.findall(r"^make (\w+)", steps, re.MULTILINE))
+    assert 'make test MARKS="not thorough"\n' in steps
     hooks = (ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8")
     for linter in re.findall(r"\$\(BIN\)/(ruff \w+|mypy|lint-imports)", makefile.split("lint:")[1].split("docs:")[0]):
         assert f".venv/bin/{linter}" in hooks

@@ -58,6 +58,13 @@ demand = "theta_max_over_alpha"
 at_most = 0.5
 reason = "what the bearings can follow"
 
+[design]
+vary = "pier.p"
+between = [0.8, 1.2]
+find = "greatest"
+points = 2
+width = 0.2
+
 [fragility]
 measure = "PGA"
 levels_g = [0.4, 0.8, 1.6, 3.2]
@@ -92,6 +99,7 @@ alpha = [0.18, 0.22]
 eta = [2.2, 3.0]
 """
 ANALYSES = {
+    "design": ("design", "design_values", "design_checks", "design_runs"),
     "fragility": tuple(
         f"fragility{part}"
         for part in ("_scales", "", "_capacities", "_risk", "_runs")  # two records have no curve

@@ -487,6 +487,30 @@ def test_rows_have_every_fact_and_the_tables_their_columns():
     assert "<table>" in sheet._repr_html_()
 
 
+def test_sheet_of_a_footing_has_its_ground_by_the_formulas_and_the_share_that_is_pressed():
+    """Gazetas (1991) for 8 m in the plane of rocking by 10 m, worked out here."""
+    g, nu, width, length = 45.0, 0.45, 8.0, 10.0  # MPa, m
+    pier = Pier.with_deck(width_m=width, height_m=22, mass_t=1100, deck_mass_t=900)
+    sheet = rb.statics(pier, rb.FootingBase.from_soil(pier, g, nu, length_m=length, safety_factor=3.2))
+    rocking = (
+        g / (1.0 - nu) * (length * width**3 / 12.0) ** 0.75 * (length / width) ** 0.25 * (2.4 + 0.5 * width / length)
+    )
+    vertical = g * length / (1.0 - nu) * (0.73 + 1.54 * (width / length) ** 0.75)
+    assert sheet.row["rocking_stiffness_MN_m"] == pytest.approx(rocking, rel=1e-9)
+    assert sheet.row["vertical_over_formula"] == pytest.approx(12.0 * rocking / width**2 / vertical, rel=1e-9)
+    assert sheet.row["ultimate_moment_kN_m"] == pytest.approx(2000.0 * 9.81 * 4.0 * (1.0 - 1.0 / 3.2))
+    assert sheet.row["moment_kN_m"] < sheet.row["ultimate_moment_kN_m"]
+    lifted = sheet.curve["theta_rad"] > sheet.lift_off_rad
+    assert ((sheet.curve["contact_share"] < 1.0 - 1e-6) == lifted).all()
+    assert [axes.get_ylabel() for axes in sheet.plot(88.0).axes][-1] == "share pressed"
+    assert re.search(r"held by \[g\] +moment \[kN m\] +pressed .*\n0 +0 +0.0000 +0 +100%", rotations(sheet))
+    springs = rb.statics(TALL, ElasticBase.from_stiffness(TALL, 2e6))
+    assert [springs.row[name] for name in ("rocking_stiffness_MN_m", "ultimate_moment_kN_m", "safety_factor")] == [
+        None
+    ] * 3
+    assert springs.contact_share is None
+
+
 def test_impossible_piers_are_refused_with_the_limit():
     soft = ElasticBase(beta=0.9 * least_beta(PIER, ElasticBase(beta=30.0)))
     with pytest.raises(rb.InputError, match="beta must be above"):

@@ -45,15 +45,17 @@ def rows_beside(
     journal: Journal,
     jobs: int,
     listener: Listener,
+    first: int = 0,
 ) -> dict[str, Rows]:
     """Return the rows of each table of ``observers`` for finished ``runs``, whose rows in ``peaks`` come first.
 
+    ``first`` is the number of ``runs[0]`` in the journal.
     Mirror images have none. Runs whose rows the ``journal`` lacks, for example because they were finished before the table
     was requested, are repeated.
     """
     tables: dict[str, Rows] = {observer.table: [] for observer in observers}
     numbers = [number for number, run in enumerate(runs) if not run.mirror_of]
-    kept = (journal.cells_beside(number) for number in numbers)
+    kept = (journal.cells_beside(first + number) for number in numbers)
     lacking = [[o for o in observers if not cells.get(o.table)] for cells in kept]
     again = [(number, missing) for number, missing in zip(numbers, lacking, strict=True) if missing]
 
@@ -65,7 +67,8 @@ def rows_beside(
         with listener.progress(len(again)) as progress:
             of_again = pool.map(of_run, *zip(*again, strict=True)) if again else iter(())
             for number, missing in zip(numbers, lacking, strict=True):
-                of_tables = {name: unpacked(cell) for name, cell in journal.cells_beside(number).items() if cell}
+                cells = journal.cells_beside(first + number)
+                of_tables = {name: unpacked(cell) for name, cell in cells.items() if cell}
                 if missing:
                     of_tables |= next(of_again)
                     progress(1)

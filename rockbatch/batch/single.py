@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TypedDict, Unpack
 
 from rockbatch.batch.observers import observers_beside, observers_of
@@ -88,7 +89,7 @@ def simulate(
     -------
     Response
         ``status``, ``theta_max`` [rad], ``theta_max_error``, ``settlement`` [m], ``reason``, the ``row`` without the settlement
-        by the other spring law, and the histories ``t``, ``theta``, …, of the same steps.
+        by the other spring law, and the histories ``t``, ``theta``, …, of the same steps, computed when the first is asked for.
 
     Raises
     ------
@@ -120,17 +121,31 @@ def simulate(
     output = Output.with_keys(**{key: value for key, value in asked.items() if value})
     observers = (*observers_of(output), *observers_beside(output, [motion]))
     kept = HistoriesOfRun(name, observers, foundation.remembers)
-    (outcome,) = observed([run], [outcome], (*observers, kept), quiet_s, error=numerics.substeps is None, wait=wait)
-    response = outcome.tables.get(kept.table)
-    if not response:
-        response = kept.read(recorded(run, outcome, quiet_s, kept.every_step, wait), outcome)
+    if observers:
+        (outcome,) = observed([run], [outcome], (*observers, kept), quiet_s, error=numerics.substeps is None, wait=wait)
     finished = StudyRun(motion, "+", 1.0, Case(name, pier, foundation, {}), outcome=outcome)
-    return replace(
-        response,
-        row=as_series(row(finished)),
-        sections=of_sections.as_table(outcome.tables[of_sections.SECTIONS]) if sections else None,
-        shocks=of_shocks.as_table(outcome.tables.get(of_shocks.SHOCKS, ())) if motion.shocks else None,
-    )
+    beside = {
+        "row": as_series(row(finished)),
+        "sections": of_sections.as_table(outcome.tables[of_sections.SECTIONS]) if sections else None,
+        "shocks": of_shocks.as_table(outcome.tables.get(of_shocks.SHOCKS, ())) if motion.shocks else None,
+    }
+    if observers:
+        response = outcome.tables.get(kept.table) or _recorded(kept, run, outcome, quiet_s, wait)
+        return replace(response, **beside)
+    later = partial(_read, kept, run, outcome, quiet_s, wait)
+    settings = {"record": motion.name, "case": name, "columns": {}, "pier": pier, "base": foundation}
+    return Response.unread(later, **settings, status=outcome.status, **beside)
+
+
+def _read(kept: "HistoriesOfRun", run: Run, outcome: Outcome, quiet_s: float, wait: bool) -> Response:
+    """Return the histories of a run that nothing else observes."""
+    (outcome,) = observed([run], [outcome], [kept], quiet_s, error=False, wait=wait)
+    return outcome.tables.get(kept.table) or _recorded(kept, run, outcome, quiet_s, wait)
+
+
+def _recorded(kept: "HistoriesOfRun", run: Run, outcome: Outcome, quiet_s: float, wait: bool) -> Response:
+    """Return the histories of a run that is too long for observers."""
+    return kept.read(recorded(run, outcome, quiet_s, kept.every_step, wait), outcome)
 
 
 @dataclass(frozen=True)

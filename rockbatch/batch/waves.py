@@ -1,8 +1,10 @@
 """Runs in waves, each of which depends on the results of the one before; all of them in one journal."""
 
+from collections.abc import Sequence
 from contextlib import nullcontext
 
-from rockbatch.batch.execution import execute_runs
+from rockbatch.batch.beside import Rows, rows_beside
+from rockbatch.batch.execution import InMemory, execute_runs
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, silent
 from rockbatch.batch.observers import observers_of
@@ -10,6 +12,7 @@ from rockbatch.batch.plan import Runs
 from rockbatch.batch.threads import Engine
 from rockbatch.common.lazy import pd
 from rockbatch.results.columns import as_table, read_cells
+from rockbatch.simulation.observing import Observer
 from rockbatch.study import Study
 
 
@@ -20,12 +23,21 @@ class Waves:
     was killed goes on where it stopped. Rows always come from the journal, with its ten digits, so that nothing depends on
     whether they were there already.
 
-    The ``listener`` follows the progress of each wave that has runs left.
+    The ``listener`` follows the progress of each wave that has runs left. ``tables`` collects the rows of those of the
+    ``observers`` that write tables beside peaks.csv.
     """
 
-    def __init__(self, study: Study, journal: Journal, engine: Engine, listener: Listener | None = None) -> None:
+    def __init__(
+        self,
+        study: Study,
+        journal: Journal | InMemory,
+        engine: Engine,
+        listener: Listener | None = None,
+        observers: Sequence[Observer] = (),
+    ) -> None:
         self.study, self.journal, self.engine, self.listener = study, journal, engine, listener or Listener()
-        self.finished = 0
+        self.finished, self.observers = 0, observers
+        self.tables: dict[str, Rows] = {observer.table: [] for observer in observers}
 
     def __call__(self, runs: Runs) -> "pd.DataFrame":
         first, self.finished = self.finished, self.finished + len(runs)
@@ -36,8 +48,17 @@ class Waves:
                 self.study.numerics,
                 self.journal,
                 self.engine,
-                observers_of(self.study.output),
+                (*observers_of(self.study.output), *self.observers),
                 first=first,
                 progress=progress,
             )
-        return as_table((read_cells(self.journal[number]) for number in range(first, self.finished)), self.study)
+        texts = (self.journal[number].items() for number in range(first, self.finished))
+        rows = (read_cells({name: str(text) for name, text in cells}) for cells in texts)
+        table = as_table(rows, self.study)
+        if self.observers and isinstance(self.journal, Journal):
+            beside = rows_beside(
+                self.observers, self.study, runs, table, self.journal, self.engine.jobs, self.listener, first
+            )
+            for name, more in beside.items():
+                self.tables[name] += more
+        return table

@@ -8,10 +8,11 @@ from itertools import groupby
 import numpy as np
 
 from rockbatch.checks.bounds import SCATTER, Axis, Demanded, OfSuite, counted, lacking, of_suite
+from rockbatch.checks.capacity import used
 from rockbatch.checks.endings import left_open
 from rockbatch.checks.events import OfEvent, largest_event
 from rockbatch.checks.omissions import OMISSIONS
-from rockbatch.checks.rule_choices import FAR, Available, fitted, limit_key
+from rockbatch.checks.rule_choices import FAR, Available, Fitted, fitted, limit_key
 from rockbatch.checks.rules import Rule
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
@@ -20,7 +21,6 @@ from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
-from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.rows import complete, counts_as, rows_of_cases, simulated, with_case
 from rockbatch.quantities.statistics import STATISTICS
@@ -41,6 +41,7 @@ def judge(
     sections: "pd.DataFrame | None" = None,
     events: Mapping[str, str] | None = None,
     *,
+    interaction: "pd.DataFrame | None" = None,
     doubted: bool = False,
 ) -> list[Verdict]:
     """Evaluate every rule for every case at every scale; a case that was run on both axes of its pier is one.
@@ -62,6 +63,8 @@ def judge(
         Rows of sections.csv, for rules about a section.
     events : mapping, optional
         Names of horizontal components, each with the earthquake that it is of, empty if it is not known.
+    interaction : DataFrame, optional
+        Rows of interaction.csv, for rules about the capacity of a section.
     doubted : bool
         Whether limits are compared with the piers: those of a study were when it was read.
 
@@ -75,12 +78,15 @@ def judge(
         raise InputError("there is no run to check")
     with_mirrors, scales = Rows(runs), [float(scale) for scale in runs["scale"].unique()]
     stations = records or dict(zip(with_mirrors.texts("record"), with_mirrors.texts("station"), strict=True))
+    at_heights = {
+        needs: rows for needs, rows in (("sections", sections), ("interaction", interaction)) if rows is not None
+    }
     available = Available(
         cases=list(dict.fromkeys(str(case["case"]) for case in cases if not case.get("across_of"))),
         scales=scales,
         other_law=OTHER_LAW in runs or not any(map(creeps, cases)),
         output=[key for key, columns in BROUGHT.items() if _has_columns(runs, columns)],
-        sections=set() if sections is None else set(sections["height_m"]),
+        sections={needs: set(rows["height_m"]) for needs, rows in at_heights.items()},
         piers=cases if doubted else (),
     )
     fits = [fitted(rule, available) for rule in rules]
@@ -92,10 +98,9 @@ def judge(
         raise InputError("the table has mirror images only, and not the runs that they mirror")
     table, scale_of = Rows(runs), runs["scale"].to_numpy(np.float64)
     polarities = [*dict.fromkeys(table.texts("polarity"))]
-    tables = dict.fromkeys((rule.at_m for rule in rules), table)
-    if sections is not None:
-        heights = {fit.rule.at_m: fit.sections for fit in fits if fit.rule.at_m is not None}
-        tables |= {at_m: at_section(runs, sections, own) for at_m, own in heights.items()}
+    tables = [
+        at_section(runs, at_heights[DEMANDS[fit.rule.demand].needs], fit) if fit.sections else table for fit in fits
+    ]
     verdicts = []
     for _, of_axes in groupby(rows_of_cases(runs, cases), lambda pair: of_pier(pair[0])):
         pier = list(of_axes)
@@ -106,19 +111,22 @@ def judge(
                 at_scale = table.at(rows[scale_of[rows] == scale])
                 axes.append(Axis(case, complete(at_scale, stations, polarities)))
             judged = []
-            for rule in (fit.rule for fit in fits if name in fit.cases and scale in fit.scales):
-                of_rule = [Axis(axis.case, axis.suite.same_rows_of(tables[rule.at_m])) for axis in axes]
-                judged.append((rule, _verdict(rule, of_rule, scale, rule.count or count, events or {})))
+            for fit, own in zip(fits, tables, strict=True):
+                if name in fit.cases and scale in fit.scales:
+                    of_rule = [Axis(axis.case, axis.suite.same_rows_of(own)) for axis in axes]
+                    judged.append((fit.rule, _verdict(fit.rule, of_rule, scale, fit.rule.count or count, events or {})))
             verdicts += left_open(judged, [axis.suite for axis in axes])
     return verdicts
 
 
-def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", heights: Sequence[float]) -> Rows:
-    """Return runs with the columns of sections.csv at one height, as rounded [m]; NaN for a run without that section."""
-    keys = [name for name in sections if name not in OF_SECTIONS]
-    its = sections[sections["height_m"].isin(heights)]
+def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", fit: Fitted) -> Rows:
+    """Return runs with the forces in the section of a rule, from the table that it needs; NaN for a run without that section."""
+    its = sections[sections["height_m"].isin(fit.sections)]
+    if fit.rule.capacity is not None:
+        its = used(fit.rule.capacity, its)
+    keys = [name for name in its if name in runs]
     if its.duplicated(keys).any():
-        raise InputError(f"a run has several sections at {heights[0]:g} m; start `rockbatch run` again")
+        raise InputError(f"a run has several sections at {fit.rule.at_m:g} m; start `rockbatch run` again")
     return Rows(runs.merge(its, how="left", on=keys))
 
 

@@ -51,7 +51,8 @@ OMISSIONS = {
         f'{_LANDINGS}: give the feet a stiffness K, base = "elastic" with zeta, and check K/2, K and 2 K', decides=False
     ),
     LANDINGS_OF_BENDING: Omission(
-        f'{_LANDINGS}: give the feet a stiffness K, base = "elastic" with zeta, kinematics = "finite", and check K/2, K and 2 K',
+        f'{_LANDINGS}: give the feet a stiffness K, base = "elastic" with zeta and kinematics = "finite", and check K/2, K '
+        "and 2 K",
         decides=False,
     ),
     LANDINGS_OF_FRAME: Omission(

@@ -14,6 +14,7 @@ from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, weight
 from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.quantities.demands import AT_HEIGHTS
 
 FAR = 100.0
 """Greatest plausible ratio of a limit to its demand, or the reverse; beyond it a wrong unit is likelier."""
@@ -29,15 +30,16 @@ class Available(NamedTuple):
     """Choices that a study offers to rules.
 
     ``cases`` are names, ``output`` the keys of [output] whose columns it has, ``sections`` the heights [m] of sections of any
-    pier; ``other_law`` is True if it has the settlement by the other spring law. ``piers`` are the cases with which limits are
-    compared, as in run.json, with ``case``, ``base``, ``pier`` and ``parameters`` at least; none if limits are not compared.
+    pier by the ``needs`` of demands; ``other_law`` is True if it has the settlement by the other spring law. ``piers`` are the
+    cases with which limits are compared, as in run.json, with ``case``, ``base``, ``pier`` and ``parameters`` at least; none
+    if limits are not compared.
     """
 
     cases: Collection[str]
     scales: Collection[float]
     other_law: bool
     output: Collection[str]
-    sections: Collection[float] = ()
+    sections: Mapping[str, Collection[float]] = {}
     piers: Sequence[Case] = ()
 
 
@@ -56,10 +58,12 @@ def fitted(rule: Rule, available: Available) -> Fitted:
     matches = {pattern: chosen(pattern, available.cases) for pattern in rule.case}
     cases = frozenset(chain.from_iterable(matches.values()) if rule.case else available.cases)
     scales = [scale for scale in available.scales if not rule.scale or _is_among(scale, rule.scale)]
-    at = [] if rule.at_m is None else [height for height in available.sections if is_height(height, rule.at_m)]
-    problems = [*_unmet(rule, matches, available), *_no_section(rule, at, available.sections)]
+    heights = available.sections.get(DEMANDS[rule.demand].needs, ())
+    at = [] if rule.at_m is None else [height for height in heights if is_height(height, rule.at_m)]
+    problems = [*_unmet(rule, matches, available), *_no_section(rule, at, heights)]
     piers = [case for case in available.piers if str(case["case"]) in cases]
-    problems += _implausible(rule, piers) if available.piers else ()
+    if available.piers:
+        problems += _without_dead_load(rule, piers) if rule.capacity else _implausible(rule, piers)
     return Fitted(rule, cases, scales, at, problems)
 
 
@@ -92,24 +96,41 @@ def _unmet(rule: Rule, matches: Mapping[str, Collection[str]], available: Availa
         )
         yield Problem("other_law", None, text, kind=MissingKey)
     needs = DEMANDS[rule.demand].needs
-    if needs and needs != "sections" and needs not in available.output:
+    if needs and needs not in AT_HEIGHTS and needs not in available.output:
         text = f"there is no column of {needs}; write {needs} = true under [output] of the study and run it"
         yield Problem("demand", rule.demand, text, kind=MissingKey)
 
 
 def _no_section(rule: Rule, own: Collection[float], sections: Collection[float]) -> Iterator[Problem]:
     """Yield the problem of a rule about a section that has no ``own`` among ``sections`` [m]."""
-    if DEMANDS[rule.demand].needs != "sections":
+    if not DEMANDS[rule.demand].in_section:
         return
     if not sections:
         text = (
-            "there are no forces in sections; write sections = 5 under [output] of the study and check the folder that it is "
-            "run into"
+            f"there are no forces in sections; write {AT_HEIGHTS[DEMANDS[rule.demand].needs]} under [output] of the study and "
+            "check the folder that it is run into"
         )
         yield Problem("demand", rule.demand, text, kind=MissingKey)
     elif not own:
         text = f"there is no section at this height; there are {', '.join(f'{x:g}' for x in sorted(sections))}"
         yield Problem("at_m", rule.at_m, text, kind=UnknownKey)
+
+
+def _without_dead_load(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
+    """Yield the problem of a capacity that has no moment at the axial force of the dead load of any of the ``cases``.
+
+    That force is the weight in a section at the foot, and less above.
+    """
+    ends = [axial for axial, _ in rule.capacity or ()]
+    weights = [weight(case) for case in cases if "mass_t" in case["pier"]]
+    if any(ends[0] <= most and ends[-1] >= (most if rule.at_m == 0.0 else 0.0) for most in weights) or not weights:
+        return
+    at = "is" if rule.at_m == 0.0 else "is above 0 and at most"
+    text = (
+        f"capacity goes from N = {ends[0]:g} to {ends[-1]:g} kN, and that of the dead load {at} {max(weights):.4g} kN: "
+        "write N in kN, positive in compression"
+    )
+    yield Problem("capacity", None, text, kind=Unusual, named=False)
 
 
 def _implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:

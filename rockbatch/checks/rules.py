@@ -5,13 +5,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
+from rockbatch.checks import capacity
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import Contradiction, Problem, WrongType, refuse
 from rockbatch.common.grouping import grouped
 from rockbatch.common.showing import shown
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
-from rockbatch.toml.kinds import Choice, KindError, boolean, choice, count, not_negative, number, positive, text
+from rockbatch.toml.kinds import Choice, KindError, Other, boolean, choice, count, not_negative, number, positive, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.section import Key, Section
 
@@ -98,6 +99,9 @@ class Rule:
     both_axes : "greater", "srss", "100_30" or None
         How the demands of a record combine on both axes of a pier, one of :data:`BOTH_AXES`, in cases with ``other_width_m``;
         "greater" unless given, and of demands that do not add up (:attr:`rockbatch.quantities.demands.Demand.directed`).
+    capacity : tuple of pairs or None
+        Of section_moment_over_capacity: points of axial force, positive in compression, and moment of resistance [kN, kN m], by
+        ascending axial force.
     confirm : tuple of str
         Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.checks.rule_choices`).
 
@@ -132,6 +136,7 @@ class Rule:
     at_m: float | None = None
     both_axes: str | None = None
     per_event: int | None = None
+    capacity: tuple[tuple[float, float], ...] | None = None
 
     def __post_init__(self) -> None:
         refuse(_unknown_words(self) or _misfits(self))
@@ -241,6 +246,20 @@ _CALLED = {
 }
 _DEMAND = Choice(tuple(DEMANDS), called=_CALLED["demand"], listed_by="rockbatch check --list")
 
+
+def _point(value: object) -> tuple[float, float]:
+    """Return a point [N, M] as a pair of numbers. Raises :class:`KindError` for anything else."""
+    if not isinstance(value, list) or len(value) != 2:
+        raise KindError("points [N, M] in brackets")
+    return number(value[0]), number(value[1])
+
+
+_POINT = Other(
+    "points [N, M] in brackets",
+    _point,
+    {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2},
+)
+
 CHECK = Section(
     ("check",),
     (
@@ -278,6 +297,14 @@ CHECK = Section(
             '"srss"',
             f'{AXES}: "greater", the greater; "srss", the root of the sum of squares; "100_30", one with 0.3 of the other. What '
             "`[suite]` says if it is not given.",
+        ),
+        "capacity": Key(
+            _POINT,
+            "[[-2000, 0], [0, 30000], [20000, 60000], [50000, 0]]",
+            "Of `section_moment_over_capacity`: points [N, M] of the axial force [kN], positive in compression, and the "
+            "moment of resistance [kN m], by ascending N, with straight lines between them and no capacity beyond the ends. "
+            "The demand is the greatest moment over the resistance at the axial force of the same moment.",
+            many=True,
         ),
         "at_most": Key(number, "0.5", "The limit."),
         "at_least": Key(number, "2.0", "The limit, for what belongs to the foundation, where more is better."),
@@ -422,10 +449,11 @@ def _wrong_for_code(rule: Rule) -> Iterator[tuple[str, str]]:
 def _wrong_for_demand(rule: Rule) -> Iterator[tuple[str, str]]:
     """Yield attributes that do not apply to the demand, or are missing for it, each with the problem."""
     demand = DEMANDS[rule.demand]
-    if demand.needs == "sections" and rule.at_m is None:
+    if demand.in_section and rule.at_m is None:
         yield "at_m", "at_m is missing, the height of the section [m]; write for example at_m = 7.5"
-    if demand.needs != "sections" and rule.at_m is not None:
+    if not demand.in_section and rule.at_m is not None:
         yield "at_m", "at_m: is for demands in a section, such as section_moment_kNm; leave it out"
+    yield from _wrong_capacity(rule)
     if rule.both_axes not in (None, "greater") and not demand.directed:
         yield (
             "both_axes",
@@ -434,3 +462,15 @@ def _wrong_for_demand(rule: Rule) -> Iterator[tuple[str, str]]:
     if rule.other_law and demand.other_law is None:
         with_other_law = " and ".join(name for name, candidate in DEMANDS.items() if candidate.other_law)
         yield "other_law", f"other_law: is for {with_other_law}; leave it out"
+
+
+def _wrong_capacity(rule: Rule) -> Iterator[tuple[str, str]]:
+    """Yield problems of the capacity: missing, given for another demand, or no curve."""
+    needed = DEMANDS[rule.demand].needs == "interaction"
+    if needed and rule.capacity is None:
+        example = "[[-2000, 0], [0, 30000], [20000, 60000], [50000, 0]]"
+        yield "capacity", f"capacity is missing, points [N, M] in kN and kN m; write for example capacity = {example}"
+    if not needed and rule.capacity is not None:
+        yield "capacity", "capacity: is for section_moment_over_capacity; leave it out"
+    elif rule.capacity is not None:
+        yield from (("capacity", f"capacity {problem}") for problem in capacity.problems(rule.capacity))

@@ -108,7 +108,7 @@ def scorecard(
     """
     of_cases = [verdict for verdict in verdicts if verdict.case]
     by_check = grouped(of_cases, lambda verdict: verdict.check)
-    checks = sorted(by_check, key=lambda name: max(map(_badness, by_check[name])), reverse=True)
+    checks = sorted(by_check, key=lambda name: max(map(badness, by_check[name])), reverse=True)
     columns = [_column(by_check[name]) for name in checks]
     fallen = {case_of(case) for case in runs if case.none_stands}
     rows: list[tuple[tuple[int, float], Row]] = []
@@ -117,14 +117,14 @@ def scorecard(
     free = without_limits({name: of_case for name, of_case in by_case.items() if _worst(of_case) == PASS}, worst)
     for name, of_case in by_case.items():
         under = of_case[0].scale in failing
-        worst_last = sorted(of_case, key=_badness)
+        worst_last = sorted(of_case, key=badness)
         own = {verdict.check: _under_failing_suite(verdict) if under else verdict for verdict in worst_last}
         cells = [_cell(own[column.check], column) if column.check in own else None for column in columns]
         kind = DOES_NOT_APPLY if name in fallen and _worst(of_case) == PASS else _worst(of_case)
         words = [RESPONSES[response.demand].words for response in free.get(name, ())] if kind == PASS else []
         verdict = NOT_DECIDED if kind == PASS and (words or under) else kind
         rows.append(
-            (max(map(_badness, of_case)), Row(name, verdict, cells, words, under and kind == PASS and not words))
+            (max(map(badness, of_case)), Row(name, verdict, cells, words, under and kind == PASS and not words))
         )
     named = {row.name for _, row in rows}
     rows += [
@@ -147,7 +147,7 @@ def _worst(verdicts: Sequence[Verdict]) -> str:
     return next(kind for kind in (FAIL, NOT_DECIDED, PASS, DOES_NOT_APPLY) if kind in kinds)
 
 
-def _badness(verdict: Verdict) -> tuple[int, float]:
+def badness(verdict: Verdict) -> tuple[int, float]:
     """Return a sort key that grows with badness: passes, undecided, fails, and within each the share of the limit."""
     kind = (DOES_NOT_APPLY, PASS, NOT_DECIDED, FAIL).index(verdict.verdict)
     ratio = -1.0 if math.isnan(verdict.ratio) else math.inf if verdict.is_ban and kind == 3 else verdict.ratio

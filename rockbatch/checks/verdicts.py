@@ -181,7 +181,7 @@ def write_verdicts(directory: Path, verdicts: Iterable[Verdict]) -> Path:
 def read_verdicts(directory: Path) -> list[Verdict]:
     """Read checks.csv in ``directory``; empty without one, ``InputError`` if it is damaged."""
     path = Path(directory) / CHECKS
-    plain = functools.cache(lambda cell: legible(csv_plain(cell)))  # most cells occur many times
+    plain = functools.cache(lambda cell: legible(csv_plain(cell), keep="\t\r\n"))  # most cells occur many times
     try:
         with opened_text(path) as file:
             return [_from_row({name: plain(cell) for name, cell in row.items()}) for row in csv.DictReader(file)]
@@ -206,7 +206,7 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
     if values.get("omits") and not {*values["omits"].split(", ")} <= OMISSIONS.keys():
         raise ValueError(f"omits = {values['omits']!r}")
     columns = {name: text if name == BOUND else _value(text) for name, text in row.items() if name not in _KINDS}
-    return Verdict(columns={name: value for name, value in columns.items() if value or name == BOUND}, **values)
+    return Verdict(columns={name: value for name, value in columns.items() if value != "" or name == BOUND}, **values)
 
 
 def _value(text: str) -> float | str:

@@ -120,12 +120,11 @@ def percent(ratio: float) -> str:
 
 
 def margin(verdict: Verdict) -> str:
-    """Return the distance to the limit, without its unit."""
+    """Return the distance to the limit, without its unit; empty for NaN and for a ban."""
     if math.isnan(verdict.margin) or verdict.is_ban:
         return ""
-    if math.isinf(verdict.margin):
-        return "-∞" if verdict.margin < 0 else "∞"
-    return f"≤\u00a0{verdict.margin:.3g}" if verdict.is_lower_bound else f"{verdict.margin:.3g}"
+    shown = number(verdict.margin, least=3)
+    return f"≤\u00a0{shown}" if verdict.is_lower_bound and math.isfinite(verdict.margin) else shown
 
 
 class Notes:
@@ -222,7 +221,7 @@ def requirement(verdict: Verdict) -> str:
     return (
         verdict.words
         if verdict.is_ban
-        else f"{verdict.words} {verdict.sense} {verdict.limit:g} {verdict.unit}".rstrip()
+        else f"{verdict.words} {verdict.sense} {verdict.limit:,g} {verdict.unit}".rstrip()
     )
 
 

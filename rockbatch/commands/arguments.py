@@ -147,7 +147,7 @@ _FILES = """\
   run.json       inputs, records and versions
   histories.h5   histories of the worst runs, or as set by [output] histories
   checks.csv     verdicts, if the study has checks
-  intensity.csv, half_cycles.csv, sections.csv   if set in [output]
+  intensity.csv, half_cycles.csv, sections.csv, interaction.csv   if set in [output]
   peaks_semicolon.csv           with --csv semicolon: decimal commas, and 9,99E+307 for infinity"""
 
 
@@ -238,6 +238,15 @@ COMMANDS = {
             ),
             "--all": flag("unfold every section, so that all are printed"),
             "--sheet": flag("write DIR/sheet.html instead: the calculation sheet, to print on A4 or Letter"),
+        },
+    ),
+    "statement": Command(
+        "print a paragraph on each case, for a calculation file",
+        "rockbatch statement reports/pier --case pads > statement.txt",
+        "commands.statement.main",
+        {
+            "directory": _FOLDER,
+            "--case": value(str, "NAME", "only of the case of this name, or of those of a pattern with * and ?"),
         },
     ),
     **{name: _of_analysis(name, door) for name, door in doors().items() if door.help},

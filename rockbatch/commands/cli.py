@@ -3,6 +3,7 @@
 
 import argparse
 import os
+import re
 import sys
 import warnings
 from collections.abc import Callable, Sequence
@@ -24,7 +25,9 @@ _COMMANDS_MEANT = {
     "run": "simulate compute solve",
     "motions": "records",
     "check": "verify",
-    "report": "plot show view html",
+    "report": "plot show view html compare diff sheet",
+    "accuracy": "error errors convergence",
+    "merge": "join combine",
     "fragility": "ida curves",
     "spectrum": "spectra map",
 }
@@ -40,6 +43,8 @@ _OPTIONS_MEANT = {
     "--rules": "--checks --limits",
 }
 """Other words for each option, tried before similar spellings."""
+
+_NUMBER_OR_TRUTH = re.compile(r"true|false|[-+]?[0-9]+(\.[0-9]+)?(e[-+]?[0-9]+)?", re.ASCII)
 
 EXIT_CODES = """exit codes:
   0    success
@@ -121,15 +126,42 @@ def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
     if not options:
         return f"; `rockbatch {command}` takes none"
     words = [word.partition("=")[0] for word in unknown if word.startswith("-")]
-    known = ", ".join(match for match in (_option_meant(word, options) for word in words) if match)
+    of_study = command is not None and "study" in COMMANDS[command].arguments
+    if of_study and not words:
+        return f"; did you mean --out {unknown[0]} for the results, or --motions {unknown[0]} for the records?"
+    other = [name for word in words if (name := _other_word(word, options))]
+    if of_study and not other and (key := _key_meant(unknown)):
+        return key
+    known = ", ".join(other or [name for word in words if (name := _similar(word, options))])
     return f"; did you mean {known}?" if known else ""
 
 
-def _option_meant(word: str, options: Sequence[str]) -> str | None:
-    """Return the option with this synonym, else one spelt similarly that discards no results; None without any."""
-    meant = [name for name, words in _OPTIONS_MEANT.items() if word in words.split()]
-    if meant:
-        return next((name for name in meant if name in options), None)
+def _key_meant(unknown: Sequence[str]) -> str:
+    """Return the end of a message on an option that is a key of a study, with its table; empty if it is none."""
+    from rockbatch.study.load import SECTIONS
+
+    option, _, given = unknown[0].partition("=")
+    name, value = option.lstrip("-").replace("-", "_"), given or "".join(unknown[1:2])
+    home = next((section for section in SECTIONS if name in section), None)
+    if home is None:
+        return ""
+    if not _NUMBER_OR_TRUTH.fullmatch(value):
+        value = home[name].example
+    table = ".".join(home.at)
+    place = (f"under [[{table}]]" if home.many else f"under [{table}]") if table else "at its top"
+    return f"; it is a key of the study: write {name} = {value} {place}"
+
+
+def _other_word(word: str, options: Sequence[str]) -> str | None:
+    """Return the option for which ``word`` is another word; None without any."""
+    meant = (name for name, words in _OPTIONS_MEANT.items() if word in words.split())
+    return next((name for name in meant if name in options), None)
+
+
+def _similar(word: str, options: Sequence[str]) -> str | None:
+    """Return an option spelt similarly that discards no results; None without any, or if the word is of other commands."""
+    if any(word in words.split() for words in _OPTIONS_MEANT.values()):
+        return None
     return closest(word, [name for name in options if name not in DISCARDING])
 
 

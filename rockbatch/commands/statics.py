@@ -87,6 +87,7 @@ def rotations(sheet: Statics) -> str:
         "theta [rad]": [f"{theta:.4g}" for theta in angles],
         "held by [g]": interpolated(curve.acceleration, "z.4f"),
         f"moment [{unit}]": interpolated(curve.moment, form, size),
+        "pressed": [] if sheet.contact_share is None else interpolated(sheet.contact_share, ".0%"),
         "of tendons": interpolated(curve.tendons, form, size) if curve.tendons.any() else [],
         "of stops, springs": interpolated(curve.stops, form, size) if curve.stops.any() else [],
         "of dampers": interpolated(curve.dampers, form, size) if curve.dampers.any() else [],

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 Entry = Mapping[str, Any]
 """An object in the JSON file of an analysis, by key; the reader of the file has checked its shape."""
 
-ANALYSES = ("fragility", "spectrum", "sensitivity", "release", "accuracy")
+ANALYSES = ("design", "fragility", "spectrum", "sensitivity", "release", "accuracy")
 """Each has its folder ``rockbatch/analyses/NAME``; in the order of the help and of the report."""
 
 

@@ -13,6 +13,7 @@ OBSERVERS = (
     "devices_work",
     "half_cycles",
     "sections",
+    "interaction",
     "intensity",
 )
 """Each has its folder ``rockbatch/observers/NAME``; in the order in which they add to a run."""

@@ -157,11 +157,6 @@ def inlined_once(function: Function) -> Function:
     return _guarded(numba.njit(forceinline=True, **_OPTIONS | _PART | {"pipeline_class": _OnlyPartCompiler})(function))
 
 
-def summing(function: Function) -> Function:
-    """Compile a building block that sums over an array in any order, as vector instructions do: the last digits depend on it."""
-    return _guarded(numba.njit(fastmath={"reassoc", "nsz", "contract"}, **_OPTIONS | _PART)(function))
-
-
 def shared(function: Function) -> Function:
     """Let kernels use a function that Python calls uncompiled, since few calls are not worth a compilation in each process."""
     decorated: Function = register_jitable(**_OPTIONS)(function)

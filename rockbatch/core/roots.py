@@ -194,8 +194,11 @@ def summit_within(f0, d0, f1, d1, h, best):
 
     And its time; 0 of ``best``.
     """
-    if max(max(f0, f1), max(inner_points(f0, d0, f1, d1, h))) <= best:
+    greatest = max(max(f0, f1), max(inner_points(f0, d0, f1, d1, h)))
+    if greatest <= best:
         return best, 0.0
+    if greatest == f1:
+        return f1, h
     highest, _ = _extremes(f0, d0, f1, d1, h)
     inside = hermite(f0, d0, f1, d1, h, highest) if highest > 0.0 else f1
     summit, at = (inside, highest) if inside > f1 else (f1, h)

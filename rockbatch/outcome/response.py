@@ -1,8 +1,9 @@
 """Result of a simulation: the histories of one record on one foundation."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +19,24 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Samples = npt.NDArray[np.float64]
+
+HISTORY_UNITS = {
+    "t": "s",
+    "theta": "rad",
+    "omega": "rad/s",
+    "v": "m",
+    "z_left": "1",
+    "z_right": "1",
+    "v_left": "m",
+    "v_right": "m",
+    "force_left": "N/kg",
+    "force_right": "N/kg",
+    "energy": "J/kg",
+    "ag_h": "m/s^2",
+    "ag_v": "m/s^2",
+    "deflection": "m",
+}
+"""Units of the columns of a history, in order."""
 
 FORCE_UNITS = {
     "base_shear": "m/s^2",
@@ -41,9 +60,16 @@ EVENT_TYPES = {"t": "float64", "kind": "str", "pivot": "str", "before": "int64",
 """Columns of the table of events, with their types."""
 
 
+READ_LATER = ("history", "events", "restraints")
+"""Tables that a response may read only when they are needed: they cost more than a run."""
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Response(Shown):
     """Results of one run, and its histories. SI units; angles in radians; energy per unit mass.
+
+    The histories of :func:`simulate` are computed when the first of them is asked for. ``attrs["units"]`` of a table has
+    the units of its columns.
 
     Attributes
     ----------
@@ -126,10 +152,43 @@ class Response(Shown):
     scale: float = 1.0
     forces: "pd.DataFrame | None" = field(default=None, repr=False)
     impacts: "pd.DataFrame | None" = field(default=None, repr=False)
-    restraints: "pd.DataFrame | None" = field(default=None, repr=False)
+    restraints: "pd.DataFrame | None" = field(
+        default_factory=lambda: None, repr=False
+    )  # no attribute of the class: READ_LATER
     row: "pd.Series[Any] | None" = None
     shocks: "pd.DataFrame | None" = field(default=None, repr=False)
     sections: "pd.DataFrame | None" = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        """Say the units of the tables in their ``attrs``."""
+        of_tables = {"history": HISTORY_UNITS, "forces": {"t": "s"} | FORCE_UNITS, "impacts": IMPACT_UNITS}
+        for name, units in of_tables.items():
+            table = getattr(self, name)
+            if table is not None:
+                table.attrs["units"] = {column: units[column] for column in table if column in units}
+
+    @classmethod
+    def unread(cls, read: Callable[[], "Response"], **known: Any) -> Self:
+        """Return the response of fields that are ``known``; the histories are those of another one, ``read`` when needed."""
+        response = object.__new__(cls)
+        response.__dict__.update(known, _read=read)
+        return response
+
+    if not TYPE_CHECKING:  # of which a checker would conclude that any attribute exists
+
+        def __getattr__(self, name: str) -> Any:
+            """Return a table of histories that have not been read."""
+            read = self.__dict__.get("_read") if name in READ_LATER else None
+            if read is None:
+                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}", name=name, obj=self)
+            whole = read()
+            self.__dict__.update({table: getattr(whole, table) for table in READ_LATER})
+            return self.__dict__[name]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy or a pickle has, its histories read: it does not depend on compiled code."""
+        tables = {table: getattr(self, table) for table in READ_LATER}
+        return {name: value for name, value in self.__dict__.items() if name != "_read"} | tables
 
     @property
     def theta_max(self) -> float:

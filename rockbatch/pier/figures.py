@@ -51,21 +51,24 @@ class Sheet(NamedTuple):
     pier: Pier
     equilibria: Equilibria
     swings: Swings
+    pressed: np.ndarray | None = None  # share of a footing at the rotations of the equilibria
 
 
 def statics(sheets: Sequence[Sheet]) -> Figure:
-    """Return a figure of righting moment and steady acceleration over rotation, and of period over amplitude; for a single pier
-    also the contributions to the moment, and its period fixed at the base."""
+    """Return a figure of righting moment and steady acceleration over rotation, and of period over amplitude; of footings also
+    the share that is pressed; for a single pier also the contributions to the moment, and its period fixed at the base."""
     sheets = sheets[:MOST_SHEETS]
     heavy = all(sheet.pier.mass_t is not None for sheet in sheets)
-    moments, accelerations, periods = [], [], []
-    for place, (name, pier, at, swings) in enumerate(sheets):
+    moments, accelerations, periods, shares_pressed = [], [], [], []
+    for place, (name, pier, at, swings, pressed) in enumerate(sheets):
         look, label = line_of(place), name if len(sheets) > 1 else ""
         size = 1e-3 * (pier.mass_t or 0.0) * pier.gravity if heavy else 1.0
         across = at.theta / pier.alpha
         moments.append(Polyline(across, size * at.moment, name, look=look, label=label))
         accelerations.append(Polyline(across, at.acceleration, name, look=look))
         periods.append(Polyline(swings.amplitude / pier.alpha, swings.period, name, look=look))
+        if pressed is not None:
+            shares_pressed.append(Polyline(across, pressed, name, look=look))
         shares = {words: getattr(at, share) for share, words in SHARES.items()} if len(sheets) == 1 else {}
         shown = [(words, values) for words, values in shares.items() if values.any()]
         if len(shown) > 1:
@@ -80,6 +83,8 @@ def statics(sheets: Sequence[Sheet]) -> Figure:
         _over("θ/α", "acceleration [g]", accelerations, "steady horizontal ground acceleration that holds the pier"),
         _over("amplitude/α", "period [s]", periods, "free rocking", fixed),
     ]
+    if shares_pressed:
+        panels.append(_over("θ/α", "share pressed", shares_pressed, "share of the footing that is pressed"))
     return Figure(panels, "Statics")
 
 

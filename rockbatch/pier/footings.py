@@ -90,3 +90,16 @@ def slow_turn(pier: Pier, base: Base, restraints: tuple[Restraint, ...] | None =
     if isinstance(base, FootingBase):
         return SlowFooting(pier, base, restraints, side)
     return SlowTurn(pier, base, restraints, side)
+
+
+def facts_of_bed(pier: Pier, base: Base) -> dict[str, float | None]:
+    """Return what the statics sheet says of the ground under a footing; nothing on other bases."""
+    if not isinstance(base, FootingBase):
+        return {}
+    facts = {"safety_factor": base.safety_factor, "vertical_over_formula": base.vertical_over_formula}
+    if pier.mass_t is None:
+        return facts
+    weight, b = pier.mass_t * pier.gravity, pier.half_width
+    facts["rocking_stiffness_MN_m"] = weight / static_deflection(pier, base) * b * b / 3000.0
+    facts["ultimate_moment_kN_m"] = weight * b * (1.0 - 1.0 / (base.safety_factor or math.inf))
+    return facts

@@ -55,8 +55,8 @@ def unknown_masses(pier: Pier) -> list[str]:
     return wrong
 
 
-def section_heights(pier: Pier, sections: int | Sequence[float]) -> tuple[float, ...]:
-    """Return the heights [m] of ``sections``, ascending: those given, or that number from foot to top of the pier.
+def section_heights(pier: Pier, sections: int | Sequence[float], key: str = "sections_m") -> tuple[float, ...]:
+    """Return the heights [m] of ``sections``, ascending: those given by the ``key``, or that number from foot to top of the pier.
 
     Raises ``InputError`` for heights outside the pier, and for a pier whose sections are not known.
     """
@@ -71,7 +71,7 @@ def section_heights(pier: Pier, sections: int | Sequence[float]) -> tuple[float,
     outside = [height for height in sections if not 0.0 <= height <= top * (1.0 + ROUNDING)]
     if outside:
         bounds = f"must be within 0 and the top of the pier, {top:g} m"
-        raise InputError(*(f"sections_m = {height:g}: {bounds}" for height in outside))
+        raise InputError(*(f"{key} = {height:g}: {bounds}" for height in outside))
     return tuple(sorted({float(height) for height in sections}))
 
 

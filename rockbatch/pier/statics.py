@@ -15,7 +15,7 @@ from rockbatch.pier.bending import flexural_period
 from rockbatch.pier.block import Pier
 from rockbatch.pier.devices import unlikely_devices
 from rockbatch.pier.equilibrium import ONSET, Array, Equilibria, SlowTurn, without_dampers
-from rockbatch.pier.footings import slow_turn
+from rockbatch.pier.footings import facts_of_bed, slow_turn
 from rockbatch.pier.free_rocking import FreeRocking, Swings
 from rockbatch.pier.frequencies import vertical_frequency
 from rockbatch.pier.places import symmetric
@@ -51,6 +51,25 @@ class Fact(NamedTuple):
 FACTS = (
     Fact("weight_kN", "weight [kN]", ",.0f", "of all that rocks"),
     Fact("settlement_m", "settlement at rest [m]", ".3g", "of both supports, under weight and prestress"),
+    Fact("safety_factor", "bearing strength over weight", ".3g", "of a footing: its FS, under pier and deck"),
+    Fact(
+        "rocking_stiffness_MN_m",
+        "rocking stiffness of the ground [MN m/rad]",
+        ",.0f",
+        "of a footing in full contact, elastic",
+    ),
+    Fact(
+        "vertical_over_formula",
+        "vertical stiffness over the formula's",
+        ".2f",
+        "of a footing from soil: its bed keeps the rocking stiffness, and so is too stiff vertically",
+    ),
+    Fact(
+        "ultimate_moment_kN_m",
+        "ultimate moment of the ground [kN m]",
+        ",.0f",
+        "about the middle of a footing: W B/2 (1 − 1/FS)",
+    ),
     Fact("stress_at_rest_MPa", "bearing stress at rest [MPa]", ".3g", "under each support, with the prestress"),
     Fact(
         "stress_on_one_MPa",
@@ -67,7 +86,7 @@ FACTS = (
     Fact("dampers_over_rest", "dampers over the rest at 0.1 α", ".2f", "of moments; below 1 the pier returns"),
     Fact("unstable_over_alpha", "unstable equilibrium, θ/α", ".4g", "without dampers"),
     Fact("vertical_period_s", "vertical period [s]", ".3g", "of both supports, elastic"),
-    Fact("full_contact_period_s", "rocking period on both supports [s]", ".3g", "before lift-off, elastic"),
+    Fact("full_contact_period_s", "rocking period in full contact [s]", ".3g", "before lift-off, elastic"),
     Fact("period_s", "rocking period at 0.1 α [s]", ".3g", "of free rocking with that amplitude; it grows with it"),
     Fact("restitution", "restitution e", ".4f", "factor on the angular velocity at an impact on rigid ground"),
     Fact("impact_damping", "damping by impacts at 0.1 α", ".2%", "equivalent viscous ratio; rigid ground only"),
@@ -179,7 +198,12 @@ class Statics(Shown):
         mine["moment_kN_m"] = None if weight is None or moment is None else moment * weight
         mine["period_s"] = self._at_amplitude(self.swings_at.period)
         mine["impact_damping"] = self._at_amplitude(self.swings_at.impact_damping)
-        return mine
+        return mine | facts_of_bed(self.pier, self.base)
+
+    @property
+    def contact_share(self) -> Array | None:
+        """Return the share of a footing that is pressed at the rotations of :attr:`equilibria`; None on other bases."""
+        return self.equilibria.heel if self.base.on_springs and not self.base.two_springs else None
 
     @property
     def curve(self) -> "pd.DataFrame":
@@ -202,7 +226,7 @@ class Statics(Shown):
             "of_dampers_m": equilibria.dampers,
         }
         of_supports = ("toe_over_weight", "heel_over_weight")
-        if not self.base.two_springs and self.base.on_springs:
+        if self.contact_share is not None:
             of_supports = ("edge_pressure_over_rest", "contact_share")
         columns |= zip(of_supports, (equilibria.toe, equilibria.heel), strict=True)
         if self.weight_kN is not None:
@@ -227,7 +251,7 @@ class Statics(Shown):
         from rockbatch.common.figures.paper import drawn
         from rockbatch.pier.figures import Sheet, statics
 
-        return drawn(statics([Sheet("", self.pier, self.equilibria, self.swings_at)]), width_mm, ax)
+        return drawn(statics([Sheet("", self.pier, self.equilibria, self.swings_at, self.contact_share)]), width_mm, ax)
 
     def _at_amplitude(self, values: Array) -> float | None:
         """Return the value at the amplitude :data:`COMPARED`; None if it is NaN, or the pier overturns before."""
@@ -257,7 +281,7 @@ def in_words(sheet: Statics) -> dict[str, str]:
     moment = "" if sheet.moment_over_weight_m is None else f"{sheet.moment_over_weight_m:.4g} m × weight"
     if weight and sheet.moment_over_weight_m is not None:
         moment += f" = {sheet.moment_over_weight_m * weight:,.0f} kN m"
-    small = {"vertical": sheet.vertical_period_s, "rocking on both supports": sheet.full_contact_period_s}
+    small = {"vertical": sheet.vertical_period_s, "rocking in full contact": sheet.full_contact_period_s}
     periods = [f"{name} {period:.3g} s" for name, period in small.items() if period is not None]
     shown = [i for i, share in enumerate(swings.amplitude / alpha) if np.isclose(share, (0.1, 0.5, 0.9)).any()]
     shares = [f"{swings.amplitude[i] / alpha:.1f} α" for i in shown]

@@ -33,6 +33,13 @@ def _strips_error(run: Run) -> float | None:
     return None if error is None else error / run.pier.alpha
 
 
+def _edge_error(run: Run) -> float | None:
+    """Return the error of an edge's settlement [m]: that of the middle, and of the rotation at rest times half the width."""
+    middle, rotation = run.outcome.settlement_error, run.outcome.theta_res_error
+    on_bed = run.outcome.bed is not None and middle is not None and rotation is not None
+    return middle + run.pier.half_width * rotation if on_bed else None
+
+
 def _quantity(
     name: str, words: str, source: Any, unit: str, page: ReportFormat | None = None, more: str = "", **facts: Any
 ) -> Quantity:
@@ -65,12 +72,14 @@ OF_FOOTING = (
     _quantity("settlement_left_m", _EDGE.format("left"), _of_bed("settlement_left"), "m",
         more="; above a safety factor of 2 a lower bound", stood=True),
     _quantity("settlement_right_m", _EDGE.format("right"), _of_bed("settlement_right"), "m",
-        more="; likewise", stood=True, limits=(
+        more="; likewise", stood=True, error="edge_settlement_error_m", limits=(
             Limit("edge_settlement_m", ceiling=_WIDER, words=_EDGE.format("lower"),
                 columns=("settlement_left_m", "settlement_right_m")),
             _IN_MM._replace(name="edge_settlement_mm", words=_EDGE.format("lower"),
                 columns=("settlement_left_m", "settlement_right_m")),
         )),
+    _quantity("edge_settlement_error_m", "estimated error of the settlements of both edges; empty with a fixed step",
+        _edge_error, "m", stood=True, sometimes=True),
     _quantity("strips_error", "share of the error of the greatest rotation over α that the number of strips has: a third of the "
         "change by half as many; empty with a fixed step", _strips_error, "1", stood=True, sometimes=True),
 )  # fmt: skip

@@ -29,6 +29,7 @@ from rockbatch.quantities.cases import (
     width,
 )
 from rockbatch.quantities.demands import (
+    AT_HEIGHTS,
     Ceiling,
     Demand,
     Estimated,
@@ -499,8 +500,8 @@ def _dependence(name: str) -> str:
         return "yes or no, 1 or 0"
     if demand.per_case:
         return "of the foundation, and not of a run"
-    if demand.needs == "sections":
-        return "in the section at the height at_m, with [output] sections"
+    if demand.in_section:
+        return f"in the section at the height at_m, with [output] {AT_HEIGHTS[demand.needs]}"
     if demand.needs:
         return f"with [output] {demand.needs} = true"
     if demand.device:

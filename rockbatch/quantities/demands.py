@@ -15,6 +15,9 @@ from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import ONE, Case, Lever, alpha, bends, holds_a_tilt, width
 from rockbatch.quantities.statistics import Values
 
+AT_HEIGHTS = {"sections": "sections = 5", "interaction": "interaction_m = [0.0]"}
+"""What demands in sections of the shaft need, and what to write under [output] for it."""
+
 FORCES = "base_shear_m_s2"
 """A column that every run with forces has."""
 
@@ -62,8 +65,9 @@ class Demand:
         Value beyond which a limit decides nothing.
     verb : str
         Of an event: the words for a record that causes it.
-    needs : "", "forces", "rocking" or "sections"
-        Key of [output] that brings the columns it takes; those of "sections" are of sections.csv, at the height of the check.
+    needs : "", "forces", "rocking", or one of :data:`AT_HEIGHTS`
+        Key of [output] that brings the columns it takes; those of :data:`AT_HEIGHTS` are of a table of its own, at the height of
+        the check.
     weighed : bool
         True if it takes the mass of the pier.
     device : "", "damper", "tendon", "yielding tendon", "stop" or "deck_spring"
@@ -106,6 +110,11 @@ class Demand:
         """Return whether the demand applies to a case, by its base, its dampers or its shaft."""
         held = "held" in self.bases and holds_a_tilt(case)
         return case["base"] in self.bases or held or ("bending" in self.bases and bends(case))
+
+    @property
+    def in_section(self) -> bool:
+        """True if it is about a section of the shaft, at the height of the check."""
+        return self.needs in AT_HEIGHTS
 
     @property
     def brings(self) -> set[str]:
@@ -178,6 +187,15 @@ OF_SECTIONS = {
     "halved; empty with a fixed step",
 }
 """Columns of sections.csv behind those that name the run, with their meanings."""
+
+OF_INTERACTION = {
+    "height_m": "height of the section above the pivots [m]",
+    "axial_kN": "axial force, positive in compression [kN], ascending",
+    "moment_kNm": "greatest moment about the middle of the section beside it [kN m]",
+    "interaction_error": "error of all corners of a section, over its greatest axial force and moment: four times the change "
+    "when the step was halved; empty with a fixed step",
+}
+"""Columns of interaction.csv behind those that name the run, with their meanings: corners of the envelope of a section."""
 
 
 def in_flight(column: str) -> Evaluate:

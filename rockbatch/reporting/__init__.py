@@ -6,16 +6,21 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rockbatch.checks import as_table
+from rockbatch.checks.verdicts import CHECKS
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, NotFound
 from rockbatch.common.files import made_folder, write_output, write_whole
+from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
+from rockbatch.common.naming import chosen
+from rockbatch.common.showing import shown
 from rockbatch.outcome.response import Response
 from rockbatch.reporting.finished import Finished, read
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.margins import headline
 from rockbatch.reporting.page import comparison, page
 from rockbatch.reporting.pair import Pair, pair
+from rockbatch.reporting.sections.statement.statements import statements
 from rockbatch.reporting.sheet import sheet as sheet_of
 from rockbatch.results.opened import Results
 from rockbatch.results.reading import ANALYSES_PAGE
@@ -24,7 +29,7 @@ from rockbatch.study import Study
 
 REPORT, SHEET = "report.html", "sheet.html"
 
-__all__ = ["REPORT", "Report", "report", "write_analyses", "write_comparison", "write_report"]
+__all__ = ["REPORT", "Report", "report", "statement", "write_analyses", "write_comparison", "write_report"]
 
 
 def write_report(
@@ -172,6 +177,49 @@ def report(
     peaks, checks = (_stacked(of_studies) for of_studies in zip(*tables, strict=True))
     answer = headline(contents) if isinstance(contents, Pair) else ""
     return Report(path, folders, peaks, checks, sheet, answer, dict(pairs or {}))
+
+
+@checked
+def statement(directory: str | os.PathLike[str], case: str | None = None) -> str:
+    """Return a statement on each case of finished results, for a calculation file: a paragraph each, with empty lines between.
+
+    A statement says whether the case passes, under which motions and bounds it was run, what each check came to by which limit
+    and record, what is assumed and what is not covered. It is on the report and on the calculation sheet, too.
+
+    Parameters
+    ----------
+    directory : path
+        A folder that ``rockbatch run``, or :func:`rockbatch.run` with ``out``, has written.
+    case : str, optional
+        Name of the case, or a glob of names; by default all cases.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InputError
+        If results are missing, damaged or do not belong together; ``NotFound`` if there is no such case.
+
+    Examples
+    --------
+    >>> print(rb.statement("reports/pier4", case="pads"))
+    Case "pads" passes its only check. It was run under 10 horizontal components of 5 stations in 3 earthquakes ...
+    """
+    finished = read(Path(directory), ())
+    names = list(dict.fromkeys(str(entry["case"]) for entry in finished.info["cases"] if not entry.get("across_of")))
+    if unknown := {verdict.case for verdict in finished.verdicts if verdict.case} - {*names}:
+        text = (
+            f"has verdicts on case {shown(min(unknown))}, which run.json does not list; start `rockbatch check` again"
+        )
+        raise InputError(f"{finished.directory / CHECKS}: {text}")
+    wanted = names if case is None else chosen(case, names)
+    if not wanted:
+        nearest = closest(str(case), names)
+        raise NotFound(f"case {shown(case)}: there is no such case; did you mean {shown(nearest or names[0])}?")
+    paragraphs = [one.text for one in statements(finished) if one.case in wanted]
+    return "\n\n".join(paragraphs or ["No ground motion could be used: there are no results."])
 
 
 def _contents(folders: Sequence[Path], pairs: Mapping[str, str] | None) -> Finished | Pair:

@@ -18,6 +18,7 @@ from rockbatch.reporting.sections import (
     motions,
     peaks,
     published,
+    statement,
     statics,
     target,
     verdicts,
@@ -50,6 +51,7 @@ BEFORE = (
     Part("Ground motions", "records", motions.section),
     Part("The suite against its target spectrum", "target", target.section),
     Part("Checks", "checks", verdicts.section),
+    Part("Statement", "statement", statement.section),
     Part("Every run", "peaks", peaks.section),
 )
 AFTER = (

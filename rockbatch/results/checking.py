@@ -14,6 +14,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.rows import with_case
 from rockbatch.results.columns import given_table
+from rockbatch.results.interaction import INTERACTION, read_interaction
 from rockbatch.results.labelled import Item
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.run_json import INFO, describe_case
@@ -22,6 +23,9 @@ from rockbatch.study import Study, load_study
 from rockbatch.toml.reader import TomlFile
 
 PathLike = str | os.PathLike[str]
+
+_OF_SECTIONS = {"sections": (SECTIONS, read_sections), "interaction": (INTERACTION, read_interaction)}
+"""Tables of forces in sections, by what demands need of them, and functions that read these."""
 
 
 @checked
@@ -78,15 +82,16 @@ def verdicts(
     records: Mapping[str, str] | None = None
     events: Mapping[str, str] | None = None
     of_suite: list[Verdict] = []
-    sections: pd.DataFrame | None = None
+    in_sections: dict[str, pd.DataFrame] = {}
     if isinstance(results, Saved | str | os.PathLike):
         saved = results if isinstance(results, Saved) else read_saved(Path(results))
         own_rules, count, _ = _own_checks(saved.info["study"], judged=given is None)
         table, cases = saved.peaks, saved.info["cases"]
         records = {record["record"]: record.get("station", "") for record in saved.info["records"]}
         events = {record["record"]: record.get("event") or "" for record in saved.info["records"]}
-        if (path := saved.directory / SECTIONS).exists():
-            sections = read_sections(path, saved.info["varied"])
+        for needs, (name, read) in _OF_SECTIONS.items():
+            if (path := saved.directory / name).exists():
+                in_sections[needs] = read(path, saved.info["varied"])
         of_suite = suite_verdicts(saved.info, with_case(table)["scale"])
     else:
         if study is None:
@@ -101,7 +106,9 @@ def verdicts(
         return of_suite
     # The limits of the study's own rules are compared with its piers when it is read
     doubted = given is not None
-    return [*of_suite, *judge(judged, table, cases, records, count, sections, events, doubted=doubted)]
+    sections, interaction = (in_sections.get(needs) for needs in _OF_SECTIONS)
+    of_cases = judge(judged, table, cases, records, count, sections, events, interaction=interaction, doubted=doubted)
+    return [*of_suite, *of_cases]
 
 
 def _own_checks(study: Item, *, judged: bool) -> Checks:

@@ -105,9 +105,17 @@ def units(study: Study) -> dict[str, str]:
     return {column.name: column.unit for column in described if column.kind != "text"}
 
 
+def with_units(table: "pd.DataFrame", of_columns: Mapping[str, str]) -> "pd.DataFrame":
+    """Return the ``table`` with the units of its columns in ``table.attrs["units"]``."""
+    table.attrs["units"] = dict(of_columns)
+    return table
+
+
 def as_table(rows: Iterable[Mapping[str, object]], study: Study) -> "pd.DataFrame":
     """Return rows of peaks.csv as a DataFrame: "" for missing texts, NaN for numbers, <NA> for counts."""
-    return _typed(pd.DataFrame(list(rows), columns=columns(study)), study.varied)
+    table, varied = list(rows), set(study.varied)
+    cells = {name: [row.get(name) for row in table] for name in columns(study)}
+    return pd.DataFrame({name: values if name in varied else _typed(name, values) for name, values in cells.items()})
 
 
 def read_cells(cells: Mapping[str, str]) -> dict[str, float | str | None]:
@@ -193,12 +201,8 @@ def numbers_or_words(cells: "pd.Series") -> "pd.Series":
     return filled if (numbers.isna() & filled.notna()).any() else numbers.astype("float64")
 
 
-def _typed(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
-    """Give the columns of ``table``, in place, their types; those of varied keys stay."""
-    texts = [name for name in table if name in TEXTS]
-    table[texts] = table[texts].fillna("")
-    for name in table.columns.difference([*TEXTS, *varied, *COUNTS]):
-        table[name] = table[name].astype("float64")
-    for name in table.columns.intersection(list(COUNTS)):
-        table[name] = table[name].astype("Int64")
-    return table
+def _typed(name: str, values: list[Any]) -> Any:
+    """Return the cells of a column with its type, as :func:`as_table` has them."""
+    if name in TEXTS:
+        return ["" if value is None else value for value in values]
+    return pd.array(values, dtype="Int64") if name in COUNTS else np.array(values, dtype=np.float64)

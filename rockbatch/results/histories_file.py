@@ -37,7 +37,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.files import opened, replacing, state_of
 from rockbatch.common.lazy import h5py, pd
 from rockbatch.outcome.outcome import TERMS
-from rockbatch.outcome.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
+from rockbatch.outcome.response import EVENT_TYPES, FORCE_UNITS, HISTORY_UNITS, IMPACT_UNITS, Response
 from rockbatch.pier import (
     Base,
     Part,
@@ -67,24 +67,6 @@ MARK = b"rockbatch histories: HDF5 from byte 512 on, of sha256 "
 MARGIN = 10_000_000
 """Free disk space that writing leaves [bytes]."""
 
-UNITS = {
-    "t": "s",
-    "theta": "rad",
-    "omega": "rad/s",
-    "v": "m",
-    "z_left": "1",
-    "z_right": "1",
-    "v_left": "m",
-    "v_right": "m",
-    "force_left": "N/kg",
-    "force_right": "N/kg",
-    "energy": "J/kg",
-    "ag_h": "m/s^2",
-    "ag_v": "m/s^2",
-    "deflection": "m",
-}
-"""Units of the columns of a history, in order."""
-
 OF_SPRINGS = ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right")
 """Columns of a history of piers on springs or a footing only."""
 
@@ -95,7 +77,7 @@ OF_TWO_SPRINGS = ("z_left", "z_right")
 def columns_of(base: Base | type[Base], bends: bool) -> list[str]:
     """Return the columns of a history that apply to a pier on ``base`` whose shaft ``bends`` or not."""
     lacking = () if base.two_springs else OF_TWO_SPRINGS if base.on_springs else OF_SPRINGS
-    return [name for name in UNITS if name not in lacking and (bends or name != "deflection")]
+    return [name for name in HISTORY_UNITS if name not in lacking and (bends or name != "deflection")]
 
 
 LEDGER = "energy_input_J_kg"
@@ -112,7 +94,7 @@ _IMPACTS = {"t": "f", "pivot": "S"} | dict.fromkeys(IMPACT_UNITS, "f")
 _BESIDE = {"restraints": (), "ledger": TERMS, "forces": tuple(FORCE_UNITS)}
 """Optional tables with a row for each row of the history: their columns by HDF5 group, () for those present."""
 
-_ALL_UNITS = UNITS | FORCE_UNITS | IMPACT_UNITS | dict.fromkeys(TERMS, "J/kg")
+_ALL_UNITS = HISTORY_UNITS | FORCE_UNITS | IMPACT_UNITS | dict.fromkeys(TERMS, "J/kg")
 _OF_RUN = ("record", "case", "polarity", "scale", "status")
 _DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, OverflowError)
 """Exceptions raised while reading a damaged file."""
@@ -328,7 +310,7 @@ def _read(group: "h5py.Group") -> Response:
         columns=attributes_of(group_in(group, "varied")),
         pier=Pier(**pier, confirm=tuple(PIERS)),
         base=kind(**before | base, confirm=tuple(OF_BASES)),
-        history=history.reindex(columns=[name for name in UNITS if bends or name != "deflection"]),
+        history=history.reindex(columns=[name for name in HISTORY_UNITS if bends or name != "deflection"]),
         events=events.astype(EVENT_TYPES),
         **tables,
     )

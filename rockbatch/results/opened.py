@@ -16,6 +16,7 @@ from rockbatch.common.showing import Shown, several, shown
 from rockbatch.outcome.response import Response
 from rockbatch.quantities.catalogue import in_words
 from rockbatch.quantities.rows import simulated, with_case
+from rockbatch.results.columns import with_units
 from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.intensity import INTENSITY, orders
 from rockbatch.results.labelled import Labelled, labelled
@@ -220,7 +221,8 @@ def open_results(directory: str | os.PathLike[str]) -> Results:
     >>> results.plot().savefig("peaks.png")
     """
     saved = read_saved(Path(directory))
-    return Results(saved.directory, saved.info, saved.peaks, saved.missing)
+    peaks = with_units(saved.peaks, saved.info.get("units", {}))
+    return Results(saved.directory, saved.info, peaks, saved.missing)
 
 
 def _candidates(fitting: "pd.DataFrame", criteria: dict[str, float | str]) -> str:

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import EditedTable, InputError, MissingColumns, NotFound, Problem, refuse
 from rockbatch.common.files import CHANGED, csv_plain, legible, opened, opened_text, read_text, sha256_of
@@ -82,7 +84,7 @@ def read_saved(directory: Path) -> Saved:
     with _collecting_problems(problems):
         peaks = _read_peaks(directory / PEAKS, info.get("varied", []))
     if len(problems) == 2 and all(isinstance(problem, Problem) and problem.kind is NotFound for problem in problems):
-        raise NotFound(f"{directory}: not there, or without results of `rockbatch run`{_analyses_in(directory)}")
+        raise NotFound(f"{directory}: not there, or without results of `rockbatch run`; {_instead_of(directory)}")
     refuse([*problems, *_other_version(directory)] if problems else [])
     if unknown := {name for case in info["cases"] for name in case["columns"]} - set(info["varied"]):
         raise InputError(
@@ -107,10 +109,10 @@ def read_saved(directory: Path) -> Saved:
     return saved
 
 
-def _analyses_in(directory: Path) -> str:
-    """Return words that name the page of the analyses in a folder; empty without one."""
+def _instead_of(directory: Path) -> str:
+    """Return what to open instead of a folder without runs, in words: the page of its analyses, or another folder."""
     path = directory / ANALYSES_PAGE
-    return f"; its analyses are in {path}" if path.exists() else ""
+    return f"its analyses are in {path}" if path.exists() else "give a folder that it has written"
 
 
 def _other_version(directory: Path) -> list[str]:
@@ -200,13 +202,16 @@ def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
             table = pd.read_csv(
                 file, keep_default_na=False, na_values=empty, encoding="utf-8", index_col=False, dtype=types
             )
-        for name in table.columns.intersection(list(COUNTS)):
-            wrong_fact = name in FACTS and not table[name].isin([0, 1, math.nan]).all()
-            if wrong_fact or (table[name].abs() > MOST_COUNT).any():
-                raise ValueError(f"{name} is out of range")
+        infinite = np.isinf(table[[name for name in numbers if name not in UNBOUNDED]].to_numpy()).any()
+        counts, facts = ([name for name in numbers if name in kind] for kind in (COUNTS, FACTS))
+        zero_or_one = table[facts].to_numpy()
+        if (np.abs(table[counts].to_numpy()) > MOST_COUNT).any() or np.nan_to_num(
+            zero_or_one * (zero_or_one - 1.0)
+        ).any():
+            raise ValueError("a count is out of range")
+        for name in counts:
             table[name] = table[name].astype("Int64")
-        finite = [name for name in numbers if name not in UNBOUNDED]
-        sound = table["status"].isin(STATUSES).all() and not table[finite].isin([math.inf, -math.inf]).any(axis=None)
+        sound = table["status"].isin(STATUSES).all() and not infinite
         sound = sound and not (table["scale"].isna() & (table["case"] != "")).any()
     except (ValueError, TypeError, pd.errors.ParserWarning) as error:
         bad = _bad_cells(path, head, numbers)

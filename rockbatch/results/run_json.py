@@ -170,7 +170,11 @@ def describe(study: Study, motions: MotionSet) -> Row:
         "without_vertical": motions.without_vertical,
         "records": [entry(motion, labels[motion.name], gravity, with_pulse=with_pulses) for motion in motions.motions],
         "spectra": spectra(motions.motions, fitted, gravity, target),
-        **({} if target is None else {"target": target.run_json_entry(fitted, gravity) | _rocking(study, target)}),
+        **(
+            {}
+            if target is None
+            else {"target": target.run_json_entry(fitted, gravity) | rocking_periods(study.cases, target)}
+        ),
         **_vertical_target(study, motions, gravity),
         "unusable": [_not_used(file) for file in motions.unusable],
         "left_out": [asdict(file) for file in motions.left_out],
@@ -208,9 +212,9 @@ def _is_pulse(motion: Motion, study: Study) -> bool:
     return {pulse.name for pulse in study.motions.pulses}.issuperset(names)
 
 
-def _rocking(study: Study, target: SpectrumTarget) -> dict[str, list[float]]:
+def rocking_periods(cases: Sequence[Case], target: SpectrumTarget) -> dict[str, list[float]]:
     """Return the shortest and longest free-rocking period at 0.1 α [s], for a code's conditions; empty if not needed."""
-    kinds = [(case.pier, case.base) for case in study.cases] if target.code else []
+    kinds = [(case.pier, case.base) for case in cases] if target.code else []
     distinct = [kind for i, kind in enumerate(kinds) if kind not in kinds[:i]]
     periods = [period for kind in distinct for period in _period_at(*kind)]
     return {"rocking_s": [float(f"{period:.5g}") for period in (min(periods), max(periods))]} if periods else {}

@@ -1,6 +1,6 @@
 """Shear, axial force and moment in sections of the shaft, from its recorded motion (THEORY.md, Forces in sections)."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -214,8 +214,8 @@ def _bent(pier: Pier, body: InBody, bending: Bending, height: float, straight: I
     return InSection(shear, moment, axial)
 
 
-def sections_of(run: Run, rows: np.recarray, heights: Sequence[float]) -> list[Section]:
-    """Return the greatest forces in sections at ``heights`` [m] of a run recorded at every step.
+def forces_in_sections(run: Run, rows: np.recarray, heights: Sequence[float]) -> Iterator[InSection]:
+    """Yield the forces in sections at ``heights`` [m] of a run recorded at every step, at all instants that are evaluated.
 
     They are taken until the pier leans beyond α for good, at the ends and the middle of each step, and at the vertex of a
     parabola through these if it may exceed them (THEORY.md, Forces).
@@ -226,19 +226,27 @@ def sections_of(run: Run, rows: np.recarray, heights: Sequence[float]) -> list[S
     steps = ends[1:][(rows.t[1:] > rows.t[:-1]) & (rows.kind[1:] <= 0.0)]
     at_ends = in_body(of, ends, np.ones(len(ends)))
     middles = in_body(of, steps, np.full(len(steps), 0.5))
-    return [_section(of, at_ends, middles, steps, height) for height in heights]
+    for height in heights:
+        yield _at_instants(of, at_ends, middles, steps, height)
 
 
-def _section(of: Recorded, at_ends: InBody, middles: InBody, steps: Places, height: float) -> Section:
-    """Return the greatest forces in the section at ``height`` [m]; ``middles`` are accelerations amid the ``steps``."""
+def sections_of(run: Run, rows: np.recarray, heights: Sequence[float]) -> list[Section]:
+    """Return the greatest forces in sections at ``heights`` [m] of a run recorded at every step."""
+    sections = []
+    for height, (shear, moment, axial) in zip(heights, forces_in_sections(run, rows, heights), strict=True):
+        bent = int(np.abs(moment).argmax())
+        forces = np.abs(shear).max(), np.abs(moment).max(), axial.min(), axial.max(), axial[bent]
+        sections.append(Section(height, *map(float, forces)))
+    return sections
+
+
+def _at_instants(of: Recorded, at_ends: InBody, middles: InBody, steps: Places, height: float) -> InSection:
+    """Return the forces in the section at ``height`` [m]; ``middles`` are accelerations amid the ``steps``."""
     pier = of.run.pier
     ends, halves = in_section(pier, at_ends, height), in_section(pier, middles, height)
     _let_go(of.rows, ends)
     turns = in_section(pier, in_body(of, *_promising(ends, halves, steps)), height)
-    shear, moment, axial = (np.concatenate(values) for values in zip(ends, halves, turns, strict=True))
-    bent = int(np.abs(moment).argmax())
-    forces = np.abs(shear).max(), np.abs(moment).max(), axial.min(), axial.max(), axial[bent]
-    return Section(height, *map(float, forces))
+    return InSection(*map(np.concatenate, zip(ends, halves, turns, strict=True)))
 
 
 def _let_go(rows: np.recarray, forces: InSection) -> None:

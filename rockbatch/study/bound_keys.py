@@ -93,27 +93,33 @@ def _flat(data: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]
     """Yield keys and values of a table; those of tables within, as TOML reads a path without quotes, by their paths."""
     for name, value in data.items():
         path = prefix + name
-        is_table = isinstance(value, dict) and path.split(".")[0] in ("pier", "case") and _key(path) is None
+        is_table = isinstance(value, dict) and path.split(".")[0] in ("pier", "case") and key_at(path) is None
         yield from _flat(value, f"{path}.") if is_table and value else [(path, value)]
 
 
-def _key(path: str) -> Key | None:
+def key_at(path: str) -> Key | None:
     """Return the key at a path; None if there is none."""
     *tables, name = path.split(".")
     of = ".".join(parted(table)[0] for table in tables)
     return _TABLES[of].get(name) if of in _TABLES else None
 
 
+def why_fixed(path: str, example: str) -> str:
+    """Return why no value of a design is at a path, with an ``example`` of one that is; empty if one is."""
+    if key_at(path) is None:
+        near = closest(path, [f"{of}.{name}" for of, names in _TABLES.items() for name in names if name not in _FIXED])
+        instead = f"did you mean {near}?" if near else f"write a key of [pier] or [[case]], such as {example}"
+        return f"{shown(path)}: no such key; {instead}"
+    if path.rpartition(".")[2] in _FIXED:
+        return f"{shown(path)}: another value makes another design; write another [[case]]"
+    return ""
+
+
 def _read_change(table: Table, path: str) -> Change | None:
     """Return the change of one key; None for a mistake, which is noted."""
-    written, key = table.data[path], _key(path)
-    if key is None:
-        near = closest(path, [f"{of}.{name}" for of, names in _TABLES.items() for name in names if name not in _FIXED])
-        instead = f"did you mean {near}?" if near else f"write a key of [pier] or [[case]], such as {_EXAMPLE}"
-        table.complain(f"{shown(path)}: no such key; {instead}", path)
-        return None
-    if path.rpartition(".")[2] in _FIXED:
-        table.complain(f"{shown(path)}: another value makes another design; write another [[case]]", path)
+    written, key = table.data[path], key_at(path)
+    if key is None or path.rpartition(".")[2] in _FIXED:
+        table.complain(why_fixed(path, _EXAMPLE), path)
         return None
     if not isinstance(written, dict):
         try:

@@ -14,7 +14,6 @@ from rockbatch.toml.kinds import Kind, Whole, boolean, choice, positive, within
 from rockbatch.toml.section import Key
 
 ON_FOOTING = {"base": ("footing",)}
-_SOIL = ("shear_modulus_MPa", "poisson", "embedment_m", "formula", "radiation", "density_t_m3")
 _FIELDS = ("zeta", "kinematics", "friction", "flight_limit_mm", "strips", "length_m", "safety_factor", "beta")
 
 _WAYS = {

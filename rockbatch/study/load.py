@@ -21,6 +21,7 @@ from rockbatch.motions import MotionSet
 from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.pier import described, symmetric
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
+from rockbatch.quantities.demands import AT_HEIGHTS
 from rockbatch.quantities.design import BOUND
 from rockbatch.study.both_axes import along_the_axis, with_other_axes
 from rockbatch.study.bound_keys import BOUNDS, read_bounds
@@ -372,7 +373,7 @@ def _problems_of_rule(
         scales=motions.scale,
         other_law=True,  # a check that takes it brings it
         output=[key for key in BROUGHT if output.has(key) or not _adds_columns(key, cases)],
-        sections=_heights(cases, output) if known_piers else {rule.at_m or 0.0},
+        sections=_heights(cases, output) if known_piers else {needs: {rule.at_m or 0.0} for needs in AT_HEIGHTS},
         piers=[_as_in_run_json(case) for case in cases] if known_piers else (),
     )
     return fitted(rule, available).problems
@@ -384,10 +385,10 @@ def _as_in_run_json(case: Case) -> dict[str, object]:
     return {"case": case.name, "base": base.name, "pier": described(pier), "parameters": base.parameters(pier)}
 
 
-def _heights(cases: Sequence[Case], output: Output) -> set[float]:
-    """Return the heights [m] at which rules may be about sections of the cases' piers."""
+def _heights(cases: Sequence[Case], output: Output) -> dict[str, set[float]]:
+    """Return the heights [m] at which rules may be about sections of the cases' piers, by what their demands need."""
     piers = {case.pier for case in cases}
-    return {height for kind, heights in parts("study.HEIGHTS") for height in heights(output.of(kind), piers)}
+    return {needs: heights(output.of(kind), piers) for needs, kind, heights in parts("study.HEIGHTS")}
 
 
 def _numerics(file: TomlFile) -> Numerics:

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any, TypeVar
 
 from rockbatch.common.errors import InputError, Problem, UnknownKey
@@ -38,7 +39,7 @@ class Output:
         settings = [kind(**_fields_of(kind, keys)) for kind in _SETTINGS]
         return cls(**_fields_of(cls, keys), settings=tuple(chosen for chosen in settings if chosen != type(chosen)()))
 
-    @property
+    @cached_property
     def keys(self) -> dict[str, Any]:
         """All keys with their values, given or not."""
         return {

@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -64,17 +65,18 @@ class TomlFile:
     @classmethod
     def read(cls, path: Path, sections: Sequence[Section] = ()) -> "TomlFile":
         """Read and parse a file. Raises :class:`InputError` with the line at which it is no TOML."""
-        text = cls.text_of(path)
+        text = cls.text_of(path, sections)
         return cls.parse(path, text, sections)
 
     @staticmethod
-    def text_of(path: Path) -> str:
-        """Return the text of a file. Raises :class:`InputError` where it cannot be read, is too large or no UTF-8."""
+    def text_of(path: Path, sections: Sequence[Section] = ()) -> str:
+        """Return the text of a file of ``sections``. Raises :class:`InputError` where it cannot be read, is too large or no
+        UTF-8."""
         try:
             with io.BufferedReader(opened_input(path)) as opened:
                 content = opened.read(LARGEST + 1)
         except OSError as error:
-            raise _unreadable(path, error) from None
+            raise _unreadable(path, error, sections) from None
         if len(content) > LARGEST:
             raise InputError(
                 f"{path}: larger than {LARGEST // 2**20} MiB, which no study, manifest or table of a spectrum is"
@@ -412,15 +414,25 @@ def in_table(problem: Problem, table: str = "this table") -> Problem:
     return _problem(Unusual, f"{problem} in {table}") if problem.confirm else problem
 
 
-def _unreadable(path: Path, error: OSError) -> InputError:
-    """Return the error about a file that cannot be opened, with a file that may be meant."""
+def _unreadable(path: Path, error: OSError, sections: Sequence[Section]) -> InputError:
+    """Return the error about a file of ``sections`` that cannot be opened, with files that may be meant."""
     if isinstance(error, FileNotFoundError):
         return NotFound(f"{path}: no such file{nearby(path, str(path))}")
     if path.is_dir():
-        inside = sorted(path.glob("*.toml"))[:3]
+        inside = [file for file in sorted(path.glob("*.toml")) if _has_required(file, sections)][:3]
         hint = f"did you mean {' or '.join(map(str, inside))}?" if inside else "give a study file, such as pier.toml"
         return NotFound(f"{path}: a folder; {hint}")
     return NotFound(f"{path}: cannot be read: {error.strerror or error}")
+
+
+def _has_required(file: Path, sections: Sequence[Section]) -> bool:
+    """Return whether a file has a header of each table that is required: a file of rules is no study."""
+    try:
+        text = file.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return False
+    names = [re.escape(".".join(section.at)) for section in sections if section.required]
+    return all(re.search(rf"^[ \t]*\[+[ \t]*{name}[ \t]*\]", text, re.MULTILINE) for name in names)
 
 
 def with_slashes(written: str) -> str:

@@ -178,9 +178,15 @@ class AnalysisFolder:
         return True
 
     @contextmanager
-    def journal(self, file: str, columns: Sequence[str], digest: Mapping[str, str]) -> Iterator[Journal]:
-        """Open the journal of the runs in ``file``; report the finished runs in it, at the start and after Ctrl-C."""
-        with Journal(self.directory / f"{file}.part", columns, digest, self.fresh, tell=self.listener.say) as journal:
+    def journal(
+        self, file: str, columns: Sequence[str], digest: Mapping[str, str], beside: Sequence[str] = ()
+    ) -> Iterator[Journal]:
+        """Open the journal of the runs in ``file``; report the finished runs in it, at the start and after Ctrl-C.
+
+        ``beside`` are names of further cells of its rows, as :class:`Journal` takes them.
+        """
+        path, say = self.directory / f"{file}.part", self.listener.say
+        with Journal(path, columns, digest, self.fresh, tell=say, beside=beside) as journal:
             if len(journal):
                 self.listener.say(f"{count(len(journal), 'run')} are finished already (--fresh starts over)")
             try:

@@ -24,7 +24,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.reporting import REPORT, write_report
 from rockbatch.results.checking import verdicts
-from rockbatch.results.columns import JOURNAL, as_table, columns, unusable_rows
+from rockbatch.results.columns import JOURNAL, as_table, columns, units, unusable_rows, with_units
 from rockbatch.results.reading import Saved
 from rockbatch.results.run_json import FROM_PYTHON
 from rockbatch.study import Motions, Study, given_study
@@ -91,7 +91,7 @@ def run(
     -------
     DataFrame, shape (rows of peaks.csv, columns)
         The rows and columns of ``peaks.csv``: lengths in m, times in s, rotations over α; with ``out`` to the ten digits
-        on disk.
+        on disk. ``attrs["units"]`` has the unit of each column of numbers.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def run(
     """
     loaded, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
     if out is None:
-        return _in_memory(loaded, engine, listener)
+        return with_units(_in_memory(loaded, engine, listener), units(loaded))
     command = ["run", str(loaded.path) if loaded.in_file else f"(study {FROM_PYTHON}", "--out", os.fspath(out)]
     if motions is not None:
         path = os.fspath(motions) if isinstance(motions, str | os.PathLike) else f"(motions {FROM_PYTHON}"
@@ -123,7 +123,7 @@ def run(
     assert finished is not None  # None only for a share
     if finished.without:
         raise finished.without
-    return finished.saved.peaks
+    return with_units(finished.saved.peaks, units(loaded))
 
 
 def _in_memory(study: Study, engine: Engine, listener: Listener) -> "pd.DataFrame":

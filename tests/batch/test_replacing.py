@@ -76,6 +76,7 @@ OUTPUTS = {
         "shocks.csv",
         "report.html",
     ),
+    "design": ("design_runs.csv", "design.json"),
     "fragility": ("fragility_runs.csv", "fragility.json", "report.html"),
     "spectrum": ("spectrum_suite.csv", "overturning_map.csv"),
     "sensitivity": ("sobol.csv",),
@@ -86,6 +87,8 @@ OUTPUTS = {
 @pytest.mark.parametrize(("command", "name"), [(command, name) for command, names in OUTPUTS.items() for name in names])
 def test_a_folder_called_like_an_output_is_noticed_before_the_first_run(tmp_path, capsys, command, name):
     text = study_text(
+        check=[{"name": "rotation", "demand": "theta_max_over_alpha", "at_most": 0.5, "reason": "joints"}],
+        design={"vary": "pier.p", "between": [0.8, 1.2], "find": "least", "width": 0.01},
         fragility={"measure": "PGA", "levels_g": [0.2, 0.4]},
         spectrum={"alpha": 0.2, "p": [1.0, 2.0]},
         sensitivity={"uniform": {"alpha": [0.1, 0.3]}},

@@ -60,3 +60,14 @@ def test_new_results_leave_no_verdicts_of_the_old_ones(tmp_path):
     assert (tmp_path / "out/checks.csv").exists()
     assert main([*run, "--fresh"]) == 0
     assert not (tmp_path / "out/checks.csv").exists()
+
+
+def test_a_listed_value_of_zero_stays_with_its_verdict(tmp_path):
+    """It was lost with the empty cells of other cases, so that a verdict was on no case of run.json."""
+    write_verdicts(tmp_path, [verdict("a", "pass", columns={"epsilon": value}) for value in (0.0, 0.1)])
+    assert [one.columns for one in read_verdicts(tmp_path)] == [{"epsilon": 0.0}, {"epsilon": 0.1}]
+
+
+def test_a_line_break_in_the_name_of_a_case_stays_as_run_json_has_it(tmp_path):
+    write_verdicts(tmp_path, [verdict("a\nb\tc", "pass")])
+    assert [one.case for one in read_verdicts(tmp_path)] == ["a\nb\tc"]

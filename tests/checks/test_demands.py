@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from check_samples import ELASTIC, PADS, PIER, RIGID, case, in_sections, judged, runs
+from check_samples import ELASTIC, PADS, PIER, RIGID, case, in_sections, interaction_of, judged, runs
 
 from rockbatch.checks import Rule, judge
 from rockbatch.common.errors import InputError
@@ -40,7 +40,7 @@ DEVICES = {
     "tendon_strain_over_yield": 0.7,
 }  # fmt: skip
 BED = {"bed_force_over_weight": 1.7, "bed_pressure_MPa": 0.8, "yielding_half_cycles": 6, "bed_work_J_kg": 0.02}
-EDGES = {"settlement_left_m": 0.01, "settlement_right_m": 0.025}
+EDGES = {"settlement_left_m": 0.01, "settlement_right_m": 0.025, "edge_settlement_error_m": 0.002}
 FLIGHTS = {"flights": 2, "flight_duration_s": 0.05, "flight_height_m": 0.002}
 ROW |= FORCES | DEVICES | FLIGHTS | BED | EDGES | {"flight_s": 1.2, "theta_rocking_over_alpha": 0.25}
 TIED = case(
@@ -67,9 +67,10 @@ BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
     "tendon_force_kN": (0.3 * 3000 * 9.81, 0.0), "damper_stroke_mm": (120.0, 0.0), "stop_force_kN": (0.6 * 3000 * 9.81, 0.0),
     "stop_deflection_mm": (20.0, 0.0), "deck_spring_force_kN": (0.2 * 3000 * 9.81, 0.0),
     "deck_spring_deflection_mm": (30.0, 0.0), "section_shear_kN": (3000.0, 0.0), "section_moment_kNm": (40000.0, 0.0),
-    "section_axial_kN": (30000.0, 0.0), "section_tension_kN": (200.0, 0.0), "deflection_max_m": (0.07, 0.0002),
+    "section_axial_kN": (30000.0, 0.0),
+    "section_moment_over_capacity": (0.8, 0.0), "section_tension_kN": (200.0, 0.0), "deflection_max_m": (0.07, 0.0002),
     "deflection_max_mm": (70.0, 0.2), **{name: (value, 0.0) for name, value in BED.items()},
-    "edge_settlement_m": (0.025, 0.0), "edge_settlement_mm": (25.0, 0.0), "safety_factor": (3.0, 0.0),
+    "edge_settlement_m": (0.025, 0.002), "edge_settlement_mm": (25.0, 2.0), "safety_factor": (3.0, 0.0),
 }  # fmt: skip
 ON_FOOTING = {*BED, "edge_settlement_m", "edge_settlement_mm", "safety_factor"}
 """Demands that only a footing has."""
@@ -141,7 +142,7 @@ def test_a_demand_that_a_base_does_not_have_does_not_apply():
     _, sections = in_sections(table, "section_shear_kN")
     demands = [name for name, demand in DEMANDS.items() if not demand.device]
     rules = [Rule(name, name, 100.0, **in_sections(table, name)[0]) for name in demands]
-    found = judge(rules, table, [RIGID, ELASTIC, case()], sections=sections)
+    found = judge(rules, table, [RIGID, ELASTIC, case()], sections=sections, interaction=interaction_of(table))
     springs = {"theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m", "settlement_m",
                "toe_settlement_m", "static_deflection_m", "stiffness_kN_m"}  # fmt: skip
     yielding, others = {"eta", "ductility", "yield_kN"}, ON_FOOTING | {"deflection_max_m", "deflection_max_mm"}
@@ -241,7 +242,10 @@ def test_a_force_of_a_pier_that_nobody_has_weighed_does_not_apply():
     _, sections = in_sections(table, "section_shear_kN")
     demands = [name for name, demand in DEMANDS.items() if demand.weighed and name not in ON_FOOTING]
     rules = [Rule(name, name, 100.0, **in_sections(table, name)[0]) for name in demands]
-    found = {(each.verdict, each.note) for each in judge(rules, table, [one], sections=sections)}
+    found = {
+        (each.verdict, each.note)
+        for each in judge(rules, table, [one], sections=sections, interaction=interaction_of(table))
+    }
     assert found == {("does not apply", "the study does not state the pier's mass")}
 
 

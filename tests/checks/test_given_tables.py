@@ -83,3 +83,22 @@ def test_a_table_that_was_given_is_left_as_it_is(folder):
     before = table.to_csv()
     rb.check(table, RULES, study=study)
     assert table.to_csv() == before
+
+
+def test_choices_and_limits_of_given_rules_that_do_not_fit_are_refused_together(folder):
+    study, out = folder
+    wrong = [
+        Rule("x", "theta_max_over_alpha", -1.0, case=("rig",), scale=(3.0,)),
+        Rule("y", "section_moment_kNm", 1.0, at_m=3.0),
+        Rule("z", "top_drift_m", 1e6),
+    ]
+    for results, more in ((out, {}), (pd.read_csv(out / "peaks.csv"), {"study": study})):
+        with pytest.raises(InputError) as error:
+            rb.check(results, wrong, **more)
+        assert [problem.text.split(":")[0] for problem in error.value.problems] == [
+            *['check "x"'] * 3,
+            'check "y"',
+            'check "z"',
+        ]
+    with pytest.raises(InputError, match="no such case"):
+        rb.check(out, wrong[:1])

@@ -154,7 +154,7 @@ def test_the_bounds_of_any_demand_hold_its_value_and_those_of_an_event_are_yes_o
     plain = runs(rng.uniform(0.0, 1.2, n)).drop(columns=cells, errors="ignore")
     suite = Rows(pd.concat([plain, pd.DataFrame(cells)], axis=1))
     for name, demand in DEMANDS.items():
-        if demand.per_case or demand.needs == "sections" or (demand.bases and base.name not in demand.bases):
+        if demand.per_case or demand.in_section or (demand.bases and base.name not in demand.bases):
             continue
         bounds, counting, *_ = of_runs(Rule("check", name, 0.5), suite, case(base=base))
         value, low, high = (part[counting] for part in bounds[:3])

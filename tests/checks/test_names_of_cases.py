@@ -1,10 +1,14 @@
 """Which case a check is about, by its name or by a pattern."""
 
 import pytest
+from check_samples import case
 from studies import RIGID, study_text
 
 import rockbatch as rb
+from rockbatch.checks import Rule
+from rockbatch.checks.rule_choices import Available, fitted
 from rockbatch.common.naming import alike, chosen
+from rockbatch.pier import YieldingBase
 
 CHECK = {"name": "upright", "reason": "test", "demand": "theta_max_over_alpha", "at_most": 0.9}
 
@@ -21,6 +25,18 @@ CHECK = {"name": "upright", "reason": "test", "demand": "theta_max_over_alpha", 
 )
 def test_a_pattern_that_is_a_name_chooses_that_name_alone(pattern, names, expected):
     assert chosen(pattern, names) == expected
+
+
+def test_a_limit_is_compared_with_the_piers_that_its_check_is_about_and_no_others():
+    piers = [case("weak", YieldingBase(beta=40.0, eta=1.5)), case("strong", YieldingBase(beta=40.0, eta=900.0))]
+    names = [pier["case"] for pier in piers]
+    available = Available(names, [1.0], other_law=False, output=[], piers=piers)
+    found = {name: fitted(Rule("a", "eta", at_least=0.02, case=(name,)), available) for name in names}
+    assert {name: [problem.kind for problem in of_rule.problems] for name, of_rule in found.items()} == {
+        "weak": [],
+        "strong": [rb.Unusual],
+    }
+    assert not fitted(Rule("a", "eta", at_least=0.02), available).problems
 
 
 def test_a_check_of_a_case_with_brackets_judges_that_case_alone(tmp_path):

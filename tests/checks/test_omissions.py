@@ -82,7 +82,8 @@ def test_a_force_on_rigid_ground_passes_only_if_the_pier_never_lands(demand, imp
 
 
 def test_the_blow_of_a_landing_enters_these_forces_and_no_other_demand():
-    assert {name for name, demand in DEMANDS.items() if demand.landing} == ENTERED
+    share = {"section_moment_over_capacity"}
+    assert {name for name, demand in DEMANDS.items() if demand.landing} == ENTERED | share
     axial = {"section_axial_kN", "section_tension_kN"}
     upright = {
         "normal_force_m_s2",
@@ -92,7 +93,7 @@ def test_the_blow_of_a_landing_enters_these_forces_and_no_other_demand():
         "base_moment_m2_s2",
         "base_moment_kNm",
     }
-    assert {name for name, demand in DEMANDS.items() if demand.bending} == ENTERED - axial - upright
+    assert {name for name, demand in DEMANDS.items() if demand.bending} == (ENTERED - axial - upright) | share
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,9 @@ import pytest
 from footing_reference import GRAVITY, Foot, bed, solve
 from footing_runs import closed_form, model_of, run
 
-from rockbatch.core.footing.model import SET, State
+from rockbatch.core.footing.model import FIRST, SET, State
 from rockbatch.core.footing.statics import lean, level_at
-from rockbatch.core.footing.strips import deflection, lay, push, settle, sinking, stored
+from rockbatch.core.footing.strips import last_node, lay, push, settle, sinking, stored, sum_sets
 
 DT = 0.01
 
@@ -22,6 +22,18 @@ def moments(m, rotations, out):
     for i in range(len(rotations)):
         v = level_at(m, rotations[i], m.gravity)
         out[i] = push(m, sinking(m, State(v, rotations[i], 0.0, 0.0))).moment
+
+
+def yield_to(m, sets):
+    """Lay a bed that has yielded to ``sets`` [m]."""
+    lay(m)
+    m.bed[FIRST : FIRST + len(sets), SET] = sets
+    sum_sets(m, FIRST)
+
+
+def nodes_of(m):
+    """All nodes of a bed."""
+    return range(FIRST, last_node(m) + 1)
 
 
 def pulse(seconds=1.2, period=0.6, strength=4.0):
@@ -74,36 +86,57 @@ def test_work_of_the_push_along_a_cycle_is_what_the_bed_stores_and_loses():
         assert left == pytest.approx(0.0, abs=1e-7) if lost == 0.0 else left > 0.01
 
 
-def test_what_is_pressed_is_one_interval_after_any_motion():
-    """The set is the greatest of linear functions: convex, which the sums over nodes rely on."""
-    m = model_of(Foot(strips=40))
-    lay(m)
-    random = np.random.default_rng(3)
-    before = State(-0.005, 0.0, 0.0, 0.0)
-    for _ in range(200):
+def deepest(x, d, d_end, h):
+    """Greatest depth at ``x`` in a step between two Sinkings: of the cubic through its ends."""
+    start, end = d.level + d.slope * x, d_end.level + d_end.slope * x
+    rate, rate_end = h * (d.level_rate + d.slope_rate * x), h * (d_end.level_rate + d_end.slope_rate * x)
+    cubic = np.polynomial.Polynomial(
+        [start, rate, 3.0 * (end - start) - 2.0 * rate - rate_end, 2.0 * (start - end) + rate + rate_end]
+    )
+    turns = [t.real for t in cubic.deriv().roots() if abs(t.imag) < 1e-9 and 0.0 < t.real < 1.0]
+    return max(start, end, *(cubic(t) for t in turns))
+
+
+def test_set_is_the_greatest_depth_of_any_motion_and_stays_convex():
+    """Also of steps that press both edges, one after the other: on it relies that what is pressed is one interval."""
+    foot = Foot(strips=40)
+    m = model_of(foot)
+    random, sets, most = np.random.default_rng(3), np.zeros(41), foot.safety * foot.settlement
+    before, by_step = State(-0.005, 0.0, 0.0, 0.0), []
+    for number in range(200):
+        if number % 10 == 0:
+            lay(m)
+            sets = np.zeros(41)
         now = State(
             -0.004 + 0.006 * random.standard_normal(),
             0.01 * random.standard_normal(),
-            *(0.02 * random.standard_normal(2)),
+            *(random.choice([0.02, 2.0]) * random.standard_normal(2)),
         )
-        settle(m, sinking(m, before), sinking(m, now), 0.01)
-        before = now
-        assert np.diff(m.bed[SET, :41], 2).min() > -1e-15
-        d = sinking(m, State(-0.02 * random.random(), 0.005 * random.standard_normal(), 0.0, 0.0))
-        pressed = np.array([deflection(m, d, j) > 0.0 for j in range(41)])
-        assert np.abs(np.diff(pressed.astype(int))).sum() <= 2
+        d, d_end = sinking(m, before), sinking(m, now)
+        grown = np.maximum(sets, [deepest(x, d, d_end, 0.01) - most for x in foot.nodes])
+        assert settle(m, d, d_end, 0.01) == (grown > sets).any()
+        assert m.bed[nodes_of(m), SET] == pytest.approx(grown, rel=1e-12, abs=1e-15)
+        by_step.append(grown > sets)
+        before, sets = now, grown
+        assert np.diff(m.bed[nodes_of(m), SET], 2).min() > -1e-15
+        d = sinking(m, State(-0.02 * random.random(), *(0.005 * random.standard_normal(3))))
+        e, rate = d.level + d.slope * foot.nodes - m.bed[nodes_of(m), SET], d.level_rate + d.slope_rate * foot.nodes
+        assert np.abs(np.diff((e > 0.0).astype(int))).sum() <= 2
+        assert push(m, d)[:2] == pytest.approx(bed(foot, e, rate), rel=1e-12, abs=1e-13)
+    assert any(step[0] and step[-1] and not step.all() for step in by_step)
+    assert any(step.any() and not step[0] and not step[-1] for step in by_step)
 
 
 def test_push_of_a_yielded_bed_is_the_sum_over_its_strips():
     """Pressed from an edge, in the middle alone, everywhere or nowhere, with dashpots, against a loop over the strips."""
-    foot = Foot(strips=12)
+    foot = Foot(strips=49)  # 49 times a 49th is not 1
     m = model_of(foot)
-    lay(m)
-    m.bed[SET, :13] = foot.settlement * (0.2 + foot.nodes**2)
+    sets = foot.settlement * (0.2 + foot.nodes**2)
+    yield_to(m, sets)
     random, seen = np.random.default_rng(4), set()
     for _ in range(300):
         d = sinking(m, State(*(random.standard_normal(4) * (0.03, 0.005, 0.05, 0.05))))
-        e, rate = d.level + d.slope * foot.nodes - m.bed[SET, :13], d.level_rate + d.slope_rate * foot.nodes
+        e, rate = d.level + d.slope * foot.nodes - sets, d.level_rate + d.slope_rate * foot.nodes
         seen.add((bool(e[0] > 0.0), bool(e[-1] > 0.0), bool(e.max() > 0.0)))
         found = push(m, d)
         assert found[:2] == pytest.approx(bed(foot, e, rate), rel=1e-13, abs=1e-13)
@@ -116,8 +149,7 @@ def test_pier_at_rest_on_a_yielded_bed_leans_further_than_the_bed():
     """K_θ tilt = (K_θ − g h) lean of a bed whose set is a plane, in full contact."""
     foot = Foot(strips=40, width=9.0)
     m = model_of(foot)
-    lay(m)
-    m.bed[SET, :41] = 0.002 + 1e-4 * foot.nodes
+    yield_to(m, 0.002 + 1e-4 * foot.nodes)
     rocking = foot.stiffness * foot.width**2 / 12.0
     assert lean(m, GRAVITY) == pytest.approx(1e-4 * rocking / (rocking - GRAVITY * foot.height), rel=1e-9)
 

@@ -19,7 +19,7 @@ def drawn(path):
     return module.draw()
 
 
-LONG = "bounds", "comparison", "fragility", "overturning_map", "peaks", "self_similar", "spectrum"
+LONG = "bounds", "comparison", "design", "fragility", "overturning_map", "peaks", "self_similar", "spectrum"
 COMPILED = ("footing",)
 """Those with a kernel that no fast test shares; `make docs` draws them and the long ones, too."""
 

@@ -63,16 +63,25 @@ def judged(table, *, one=None, records=(), demand="theta_max_over_alpha", at_mos
         [one or case()],
         dict.fromkeys(records, "") or None,
         sections=sections,
+        interaction=interaction_of(table),
     )
     return verdict
 
 
 def in_sections(table, demand, **cells):
     """What a check of a section says too, and rows of sections.csv for those of ``table``; nothing for other demands."""
+    if DEMANDS[demand].needs == "interaction":
+        return {"at_m": 7.5, "capacity": ((0.0, 0.0), (1e4, 5e4), (1e5, 0.0))}, None
     if DEMANDS[demand].needs != "sections":
         return {}, None
     values = SECTION | {"sections_error": math.nan} | cells
     return {"at_m": 7.5}, table[["record", "case", "polarity", "scale"]].assign(height_m=7.5, **values)
+
+
+def interaction_of(table):
+    """Rows of interaction.csv for those of ``table``: 4/5 of the capacity of :func:`in_sections`."""
+    cells = {"height_m": 7.5, "axial_kN": 1e4, "moment_kNm": 4e4, "interaction_error": math.nan}
+    return table[["record", "case", "polarity", "scale"]].assign(**cells)
 
 
 def folder(path: Path, peaks: pd.DataFrame, cases: list[dict[str, Any]], checks: str = "", **info: Any) -> Path:

@@ -6,18 +6,18 @@ import numpy as np
 from footing_reference import GRAVITY, Foot
 
 from rockbatch.core.footing.lanes import line_of, system_of
-from rockbatch.core.footing.model import BEDS, CHUNK, Footing
+from rockbatch.core.footing.model import BEDS, MOST_STRIPS, Footing
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.run import march
 
 
 def model_of(foot: Foot, shifting=None, gap=0.0) -> Footing:
     """The core's numbers of a Foot; with a ``gap`` two strips at its edges, of that share of the width."""
-    k, columns = foot.stiffness, max(BEDS[1], (foot.strips // CHUNK + 1) * CHUNK)
+    k, rows = foot.stiffness, BEDS[0] + max(0, foot.strips - MOST_STRIPS)
     return Footing(
         0.5 * foot.width, foot.height, foot.inertia, GRAVITY, k, foot.safety * GRAVITY, 2.0 * foot.zeta * math.sqrt(k),
         3.0 if gap else float(foot.strips), gap, 1.0, 1e-12, True if foot.finite else None, shifting,
-        np.zeros((BEDS[0], columns)),
+        np.zeros((rows, BEDS[1])),
     )  # fmt: skip
 
 

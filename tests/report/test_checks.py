@@ -110,6 +110,13 @@ def test_a_bound_that_is_rounding_beside_its_limit_is_zero(tmp_path):
     assert rows == {"1:": ["0", ""], "2:": ["0.1", "0 – 0.3"]}
 
 
+def test_large_limits_and_margins_are_written_out(tmp_path):
+    forces = {"unit": "kN", "value": 7800.0, "low": 7800.0, "high": 7800.0, "limit": 1e5, "margin": 92200.0}
+    shown = page(tmp_path, verdict("1", "pass", **forces))
+    assert any("at most 100,000 kN" in cell for row in shown.tables["checks"] for cell in row)
+    assert "92,200" in next(row for row in shown.tables["checks"] if row[1] == "1")
+
+
 def test_a_verdict_stands_with_its_unit_margin_and_governing_run(tmp_path):
     more = {"unit": "m", "count": "station", "records": 5, "station": "WTMC", "record": "WTMC.N28W", "polarity": "-"}
     shown = page(

@@ -173,7 +173,7 @@ def test_statistics_are_over_the_pairs_and_separate_by_the_vertical_component(tm
 
 def test_a_folder_without_results_is_refused_in_words(tmp_path, capsys):
     assert main(["report", str(tmp_path)]) == 2
-    assert "give a folder that `rockbatch run` has written" in capsys.readouterr().err
+    assert "without results of `rockbatch run`; give a folder that it has written" in capsys.readouterr().err
 
 
 def test_records_of_one_study_only_are_named_in_the_inputs(tmp_path):

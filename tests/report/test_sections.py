@@ -55,7 +55,7 @@ def test_sections_of_a_run_stand_in_the_order_of_the_list_under_anchors_of_their
     assert len(set(anchors)) == len(anchors)
     assert anchors[:2] == ["answer", "peaks"]
     assert {"studied", "peaks", "suite", "distribution", "records", "reproduce"} <= set(anchors)
-    asked = {"checks", "references", "fragility", "spectrum", "sensitivity", "histories", "unusable"}
+    asked = {"checks", "references", "design", "fragility", "spectrum", "sensitivity", "histories", "unusable"}
     assert not (asked | {"intensity", "target"}) & set(anchors)
     text = page(contents)
     places = [text.index(f'<section id="{anchor}"') for anchor in anchors]

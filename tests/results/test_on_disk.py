@@ -23,7 +23,7 @@ from rockbatch.batch.threads import Threads
 from rockbatch.outcome.outcome import TERMS
 from rockbatch.results import histories_file
 from rockbatch.results.columns import columns
-from rockbatch.results.histories_file import FORMAT, UNITS, Responses, history_bytes, seal, write
+from rockbatch.results.histories_file import FORMAT, HISTORY_UNITS, Responses, history_bytes, seal, write
 from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe, write_info
 from rockbatch.simulation import Run, run_to_tolerance
@@ -263,7 +263,7 @@ def test_the_file_says_what_it_is_and_what_made_it(results):
             *("base", "events", "forces", "impacts", "ledger", "pier", "varied"),
             *("t", "theta", "omega", "energy", "ag_h", "ag_v"),
         }  # fmt: skip
-        assert set(file["runs/000001"]) >= set(UNITS) - {"deflection"}
+        assert set(file["runs/000001"]) >= set(HISTORY_UNITS) - {"deflection"}
         assert set(run["ledger"]) == set(TERMS)
 
 

@@ -1,5 +1,6 @@
 """Histories: what simulate returns, and that it belongs to the row of the table."""
 
+import pickle
 from itertools import pairwise
 
 import numpy as np
@@ -152,8 +153,8 @@ def test_a_history_follows_its_devices_once(monkeypatch):
     monkeypatch.setattr(restraints, "device_histories", lambda *given: calls.append(given) or follow(*given))
     device = rb.Damper("hysteretic", f=0.05, yield_m=0.005)
     response = rb.simulate(PIER, rb.RigidBase(restraints=(device,)), PULSE)
-    assert len(calls) == 1
     assert not response.restraints.empty
+    assert len(calls) == 1
 
 
 @pytest.mark.parametrize("width", [160.0, 88.0])
@@ -250,6 +251,67 @@ def test_histories_alone_say_where_there_is_a_row():
     assert "θ_max" not in repr(alone)
     with pytest.raises(rb.InputError, match="histories alone"):
         _ = alone.theta_max
+
+
+def test_histories_are_computed_once_when_one_is_asked_for(monkeypatch):
+    from rockbatch.simulation import observing
+
+    seen = []
+
+    def recorded(*arguments):
+        seen.append(arguments)
+        return sides(*arguments)
+
+    sides = observing.recorded_side_by_side
+    monkeypatch.setattr(observing, "recorded_side_by_side", recorded)
+    damped = rb.RigidBase(restraints=(rb.Damper("friction", f=0.05),))
+    response = rb.simulate(PIER, damped, PULSE)
+    assert response.row["theta_max_over_alpha"] * PIER.alpha == response.theta_max > 0.0
+    assert response.status == "ok"
+    assert seen == []
+    assert np.abs(response.theta).max() == pytest.approx(response.theta_max, rel=1e-2)
+    assert list(response.restraints) == [
+        "t",
+        *(f"damper 1 {side} {of}" for side in ("left", "right") for of in ("elongation", "force")),
+    ]
+    assert len(response.events) > 0
+    assert len(seen) == 1
+
+
+@pytest.mark.parametrize("base", ["rigid", "yielding"])
+def test_histories_asked_for_later_are_those_beside_an_energy_balance(base):
+    later, at_once = (rb.simulate(PIER, BASES[base], PULSE, ledger=ledger) for ledger in (False, True))
+    columns = ["t", "theta", "energy"]
+    ours = later.history[columns].drop_duplicates("t").set_index("t")
+    theirs = at_once.history[columns].drop_duplicates("t").set_index("t")
+    pd.testing.assert_frame_equal(ours, theirs.loc[ours.index], check_exact=True)
+    assert later.events["kind"].tolist() == at_once.events["kind"].tolist()
+
+
+def test_a_copy_has_the_histories_and_no_other_attribute_is_made_up():
+    response = rb.simulate(PIER, BASES["rigid"], PULSE)
+    copied = pickle.loads(pickle.dumps(response))
+    pd.testing.assert_frame_equal(copied.history, response.history, check_exact=True)
+    assert copied.row.equals(response.row)
+    with pytest.raises(AttributeError, match="'Response' object has no attribute 'histroy'"):
+        _ = response.histroy
+
+
+def test_tables_of_a_study_say_the_units_of_their_columns(tmp_path):
+    study = write_study(tmp_path, STUDY)
+    table = rb.run(study, tmp_path / "out")
+    units = table.attrs["units"]
+    assert (units["t_max_s"], units["theta_max_over_alpha"], units["settlement_m"]) == ("s", "1", "m")
+    assert set(units) <= set(table)
+    assert rb.open_results(tmp_path / "out").peaks.attrs["units"] == rb.run(study).attrs["units"] == units
+
+
+def test_tables_say_the_units_of_their_columns():
+    response = rb.simulate(PIER, BASES["elastic"], PULSE, forces=True)
+    units = response.history.attrs["units"]
+    assert list(units) == list(response.history)
+    assert (units["theta"], units["v_left"], units["ag_h"]) == ("rad", "m", "m/s^2")
+    assert response.forces.attrs["units"]["heel_speed_left"] == "m/s"
 
 
 # Piers drawn together

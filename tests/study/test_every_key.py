@@ -507,7 +507,7 @@ USES: dict[str, dict[str, Use]] = {
         ),
         **uses(study(output={}), ("output",), {
             "histories": "none", "ledger": True, "forces": True, "intensity": True, "half_cycles": True, "sections": 3,
-            "sections_m": [0.0, 10.0],
+            "sections_m": [0.0, 10.0], "interaction_m": [0.0, 10.0],
         }, whole_folder),
         **uses(study(output={"forces": True}), ("output",), {"least_normal_share": 0.9999}, whole_folder),
         **uses(study(output={"intensity": True}), ("output",), {"sa_periods_s": [0.7]}, whole_folder),
@@ -728,6 +728,15 @@ USES["[[fragility.uncertain.correlation]]"] |= of_fragility(
     STRIPES | THREE_DRAWN, ("uncertain", "correlation", 0), case=SOFT | {"epsilon": 0.2}, between=["alpha", "beta"]
 )
 
+of_design = functools.partial(of_analysis, "design", rb.design, tables=LIMITED)
+HEIGHTS = {"vary": "pier.height_m", "between": [18.0, 24.0], "find": "least", "points": 3, "width": 1.0}
+WIDTHS = {"vary": "pier.width_m", "between": [3.0, 4.0], "find": "greatest", "width": 0.05, "points": 2}
+USES |= {
+    "[design]": {
+        **of_design(HEIGHTS, between=[17.0, 24.0], find="greatest", points=4, width=0.5),
+        **of_design(WIDTHS, vary="pier.height_m"),
+    },
+}
 of_spectrum = functools.partial(of_analysis, "spectrum", rb.spectrum, case={"name": "r", "base": "rigid"})
 SPECTRUM = {"alpha": [0.2], "two_pi_over_p_s": [4.0, 8.0], "points": 3}
 MAP = {
@@ -786,7 +795,7 @@ USES["[release]"] = {
 def _takes_long(header):
     """Return whether a table is a case, which has the most keys, or one of an analysis, whose studies take longer."""
     return (
-        header.strip("[]").partition(".")[0] in ("fragility", "spectrum", "sensitivity", "release")
+        header.strip("[]").partition(".")[0] in ("design", "fragility", "spectrum", "sensitivity", "release")
         or header == "[[case]]"
     )
 

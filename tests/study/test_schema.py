@@ -126,8 +126,8 @@ SINGLE = {  # where every other key takes a list
 SEVERAL = {
     "[motions]": "path polarity scale columns confirm confirm_pga leave_out", "[motions.target]": "spectrum confirm",
     "[motions.vertical_target]": "spectrum confirm", "[[motions.pulse]]": "confirm", "[numerics]": "confirm",
-    "[[motions.sequence]]": "records factors polarity confirm", "[output]": "sa_periods_s sa_pairs sections_m",
-    "[[bound]]": "confirm", "[[check]]": "case scale confirm",
+    "[[motions.sequence]]": "records factors polarity confirm", "[output]": "sa_periods_s sa_pairs sections_m interaction_m",
+    "[[bound]]": "confirm", "[[check]]": "case scale capacity confirm",
 }  # fmt: skip
 ALIKE = {
     "[motions]": "columns", "[motions.target]": "spectrum", "[motions.vertical_target]": "spectrum",

@@ -65,7 +65,7 @@ def test_a_study_without_options_has_the_documented_defaults(tmp_path):
     assert study.notes == ""
     periods = (0.5, 1.0, 2.0, 4.0)
     given = {"histories": "worst", "histories_MB": 20.0, "least_normal_share": 0.1, "sa_periods_s": periods}
-    given |= {"least_stroke_mm": 10.0, "sa_pairs": (), "sections_m": (), "sections": None}
+    given |= {"least_stroke_mm": 10.0, "sa_pairs": (), "sections_m": (), "sections": None, "interaction_m": ()}
     assert study.output.keys == dict.fromkeys(OUTPUT, False) | given
     assert study.numerics == Numerics(tolerance=1e-4, substeps=None, quiet_s=2.0)
     motions = study.motions

@@ -20,8 +20,9 @@ from rockbatch.core.footing import equations
 from rockbatch.core.footing.ending import Ending, set_deadline
 from rockbatch.core.footing.model import (
     BED_OF_LANES,
+    FIRST,
     NUMBERS,
-    POSITIONS,
+    POSITION,
     SET,
     FootingTraits,
     Numbers,
@@ -31,7 +32,7 @@ from rockbatch.core.footing.model import (
     model_in,
 )
 from rockbatch.core.footing.statics import lean, level_at, tilt
-from rockbatch.core.footing.strips import deflection, lay, plastic_work, pressure, push, settle, sinking
+from rockbatch.core.footing.strips import deflection, last_node, lay, plastic_work, pressure, push, settle, sinking
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.rk4 import rk4
@@ -91,7 +92,7 @@ def _free_slot(lanes, i):
 @inlined
 def touch(m, d, bed):
     """Return the Touch of the foot under the Sinking ``d``, pressed by this Push."""
-    left, right = deflection(m, d, 0), deflection(m, d, int(m.strips))
+    left, right = deflection(m, d, FIRST), deflection(m, d, last_node(m))
     return Touch(1.0 if left > 0.0 else 0.0, 1.0 if right > 0.0 else 0.0, 1.0 if bed.touched == 0.0 else 0.0)
 
 
@@ -131,7 +132,7 @@ def _include_demands(lanes, i, m, d, bed, t):
     """Bring the demands on the bed up to the Sinking ``d`` at ``t`` [s], under this Push."""
     demands = lanes.demands
     demands.contact_least[i] = min(demands.contact_least[i], bed.touched)
-    left, right = _edge_pressure(m, d, 0), _edge_pressure(m, d, int(m.strips))
+    left, right = _edge_pressure(m, d, FIRST), _edge_pressure(m, d, last_node(m))
     most = max(left, right)
     if most > demands.pressure[i]:
         demands.pressure[i], demands.pressure_time[i] = most, t
@@ -141,12 +142,12 @@ def _include_demands(lanes, i, m, d, bed, t):
 
 
 @inlined
-def _clearances(m, y, d):
-    n = int(m.strips)
-    left, right = d.level + d.slope * m.bed[POSITIONS, 0], d.level + d.slope * m.bed[POSITIONS, n]
+def _clearances(m, d):
+    """Return the Clearances of both edges under the Sinking ``d``."""
+    n = last_node(m)
     return Clearances(
-        m.bed[SET, 0] - left, m.bed[SET, n] - right,
-        -(d.level_rate + d.slope_rate * m.bed[POSITIONS, 0]), -(d.level_rate + d.slope_rate * m.bed[POSITIONS, n]),
+        -deflection(m, d, FIRST), -deflection(m, d, n),
+        -(d.level_rate + d.slope_rate * m.bed[FIRST, POSITION]), -(d.level_rate + d.slope_rate * m.bed[n, POSITION]),
     )  # fmt: skip
 
 
@@ -168,7 +169,7 @@ def take_in(lanes, i, m, part, t):
         tally.uplifts[i] += max(before.left - after.left, 0.0) + max(before.right - after.right, 0.0)
         note_flight(lanes, i, after.clear != 0.0, t)
         if before.clear != 0.0:
-            include_height(lanes, i, _clearances(m, y, d), _clearances(m, end, d_end), part.length)
+            include_height(lanes, i, _clearances(m, d), _clearances(m, d_end), part.length)
     _include_demands(lanes, i, m, d_end, bed, t)
     put(lanes.now, i, end)
     put(lanes.contact, i, after)
@@ -184,13 +185,13 @@ def take_in_part(traits, lanes, i, m, part, after):
 
 @system.lanes_in_pass.of(FootingTraits)
 def lanes_in_pass(traits, count):
-    """Return the number of lanes that hold a run: vectors are made of strips."""
+    """Return the number of lanes that hold a run: they are taken one by one."""
     return count
 
 
 @system.one_pass.of(FootingTraits)
 def one_pass(traits, lanes, count, substep, settings):
-    """Take the first ``count`` lanes a sub-step further, each by vector instructions over its strips.
+    """Take the first ``count`` lanes a sub-step further, one by one.
 
     A run in any company comes to the same bits. One that falls, or has no numbers any more, is left to the driver.
     """
@@ -218,7 +219,7 @@ def finish(traits, lanes, i, t, result):
     """Write the residuals, and what the bed has borne, of the run in lane ``i``."""
     m, _ = pier_in(traits, lanes, i)
     demands, load = lanes.demands, lanes.ending.load[i]
-    result.base_left, result.base_right = m.bed[SET, 0], m.bed[SET, int(m.strips)]
+    result.base_left, result.base_right = m.bed[FIRST, SET], m.bed[last_node(m), SET]
     result.dissipated_left = plastic_work(m)
     result.bed_tilt = result.lean = result.settled = 0.0
     if result.dissipated_left > 0.0:

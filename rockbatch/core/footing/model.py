@@ -11,20 +11,24 @@ from rockbatch.core.types import Pull
 MOST_STRIPS = 160
 """Greatest number of strips of a bed."""
 
-CHUNK = 16
-"""Nodes that vector instructions take at a time: a bed is padded with nodes that nothing touches."""
+FIRST = 1
+"""Row of the node at the left edge: nodes that nothing touches stand on both sides, so that a walk over nodes ends there."""
 
-NODES = (MOST_STRIPS // CHUNK + 1) * CHUNK
+# Columns of a bed, with a row for each node between strips; sums are those over all nodes to the left of a node
+POSITION = 0  # to the right of the middle [m]
+SET = 1  # plastic set of the ground under the node [m]
+WEIGHT = 2  # share of the area that the pressure at the node stands for
+ARM = 3  # and of its static moment [m]
+AREA = 4  # share of the area of the strip to the right of the node
+WEIGHTS, WEIGHTED_POSITIONS, WEIGHTED_SETS = 5, 6, 7
+ARMS, ARMED_POSITIONS, ARMED_SETS = 8, 9, 10
 
-# Rows of a bed, with a column for each node between strips
-POSITIONS = 0  # to the right of the middle [m]
-WEIGHTS = 1  # shares of the area that pressures at the nodes stand for
-ARMS = 2  # and of its static moment [m]
-AREA = 3  # shares of the area of the strips to the right of the nodes
-ORDER = 4  # numbers of the nodes, and 2^COUNT, which counts them (``strips``)
-SET = 5  # plastic set of the ground under each node [m]
+# Columns of the last row, which is no node: first and last node of what was found last, from where it is sought again
+PRESSED = 0
+YIELDING = 2
+DEEPEST = 4  # node that was pressed deepest
 
-BEDS = (6, NODES)
+BEDS = (MOST_STRIPS + FIRST + 3, 11)
 """Shape of a bed."""
 
 BED_OF_LANES = np.dtype(("f8", (LANES, *BEDS)))

@@ -3,8 +3,8 @@
 import math
 from typing import NamedTuple
 
-from rockbatch.core.footing.model import POSITIONS, SET, State
-from rockbatch.core.footing.strips import push, sinking, stored
+from rockbatch.core.footing.model import FIRST, POSITION, SET, State
+from rockbatch.core.footing.strips import last_node, push, sinking, stored
 from rockbatch.core.kernel import inlined, kernel
 
 TRIALS = 60
@@ -50,8 +50,8 @@ def _surplus(m, theta, v, load):
 def level_at(m, theta, load):
     """Return v [m] at which the bed carries the ``load`` [m/s²] at rotation ``theta`` [rad]."""
     deepest = load / m.stiffness
-    for j in range(int(m.strips) + 1):
-        deepest = max(deepest, m.bed[SET, j] + load / m.stiffness)
+    for j in range(FIRST, last_node(m) + 1):
+        deepest = max(deepest, m.bed[j, SET] + load / m.stiffness)
     reach = m.half_width * (1.0 + m.gap) * abs(theta) + m.height * theta * theta
     low, v = -deepest - reach - load / m.stiffness, reach
     bracket = Bracket(low, _surplus(m, theta, low, load), v, -load, 0.0)
@@ -91,9 +91,9 @@ def summit(m, load):
 def tilt(m):
     """Return the tilt [rad] of the line that is next to the plastic set."""
     across, square = 0.0, 0.0
-    for j in range(int(m.strips) + 1):
-        across += m.bed[SET, j] * m.bed[POSITIONS, j]
-        square += m.bed[POSITIONS, j] * m.bed[POSITIONS, j]
+    for j in range(FIRST, last_node(m) + 1):
+        across += m.bed[j, SET] * m.bed[j, POSITION]
+        square += m.bed[j, POSITION] * m.bed[j, POSITION]
     return across / square
 
 

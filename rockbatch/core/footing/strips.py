@@ -2,29 +2,37 @@
 
 The ground sinks under the foot by d(x) = level + slope x. Nodes lie between the strips, and the plastic set is linear between
 them, so that the elastic deflection e = d − set is linear in a strip, and what is pressed of it is known in closed form.
-The set is the greatest of linear functions, hence convex, and e concave: what is pressed is one interval, of which two strips at
-most are pressed in part.
+The set is the greatest of linear functions, hence convex, and e and the pressure concave: the nodes that are pressed, or whose
+ground yields, follow each other, and so the push is a difference of sums that are kept at every node. Two strips at most are
+pressed in part.
 """
 
 import math
 from typing import NamedTuple
 
-from rockbatch.core.footing.model import AREA, ARMS, CHUNK, ORDER, POSITIONS, SET, WEIGHTS
-from rockbatch.core.kernel import inlined, kernel, summing
-from rockbatch.core.roots import falls, hermite, hermite_slope, summit_within
+from rockbatch.core.footing.model import (
+    AREA,
+    ARM,
+    ARMED_POSITIONS,
+    ARMED_SETS,
+    ARMS,
+    DEEPEST,
+    FIRST,
+    POSITION,
+    PRESSED,
+    SET,
+    WEIGHT,
+    WEIGHTED_POSITIONS,
+    WEIGHTED_SETS,
+    WEIGHTS,
+    YIELDING,
+)
+from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.roots import falls, hermite, hermite_slope, inner_points, summit_within
 from rockbatch.core.trigonometry import sine_and_cosine
-
-SMALLEST = 1e-300
-"""Added to a divisor that is 0 where the foot does not touch."""
-
-COUNT = 26
-"""Binary digit of a sum over nodes from which on it holds how many they are; below it is the sum of their numbers."""
 
 GAUSS = math.sqrt(0.6)
 """Outer points of Gauss's rule with three, which together with the middle one integrate polynomials of degree 5 from −1 to 1."""
-
-UNTOUCHED = 1e200
-"""Set of nodes that pad a bed [m]."""
 
 
 class Sinking(NamedTuple):
@@ -44,12 +52,19 @@ class Push(NamedTuple):
     touched: float  # share of the area that is pressed
 
 
-class Sums(NamedTuple):
-    """Sums over the nodes that are pressed."""
+class Line(NamedTuple):
+    """A concave function of the nodes: linear in their positions, less a multiple of their sets."""
 
-    force: float
-    moment: float
-    nodes: float  # how many, times 2^COUNT, and the sum of their numbers
+    level: float
+    slope: float
+    sets: float
+
+
+class Span(NamedTuple):
+    """Nodes that follow each other; none if the last is the one before the first."""
+
+    first: int
+    last: int
 
 
 @inlined
@@ -68,85 +83,139 @@ def _within(pressure, strength):
 
 
 @inlined
+def last_node(m):
+    """Return the node at the right edge."""
+    return FIRST + int(m.strips)
+
+
+@inlined
 def deflection(m, d, j):
     """Return the elastic deflection e at node ``j`` [m]."""
-    return d.level + d.slope * m.bed[POSITIONS, j] - m.bed[SET, j]
+    return d.level + d.slope * m.bed[j, POSITION] - m.bed[j, SET]
+
+
+@inlined
+def _pressures(m, d):
+    """Return the Line of pressures, spring and dashpot, as if all nodes were pressed, times the area over the mass [m/s²]."""
+    return Line(
+        m.stiffness * d.level + m.damping * d.level_rate, m.stiffness * d.slope + m.damping * d.slope_rate, m.stiffness
+    )
 
 
 @inlined
 def pressure(m, d, j):
-    """Return the pressure at node ``j``, spring and dashpot, as if it were pressed, times the area over the mass [m/s²]."""
-    rate = d.level_rate + d.slope_rate * m.bed[POSITIONS, j]
-    return m.stiffness * deflection(m, d, j) + m.damping * rate
-
-
-@summing
-def _sums(m, d):
-    """Return the Sums over pressed nodes: the push itself, but for strips that are pressed in part."""
-    force, moment, nodes = 0.0, 0.0, 0.0
-    level, slope, stiffness, strength = d.level, d.slope, m.stiffness, m.strength
-    constant, linear = stiffness * level + m.damping * d.level_rate, stiffness * slope + m.damping * d.slope_rate
-    bed = m.bed
-    for j in range(_padded(m.strips)):
-        x, plastic = bed[POSITIONS, j], bed[SET, j]
-        pressed = level + slope * x > plastic
-        by = max(0.0, min(constant + linear * x - stiffness * plastic, strength))
-        by = by if pressed else 0.0
-        force += bed[WEIGHTS, j] * by
-        moment += bed[ARMS, j] * by
-        nodes += bed[ORDER, j] * (1.0 if pressed else 0.0)
-    return Sums(force, moment, nodes)
+    """Return the pressure at node ``j``, as if it were pressed, times the area over the mass [m/s²]."""
+    return _value(m, _pressures(m, d), j)
 
 
 @inlined
-def _padded(strips):
-    """Return the number of nodes of a bed, with those that pad it."""
-    return (int(strips) // CHUNK + 1) * CHUNK
+def _value(m, line, j):
+    return line.level + line.slope * m.bed[j, POSITION] - line.sets * m.bed[j, SET]
 
 
 @inlined
-def _in_part(m, d, near, far):
-    """Return by how much the Push of the strip between a pressed node ``near`` and a clear one ``far`` exceeds the Sums.
+def _beyond(m, line, most, near):
+    """Return the Span of nodes at which a Line exceeds ``most``; if there are none, it begins where the Line is greatest.
+
+    Sought from ``near``, which it mostly is.
+    """
+    first = _value(m, line, near.first)
+    if near.first > near.last:
+        holds = first <= most and first >= max(_value(m, line, near.first - 1), _value(m, line, near.first + 1))
+    else:
+        holds = min(first, _value(m, line, near.last)) > most
+        holds = holds and max(_value(m, line, near.first - 1), _value(m, line, near.last + 1)) <= most
+    return near if holds else _found(m, line, most, near)
+
+
+@kernel
+def _found(m, line, most, near):
+    """Return the Span that :func:`_beyond` seeks."""
+    first, last = near.first, max(near.first, near.last)
+    while first < last and not _value(m, line, first) > most:
+        first += 1
+    while first < last and not _value(m, line, last) > most:
+        last -= 1
+    if first == last and not _value(m, line, first) > most:
+        here, side = _value(m, line, first), 1 if _value(m, line, first + 1) > _value(m, line, first) else -1
+        while _value(m, line, first + side) > here:
+            first += side
+            here = _value(m, line, first)
+        if not here > most:
+            return Span(first, first - 1)
+        last = first
+    while _value(m, line, first - 1) > most:
+        first -= 1
+    while _value(m, line, last + 1) > most:
+        last += 1
+    return Span(first, last)
+
+
+@inlined
+def _span(m, line, most, place):
+    """Return the Span of nodes at which a Line exceeds ``most``, sought from the one that is kept at ``place``."""
+    near = Span(int(m.bed[-1, place]), int(m.bed[-1, place + 1]))
+    span = _beyond(m, line, most, near)
+    m.bed[-1, place], m.bed[-1, place + 1] = float(span.first), float(span.last)
+    return span
+
+
+@inlined
+def _total(m, column, first, last):
+    """Return the sum over nodes that follow each other of what a ``column`` of the bed sums up."""
+    return m.bed[last + 1, column] - m.bed[first, column]
+
+
+@inlined
+def _sums(m, line, most, first, last):
+    """Return force and moment of the pressures of a Line less ``most``, at nodes that follow each other."""
+    level, slope, sets = line.level - most, line.slope, line.sets
+    force, moment = level * _total(m, WEIGHTS, first, last), level * _total(m, ARMS, first, last)
+    force += slope * _total(m, WEIGHTED_POSITIONS, first, last) - sets * _total(m, WEIGHTED_SETS, first, last)
+    moment += slope * _total(m, ARMED_POSITIONS, first, last) - sets * _total(m, ARMED_SETS, first, last)
+    return force, moment
+
+
+@inlined
+def _in_part(m, d, p, near, far):
+    """Return the Push of the strip between a pressed node ``near`` and a clear one ``far``, less its part of the sum over nodes.
 
     The pressure is linear in the part that is pressed, between 0 and the strength, dashpots included.
     """
-    e_near, e_far, x = deflection(m, d, near), deflection(m, d, far), m.bed[POSITIONS, near]
-    by_near, by_far, way = pressure(m, d, near), pressure(m, d, far), m.bed[POSITIONS, far] - x
-    share, area = _within(e_near / (e_near - e_far + SMALLEST), 1.0), m.bed[AREA, min(near, far)]
+    e_near, e_far, x = deflection(m, d, near), deflection(m, d, far), m.bed[near, POSITION]
+    by_near, by_far, way = _value(m, p, near), _value(m, p, far), m.bed[far, POSITION] - x
+    share, area = e_near / (e_near - e_far), m.bed[min(near, far), AREA]
     inner, outer = _within(by_near, m.strength), _within(by_near + share * (by_far - by_near), m.strength)
     force, lumped = share * 0.5 * (inner + outer), 0.5 * inner
     moment = force * x + share * share * way * (inner + 2.0 * outer) * (1.0 / 6.0)
-    return Push(area * (force - lumped), area * (moment - lumped * (x + way * (1.0 / 3.0))), area * (share - 0.5))
-
-
-@inlined
-def _first(beyond, count, most):
-    """Return the number of the first of ``count`` nodes whose numbers exceed those from 0 on by ``beyond``; ``most`` at most."""
-    if beyond == 0:
-        return 0
-    return most if beyond == count * most else int(beyond / count + 0.5)
+    return Push(area * (force - lumped), area * (moment - lumped * (x + way * (1.0 / 3.0))), area * share)
 
 
 @inlined
 def push(m, d):
     """Return the Push of the bed under the Sinking ``d``."""
-    sums, strips = _sums(m, d), int(m.strips)
-    nodes = int(sums.nodes)
-    count = nodes >> COUNT
-    if count == 0:
+    p, pressed = _pressures(m, d), _span(m, Line(d.level, d.slope, 1.0), 0.0, PRESSED)
+    first, last = pressed
+    if last < first:
         return Push(0.0, 0.0, 0.0)
-    if count > strips:
-        return Push(sums.force, sums.moment, 1.0)
-    beyond = nodes - (count << COUNT) - (count * (count - 1) >> 1)  # of the numbers from 0 on
-    first = _first(beyond, count, strips + 1 - count)
-    last = first + count - 1
-    force, moment = sums.force, sums.moment
-    touched = m.bed[AREA, 0] * (count - (0.5 if first == 0 else 0.0) - (0.5 if last == strips else 0.0))
-    if first > 0:
-        more = _in_part(m, d, first, first - 1)
+    while first <= last and not _value(m, p, first) > 0.0:
+        first += 1
+    while first <= last and not _value(m, p, last) > 0.0:
+        last -= 1
+    force, moment = _sums(m, p, 0.0, first, last)
+    if m.strength < math.inf:
+        yielding = _span(m, p, m.strength, YIELDING)
+        from_node, to_node = max(yielding.first, first), min(yielding.last, last)
+        if from_node <= to_node:
+            more_force, more_moment = _sums(m, p, m.strength, from_node, to_node)
+            force, moment = force - more_force, moment - more_moment
+    strips = pressed.last - pressed.first
+    touched = m.bed[FIRST, AREA] * strips if strips < m.strips else 1.0
+    if pressed.first > FIRST:
+        more = _in_part(m, d, p, pressed.first, pressed.first - 1)
         force, moment, touched = force + more.force, moment + more.moment, touched + more.touched
-    if last < strips:
-        more = _in_part(m, d, last, last + 1)
+    if pressed.last < last_node(m):
+        more = _in_part(m, d, p, pressed.last, pressed.last + 1)
         force, moment, touched = force + more.force, moment + more.moment, touched + more.touched
     return Push(force, moment, touched)
 
@@ -158,9 +227,9 @@ def pressed_middle(m, d):
     A pivot on a damped spring leaves it when its push is 0, 2ζ/ω_v before its deflection is.
     """
     total, area = 0.0, 0.0
-    for j in range(int(m.strips) + 1):
+    for j in range(FIRST, last_node(m) + 1):
         if deflection(m, d, j) > 0.0 and pressure(m, d, j) > 0.0:
-            total, area = total + m.bed[WEIGHTS, j] * m.bed[POSITIONS, j], area + m.bed[WEIGHTS, j]
+            total, area = total + m.bed[j, WEIGHT] * m.bed[j, POSITION], area + m.bed[j, WEIGHT]
     return total / area if area > 0.0 else 0.0
 
 
@@ -168,13 +237,14 @@ def pressed_middle(m, d):
 def stored(m, d):
     """Return the elastic energy of the bed [J/kg]: beyond the strength, with the work of the set that takes it there."""
     energy, most = 0.0, m.strength / m.stiffness
-    for j in range(int(m.strips)):
+    for j in range(FIRST, last_node(m)):
         left, right = deflection(m, d, j), deflection(m, d, j + 1)
-        deep = max(max(left, right), 0.0)
-        share = deep / (deep - min(min(left, right), 0.0) + SMALLEST)
-        a, b = max(left, 0.0), max(right, 0.0)
-        simpson = _energy_at(a, most) + 4.0 * _energy_at(0.5 * (a + b), most) + _energy_at(b, most)
-        energy += m.bed[AREA, j] * share * simpson * (1.0 / 6.0)
+        deep = max(left, right)
+        if deep > 0.0:
+            share = deep / (deep - min(min(left, right), 0.0))
+            a, b = max(left, 0.0), max(right, 0.0)
+            simpson = _energy_at(a, most) + 4.0 * _energy_at(0.5 * (a + b), most) + _energy_at(b, most)
+            energy += m.bed[j, AREA] * share * simpson * (1.0 / 6.0)
     return m.stiffness * energy
 
 
@@ -183,52 +253,70 @@ def _energy_at(e, most):
     return 0.5 * e * e if e <= most else most * (e - 0.5 * most)
 
 
-@summing
-def _beyond(m, d, d_end, h):
-    """Return a number above 0 if the ground under some node may have yielded in a step of ``h`` [s]: by Bézier points."""
-    total, most, third = 0.0, m.strength / m.stiffness, h * (1.0 / 3.0)
-    first, first_slope = d.level + third * d.level_rate, d.slope + third * d.slope_rate
-    last, last_slope = d_end.level - third * d_end.level_rate, d_end.slope - third * d_end.slope_rate
-    bed, level, slope, level_end, slope_end = m.bed, d.level, d.slope, d_end.level, d_end.slope
-    for j in range(_padded(m.strips)):
-        x = bed[POSITIONS, j]
-        deepest = max(
-            max(level + slope * x, level_end + slope_end * x), max(first + first_slope * x, last + last_slope * x)
-        )
-        total += max(deepest - (bed[SET, j] + most), 0.0)
-    return total
+@inlined
+def _deepest(m, slope, near):
+    """Return the node at which a Line of this slope is greatest, sought from ``near``."""
+    return _beyond(m, Line(0.0, slope, 1.0), math.inf, Span(near, near - 1)).first
 
 
 @inlined
-def _deepest(m, d, h):
-    """Return a bound on the depth under the foot [m], of a Sinking and its rate for ``h`` [s] from it."""
-    along = d.slope + h * d.slope_rate
-    return max(
-        d.level + abs(d.slope) * m.bed[POSITIONS, int(m.strips)],
-        d.level + h * d.level_rate + abs(along) * m.bed[POSITIONS, int(m.strips)],
-    )
+def settle(m, d, d_end, h):
+    """Bring the plastic set up to a step of ``h`` [s] between two Sinkings: a running maximum. Return whether any has grown.
+
+    What is deepest lies between the nodes that are for the least and the greatest slope in the step, and what yields around it.
+    """
+    if m.strength == math.inf:
+        return False
+    third = h * (1.0 / 3.0)
+    first, last = d.slope + third * d.slope_rate, d_end.slope - third * d_end.slope_rate
+    left = _deepest(m, min(min(d.slope, d_end.slope), min(first, last)), int(m.bed[-1, DEEPEST]))
+    right = _deepest(m, max(max(d.slope, d_end.slope), max(first, last)), left)
+    m.bed[-1, DEEPEST] = float(right)
+    if left == right:
+        start, rate, end, rate_end = _depths(m, d, d_end, left)
+        inner, outer = inner_points(start, rate, end, rate_end, h)
+        if max(max(start, end), max(inner, outer)) <= m.bed[left, SET] + m.strength / m.stiffness:
+            return False
+    return _settle_around(m, d, d_end, h, left, right)
 
 
 @kernel
-def settle(m, d, d_end, h):
-    """Bring the plastic set up to a step of ``h`` [s] between two Sinkings: a running maximum. Return whether any has grown."""
-    most, yields, third = m.strength / m.stiffness, False, h * (1.0 / 3.0)
-    if max(_deepest(m, d, third), _deepest(m, d_end, -third)) <= most:
-        return False
-    if not _beyond(m, d, d_end, h) > 0.0:
-        return False
-    for j in range(int(m.strips) + 1):
-        growth, _ = _growth(m, d, d_end, h, j)
-        if growth > 0.0:
-            m.bed[SET, j] += growth
-            yields = True
-    return yields
+def _settle_around(m, d, d_end, h, left, right):
+    """Bring the set up to a step, from the nodes ``left`` to ``right`` outwards. Return whether any has grown."""
+    first, j, grows = last_node(m) + 1, right, False
+    while grows or j >= left:
+        grows = _grows(m, d, d_end, h, j)
+        first = j if grows else first
+        j -= 1
+    j = right + 1
+    while _grows(m, d, d_end, h, j):
+        first = min(first, j)
+        j += 1
+    sum_sets(m, first)
+    return first <= last_node(m)
+
+
+@kernel
+def _grows(m, d, d_end, h, j):
+    """Bring the set of node ``j`` up to a step. Return whether it has grown."""
+    growth, _ = _growth(m, d, d_end, h, j)
+    if growth > 0.0:
+        m.bed[j, SET] += growth
+    return growth > 0.0
+
+
+@kernel
+def sum_sets(m, first):
+    """Bring the sums of sets up to those at the node ``first`` and to its right."""
+    for j in range(first, last_node(m) + 1):
+        m.bed[j + 1, WEIGHTED_SETS] = m.bed[j, WEIGHTED_SETS] + m.bed[j, WEIGHT] * m.bed[j, SET]
+        m.bed[j + 1, ARMED_SETS] = m.bed[j, ARMED_SETS] + m.bed[j, ARM] * m.bed[j, SET]
 
 
 @inlined
 def _depths(m, d, d_end, j):
     """Return the depth at node ``j`` [m] and its rate [m/s] under two Sinkings."""
-    x = m.bed[POSITIONS, j]
+    x = m.bed[j, POSITION]
     start, end = d.level + d.slope * x, d_end.level + d_end.slope * x
     return start, d.level_rate + d.slope_rate * x, end, d_end.level_rate + d_end.slope_rate * x
 
@@ -237,7 +325,7 @@ def _depths(m, d, d_end, j):
 def _growth(m, d, d_end, h, j):
     """Return by how much the set at node ``j`` grows in a step of ``h`` [s] between two Sinkings, and until when."""
     start, rate, end, rate_end = _depths(m, d, d_end, j)
-    before = m.bed[SET, j] + m.strength / m.stiffness
+    before = m.bed[j, SET] + m.strength / m.stiffness
     deepest, until = summit_within(start, rate, end, rate_end, h, before)
     return deepest - before, until
 
@@ -250,11 +338,11 @@ def settling_work(m, d, d_end, h):
     It is integrated over the time in which the node yields, by three points of Gauss.
     """
     work = 0.0
-    for j in range(int(m.strips) + 1):
+    for j in range(FIRST, last_node(m) + 1):
         growth, until = _growth(m, d, d_end, h, j)
         if growth > 0.0:
             start, rate, end, rate_end = _depths(m, d, d_end, j)
-            before = m.bed[SET, j] + m.strength / m.stiffness
+            before = m.bed[j, SET] + m.strength / m.stiffness
             since = falls(before - start, -rate, before - end, -rate_end, h) if start < before else 0.0
             middle, half = 0.5 * (until + since), 0.5 * (until - since)
             for shift, share in ((-GAUSS, 5.0 / 9.0), (0.0, 8.0 / 9.0), (GAUSS, 5.0 / 9.0)):
@@ -276,9 +364,9 @@ def _sinking_at(d, d_end, h, x):
 @inlined
 def _push_at(m, d, j, k):
     """Return the push of the springs of the strip between nodes ``j`` and ``k`` that acts at ``j`` [m/s²]."""
-    if k < 0 or k > int(m.strips):
+    if k < FIRST or k > last_node(m):
         return 0.0
-    most, area = m.strength / m.stiffness, m.bed[AREA, min(j, k)]
+    most, area = m.strength / m.stiffness, m.bed[min(j, k), AREA]
     near, far = min(deflection(m, d, j), most), min(deflection(m, d, k), most)
     share = near / (near - far) if far < 0.0 else 1.0
     return (
@@ -289,33 +377,40 @@ def _push_at(m, d, j, k):
 @kernel
 def lay(m):
     """Lay an unyielded bed of equal strips, or two narrow ones at the edges."""
-    n, b = int(m.strips), m.half_width
-    for j in range(m.bed.shape[1]):
-        m.bed[POSITIONS, j] = b * (2.0 * min(j, n) / n - 1.0)
-        m.bed[AREA, j] = 1.0 / n if j < n else 0.0
-        m.bed[WEIGHTS, j] = m.bed[ARMS, j] = 0.0
-        m.bed[ORDER, j], m.bed[SET, j] = float((1 << COUNT) + j), 0.0 if j <= n else UNTOUCHED
+    n, b, last, bed = int(m.strips), m.half_width, last_node(m), m.bed
+    for j in range(len(bed)):
+        bed[j, POSITION] = b * (2.0 * min(max(j - FIRST, 0), n) / n - 1.0)
+        bed[j, AREA] = 1.0 / n if FIRST <= j < last else 0.0
+        bed[j, WEIGHT] = bed[j, ARM] = 0.0
+        bed[j, SET] = 0.0 if FIRST <= j <= last else math.inf
     if m.gap > 0.0:  # of three strips the one in the middle is a gap
-        m.bed[POSITIONS, 0], m.bed[POSITIONS, 1] = -b * (1.0 + m.gap), -b * (1.0 - m.gap)
-        m.bed[POSITIONS, 2], m.bed[POSITIONS, 3] = b * (1.0 - m.gap), b * (1.0 + m.gap)
-        m.bed[AREA, 0], m.bed[AREA, 1], m.bed[AREA, 2] = 0.5, 0.0, 0.5
-    for j in range(n):
-        half, third, left, right = (
-            0.5 * m.bed[AREA, j],
-            m.bed[AREA, j] * (1.0 / 6.0),
-            m.bed[POSITIONS, j],
-            m.bed[POSITIONS, j + 1],
-        )
-        m.bed[WEIGHTS, j] += half
-        m.bed[WEIGHTS, j + 1] += half
-        m.bed[ARMS, j] += third * (2.0 * left + right)
-        m.bed[ARMS, j + 1] += third * (left + 2.0 * right)
+        for j, x, area in (
+            (1, -1.0 - m.gap, 0.5),
+            (2, -1.0 + m.gap, 0.0),
+            (3, 1.0 - m.gap, 0.5),
+            (4, 1.0 + m.gap, 0.0),
+        ):
+            bed[j, POSITION], bed[j, AREA] = b * x, area
+    for j in range(FIRST, last):
+        half, third = 0.5 * bed[j, AREA], bed[j, AREA] * (1.0 / 6.0)
+        left, right = bed[j, POSITION], bed[j + 1, POSITION]
+        bed[j, WEIGHT] += half
+        bed[j + 1, WEIGHT] += half
+        bed[j, ARM] += third * (2.0 * left + right)
+        bed[j + 1, ARM] += third * (left + 2.0 * right)
+    bed[FIRST, WEIGHTS:] = 0.0
+    for j in range(FIRST, last + 1):
+        bed[j + 1, WEIGHTS] = bed[j, WEIGHTS] + bed[j, WEIGHT]
+        bed[j + 1, WEIGHTED_POSITIONS] = bed[j, WEIGHTED_POSITIONS] + bed[j, WEIGHT] * bed[j, POSITION]
+        bed[j + 1, ARMS] = bed[j, ARMS] + bed[j, ARM]
+        bed[j + 1, ARMED_POSITIONS] = bed[j, ARMED_POSITIONS] + bed[j, ARM] * bed[j, POSITION]
+    sum_sets(m, FIRST)
+    bed[-1, PRESSED], bed[-1, PRESSED + 1] = FIRST, last
+    bed[-1, YIELDING], bed[-1, YIELDING + 1], bed[-1, DEEPEST] = FIRST, FIRST - 1, FIRST
 
 
 @kernel
 def plastic_work(m):
     """Return the plastic work of the bed [J/kg], from its set."""
-    work = 0.0
-    for j in range(int(m.strips) + 1):
-        work += m.bed[WEIGHTS, j] * m.bed[SET, j]
+    work = m.bed[last_node(m) + 1, WEIGHTED_SETS]
     return m.strength * work if work > 0.0 else 0.0

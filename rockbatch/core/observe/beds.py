@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from rockbatch.core.footing.equations import accelerations, energies, lever
 from rockbatch.core.footing.lanes import start_on_bed
-from rockbatch.core.footing.model import Footing, State, Touch
-from rockbatch.core.footing.strips import Push, deflection, push, settle, settling_work, sinking
+from rockbatch.core.footing.model import FIRST, Footing, State, Touch
+from rockbatch.core.footing.strips import Push, deflection, last_node, push, settle, settling_work, sinking
 from rockbatch.core.kernel import entry, kernel
 from rockbatch.core.observe.forces import Forces, fastest_heels, forces_at, friction_demand, waiting
 from rockbatch.core.observe.ledger import pulled
@@ -93,8 +93,7 @@ def forces_on_footing(m, deck, now, ground):
     shear = ground.horizontal + along + bend
     moment = at.lean * (m.gravity + ground.vertical + v_acceleration) - at.length * shear - m.inertia * turning
     of_edges = bed.moment / m.half_width
-    n = int(m.strips)
-    left, right = deflection(m, d, 0), deflection(m, d, n)
+    left, right = deflection(m, d, FIRST), deflection(m, d, last_node(m))
     free_left, free_right = 1.0 if left < 0.0 else 0.0, 1.0 if right < 0.0 else 0.0
     gap_left, gap_right = -free_left * left, -free_right * right
     b = m.half_width

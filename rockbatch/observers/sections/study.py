@@ -74,4 +74,4 @@ def heights(settings: Sections, piers: Iterable[Pier]) -> set[float]:
 
 
 COMPLAINS = (Sections, complain)
-HEIGHTS = (Sections, heights)
+HEIGHTS = ("sections", Sections, heights)

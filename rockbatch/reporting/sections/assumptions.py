@@ -21,12 +21,11 @@ from rockbatch.reporting.markup import Markup, number, tag
 
 def section(finished: Finished) -> Markup:
     """Return the list of assumptions."""
-    return tag("ul", *(tag("li", line) for line in lines(finished)), class_="assumptions")
+    return tag("ul", *(tag("li", line) for line in lines(finished, finished.info["cases"])), class_="assumptions")
 
 
-def lines(finished: Finished) -> list[str]:
-    """Return the assumptions of a study as sentences, in a fixed order."""
-    cases: list[Case] = finished.info["cases"]
+def lines(finished: Finished, cases: Collection[Case]) -> list[str]:
+    """Return the assumptions of some cases of a study as sentences, in a fixed order."""
     found = (_plane(cases), _body(cases), _ground(cases), _landings(cases), _flight(cases), _sliding(cases))
     also = (_damping(cases), _devices(cases), _motions(finished), _numerics(finished.info["numerics"]))
     return [line for line in (*found, *also) if line]

@@ -40,7 +40,9 @@ def section(finished: Finished) -> Markup:
     omitted = len(finished.info["cases"]) - MOST_CASES
     soft = [f"{name}: {flexure(sheet)}" for name, sheet in sheets if is_too_soft(sheet)]
     tables = [_table(sheets[i : i + ABREAST], devices[i : i + ABREAST]) for i in range(0, len(sheets), ABREAST)]
-    curves = statics([Sheet(name, sheet.pier, sheet.equilibria, sheet.swings_at) for name, sheet in sheets])
+    curves = statics(
+        [Sheet(name, sheet.pier, sheet.equilibria, sheet.swings_at, sheet.contact_share) for name, sheet in sheets]
+    )
     return join(
         paragraphs(*map(alarm, soft)),
         *tables,

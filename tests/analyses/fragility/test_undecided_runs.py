@@ -102,7 +102,7 @@ def test_runs_put_out_what_their_limits_need_and_no_more(tmp_path):
     spec = read_fragility(load_study(written(tmp_path, STRIPES)))
     rotation = Rule("half way", "theta_max_over_alpha", at_most=0.5)
     of_study = Output.with_keys(least_normal_share=0.2, least_stroke_mm=7.0)
-    of_runs = {name: demand for name, demand in DEMANDS.items() if not demand.per_case and demand.needs != "sections"}
+    of_runs = {name: demand for name, demand in DEMANDS.items() if not demand.per_case and not demand.in_section}
     assert {demand.needs for demand in of_runs.values()} >= {"forces", "rocking", "devices_work"}
     for name, demand in of_runs.items():
         asked = output(replace(spec, limits=(rotation, Rule("other", name, at_most=0.01))), of_study)

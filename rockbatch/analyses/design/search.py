@@ -1,0 +1,63 @@
+"""Search along one key: which values to try next, and the intervals of equal verdicts."""
+
+from collections.abc import Mapping
+from itertools import groupby, pairwise
+from typing import NamedTuple
+
+from rockbatch.analyses.design.study import rounded
+from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
+
+REFUSED = "refused"
+"""Verdict on a value with which the study is refused."""
+WORSE = (PASS, NOT_DECIDED, FAIL, REFUSED)
+"""Verdicts on a value, each worse than the one before it."""
+
+Verdicts = Mapping[float, str]
+"""Verdicts on the values that were tried."""
+
+
+def middles(verdicts: Verdicts, width: float) -> list[float]:
+    """Return the middles of neighbouring values with different verdicts that are further apart than ``width``."""
+    return [
+        rounded(0.5 * (low + high))
+        for low, high in pairwise(sorted(verdicts))
+        if verdicts[low] != verdicts[high] and high - low > width
+    ]
+
+
+class Interval(NamedTuple):
+    """Neighbouring values with one verdict.
+
+    Attributes
+    ----------
+    verdict : str
+    low, high : float
+        The least and the greatest of them.
+    below, above : float or None
+        Neighbours with other verdicts; None where the scan ends.
+    values : int
+        Number of values that were tried in it.
+    widest : float
+        Greatest distance of two neighbours in it, between which nothing was tried.
+    """
+
+    verdict: str
+    low: float
+    high: float
+    below: float | None
+    above: float | None
+    values: int
+    widest: float
+
+
+def intervals(verdicts: Verdicts) -> list[Interval]:
+    """Return the intervals of equal verdicts, in rising order."""
+    every = sorted(verdicts)
+    runs = [[*values] for _, values in groupby(every, key=lambda value: verdicts[value])]
+    found = []
+    for place, values in enumerate(runs):
+        below = runs[place - 1][-1] if place else None
+        above = runs[place + 1][0] if place + 1 < len(runs) else None
+        widest = max((high - low for low, high in pairwise(values)), default=0.0)
+        found.append(Interval(verdicts[values[0]], values[0], values[-1], below, above, len(values), widest))
+    return found

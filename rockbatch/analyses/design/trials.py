@@ -1,0 +1,205 @@
+"""Trials: designs with values of the varied keys, run under every motion and bound, and judged by every check."""
+
+import tomllib
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Any, NamedTuple
+
+from rockbatch.analyses.design.search import REFUSED, WORSE
+from rockbatch.analyses.design.study import DesignSpec, rounded
+from rockbatch.analyses.design.written import with_value
+from rockbatch.batch.plan import Plan
+from rockbatch.batch.waves import Waves
+from rockbatch.checks.judging import judge
+from rockbatch.checks.responses import RESPONSES, unlimited, worst_of_cases
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, NOT_DECIDED, PASS, Verdict
+from rockbatch.common.errors import InputError
+from rockbatch.common.grouping import grouped
+from rockbatch.common.lazy import pd
+from rockbatch.common.naming import chosen_by
+from rockbatch.motions import MotionSet
+from rockbatch.quantities.demands import OF_SECTIONS
+from rockbatch.quantities.design import of_design
+from rockbatch.results.run_json import describe_case
+from rockbatch.results.sections import SECTIONS
+from rockbatch.study import Case, Study
+from rockbatch.study.both_axes import along_the_axis
+from rockbatch.study.bound_keys import key_at
+from rockbatch.study.design_bounds import Change
+
+OnSuite = Callable[[Sequence[Case]], Sequence[Verdict]]
+Columns = tuple[tuple[str, float | str], ...]
+
+
+class Design(NamedTuple):
+    """A design to vary: the name of its case, and the values of the other keys that are lists."""
+
+    case: str
+    columns: Columns
+
+
+class Trial(NamedTuple):
+    """A design with values of the varied keys, in the order of the study."""
+
+    design: Design
+    values: tuple[float, ...]
+
+
+class Judged(NamedTuple):
+    """The verdict on a trial, the check that governs it, and the reason of a refusal.
+
+    The check that fails most governs what fails, of what is not decided the one that is nearest to failing or beyond, and of
+    what passes the one that is closest to its limit.
+    """
+
+    verdict: str
+    governing: Verdict | None
+    reason: str = ""
+
+
+class Written:
+    """The cases of a study in whose file the varied keys have other values."""
+
+    def __init__(self, study: Study, spec: DesignSpec) -> None:
+        self.study, self.spec = study, spec
+        self.tables: dict[str, Any] = tomllib.loads(study.text)
+        self._cases: dict[tuple[str, tuple[float, ...]], dict[Design, list[Case]] | str] = {}
+
+    @cached_property
+    def varied(self) -> tuple[str, ...]:
+        """Return the keys that are lists, without those that are varied here."""
+        changes = [Change(path, key) for path in self.spec.paths if (key := key_at(path)) is not None]
+        replaced = {name for change in changes for name in change.among(self.study.varied)}
+        return tuple(name for name in self.study.varied if name not in replaced)
+
+    @cached_property
+    def designs(self) -> list[Design]:
+        """Return the designs of the cases that have the varied keys."""
+        cases = [case for case in along_the_axis(self.study.cases) if case.name in self.spec.cases]
+        return list(dict.fromkeys(self._design(case) for case in cases))
+
+    def _design(self, case: Case) -> Design:
+        columns = of_design({name: case.columns[name] for name in self.varied if name in case.columns})
+        return Design(case.across_of or case.name, tuple(columns.items()))
+
+    def refusal(self, trial: Trial) -> str:
+        """Return why the study is refused with the values of a trial; empty if it is not."""
+        cases = self._of(trial)
+        return cases if isinstance(cases, str) else ""
+
+    def cases(self, trial: Trial) -> list[Case]:
+        """Return the cases of a trial, nominal and under each bound, on every axis, with its values as columns."""
+        cases = self._of(trial)
+        return [] if isinstance(cases, str) else cases[trial.design]
+
+    def _of(self, trial: Trial) -> dict[Design, list[Case]] | str:
+        key = trial.design.case, trial.values
+        if key not in self._cases:
+            self._cases[key] = self._read(*key)
+        return self._cases[key]
+
+    def _read(self, case: str, values: tuple[float, ...]) -> dict[Design, list[Case]] | str:
+        tables: Mapping[str, Any] = {name: table for name, table in self.tables.items() if name != "reference"}
+        for path, value in zip(self.spec.paths, values, strict=True):
+            tables = with_value(tables, path, case, value) or tables
+        try:
+            study = Study.from_dict(tables, self.study.path, motions=self.study.motions.override)
+        except InputError as error:
+            return str(error.messages[0]).removeprefix(f"{self.study.path}: ")
+        columns: dict[str, float | str] = dict(zip(self.spec.paths, values, strict=True))
+        own = [each for each in study.cases if case in (each.name, each.across_of)]
+        by_design = grouped(own, self._design)
+        names = (*self.varied, *self.spec.paths)
+        return {
+            design: [replace(each, columns=each.columns | columns).with_columns(names) for each in cases]
+            for design, cases in by_design.items()
+        }
+
+
+class Trials:
+    """All trials, each run and judged once; ``verdicts`` has those of every check, ``free`` the responses without a limit.
+
+    ``suite`` returns the verdicts on the suite with the cases of a trial: under one that fails nothing is decided.
+    """
+
+    def __init__(self, written: Written, motions: MotionSet, waves: Waves, suite: OnSuite) -> None:
+        self.written, self.motions, self.waves, self.suite = written, motions, waves, suite
+        self.judged: dict[Trial, Judged] = {}
+        self.verdicts: list[Verdict] = []
+        self.free: dict[str, None] = {}
+
+    def execute(self, requested: Iterable[Trial]) -> None:
+        """Run and judge trials that are not yet."""
+        trials = [trial for trial in dict.fromkeys(requested) if trial not in self.judged]
+        for trial in trials:
+            if reason := self.written.refusal(trial):
+                self.judged[trial] = Judged(REFUSED, None, reason)
+        trials = [trial for trial in trials if trial not in self.judged]
+        if not trials:
+            return
+        cases = {trial: self.written.cases(trial) for trial in trials}
+        study = replace(self.waves.study, cases=tuple(case for of_trial in cases.values() for case in of_trial))
+        peaks = self.waves(Plan(study, self.motions))
+        for name, of_name in grouped(trials, lambda trial: trial.design.case).items():
+            self._judge(name, {trial: cases[trial] for trial in of_name}, peaks)
+
+    def _judge(self, name: str, cases: Mapping[Trial, Sequence[Case]], peaks: "pd.DataFrame") -> None:
+        """Judge the trials of a case by the checks that are about it."""
+        study, motions = self.waves.study, self.motions.motions
+        described = [describe_case(case) for of_trial in cases.values() for case in of_trial]
+        names = frozenset(case.name for case in along_the_axis(self.written.study.cases))
+        about = (rule for rule in study.checks if not rule.case or name in chosen_by(tuple(rule.case), names))
+        rules = [replace(rule, case=()) for rule in about]
+        runs = peaks[peaks["case"].isin({str(case["case"]) for case in described})]
+        sections = self.waves.tables.get(SECTIONS)
+        verdicts = judge(
+            rules,
+            runs,
+            described,
+            {motion.name: motion.of_station for motion in motions},
+            study.count,
+            None if sections is None else _as_written(sections),
+            {motion.name: motion.origin.event or "" for motion in motions},
+        )
+        self.verdicts += verdicts
+        of_values = grouped(verdicts, lambda verdict: _values(verdict.columns, self.written.spec))
+        worst = grouped(worst_of_cases(runs, described), lambda each: _values(each.case["columns"], self.written.spec))
+        for trial in cases:
+            key = trial.values, trial.design.columns
+            own = of_values.get(key, [])
+            of_suite = (verdict for verdict in self.suite(cases[trial]) if verdict.verdict != PASS)
+            self.judged[trial] = judged = _judged(
+                [*own, *(replace(verdict, verdict=NOT_DECIDED) for verdict in of_suite)]
+            )
+            if judged.verdict == PASS:
+                free = unlimited(worst.get(key, []), own)
+                self.free |= dict.fromkeys(RESPONSES[each.demand].words for each in free)
+
+
+def _as_written(sections: Sequence[Mapping[str, Any]]) -> "pd.DataFrame":
+    """Return rows of sections.csv as a table, their numbers with the digits that they have in the file."""
+    table, numbers = pd.DataFrame(sections), list(OF_SECTIONS)
+    table[numbers] = table[numbers].astype("float64").map(rounded)
+    return table
+
+
+def _values(columns: Mapping[str, Any], spec: DesignSpec) -> tuple[tuple[float, ...], Columns]:
+    """Return the values of the varied keys in the columns of a case, and those of its design."""
+    others = {name: value for name, value in of_design(columns).items() if name not in spec.paths}
+    return tuple(float(columns[path]) for path in spec.paths), tuple(others.items())
+
+
+def _judged(verdicts: Sequence[Verdict]) -> Judged:
+    """Return the worst of the verdicts of all checks on a trial; not decided if none applies."""
+    applying = [verdict for verdict in verdicts if verdict.verdict != DOES_NOT_APPLY]
+    if not applying:
+        return Judged(NOT_DECIDED, None, "no check applies")
+    worst = max((verdict.verdict for verdict in applying), key=WORSE.index)
+    of_worst = [verdict for verdict in applying if verdict.verdict == worst]
+    return Judged(worst, max(of_worst, key=lambda verdict: -1.0 if verdict.ratio != verdict.ratio else verdict.ratio))
+
+
+def worse(first: Judged, second: Judged) -> Judged:
+    """Return which of two is the worse."""
+    return max(first, second, key=lambda judged: WORSE.index(judged.verdict))

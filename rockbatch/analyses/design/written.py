@@ -1,0 +1,55 @@
+"""A study written with other values: the text of its file with a key changed, read again."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from rockbatch.study.design_bounds import parted
+from rockbatch.study.tables import name_of
+
+Tables = Mapping[str, Any]
+
+
+def with_value(tables: Tables, path: str, case: str, value: float) -> Tables | None:
+    """Return the tables of a study with the key at a path changed, of the ``case`` of this name; None if it is not written."""
+    top, *rest = path.split(".")
+    if top != "case":
+        return _changed(tables, [top, *rest], value)
+    changed = [_changed(table, rest, value) if name_of(table) == case else table for table in tables["case"]]
+    return None if None in changed else {**tables, "case": changed}
+
+
+def _changed(table: Tables, path: Sequence[str], value: float) -> Tables | None:
+    """Return a table with the key at a path within changed, in all tables of a name or in a numbered one; None without any."""
+    name, *rest = path
+    if not rest:
+        return {**table, name: value} if name in table else None
+    kind, number = parted(name)
+    written = table.get(kind, ())
+    inner = [written] if isinstance(written, dict) else written
+    changed = [_changed(part, rest, value) if number in ("", str(n)) else None for n, part in enumerate(inner, 1)]
+    if all(part is None for part in changed):
+        return None
+    parts = [old if new is None else new for old, new in zip(inner, changed, strict=True)]
+    return {**table, kind: parts[0] if isinstance(written, dict) else parts}
+
+
+def paths_in(tables: Tables) -> Iterator[str]:
+    """Yield the paths of all keys of the pier and the cases that are written."""
+    for top in ("pier", "case"):
+        for table in _listed(tables.get(top, ())):
+            for name, value in table.items():
+                inner = [key for part in _listed(value) for key in part]
+                yield from (f"{top}.{name}.{key}" for key in inner)
+                if not inner:
+                    yield f"{top}.{name}"
+
+
+def _listed(value: Any) -> list[Tables]:
+    """Return the tables of a list, or a single one; none for another value."""
+    return (
+        [value]
+        if isinstance(value, dict)
+        else [part for part in value if isinstance(part, dict)]
+        if isinstance(value, list)
+        else []
+    )

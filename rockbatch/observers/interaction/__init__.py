@@ -1,0 +1,3 @@
+"""Axial force and moment of sections at the same moment: interaction.csv."""
+
+TABLE = "interaction.csv"

@@ -1,0 +1,15 @@
+"""interaction.csv: axial force and moment of the same moment in sections, a row for each corner of their envelope."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rockbatch.common.lazy import pd
+from rockbatch.quantities.demands import OF_INTERACTION
+from rockbatch.results.beside_peaks import read_beside
+
+INTERACTION = "interaction.csv"
+
+
+def read_interaction(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
+    """Return the table of a study that varies these keys; ``InputError`` if it is not as it was written."""
+    return read_beside(path, varied, OF_INTERACTION).astype(dict.fromkeys(OF_INTERACTION, "float64"))
