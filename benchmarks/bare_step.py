@@ -5,7 +5,7 @@
 Bare is one step of Runge–Kutta 4 and the rates at its end, of one run in full contact, in a compiled loop that does
 nothing else: no events, no extremes, one run at a time. Whole runs are those of a study: tests for events, their
 location, landings and separations, peaks and plastic work. On the rigid base bare is a step of a block about one corner.
-Runs with devices have two viscous dampers and a tendon, and go one by one: their step is held against that of one plain run.
+Runs with devices have two viscous dampers and a tendon: the step of one run is held against that of one plain run.
 Runs on footings go one by one: their step is held against that of runs on Bouc–Wen springs; 60 of them run to tolerance.
 
 The first line says how wide the compiled vector instructions are. To run as a processor of 256 bits does:
@@ -29,7 +29,7 @@ from tower import QUIET_S, TOWER, foundations, record
 
 from rockbatch.core.block.model import Rocker, Tilt
 from rockbatch.core.clock import read_ground, start_clock
-from rockbatch.core.devices.pull import devices_of
+from rockbatch.core.devices.lanes import equipment_of
 from rockbatch.core.ground import later
 from rockbatch.core.history import MOMENT
 from rockbatch.core.rk4 import rk4
@@ -263,7 +263,7 @@ def with_devices(name: str, base: Base, motion: Motion, substeps: int, repeats: 
         return march(system, [plain], ground, stop, substeps)
 
     def run_held() -> np.recarray:
-        return march(system, [held], ground, stop, substeps, devices=devices_of(laws))
+        return march(system, [held], ground, stop, substeps, devices=equipment_of(system, [(laws, (), math.nan)]))
 
     ends = [run()[0] for run in (run_held, run_plain)]
     if any(end.status != SURVIVED for end in ends):

@@ -1,5 +1,6 @@
 """What holds for all tests: which kernels fast ones may compile, and how others are tried without the compiler."""
 
+import functools
 import multiprocessing
 import os
 from concurrent.futures import ProcessPoolExecutor
@@ -8,16 +9,34 @@ from importlib import import_module
 from unittest import mock
 
 import pytest
+from short_pages import pages, short_pages
 
 from rockbatch.common.garbage import collect_rarely
+from rockbatch.core import kernel
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase
 from rockbatch.pier.restraints import Restraint
 from rockbatch.simulation import kept
 
+__all__ = ["pages", "short_pages"]
+
 collect_rarely()
 with suppress(OSError):  # of no home
     os.environ["ROCKBATCH_CACHE"] = str(kept.folder())  # commands that tests run elsewhere, as other users, find it too
+
+entry_to = kernel._entry_to.__wrapped__
+
+
+@functools.cache
+def kept_entry_to(block):
+    """Return the entry by which Python calls a building block, kept on disk where its name is that of one function."""
+    call, function = entry_to(block), block.py_func
+    if "<" not in function.__qualname__:
+        call._cache = kernel._Kept(function)
+    return call
+
+
+kernel._entry_to = kept_entry_to
 
 PHYSICS = ("core", "simulation", "verification")
 DEVICE = (Damper("viscous", nu=0.1),)

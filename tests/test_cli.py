@@ -67,6 +67,7 @@ def test_run_writes_the_table_the_report_and_what_was_run(study, tmp_path, capsy
     assert "2 of 2" not in printed.out  # progress goes to stderr
 
 
+@pytest.mark.usefixtures("pages")
 def test_histories_of_another_record_are_added_on_demand_and_no_run_is_repeated(tmp_path, capsys):
     pulses = [
         SINE | {"name": name, "amplitude_g": size, "duration_s": 2.0} for name, size in (("weak", 0.3), ("strong", 0.5))
@@ -122,6 +123,7 @@ def test_the_most_frequent_reasons_of_failed_runs_are_named(study, tmp_path, cap
     assert "2 runs failed: see the column reason of peaks.csv\n  1 ×: would take " in printed
 
 
+@pytest.mark.usefixtures("pages")
 def test_motions_replace_those_of_the_study_and_a_bad_file_is_a_row_with_its_reason(study, tmp_path, capsys):
     records = tmp_path / "records"
     records.mkdir()
@@ -146,6 +148,7 @@ def test_motions_replace_those_of_the_study_and_a_bad_file_is_a_row_with_its_rea
     assert "BAD090" in (tmp_path / "out/report.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.usefixtures("pages")
 def test_a_run_that_is_refused_is_a_row_with_its_reason_and_has_no_history(study, tmp_path, monkeypatch):
     """One step a sample is beyond the stability of β = 5000: nothing of it is run, not for its picture either."""
     extra = '[numerics]\nsubsteps = 1\n[output]\nhistories = "all"\n'
@@ -280,7 +283,7 @@ def test_completion_offers_the_commands_and_options_that_may_come_next(tmp_path)
         subprocess.run([sys.executable, "-c", code], env=os.environ | asked, check=True, capture_output=True)
         return (tmp_path / "told").read_text(encoding="utf-8").split()
 
-    assert completed("rockbatch s") == ["statics", "spectrum", "sensitivity"]
+    assert completed("rockbatch s") == ["statics", "statement", "spectrum", "sensitivity"]
     assert "--seconds" in completed("rockbatch accuracy --sec")
 
 
@@ -440,6 +443,7 @@ def test_to_a_stream_that_has_failed_nothing_more_is_written(monkeypatch, capsys
 
 @pytest.mark.skipif(sys.platform == "win32", reason="shells of Unix")
 @pytest.mark.parametrize(("redirected", "told"), [("| true", ""), ("> /dev/full", "cannot be printed (No space left")])
+@pytest.mark.usefixtures("pages")
 def test_checks_and_their_report_do_not_need_a_reader(tmp_path, redirected, told):
     rules = tmp_path / "rules.toml"
     rules.write_text(

@@ -472,6 +472,7 @@ def test_colours_and_dashes_of_paper_are_those_of_the_page():
     assert len({line_of(place) for place in range(COLOURS * DASHES)}) == COLOURS * DASHES
 
 
+@pytest.mark.usefixtures("pages")
 def test_the_page_and_every_plot_show_figures_of_the_same_functions(tmp_path):
     pulses = [SINE | {"name": f"sine {n}"} for n in range(3)]
     study = write_study(tmp_path, study_text(pulses=pulses, cases=[RIGID, PADS]))

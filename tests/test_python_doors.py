@@ -16,6 +16,8 @@ import rockbatch.batch.threads
 from rockbatch.commands.cli import main
 from rockbatch.common.files import read_table
 
+pytestmark = pytest.mark.usefixtures("pages")
+
 STUDY = """
 title = "Doors"
 

@@ -25,6 +25,7 @@ _COMMANDS_MEANT = {
     "run": "simulate compute solve",
     "motions": "records",
     "check": "verify",
+    "design": "optimise optimize size find",
     "report": "plot show view html compare diff sheet",
     "accuracy": "error errors convergence",
     "merge": "join combine",

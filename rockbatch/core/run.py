@@ -27,7 +27,8 @@ from rockbatch.core.clock import (
     turn_window,
 )
 from rockbatch.core.devices.events import device_event, reset_device_modes, start_devices
-from rockbatch.core.devices.pull import Devices, loaded, step_resolving_devices
+from rockbatch.core.devices.lanes import Equipment, devices_in, fetch, move_devices, stow
+from rockbatch.core.devices.pull import loaded, step_resolving_devices
 from rockbatch.core.devices.use import take_in
 from rockbatch.core.history import History, Stamp, history_of, take_back, write
 from rockbatch.core.kernel import entry, hook, inlined, inlined_once, kernel
@@ -38,7 +39,9 @@ from rockbatch.core.system import (
     finish,
     lanes_in_pass,
     longest_step,
+    note_devices,
     one_pass,
+    pass_with_devices,
     pier_in,
     released,
     status_at_sample,
@@ -75,6 +78,9 @@ from rockbatch.core.types import (
 EVENTS_IN_A_SAMPLE = 20_000
 """Greatest number of events in a sample; decaying sequences of impacts need fewer."""
 
+MANY_PARTS = 3
+"""Parts of a sub-step after which the next one most likely has several, too: devices ask for short steps, or events crowd."""
+
 NO_ROWS = np.zeros((0, 0, 1))
 
 RESULT = np.dtype([*record(Result).descr, ("extremes", "f8", WINDOWS)])
@@ -94,7 +100,7 @@ class Context(NamedTuple):
 
     traits: tuple  # of their System
     lanes: np.record
-    devices: Devices | None
+    equipment: Equipment | None
     marks: Marks
     settings: Settings
     ground: np.ndarray
@@ -176,9 +182,9 @@ def _is_zero(y):
 
 
 @inlined_once
-def _apply_event(context, i, m, now, which, x):
+def _apply_event(context, i, m, devices, now, which, x):
     """Apply event ``which``, ``x`` [s] after the sample, to lane ``i``; return status and the Moment after it."""
-    lanes, devices, history = context.lanes, context.devices, context.history
+    lanes, history = context.lanes, context.history
     here, dt, number = ground_at(lanes, i, x), lanes.clock.dt[i], int(lanes.clock.number[i])
     t = lanes.clock.sample[i] * dt + x
     if which >= OF_PIER:
@@ -213,26 +219,31 @@ def _clear_of_zero(functions):
 
 
 @inlined_once
-def _step_by_events(context, i, devices, substep):
+def _step_by_events(context, i, substep):
     """Integrate lane ``i`` over a sub-step event by event; return status, SURVIVED unless it ends, and time [s]."""
     traits, lanes, history, marks = context.traits, context.lanes, context.history, context.marks
+    devices = devices_in(context.equipment, lanes, i)
+    fetch(context.equipment, devices, i)
     h, start, dt = lanes.clock.step[i], substep * lanes.clock.step[i], lanes.clock.dt[i]
     t_sample, number = lanes.clock.sample[i] * dt, int(lanes.clock.number[i])
     m, now = pier_in(traits, lanes, i)
-    done, which, status = 0.0, NO_EVENT, SURVIVED
+    done, which, status, parts = 0.0, NO_EVENT, SURVIVED, 0
     while done < h and status == SURVIVED:
+        parts += 1
         here, left = ground_at(lanes, i, start + done), h - done
         k, under = start_rates(m, devices, now, here, get(lanes.rates, i, now.y))
         at_start = Instant(now.y, k, now.contact, now.supports, here)
         most = longest_step(m, at_start, min(left, step_resolving_devices(under, devices, at_start, h, dt)))
-        used, which, end, k_end = first_event(under, devices, marks, at_start, most, context.settings.locate)
+        used, which, end, k_end = first_event(
+            under, devices, marks, at_start, most, done > 0.0, context.settings.locate
+        )
         part, now = Part(now, end, used), Moment(end, now.contact, now.supports)
         include_peak(lanes, i, part, start, done)
         take_in(devices, k, k_end, used)
         _commit(devices, lanes, i, k_end, which)
         done = done + used if used < left else h
         if which != NO_EVENT:
-            status, now = _apply_event(context, i, m, now, which, start + done)
+            status, now = _apply_event(context, i, m, devices, now, which, start + done)
             if status == SURVIVED and _too_many_events(lanes, i):
                 status = CHATTER
         take_in_part(traits, lanes, i, m, part, now)
@@ -242,6 +253,8 @@ def _step_by_events(context, i, devices, substep):
         if between or status not in (SURVIVED, FLIGHT, LATE_FLIGHT):
             stamp = Stamp(number, t_sample + (start + done), STEP)
             write(history, stamp, m, devices, now, ground_at(lanes, i, start + done))
+    rests = note_devices(traits, lanes, i, devices)
+    stow(context.equipment, devices, i, rests or parts < MANY_PARTS, which != NO_EVENT)
     lanes.step_status.watched[i] = 0.0 if which == NO_EVENT and _clear_of_zero(marks.now) else 1.0
     return status, t_sample + (start + done)
 
@@ -249,8 +262,9 @@ def _step_by_events(context, i, devices, substep):
 @inlined_once
 def _start_lane(context, i, number, run):
     """Start the ``run`` with ``number`` in lane ``i``; return its status."""
-    traits, lanes, devices = context.traits, context.lanes, context.devices
+    traits, lanes = context.traits, context.lanes
     start_clock(lanes, i, number, run)
+    devices = devices_in(context.equipment, lanes, i)
     read_ground(lanes, i, context.ground)
     begin(traits, lanes, i, run)
     note_motion_over(lanes, i, context.results)
@@ -258,6 +272,8 @@ def _start_lane(context, i, number, run):
     here = ground_at(lanes, i, 0.0)
     start_devices(m, devices, now, here)
     write(context.history, Stamp(number, 0.0, SAMPLE), m, devices, now, here)
+    note_devices(traits, lanes, i, devices)
+    stow(context.equipment, devices, i, True, True)
     status, _ = status_at_sample(traits, lanes, i, devices)
     return status
 
@@ -279,18 +295,9 @@ def _finish(traits, lanes, i, status, t, rows, results):
     finish(traits, lanes, i, t, result)
 
 
-@hook
-def _accept_step(devices, context, i, substep):
+@inlined_once
+def _accept_step(context, i, substep):
     """Return True if the sub-step of lane ``i`` stands as the pass integrated it; then record its peak and extremes."""
-
-
-@_accept_step.of(Devices)
-def _accept_none(devices, context, i, substep):
-    return False
-
-
-@_accept_step.of(type(None))
-def _accept_unless_eventful(devices, context, i, substep):
     lanes = context.lanes
     if lanes.step_status.kind[i] >= EVENTFUL:
         return False
@@ -330,28 +337,41 @@ def _update_at_sample(context, i):
     turn_window(lanes, i, theta, context.results)
     peak.in_window[i] = max(peak.in_window[i], abs(theta))
     note_motion_over(lanes, i, context.results)
-    status, next_due = status_at_sample(context.traits, lanes, i, context.devices)
+    devices = devices_in(context.equipment, lanes, i)
+    fetch(context.equipment, devices, i)
+    status, next_due = status_at_sample(context.traits, lanes, i, devices)
     clock.due[i] = min(peak.next_window[i], next_due, motion_due(lanes, i))
     return status
 
 
 @hook
-def _pass(devices, context, count, substep):
-    """Integrate all lanes over a sub-step; return how many are not calm."""
+def _pass(equipment, context, count, substep):
+    """Integrate all lanes over a sub-step."""
 
 
-@_pass.of(Devices)
-def _pass_with_devices(devices, context, count, substep):
-    context.lanes.step_status.kind[0] = EVENTFUL  # a lane with devices is integrated event by event
-    return count
+@_pass.of(Equipment)
+def _pass_with_devices(equipment, context, count, substep):
+    smooth = -1.0
+    for i in range(count):
+        smooth = max(smooth, equipment.shared[0].verdict.smooth[i])
+    if equipment.passes and smooth > 0.0:
+        pass_with_devices(context.traits, context.lanes, equipment, count, substep, context.settings)
+    else:
+        for i in range(count):
+            context.lanes.step_status.kind[i] = EVENTFUL
 
 
 @_pass.of(type(None))
-def _pass_alone(devices, context, count, substep):
+def _pass_alone(equipment, context, count, substep):
     one_pass(context.traits, context.lanes, lanes_in_pass(context.traits, count), substep, context.settings)
+
+
+@inlined
+def _busy_lanes(lanes, count):
+    """Return how many lanes are not calm after a pass."""
     busy = 0
     for i in range(count):
-        busy += 1 if context.lanes.step_status.kind[i] != CALM else 0
+        busy += 1 if lanes.step_status.kind[i] != CALM else 0
     return busy
 
 
@@ -361,16 +381,18 @@ def _write_now(context, count, kind, steps):
     lanes, clock = context.lanes, context.lanes.clock
     for i in range(count):
         m, now = pier_in(context.traits, lanes, i)
+        devices = devices_in(context.equipment, lanes, i)
+        fetch(context.equipment, devices, i)
         x = steps * clock.step[i]
         stamp = Stamp(int(clock.number[i]), clock.sample[i] * clock.dt[i] + x, kind)
-        write(context.history, stamp, m, context.devices, now, ground_at(lanes, i, x))
+        write(context.history, stamp, m, devices, now, ground_at(lanes, i, x))
 
 
 @entry
-def _march(traits, runs, ground, settings, devices, marks, history, stop, memory, results):
+def _march(traits, runs, ground, settings, equipment, marks, history, stop, memory, results):
     """Integrate all ``runs`` to their ends; ``results`` of stopped runs remain unchanged."""
     lanes, cells = memory[0][0], memory[1]
-    context = Context(traits, lanes, devices, marks, settings, ground, history, results)
+    context = Context(traits, lanes, equipment, marks, settings, ground, history, results)
     waiting, count = ZERO, ZERO
     while True:
         while count < LANES and waiting < len(runs):
@@ -383,18 +405,19 @@ def _march(traits, runs, ground, settings, devices, marks, history, stop, memory
         if count == 0 or stop[0] != 0:
             return
         for substep in range(settings.substeps):
-            busy = _pass(devices, context, count, substep)
-            i = ZERO if busy > 0 else count
+            _pass(equipment, context, count, substep)
+            i = ZERO if _busy_lanes(lanes, count) > 0 else count
             while i < count:
                 status, t = SURVIVED, 0.0
-                if lanes.step_status.kind[i] != CALM and not _accept_step(devices, context, i, substep):
-                    status, t = _step_by_events(context, i, devices, substep)
+                if lanes.step_status.kind[i] != CALM and not _accept_step(context, i, substep):
+                    status, t = _step_by_events(context, i, substep)
                 if status == SURVIVED:
                     i += 1
                 else:
                     _finish(traits, lanes, i, status, t, history.written, results)
                     count -= 1
                     move(cells, count, i)
+                    move_devices(equipment, count, i)
             if history.every_step and substep < settings.substeps - 1:
                 _write_now(context, count, STEP, substep + 1.0)
         due = _advance_to_samples(lanes, count, ground)
@@ -410,10 +433,11 @@ def _march(traits, runs, ground, settings, devices, marks, history, stop, memory
                 _finish(traits, lanes, i, status, t, history.written, results)
                 count -= 1
                 move(cells, count, i)
+                move_devices(equipment, count, i)
 
 
 def march(system, lines, ground, stop, substeps, locate=True, every_step=False, history=NO_ROWS, devices=None):
-    """Integrate runs of one system to their ends, side by side in lanes; only a single run may have devices.
+    """Integrate runs of one system to their ends, side by side in lanes.
 
     Parameters
     ----------
@@ -432,8 +456,8 @@ def march(system, lines, ground, stop, substeps, locate=True, every_step=False, 
         Also write the steps between samples, and both sides of all events of devices.
     history : ndarray, shape (runs, rows, columns)
         Filled with each run's samples and both sides of its events, as far as it has room (``history``).
-    devices : Devices or None
-        Devices of a single run.
+    devices : Equipment or None
+        Devices of all runs.
 
     Returns
     -------
@@ -447,7 +471,7 @@ def march(system, lines, ground, stop, substeps, locate=True, every_step=False, 
         results[name] = np.nan if RESULT[name].kind != "i" else 0
     results.status = RUNNING
     settings = Settings(int(substeps), bool(locate), len(history) > 0)
-    marks = marks_for(0 if devices is None else len(devices.elements))
+    marks = marks_for(0 if devices is None else len(devices.lanes))
     _march(
         system.traits if devices is None else system.traits._replace(pull=Pull(0.0, 0.0)),
         runs,

@@ -120,17 +120,18 @@ def start_rates(m, devices, now, ground, at_end):
 
 
 @inlined_once
-def first_event(m, devices, marks, start, h, locate):
+def first_event(m, devices, marks, start, h, continues, locate):
     """Integrate from the Instant ``start`` over ``h`` [s], or to the first event before that.
 
-    ``m`` is the pier under its devices at the start. Without ``locate`` events take place at the end of the step, which is of
+    ``m`` is the pier under its devices at the start. If the step ``continues`` the last one of its sub-step, ``marks`` may hold
+    the event functions at the start. Without ``locate`` events take place at the end of the step, which is of
     first order and for comparison only.
 
     Returns
     -------
     The length of the step [s]; the number of the event function that fell, NO_EVENT for none; the state then, and its rates.
     """
-    if devices is not None and goes_on(devices):
+    if devices is not None and continues and goes_on(devices):
         _copy(marks.now, marks.early)
     else:
         _evaluate(m, devices, start, START, h, marks.early)

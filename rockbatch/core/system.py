@@ -30,6 +30,7 @@ class System(NamedTuple):
     line: type  # named tuple of a run as it is requested
     lane: np.dtype  # of a table
     columns: tuple[str, ...]  # of state and contact in a history
+    passed: tuple[float, ...] = ()  # kinds of devices, but on braces, that its pass takes
 
 
 @hook
@@ -120,6 +121,26 @@ def one_pass(traits, lanes, count, substep, settings):
     """
     for i in range(count):
         lanes.step_status.kind[i] = EVENTFUL
+
+
+@optional_hook
+def pass_with_devices(traits, lanes, equipment, count, substep, settings):
+    """Integrate the first ``count`` lanes as :func:`one_pass`, with their devices."""
+    for i in range(count):
+        lanes.step_status.kind[i] = EVENTFUL
+
+
+@optional_hook
+def note_devices(traits, lanes, i, devices):
+    """Record in lane ``i`` what a pass needs to know of its ``devices``; return True if the pier is at rest on rigid ground."""
+    return False
+
+
+@optional_hook
+def in_pass(traits, lanes, i):
+    """Return the model of lane ``i``, its state and its contact for a pass, which leaves other contacts to scalar code."""
+    m, now = pier_in(traits, lanes, i)
+    return m, now.y, now.contact
 
 
 @optional_hook

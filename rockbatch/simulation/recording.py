@@ -11,8 +11,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.core import types
 from rockbatch.core.types import Result
 from rockbatch.outcome.outcome import Outcome
-from rockbatch.simulation.compilation import kernel_of
-from rockbatch.simulation.runs import Run, Stop, written_run, written_runs
+from rockbatch.simulation.runs import Run, Stop, alike, written_run, written_runs
 
 MOST_ROWS = 10_000_000
 """Greatest number of rows of a history held in memory, about a gigabyte."""
@@ -81,11 +80,10 @@ def recorded_side_by_side(
     """Yield number and history, at samples and events, of each run; those of more than :data:`MOST_ROWS` are left out."""
     ends = [math.inf if wait else run.motion.duration + quiet_s for run in runs]
     room = [_room(run, o, False, end) for run, o, end in zip(runs, outcomes, ends, strict=True)]
-    alike: dict[object, list[int]] = {}
+    groups: dict[tuple[object, ...], list[int]] = {}
     for i in sorted(range(len(runs)), key=room.__getitem__):
-        steps = outcomes[i].substeps
-        alike.setdefault(i if runs[i].base.restraints else (kernel_of(runs[i].pier, runs[i].base), steps), []).append(i)
-    for members in alike.values():
+        groups.setdefault((outcomes[i].substeps, *alike(runs[i])), []).append(i)
+    for members in groups.values():
         first = 0
         for n, i in enumerate(members, 1):
             if n == len(members) or (n + 1 - first) * room[members[n]] > ROWS_TOGETHER:

@@ -8,8 +8,8 @@ import numpy as np
 
 from rockbatch.core import types
 from rockbatch.core.clock import ON_ITS_SIDE
+from rockbatch.core.devices.lanes import Equipment, equipment_of, signature
 from rockbatch.core.devices.laws import STICKS, Element
-from rockbatch.core.devices.pull import Devices, devices_of
 from rockbatch.core.history import MOMENT
 from rockbatch.core.run import NO_ROWS, march
 from rockbatch.core.system import System
@@ -141,10 +141,18 @@ def _line(pier: Pier, base: Base, dt: float, substeps: int, quiet_s: float, wait
     return line_of(model(pier, base), timing, read, prestress(pier, base), start_of(pier, base))
 
 
-def _devices(pier: Pier, base: Base) -> Devices | None:
-    """Return the devices of a run in their initial states; None without any."""
-    start = start_of(pier, base)
-    return devices_of(elements(pier, base), start.states, start.level)
+def _equipment(runs: Sequence[Run]) -> Equipment | None:
+    """Return the devices of runs that are :func:`alike`, in their initial states; None without any."""
+    starts = []
+    for pier, base in ((run.pier, run.base) for run in runs):
+        start = start_of(pier, base)
+        starts.append((elements(pier, base), start.states, start.level))
+    return equipment_of(kernel_of(runs[0].pier, runs[0].base)[0], starts)
+
+
+def alike(run: Run) -> tuple[object, ...]:
+    """Return what runs must have in common to be computed side by side, beside their steps: system, and kinds of devices."""
+    return (*kernel_of(run.pier, run.base), signature(elements(run.pier, run.base)))
 
 
 def written_run(
@@ -171,13 +179,13 @@ def written_runs(
 ) -> list[tuple[Result, np.recarray]]:
     """Return the results of runs of one system, and their histories of at most ``rows`` rows each.
 
-    With ``every_step`` the history has rows between samples, too. Runs with devices must be passed alone.
+    With ``every_step`` the history has rows between samples, too. All runs must be :func:`alike`.
     """
-    system, devices = kernel_of(runs[0].pier, runs[0].base)[0], _devices(runs[0].pier, runs[0].base)
-    columns = _row_type(system, 0 if devices is None else len(devices.elements))
+    system, equipment = kernel_of(runs[0].pier, runs[0].base)[0], _equipment(runs)
+    columns = _row_type(system, 0 if equipment is None else len(equipment.lanes))
     written = np.zeros((len(runs), rows, columns.itemsize // 8))
     lines, ground = _lines(runs, substeps, quiet_s, wait)
-    records = march(system, lines, ground, Stop().flag, substeps, locate, every_step, written, devices)
+    records = march(system, lines, ground, Stop().flag, substeps, locate, every_step, written, equipment)
     histories = written.view(columns)[:, :, 0]
     return [(result, rows.view(np.recarray)) for result, rows in zip(_results(records), histories, strict=True)]
 
@@ -238,38 +246,35 @@ def try_all(
 ) -> list[Trial | None]:
     """Return trials as :func:`run_all_fixed` returns outcomes: with summaries of the trajectories."""
     trials: list[Trial | None] = [_refusal(run, steps, quiet_s) for run, steps in zip(runs, substeps, strict=True)]
-    alike: dict[tuple[System, int, int | None], list[int]] = {}
+    groups: dict[tuple[object, ...], list[int]] = {}
     for i, run in enumerate(runs):
         if trials[i] is None:
-            system, with_devices = kernel_of(run.pier, run.base)
-            alike.setdefault((system, substeps[i], i if with_devices else None), []).append(
-                i
-            )  # a run with devices is alone
-    for (system, steps, alone), members in alike.items():
+            groups.setdefault((substeps[i], *alike(run)), []).append(i)
+    for members in groups.values():
         if stop.is_set:
             break
-        lines, ground = _lines([runs[i] for i in members], steps, quiet_s, wait)
-        devices = None if alone is None else _devices(runs[alone].pier, runs[alone].base)
-        records = march(system, lines, ground, stop.flag, steps, locate, False, NO_ROWS, devices)
-        for i, result, extremes in zip(members, _results(records), records.extremes, strict=True):
+        some, steps = [runs[i] for i in members], substeps[members[0]]
+        lines, ground = _lines(some, steps, quiet_s, wait)
+        equipment, system = _equipment(some), kernel_of(some[0].pier, some[0].base)[0]
+        records = march(system, lines, ground, stop.flag, steps, locate, False, NO_ROWS, equipment)
+        for number, (i, result, extremes) in enumerate(zip(members, _results(records), records.extremes, strict=True)):
             if result.status != types.RUNNING:
                 outcome = _outcome(runs[i], steps, result)
-                if devices is not None:
-                    outcome = _with_static_rotation(runs[i], result, devices, outcome)
-                    outcome = outcome.changed(**_device_demands(runs[i], devices.use))
+                if equipment is not None:
+                    outcome = _with_static_rotation(runs[i], result, equipment, number, outcome)
+                    outcome = outcome.changed(**_device_demands(runs[i], equipment.use[number]))
                 trials[i] = Trial(outcome, extremes)
     return trials
 
 
-def _with_static_rotation(run: Run, result: Result, devices: Devices, outcome: Outcome) -> Outcome:
-    """Return ``outcome`` with the static residual rotation under its devices; unchanged unless "ok" with residuals."""
+def _with_static_rotation(run: Run, result: Result, equipment: Equipment, number: int, outcome: Outcome) -> Outcome:
+    """Return ``outcome`` of the run ``number`` with its static residual rotation under devices; unchanged without residuals."""
     pier, base = run.pier, run.base
     if outcome.status != "ok" or not base.has_residual:
         return outcome
-    n, sticks = len(devices.elements), devices.goes == STICKS
-    states = devices.x[:n]
+    sticks, states = equipment.goes[number] == STICKS, equipment.x[number, : len(equipment.lanes)]
     if base.on_springs:
-        rotation = rests_at(pier, base, result, float(devices.level[0]), states, sticks)
+        rotation = rests_at(pier, base, result, float(equipment.level[number, 0]), states, sticks)
         remark = f"dampers and tendons hold the pier at {rotation:.3g} rad, its supports would at {outcome.theta_res or 0.0:.3g}"
     else:
         rotation = 0.0 if not math.isnan(result.t_rest) else rests_on_rigid_base(pier, base, result, states, sticks)

@@ -18,6 +18,8 @@ from rockbatch.analyses.spectrum.figures import FELL, REGIONS, maps, spectra
 from rockbatch.analyses.spectrum.map_regions import between, inside, strips
 from rockbatch.common.figures.description import Area, Points, Polyline, Rule, Span, Words
 
+pytestmark = pytest.mark.usefixtures("pages")
+
 FRAGILITY = """
 [[check]]
 name = "settlement"

@@ -12,6 +12,8 @@ import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.reporting.markup import number
 
+pytestmark = pytest.mark.usefixtures("pages")
+
 PULSES = [
     SINE | {"name": f"sine {period}", "period_s": period, "amplitude_g": 0.4, "duration_s": 3.0}
     for period in (0.6, 0.8, 1.0, 1.2, 1.5)

@@ -12,8 +12,6 @@ from rockbatch.commands.cli import main
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 TABLES = ("half_cycles.csv", "sections.csv", "shocks.csv")
 PIER = {"width_m": 3.0, "height_m": 14.0, "mass_t": 400.0}
 PULSES = [SINE | {"duration_s": 2.0}, COSINE | {"duration_s": 2.0}]

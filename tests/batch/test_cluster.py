@@ -28,8 +28,6 @@ from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.results.columns import columns
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 
 def table(folder, study, runs, engine, progress=silent):
     """Bytes of peaks.csv as an engine carries out the runs."""

@@ -14,8 +14,6 @@ from rockbatch.commands.cli import main
 from rockbatch.commands.run import in_words
 from rockbatch.study import load_study
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 CASES = (RIGID, PADS | {"beta": [30, 50], "eta": [2.5, 3.5]})
 
 

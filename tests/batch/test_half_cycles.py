@@ -1,7 +1,6 @@
 """half_cycles.csv, which a study asks for: what Response.half_cycles has of each run."""
 
 import pandas as pd
-import pytest
 from studies import study_text, write_study
 
 import rockbatch as rb
@@ -9,8 +8,6 @@ from rockbatch.common.files import read_table
 from rockbatch.observers.half_cycles import TABLE as HALF_CYCLES
 from rockbatch.outcome.half_cycles import HALF_CYCLE_COLUMNS
 from rockbatch.study.output import OUTPUT
-
-pytestmark = pytest.mark.usefixtures("no_report")
 
 PIER = {"width_m": 0.3, "height_m": 1.2, "initial_rotation_rad": [0.05, 0.1]}
 

@@ -20,9 +20,6 @@ from rockbatch.batch.digests import program
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
-
 WITHOUT_ROCKBATCH = """
 import sys
 

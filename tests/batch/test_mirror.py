@@ -181,6 +181,7 @@ def test_a_journal_that_has_lost_one_of_two_mirror_images_gets_that_one_again(st
 # What is counted
 
 
+@pytest.mark.usefixtures("pages")
 def test_statistics_checks_and_the_report_count_mirror_images_once(study, tmp_path, capsys):
     out = tmp_path / "both"
     assert main(["run", str(without_histories(study())), "--out", str(out)]) == 1  # the check fails
@@ -197,7 +198,6 @@ def test_statistics_checks_and_the_report_count_mirror_images_once(study, tmp_pa
     assert suite(once["theta_max_over_alpha"].to_numpy(), list(once["status"])).count == ROWS // 2
 
 
-@pytest.mark.usefixtures("no_report")
 def test_analyses_simulate_one_polarity_and_say_so(study, tmp_path, capsys):
     path = study()
     text = path.read_text(encoding="utf-8")

@@ -26,6 +26,7 @@ KEYS = {
     "devices_work": {"devices_work": True},
     "half_cycles": {"half_cycles": True},
     "sections": {"sections": 3},
+    "interaction": {"interaction_m": [0.0]},
     "shocks": {},
     "intensity": {"intensity": True},
 }
@@ -95,7 +96,8 @@ def output_of(names):
 def study_of(folder, names, name="study.toml"):
     damper = {"kind": "friction", "f": 0.05, "at": "left"}
     cases = [RIGID, PADS, RIGID | {"name": "damped", "damper": [damper]}]
-    text = study_text(pier=PIER, pulses=[SINE | {"duration_s": 2.0}], cases=cases, output=output_of(names))
+    pier = PIER | {"mass_t": 400.0}
+    text = study_text(pier=pier, pulses=[SINE | {"duration_s": 2.0}], cases=cases, output=output_of(names))
     return write_study(folder, text, name)
 
 
@@ -106,13 +108,19 @@ def test_every_observer_is_deleted_below():
         "shocks",
         "half_cycles",
         "sections",
+        "interaction",
         "intensity",
     }
-    assert {name for name in OBSERVERS if brought(name)[2]} == {"rocking", "forces", "devices_work", "sections"}
+    assert {name for name in OBSERVERS if brought(name)[2]} == {
+        "rocking",
+        "forces",
+        "devices_work",
+        "sections",
+        "interaction",
+    }
 
 
 @pytest.mark.parametrize("name", [n if n in FAST else pytest.param(n, marks=pytest.mark.slow) for n in OBSERVERS])
-@pytest.mark.usefixtures("no_report")
 def test_an_observer_is_deleted_with_its_folder_and_its_name(tmp_path, name):
     """Tables of a study that asks for all others are the same to the byte, and its key is unknown."""
     study, asking = (
@@ -184,7 +192,6 @@ LAST = (
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("no_report")
 def test_an_observer_with_a_column_is_added_by_its_folder_and_its_name(tmp_path):
     """Its column and its demand are there, next to that of the angular velocity over p, which is the same."""
     copied = copy_of_package(tmp_path)

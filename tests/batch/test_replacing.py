@@ -5,8 +5,6 @@ from studies import RIGID, study_text, write_study
 
 from rockbatch.commands.cli import main
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 SMALL = {"cases": (RIGID,), "output": {"histories": "none"}}
 
 

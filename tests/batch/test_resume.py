@@ -19,8 +19,6 @@ from rockbatch.commands.cli import main
 from rockbatch.common.files import only_writer
 from rockbatch.workflow.running import _ranges as ranges
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 SIMULATED = 18 * 3
 RUNS = 2 * SIMULATED  # with the mirror images
 
@@ -160,6 +158,7 @@ def slowed_down(monkeypatch, seconds):
     monkeypatch.setattr(rockbatch.batch.threads, "outcomes_of", lambda *asked: (time.sleep(seconds), real(*asked))[1])
 
 
+@pytest.mark.usefixtures("pages")
 def test_an_interrupt_says_what_is_kept_and_the_same_command_goes_on(study, tmp_path, undisturbed, monkeypatch, capsys):
     real, groups = rockbatch.batch.threads.outcomes_of, []
 
@@ -248,6 +247,7 @@ shutil.copy("{disk}/out/peaks.csv", "{kept}")
     assert (kept / "peaks.csv").read_bytes() == undisturbed
 
 
+@pytest.mark.usefixtures("pages")
 def test_in_a_finished_folder_nothing_is_left_to_run_and_the_rest_is_made_again(
     study, finished, undisturbed, capsys, monkeypatch
 ):
@@ -313,6 +313,7 @@ def another_number(text):
     return text.replace("0.", "1.", 1)
 
 
+@pytest.mark.usefixtures("pages")
 def test_a_changed_table_is_reported_kept_and_replaced_only_on_request(study, tmp_path, finished, undisturbed, capsys):
     out = finished
     command = ["run", str(study), "--out", str(out)]

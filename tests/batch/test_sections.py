@@ -11,8 +11,6 @@ from rockbatch.commands.cli import main
 from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.results.sections import SECTIONS
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 PIER = {"width_m": 3.0, "height_m": 14.0, "mass_t": 400.0, "deck_mass_t": 200.0}
 CHECKS = [
     {"name": "moment", "demand": "section_moment_kNm", "at_m": 7.0, "at_most": 1e5, "reason": "drawing 7"},

@@ -9,8 +9,6 @@ import rockbatch as rb
 from rockbatch.motions import read_motions
 from rockbatch.results.shocks import MEANING, SHOCKS
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 PIER = rb.Pier(alpha=0.2, p=1.0)
 SOFT = rb.YieldingBase(beta=40, eta=2.0, spring="epp", zeta=0.1)
 SPRINGS = rb.ElasticBase(beta=30, zeta=0.2)

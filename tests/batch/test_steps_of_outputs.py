@@ -7,8 +7,6 @@ import pytest
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 
 @pytest.fixture
 def module(monkeypatch):

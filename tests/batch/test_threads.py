@@ -17,8 +17,6 @@ from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.threads import Threads
 from rockbatch.commands.cli import main
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 
 @pytest.mark.parametrize("jobs", [1, 2, 7])
 def test_threads_yield_every_run_once(study, runs, jobs):

@@ -12,8 +12,6 @@ from rockbatch.checks import read_verdicts
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 
 def test_all_passing_exits_with_0_and_writes_the_table(passing, capsys):
     assert main(["check", str(passing), "--all"]) == 0

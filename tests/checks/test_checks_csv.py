@@ -13,8 +13,6 @@ from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.results.checking import verdicts
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 
 def test_checks_csv_gives_the_verdicts_back(tmp_path):
     """Infinite, missing and varied values included."""

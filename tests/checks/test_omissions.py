@@ -278,7 +278,7 @@ def test_results_of_an_earlier_version_have_the_shaft_that_mu_tells(tmp_path, pi
 
 
 @pytest.mark.parametrize(("amplitudes", "decided"), [((0.03, 0.05), "pass"), ((0.03, 0.5), "not decided")])
-def test_a_study_is_decided_on_rigid_ground_only_if_its_pier_never_lands(tmp_path, no_report, amplitudes, decided):
+def test_a_study_is_decided_on_rigid_ground_only_if_its_pier_never_lands(tmp_path, amplitudes, decided):
     """A pier of 4 m × 30 m lifts off at 0.13 g."""
     pier = {"width_m": 4.0, "height_m": 30.0, "mass_t": 1000.0}
     pulses = [SINE | {"name": f"{amplitude}", "amplitude_g": amplitude} for amplitude in amplitudes]

@@ -14,6 +14,8 @@ from rockbatch.batch.preparing import run_count
 from rockbatch.commands.cli import main
 from rockbatch.study.suite import ground_motions
 
+pytestmark = pytest.mark.usefixtures("pages")
+
 STUDY = Path(rb.__file__).parents[1] / "configs" / "pier_with_deck.toml"
 STATIONS = {"NBLC", "PRPC", "1336", "HSES", "WTMC"}
 MEASURED = ["drift at the bearings", "uplift of the heel"]

@@ -13,8 +13,6 @@ from rockbatch.checks.rule_files import CHECK, load_rules
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 
 def problems(path):
     with pytest.raises(InputError) as caught:

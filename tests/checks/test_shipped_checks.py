@@ -8,8 +8,6 @@ from rules_of_checks import CONFIGS
 from rockbatch.checks.rule_files import load_rules
 from rockbatch.quantities.catalogue import DEMANDS, listed
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 
 def test_every_limit_of_the_set_for_stepping_piers_says_where_it_comes_from():
     rules = load_rules(CONFIGS / "checks/stepping_pier.toml")

@@ -18,8 +18,6 @@ from rockbatch.common.errors import InputError, MissingColumns
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.results.checking import verdicts
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 INF = math.inf
 
 

@@ -219,7 +219,6 @@ def test_a_suite_below_its_target_comes_first_and_leaves_nothing_green():
     assert lines([*met, *of_cases]) == lines(of_cases)
 
 
-@pytest.mark.usefixtures("no_report")
 def test_the_command_and_the_page_say_it_first_whatever_the_rules(tmp_path, capsys):
     below, met = (suite(tmp_path / name, over) for name, over in (("below", 0.76), ("met", 0.9)))
     rules = tmp_path / "rules.toml"
@@ -246,7 +245,6 @@ def test_the_command_and_the_page_say_it_first_whatever_the_rules(tmp_path, caps
     assert both.index("✓ Every check passes") < both.index("✗ The suite is below its target.")
 
 
-@pytest.mark.usefixtures("no_report")
 def test_a_study_without_checks_is_compared_with_its_target_only(tmp_path, capsys):
     for over, code in ((0.76, 1), (0.9, 0)):
         out = suite(tmp_path / f"{over}", over, "")
@@ -299,7 +297,6 @@ def test_records_that_need_too_large_a_factor_leave_no_suite_below_its_target(tm
     ]
 
 
-@pytest.mark.usefixtures("no_report")
 def test_a_run_of_a_suite_below_its_target_ends_with_1(tmp_path, capsys):
     near_fault(tmp_path, factors="each")
     assert main(["run", str(tmp_path / "study.toml"), "--out", str(tmp_path / "out")]) == 1
@@ -326,6 +323,7 @@ def test_pulses_are_in_no_mean_that_is_held_against_a_target(tmp_path, monkeypat
     np.testing.assert_array_equal(with_pulse["spectra"]["mean_sa_g"], info["spectra"]["mean_sa_g"])
 
 
+@pytest.mark.usefixtures("pages")
 def test_a_target_beyond_its_code_and_components_apart_are_remarked_on(tmp_path, capsys):
     """Z R = 0.74 of NZS 1170.5, which caps it at 0.7, and a code's spectrum for each component of five pairs."""
     near_fault(tmp_path, factors="none")

@@ -18,8 +18,6 @@ from rockbatch.commands.cli import main
 from rockbatch.reporting import write_report
 from rockbatch.results.checking import verdicts
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 
 def test_the_table_fits_a_hundred_columns(tmp_path, capsys):
     table = pd.concat([runs([0.1, 0.4], "pads", beta=b, status=["ok", "flight"]) for b in (40.0, 50.0)])
@@ -152,8 +150,8 @@ def test_every_verdict_has_a_sign_and_a_word_that_the_terminal_can_show(passing,
     assert f"0.4 {expected[0][0]} 80 %" in terminal.buffer.getvalue().decode(encoding)
 
 
-def test_the_verdicts_stand_in_the_report(tmp_path, monkeypatch):
-    monkeypatch.undo()  # that page is made
+@pytest.mark.usefixtures("pages")
+def test_the_verdicts_stand_in_the_report(tmp_path):
     study = rules_file(tmp_path / "pier.toml", STUDY)
     assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
     report = tmp_path / "out/report.html"

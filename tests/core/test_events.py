@@ -4,7 +4,6 @@ import functools
 import math
 from itertools import permutations
 
-import numba
 import numpy as np
 import pytest
 from core_samples import EVERY_KIND, FIG5, broadband, hard_case, hard_seeds, pulse, steady
@@ -16,6 +15,7 @@ from rockbatch import simulate
 from rockbatch.core.block.equations import constrained, on_side
 from rockbatch.core.block.model import Rocking
 from rockbatch.core.ground import later
+from rockbatch.core.kernel import entry
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import NEAR, hermite, largest_within, lowest_within, turning_point
 from rockbatch.core.search import EventFunctions, _earliest, nearby
@@ -112,7 +112,7 @@ def test_order_is_about_one_when_events_are_not_located(base, motion):
     assert fine > 1e4 * errors(base, motion, 128, True)[0]
 
 
-@numba.njit(error_model="numpy", _nrt=False)
+@entry
 def taken(m, now, ground, x):
     """Start and end of a step over ``x``."""
     start, there = (
@@ -123,7 +123,7 @@ def taken(m, now, ground, x):
     return start, Instant(end, rates(m, end, now.contact, there), now.contact, now.supports, there)
 
 
-@numba.njit(error_model="numpy", _nrt=False)
+@entry
 def near_an_end(m, now, ground, t, x):
     start, end = taken(m, now, ground, t)
     return nearby(m, start, end, t, x)

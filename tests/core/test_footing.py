@@ -2,7 +2,6 @@
 
 import math
 
-import numba
 import numpy as np
 import pytest
 from footing_reference import GRAVITY, Foot, bed, solve
@@ -11,11 +10,12 @@ from footing_runs import closed_form, model_of, run
 from rockbatch.core.footing.model import FIRST, SET, State
 from rockbatch.core.footing.statics import lean, level_at
 from rockbatch.core.footing.strips import last_node, lay, push, settle, sinking, stored, sum_sets
+from rockbatch.core.kernel import entry
 
 DT = 0.01
 
 
-@numba.njit
+@entry
 def moments(m, rotations, out):
     """Moments about the middle at rotations of an unyielded bed under the weight."""
     lay(m)

@@ -96,6 +96,7 @@ def test_the_worked_design_is_its_study_and_has_its_statics():
         ]
 
 
+@pytest.mark.usefixtures("pages")
 def test_the_pier_on_both_axes_comes_to_what_a_hand_makes_of_its_peaks(tmp_path, monkeypatch, capsys):
     page = ROOT / "docs" / "pages" / "questions" / "axes.md"
     (tmp_path / "records").symlink_to(ROOT / "motions" / "near_fault")

@@ -77,6 +77,7 @@ def test_what_is_no_example_is_answered_with_those_that_are():
         copy("fig8", Path("mine"), "pier.toml")
 
 
+@pytest.mark.usefixtures("pages")
 def test_init_and_then_the_command_that_it_names_lead_to_a_report(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["init", "mine"]) == 0

@@ -1,14 +1,27 @@
 """Runs by the core itself, of blocks that start in motion, which the public interface does not offer."""
 
+import math
+
 import numpy as np
 
 from rockbatch.core.block.lanes import line_of, system_of
 from rockbatch.core.block.model import Block
+from rockbatch.core.devices.lanes import equipment_of
+from rockbatch.core.devices.pull import Devices
 from rockbatch.core.history import MOMENT
 from rockbatch.core.run import march
 from rockbatch.motions.motion import Samples
 
 SYSTEM = system_of(None)
+
+
+def devices_of(elements, states=(), level=math.nan):
+    """Return the Devices of one run, at rest or in the ``states`` in which they are held; None without any."""
+    equipment = equipment_of(SYSTEM, [(elements, states, level)])
+    if equipment is None:
+        return None
+    of_run = {name: getattr(equipment, name)[0] for name in Devices._fields if name != "bound_steps"}
+    return Devices(**of_run, bound_steps=equipment.bound_steps)
 
 
 def block_line(m: Block, theta: float, omega: float, dt: float, substeps: int, npts: int, quiet_samples: int = 0):

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from core_runs import devices_of
 
 import rockbatch as rb
 from rockbatch.common.units import GRAVITY
@@ -23,7 +24,7 @@ from rockbatch.core.devices.events import (
     settle_friction,
 )
 from rockbatch.core.devices.laws import FRICTION
-from rockbatch.core.devices.pull import START, device_rates, devices_of, step_resolving_devices
+from rockbatch.core.devices.pull import START, device_rates, step_resolving_devices
 from rockbatch.core.springs.lanes import LANE, static_contact, static_state
 from rockbatch.core.system import rates, status_at_sample
 from rockbatch.core.table import put, table

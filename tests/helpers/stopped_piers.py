@@ -1,5 +1,6 @@
 """Bases that the tests of stops, deck springs and braces share, and a block thrown against these."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 from core_samples import pulse
 
 from rockbatch.core.block import lanes
-from rockbatch.core.devices.pull import devices_of
+from rockbatch.core.devices.lanes import equipment_of
 from rockbatch.core.history import MOMENT
 from rockbatch.core.run import march
 from rockbatch.pier import ElasticBase, RigidBase, YieldingBase
@@ -57,9 +58,9 @@ def thrown(pier, base, omega, dt=2e-3, samples=700, substeps=8):
     """Rows of a block on still ground that leaves θ = 0 at the velocity ``omega``, and the use of its devices."""
     m, ground = block(pier, base), np.zeros((samples, 4))
     kind, line = lanes.system_of(m), lanes.line_of(m, 0.0, omega, dt, substeps, 0, 0, samples, 0)
-    devices = devices_of(elements(pier, base))
-    history = np.zeros((80_000, len(MOMENT) + len(kind.columns) + len(devices.x) + 2))
+    devices = equipment_of(kind, [(elements(pier, base), (), math.nan)])
+    history = np.zeros((80_000, len(MOMENT) + len(kind.columns) + devices.x.shape[1] + 2))
     flag = np.zeros(1, np.uint8)
     result = march(kind, [line], ground, flag, substeps, every_step=True, history=history[None], devices=devices)[0]
     names = [*MOMENT, *kind.columns]
-    return np.rec.fromarrays(history[: result.rows, : len(names)].T, names=names), devices.use
+    return np.rec.fromarrays(history[: result.rows, : len(names)].T, names=names), devices.use[0]

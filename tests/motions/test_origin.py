@@ -220,6 +220,7 @@ def test_real_records_have_names_of_words_where_their_headers_have_them():
     assert named["RSN825_CAPEMEND_CPM000"] == "Cape Mendocino 1992, Cape Mendocino, 000"
 
 
+@pytest.mark.usefixtures("pages")
 def test_tables_keep_the_name_and_report_terminal_and_run_json_say_the_words(tmp_path, capsys):
     records = tmp_path / "records"
     write_at2(records, "CHAN24.AT2", wiggle(400, scale=0.5), title="IMPERIAL VALLEY, 10/15/79, MELOLAND, 270")

@@ -210,6 +210,7 @@ def test_a_vertical_that_does_not_last_over_the_peak_is_none(tmp_path):
     assert len(read_motions(tmp_path, vertical="required").unusable) == 1
 
 
+@pytest.mark.usefixtures("pages")
 def test_run_and_its_report_name_the_records_without_a_vertical(tmp_path, capsys):
     with_one_vertical(tmp_path / "records")
     study_of(tmp_path, '[output]\nhistories = "none"\n')

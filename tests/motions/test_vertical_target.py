@@ -117,6 +117,7 @@ def test_a_study_scales_both_components_apart(tmp_path):
     assert over.min() >= 0.45 * (1 - 1e-9)
 
 
+@pytest.mark.usefixtures("pages")
 def test_results_say_what_the_vertical_components_were_scaled_by(tmp_path):
     rb.run(study(tmp_path, select={"pga_g": [0.3, 0.35]}, vertical_target=VERTICAL), out=tmp_path / "out")
     info = rb.open_results(tmp_path / "out").info

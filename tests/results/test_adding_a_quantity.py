@@ -33,6 +33,7 @@ print(as_markdown())
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("pages")
 def test_a_quantity_is_added_by_a_row_of_the_catalogue(tmp_path):
     shutil.copytree(TOP, tmp_path / "rockbatch", ignore=shutil.ignore_patterns("*.nb[ci]"))
     path = tmp_path / "rockbatch" / "quantities" / "catalogue.py"

@@ -324,6 +324,7 @@ TARGET = {
         ({"range_s": [0.1]}, ""), ({"sa_g": [0.0, 0.0]}, ""),
     ],
 )  # fmt: skip
+@pytest.mark.usefixtures("pages")
 def test_a_damaged_target_is_refused_or_left_out(foreign, wrong, words):
     info = json.loads((foreign / "run.json").read_text(encoding="utf-8")) | {"target": TARGET | wrong}
     (foreign / "run.json").write_text(json.dumps(info), encoding="utf-8")
@@ -348,6 +349,7 @@ def test_an_unknown_way_of_counting_is_refused(foreign, count):
 
 
 @pytest.mark.parametrize("more", [{"target_sa_g": [1.0]}, {"mean_sa_g": [], "target_sa_g": []}])
+@pytest.mark.usefixtures("pages")
 def test_spectra_that_do_not_fit_their_periods_are_not_drawn(foreign, more):
     info = json.loads((foreign / "run.json").read_text(encoding="utf-8"))
     info["spectra"] |= more
@@ -441,6 +443,7 @@ def test_a_folder_of_another_version_that_cannot_be_read_names_it(foreign, wrong
 # What a terminal would obey
 
 
+@pytest.mark.usefixtures("pages")
 def test_nothing_of_a_foreign_folder_reaches_terminal_or_report_as_a_command(tmp_path, capsys):
     bell = "\x1b]0;owned\x07\x1b[2J\x9b31m\u202e\u200b\u3164\U000e0041"
     write_results(

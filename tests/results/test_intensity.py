@@ -179,6 +179,7 @@ def pairs_study(folder, **motions):
     return write_study(folder, text)
 
 
+@pytest.mark.usefixtures("pages")
 def test_measures_of_pairs_are_of_both_components_and_empty_without_one(tmp_path):
     write_pairs(tmp_path, lone=("RSN2_B_090",))
     rb.run(pairs_study(tmp_path), out=tmp_path / "out")

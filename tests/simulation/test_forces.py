@@ -30,6 +30,7 @@ def cells(folder):
     return pd.read_csv(folder / "peaks.csv", dtype=str, keep_default_na=False)
 
 
+@pytest.mark.usefixtures("pages")
 def test_who_does_not_ask_has_the_same_columns_and_bytes_without_those_of_forces(tmp_path):
     for name, forces in (("with", True), ("without", False)):
         path = study(tmp_path, forces=forces, name=f"{name}.toml", motions={"polarity": ["+", "-"]})
@@ -129,6 +130,7 @@ def test_no_interface_has_less_than_no_friction(tmp_path, friction):
         rb.simulate(rb.Pier(0.2, 1.0), rb.RigidBase(friction=friction), rb.Motion("still", 0.01, np.zeros(9)))
 
 
+@pytest.mark.usefixtures("pages")
 def test_a_list_of_frictions_is_a_case_each_and_those_that_slide_are_named(tmp_path, capsys):
     cases = (RIGID | {"friction": [0.1, 0.9]}, ON_PADS | {"friction": 0.9, "flight": "guided"})
     check = [{"name": "keys", "demand": "friction_demand", "at_most": 0.3, "reason": "r", "case": "rigid"}]

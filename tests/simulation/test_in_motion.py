@@ -83,6 +83,7 @@ def test_a_fixed_step_claims_no_error_of_it():
     assert fixed.theta_max_in_motion_error is None
 
 
+@pytest.mark.usefixtures("pages")
 def test_the_page_and_the_terminal_say_so_and_a_check_that_it_breaks_fails(tmp_path, capsys, failed):
     least = (failed.theta_max_in_motion - failed.theta_max_in_motion_error) / PIER.alpha
     rule = {"demand": "theta_max_over_alpha", "statistic": "max", "basis": "judgement", "reason": "r"}

@@ -18,8 +18,6 @@ from rockbatch.study import Study, load_study
 from rockbatch.study.both_axes import across
 from rockbatch.study.suite import ground_motions
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 PIER = {"width_m": 3.0, "height_m": 20.0, "mass_t": 700.0}
 BLOCK = RIGID | {"name": "rock", "other_width_m": 4.0}
 PADS = {"name": "pads", "base": "yielding", "stiffness_kN_m": 9e5, "yield_kN": 9000.0, "other_width_m": 4.0}

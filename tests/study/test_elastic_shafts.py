@@ -9,8 +9,6 @@ from studies import study_text, write_study
 import rockbatch as rb
 from rockbatch.commands.cli import main
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 SHAFT = {"width_m": 8.0, "height_m": 40.0, "mass_t": 3000.0, "flexural_period_s": 0.9}
 ROCK = {"name": "rock", "base": "rigid"}
 SOFT = {"name": "soft", "base": "elastic", "beta": 60.0, "shaft": "elastic"}

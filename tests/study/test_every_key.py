@@ -803,7 +803,6 @@ def _takes_long(header):
 @pytest.mark.parametrize(
     "header", [pytest.param(header, marks=pytest.mark.slow) if _takes_long(header) else header for header in USES]
 )
-@pytest.mark.usefixtures("no_report")
 def test_another_value_of_every_key_tells(header, uncompiled):
     idle = {key: use.value for key, use in USES[header].items() if not outcome(use, key, uncompiled)}
     assert not idle

@@ -8,8 +8,6 @@ from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.study.suite import ground_motions
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 TABLES = {
     "title": "Pier 4",
     "notes": 'Soil class "C".\n\nA backslash \\n stays one.',
@@ -174,7 +172,8 @@ def test_runs_of_motions_from_python_are_those_of_their_files(tmp_path):
 
 
 @pytest.mark.parametrize("way", ["tables", "changed"])
-def test_a_study_that_no_file_holds_names_none_in_what_repeats_it(tmp_path, monkeypatch, way):
+@pytest.mark.usefixtures("pages")
+def test_a_study_that_no_file_holds_names_none_in_what_repeats_it(tmp_path, way):
     """A file of that name may be another study; the report says how to have more histories without a command."""
     path = write_study(tmp_path, study_text(cases=[RIGID]))
     study = rb.load_study(path)
@@ -182,7 +181,6 @@ def test_a_study_that_no_file_holds_names_none_in_what_repeats_it(tmp_path, monk
     other = study.with_(title="Other", output={"histories": "worst"})
     if way == "tables":
         other = rb.Study.from_toml(other.text, tmp_path / "gone.toml")
-    monkeypatch.undo()  # that page is made
     rb.run(other, tmp_path / "out")
     assert rb.open_results(tmp_path / "file").info["command"][:3] == ["rockbatch", "run", str(path)]
     assert rb.open_results(tmp_path / "out").info["command"][:3] == ["rockbatch", "run", "(study from Python)"]

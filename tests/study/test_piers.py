@@ -17,8 +17,6 @@ from rockbatch.pier import Part, Pier, places
 from rockbatch.study import load_study
 from rockbatch.study.inputs import varied
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 PULSE = (
     '[[motions.pulse]]\nname = "sine"\nshape = "sine"\namplitude_g = 0.2\nperiod_s = 1.0\ndt_s = 0.01\nduration_s = 2\n'
 )

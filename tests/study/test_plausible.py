@@ -17,8 +17,6 @@ from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.pier import unlikely_devices
 from rockbatch.study import load_study
 
-pytestmark = pytest.mark.usefixtures("no_report")
-
 PULSE = (
     '[[motions.pulse]]\nname = "sine"\nshape = "sine"\namplitude_g = 0.2\nperiod_s = 1.0\ndt_s = 0.01\nduration_s = 2\n'
 )

@@ -74,6 +74,7 @@ def test_a_pier_that_overturns_has_no_peak_to_doubt():
     assert (row["beyond_linearised"], row["note"]) == (0, "")
 
 
+@pytest.mark.usefixtures("pages")
 def test_the_terminal_and_the_report_say_so(tmp_path, capsys):
     case = {"name": "springs", "base": "elastic", "beta": 60, "epsilon": 0.1}
     pulses = (SINE, SINE | {"name": "strong", "amplitude_g": 2.5, "period_s": 1.0})

@@ -19,7 +19,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.units import GRAVITY
 from rockbatch.core import types
 from rockbatch.core.block import lanes
-from rockbatch.core.devices.pull import devices_of
+from rockbatch.core.devices.lanes import equipment_of
 from rockbatch.core.history import MOMENT
 from rockbatch.core.run import march
 from rockbatch.motions.motion import Motion
@@ -48,8 +48,8 @@ def free(pier, foundation, theta, dt=1e-3, samples=STILL, substeps=4):
     """History of a block that is let go at ``theta`` [rad], with every step."""
     m, ground = block(pier, foundation), np.zeros((len(samples), 4))
     kind, line = lanes.system_of(m), lanes.line_of(m, theta, 0.0, dt, substeps, 0, 0, len(samples), 0)
-    devices = devices_of(elements(pier, foundation))
-    history = np.zeros((80_000, len(MOMENT) + len(kind.columns) + len(devices.x) + 2))
+    devices = equipment_of(kind, [(elements(pier, foundation), (), math.nan)])
+    history = np.zeros((80_000, len(MOMENT) + len(kind.columns) + devices.x.shape[1] + 2))
     found = march(kind, [line], ground, GOES_ON, substeps, every_step=True, history=history[None], devices=devices)[0]
     names = [*MOMENT, *kind.columns]
     return np.rec.fromarrays(history[: found.rows, : len(names)].T, names=names)
@@ -531,6 +531,7 @@ def test_impossible_devices_are_refused():
     assert problems(frame, base(Tendon(psi=0.1), Damper("viscous", nu=0.1))) == []
 
 
+@pytest.mark.usefixtures("pages")
 def test_what_a_folder_keeps_of_dampers_comes_back(tmp_path):
     """Loops in the file and the report; the energy of a history is that of the ledger."""
     text = """

@@ -33,6 +33,7 @@ from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.observers import observers_beside
 from rockbatch.batch.threads import Engine
 from rockbatch.batch.waves import Waves
+from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import PASS, Verdict, as_table
 from rockbatch.common.arguments import checked
@@ -270,6 +271,9 @@ def _described(trials: Trials, spec: DesignSpec, written: Written, study: Study)
         "bounds": [bound.as_in_run_json() for bound in study.bounds],
         "checks": [rule.name for rule in study.checks],
         "without_limit": list(trials.free),
+        "omitted": [
+            {"checks": list(checks), "remark": OMISSIONS[name].remark} for name, checks in trials.omitted.items()
+        ],
         "tried": len(trials.judged),
         "passing": len(passing),
         "refused": refused,

@@ -188,6 +188,8 @@ def _remarks(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
         yield NOT_DECIDED, f"Between the values of {other['path']}, {other['step']:.4g} apart, nothing was run."
     if info["without_limit"]:
         yield NOT_DECIDED, f"No limit is set on {', '.join(info['without_limit'])}, of designs that pass."
+    for omitted in info["omitted"]:
+        yield NOT_DECIDED, f"{', '.join(omitted['checks'])}: {omitted['remark']}."
     if info["unusable"]:
         files = counted(info["unusable"], "file")
         yield NOT_DECIDED, f"{files} of the suite could not be used: what passes does so without these."

@@ -14,6 +14,7 @@ from rockbatch.study import Study
 from rockbatch.study.bound_keys import key_at, why_fixed
 from rockbatch.study.tables import name_of
 from rockbatch.toml.kinds import KindError, Other, Whole, choice, number, positive, text
+from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table
 from rockbatch.toml.section import Key, Section
 
@@ -85,6 +86,9 @@ def _end(value: object) -> float | tuple[float, ...]:
     return number(value[0]), number(value[1])
 
 
+_CALLED = names(
+    {"least": "smallest lowest minimum minimal min", "greatest": "largest highest biggest maximum maximal max"}
+)
 _RANGE = {"anyOf": [{"type": "number"}, {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}]}
 
 DESIGN = Section(
@@ -108,7 +112,10 @@ DESIGN = Section(
             distinct=False,
         ),
         "find": Key(
-            choice("least", "greatest"), '"least"', "Which of the passing values is looked for.", required=True
+            choice("least", "greatest", called=_CALLED),
+            '"least"',
+            "Which of the passing values is looked for.",
+            required=True,
         ),
         "points": Key(
             Whole(2, "a whole number from 2 to 1000", 1000),
@@ -125,6 +132,15 @@ DESIGN = Section(
             required=True,
         ),
     },
+    also=names(
+        {
+            "vary": "key parameter variable",
+            "between": "range limits bounds interval",
+            "points": "steps number values",
+            "width": "tolerance resolution accuracy",
+            "find": "goal objective search",
+        }
+    ),
 )
 SECTIONS = (DESIGN,)
 

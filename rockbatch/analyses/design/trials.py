@@ -118,9 +118,11 @@ class Written:
 
 
 class Trials:
-    """All trials, each run and judged once; ``verdicts`` has those of every check, ``free`` the responses without a limit.
+    """All trials, each run and judged once; ``verdicts`` has those of every check.
 
-    ``suite`` returns the verdicts on the suite with the cases of a trial: under one that fails nothing is decided.
+    Of those that pass ``free`` has the responses without a limit, and ``omitted`` the checks whose demands leave something out,
+    by its name in :data:`rockbatch.checks.omissions.OMISSIONS`. ``suite`` returns the verdicts on the suite with the cases of a
+    trial: under one that fails nothing is decided.
     """
 
     def __init__(self, written: Written, motions: MotionSet, waves: Waves, suite: OnSuite) -> None:
@@ -128,6 +130,7 @@ class Trials:
         self.judged: dict[Trial, Judged] = {}
         self.verdicts: list[Verdict] = []
         self.free: dict[str, None] = {}
+        self.omitted: dict[str, dict[str, None]] = {}
 
     def execute(self, requested: Iterable[Trial]) -> None:
         """Run and judge trials that are not yet."""
@@ -175,6 +178,9 @@ class Trials:
             if judged.verdict == PASS:
                 free = unlimited(worst.get(key, []), own)
                 self.free |= dict.fromkeys(RESPONSES[each.demand].words for each in free)
+                for verdict in own:
+                    for name in verdict.omitted:
+                        self.omitted.setdefault(name, {})[verdict.check] = None
 
 
 def _as_written(sections: Sequence[Mapping[str, Any]]) -> "pd.DataFrame":

@@ -15,6 +15,7 @@ from rockbatch.core.block.equations import (
     side_of,
 )
 from rockbatch.core.block.model import Block, Rocking, Stance
+from rockbatch.core.block.passing import NEAR_FLIGHT
 from rockbatch.core.devices.events import leave_rest
 from rockbatch.core.devices.laws import CLOSES, OPENS
 from rockbatch.core.devices.pull import about_to_turn, loaded_soon
@@ -52,9 +53,6 @@ NEARBY = 1e-6
 HARDLY = 1e-300
 """Least velocity [rad/s] that has a sign."""
 
-NEAR_FLIGHT = 0.3
-"""Normal force over M g above which contact is not lost and regained within a sub-step."""
-
 RESTING = Stance(1.0, 1.0, 0.0, 0.0)
 
 
@@ -63,6 +61,13 @@ def lifting(m, devices, y, side, ground):
     """Return the acceleration [rad/s²] towards ``side`` of a block at rest, were it to begin to rock about that pivot."""
     under = about_to_turn(devices, m, y, on_side(side), OPENS)
     return side * rates(under, y, on_side(side), ground).omega
+
+
+@kernel
+def resistance(m, devices, y, side):
+    """Return the acceleration [rad/s²] by which devices alone keep a block at rest from rocking about its pivot on ``side``."""
+    pull = about_to_turn(devices, m, y, on_side(side), OPENS).pull
+    return m.quickness * (side * pull.moment + pull.force * m.half_width)
 
 
 @hook

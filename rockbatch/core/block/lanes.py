@@ -7,8 +7,10 @@ from rockbatch.core import system
 from rockbatch.core.block import events, passing  # noqa: F401  hooks of the block
 from rockbatch.core.block.ending import set_deadline
 from rockbatch.core.block.equations import clearances, constrained, on_side
+from rockbatch.core.block.events import resistance
 from rockbatch.core.block.model import NUMBERS, Block, BlockTraits, Numbers, Rocking, Stance, Tilt
 from rockbatch.core.clock import COMMON, TIMING, include_height
+from rockbatch.core.devices.laws import FRICTION, PASSED
 from rockbatch.core.kernel import inlined
 from rockbatch.core.system import System
 from rockbatch.core.table import get, lanes_of, put, taken
@@ -30,6 +32,8 @@ class Bounds(NamedTuple):
     share: float  # μ/(1+μ)
     sine_squared: float  # sin² α
     radius: float  # R0 [m]
+    held_left: float  # acceleration by which devices hold a block at rest on its left pivot [rad/s²], 0 without any
+    held_right: float
 
 
 LANE = lanes_of(
@@ -82,9 +86,8 @@ def _model(traits, lanes, i):
 @system.pier_in.of(BlockTraits)
 def pier_in(traits, lanes, i):
     """Return the Block of lane ``i`` and its Moment, without supports."""
-    m, contact, y = _model(traits, lanes, i), get(lanes.contact, i, Stance), get(lanes.now, i, Rocking)
-    if traits.pull is None:  # the pass advances θ and its rate only
-        y = constrained(m, y, contact)
+    m, contact = _model(traits, lanes, i), get(lanes.contact, i, Stance)
+    y = constrained(m, get(lanes.now, i, Rocking), contact)  # the pass advances θ and its rate only
     return m, Moment(y, contact, None)
 
 
@@ -96,6 +99,7 @@ def begin(traits, lanes, i, run):
     size = math.hypot(run.half_width, run.height)
     bounds.tangent[i], bounds.share[i] = run.half_width / run.height, size * run.p * run.p / run.gravity
     bounds.sine_squared[i], bounds.radius[i] = math.sin(alpha) * math.sin(alpha), size
+    bounds.held_left[i] = bounds.held_right[i] = 0.0
     at_rest = run.theta == 0.0 and run.omega == 0.0
     leans = run.theta if run.theta != 0.0 else run.omega
     side = RIGHT if leans > 0.0 else LEFT
@@ -124,9 +128,20 @@ def take_in_part(traits, lanes, i, m, part, after):
         lanes.contact.top[i] = RIGHT if after.y.theta > 0.0 else LEFT  # the deck lay on both corners
 
 
+@system.note_devices.of(BlockTraits)
+def note_devices(traits, lanes, i, devices):
+    """Record by how much devices resist the uplift of a block at rest; return True if it is."""
+    m, now = pier_in(traits, lanes, i)
+    rests = now.contact.left != 0.0 and now.contact.right != 0.0
+    if devices is not None and rests:
+        lanes.bounds.held_left[i] = resistance(m, devices, now.y, LEFT)
+        lanes.bounds.held_right[i] = resistance(m, devices, now.y, RIGHT)
+    return rests
+
+
 def system_of(m):
     """Return the System of the pier ``m`` (Block)."""
-    return System(BlockTraits(), Line, LANE, Rocking._fields + Stance._fields)
+    return System(BlockTraits(), Line, LANE, Rocking._fields + Stance._fields, (*PASSED, FRICTION))
 
 
 def line_of(m, theta, omega, *timing):

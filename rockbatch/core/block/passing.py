@@ -7,14 +7,22 @@ lane does not depend on its neighbours, so that a run gives the same bits in any
 from rockbatch.core import system
 from rockbatch.core.block.equations import side_of
 from rockbatch.core.block.model import BlockTraits, Rocker, Stance, Tilt
-from rockbatch.core.clock import CALM, EVENTFUL, STANDS, ground_at, peak_at_end
+from rockbatch.core.clock import CALM, EVENTFUL, ON_ITS_SIDE, STANDS, ground_at, peak_at_end
+from rockbatch.core.devices.passing import integrate, settle
+from rockbatch.core.ground import later
 from rockbatch.core.kernel import inlined
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import inner_points
 from rockbatch.core.system import rates
 from rockbatch.core.table import get
 from rockbatch.core.trigonometry import FLAT
-from rockbatch.core.types import Instant
+from rockbatch.core.types import LEFT, RIGHT, Instant, Pull
+
+NEAR_FLIGHT = 0.3
+"""Normal force over M g above which contact is not lost and regained within a sub-step."""
+
+SURELY = 1e-9
+"""Resistance to uplift at rest, in units of p², that is more than rounding."""
 
 
 @inlined
@@ -68,3 +76,51 @@ def one_pass(traits, lanes, count, substep, settings):
     """Integrate the first ``count`` lanes over a sub-step."""
     for i in range(count):
         _pass_over(lanes, i, substep, settings)
+
+
+@inlined
+def _resists(m, side, held, ground):
+    """Return the acceleration [rad/s²] by which a block at rest resists uplift about its pivot on ``side``."""
+    return m.quickness * ((m.gravity + ground.vertical) * m.half_width + side * ground.horizontal * m.height) + held
+
+
+@inlined
+def _judged(traits, lanes, shared, i, substep, settings):
+    """Set the step status of lane ``i`` with devices, and advance the lane if its sub-step is calm.
+
+    The normal force, known at both ends, decides as in the search for events whether the block may take off.
+    """
+    m, y, stance = system.in_pass(traits, lanes, i)
+    h, end, side, bounds = lanes.clock.step[i], get(shared.stage, i, y), side_of(stance), lanes.bounds
+    lanes.end.theta[i], lanes.end.omega[i] = end.theta, end.omega
+    ground = ground_at(lanes, i, substep * h)
+    ground_end = later(ground, h)
+    pull, pull_end = get(shared.start_pull, i, Pull), get(shared.pull, i, Pull)
+    normal = m.gravity + ground.vertical + lanes.rates.v_rate[i] + pull.force
+    normal_end = m.gravity + ground_end.vertical + shared.rates.v_rate[i] + pull_end.force
+    tilt, tilt_end = side * y.theta, side * end.theta
+    early, late = inner_points(tilt, side * y.omega, tilt_end, side * end.omega, h)
+    lowest, highest = min(early, late), max(early, late)
+    stays = min(min(lowest, tilt_end), min(tilt, ON_ITS_SIDE - tilt_end))
+    presses = min(normal_end, normal) - NEAR_FLIGHT * m.gravity
+    moves = min(min(stays, presses), min(shared.verdict.clear[i], 1.0 - lanes.step_status.watched[i]))
+    left, right = bounds.held_left[i], bounds.held_right[i]
+    holds = min(_resists(m, LEFT, left, ground), _resists(m, LEFT, left, ground_end))
+    holds = min(holds, min(_resists(m, RIGHT, right, ground), _resists(m, RIGHT, right, ground_end)))
+    rests = min(holds - SURELY * m.p * m.p, stance.left - 0.5)
+    stands = min(moves if side != 0.0 else rests, 0.5 if settings.locate else -0.5) > 0.0
+    eventful = CALM if stands else EVENTFUL
+    calm = max(highest - lanes.peak.theta[i] if y.omega * end.omega < 0.0 else -1.0, eventful) <= 0.0
+    peak_at_end(lanes, i, tilt_end if calm else 0.0, substep)
+    lanes.now.theta[i] = end.theta if calm else y.theta
+    lanes.now.omega[i] = end.omega if calm else y.omega
+    lanes.step_status.kind[i] = max(eventful, CALM if calm else STANDS)
+
+
+@system.pass_with_devices.of(BlockTraits)
+def pass_with_devices(traits, lanes, equipment, count, substep, settings):
+    """Integrate the first ``count`` lanes over a sub-step; flight is left to scalar code."""
+    whole = integrate(traits, lanes, equipment, count, substep)
+    for i in range(whole):
+        _judged(traits, lanes, equipment.shared[0], i, substep, settings)
+    settle(traits, lanes, equipment, count, whole)

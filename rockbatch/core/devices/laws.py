@@ -19,6 +19,9 @@ MAXWELL = 4.0  # a viscous damper in series with a spring, its brace
 CONTACT = 5.0  # a stop
 SPRING = 6.0
 
+PASSED = (VISCOUS, HYSTERETIC, TENDON, SPRING)
+"""Kinds that the vector pass takes on springs. On them friction sticks in most sub-steps, which scalar code has to take."""
+
 DAMPERS = {"friction": FRICTION, "viscous": VISCOUS, "hysteretic": HYSTERETIC}
 """Kinds of dampers without a brace by their names in studies."""
 
@@ -103,7 +106,7 @@ def slip_rate(of, pull):
 
 
 @inlined
-def _viscous(of, speed):
+def viscous(of, speed):
     """Return the Response of a viscous damper."""
     if abs(speed) < of.linear_below:
         pull = of.slope * speed
@@ -146,6 +149,20 @@ def _stop(of, elongation, speed, deepest, mode):
 
 
 @inlined
+def without_powers(of, elongation, speed, state, mode, goes):
+    """Return the Response of an element whose law needs no call of ``pow``; of a viscous damper its linear part."""
+    if of.kind == VISCOUS:
+        return Response(of.slope * speed, 0.0, of.slope * speed * speed)
+    if of.kind == TENDON:
+        return _tendon(of, elongation, speed, state, mode)
+    if of.kind == HYSTERETIC:
+        return _hysteretic(of, speed, state, goes)
+    if of.kind == FRICTION:
+        return Response(of.strength * goes, 0.0, of.strength * goes * speed)
+    return Response(tension(of, elongation, state), 0.0, 0.0)
+
+
+@inlined
 def response(of, elongation, speed, state, mode, goes):
     """Return the Response of an element in ``mode`` that ``goes`` OPENS, CLOSES or STICKS.
 
@@ -153,18 +170,12 @@ def response(of, elongation, speed, state, mode, goes):
     greatest compression [m] of a stop.
     """
     if of.kind == VISCOUS:
-        return _viscous(of, speed)
-    if of.kind == TENDON:
-        return _tendon(of, elongation, speed, state, mode)
-    if of.kind == HYSTERETIC:
-        return _hysteretic(of, speed, state, goes)
-    if of.kind == FRICTION:
-        return Response(of.strength * goes, 0.0, of.strength * goes * speed)
+        return viscous(of, speed)
     if of.kind == MAXWELL:
         return _braced(of, speed, state)
     if of.kind == CONTACT:
         return _stop(of, elongation, speed, state, mode)
-    return Response(tension(of, elongation, state), 0.0, 0.0)
+    return without_powers(of, elongation, speed, state, mode, goes)
 
 
 @kernel

@@ -11,18 +11,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.core.devices.elongation import GAP, attitude, gap_of, lifted, put_gap
+from rockbatch.core.devices.elongation import attitude, gap_of, lifted, put_gap
 from rockbatch.core.devices.laws import (
     CLOSES,
     CONTACT,
-    ELEMENT,
     FRICTION,
     HYSTERETIC,
     MAXWELL,
     OPENS,
     SLACK,
     STICKS,
-    USE,
     VISCOUS,
     force,
     mode_of,
@@ -78,29 +76,9 @@ class Devices(NamedTuple):
     ended: np.ndarray  # 1 if the next step goes on from the end of the last one; force [m/s²] and moment [m²/s²] there
 
 
-def _bounds_steps(of):
+def bounds_steps(of):
     """Return True if :func:`step_resolving_devices` may shorten steps for an element."""
     return of.kind in (HYSTERETIC, CONTACT) or (of.kind in (VISCOUS, MAXWELL) and of.exponent < 1.0)
-
-
-def devices_of(elements, states=(), level=math.nan):
-    """Return Devices for a sequence of Element, at rest or in the ``states`` in which they are held; None without any.
-
-    ``level`` is v of the pier at rest [m]; NaN if it starts there.
-    """
-    n = len(elements)
-    if n == 0:
-        return None
-    size = 2 * n + 2
-    rows = np.array([tuple(element) for element in elements], ELEMENT).view(np.recarray)
-    x, stage, end = np.zeros(size), np.zeros(size), np.zeros(size)
-    x[: len(states)] = states
-    use = np.zeros(n, USE).view(np.recarray)
-    gaps = np.zeros((6, n), GAP).view(np.recarray)
-    modes, goes, rates_at = np.zeros(n), np.zeros(n), np.zeros((6, size))
-    bound_steps = any(_bounds_steps(element) for element in elements)
-    levels, ended = np.full(1, float(level)), np.zeros(3)
-    return Devices(rows, levels, modes, goes, x, stage, end, rates_at, gaps, use, bound_steps, ended)
 
 
 @kernel
@@ -182,7 +160,8 @@ def device_rates(m, devices, now, x, ground, place):
     if holds:
         under, one, two = _with_friction(under, devices, at, now, ground)
     if place == END:
-        devices.ended[0], devices.ended[1], devices.ended[2] = 0.0 if holds else 1.0, total, moment
+        continues = 1.0 if one == 0.0 and two == 0.0 else 0.0
+        devices.ended[0], devices.ended[1], devices.ended[2] = continues, total, moment
     k[2 * n] = ground_power(m, y, now.contact, ground)
     k[2 * n + 1] = 0.0 if m.finite is not None else -m.height * y.theta * under.pull.force * y.omega
     return under, one, two
@@ -190,7 +169,7 @@ def device_rates(m, devices, now, x, ground, place):
 
 @inlined
 def goes_on(devices):
-    """Return True if a step continues from the rates at the end of the last one: not after events, nor with sticking friction."""
+    """Return True if a step continues from the rates at the end of the last one: not after events, nor while friction holds."""
     return devices.ended[0] != 0.0
 
 

@@ -22,7 +22,7 @@ from rockbatch.core.springs.equations import (
 )
 from rockbatch.core.springs.free_vibration import energy_of_modes, leaning_height
 from rockbatch.core.springs.model import BentState, Shaft, ShaftNumbers, State, shaft_in
-from rockbatch.core.springs.passing import pass_of
+from rockbatch.core.springs.passing import pass_of, pass_with_devices_of
 from rockbatch.core.springs.recovery import acceleration_of_top, forces
 from rockbatch.core.springs.transitions import mirrored
 from rockbatch.core.table import along, get, put, taken
@@ -181,6 +181,12 @@ def _mirrored(y):
 
 @pass_of.of(Shaft)
 def _none_in_a_pass(shaft, traits, lanes, count, substep, settings):
+    for i in range(count):
+        lanes.step_status.kind[i] = EVENTFUL
+
+
+@pass_with_devices_of.of(Shaft)
+def _none_with_devices(shaft, traits, lanes, equipment, count, substep, settings):
     for i in range(count):
         lanes.step_status.kind[i] = EVENTFUL
 

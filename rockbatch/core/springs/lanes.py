@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from rockbatch.core import system
 from rockbatch.core.clock import COMMON, TIMING, ground_at, include_height
+from rockbatch.core.devices.laws import PASSED
 from rockbatch.core.flexure.displacements import Displacements
 from rockbatch.core.flexure.modes import PerMode
 from rockbatch.core.ground import later
@@ -272,7 +273,7 @@ def _write_reversals(lanes, i, m, now, substep, after, history):
 def system_of(m):
     """Return the System of the pier ``m`` (Springs), for which its runs are compiled."""
     if m.shaft is None:
-        return System(SpringTraits(m.exponent, m.finite, m.damped), Line, LANE, State._fields + Contact._fields)
+        return System(SpringTraits(m.exponent, m.finite, m.damped), Line, LANE, State._fields + Contact._fields, PASSED)
     traits = SpringTraits(m.exponent, m.finite, m.damped, LIKE)
     return System(traits, BendingLine, BENDING_LANE, BentState._fields + Contact._fields)
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from rockbatch.core import system
 from rockbatch.core.clock import CALM, EVENTFUL, ON_ITS_SIDE, STANDS, UNSET, ground_at, peak_at_end
+from rockbatch.core.devices.passing import integrate, settle
 from rockbatch.core.kernel import hook, inlined, kernel
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import excess
@@ -142,10 +143,11 @@ def correct_reversals(traits, lanes, i):
 
 
 @inlined
-def _judged(traits, lanes, i, substep, settings):
+def _judged(traits, lanes, i, substep, settings, sure):
     """Set the step status of lane ``i``, and advance the lane if its sub-step is calm.
 
-    Extremes at the end are recorded here; a sub-step that may contain one between its ends is not calm.
+    Extremes at the end are recorded here; a sub-step that may contain one between its ends is not calm. One in which something
+    else may occur is eventful: ``sure`` is positive otherwise.
     """
     m, h, step_status = model_in(traits, lanes, i), lanes.clock.step[i], lanes.step_status
     lowest, supports, low_left, low_right = lanes.lowest, lanes.supports, lanes.lowest.left[i], lanes.lowest.right[i]
@@ -164,7 +166,7 @@ def _judged(traits, lanes, i, substep, settings):
     once_left, once_right = once(m, sign_left, left, left_end, h), once(m, sign_right, right, right_end, h)
     surely = lanes.reversals.surely[i] if turned else min(once_left, once_right)
     tilt_end = abs(end.theta)
-    clear = min(clear_left, clear_right, surely, ON_ITS_SIDE - tilt_end)
+    clear = min(clear_left, clear_right, surely, ON_ITS_SIDE - tilt_end, sure)
     watched = max(step_status.watched[i], abs(lanes.contact.held[i]))
     stands = min(clear, (0.5 if settings.locate else -0.5) - watched) > 0.0  # False for NaN
     eventful = CALM if stands else EVENTFUL
@@ -220,4 +222,36 @@ def _rigid_pass(shaft, traits, lanes, count, substep, settings):
         correct_reversals(traits, lanes, i)
         i = _next_turned(lanes, i + 1, count)
     for i in range(count):
-        _judged(traits, lanes, i, substep, settings)
+        _judged(traits, lanes, i, substep, settings, 1.0)
+
+
+@system.in_pass.of(SpringTraits)
+def in_pass(traits, lanes, i):
+    """Return model, state and contact of lane ``i`` without a grazing contact."""
+    return model_in(traits, lanes, i), get(lanes.now, i, State), _free(lanes, i)
+
+
+@system.pass_with_devices.of(SpringTraits)
+def pass_with_devices(traits, lanes, equipment, count, substep, settings):
+    """Integrate the first ``count`` lanes over a sub-step."""
+    pass_with_devices_of(traits.shaft, traits, lanes, equipment, count, substep, settings)
+
+
+@hook
+def pass_with_devices_of(shaft, traits, lanes, equipment, count, substep, settings):
+    """Integrate lanes as :func:`pass_with_devices`; those with a ``shaft`` that bends event by event."""
+
+
+@pass_with_devices_of.of(type(None))
+def _rigid_pass_with_devices(shaft, traits, lanes, equipment, count, substep, settings):
+    """Integrate lanes with rigid shafts; a sub-step in which a spring's velocity reverses is eventful."""
+    shared = equipment.shared[0]
+    whole = integrate(traits, lanes, equipment, count, substep)
+    for i in range(whole):
+        m, contact, end = model_in(traits, lanes, i), _free(lanes, i), get(shared.stage, i, State)
+        put(lanes.end, i, end)
+        (left, right), (sign_left, sign_right) = pivots(m, end), _signs(m, contact)
+        keeps = m.rest + min(sign_left * left.velocity, sign_right * right.velocity)
+        lanes.reversals.keeps[i] = 0.0
+        _judged(traits, lanes, i, substep, settings, min(keeps, shared.verdict.clear[i]))
+    settle(traits, lanes, equipment, count, whole)

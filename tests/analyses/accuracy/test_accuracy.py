@@ -212,6 +212,7 @@ def brief(monkeypatch):
     monkeypatch.setattr(rockbatch.analyses.accuracy.error_and_time, "REPEATS", 1)
 
 
+@pytest.mark.usefixtures("pages")
 def test_the_command_writes_its_table_and_the_report_shows_it(study_file, tmp_path, brief):
     out = tmp_path / "out"
     assert main(["run", str(study_file), "--out", str(out)]) == 0

@@ -206,6 +206,7 @@ def test_checks_of_sections_are_judged_by_the_forces_of_each_value(tmp_path):
     own = found.design_checks.query("check == 'moment'").set_index("case.stiffness_kN_m")["value"]
     assert len(own) == 5  # two of the scan, and three bisections
     assert own.nunique() == 5
+    assert any(words.startswith("moment: bending of the shaft is left out") for words in found.answer)
     for stiffness, value in own.items():
         written = of_study.with_(case={"soft": {"stiffness_kN_m": stiffness}})
         rb.run(written, tmp_path / str(stiffness))
@@ -279,6 +280,7 @@ def said_of(verdicts, **more):
         "lacking": [],
         "bounds": [],
         "without_limit": [],
+        "omitted": [],
     }
     info |= {"unusable": 0, "refused": [], "tried": len(verdicts), "under": []} | more
     return [
@@ -471,6 +473,7 @@ def test_the_command_counts_its_runs_beforehand_and_prints_the_answer(tmp_path, 
         ({"points": 1}, "points = 1: expected a whole number from 2 to 1000"),
         ({"points": [4, 3]}, "points: expected one number for each key of vary, or one for all"),
         ({"find": "best"}, 'find = "best": '),
+        ({"find": "smallest"}, 'find = "smallest": did you mean "least"?'),
         ({"steps": 4}, "steps: unknown key"),
     ],
 )

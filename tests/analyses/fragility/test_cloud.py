@@ -251,6 +251,7 @@ def study(tmp_path, fragility=None, motions=None, check=0.5, **more):
     return write_study(tmp_path, text)
 
 
+@pytest.mark.usefixtures("pages")
 def test_the_command_runs_every_record_as_it_is_and_fits_what_its_table_shows(tmp_path):
     """The line again from the points of the CSV."""
     found = rb.fragility(study(tmp_path))

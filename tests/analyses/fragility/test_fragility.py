@@ -30,6 +30,8 @@ from rockbatch.reporting import finished_analysis
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.study import Case, load_study
 
+pytestmark = pytest.mark.usefixtures("pages")
+
 
 @pytest.fixture(scope="module")
 def ida(tmp_path_factory):

@@ -271,6 +271,7 @@ HAZARD = {"levels_g": [0.05, 0.2, 0.5], "return_period_years": [50, 475, 2475], 
 ADDED = [{"name": "modelling", "value": 0.3, "source": "judgement"}, {"name": "limit", "value": 0.4}]
 
 
+@pytest.mark.usefixtures("pages")
 def test_the_command_writes_rates_and_what_they_come_from(tmp_path, capsys):
     out = tmp_path / "results"
     assert main(["fragility", str(study(tmp_path, HAZARD, dispersion=ADDED)), "--out", str(out)]) == 0

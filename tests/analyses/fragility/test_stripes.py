@@ -110,6 +110,7 @@ def test_each_stripe_runs_its_own_records_and_the_curve_is_the_binomial_one(tmp_
     assert (curve.fitted.median, curve.fitted.most_likely_dispersion) == pytest.approx(tuple(searched.x), rel=1e-4)
 
 
+@pytest.mark.usefixtures("pages")
 def test_given_factors_are_taken_as_they_are(tmp_path):
     (tmp_path / "selection.csv").write_text("record,scale\nsine_0.4,1.5\nricker_1.3,2.5\n", encoding="utf-8")
     own = stripes(

@@ -252,6 +252,7 @@ class Interrupted(Threads):
         raise KeyboardInterrupt
 
 
+@pytest.mark.usefixtures("pages")
 def test_runs_have_the_drawn_values_and_a_search_that_was_interrupted_the_same(tmp_path):
     uncertain = {
         "lognormal": {"alpha": 0.1, "stiffness_kN_m": 0.3, "eta": 0.1},

@@ -11,7 +11,7 @@ from fragility_samples import IDA, STRIPES, made_up, of_statuses, stands_or_fall
 from rockbatch.analyses.fragility.command import table
 from rockbatch.analyses.fragility.curves import Readings
 from rockbatch.analyses.fragility.hazard import Hazard
-from rockbatch.analyses.fragility.limit_states import EXCEEDED, UNDECIDED, states
+from rockbatch.analyses.fragility.limit_states import EXCEEDED, UNDECIDED, applies, states
 from rockbatch.analyses.fragility.lognormal import Capacities, NoCurve, fit
 from rockbatch.analyses.fragility.risk import risk_table, risks
 from rockbatch.analyses.fragility.runs import output
@@ -224,3 +224,12 @@ def test_mistakes_in_the_settings_are_reported_with_their_line(tmp_path, capsys,
         assert f"{path}:" in line
         assert "[fragility]" in line
     assert not (tmp_path / "out").exists()
+
+
+def test_a_limit_state_is_of_the_cases_that_its_check_chooses():
+    case, names = {"case": "pads", "base": "elastic", "pier": {}, "parameters": {}}, frozenset({"pads", "rigid"})
+    of_case, of_others = ((), ("pads",), ("p*", "rigid")), (("rigid",), ("r*",))
+    for patterns, expected in ((of_case, True), (of_others, False)):
+        for chosen in patterns:
+            rule = Rule("a", "theta_max_over_alpha", 0.5, case=chosen)
+            assert applies(rule, case, names) is expected

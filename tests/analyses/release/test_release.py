@@ -362,6 +362,7 @@ def test_an_impossible_amplitude_in_a_file_is_reported_where_it_is_named(tmp_pat
         rb.release(study)
 
 
+@pytest.mark.usefixtures("pages")
 def test_the_folder_has_the_tables_that_python_returns(tmp_path):
     study = study_of(lists(passages([0.9] * FEW)))
     path = tmp_path / "study.toml"
@@ -395,6 +396,7 @@ def test_half_cycles_on_stiff_springs_tend_to_those_of_the_block():
     assert (np.sign(stiff.omega_before[1:4]) == [-1.0, 1.0, -1.0][: len(stiff) - 1]).all()
 
 
+@pytest.mark.usefixtures("pages")
 def test_the_page_opens_with_the_value_and_marks_what_puts_it_in_doubt(tmp_path):
     """A test that no value describes, beside one that the model made."""
     exact, wild = lists(passages([0.9] * FEW)), {"amplitude_rad": [0.09, 0.02, 0.07, 0.01, 0.06, 0.005]}

@@ -95,6 +95,7 @@ STUDY = study_text(
 )
 
 
+@pytest.mark.usefixtures("pages")
 def test_every_run_has_the_intensity_and_frequency_of_its_point(tmp_path, capsys):
     """PGA and PGV of the pulses: a sine has 2a/ω, a cosine a/ω; 1e-4 for the samples and the straight lines between them."""
     out = tmp_path / "out"

@@ -18,6 +18,8 @@ from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
+pytestmark = pytest.mark.usefixtures("pages")
+
 STUDY = study_text(
     title="spectra",
     pulses=(

@@ -233,6 +233,7 @@ STUDY = study_text(
 )  # fmt: skip
 
 
+@pytest.mark.usefixtures("pages")
 def test_the_command_writes_regions_and_goes_on_after_a_kill(tmp_path, monkeypatch, capsys):
     """Ctrl-C in the third wave; undisturbed and interrupted tables have the same bytes."""
     write_study(tmp_path, STUDY)
@@ -286,6 +287,7 @@ def test_a_pulse_needs_the_parameters_of_its_shape_and_no_others(tmp_path, capsy
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.usefixtures("pages")
 def test_spectra_that_are_finished_are_not_run_again_when_a_map_was_interrupted(tmp_path, monkeypatch, capsys):
     text = STUDY + "\n[spectrum]\nalpha = 0.1\np = [1, 2]\npoints = 2\n"
     write_study(tmp_path, text)

@@ -1,0 +1,378 @@
+"""A sub-step of all lanes with devices: Runge–Kutta 4 stage by stage, and bounds that prove that no device has an event in it.
+
+Each stage takes a loop over lanes for each device, which adds its force to the pull on the pier, and one for the pier under
+their sum. The numbers of a lane are combined in the order of scalar code, so that a sub-step that stands gives its bits.
+"""
+
+import math
+from typing import NamedTuple
+
+from rockbatch.core.clock import EVENTFUL, ground_at
+from rockbatch.core.devices.elongation import Attitude, Gap, across, attitude, gap, lifted, put_gap
+from rockbatch.core.devices.lanes import Mode, Progress, Works, devices_in, fetch
+from rockbatch.core.devices.laws import (
+    HYSTERETIC,
+    SPRING,
+    TAUT,
+    TENDON,
+    VISCOUS,
+    YIELDING,
+    Element,
+    Use,
+    tension,
+    viscous,
+    without_powers,
+)
+from rockbatch.core.devices.pull import END, GROWTH, PLASTIC, START, TRAVEL, device_rates
+from rockbatch.core.devices.use import take_in
+from rockbatch.core.ground import later
+from rockbatch.core.kernel import inlined, inlined_once, kernel
+from rockbatch.core.roots import NO_ACCELERATION, excess, inner_points
+from rockbatch.core.system import end_step, ground_power, in_pass, lanes_in_pass, pier_in, rates, share, stage
+from rockbatch.core.table import along, get, put, take_unless, taken, with_pull
+from rockbatch.core.types import Pull
+
+
+@inlined_once
+def _start(traits, lanes, equipment, i, steps):
+    """Set the rates of lane ``i`` at the start of a sub-step, which does not continue the last one."""
+    devices, each, shared = devices_in(equipment, lanes, i), equipment.lanes, equipment.shared[0]
+    fetch(equipment, devices, i)
+    m, now = pier_in(traits, lanes, i)
+    ground = ground_at(lanes, i, steps * lanes.clock.step[i])
+    under, _, _ = device_rates(m, devices, now, devices.x, ground, START)
+    put(lanes.rates, i, rates(under, now.y, now.contact, ground))
+    put(shared.start_pull, i, under.pull)
+    n, moving = len(each), devices.rates[START]
+    for j in range(n):
+        put(each[j].start_rates, i, Progress(moving[j], moving[n + j]))
+        put(each[j].rates, i, Progress(moving[j], moving[n + j]))
+        put(each[j].start_gap, i, taken(devices.gaps[START, j], Gap))
+    put(shared.works_start, i, Works(moving[2 * n], moving[2 * n + 1]))
+    shared.verdict.ended[i] = 1.0
+
+
+@inlined
+def _stage_pier(traits, lanes, shared, i, y):
+    """Set the staged state of the pier to ``y``, with its attitude, and its pull to that of no device."""
+    m, _, contact = in_pass(traits, lanes, i)
+    put(shared.stage, i, y)
+    put(shared.attitude, i, attitude(m, y, contact, shared.verdict.level[i]))
+    put(shared.pull, i, Pull(0.0, 0.0))
+
+
+@inlined
+def _leave_start(traits, lanes, each, shared, count):
+    """Set the pier's stage to half a step after the start, and sums of the rates at inner stages to 0."""
+    for i in range(count):
+        m, y, contact = in_pass(traits, lanes, i)
+        h, k = lanes.clock.step[i], get(lanes.rates, i, y)
+        _stage_pier(traits, lanes, shared, i, stage(m, along(y, k, 0.5 * h), y, contact, share(m, 0.5 * h)))
+        put(shared.inner, i, along(k, k, -1.0))
+        put(shared.works_inner, i, Works(0.0, 0.0))
+    for j in range(len(each)):
+        for i in range(count):
+            put(each[j].inner, i, Progress(0.0, 0.0))
+
+
+@inlined
+def _state_at_end(line, i, h):
+    """Return the Progress of a device at the end of a step of ``h`` [s]."""
+    inner = along(get(line.start_rates, i, Progress), get(line.inner, i, Progress), 2.0)
+    end = along(get(line.now, i, Progress), along(inner, get(line.rates, i, Progress), 1.0), h * (1.0 / 6.0))
+    plastic = line.element.kind[i] == HYSTERETIC and abs(end.state) > 1.0 - PLASTIC
+    return Progress((1.0 if end.state > 0.0 else -1.0) if plastic else end.state, end.lost)
+
+
+def _loop_of(ends, powers):
+    """Return a kernel that takes one device in all lanes through a stage; ``ends``: that at the end; ``powers``: its law has."""
+
+    @kernel
+    def respond(traits, lanes, line, shared, count, part, weight):
+        at_deck = line.element.height[0] != 0.0
+        for i in range(count):
+            m, now, _ = in_pass(traits, lanes, i)
+            of, at, mode = get(line.element, i, Element), get(shared.attitude, i, Attitude), get(line.mode, i, Mode)
+            y, h = get(shared.stage, i, now), lanes.clock.step[i]
+            here = across(m, of, at, y) if at_deck else gap(m, of.offset + at.shift, at, y)
+            if ends:
+                end = _state_at_end(line, i, h)
+                put(line.end, i, end)
+                put(line.gap, i, here)
+                state = end.state
+            else:
+                state = line.now.state[i] + part * h * line.rates.state[i]
+            if powers:
+                found = viscous(of, here.speed)
+            else:
+                found = without_powers(of, here.elongation, here.speed, state, mode.mode, mode.goes)
+            moving = Progress(found.state_rate, found.loss_rate)
+            put(line.rates, i, moving)
+            if not ends:
+                put(line.inner, i, along(get(line.inner, i, Progress), moving, weight))
+            shared.pull.force[i] += found.force * here.by_v
+            shared.pull.moment[i] += found.force * here.arm
+
+    return respond
+
+
+_at_stage, _at_end = _loop_of(False, False), _loop_of(True, False)
+_by_powers_at_stage, _by_powers_at_end = _loop_of(False, True), _loop_of(True, True)  # not vectorised
+
+
+@inlined
+def _has_powers(line):
+    """Return True if the law of a device, of a kind and linear or not alike in all lanes, needs a call of ``pow``."""
+    return line.element.kind[0] == VISCOUS and line.element.linear_below[0] != math.inf
+
+
+@inlined
+def _rates_under_devices(traits, lanes, shared, i, steps, part):
+    """Return the rates of the pier under its devices in its stage, ``part`` of a step after its start, and the Works' powers."""
+    m, now, contact = in_pass(traits, lanes, i)
+    y, h = get(shared.stage, i, now), lanes.clock.step[i]
+    ground = later(ground_at(lanes, i, steps * h), part * h)
+    under = with_pull(m, get(shared.pull, i, Pull))
+    p_delta = 0.0 if m.finite is not None else -m.height * y.theta * under.pull.force * y.omega
+    return rates(under, y, contact, ground), Works(ground_power(m, y, contact, ground), p_delta)
+
+
+@inlined
+def _to_next_stage(traits, lanes, shared, count, steps, part, part_next):
+    """Set the pier's stage to ``part_next`` of a step after the start, by the rates in the present one."""
+    for i in range(count):
+        k, power = _rates_under_devices(traits, lanes, shared, i, steps, part)
+        m, y, contact = in_pass(traits, lanes, i)
+        h = lanes.clock.step[i]
+        left = share(m, 0.5 * h)
+        put(shared.inner, i, along(get(shared.inner, i, y), k, 1.0))
+        put(shared.works_inner, i, along(get(shared.works_inner, i, Works), power, 1.0))
+        remaining = left if part_next < 1.0 else left * left
+        _stage_pier(traits, lanes, shared, i, stage(m, along(y, k, part_next * h), y, contact, remaining))
+
+
+@inlined
+def _to_end(traits, lanes, shared, count, steps):
+    """Set the pier's stage to the end of the step."""
+    for i in range(count):
+        k, power = _rates_under_devices(traits, lanes, shared, i, steps, 1.0)
+        m, y, contact = in_pass(traits, lanes, i)
+        h = lanes.clock.step[i]
+        left = share(m, 0.5 * h)
+        total = along(along(get(lanes.rates, i, y), get(shared.inner, i, y), 2.0), k, 1.0)
+        works = along(along(get(shared.works_start, i, Works), get(shared.works_inner, i, Works), 2.0), power, 1.0)
+        put(shared.works_end, i, along(get(shared.works, i, Works), works, h * (1.0 / 6.0)))
+        _stage_pier(traits, lanes, shared, i, end_step(m, along(y, total, h * (1.0 / 6.0)), y, contact, left * left))
+
+
+@inlined
+def _evaluate_end(traits, lanes, shared, count, steps):
+    """Set the rates at the end of the step, and the numbers by which devices are judged."""
+    for i in range(count):
+        k, power = _rates_under_devices(traits, lanes, shared, i, steps, 1.0)
+        put(shared.rates, i, k)
+        put(shared.works_rates, i, power)
+        shared.verdict.clear[i], shared.verdict.more[i] = shared.verdict.smooth[i], -1.0
+
+
+class Course(NamedTuple):
+    """A device in a sub-step."""
+
+    start: Gap
+    end: Gap
+    lift: float  # acceleration of its elongation at the start [m/s²]
+    lift_end: float
+    steepest: float  # greatest |acceleration| at the start, by the ground motion at either end of the sub-step
+    state: float
+    state_end: float
+    h: float  # [s]
+    dt: float  # sampling interval [s]
+    speed: float  # that is rounding [m/s]
+    acceleration: float
+    length: float
+
+
+@inlined
+def _keeps_direction(goes, c):
+    """Return a number that is positive if the speed of a device certainly keeps its direction, or is rounding throughout."""
+    early, late = inner_points(c.start.speed, c.lift, c.end.speed, c.lift_end, c.h)
+    fastest, keenest = max(abs(c.start.speed), abs(c.end.speed)), max(abs(c.lift), abs(c.lift_end))
+    still = min(c.speed - fastest, c.acceleration - keenest) >= 0.0  # at the pivot about which a block rocks
+    keeps = min(min(goes * early, goes * late), min(goes * c.start.speed, goes * c.end.speed)) - c.speed
+    return 1.0 if still else keeps
+
+
+@inlined
+def _keeps_mode(of, mode, c):
+    """Return a number that is positive if a tendon certainly remains taut or slack, and does not yield."""
+    pull, pull_end = tension(of, c.start.elongation, c.state), tension(of, c.end.elongation, c.state)
+    early, late = inner_points(pull, of.stiffness * c.start.speed, pull_end, of.stiffness * c.end.speed, c.h)
+    least, most = min(min(early, late), min(pull, pull_end)), max(max(early, late), max(pull, pull_end))
+    rounding = of.stiffness * (c.length + c.h * c.speed)
+    kept = min(least, of.strength - most) if mode == TAUT else -most
+    return -1.0 if mode == YIELDING else kept - rounding
+
+
+@inlined
+def _needs_shorter_step(of, goes, c):
+    """Return True if the law of a device is resolved only by a shorter step (``step_resolving_devices``)."""
+    near = GROWTH * max(abs(c.start.speed), of.linear_below) / (c.steepest * c.dt)
+    way = (abs(c.start.speed) + c.steepest * c.h) * c.dt * of.stiffness
+    steep, soft = of.kind == VISCOUS and of.exponent < 1.0, of.kind == HYSTERETIC and goes * c.state < 1.0
+    return near < 1.0 if steep else soft and TRAVEL / way < 1.0
+
+
+@inlined
+def _clear(of, mode, c):
+    """Return a number that is positive if a device certainly has no event in the sub-step, and asks for no shorter step."""
+    keeps = _keeps_mode(of, mode.mode, c) if of.kind == TENDON else _keeps_direction(mode.goes, c)
+    keeps = 1.0 if of.linear_below == math.inf else keeps
+    return -1.0 if _needs_shorter_step(of, mode.goes, c) else keeps
+
+
+@inlined
+def _greatest(f0, d0, f1, d1, h, best):
+    """Return the greater of ``best`` and |f| at both ends, and a number that is positive if |f| may be greater inside."""
+    best = max(best, abs(f0))
+    beyond = max(abs(f0), abs(f1)) + excess(d0, d1, h) - best
+    return max(best, abs(f1)), beyond if d0 * d1 <= 0.0 else -1.0
+
+
+@inlined
+def _greatest_force(of, mode, c, stroke, speed):
+    """Return the greatest |force| [m/s²] of a device but for power laws, and a number that is positive if it may be exceeded."""
+    longest = max(c.start.elongation, c.end.elongation)
+    early, late = inner_points(c.start.elongation, c.start.speed, c.end.elongation, c.end.speed, c.h)
+    taut, turns = mode.mode == TAUT, min(c.start.speed, -c.end.speed) > 0.0
+    pull, bound = abs(tension(of, longest, c.state_end)), tension(of, max(longest, max(early, late)), c.state_end)
+    others = of.stiffness * stroke if of.kind == SPRING else abs(of.strength * mode.goes)
+    others = of.strength * max(abs(c.state), abs(c.state_end)) if of.kind == HYSTERETIC else others
+    others = of.slope * speed if of.kind == VISCOUS else others
+    force = (pull if taut else 0.0) if of.kind == TENDON else others
+    return force, (bound if of.kind == TENDON and taut and turns else 0.0)
+
+
+@inlined
+def _course(traits, lanes, line, shared, i):
+    """Return the Course of a device of lane ``i``."""
+    now, start, end = in_pass(traits, lanes, i)[1], get(line.start_gap, i, Gap), get(line.gap, i, Gap)
+    lift, lift_end = lifted(start, get(lanes.rates, i, now)), lifted(end, get(shared.rates, i, now))
+    steepest = max(abs(lift), abs(lifted(start, get(shared.ahead, i, now))))
+    rest, state, state_end = lanes.model.rest[i], line.now.state[i], line.end.state[i]
+    least, step, dt = NO_ACCELERATION * lanes.model.gravity[i], lanes.clock.step[i], lanes.clock.dt[i]
+    return Course(start, end, lift, lift_end, steepest, state, state_end, step, dt, rest, least, rest * rest / least)
+
+
+@inlined
+def _use_at_end(line, i, c):
+    """Return the Use of a device at the end of a sub-step, and a number that is positive if it may have an extreme inside."""
+    of, mode, use = get(line.element, i, Element), get(line.mode, i, Mode), get(line.use, i, Use)
+    stroke, more = _greatest(c.start.elongation, c.start.speed, c.end.elongation, c.end.speed, c.h, use.stroke)
+    speed, faster = _greatest(c.start.speed, c.lift, c.end.speed, c.lift_end, c.h, use.speed)
+    force, bound = _greatest_force(of, mode, c, stroke, speed)
+    powers = of.kind == VISCOUS and of.linear_below != math.inf
+    most = use.most if powers else max(use.most, force)
+    stronger = speed - use.speed if powers else bound - most
+    yielded = c.state_end if of.kind == TENDON else 0.0
+    return Use(most, stroke, speed, line.end.lost[i], yielded, use.times), max(max(more, faster), stronger)
+
+
+@kernel
+def _judge(traits, lanes, line, shared, count):
+    """Judge one device in all lanes."""
+    for i in range(count):
+        c = _course(traits, lanes, line, shared, i)
+        clear = _clear(get(line.element, i, Element), get(line.mode, i, Mode), c)
+        use, more = _use_at_end(line, i, c)
+        put(line.use_end, i, use)
+        shared.verdict.clear[i] = min(clear, shared.verdict.clear[i])
+        shared.verdict.more[i] = max(more, shared.verdict.more[i])
+
+
+@inlined
+def _look_ahead(traits, lanes, shared, count, steps):
+    """Set the rates at the start of the sub-step under the ground motion at its end; later steps are as short as they need."""
+    for i in range(count):
+        m, y, contact = in_pass(traits, lanes, i)
+        h = lanes.clock.step[i]
+        ground = later(ground_at(lanes, i, steps * h), h)
+        put(shared.ahead, i, rates(with_pull(m, get(shared.start_pull, i, Pull)), y, contact, ground))
+
+
+@inlined
+def _respond(traits, lanes, each, shared, count, part, weight):
+    """Take all devices through an inner stage, and add ``weight`` times their rates to the sums of these."""
+    for j in range(len(each)):
+        if _has_powers(each[j]):
+            _by_powers_at_stage(traits, lanes, each[j], shared, count, part, weight)
+        else:
+            _at_stage(traits, lanes, each[j], shared, count, part, weight)
+
+
+@inlined
+def integrate(traits, lanes, equipment, runs, substep):
+    """Integrate the first ``runs`` lanes over a sub-step, and judge their devices; return the number of lanes with padding.
+
+    ``stage`` and ``rates`` are then those at its end.
+    """
+    each, shared, steps, count = equipment.lanes, equipment.shared[0], float(substep), lanes_in_pass(traits, runs)
+    for i in range(runs):
+        if shared.verdict.ended[i] == 0.0 and shared.verdict.smooth[i] > 0.0:
+            _start(traits, lanes, equipment, i, steps)
+    _leave_start(traits, lanes, each, shared, count)
+    for number in range(3):
+        _respond(traits, lanes, each, shared, count, 1.0 if number == 2 else 0.5, 0.0 if number == 2 else 1.0)
+        if number < 2:
+            _to_next_stage(traits, lanes, shared, count, steps, 0.5, 0.5 if number == 0 else 1.0)
+    _to_end(traits, lanes, shared, count, steps)
+    for j in range(len(each)):
+        if _has_powers(each[j]):
+            _by_powers_at_end(traits, lanes, each[j], shared, count, 1.0, 0.0)
+        else:
+            _at_end(traits, lanes, each[j], shared, count, 1.0, 0.0)
+    _evaluate_end(traits, lanes, shared, count, steps)
+    if equipment.bound_steps:
+        _look_ahead(traits, lanes, shared, count, steps)
+    for j in range(len(each)):
+        _judge(traits, lanes, each[j], shared, count)
+    return count
+
+
+@inlined_once
+def _use_inside(traits, lanes, equipment, i):
+    """Set the Use of the devices of lane ``i`` at the end of its sub-step with extremes inside it."""
+    devices, each, shared = devices_in(equipment, lanes, i), equipment.lanes, equipment.shared[0]
+    fetch(equipment, devices, i)
+    n, now = len(each), in_pass(traits, lanes, i)[1]
+    for j in range(n):
+        line = each[j]
+        put_gap(devices.gaps[START, j], get(line.start_gap, i, Gap))
+        put_gap(devices.gaps[END, j], get(line.gap, i, Gap))
+        devices.end[j], devices.end[n + j] = line.end.state[i], line.end.lost[i]
+    take_in(devices, get(lanes.rates, i, now), get(shared.rates, i, now), lanes.clock.step[i])
+    for j in range(n):
+        put(each[j].use_end, i, taken(devices.use[j], Use))
+
+
+@inlined
+def settle(traits, lanes, equipment, runs, count):
+    """Advance the devices in lanes whose sub-step stands; lanes from ``runs`` to ``count`` are padding."""
+    each, shared, kinds = equipment.lanes, equipment.shared[0], lanes.step_status.kind
+    for i in range(runs):
+        if kinds[i] < EVENTFUL and shared.verdict.more[i] > 0.0:
+            _use_inside(traits, lanes, equipment, i)
+    for j in range(len(each)):
+        line = each[j]
+        for i in range(count):
+            repeats = kinds[i] >= EVENTFUL
+            take_unless(repeats, line.now, line.end, i, Progress)
+            take_unless(repeats, line.start_rates, line.rates, i, Progress)
+            take_unless(repeats, line.start_gap, line.gap, i, Gap)
+            take_unless(repeats, line.use, line.use_end, i, Use)
+    for i in range(count):
+        repeats, now = kinds[i] >= EVENTFUL, in_pass(traits, lanes, i)[1]
+        take_unless(repeats, lanes.rates, shared.rates, i, now)
+        take_unless(repeats, shared.works, shared.works_end, i, Works)
+        take_unless(repeats, shared.works_start, shared.works_rates, i, Works)
+        take_unless(repeats, shared.start_pull, shared.pull, i, Pull)
+        shared.verdict.ended[i] = shared.verdict.ended[i] if repeats else 1.0

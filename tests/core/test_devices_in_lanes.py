@@ -1,0 +1,77 @@
+"""Runs with devices side by side: company changes nothing, and the pass gives what event by event is found."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from core_samples import FIG5
+
+from rockbatch.core.table import LANES
+from rockbatch.motions import Motion
+from rockbatch.pier import Damper, RigidBase, Tendon, YieldingBase
+from rockbatch.simulation import Run, Stop, run_all_fixed, runs
+
+VISCOUS, SLIDING = Damper("viscous", nu=0.2), Damper("friction", f=0.05)
+RESTRAINTS = {
+    "none": (),
+    "viscous": (VISCOUS,),
+    "power": (Damper("viscous", nu=0.1, exponent=0.5),),
+    "tendon": (Tendon(psi=0.1, lam=0.5),),
+    "weak tendon": (Tendon(lam=0.5, strength=0.02),),
+    "friction": (SLIDING,),
+    "hysteretic": (Damper("hysteretic", f=0.05, yield_m=0.005),),
+    "braced": (Damper("hysteretic", f=0.05, yield_m=0.005, brace=5.0),),
+    "several": (VISCOUS, Tendon(psi=0.1, lam=0.5), Damper("hysteretic", f=0.02, yield_m=0.01, at=0.0)),
+}
+BASES = {
+    "bouc-wen": YieldingBase(50.0, 0.1, eta=2.3, flight="guided"),
+    "epp": YieldingBase(50.0, 0.1, eta=2.3, flight="guided", spring="epp"),
+    "rigid": RigidBase(),
+}
+EVERY_BASE = pytest.mark.parametrize("base", BASES.values(), ids=list(BASES))
+
+
+def shaken(seed):
+    """Noise that decays, with a vertical component."""
+    noise = np.cumsum(np.random.default_rng(seed).normal(size=(2, 120 + 20 * (seed % 5))), axis=1)
+    fades = np.exp(-np.linspace(0.0, 2.0, noise.shape[1]))
+    return Motion(f"noise {seed}", (0.01, 0.008)[seed % 2], 1.5 * fades * noise[0], 0.5 * fades * noise[1])
+
+
+def crowd(base, names=RESTRAINTS):
+    """More runs with each kind of restraints than lanes, in turn."""
+    tied = [replace(base, restraints=RESTRAINTS[name]) for name in names]
+    return [Run(FIG5, tied[i % len(tied)], shaken(i)) for i in range(len(tied) * (LANES + 3))]
+
+
+def outcomes_of(found):
+    """What the runs came to, to the last bit."""
+    return [repr(outcome) for outcome in run_all_fixed(found, [4] * len(found), 1.0, Stop())]
+
+
+@EVERY_BASE
+def test_a_run_with_devices_is_the_same_to_the_bit_alone_and_in_any_company(base):
+    found = crowd(base)[::3]
+    alone = [outcome for run in found for outcome in outcomes_of([run])]
+    order = np.random.default_rng(2).permutation(len(found))
+    shuffled = outcomes_of([found[i] for i in order])
+    assert outcomes_of(found) == alone
+    assert [shuffled[list(order).index(i)] for i in range(len(found))] == alone
+
+
+@EVERY_BASE
+def test_the_pass_with_devices_gives_what_is_found_event_by_event(base, monkeypatch):
+    """Peaks, impacts, residuals, and forces, strokes, speeds and energies of devices, to the bit."""
+    found = crowd(base)
+    passed, made = outcomes_of(found), runs.equipment_of
+    without = []
+
+    def event_by_event(*given):
+        equipment = made(*given)
+        without.append(equipment is not None and equipment.passes)
+        return None if equipment is None else equipment._replace(passes=False)
+
+    monkeypatch.setattr(runs, "equipment_of", event_by_event)
+    assert outcomes_of(found) == passed
+    # Both tendons go in one call; runs without devices, with braces, and with friction on springs have no such pass
+    assert without.count(True) == len(RESTRAINTS) - (4 if base.on_springs else 3)
