@@ -487,7 +487,7 @@ def test_rows_have_every_fact_and_the_tables_their_columns():
     assert "<table>" in sheet._repr_html_()
 
 
-def test_sheet_of_a_footing_has_its_ground_by_the_formulas_and_the_share_that_is_pressed():
+def test_the_sheet_of_a_footing_has_its_ground_by_the_formulas_and_its_share_pressed():
     """Gazetas (1991) for 8 m in the plane of rocking by 10 m, worked out here."""
     g, nu, width, length = 45.0, 0.45, 8.0, 10.0  # MPa, m
     pier = Pier.with_deck(width_m=width, height_m=22, mass_t=1100, deck_mass_t=900)
