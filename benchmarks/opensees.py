@@ -76,7 +76,7 @@ def cases() -> dict[str, Case]:
 
 def model(case: Case) -> None:
     """Build the block, and let it come to rest under its weight."""
-    from independent.plane_frame import BEAM, begin, come_to_rest, ops, without_tension
+    from plane_frame import BEAM, begin, come_to_rest, ops, without_tension
 
     pier, base = case.pier, case.base
     b, h = pier.half_width, pier.height
@@ -97,7 +97,7 @@ def model(case: Case) -> None:
 
 def history(case: Case, steps: int) -> np.ndarray:
     """Return t, θ, v_L and v_R at each sample of the motion, shape (n, 4), by ``steps`` a sample."""
-    from independent.plane_frame import ops, shake, solve
+    from plane_frame import ops, shake, solve
 
     model(case)
     shake(case.motion.dt, case.motion.horizontal, case.motion.vertical)

@@ -65,7 +65,7 @@ def cases() -> dict[str, Case]:
 
 def build(case: Case) -> None:
     """Build the pier, and let it come to rest under its weight."""
-    from independent.plane_frame import BEAM, begin, come_to_rest, ops, without_tension
+    from plane_frame import BEAM, begin, come_to_rest, ops, without_tension
 
     pier, base = case.pier, case.base
     h, total = pier.height, (base.beta * pier.p) ** 2
@@ -93,7 +93,7 @@ def build(case: Case) -> None:
 
 def peak(case: Case, steps: int) -> float:
     """Return the greatest rotation over α at the samples of the motion, by ``steps`` a sample."""
-    from independent.plane_frame import ops, shake, solve
+    from plane_frame import ops, shake, solve
 
     build(case)
     shake(case.motion.dt, case.motion.horizontal)

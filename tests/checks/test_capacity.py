@@ -59,7 +59,7 @@ def random_curve(rng):
         (51e3, 0.0, math.inf, "fail"),
     ],
 )  # fmt: skip
-def test_a_point_inside_on_and_outside_the_curve_uses_the_share_of_a_hand_calculation(n, m, share, verdict):
+def test_a_point_inside_on_and_outside_the_curve_has_its_share_by_hand(n, m, share, verdict):
     found = judged(corners([n], [m]))
     assert (found.value, found.verdict) == (pytest.approx(share, rel=1e-12), verdict)
     assert found.words == f"maximum of {DEMAND} at 12 m"

@@ -61,7 +61,7 @@ class Accelerations(NamedTuple):
 
 @inlined
 def _accelerations(m, y, contact, at, ground):
-    """Return the Accelerations without a grazing contact (THEORY.md, E6 to E8)."""
+    """Return the Accelerations without a grazing contact (THEORY.md, A shaft that bends, E6 to E8)."""
     shaft, side = m.shaft, contact.right - contact.left
     sine, cosine = sine_and_cosine(y.theta)
     lever, squared = at.lever + side * at.swing, y.omega * y.omega
