@@ -12,6 +12,8 @@ import pytest
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
 import damage
 
+pytestmark = pytest.mark.usefixtures("pages")  # damaged pages are held against those of the whole folders
+
 
 @pytest.fixture(scope="module")
 def sample(tmp_path_factory):

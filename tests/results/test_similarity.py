@@ -42,7 +42,8 @@ OTHERWISE = {"note", "damper_half_cycles"}
 
 
 SUFFIXES = {
-    "_kN_m": ACCELERATION * LENGTH, "_kN": ACCELERATION, "_MPa": ACCELERATION / LENGTH**2, "_m": LENGTH, "_s": TIME, "": 1.0,
+    "_MN_m": ACCELERATION * LENGTH, "_kN_m": ACCELERATION * LENGTH,
+    "_kN": ACCELERATION, "_MPa": ACCELERATION / LENGTH**2, "_m": LENGTH, "_s": TIME, "": 1.0,
 }  # fmt: skip
 
 
