@@ -133,6 +133,7 @@ def test_each_constant_of_each_device_and_part_is_among_the_inputs(tmp_path):
         (entry("a", RigidBase()), "Nothing but landings", "nothing of them breaks"),
         (bending(flexural_modes=3), "The shaft bends in 3 modes, the first of 1.5 s; higher ones", "one rigid body"),
         (bending(), "bends in one mode, the first of 1.5 s", "Housner's factor"),
+        (bending(), "the momenta of the modes of a shaft that bends are kept", "the given factor"),
         (entry("a", RigidBase()) | {"across_of": "b"}, "Two planar models", "one vertical plane"),
     ],
 )
@@ -173,6 +174,15 @@ def test_devices_of_one_case_of_two_have_their_assumption(tmp_path):
     held = entry("held", replace(RigidBase(), restraints=(Tendon(psi=0.2),)))
     write_results(tmp_path, cases=[entry("rock", RigidBase()), held])
     assert "nothing of them breaks" in " ".join(assumptions_of(tmp_path))
+
+
+def test_every_foundation_and_every_listed_value_is_among_the_inputs(tmp_path):
+    cases = [entry("rock", RigidBase(restitution=0.91)), entry("pads", YieldingBase(beta=41.5, eta=2.25))]
+    text = '[pier]\nwidth_m = 8.0\nheight_m = [30.0, 33.0]\nmass_t = 700.0\n[[case]]\nname = "a"\nbase = "rigid"\n'
+    study = {"path": "a.toml", "title": "a", "notes": "", "text": text, "sha256": "0" * 64}
+    rows = Page(sheet_of(tmp_path, cases=cases, study=study)).tables["inputs"]
+    cells = {cell for row in rows for cell in row}
+    assert {"0.91", "41.5", "2.25", "30.0, 33.0"} <= cells
 
 
 def test_no_two_different_foundations_have_the_same_row(tmp_path):
