@@ -176,6 +176,23 @@ def test_devices_of_one_case_of_two_have_their_assumption(tmp_path):
     assert "nothing of them breaks" in " ".join(assumptions_of(tmp_path))
 
 
+def test_constants_stand_below_their_own_heads(tmp_path):
+    """The yield deflection of springs with η = 2.5 is more than their deflection under the weight."""
+    devices = (Damper("viscous", nu=0.8, exponent=0.37, at="left"), Tendon(psi=0.2345, lam=0.6, strength=0.9))
+    base = replace(YieldingBase(beta=40.0, eta=2.5, epsilon=0.05), restraints=devices)
+    rows = Page(sheet_of(tmp_path, cases=[entry("a", base, mass_t=2000.0)])).tables["inputs"]
+    found = {}
+    heads = ()
+    for row in rows:
+        heads = row if "case" in row else heads
+        for head, cell in zip(heads, row, strict=False):
+            if re.fullmatch(r"[\d.]+", cell):
+                found.setdefault(head, set()).add(float(cell))
+    for head, value in (("P0/(M g)", 0.2345), ("Ty/(M g)", 0.9), ("C/(M p)", 0.8), ("exponent", 0.37)):
+        assert found[head] == {value}, head
+    assert max(found["static deflection [m]"]) < min(found["yield deflection [m]"])
+
+
 def test_every_foundation_and_every_listed_value_is_among_the_inputs(tmp_path):
     cases = [entry("rock", RigidBase(restitution=0.91)), entry("pads", YieldingBase(beta=41.5, eta=2.25))]
     text = '[pier]\nwidth_m = 8.0\nheight_m = [30.0, 33.0]\nmass_t = 700.0\n[[case]]\nname = "a"\nbase = "rigid"\n'
