@@ -1,7 +1,8 @@
 """Sections of the shaft: their heights, and the mass above each (THEORY.md, Forces in sections)."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
@@ -73,6 +74,26 @@ def section_heights(pier: Pier, sections: int | Sequence[float], key: str = "sec
         bounds = f"must be within 0 and the top of the pier, {top:g} m"
         raise InputError(*(f"{key} = {height:g}: {bounds}" for height in outside))
     return tuple(sorted({float(height) for height in sections}))
+
+
+def heights_in_all(piers: Iterable[Pier], sections: int | Sequence[float], key: str = "sections_m") -> set[float]:
+    """Return the heights [m] of ``sections`` of all ``piers``; none of a pier of which :func:`misfits` complains."""
+    heights = set[float]()
+    for pier in piers:
+        with suppress(InputError):
+            heights.update(section_heights(pier, sections, key))
+    return heights
+
+
+def misfits(piers: Iterable[Pier], sections: int | Sequence[float], key: str = "sections_m") -> list[str]:
+    """Return why some of the ``piers`` cannot have the ``sections``, each reason once."""
+    reasons = dict[str, None]()
+    for pier in piers:
+        try:
+            section_heights(pier, sections, key)
+        except InputError as error:
+            reasons |= dict.fromkeys(error.messages)
+    return [*reasons]
 
 
 def above(pier: Pier, height: float) -> Above:

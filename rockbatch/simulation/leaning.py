@@ -134,14 +134,14 @@ def with_lean(
     After the record the rocking does not grow, so that a run to the end of its quiet time, a quarter of the whole, rules most
     candidates out. Runs that are too long to be recorded are not changed, nor those that come after ``stop``.
     """
-    found = list(outcomes)
+    noted = list(outcomes)
     mixed = [i for i, run in enumerate(runs) if isinstance(run.base, YieldingBase) and may_lean(outcomes[i])]
-    early = [i for i in mixed if found[i].t_max <= runs[i].motion.duration + quiet_s]
-    of_record = _lean_of_runs(runs, found, early, quiet_s, False, stop)
+    early = [i for i in mixed if noted[i].t_max <= runs[i].motion.duration + quiet_s]
+    of_record = _lean_of_runs(runs, noted, early, quiet_s, False, stop)
     mixed = [i for i in mixed if i not in early or (i in of_record and of_record[i].leans)]
-    for i, parts in _lean_of_runs(runs, found, mixed, quiet_s, wait, stop).items():
-        found[i] = noted_lean(found[i], parts, runs[i].pier.alpha)
-    return found
+    for i, parts in _lean_of_runs(runs, noted, mixed, quiet_s, wait, stop).items():
+        noted[i] = noted_lean(noted[i], parts, runs[i].pier.alpha)
+    return noted
 
 
 def _lean_of_runs(

@@ -101,8 +101,8 @@ def _recorded_together(
         with contextlib.suppress(InputError):
             yield numbers[0], recorded(runs[numbers[0]], outcomes[numbers[0]], quiet_s, False, wait)
         return
-    found = written_runs([runs[i] for i in numbers], outcomes[numbers[0]].substeps, quiet_s, room, wait=wait)
-    for i, (result, rows) in zip(numbers, found, strict=True):
+    written = written_runs([runs[i] for i in numbers], outcomes[numbers[0]].substeps, quiet_s, room, wait=wait)
+    for i, (result, rows) in zip(numbers, written, strict=True):
         if result.rows > room:
             with contextlib.suppress(InputError):
                 yield i, recorded(runs[i], outcomes[i], quiet_s, False, wait)

@@ -102,10 +102,10 @@ class DeviceHistories(NamedTuple):
 def device_histories(pier: Pier, base: Base, rows: np.recarray) -> DeviceHistories:
     """Return elongation, its rate, force and stored energy of each device at each row."""
     devices = recorded(pier, base, rows)
-    found = DeviceHistories(*(np.zeros((len(rows), len(devices.elements))) for _ in DeviceHistories._fields))
+    histories = DeviceHistories(*(np.zeros((len(rows), len(devices.elements))) for _ in DeviceHistories._fields))
     moves = AT_REST * pier.size * pier.alpha * pier.p
-    _follow(model(pier, base), devices, apart(base, rows)[0], float(moves), *found)
-    return found
+    _follow(model(pier, base), devices, apart(base, rows)[0], float(moves), *histories)
+    return histories
 
 
 def loops(pier: Pier, base: Base, t: Samples, histories: DeviceHistories) -> "pd.DataFrame":
@@ -118,8 +118,8 @@ def loops(pier: Pier, base: Base, t: Samples, histories: DeviceHistories) -> "pd
 
 def device_work(pier: Pier, base: Base, rows: np.recarray, least_stroke: float) -> Work:
     """Return the work of each device in a run with ``rows`` at every step; half cycles from ``least_stroke`` [m] up."""
-    found = device_histories(pier, base, rows)
-    courses = Courses(found.elongation, found.pull, rows.lost, rows.t, found.speed)
+    histories = device_histories(pier, base, rows)
+    courses = Courses(histories.elongation, histories.pull, rows.lost, rows.t, histories.speed)
     return work_of(pier, base, courses, least_stroke)
 
 

@@ -8,7 +8,7 @@ from rockbatch.common.grouping import closest
 from rockbatch.common.naming import alike
 from rockbatch.common.showing import shown
 from rockbatch.quantities.design import BOUND
-from rockbatch.study.cases import CASE
+from rockbatch.study.case_keys import CASE
 from rockbatch.study.design_bounds import Change, DesignBound, parted
 from rockbatch.study.piers import PART, PIER
 from rockbatch.study.restraint_keys import DEVICES

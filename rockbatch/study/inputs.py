@@ -6,7 +6,7 @@ from dataclasses import fields, replace
 from rockbatch.common.errors import InputError, Problem
 from rockbatch.common.showing import shown
 from rockbatch.pier import beta_of, eta_of, in_kilonewtons, problems
-from rockbatch.study.cases import CASE
+from rockbatch.study.case_keys import CASE
 from rockbatch.study.load import Study
 from rockbatch.study.piers import PIER
 from rockbatch.study.restraint_inputs import (

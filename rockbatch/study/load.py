@@ -25,7 +25,8 @@ from rockbatch.quantities.demands import AT_HEIGHTS
 from rockbatch.quantities.design import BOUND
 from rockbatch.study.both_axes import along_the_axis, with_other_axes
 from rockbatch.study.bound_keys import BOUNDS, read_bounds
-from rockbatch.study.cases import BASE_KEYS, CASE, read_cases
+from rockbatch.study.case_keys import BASE_KEYS, CASE
+from rockbatch.study.cases import read_cases
 from rockbatch.study.design_bounds import DesignBound, placed
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
 from rockbatch.study.output import OUTPUT, Output

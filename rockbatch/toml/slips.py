@@ -51,10 +51,10 @@ def meant_line(line: str) -> str:
     """
     if len(line) > _LONGEST_LINE:
         return ""
-    found = re.fullmatch(r"([\w.\"-]+)[ \t]*(?:==|:=|[=:])[ \t]*([^#]*?)[ \t;]*(#.*)?", line)
-    if not found or _is_toml(line):
+    match = re.fullmatch(r"([\w.\"-]+)[ \t]*(?:==|:=|[=:])[ \t]*([^#]*?)[ \t;]*(#.*)?", line)
+    if not match or _is_toml(line):
         return ""
-    key, value, comment = found.groups()
+    key, value, comment = match.groups()
     for mend in (str, _backslashes, _quotes, _word, _number, _values, partial(_without_unit, key)):
         meant = f"{key} = {mend(value)}"
         if value and _is_toml(meant):

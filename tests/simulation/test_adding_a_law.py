@@ -56,7 +56,7 @@ import numpy as np
 import rockbatch as rb
 from rockbatch.quantities.cases import creeps
 from rockbatch.simulation import run_fixed
-from rockbatch.study.cases import CASE
+from rockbatch.study.case_keys import CASE
 
 pier = rb.Pier(0.2, 1.0)
 base = rb.YieldingBase(30.0, 0.1, eta=2.5, spring="softening")

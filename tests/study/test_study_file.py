@@ -16,7 +16,7 @@ from rockbatch.motions.scaling import Target
 from rockbatch.motions.selection import Selection
 from rockbatch.pier import Damper, DeckSpring, ElasticBase, Pier, RigidBase, Stop, Tendon, YieldingBase
 from rockbatch.study import FemaSpec, Numerics, PulseSpec, Reference, Study, load_study
-from rockbatch.study.cases import BASE_KEYS, CASE
+from rockbatch.study.case_keys import BASE_KEYS, CASE
 from rockbatch.study.load import NUMERICS, REFERENCE, TOP
 from rockbatch.study.motions import FEMA, MOTIONS
 from rockbatch.study.motions import PULSE as PULSE_KEYS

@@ -7,6 +7,6 @@ DOOR = Door(
     example="rockbatch design pier.toml",
     writes="  design.csv     intervals of values that pass, fail or are not decided\n"
     "  design_values.csv, design_checks.csv, design_runs.csv, design.json, and a section of report.html",
-    parts=(ReportPart("What passes", "design", "section.section"),),
+    parts=(ReportPart("Passing values", "design", "section.section"),),
     tables=("design",),
 )

@@ -91,9 +91,9 @@ def _of_line(info: Entry, rows: Sequence[Entry], tried: Sequence[Entry]) -> Iter
         return
     row = passing[0 if find == "least" else -1]
     end, outer, side = ("low", "below", "lower") if find == "least" else ("high", "above", "upper")
-    found = next(value for value in tried if value[path] == row[end])
+    best = next(value for value in tried if value[path] == row[end])
     bounds = " under every bound" if info["bounds"] else ""
-    closest = f" (closest to its limit: {governs(found)})" if found["ratio"] > 0.0 else ""
+    closest = f" (closest to its limit: {governs(best)})" if best["ratio"] > 0.0 else ""
     if not is_known(row[outer]):
         edge = f"That is where the scan ends, and not the {find} value that passes: no value {_FURTHER[find]} was run"
         yield (

@@ -133,7 +133,7 @@ def maps(info: Entry, values: Sequence[Entry]) -> Figure:
     """Return what passes over two keys: a panel for each design, with the check that governs as colour."""
     checks = {name: place for place, name in enumerate(info["checks"])}
     panels = [_map(info, label, rows, checks) for label, rows in by_design(info, values).items()]
-    return Figure(panels, "What passes, and the check that governs")
+    return Figure(panels, "Passing values, and the check that governs")
 
 
 def _map(info: Entry, label: str, values: Sequence[Entry], checks: Mapping[str, int]) -> Panel:

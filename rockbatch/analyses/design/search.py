@@ -54,10 +54,10 @@ def intervals(verdicts: Verdicts) -> list[Interval]:
     """Return the intervals of equal verdicts, in rising order."""
     every = sorted(verdicts)
     runs = [[*values] for _, values in groupby(every, key=lambda value: verdicts[value])]
-    found = []
+    result = []
     for place, values in enumerate(runs):
         below = runs[place - 1][-1] if place else None
         above = runs[place + 1][0] if place + 1 < len(runs) else None
         widest = max((high - low for low, high in pairwise(values)), default=0.0)
-        found.append(Interval(verdicts[values[0]], values[0], values[-1], below, above, len(values), widest))
-    return found
+        result.append(Interval(verdicts[values[0]], values[0], values[-1], below, above, len(values), widest))
+    return result

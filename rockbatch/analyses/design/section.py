@@ -1,4 +1,4 @@
-"""What passes, in the report: the answer, the figure, and the intervals of values."""
+"""Report the values that pass: the answer, the figure, and the intervals."""
 
 from rockbatch.analyses.design.answer import answer
 from rockbatch.analyses.design.figures import figure_of

@@ -6,7 +6,7 @@ from itertools import product
 from typing import Any
 
 from rockbatch.common.showing import shown
-from rockbatch.study.cases import CASE
+from rockbatch.study.case_keys import CASE
 from rockbatch.study.inputs import OF_PIER, impossible, outside, ranges, values_of, why_no_case
 from rockbatch.study.load import Study
 from rockbatch.study.motions import MOTIONS

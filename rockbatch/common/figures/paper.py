@@ -161,8 +161,8 @@ def panel_in(figure: Figure, ax: Axes | None, name: str = "") -> Axes:
     Raises ``InputError`` for another name, with those that there are.
     """
     _check_axes(ax)
-    found = [panel for panel in figure.panels if name in ("", panel.caption)]
-    if not found:
+    panels = [panel for panel in figure.panels if name in ("", panel.caption)]
+    if not panels:
         captions = ", ".join(dict.fromkeys(panel.caption for panel in figure.panels)) or "none"
         raise InputError(f"there is no panel {shown(name)}; there are {captions}")
     with mpl.rc_context(_STYLE):
@@ -172,19 +172,19 @@ def panel_in(figure: Figure, ax: Axes | None, name: str = "") -> Axes:
             ax.figure.figure.set_layout_engine("constrained")  # or the legend below stands beyond the figure
         width, height = (25.4 / ax.figure.dpi * length for length in (ax.bbox.width, ax.bbox.height))
         entries: Entries = {}
-        _panel(ax, found[0], width, entries)
+        _panel(ax, panels[0], width, entries)
         if not ax.get_title():
             ax.set_title(" ", pad=1.5 * _STYLE["axes.labelsize"] + 4.0)  # room for the label above the axes
         ax.tick_params(labelsize=_STYLE["xtick.labelsize"])
         for label in (ax.xaxis.label, ax.yaxis.label):
             label.set_fontsize(_STYLE["axes.labelsize"])
-        if found[0].framed:
-            ax.grid(True, axis="both" if found[0].x.names is None else "y", alpha=_STYLE["grid.alpha"])
+        if panels[0].framed:
+            ax.grid(True, axis="both" if panels[0].x.names is None else "y", alpha=_STYLE["grid.alpha"])
         ax.set_axisbelow(True)
-        _colour_bar(ax.figure, [ax], replace(figure, panels=found[:1]))
+        _colour_bar(ax.figure, [ax], replace(figure, panels=panels[:1]))
         if entries:
             longest = 8.0 + 1.4 * max(map(len, entries))
-            below = 4.0 + 4.0 * found[0].x.numbered + 4.0 * bool(found[0].x.label)
+            below = 4.0 + 4.0 * panels[0].x.numbered + 4.0 * bool(panels[0].x.label)
             columns = max(1, min(len(entries), int(width / longest)))
             ax.legend(
                 **_legend_of(entries),

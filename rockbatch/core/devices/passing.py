@@ -103,15 +103,15 @@ def _loop_of(ends, powers):
             else:
                 state = line.now.state[i] + part * h * line.rates.state[i]
             if powers:
-                found = viscous(of, here.speed)
+                response = viscous(of, here.speed)
             else:
-                found = without_powers(of, here.elongation, here.speed, state, mode.mode, mode.goes)
-            moving = Progress(found.state_rate, found.loss_rate)
+                response = without_powers(of, here.elongation, here.speed, state, mode.mode, mode.goes)
+            moving = Progress(response.state_rate, response.loss_rate)
             put(line.rates, i, moving)
             if not ends:
                 put(line.inner, i, along(get(line.inner, i, Progress), moving, weight))
-            shared.pull.force[i] += found.force * here.by_v
-            shared.pull.moment[i] += found.force * here.arm
+            shared.pull.force[i] += response.force * here.by_v
+            shared.pull.moment[i] += response.force * here.arm
 
     return respond
 

@@ -90,8 +90,8 @@ class InteractionInSections(Observer):
     def read(self, recording: Recording, outcome: Outcome) -> list[Envelope]:
         """Return the envelope in each section."""
         heights = section_heights(recording.run.pier, self.heights)
-        found = forces_in_sections(recording.run, recording.rows, heights)
-        return [envelope(height, its.axial, its.moment) for height, its in zip(heights, found, strict=True)]
+        forces = forces_in_sections(recording.run, recording.rows, heights)
+        return [envelope(height, its.axial, its.moment) for height, its in zip(heights, forces, strict=True)]
 
     def beyond(self, run: Run, fine: list[Envelope], fewer: list[Envelope]) -> list[Envelope]:
         """Return ``fine`` with the change from ``fewer`` modes as errors."""

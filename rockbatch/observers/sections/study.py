@@ -1,12 +1,10 @@
 """Its keys of [output]."""
 
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import dataclass
 
-from rockbatch.common.errors import InputError
 from rockbatch.pier import Pier
-from rockbatch.pier.sections import section_heights
+from rockbatch.pier.sections import heights_in_all, misfits
 from rockbatch.toml.kinds import Whole, not_negative
 from rockbatch.toml.reader import TomlFile
 from rockbatch.toml.section import Clash, Key, Section
@@ -54,23 +52,13 @@ def complain(file: TomlFile, settings: Sections, piers: Iterable[Pier]) -> None:
     """Note sections that some pier does not have or whose masses are not known."""
     if settings.requested is None:
         return
-    wrong = dict[str, None]()
-    for pier in piers:
-        try:
-            section_heights(pier, settings.requested)
-        except InputError as error:
-            wrong |= dict.fromkeys(error.messages)
-    for problem in wrong:
+    for problem in misfits(piers, settings.requested):
         file.complain(("output", "sections" if settings.sections else "sections_m"), f"[output]: {problem}")
 
 
 def heights(settings: Sections, piers: Iterable[Pier]) -> set[float]:
     """Return the heights [m] of all sections of all ``piers``; none without any, or of a pier that lacks some, which is noted."""
-    found = set[float]()
-    for pier in piers:
-        with suppress(InputError):
-            found.update(section_heights(pier, settings.requested or 0))
-    return found
+    return heights_in_all(piers, settings.requested) if settings.requested else set()
 
 
 COMPLAINS = (Sections, complain)

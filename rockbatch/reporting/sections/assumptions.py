@@ -26,9 +26,9 @@ def section(finished: Finished) -> Markup:
 
 def lines(finished: Finished, cases: Collection[Case]) -> list[str]:
     """Return the assumptions of some cases of a study as sentences, in a fixed order."""
-    found = (_plane(cases), _body(cases), _ground(cases), _landings(cases), _flight(cases), _sliding(cases))
-    also = (_damping(cases), _devices(cases), _motions(finished), _numerics(finished.info["numerics"]))
-    return [line for line in (*found, *also) if line]
+    system = (_plane(cases), _body(cases), _ground(cases), _landings(cases), _flight(cases), _sliding(cases))
+    rest = (_damping(cases), _devices(cases), _motions(finished), _numerics(finished.info["numerics"]))
+    return [line for line in (*system, *rest) if line]
 
 
 def _plane(cases: Collection[Case]) -> str:

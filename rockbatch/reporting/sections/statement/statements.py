@@ -142,7 +142,7 @@ def _designs(finished: Finished, stations: Stations) -> Iterator[_Design]:
             cases[key_of(its.case, its.columns, math.nan)],
             its,
             verdicts.get(key, ()),
-            [one for one in finished.verdicts if not one.case and math.isclose(one.scale, its.scale)],
+            [verdict for verdict in finished.verdicts if not verdict.case and math.isclose(verdict.scale, its.scale)],
             free.get(key, ()),
             NOT_DECIDED if kinds[key] == PASS and stations.unusable else kinds[key],
         )
