@@ -60,22 +60,6 @@ def _share(curve: Curve, axial: Values, moment: Values) -> Values:
     return np.where(np.isnan(most), np.inf, share)
 
 
-def _least_share(curve: Curve, axial: Values, moment: Values, error: tuple[Values, Values]) -> Values:
-    """Return the least share within the ``error`` of axial force and moment: M_Rd is greatest as near to its peak as N may be."""
-    of_axial, of_moment = error
-    n = np.array(curve)[:, 0]
-    peak = max(curve, key=lambda point: point[1])[0]
-    nearest = np.clip(np.clip(peak, axial - of_axial, axial + of_axial), *_within(n, axial, of_axial))
-    return _share(curve, nearest, np.maximum(moment - of_moment, 0.0))
-
-
-def _within(ends: Values, axial: Values, error: Values) -> tuple[Values, Values]:
-    """Return between which axial forces the curve has a capacity and N may be; N itself where there are none."""
-    low, high = np.maximum(axial - error, ends[0]), np.minimum(axial + error, ends[-1])
-    apart = low > high
-    return np.where(apart, axial, low), np.where(apart, axial, high)
-
-
 def used(curve: Curve, corners: "pd.DataFrame") -> "pd.DataFrame":
     """Return a row for each run with the greatest share of a capacity that it uses, and its error.
 
@@ -95,17 +79,17 @@ def used(curve: Curve, corners: "pd.DataFrame") -> "pd.DataFrame":
     shares = corners[keys].assign(
         height_m=corners["height_m"],
         over_capacity=_share(curve, axial, moment),
-        low=_least_share(curve, axial, moment, (of_axial, of_moment)),
         high=np.maximum(*ends),
+        beyond=(axial + of_axial <= curve[0][0]) | (axial - of_axial >= curve[-1][0]),
         known=~np.isnan(error),
     )
     of_runs = shares.groupby(keys, sort=False, dropna=False).max().reset_index()
-    value, low, high = (of_runs[name].to_numpy(np.float64) for name in ("over_capacity", "low", "high"))
-    beyond = np.isinf(low)
-    with np.errstate(invalid="ignore"):
-        widest = np.where(beyond, 0.0, np.maximum(high - value, value - low))
+    value, high = of_runs["over_capacity"].to_numpy(np.float64), of_runs["high"].to_numpy(np.float64)
+    beyond, known = of_runs["beyond"].to_numpy(bool), of_runs["known"].to_numpy(bool)
     unknown = np.isinf(high) & ~beyond
-    known = of_runs["known"].to_numpy(bool)
+    with np.errstate(invalid="ignore"):
+        # M_Rd is concave: what it loses by an error of N is more than what it gains by the opposite one
+        widest = np.where(beyond, 0.0, high - value)
     return of_runs[[*keys, "height_m"]].assign(
         over_capacity=np.where(unknown, np.nan, value),
         over_capacity_error=np.where(unknown | ~known, np.nan, widest),

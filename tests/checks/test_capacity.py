@@ -1,8 +1,10 @@
 """The share of a section's capacity that a run uses: of moment and axial force at one moment, against a polygon by hand."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -12,8 +14,9 @@ from check_samples import case, runs
 import rockbatch as rb
 from rockbatch.checks import Rule, judge
 from rockbatch.checks.capacity import problems, resistance, used
-from rockbatch.observers.interaction.observe import envelope, with_errors
+from rockbatch.observers.interaction.observe import InteractionInSections, envelope, with_errors
 from rockbatch.quantities.demands import OF_INTERACTION
+from rockbatch.simulation import Run
 
 CURVE = ((-2000.0, 0.0), (0.0, 30e3), (20e3, 60e3), (50e3, 0.0))
 DEMAND = "section_moment_over_capacity"
@@ -106,7 +109,10 @@ def test_the_error_of_a_share_holds_all_that_axial_force_and_moment_may_be(seed)
 
 
 def test_a_capacity_that_an_error_puts_out_of_reach_is_not_decided():
-    assert judged(corners([49.9e3], [10.0], 0.01)).verdict == "not decided"
+    for n in (49.9e3, 50.1e3):
+        found = judged(corners([n], [10.0], 0.01))
+        assert (found.high, found.verdict) == (math.inf, "not decided")
+        assert "between 0 and any value" in found.remarks
     assert judged(corners([60e3], [10.0], 0.01)).verdict == "fail"
     assert judged(corners([20e3], [59.9e3], 0.01)).verdict == "not decided"
 
@@ -123,6 +129,21 @@ def test_envelopes_of_both_steps_differ_by_what_either_reaches_further():
     assert with_errors([fine], [fine], 4.0)[0].error < 1e-6
 
 
+def test_errors_are_four_times_the_change_by_the_step_and_by_the_last_mode():
+    """The moment changes by a tenth of itself; forces are per unit mass, of 900 t."""
+    n, m = np.array([0.0, 1.0, 2.0]), np.array([0.0, 4.0, 0.0])
+    fine, coarse = envelope(0.0, n, m), envelope(0.0, n, 0.9 * m)
+    pier = replace(rb.Pier.rectangle(6.0, 30.0, mass_t=900.0), flexural_period_s=0.8)
+    base = rb.RigidBase(shaft="elastic", flexural_modes=2)
+    run = Run(pier, base, rb.Motion("still", 0.01, np.zeros(3)))
+    observer = InteractionInSections((0.0,))
+    (by_modes,) = observer.beyond(run, [fine], [coarse])
+    assert by_modes.error == pytest.approx(0.4, rel=1e-3)
+    rows = observer.add(run, SimpleNamespace(with_table=lambda name, rows: rows), [fine], [coarse])
+    assert [row["interaction_error"] for row in rows] == pytest.approx([0.4] * 3, rel=1e-3)
+    assert [(row["axial_kN"], row["moment_kNm"]) for row in rows] == [(0.0, 0.0), (900.0, 3600.0), (1800.0, 0.0)]
+
+
 @pytest.mark.parametrize(
     ("curve", "said"),
     [
@@ -130,6 +151,7 @@ def test_envelopes_of_both_steps_differ_by_what_either_reaches_further():
         (((-2e3, 0.0), (0.0, 30e3), (20e3, 40e3), (30e3, 60e3), (50e3, 0.0)), r"is not convex: \[20000, 40000\] is below"),
         (((-2e3, 0.0), (0.0, 30e3), (50e3, 0.0), (0.0, -30e3)), r"a moment below 0 at \[0, -30000\]"),
         (((50e3, 0.0), (0.0, 30e3), (-2e3, 0.0)), "does not go by ascending N"),
+        (((0.0, 20e3), (0.0, 30e3), (50e3, 0.0)), r"does not go by ascending N from \[0, 20000\] to \[0, 30000\]"),
         (((-2e3, 0.0), (0.0, 30e3), (50e3, 0.0), (-2e3, 0.0)), "does not go by ascending N"),
     ],
 )  # fmt: skip
