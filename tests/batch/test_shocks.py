@@ -133,6 +133,7 @@ def study(folder, name="study.toml", **more):
     return write_study(folder, text, name)
 
 
+@pytest.mark.slow
 def test_the_table_has_a_row_for_each_shock_of_each_run_that_was_simulated(tmp_path):
     path, out = study(tmp_path), tmp_path / "out"
     peaks = rb.run(path, out=out, jobs=1)
