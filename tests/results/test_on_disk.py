@@ -414,7 +414,7 @@ def test_progress_advances_with_every_run_that_is_kept(tmp_path):
     saved, study, runs = carried_out(tmp_path, FEW)
     calls = []
     keep_histories(saved, study, runs, calls.append)
-    assert len(calls) == len(to_keep(study, runs, saved.peaks).numbers)
+    assert len(calls) == len(to_keep(study, runs, saved.peaks).numbers) == 3
 
 
 # Choosing one
