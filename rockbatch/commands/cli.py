@@ -2,6 +2,7 @@
 # PYTHON_ARGCOMPLETE_OK: shells with argcomplete's global completion complete it, too
 
 import argparse
+import functools
 import os
 import re
 import sys
@@ -70,6 +71,7 @@ class _Version(argparse.Action):
         parser.exit()
 
 
+@functools.cache
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     commands = "\n".join(f"  {name:<13}{command.help}" for name, command in COMMANDS.items())

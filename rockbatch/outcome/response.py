@@ -12,6 +12,7 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
+from rockbatch.common.units import ColumnUnits
 from rockbatch.pier import Base, Pier
 
 if TYPE_CHECKING:
@@ -165,7 +166,7 @@ class Response(Shown):
         for name, units in of_tables.items():
             table = getattr(self, name)
             if table is not None:
-                table.attrs["units"] = {column: units[column] for column in table if column in units}
+                table.attrs["units"] = ColumnUnits({column: units[column] for column in table if column in units})
 
     @classmethod
     def unread(cls, read: Callable[[], "Response"], **known: Any) -> Self:

@@ -13,6 +13,7 @@ import numpy as np
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
+from rockbatch.common.units import ColumnUnits
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.outcome.outcome import Failure, Outcome
 from rockbatch.pier import Pier
@@ -107,7 +108,7 @@ def units(study: Study) -> dict[str, str]:
 
 def with_units(table: "pd.DataFrame", of_columns: Mapping[str, str]) -> "pd.DataFrame":
     """Return the ``table`` with the units of its columns in ``table.attrs["units"]``."""
-    table.attrs["units"] = dict(of_columns)
+    table.attrs["units"] = ColumnUnits(of_columns)
     return table
 
 

@@ -1,5 +1,6 @@
 """``run.json``: the study, its motions, and the versions of the packages used."""
 
+import functools
 import hashlib
 import json
 import math
@@ -142,12 +143,16 @@ VERSIONS_OF = ("numba", "numpy", "pandas", "obspy", "h5py")
 """Packages whose versions are recorded with results."""
 
 
-def versions() -> dict[str, str]:
-    """Return the versions of Python and the packages that results depend on, and the commit of a checkout."""
+@functools.cache
+def _of_packages() -> dict[str, str]:
     from importlib.metadata import version  # takes 20 ms, not needed to read results
 
-    packages = {name: version(name) for name in VERSIONS_OF}
-    return {"python": platform.python_version(), **packages} | ({"commit": commit()} if commit() else {})
+    return {name: version(name) for name in VERSIONS_OF}
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of Python and the packages that results depend on, and the commit of a checkout."""
+    return {"python": platform.python_version(), **_of_packages()} | ({"commit": commit()} if commit() else {})
 
 
 def describe(study: Study, motions: MotionSet) -> Row:

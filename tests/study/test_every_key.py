@@ -268,6 +268,7 @@ OF_DEVICE = {
 }  # fmt: skip
 
 
+@pytest.mark.sweep(fast=3)
 @pytest.mark.parametrize("kind", PIERS)
 def test_every_key_of_a_pier_is_used_or_refused_beside_every_other(kind):
     """A height beside parts was read, and ignored."""
@@ -286,6 +287,7 @@ def test_every_key_of_a_case_is_used_or_refused_beside_every_other(base):
     assert {key for key in base if key in OF_CASE} <= used
 
 
+@pytest.mark.sweep(fast=4)
 @pytest.mark.parametrize("base", [ROCK, PADS], ids=["rigid", "elastic"])
 @pytest.mark.parametrize("kind", DEVICES)
 def test_every_key_of_a_device_is_used_or_refused_beside_every_other(kind, base):
@@ -813,6 +815,7 @@ def _takes_long(header):
     )
 
 
+@pytest.mark.sweep(fast=10)
 @pytest.mark.parametrize(
     "header", [pytest.param(header, marks=pytest.mark.slow) if _takes_long(header) else header for header in USES]
 )
