@@ -21,9 +21,9 @@ KEY = "other_width_m"
 
 
 def with_other_axes(file: TomlFile, cases: Sequence[Case], motions: MotionSpec) -> list[Case]:
-    """Return the cases, each that gives the width of its other axis followed by the case of that axis.
+    """Return the cases, each with ``other_width_m`` followed by its case across the axis.
 
-    A case that cannot be run on both axes is noted in ``file``, with the reason.
+    A case that cannot be run on both axes is not followed, and the reasons become problems of ``file``.
     """
     tables = file.tables("case", title="name")
     names = [table.data.get("name") for table in tables]
@@ -40,12 +40,12 @@ def with_other_axes(file: TomlFile, cases: Sequence[Case], motions: MotionSpec) 
 
 
 def _name_across(case: Case) -> str:
-    """Return the name of the case across the axis of ``case``."""
+    """Return the name of the case across the axis of ``case``: "soft across" for "soft"."""
     return f"{case.name} across"
 
 
 def _obstacles(case: Case, motions: MotionSpec, names: Container[object]) -> Iterator[str]:
-    """Yield each reason why a case cannot be run on both axes, with the remedy."""
+    """Yield each reason why a case cannot be run on both axes, with the remedy; ``names`` are those of all [[case]]."""
     if _name_across(case) in names:
         yield f"the case across the axis is called {shown(_name_across(case))}; give the case of that name another one"
     if "width_m" not in case.columns:
@@ -67,7 +67,8 @@ def _obstacles(case: Case, motions: MotionSpec, names: Container[object]) -> Ite
 
 
 def _case_across(table: Table, case: Case) -> list[Case]:
-    """Return the case across the axis of ``case``, or nothing if its pier is impossible, which is noted in ``table``."""
+    """Return the case across the axis of ``case`` as a list of one; [] if its pier is impossible, with the problem added to
+    ``table``."""
     width = float(case.columns[KEY])
     pier_table = table.file.table("pier")
     confirmed = {name.replace(KEY, "width_m") for name in table.confirmed}

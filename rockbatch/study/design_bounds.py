@@ -28,7 +28,7 @@ class Change:
 
     @property
     def of_pier(self) -> bool:
-        """Return whether the key is one of the pier."""
+        """Return whether the change is of a key of [pier] or of its parts, not of a case."""
         return self.path.startswith("pier.")
 
     @property
@@ -39,7 +39,8 @@ class Change:
         return f"{self.path} = {f'{self.value:.10g}' if isinstance(self.value, float) else shown(self.value)}"
 
     def among(self, names: Iterable[str]) -> list[str]:
-        """Return which of the ``names`` of chosen values are those of its key: of all devices, or of a numbered one."""
+        """Return those of ``names`` that are values of its key: of "case.damper.f" "damper_1_f" and "damper_2_f", of
+        "case.damper_2.f" the second alone; [] if none is."""
         _, *table, name = self.path.split(".")
         pattern = re.escape(name)
         if table:
@@ -48,7 +49,10 @@ class Change:
         return [name for name in names if re.fullmatch(pattern, name)]
 
     def of(self, value: Any) -> Any:
-        """Return the value of its key, nominally ``value``. Raises :class:`KindError` for an impossible one."""
+        """Return the changed value of its key, nominally ``value``: a value of its own, or ``value`` times its factor.
+
+        Raises :class:`KindError` for an impossible product.
+        """
         if self.times is None:
             return self.value
         changed = value * self.times
@@ -70,7 +74,10 @@ class DesignBound:
     place: int = 0
 
     def changed(self, chosen: Chosen, table: Table, *, of_pier: bool) -> Chosen:
-        """Return the chosen values of a pier, or of a case, under this bound; note impossible and unusual ones in ``table``."""
+        """Return the chosen values of a pier, or of a case, under this bound.
+
+        An impossible value stays nominal; the problem, or that of an unusual value, is added to ``table``.
+        """
         result = dict(chosen)
         for change in (change for change in self.changes if change.of_pier == of_pier):
             for name in change.among(chosen):
@@ -86,16 +93,16 @@ class DesignBound:
                         table.complain(in_table(problem))
         return result
 
-    def noting(self, file: TomlFile) -> TomlFile:
-        """Return the ``file`` without its mistakes, to gather those that a design has under this bound."""
+    def without_mistakes(self, file: TomlFile) -> TomlFile:
+        """Return a copy of ``file`` without its problems, to gather those that a design has under this bound."""
         return replace(file, problems=[], misspelt=set(file.misspelt))
 
     def table(self, table: Table, file: TomlFile) -> Table:
-        """Return a table of the study with its mistakes gathered in ``file``, and what the bound confirms confirmed."""
+        """Return a table of the study whose problems are added to ``file``, with the keys that the bound confirms confirmed."""
         return replace(table, file=file, data=table.data | {"confirm": [*table.confirmed, *self.confirmed]})
 
     def note(self, file: TomlFile, gathered: TomlFile) -> None:
-        """Note in ``file``, at this bound, the mistakes that were ``gathered`` under it."""
+        """Add the problems that were ``gathered`` under this bound to those of ``file``, at this bound."""
         for _, problem in gathered.problems:
             file.complain((BOUND, self.place), replace(problem, place="", key=""), self.label)
 
@@ -123,7 +130,8 @@ def parted(table: str) -> tuple[str, str]:
 def placed(
     file: TomlFile, bounds: Sequence[DesignBound], of_pier: Sequence[str], cases: Mapping[str, Sequence[str]]
 ) -> tuple[DesignBound, ...]:
-    """Return the bounds with the cases that lack some of their keys; note keys that no pier or no case has.
+    """Return the bounds, each with its cases that lack some of its keys as ``lacking``; a key that [pier] lacks, or every case,
+    becomes a problem of ``file`` and is in no ``lacking``.
 
     ``of_pier`` are the names of the chosen values of the pier, and ``cases`` those of each case.
     """
@@ -143,7 +151,8 @@ def placed(
 
 
 def _why_none(change: Change, having: Iterable[Iterable[str]]) -> str:
-    """Return the message about a change of a key that nothing has; ``having`` are the names of the keys that are there."""
+    """Return the message about a change of a key that [pier], or every case, lacks; ``having`` are the names of the keys that are
+    given."""
     where = "[pier]" if change.of_pier else "a [[case]]"
     state = f"{where} has no such key" if change.of_pier else "no case has this key"
     if change.times is not None:

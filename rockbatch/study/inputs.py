@@ -87,7 +87,8 @@ _RANGES: dict[str, tuple[Mapping[str, Key], dict[str, str]]] = {
 
 
 def ranges(of: str = "", kind: Kind | None = None) -> dict[str, Key]:
-    """Return keys of a pier and its case, or ``of`` a device, as ranges, of their own kind or another."""
+    """Return the keys of a pier and its case, or ``of`` a device such as "damper", that an analysis may vary, each as a pair of
+    ends; their values are of the ``kind`` given, or of that of the study."""
     keys, examples = _RANGES[of]
     return {
         name: Key(kind or keys[name].kind, example, keys[name].words, pair=True) for name, example in examples.items()
@@ -123,7 +124,7 @@ def values_of(case: Case) -> KeyValues:
 
 
 def impossible(case: Case, values: KeyValues) -> list[tuple[str, str]]:
-    """Return the problems of the case with other values, each a sentence and the name of its input; empty if possible."""
+    """Return the problems of the case with other values, each a sentence and the name of its input; [] if they are possible."""
     try:
         changed = varied(case, values)
         wrong: Sequence[Problem] = problems(changed.pier, changed.base)
@@ -133,7 +134,8 @@ def impossible(case: Case, values: KeyValues) -> list[tuple[str, str]]:
 
 
 def outside(name: str, ends: Sequence[float], value: float | None, case: Case) -> str:
-    """Return a message about a range without the ``value`` of the case, with a wider range; empty if it holds it, or for None."""
+    """Return a message, with the range widened, if the ``value`` of the case is outside the range ``ends``; "" if it is within or
+    None."""
     low, high = ends
     if value is None or low <= value <= high:
         return ""
@@ -144,7 +146,7 @@ def outside(name: str, ends: Sequence[float], value: float | None, case: Case) -
 
 
 def why_no_case(name: str, study: Study) -> str:
-    """Return the reason why no case of the study has this input."""
+    """Return the reason why no case of the study has this input, without asking whether one has."""
     if is_of_restraint(name):
         return why_none(name, study.cases)
     if name in IN_KILONEWTONS:

@@ -258,7 +258,8 @@ class Study(Shown):
         return TomlFile.parse(self.path, self.text, SECTIONS, lined=self.lined)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
-        """See :class:`Shown`."""
+        """Return the heading and, by name, the facts that :class:`Shown` prints: pier, motions, cases, varied, checks,
+        numerics."""
         piers = {f"alpha {case.pier.alpha:.4g} rad, R0 {case.pier.size:.4g} m" for case in self.cases}
         names = Counter(case.name for case in self.cases)
         spec, step = self.motions, self.numerics
@@ -359,7 +360,7 @@ def _checked_study(file: TomlFile, motions: Motions) -> Study:
 
 
 def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) -> Study:
-    """Return a study, loaded from a file unless it is one, with ``motions`` instead of its own unless None."""
+    """Return ``study``, loaded if it is the path of a file, with ``motions`` instead of its own unless None."""
     if not isinstance(study, Study):
         return load_study(study, motions=motions)
     return study if motions is None else study.with_(motions=motions)
@@ -393,7 +394,7 @@ def _heights(cases: Sequence[Case], output: Output) -> dict[str, set[float]]:
 
 
 def _numerics(file: TomlFile) -> Numerics:
-    """Return [numerics]; a fixed number of substeps has no tolerance."""
+    """Return [numerics], or its defaults if the table is missing; a fixed number of substeps has no tolerance."""
     table = file.table("numerics")
     read = table.read(NUMERICS) if table else {}
     if "substeps" in read:
@@ -412,7 +413,8 @@ def _device_kinds(cases: Sequence[Case]) -> set[str]:
 
 
 def _references(file: TomlFile, cases: Sequence[Case], varied: Iterable[str]) -> tuple[Reference, ...]:
-    """Return the references; note values of ``varied`` keys that no case of the name has."""
+    """Return the references that have all required keys; values of ``varied`` keys that no case of the name has become problems
+    of ``file``."""
     named = [table.data.get("name", table.data.get("base")) for table in file.tables("case", title="name")]
     names = choice(*dict.fromkeys(name for name in named if isinstance(name, str)))
     of_parts = {name: Key(not_negative, "0.0") for name in varied if name not in (*REFERENCE, BOUND)}

@@ -70,7 +70,8 @@ def values_of_devices(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, 
 
 
 def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str, float]) -> tuple[Restraint, ...]:
-    """Return the devices with ``values`` by the names of :func:`parameters`; ``pier`` converts those in kN."""
+    """Return the devices with ``values`` by names that :func:`parameters` has, in the units of their keys; ``pier`` converts
+    those in kN."""
     places, changed = parameters(pier, restraints), list(restraints)
     for name, value in values.items():
         place, field, divisor = places[name]
@@ -94,7 +95,7 @@ def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
 
 
 def why_none(name: str, cases: Iterable[Case]) -> str:
-    """Return the reason why no case has this parameter of a device."""
+    """Return the reason why no case has this parameter of a device, "damper_2.f", without asking whether one has."""
     table, key = name.split(".")
     match = TABLE.fullmatch(table)
     what, number = match.groups() if match else (table, None)

@@ -94,7 +94,8 @@ class MotionSpec:
 
     @property
     def simulated(self) -> str:
-        """The polarity that is simulated, "+" if both are asked for; the other is its mirror image, as the pier is symmetric."""
+        """Return the polarity that is simulated, "+" if both are asked for; the other is its mirror image, as the pier is
+        symmetric."""
         return "+" if "+" in self.polarity else "-"
 
 

@@ -132,7 +132,8 @@ def _with_pairs(motions: MotionSet, pulses: Sequence[Motion]) -> tuple[MotionSet
 
 
 def _without_the_square(motions: MotionSet, azimuths: Sequence[float]) -> MotionSet:
-    """Return motions without those along the last of ``azimuths``, which become components across the first."""
+    """Return motions without those along the last of ``azimuths``, which become the components across those along the first if
+    they have as many samples."""
     first, square = (f"_az{azimuth:03g}" for azimuth in (azimuths[0], azimuths[-1]))
     across = {motion.of_station: motion for motion in motions if motion.name.endswith(square)}
     along = [motion for motion in motions if across.get(motion.of_station) is not motion]

@@ -80,7 +80,7 @@ def _changed_value(old: TomlValue | None, new: object, *place: str) -> TomlValue
 
 
 def _changed_by_name(tables: list[TomlTable], changes: Mapping[str, object], *place: str) -> list[TomlValue]:
-    """Return tables with the changes by their names, without those that have None."""
+    """Return all tables in their order, with the changes of those that are named, without those whose change is None."""
     result: list[TomlValue] = []
     for name, table in _named(tables, changes, *place).items():
         change = changes.get(name, {})
@@ -90,7 +90,7 @@ def _changed_by_name(tables: list[TomlTable], changes: Mapping[str, object], *pl
 
 
 def _named(tables: list[TomlTable], names: Iterable[str], *place: str) -> dict[str, TomlTable]:
-    """Return tables by their names. Raises ``InputError`` if they lack one of ``names``."""
+    """Return all ``tables`` by their names. Raises ``InputError`` if one of ``names`` is not among these."""
     by_name = {name_of(table): table for table in tables}
     problems = []
     for name in names:
@@ -105,7 +105,7 @@ def _named(tables: list[TomlTable], names: Iterable[str], *place: str) -> dict[s
 
 
 def name_of(table: Mapping[str, TomlValue]) -> str:
-    """Return the name of a table among others of its kind; that of a single case may be its base."""
+    """Return the name of a table, else its base, by which a single case may be called, else ""."""
     return str(table.get("name", table.get("base", "")))
 
 
