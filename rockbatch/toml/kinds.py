@@ -168,7 +168,8 @@ class Choice:
         raise KindError(words, " or ".join(map(shown, self._meant(value))))
 
     def _meant(self, value: object) -> list[object]:
-        """Return the options that a misspelt word, or a number in quotes, may stand for; none for a value that is not text."""
+        """Return the options that a misspelt word, or a number in quotes, may stand for; [] if none is similar, or for a value
+        that is not text."""
         if same := [option for option in self.options if not isinstance(option, str) and str(option) == value]:
             return same
         words = [option for option in self.options if isinstance(option, str)]
@@ -220,7 +221,8 @@ def choice(*options: str, called: Mapping[str, object] | None = None) -> Choice:
 
 
 def within(bounds: Bounds) -> Number:
-    """Return the kind of a number within ``bounds``; if these exclude 0, a message about the sign comes first."""
+    """Return the kind of a number within ``bounds``, such as a positive one if these exclude 0, whose first message is about the
+    sign."""
     return replace(positive, bounds=bounds) if bounds.low > 0 or bounds.above else Number(bounds=bounds)
 
 

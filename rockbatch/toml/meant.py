@@ -56,7 +56,8 @@ def known_as(name: str, keys: Iterable[str], also: Mapping[str, Also], table: st
 
 
 def _same(name: str, keys: Iterable[str], also: Mapping[str, Also]) -> str:
-    """Return the key of this name but for its unit, or of which ``also`` has the name; empty if there is none."""
+    """Return the key whose plain name but for its unit is ``name``, with or without a unit, or of which ``also`` has that name;
+    "" if none."""
     keys = list(keys)
     stems = {_stem(key): key for key in reversed(keys)}
     for word in without_unit(name):

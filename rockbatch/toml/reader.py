@@ -64,7 +64,8 @@ class TomlFile:
 
     @classmethod
     def read(cls, path: Path, sections: Sequence[Section] = ()) -> "TomlFile":
-        """Read and parse a file. Raises :class:`InputError` with the line at which it is no TOML."""
+        """Return a file, read and parsed. Raises :class:`InputError` if it cannot be read, or with the line at which it is no
+        TOML."""
         text = cls.text_of(path, sections)
         return cls.parse(path, text, sections)
 
@@ -106,9 +107,10 @@ class TomlFile:
             raise BadSyntax(syntax_error(path, text, str(error))) from None
 
     def complain(self, key_path: KeyPath, message: str | Problem, label: str = "") -> None:
-        """Note a mistake about the value at ``key_path``; one that is missing counts where its table starts.
+        """Add a mistake about the value at ``key_path`` to the problems, once; a missing value has the line where its table
+        starts.
 
-        ``label`` names the table. A ``message`` that is a problem keeps its kind.
+        ``label`` names the table. A ``message`` that is a problem keeps its kind. A full file takes no more.
         """
         if self.is_full:
             return
@@ -122,18 +124,18 @@ class TomlFile:
             self.problems.append(problem)
 
     def adopt(self, other: "TomlFile", key_path: KeyPath) -> None:
-        """Note the mistakes of another file, at the ``key_path`` that names it."""
+        """Add the mistakes of another file, in its order, to the problems, at the line of the ``key_path`` that names it."""
         line = self.lines.get(key_path, 0)
         in_order = sorted(other.problems, key=lambda problem: (problem[0], str(problem[1])))
         self.problems += [(line, problem) for _, problem in in_order][: MOST_REPORTED - len(self.problems)]
 
     @property
     def is_full(self) -> bool:
-        """Return whether :data:`MOST_REPORTED` mistakes are noted, so that reading may stop."""
+        """Return whether there are :data:`MOST_REPORTED` problems, so that reading may stop."""
         return len(self.problems) >= MOST_REPORTED
 
     def is_sound_since(self, before: int) -> bool:
-        """Return whether no mistake was noted after the first ``before``; False for a full file, which notes no more."""
+        """Return whether there are no problems after the first ``before``; False for a full file, which takes no more."""
         return len(self.problems) == before and not self.is_full
 
     def finish(self) -> None:
@@ -145,7 +147,10 @@ class TomlFile:
         refuse(in_order)
 
     def table(self, *key_path: str | int, required: str = "") -> "Table | None":
-        """Return the table ``[key_path]``, or None; note another value, and a missing table if ``required`` gives an example."""
+        """Return the table ``[key_path]``, or None.
+
+        A value that is no table becomes a problem, and so does a missing table if ``required`` gives an example of one.
+        """
         name = ".".join(map(str, key_path))
         value = self.value(key_path)
         if isinstance(value, dict):
@@ -161,7 +166,8 @@ class TomlFile:
         return self.value(key_path) is not None or key_path in self.misspelt
 
     def tables(self, *key_path: str | int, title: str) -> list["Table"]:
-        """Return the tables ``[[key_path]]``; the key ``title`` of each names it in messages."""
+        """Return the tables ``[[key_path]]``, [] if missing; another value becomes a problem. The key ``title`` of each names it
+        in messages."""
         name = ".".join(part for part in key_path if isinstance(part, str))
         value = self.value(key_path)
         if value is None:
@@ -176,7 +182,7 @@ class TomlFile:
         ]
 
     def value(self, key_path: KeyPath) -> Any:
-        """Return the value at ``key_path``, or None."""
+        """Return the value at ``key_path``, whose parts are keys and list indices; None if there is none."""
         node: object = self.data
         for part in key_path:
             if isinstance(node, dict):
@@ -196,16 +202,17 @@ class Table:
     data: dict[str, Any]
 
     def complain(self, message: str | Problem, *key: str | int) -> None:
-        """Note a mistake about this table, or a key or list element of it."""
+        """Add a mistake about this table, or a key or list element of it, to the problems of the file."""
         self.file.complain((*self.key_path, *key), message, self.label)
 
     def complain_about(self, setting: Setting, message: str | Problem) -> None:
-        """Note a mistake about one value."""
+        """Add a mistake about one value to the problems of the file."""
         self.complain(message, *setting.key_path[len(self.key_path) :])
 
     @contextmanager
     def noting(self, *key: str | int) -> Iterator[None]:
-        """Note an ``InputError`` of the ``with`` block as mistakes about a key, instead of raising it."""
+        """Context manager: add the problems of an ``InputError`` in the block, as mistakes about a key, to those of the file, and
+        go on after it."""
         try:
             yield
         except InputError as error:
@@ -214,16 +221,16 @@ class Table:
 
     @property
     def names(self) -> list[str]:
-        """The keys that are written, in the order of the file, and then those that are probably misspelt."""
+        """Return the keys that are written, in the order of the file, and then those that are probably misspelt."""
         return [*self.data, *(str(key_path[-1]) for key_path in self.file.misspelt if key_path[:-1] == self.key_path)]
 
     def has(self, name: str) -> bool:
-        """Return whether the key is written, if perhaps misspelt."""
+        """Return whether the key ``name`` is written, if perhaps misspelt."""
         return name in self.data or (*self.key_path, name) in self.file.misspelt
 
     @property
     def confirmed(self) -> frozenset[str]:
-        """Names of the keys that the table confirms."""
+        """Return the names in the key ``confirm``, whether the table has keys of these names or not; empty without it."""
         written = self.data.get("confirm", ())
         return frozenset(
             name for name in (written if isinstance(written, list) else [written]) if isinstance(name, str)
@@ -285,7 +292,8 @@ class Table:
                 self.complain(_problem(Contradiction, f"{named}{clash.message}"), clash.at or first)
 
     def _not_applying(self, keys: Mapping[str, Key], name: str) -> str:
-        """Return why a key does not apply beside the values of others; empty if it does, or they are not known."""
+        """Return why the key ``name`` does not apply beside the values of the keys on which it depends; "" if it does, or these
+        are not known."""
         for other, values in keys[name].only.items():
             instead = " or ".join(f"{other} = {shown(value)}" for value in values)
             if other not in self.data:
@@ -350,7 +358,7 @@ class Table:
         return []
 
     def _converted(self, name: str, key: Key, setting: Setting) -> object:
-        """Return a value as its kind converts it; None if that refuses it, which is noted."""
+        """Return a value as its kind converts it; None if its kind refuses it, with the problem added."""
         try:
             return key.kind(setting.value)
         except KindError as wrong:
@@ -372,7 +380,7 @@ class Table:
         self.complain_about(setting, _problem(OutOfRange if wrong.whole else WrongType, message))
 
     def _unknown(self, name: str, keys: Mapping[str, Key], other: Iterable[str]) -> None:
-        """Note a key or table that is not known here, with what may be meant."""
+        """Add the problem of a key or table that is not known here, with the one that may be meant."""
         section = not self.key_path and isinstance(self.data[name], dict | list)
         complaint = "unknown section" if section else "unknown key"
         written = name if name.isidentifier() and len(name) <= _LONGEST else shown(name)
@@ -410,7 +418,7 @@ def _problem(kind: type[InputError], message: str) -> Problem:
 
 
 def in_table(problem: Problem, table: str = "this table") -> Problem:
-    """Return a problem that may be confirmed with the name of the ``table`` to confirm it in; others as they are."""
+    """Return a problem whose sentence ends with the ``table`` in which to confirm it; one that cannot be confirmed as it is."""
     return _problem(Unusual, f"{problem} in {table}") if problem.confirm else problem
 
 
@@ -426,7 +434,8 @@ def _unreadable(path: Path, error: OSError, sections: Sequence[Section]) -> Inpu
 
 
 def _has_required(file: Path, sections: Sequence[Section]) -> bool:
-    """Return whether a file has a header of each table that is required: a file of rules is no study."""
+    """Return whether a file has a header of each table that is required: a file of rules is no study. False if it cannot be
+    read."""
     try:
         text = file.read_text(encoding="utf-8", errors="replace")
     except OSError:
@@ -436,7 +445,8 @@ def _has_required(file: Path, sections: Sequence[Section]) -> bool:
 
 
 def with_slashes(written: str) -> str:
-    """Return a path with slashes in place of backslashes, also of those that TOML took for the beginning of a character."""
+    r"""Return a path with slashes in place of backslashes, and of the characters that TOML made of these: "C:\\new" may have been
+    read with a line break."""
     return written.translate(_SLASHED)
 
 
