@@ -140,9 +140,9 @@ def _is_duration(value: object) -> bool:
 
 
 def _unfit_for_a_name(value: object) -> str:
-    """Return why a text or path cannot be a file's name: a NUL, or half of a surrogate pair; empty if it can.
+    """Return why a text or path cannot be the name of a file: a NUL, or half of a surrogate pair; "" if it can, or is neither.
 
-    Whether the file system of this machine has its letters is another matter, which whoever writes the file learns.
+    Whether the file system of this machine has its letters is found where the file is written.
     """
     name = os.fspath(value) if isinstance(value, os.PathLike) else value
     if not isinstance(name, str):

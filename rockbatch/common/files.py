@@ -111,9 +111,9 @@ def _open_at_once(path: Path, flags: int) -> int:
 
 @contextmanager
 def whole_input(path: Path) -> Iterator[tuple[BinaryIO, int]]:
-    """Yield a regular file, opened as by :func:`opened_input`, and its size [bytes].
+    """Context manager: yield a regular file, opened as by :func:`opened_input`, and its size [bytes].
 
-    Raises ``InputError`` for a pipe, a device, or a file into which something is written meanwhile.
+    Raises ``InputError`` for a pipe, a device, or a file that changes within the block.
     """
     with io.BufferedReader(opened_input(path)) as file:
         status = os.fstat(file.fileno())
@@ -139,12 +139,12 @@ def _not_plain(path: Path, kind: str) -> InputError:
 
 
 def _kind(status: os.stat_result) -> str:
-    """Return the kind of an irregular file in words, "a link"; empty for a regular one."""
+    """Return the kind of an irregular file in words, "a link"; "" for a regular one."""
     return next((words for is_kind, words in _KINDS if is_kind(status.st_mode)), "")
 
 
 def is_plain(path: Path) -> bool:
-    """Return whether ``path`` is a plain file."""
+    """Return whether ``path`` is a regular file itself; False for a link, a folder, or if it does not exist."""
     try:
         return stat.S_ISREG(os.lstat(path).st_mode)
     except (OSError, ValueError):
@@ -166,7 +166,8 @@ def read_text(path: Path) -> str:
 
 
 def sha256_of(path: Path) -> str:
-    """Return the digest of a file of a folder of results."""
+    """Return the SHA-256 digest of a file of a folder of results, in hexadecimal digits. Raises ``InputError`` as :func:`opened`
+    does."""
     with opened(path) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
@@ -182,7 +183,8 @@ def made_folder(path: Path) -> Path:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary file beside ``path`` that takes its place at the end of the ``with`` block, or is removed on an error.
+    """Context manager: yield a temporary file that takes the place of ``path`` at the end of the block, or is removed on an
+    error.
 
     A reader finds the earlier file or the new one, never a part. Raises ``InputError`` if something else than a regular file
     stands there.
@@ -249,13 +251,13 @@ def write_output(path: Path, text: str) -> None:
 
 
 def is_stdout(path: Path) -> bool:
-    """Return whether a user means the standard output by ``path``."""
+    """Return whether a user means the standard output by ``path``: "-" or "/dev/stdout"."""
     return path.as_posix() in _STDOUT
 
 
 @contextmanager
 def naming_full_disk(path: Path, assurance: str = "what was finished before is kept") -> Iterator[None]:
-    """Turn the operating system's error for a full disk, or a quota, into an ``InputError`` about ``path``."""
+    """Context manager: turn the operating system's error for a full disk, or a quota, into an ``InputError`` about ``path``."""
     try:
         yield
     except OSError as error:
@@ -330,7 +332,8 @@ def csv_plain(cell: str) -> str:
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> str:
-    """Return the text of a CSV file with a header; rows as by :func:`csv_lines`."""
+    """Return the text of a CSV file with a header; of ``rows``, the values in these ``columns``, "" for a missing one, as by
+    :func:`csv_lines`."""
     rows = list(rows)
     lines = csv_lines([[row.get(name) for row in rows] for name in columns])
     return csv_line(columns) + "".join(f"{line}\n" for line in lines)

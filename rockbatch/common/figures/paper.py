@@ -157,8 +157,8 @@ def drawn(figure: Figure, width_mm: float, ax: Axes | None = None) -> Matplotlib
 def panel_in(figure: Figure, ax: Axes | None, name: str = "") -> Axes:
     """Draw one panel of a figure into ``ax``, or into a figure of one column of a paper; return the axes.
 
-    It is the panel with the caption ``name``, or the first one. The legend stands below the axes, where it covers nothing.
-    Raises ``InputError`` for another name, with those that there are.
+    It is the first panel, or the first with the caption ``name``. The legend stands below the axes, where it covers nothing.
+    Raises ``InputError`` for an unknown caption, with those of the figure.
     """
     _check_axes(ax)
     panels = [panel for panel in figure.panels if name in ("", panel.caption)]
@@ -260,7 +260,8 @@ Arranged = tuple[list[list[Panel]], list[float], float]
 
 
 def _arranged(figure: Figure, width_mm: float, tallest: float) -> Arranged:
-    """Arrange panels in rows, stacked as they are or as many abreast as there is room for.
+    """Return the panels in rows, stacked as they are or as many abreast as there is room for, with heights and distance of
+    columns.
 
     Of panels that share their axes more stand abreast, and lower, if the rows would together be higher than ``tallest`` mm.
     """
@@ -283,7 +284,7 @@ def _arranged(figure: Figure, width_mm: float, tallest: float) -> Arranged:
 
 
 def _grid(panels: Sequence[Panel], columns: int, width_mm: float, least: float, across: float = 0.0) -> Arranged:
-    """Arrange panels in columns; they are at least ``least`` times as high as on the page."""
+    """Return the panels in rows of ``columns``, each at least ``least`` times as high as on the page, and at most 1.5 times."""
     size = min(max(width_mm / columns / (MM * max(panel.width for panel in panels)), least), 1.5)
     rows = [list(panels[i : i + columns]) for i in range(0, len(panels), columns)]
     heights = [max(_height(panel, width_mm / columns, size, across) for panel in row) for row in rows]
@@ -315,7 +316,7 @@ def _caption(panel: Panel, across: float) -> list[str]:
 
 
 def _panel(axes: Axes, panel: Panel, across: float, entries: Entries) -> None:
-    """Draw a panel, and note what stands for its marks in the legend."""
+    """Draw a panel, and add the artist of each labelled mark to the ``entries`` of the legend."""
     for mark in panel.marks:
         artist = _draw(mark, axes)
         if mark.label:
