@@ -90,7 +90,10 @@ def parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return the exit code (:data:`EXIT_CODES`); without a command, list the commands."""
+    """Run the command line and return the exit code (:data:`EXIT_CODES`); without a command, list the commands and return 2.
+
+    Wrong arguments end the process (``SystemExit``) with 2.
+    """
     open_missing()
     root = parser()
     if "_ARGCOMPLETE" in os.environ:  # called by the shell for completion
@@ -110,7 +113,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Sequence[str]:
-    """Replace "help" and "version" by options; exit with a suggestion if the first word is not a command."""
+    """Return the arguments with "help" and "version" replaced by options; exit with 2 and a suggestion if the first word is not a
+    command."""
     word, *rest = arguments or [""]
     if word in COMMANDS or not word or word.startswith("-"):
         return arguments
@@ -122,7 +126,8 @@ def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Se
 
 
 def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
-    """Return the end of a message on ``unknown`` options: "; did you mean --jobs?"; empty without a suggestion."""
+    """Return the end of a message on ``unknown`` options: "; did you mean --jobs?", or that the command takes none; "" without a
+    suggestion."""
     options = [name for name in COMMANDS[command].arguments if name.startswith("-")] if command else ["--version"]
     if not options:
         return f"; `rockbatch {command}` takes none"
@@ -138,7 +143,8 @@ def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
 
 
 def _key_meant(unknown: Sequence[str]) -> str:
-    """Return the end of a message on an option that is a key of a study, with its table; empty if it is none."""
+    """Return the end of a message on an option that is a key of a study: "; it is a key of the study: write …"; "" for another
+    option."""
     from rockbatch.study.load import SECTIONS
 
     option, _, given = unknown[0].partition("=")
@@ -154,7 +160,7 @@ def _key_meant(unknown: Sequence[str]) -> str:
 
 
 def _other_word(word: str, options: Sequence[str]) -> str | None:
-    """Return the option for which ``word`` is another word; None without any."""
+    """Return the option of which ``word`` is another name by :data:`_OPTIONS_MEANT`, if the command has it; else None."""
     meant = (name for name, words in _OPTIONS_MEANT.items() if word in words.split())
     return next((name for name in meant if name in options), None)
 
@@ -167,7 +173,8 @@ def _similar(word: str, options: Sequence[str]) -> str | None:
 
 
 def _exit_code(parsed: argparse.Namespace) -> int:
-    """Run a command and return its exit code, reporting errors in words."""
+    """Run a command and return its exit code; 2 after wrong input or an error of files or memory, 130 after Ctrl-C, both with a
+    message."""
     is_taken = any(isinstance(value, Path) and is_stdout(value) for value in vars(parsed).values())
     try:
         with redirect_stdout(sys.stderr) if is_taken else nullcontext(), warnings.catch_warnings():

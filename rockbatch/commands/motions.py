@@ -68,7 +68,10 @@ _VARIABLE = re.compile(r'"[^"]*"|\([^)]*\)|[^\s;:,]*(?:[\d/]|\.[\w.])[^\s;:,]*')
 
 
 def main(arguments: argparse.Namespace) -> int:
-    """Print the records of files or folders and the files not used; write a table, page or manifest if requested."""
+    """Print the records of files or folders and the files not used; write a table, page or manifest if requested.
+
+    The exit code is 2 if a file cannot be used and --strict is given, 1 if so without it, or without any record, else 0.
+    """
     columns = tuple(arguments.columns.split(",")) if arguments.columns else None
     options = ReadOptions(
         arguments.unit, arguments.dt, columns, arguments.sensitivity, arguments.role, arguments.layout
@@ -107,7 +110,8 @@ def counts(suite: MotionSet) -> str:
 
 
 def overview(suite: MotionSet) -> str:
-    """Return counts, a scorecard of the doubtful and strongest records, and faults by reason, in :data:`MOST_LINES` lines."""
+    """Return counts, a scorecard of the doubtful and strongest records, and faults by reason, in about :data:`MOST_LINES`
+    lines."""
     entries = {
         "Not used": [(file.source, file.reason) for file in suite.unusable],
         "Look at these": [(motion.named, finding.text) for motion in suite for finding in motion.findings],
@@ -156,7 +160,11 @@ def _cell(value: object, form: str) -> str:
 
 
 def _by_reason(title: str, entries: Sequence[tuple[str, str]], most: int) -> list[str]:
-    """Return a line for each reason: count, reason and an example; reasons that differ only in names and numbers are one."""
+    """Return a title, and a line for each of the ``most`` rarest reasons with their number and an example, then the number of
+    others; [] without entries.
+
+    Reasons that differ only in names and numbers are one.
+    """
     reasons = sorted(grouped(entries, lambda entry: _VARIABLE.sub("", entry[1])).values(), key=len)
     lines = ["", title] if entries else []
     for same in reasons[:most]:
@@ -190,7 +198,7 @@ def _write(path: Path, suite: MotionSet) -> None:
 
 
 def _table(rows: Sequence[Mapping[str, object]]) -> str:
-    """Return the rows as text, without empty columns."""
+    """Return the rows as text, without columns that are empty in all of them."""
     used = {key: shown for key, shown in _SHOWN.items() if key == "record" or any(row[key] is not None for row in rows)}
     cells = [[_cell(row[key], form) for key, (_, form) in used.items()] for row in rows]
     flush_left = [place for place, key in enumerate(used) if key in TEXTS]

@@ -47,7 +47,7 @@ def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str
 
 
 def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
-    """Return counts of statuses, and a table of the ten runs with the greatest rotations."""
+    """Return, as text, the number of runs of each status, and a table of the ten runs with the greatest rotations."""
     ended = ", ".join(f"{n} {status}" for status, n in runs["status"].value_counts().items())
     shown = ["record", "polarity", "scale", "case", *varied, "status", "theta_max_over_alpha", "theta_max_error"]
     largest = runs.nlargest(10, "theta_max_over_alpha")[shown]
@@ -58,7 +58,8 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
 
 
 def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
-    """Return warnings about the runs as a whole, a sentence each."""
+    """Return a sentence on each kind of runs to look at: settlements that depend on the law, linearised kinematics too far, lean,
+    sliding; [] for none."""
 
     def warning(runs: npt.NDArray[np.bool_], singular: str, plural: str) -> str:
         """Return the words for the number of these runs, in singular or plural; empty for none."""
@@ -85,7 +86,7 @@ def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
 
 
 def of_targets(info: Item) -> list[str]:
-    """Return the remarks on the target spectra in ``info``, the content of run.json, a sentence each."""
+    """Return the remarks on the target spectra in ``info``, the content of run.json, a sentence each; [] without targets."""
     targets = (info.get(name) or {} for name in NAMES)
     return [f"target spectrum: {remark}" for target in targets for remark in target.get("remarks") or ()]
 
@@ -122,7 +123,7 @@ def flexible(study: Study) -> list[str]:
 
 
 def _other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
-    """Return a warning if settlements by the two spring laws differ by over 10 % and 1 mm; else empty."""
+    """Return a warning if settlements by the two spring laws differ by over 10 % and 1 mm in a run; else ""."""
     if "settlement_other_law_m" not in table:
         return ""
     of_case, by_other = table["settlement_m"], table["settlement_other_law_m"]
