@@ -95,7 +95,7 @@ def _use(record: RankedRecord) -> Markup:
 
 
 def _reasons(files: Sequence[Unusable | LeftOut], name: str) -> Markup:
-    """Return a table of files and reasons; empty without files."""
+    """Return a table of files, each with its source and the reason; empty without files."""
     rows = [
         [tag("span", file.name, class_="named"), tag("span", file.source, class_="path"), file.reason] for file in files
     ]
