@@ -161,7 +161,8 @@ def add_name_statement(component: Component, name: str, orientation: Orientation
 
 
 def _is_of_sensor(label: str, component: Component) -> bool:
-    """Return whether the digits of a file's name are of its station or location code (two digits beside a channel code)."""
+    """Return whether ``label``, of a file's name, is digits that end its station or are its location code, or two digits beside a
+    channel code."""
     if not label.isdigit():
         return False
     station = re.sub(r"[\W_]", "", component.sensor.station or component.origin.station)

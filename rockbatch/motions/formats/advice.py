@@ -44,7 +44,7 @@ class _Trial:
 
 
 def with_advice(error: Unstated, read: Read, options: ReadOptions, gravity: float) -> Unstated:
-    """Return the refusal of a file with the statements that lead to a record when tried, or the reason why none does."""
+    """Return the error of a file with the statements that lead to a record when tried, or else with the reason why none does."""
     choices = error.choices or ({key: _TRIED[key] for key in error.keys if key in _TRIED},)
     trials = [_trial(choice, read, options) for choice in choices]
     advice, where = [], _WHERE
@@ -91,7 +91,7 @@ def _trial(statement: Statement, read: Read, options: ReadOptions) -> _Trial:
 
 
 def _contradictions(readings: Sequence[Component | Unusable]) -> Iterator[str]:
-    """Yield the reasons of unusable readings, and the gross findings on components."""
+    """Yield the reasons of unusable readings, and the texts of gross findings on components."""
     for reading in readings:
         if isinstance(reading, Unusable):
             yield reading.reason

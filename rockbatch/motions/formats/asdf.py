@@ -72,7 +72,7 @@ def _own_member(group: "h5py.Group", name: str) -> object:
 
 
 def _group(group: "h5py.Group", name: str) -> "h5py.Group | None":
-    """Return a group stored in another; ``None`` without one."""
+    """Return a group stored in another; ``None`` if there is none of this name, or it is a link or a data set."""
     member = _own_member(group, name)
     return member if isinstance(member, h5py.Group) else None
 

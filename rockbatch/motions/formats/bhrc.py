@@ -32,7 +32,7 @@ _TEXT = layout(
 
 
 def is_bhrc(head: bytes) -> bool:
-    """Return whether the first bytes are the header of such a file, of whatever volume."""
+    """Return whether the first bytes are the title of a BHRC file, "* VOL1DS FILE: …", of whatever volume."""
     return _TITLE.match(head[:100].decode("latin-1")) is not None
 
 

@@ -127,14 +127,15 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
 
 
 def _unit_of(column: Column, of_all: str | None, options: ReadOptions) -> str:
-    """Return a column's unit: its own if known, else the study's, else its own or that ``of_all``; empty without any."""
+    """Return a column's unit: its own, but the study's if its own is no unit of acceleration and the study states one; else that
+    ``of_all``, or ""."""
     if column.unit and not is_acceleration(column.unit) and options.unit:
         return options.unit
     return column.unit or of_all or ""
 
 
 def _missing_unit(i: int, column: Column, unit: str) -> str:
-    """Return the complaint about a column's missing or unknown unit."""
+    """Return the message about a column's missing or unknown unit."""
     return (
         f'{_column_name(i, column)}: the unit "{unit}" is not known'
         if unit
@@ -177,7 +178,7 @@ def _columns_named(header: Sequence[str], width: int) -> list[Column] | None:
 
 
 def _behind_an_index(header: Sequence[str], table: Samples) -> list[Column] | None:
-    """Return the columns of a table whose first one, without a name or called "index", has times or counts the rows.
+    """Return the columns of a table whose first one has no name or is called "index": a row number, or times that grow evenly.
 
     ``header`` names the others; ``None`` for other tables.
     """
@@ -228,7 +229,10 @@ def _with_time(columns: list[Column], table: Samples) -> list[Column]:
 
 
 def _guessed_columns(header: list[str], table: Samples) -> tuple[list[Column], tuple[str, ...]]:
-    """Return columns without labels: a single one, or time and acceleration; raise ``InputError`` for more."""
+    """Return columns without labels, and notes: a single acceleration, or evenly growing times and acceleration.
+
+    Raises ``Unstated`` for another table, and ``InputError`` for two columns below a header about spectra.
+    """
     width = table.shape[1]
     if width == 1:
         return [Column("")], ()

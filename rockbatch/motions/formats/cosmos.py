@@ -208,7 +208,8 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
 
 
 def _initial(header: _Header) -> Initial | None:
-    """Return the ground's state at the first sample, by real numbers 68 and 69; ``None`` if number 68 is unknown."""
+    """Return the ground's velocity [m/s] and displacement [m] at the first sample, by real numbers 68 and 69; ``None`` if number
+    68 is unknown."""
     velocity, displacement = header.reals[67:69]
     if velocity == header.unknown:
         return None

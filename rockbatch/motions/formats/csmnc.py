@@ -35,7 +35,7 @@ _NUMBERS = re.compile(r"\s*[-+]?[0-9.][-+0-9.E\s]*", re.IGNORECASE)
 
 
 def is_csmnc(head: bytes) -> bool:
-    """Return whether the first bytes are the header of such a file."""
+    """Return whether the first bytes have the lines of a CSMNC header for quantity, count and component."""
     lines = lines_of(head.decode("latin-1"))[:_MOST]
     return all(search_lines(pattern, lines) for pattern in (_KIND, _COUNT, _COMPONENT))
 

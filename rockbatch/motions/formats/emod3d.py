@@ -22,7 +22,8 @@ _TEXT = layout(
 
 
 def is_emod3d(head: bytes) -> bool:
-    """Return whether the first bytes are the header of such a file."""
+    """Return whether the first bytes are the two header lines of a file of EMOD3D: station and direction, then count, interval
+    and six numbers."""
     lines = head.decode("latin-1").splitlines()
     return len(lines) > 1 and all(pattern.search(lines[index][:200]) for index, pattern, _ in _TEXT)
 

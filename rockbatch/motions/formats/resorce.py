@@ -19,7 +19,8 @@ _NEEDED = ("Number of Data", "Time Increment (s)", "Orientation")
 
 
 def is_resorce(head: bytes) -> bool:
-    """Return whether the first bytes are the header of such a file."""
+    """Return whether the first bytes are a RESORCE header: "Event Date & Time", and the keys of count, interval and
+    orientation."""
     return head.startswith(b"Event Date & Time") and all(f"\n{key}".encode() in head for key in _NEEDED)
 
 

@@ -110,7 +110,11 @@ def _real(lines: list[str], n: int) -> str:
 
 
 def _label(vertical: int, azimuth: int, unknown: int, text: str) -> str:
-    """Return the direction by the angle from the vertical and the azimuth [degrees], else the text's; "Up" and "Down" so."""
+    """Return the direction by the angle from the vertical and the azimuth [degrees]: "Up", "Down" or "90"; without them that of
+    the ``text``.
+
+    Raises ``InputError`` for an inclined component.
+    """
     if vertical in _VERTICAL:
         return _VERTICAL[vertical]
     if vertical not in (90, unknown):

@@ -127,9 +127,10 @@ def _count_and_step(numbers: Sequence[float]) -> tuple[float, str] | None:
 
 
 def _pairs(rows: Sequence[float], remainder: Sequence[float], width: int) -> Samples | None:
-    """Return numbers as pairs of time and value, shape (npts, 2), if they are such; else ``None``.
+    """Return numbers as pairs of time and value, shape (npts, 2); ``None`` unless they are five pairs or more whose times grow
+    evenly.
 
-    Programs for structures write several pairs on a line; they differ from other tables by times that grow evenly.
+    Programs for structures write several pairs on a line; they differ from other tables by these times.
     """
     numbers = np.array([*rows, *remainder]) if remainder else np.array(rows)
     if width % 2 or len(numbers) % 2 or len(numbers) < 2 * _FEWEST_PAIRS:
@@ -155,7 +156,7 @@ def _table_error(lines: list[str], reason: str) -> InputError:
 
 
 def _separators(text: str, lines: list[str]) -> tuple[str, str]:
-    """Return the separator of columns besides blanks, and the decimal comma or "".
+    """Return the separator of columns besides blanks, and the decimal comma or "": (";", "") for numbers without commas.
 
     Raises ``InputError`` for numbers with both points and commas, and for commas of unclear meaning.
     """
@@ -182,7 +183,7 @@ def _separators(text: str, lines: list[str]) -> tuple[str, str]:
 
 
 def _in_numbers(sign: str, text: str, lines: list[str]) -> bool:
-    """Return whether a character occurs in a line of numbers only."""
+    """Return whether the character ``sign`` occurs in a line of numbers only."""
     return sign in text and any(sign in line and _NUMERIC.fullmatch(line) for line in lines)
 
 
@@ -210,7 +211,8 @@ def _even_rows(lines: Sequence[str], width: int, between: str, decimal: str) -> 
 
 
 def _numbers(line: str, between: str, decimal: str) -> list[float] | None:
-    """Return the numbers of a line, also touching ones and with D exponents; ``None`` if it has anything else."""
+    """Return the numbers of a line, also touching ones and with D exponents; [] for a blank line, ``None`` if it has anything
+    else."""
     if "_" in line:  # Python would read 1_0 as ten
         return None
     if '"' in line:
