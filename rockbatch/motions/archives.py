@@ -53,14 +53,15 @@ def is_archive(path: Path | PurePosixPath) -> bool:
 
 
 def not_read(path: Path) -> str:
-    """Return the refusal of an archive of another kind, by its suffix; empty for archives that are read and other files."""
+    """Return the reason why an archive of another kind, by its suffix (.7z, .rar), is not read; "" for archives that are read and
+    other files."""
     if bare(path).suffix.lower() in _PACKED and not is_archive(path):
         return "an archive that is not read (.zip and .tar.gz are, and .gz of one record); unpack it"
     return ""
 
 
 def bare(path: Path) -> Path:
-    """Return the path without a last .gz."""
+    """Return the path without a last .gz, in capitals or not."""
     return path.with_suffix("") if path.suffix.lower() == ".gz" else path
 
 
@@ -99,7 +100,8 @@ class _Archive(ABC):
 
 
 def members(archive: Path) -> Iterator[Member]:
-    """Yield the files of an archive in order of their names, but hidden and read-me files, as in folders.
+    """Yield the files of an archive in order of their names, without hidden and read-me files; one that must not be opened with
+    its reason.
 
     Raises ``InputError`` for a damaged archive, and for one too large or with too many files.
     """
@@ -120,7 +122,10 @@ def members(archive: Path) -> Iterator[Member]:
 
 
 def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
-    """Yield the files of an archive and of archives in it, with their sizes [bytes]; ``outer`` is the prefix of their names."""
+    """Yield the files of an archive, and of archives in it, with their sizes [bytes]; ``outer`` is the prefix of their names.
+
+    Hidden and read-me files are left out; an inner archive that cannot be read is a file with that reason.
+    """
     for entry in _opened_archive(archive, state(archive)).entries:
         name, path = PurePosixPath(entry.name), archive / _member_path(entry.name)
         if any(part.startswith(".") and part != ".." for part in name.parts) or name.stem.lower() == "readme":
@@ -168,7 +173,8 @@ def state(path: Path) -> tuple[int, ...]:
 
 
 def files_in(folder: Path) -> list[Path]:
-    """Return paths of the regular files directly in a folder, of the disk or of an archive, in order; without refused ones."""
+    """Return paths of the regular files directly in a folder, of the disk or of an archive, in order; of an archive without those
+    that must not be opened."""
     archive = folder if is_archive(folder) and folder.is_file() else archive_of(folder)
     if archive is None:
         return sorted(path for path in folder.iterdir() if path.is_file())
@@ -328,6 +334,6 @@ def _too_large(packed: int, most: int) -> str:
 
 
 def _member_path(name: str) -> PurePosixPath:
-    """Return a name in an archive as a path within it: without root and ".."."""
+    """Return a name in an archive as a path within it, without root and ".."; "?" if nothing else is left."""
     inside = [part for part in PurePosixPath(name).parts if part not in ("/", "//", "..")]
     return PurePosixPath(*inside) if inside else PurePosixPath("?")

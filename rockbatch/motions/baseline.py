@@ -36,7 +36,10 @@ class Offset:
 
 
 def remove_offset(component: Component, offset: Offset) -> Component:
-    """Return ``component`` without its offset by the rule, with a note; raise ``InputError`` for a window outside the record."""
+    """Return ``component`` less its offset by the rule, with a note on it; as it is if the rule takes off nothing.
+
+    Raises ``InputError`` for a window outside the record.
+    """
     if offset.rule == "keep":
         if not component.raw:
             return component

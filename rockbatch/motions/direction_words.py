@@ -210,7 +210,7 @@ WORDS: dict[str, dict[str, str]] = {
 
 
 def folded(text: str) -> str:
-    """Return a text in capitals, without accents."""
+    """Return a text in capitals, without accents: "Dirección" gives "DIRECCION"."""
     plain = unicodedata.normalize("NFKD", text.replace("º", "°").replace("ı", "i").upper())
     return "".join(c for c in plain if not unicodedata.combining(c))
 

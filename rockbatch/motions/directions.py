@@ -54,7 +54,8 @@ def _judge_set(station: Sequence[Component]) -> list[Component]:
 def _hold_back(
     component: Component, contradiction: str, components: Sequence[Component], contradictions: dict[int, str]
 ) -> Component:
-    """Return a component of a set held back, for its own ``contradiction`` or the first one in the set."""
+    """Return a component of a set that is held back, with its own ``contradiction``, or with that of the first one of the set
+    that has any."""
     if contradiction:
         return replace(component, contradiction=contradiction, orientation=unknown(component.orientation.label))
     first, text = next(iter(contradictions.items()))
@@ -62,7 +63,7 @@ def _hold_back(
 
 
 def _by_user(component: Component) -> bool:
-    """Return whether the user states the component's direction, or chooses it before its copies."""
+    """Return whether the user states the component's direction, or prefers it to its copies (``use = true``)."""
     return component.preferred or any(statement.kind is Kind.USER for statement in component.statements)
 
 
@@ -76,7 +77,8 @@ def _same_samples(a: Component, b: Component) -> bool:
 
 
 def _with_names(station: Sequence[Component]) -> list[Component]:
-    """Return components whose file names are no longer weak statements, if the names give each another direction.
+    """Return components whose file names no longer count as weak statements, if each name gives another direction; else as they
+    are.
 
     "North" or "z" alone may be the name of a place or a copy; beside "East" it is a direction.
     """
@@ -91,7 +93,8 @@ def _with_names(station: Sequence[Component]) -> list[Component]:
 
 
 def _copies_as_their_originals(station: Sequence[Component]) -> list[Component]:
-    """Return components, where a copy whose statements contradict has those of its original, with the same samples."""
+    """Return components, in which a copy whose statements contradict each other has those of a sound component with the same
+    samples."""
     components = list(station)
     for i, component in enumerate(station):
         if _contradiction(component):
@@ -155,7 +158,7 @@ def _without(component: Component, void: Statement, reason: str) -> Component:
 
 
 def _with_believed_defaults(component: Component) -> Component:
-    """Return a component whose angles of 0° count as any others: they have withstood ``_void_defaults``."""
+    """Return a component whose angles of 0° count as any others, since :func:`_void_defaults` did not find them void."""
     if not any(s.default for s in component.statements):
         return component
     statements = tuple(replace(s, default=False) for s in component.statements)
@@ -204,7 +207,7 @@ def _of_one_sensor(a: Component, b: Component) -> bool:
 
 
 def _skew_pair(a: Component, b: Component) -> str:
-    """Return a complaint on horizontal components of one sensor more than 30° off a right angle; empty for others."""
+    """Return a message on horizontal components of one sensor that are more than 30° off a right angle; "" for others."""
     first, second = a.orientation.azimuth, b.orientation.azimuth
     if a.sensor != b.sensor or first is None or second is None or same_direction(a.orientation, b.orientation):
         return ""

@@ -36,7 +36,7 @@ class Statement:
     weak: bool = False  # whether it may mean something else, and counts only without another statement
 
     def contradicts(self, other: "Statement") -> bool:
-        """Return whether at most one can be right.
+        """Return whether the two cannot both be right.
 
         Sensors turned to any azimuth still have codes with N and E, so these contradict an angle only if 90° off.
         """
@@ -53,7 +53,8 @@ class Statement:
         return apart > _ROUNDED
 
     def differs_from(self, other: "Statement") -> bool:
-        """Return whether roles or azimuths differ by more than rounding; False if only one has an azimuth."""
+        """Return whether one direction is vertical and the other is not, or azimuths differ by over 5°; one unknown azimuth
+        differs from none."""
         a, b = self.orientation.azimuth, other.orientation.azimuth
         apart = 0.0 if a is None or b is None else abs((a - b + 180.0) % 360.0 - 180.0)
         return self.orientation.vertical != other.orientation.vertical or apart > _ROUNDED
@@ -75,7 +76,8 @@ class Statement:
 
 
 def decided_orientation(statements: Sequence[Statement], label: str = "") -> Orientation:
-    """Return the orientation of the most believed statement, by the order of ``Kind``; unknown with ``label`` without any.
+    """Return the orientation of the most believed statement, by the order of :class:`Kind`; without any, an unknown one with
+    ``label``.
 
     Default and weak statements count only if there are no others. Angles without an azimuth give way to a statement of a
     horizontal component's azimuth.
@@ -110,7 +112,11 @@ _UPRIGHT, _LEVEL = 80.0, 10.0  # degrees of dip: least of a vertical channel, gr
 
 
 def same_direction(a: Orientation, b: Orientation) -> bool:
-    """Return whether two known orientations agree, by azimuths within 1°, else by labels; False if one is unknown."""
+    """Return whether two known orientations agree: both vertical, up or down, or azimuths within 1°, or without azimuths the same
+    label.
+
+    False if one is unknown, or only one has an azimuth.
+    """
     if not (a.known and b.known) or a.vertical != b.vertical:
         return False
     if a.vertical:

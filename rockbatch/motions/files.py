@@ -40,7 +40,7 @@ class SourceFile:
 
     @property
     def is_inventory(self) -> bool:
-        """Return whether it may be StationXML by its suffix."""
+        """Return whether it may be StationXML, by the suffix .xml or .xml.gz."""
         return archives.bare(self.path).suffix.lower() == _INVENTORY
 
 
@@ -80,7 +80,7 @@ def inventories_beside(file: Path) -> list[SourceFile]:
 
 
 def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
-    """Yield the files of an archive, or the archive itself with the reason why it cannot be read."""
+    """Yield the files of an archive, and first the archive itself with the reason if it cannot be read or holds none."""
     try:
         members = list(archives.members(path))
         refusal = "" if members else "an archive without files"
@@ -104,7 +104,8 @@ def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
 
 
 def _source_file(path: Path, source: str) -> SourceFile:
-    """Return a regular file: a companion by its name, suffix or our own contents, refused as an archive not read, or a record."""
+    """Return a regular file, with its kind as ``companion`` if its name, its suffix or content that this program wrote shows that
+    it is no record, or else with a ``refusal`` if it is an archive that is not read."""
     if path.name.lower() == _SEARCH_RESULTS:
         return SourceFile(path, source, companion="a table about the records")
     suffix = archives.bare(path).suffix.lower()
@@ -118,7 +119,8 @@ def _source_file(path: Path, source: str) -> SourceFile:
 
 
 def _paths_below(folder: Path) -> Iterator[Path]:
-    """Yield the files in a folder and below it, but hidden and read-me ones, links to folders, and folders that are closed."""
+    """Yield the files in a folder and below it, without hidden and read-me ones; then each link to a folder, and each folder that
+    cannot be opened, itself."""
     closed: list[Path] = []
     for parent, folders, files in os.walk(folder, onerror=lambda error: closed.append(Path(error.filename))):
         folders[:] = [name for name in folders if not name.startswith(".")]

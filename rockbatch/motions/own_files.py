@@ -51,7 +51,8 @@ def is_own(path: Path) -> bool:
 
 
 def _is_head(begin: bytes) -> bool:
-    """Return whether the first line of a table or a journal, which has a checksum and digests first, names columns of ours."""
+    """Return whether the first line of a table or journal, where a journal has a checksum and digests first, names columns of
+    rockbatch."""
     first = begin.removeprefix(b"\xef\xbb\xbf").partition(b"\n")[0].decode(errors="replace")
     cells = {cell.strip(' \r"') for cell in re.split("[,;\t]", first)}
     return any(names <= cells for names in _NAMED_TOGETHER)

@@ -74,7 +74,8 @@ class Candidate:
 
 
 def unlikely_peak(candidate: Candidate) -> Finding | None:
-    """Return a finding on a PGA outside 0.001–5 g, so that the unit is probably wrong, or above 2 g in a file in g; else None."""
+    """Return a finding on a PGA outside 0.001–5 g, so that the unit is probably wrong, or from 2 to 5 g in a file in g; else
+    None."""
     horizontal = candidate.motion.pga / candidate.gravity
     vertical = (candidate.motion.pga_vertical or 0.0) / candidate.gravity
     if LOWEST <= horizontal <= HIGHEST >= vertical:
@@ -94,7 +95,8 @@ def _strong(peak: float) -> Finding | None:
 
 
 def unlikely_samples(motion: Motion, gravity: float) -> list[str]:
-    """Return a complaint about a PGA above 5 g of a motion from Python; [] for others, and if judged or confirmed already."""
+    """Return a message, alone in a list, about a PGA above 5 g of a motion from Python; [] for others, and if judged or confirmed
+    already."""
     peak = max(motion.pga, motion.pga_vertical or 0.0)
     candidate = motion.source == "pulse" or any(finding.what == "PGA" for finding in motion.findings)
     if candidate or "pga" in motion.confirm or peak <= HIGHEST * gravity:
@@ -155,7 +157,8 @@ def alternating(samples: Samples) -> float:
 
 
 def flat_top(candidate: Candidate) -> Finding | None:
-    """Return a finding on flat tops of four or more samples at the largest value: clipped by recorder or digitiser."""
+    """Return a finding on one flat top of four samples or more, or several of five in sum, at the largest value: clipped by
+    recorder or digitiser."""
     for name, samples in (("", candidate.component.acceleration), ("vertical: ", candidate.motion.vertical)):
         tops = [] if samples is None else flat_tops(samples)
         if max(tops, default=0) >= _LONG_TOP or (len(tops) > 1 and sum(tops) > _LONG_TOP):
@@ -189,7 +192,8 @@ def flat_tops(samples: Samples) -> list[int]:
 
 
 def displacement(candidate: Candidate) -> Finding | None:
-    """Return a finding on a PGD above 15 m, gross if the record is corrected or above 100 m, or on a drift."""
+    """Return a finding on a PGD above 15 m, gross if the record is corrected or above 100 m, or on a displacement that drifts;
+    else None."""
     motion = candidate.motion
     pgd = measures.pgd(motion.horizontal, motion.dt, motion.initial)
     if pgd > FARTHEST:
@@ -216,7 +220,8 @@ def unequal_horizontals(candidate: Candidate) -> Finding | None:
 
 
 def copied_horizontal(candidate: Candidate) -> Finding | None:
-    """Return a finding on a horizontal component that is a copy of the station's other one, perhaps scaled and shifted."""
+    """Return a finding on a horizontal component that is a copy of the station's other one, perhaps scaled and shifted; None for
+    other numbers of components."""
     this, others = candidate.component, [c for c, _ in candidate.peaks if c is not candidate.component]
     if len(candidate.peaks) != 2 or not others or not same_step(this.dt, others[0].dt):
         return None
@@ -296,8 +301,9 @@ def lack_of_processing(candidate: Candidate) -> Finding | None:
     return Finding("unprocessed", "unprocessed: long-period noise not removed")
 
 
-def differing_copies(candidate: Candidate) -> Finding | None:
-    """Return the findings of the readers on both components, on headers and copies, as one; None without any."""
+def findings_of_readers(candidate: Candidate) -> Finding | None:
+    """Return what the readers found on both components, on headers and copies, as one finding, gross if any is; None if they
+    found nothing."""
     both = (*candidate.component.findings, *candidate.motion.findings)
     if not both:
         return None
@@ -314,13 +320,13 @@ JUDGES: tuple[Callable[[Candidate], Finding | None], ...] = (
     copied_horizontal,
     unlike_vertical,
     in_a_structure,
-    differing_copies,
+    findings_of_readers,
     lack_of_processing,
 )
 
 
 def findings(candidate: Candidate) -> tuple[Finding, ...]:
-    """Return the findings of all ``JUDGES`` on a motion."""
+    """Return the findings of all ``JUDGES`` on a motion, in their order; () if it has no oddity."""
     return tuple(finding for judge in JUDGES if (finding := judge(candidate)) is not None)
 
 
@@ -338,7 +344,8 @@ def _unconfirmed(findings: Sequence[Finding], confirmed: Collection[str]) -> lis
 
 
 def confirmation_request(name: str, findings: Sequence[Finding], confirmed: Collection[str]) -> str:
-    """Return the gross findings on the motion ``name`` and how to confirm them; empty if ``confirmed`` has their keys."""
+    """Return the gross findings on the motion ``name`` and how to confirm them; "" if there are none, or ``confirmed`` has their
+    keys."""
     unconfirmed = _unconfirmed(findings, confirmed)
     if not unconfirmed:
         return ""

@@ -93,8 +93,8 @@ class RankedRecord:
 
     @cached_property
     def values(self) -> dict[str, Cell]:
-        """Return the values of :data:`COLUMNS` for the stronger component, with the other's PGA and the doubts of both; None if
-        unknown."""
+        """Return the values of :data:`COLUMNS` for the stronger component, with the other's PGA [g] and the doubts about both;
+        None if unknown."""
         known: dict[str, Cell] = dict.fromkeys(COLUMNS)
         known["record"] = self.name
         if self.motions:
@@ -134,7 +134,7 @@ def _used_record(components: Sequence[Motion]) -> RankedRecord:
 
 
 def _unused_records(unusable: Iterable[Unusable]) -> Iterator[RankedRecord]:
-    """Yield a record for the unusable components of each station with one ``Use``."""
+    """Yield a record for the unusable components of each station, and for each ``Use`` that they have."""
     for files in grouped(unusable, lambda file: (use_of(file), file.station or file.source)).values():
         held = sorted((file.motion for file in files if file.motion), key=lambda motion: -motion.pga)
         yield RankedRecord(
@@ -168,7 +168,8 @@ def _finding_names(motions: Sequence[Motion]) -> list[str]:
 
 
 def _other_pga_g(motion: Motion, others: Iterable[Motion]) -> float | None:
-    """Return the PGA across a motion [g]: of its strongest other horizontal component, a motion or not; None without one."""
+    """Return the PGA [g] of the strongest other component of a motion's station, else of the component across the motion; None
+    without both."""
     across = max((other.pga for other in others if other is not motion), default=None)
     if across is None and motion.across is not None:
         across = float(np.abs(motion.across).max())
@@ -182,7 +183,8 @@ def pulse_period(motion: Motion) -> float | None:
 
 
 def rows(motions: MotionSet) -> list[dict[str, Cell]]:
-    """Return the rows of ``rockbatch motions --csv``: a row per motion in order, then one per unused file with its ``reason``."""
+    """Return the rows of ``rockbatch motions --csv``: one per motion in order, then one per file that is not used or left out,
+    with its ``reason``."""
     stations = motions.stations()
     not_used: list[Unusable | LeftOut] = [*motions.unusable, *motions.left_out]
     used = [_row(motion, stations[motion.of_station]) | {"use": Use.USED.value} for motion in motions]
@@ -194,7 +196,8 @@ def rows(motions: MotionSet) -> list[dict[str, Cell]]:
 
 
 def _row(motion: Motion, components: Sequence[Motion]) -> dict[str, Cell]:
-    """Return the row of a motion, with its station's other PGA [9.81 m/s²] and its pulse period [s]."""
+    """Return the row of a motion, with the PGA [g] of the strongest other horizontal component of its station and the period of
+    its pulse [s]."""
     return row(motion) | {"pga_h2_g": _other_pga_g(motion, components), "pulse_period_s": pulse_period(motion)}
 
 

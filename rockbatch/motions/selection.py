@@ -37,7 +37,8 @@ _MEASURES: dict[str, Callable[[Motion, float], float | None]] = {
 
 
 def selected(motion_set: MotionSet, selection: Selection, gravity: float = GRAVITY) -> MotionSet:
-    """Return the motions within ``selection``, others as left out; unknown magnitudes are unusable if magnitude is selected."""
+    """Return the motions within ``selection``, others as left out; if it has magnitudes, motions of unknown magnitude are
+    unusable."""
     chosen: list[Motion] = []
     unusable: list[Unusable] = []
     left_out: list[LeftOut] = []

@@ -58,7 +58,7 @@ class Channel:
 
     @property
     def gain(self) -> str:
-        """Return its sensitivity with its unit, for people."""
+        """Return its sensitivity, which must be known, with its unit, for people: "428000 counts per M/S**2"."""
         return f"{self.sensitivity:.10g} counts per {self.unit}"
 
 
@@ -103,7 +103,8 @@ class Inventories:
 
 
 def contradiction(channels: Sequence[Channel]) -> str:
-    """Return two contradictory statements of epochs of one channel, or of one epoch; empty if all agree."""
+    """Return two statements that contradict each other, of one or more epochs of a channel with sensitivities; "" if all
+    agree."""
     for channel in channels:
         if channel.stages and channel.sensitivity and abs(channel.stages / channel.sensitivity - 1.0) > _SAME_STAGES:
             return f"{channel.gain} ({channel.named}) and {channel.stages:.6g} as the product of its stages' gains"
@@ -117,7 +118,8 @@ def contradiction(channels: Sequence[Channel]) -> str:
 
 
 def _same_gain(a: Channel, b: Channel) -> bool:
-    """Return whether two channels with sensitivities have the same counts per m/s²; without units of acceleration, equal ones."""
+    """Return whether two channels with sensitivities have the same counts per m/s², to 0.1 %; in units of no acceleration, the
+    same number and unit."""
     assert a.sensitivity
     assert b.sensitivity
     try:
@@ -128,7 +130,8 @@ def _same_gain(a: Channel, b: Channel) -> bool:
 
 
 def _same_direction(a: Channel, b: Channel) -> bool:
-    """Return whether dip and azimuth agree; True if one channel has no dip."""
+    """Return whether dip and azimuth agree, each within 1°; True if one channel has no dip, and whatever the azimuths if one is
+    missing or the channels are upright."""
     if a.dip is None or b.dip is None:
         return True
     if abs(a.dip - b.dip) > _SAME_DIP:
@@ -189,6 +192,8 @@ class _Reader:
         self.gains: list[float | None] = []
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
+        """Enter an element, and keep the attributes of networks, stations and channels. Raises ``_NoStationXML`` for another
+        root."""
         name = tag.rpartition("}")[2]
         if (not self.above and name != _ROOT) or len(self.above) > _DEEPEST:
             raise _NoStationXML
@@ -198,11 +203,13 @@ class _Reader:
             self.texts, self.gains = {}, []
 
     def data(self, text: str) -> None:
+        """Keep the text of the elements of a channel that are read."""
         key = self._key
         if (key in _TEXTS or key == _GAIN) and len(self.texts.get(key, "")) < _LONGEST:
             self.texts[key] = self.texts.get(key, "") + text[:_LONGEST]
 
     def end(self, tag: str) -> None:
+        """Leave an element, and add the channel if it is one."""
         if tuple(self.above) == _LEVELS[-1]:
             self.channels.append(self._channel())
         elif self._key == _GAIN:
@@ -215,6 +222,7 @@ class _Reader:
         return "/".join(self.above[len(_LEVELS[-1]) :])
 
     def _channel(self) -> Channel:
+        """Return the channel whose element ends, with the epoch of the innermost element that has dates."""
         levels = [self.attributes[level[-1]] for level in _LEVELS]
         network, station, channel = levels
         dated = next((level for level in reversed(levels) if level.keys() & {"startDate", "endDate"}), {})
