@@ -166,7 +166,8 @@ def _other_word(word: str, options: Sequence[str]) -> str | None:
 
 
 def _similar(word: str, options: Sequence[str]) -> str | None:
-    """Return an option spelt similarly that discards no results; None without any, or if the word is of other commands."""
+    """Return an option spelt similarly; None without any, for another word of an option of any command, and never an option that
+    discards results."""
     if any(word in words.split() for words in _OPTIONS_MEANT.values()):
         return None
     return closest(word, [name for name in options if name not in DISCARDING])

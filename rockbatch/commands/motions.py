@@ -100,7 +100,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def counts(suite: MotionSet) -> str:
-    """Return a sentence with the numbers of files, usable recordings, and files not used or left out."""
+    """Return "3 files: 2 usable recordings of 1 station, 0 not used, 1 left out" with the numbers of the set."""
     sources = {source for motion in suite for source in (motion.source, motion.vertical_source) if source}
     for not_used in (suite.unusable, suite.left_out):
         sources |= {file.source for file in not_used}

@@ -62,7 +62,7 @@ def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
     sliding; [] for none."""
 
     def warning(runs: npt.NDArray[np.bool_], singular: str, plural: str) -> str:
-        """Return the words for the number of these runs, in singular or plural; empty for none."""
+        """Return the words for the number of these runs, in singular or plural; "" for none."""
         n = int(runs.sum())
         return "" if n == 0 else singular if n == 1 else plural.format(n)
 

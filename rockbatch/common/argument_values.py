@@ -55,10 +55,10 @@ def case_pair(text: str) -> tuple[str, str]:
 
 
 def flag(text: str) -> dict[str, Any]:
-    """Return the keywords of a flag with a help ``text``."""
+    """Return the keywords of ``ArgumentParser.add_argument`` for a flag with a help ``text``."""
     return {"action": "store_true", "help": text}
 
 
 def value(kind: Callable[[str], Any], metavar: str | None, text: str, **more: Any) -> dict[str, Any]:
-    """Return the keywords of an argument with a value."""
+    """Return the keywords of ``ArgumentParser.add_argument`` for an argument with a value of this ``kind``."""
     return {"type": kind, "metavar": metavar, "help": text, **more}

@@ -125,9 +125,9 @@ def whole_input(path: Path) -> Iterator[tuple[BinaryIO, int]]:
 
 
 def state_of(status: os.stat_result) -> tuple[int, ...]:
-    """Return the identity of a file's contents: inode, device, size [bytes] and time of change [ns].
+    """Return the identity of a file's contents: inode, device, size [bytes] and time of modification [ns].
 
-    A time alone would not: files are copied with theirs, and clocks are set back.
+    A time alone would not do: files are copied with theirs, and clocks are set back.
     """
     return status.st_ino, status.st_dev, status.st_size, status.st_mtime_ns
 
@@ -272,7 +272,8 @@ def naming_full_disk(path: Path, assurance: str = "what was finished before is k
 def only_writer(folder: Path) -> Iterator[None]:
     """Context manager: lock ``folder`` for writing; raise ``InputError`` if another process holds the lock.
 
-    The operating system gives the lock back when its process ends, however it ends. What is forked meanwhile does not.
+    Unfinished files of a process that was killed are removed first. The operating system gives the lock back when its process
+    ends, however it ends. What is forked meanwhile does not.
     """
     from filelock import FileLock, Timeout
 
@@ -340,7 +341,7 @@ def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> st
 
 
 def csv_line(cells: Iterable[object]) -> str:
-    """Return a line of a CSV file with ``cells`` as they are."""
+    """Return a line of a CSV file, with its line break, of ``cells`` as they are."""
     buffer = io.StringIO()
     csv.writer(buffer, lineterminator="\n").writerow(cells)
     return buffer.getvalue()
@@ -378,7 +379,8 @@ def _text_cell(text: str) -> str:
 
 
 def read_table(path: Path) -> "pd.DataFrame":
-    """Read a table that :func:`csv_text` wrote; names in it that look like numbers stay names."""
+    """Return a table that :func:`csv_text` wrote; names in it that look like numbers stay names, and missing names are "". Raises
+    as :func:`opened`."""
     with opened(path) as file:
         table = pd.read_csv(file, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(NAMES, "str"))
     for name in table.columns.intersection(list(NAMES)):

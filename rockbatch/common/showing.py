@@ -68,7 +68,8 @@ def several(n: int, noun: str) -> str:
 
 
 def shown(value: object, limit: int = 60) -> str:
-    """Return the value as TOML writes it, cut where it is long, and legible whatever it holds."""
+    """Return the value as TOML writes it, "pads" in quotes, with "…" at the end if longer than ``limit``, and legible whatever it
+    holds."""
     if isinstance(value, bool):
         written = str(value).lower()
     elif isinstance(value, str):

@@ -42,7 +42,7 @@ class Bounds:
         )
 
     def message(self, value: float) -> str:
-        """Return the complaint about a value that is out of bounds, to follow "name = value: "."""
+        """Return the message about a value that is out of bounds, to follow "name = value: "."""
         if value <= 0.0 <= self.low and 0.0 not in self:
             return f"must be a number above 0{self.unit}"
         if callable(self.why):

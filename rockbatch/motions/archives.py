@@ -48,7 +48,7 @@ impossible offsets, OSError of gzip."""
 
 
 def is_archive(path: Path | PurePosixPath) -> bool:
-    """Return whether a path is named as an archive that is read as a folder: .zip, .tar, .tar.gz, .tgz."""
+    """Return whether a path is named as an archive that is read as a folder: .zip, .tar, .tar.gz, .tgz, in capitals or not."""
     return path.name.lower().endswith((".zip", *_TARS))
 
 
@@ -143,7 +143,8 @@ def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
 
 
 def is_member(path: Path) -> bool:
-    """Return whether a path leads to a file in an archive; False if the archive cannot be read."""
+    """Return whether a path leads to a file in an archive, also one that must not be opened; False if the archive cannot be
+    read."""
     archive = archive_of(path)
     try:
         return archive is not None and path in _paths_in(archive, state_of(archive.stat()))
@@ -165,7 +166,7 @@ def archive_of(path: Path) -> Path | None:
 
 
 def state(path: Path) -> tuple[int, ...]:
-    """Return the :func:`state_of` the file on the disk that a path names or lies within; () if it is gone."""
+    """Return what :func:`state_of` says of the file on the disk that a path names or lies within; () if it is gone."""
     try:
         return state_of((archive_of(path) or path).stat())
     except OSError:

@@ -27,7 +27,7 @@ class Sensor:
 
     @property
     def number(self) -> str:
-        """Return the station without leading zeros, which some agencies add."""
+        """Return the station without leading zeros, which some agencies add: "12" of "0012"; "" if unknown."""
         return self.station.lstrip("0")
 
     def may_be_same_as(self, other: "Sensor") -> bool:
@@ -114,5 +114,6 @@ class Component:
 
     @property
     def upward(self) -> Samples:
-        """Return the acceleration of a vertical component [m/s²], positive up, shape (npts,)."""
+        """Return the acceleration of a vertical component [m/s²], positive up, shape (npts,): reversed if the file has it
+        positive down."""
         return -self.acceleration if self.orientation.down else self.acceleration

@@ -114,7 +114,8 @@ def _contradiction(component: Component) -> str:
 
 
 def _copied_headers(components: Sequence[Component]) -> Iterator[tuple[int, Statement, str]]:
-    """Yield place, statement and reason of codes or headers that are equal in all files of a set with distinct names."""
+    """Yield place, statement and reason of channel codes or headers that give one direction in a whole set, of which the file
+    names give different ones."""
     for kind in _COPIED:
         of_kind = [(i, s) for i, c in enumerate(components) if (s := _strong_statement(c, kind)) and not _by_user(c)]
         names = [name.orientation for i, _ in of_kind if (name := _strong_statement(components[i], Kind.NAME))]

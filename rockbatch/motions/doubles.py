@@ -162,7 +162,7 @@ def _ranks(
 
 
 def _is_unit_ratio(factor: float) -> bool:
-    """Return whether a factor between copies, or its inverse, is the ratio of two units, such as m/s² and g."""
+    """Return whether a factor between copies, or its inverse, is the ratio of two units, such as m/s² and g; False near 1."""
     apart = abs(math.log(abs(factor)))
     return any(abs(apart - math.log(unit)) < _SAME_UNIT for unit in _UNITS)
 

@@ -66,12 +66,12 @@ class Statement:
 
     @property
     def has_number(self) -> bool:
-        """Return whether its azimuth is a number rather than N or E."""
+        """Return whether it is of angles, or its label has digits, "N35E", rather than letters alone."""
         return self.is_angle or any(c.isdecimal() for c in self.orientation.label)
 
     @property
     def states_sign(self) -> bool:
-        """Return whether it states if a vertical component is positive up or down, rather than vertical only."""
+        """Return whether it says if a vertical component is positive up or down: by angles, "UP" or "DWN", but not by "V"."""
         return self.is_angle or self.orientation.down or is_upward(self.orientation.label)
 
 

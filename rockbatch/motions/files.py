@@ -45,7 +45,8 @@ class SourceFile:
 
 
 def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
-    """Yield the files of ``roots`` in order, each once; those below a folder without hidden and read-me files."""
+    """Yield the files of ``roots`` in order, each once, those that must not be opened with a reason; those below a folder without
+    hidden and read-me files."""
     visited: set[Path] = set()
     for root in roots:
         prefix = f"{root.absolute().name}/" if len(roots) > 1 and root.is_dir() else ""
@@ -70,7 +71,8 @@ def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
 
 
 def inventories_beside(file: Path) -> list[SourceFile]:
-    """Return the StationXML files in the folder of a file that the user names."""
+    """Return the files in the folder of ``file`` that may be StationXML by their suffix; a link that leads out of it has a
+    refusal."""
     inside = Path(os.path.realpath(file.parent))
     beside = []
     for path in archives.files_in(file.parent):

@@ -149,7 +149,8 @@ def _unused_records(unusable: Iterable[Unusable]) -> Iterator[RankedRecord]:
 
 
 def use_of(file: Unusable | LeftOut) -> Use:
-    """Return the ``Use`` of a file without a motion in the set."""
+    """Return the ``Use`` of a file without a motion in the set: held back if its user can state or confirm what it lacks, not
+    used if not, a copy, or left out."""
     if isinstance(file, LeftOut):
         return Use.COPY if file.of else Use.LEFT_OUT
     return Use.HELD_BACK if file.motion or file.kind in _DOUBTS or file.lacks else Use.NOT_READ

@@ -93,7 +93,7 @@ class ReadOptions:
             raise InputError(*wrong)
 
     def with_statement(self, stated: Mapping[str, object]) -> "ReadOptions":
-        """Return these options with the statements of a manifest for one file, by field."""
+        """Return these options with the statements of a manifest for one file, by field, which go before those of the file."""
         values: dict[str, Any] = dict(stated)
         return replace(self, **values, instead=self.instead.union(stated))
 

@@ -316,7 +316,7 @@ def _in_turn(sources: Iterable[str]) -> str:
 
 
 def _common(values: Iterable[T]) -> T | None:
-    """Return the value of all; None if they differ."""
+    """Return the value that all ``values`` share; None if they differ."""
     different = set(values)
     return different.pop() if len(different) == 1 else None
 

@@ -103,7 +103,7 @@ class SpectrumTarget:
 
     @property
     def periods(self) -> Array:
-        """Return the periods of the fit [s], shape (n,)."""
+        """Return the periods of the fit [s], shape (n,): a hundred a decade, evenly in ln T, from the least to the largest."""
         low, high = self.range_s
         return np.geomspace(low, high, 1 + max(1, math.ceil(_A_DECADE * math.log10(high / low))))
 

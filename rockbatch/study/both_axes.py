@@ -104,7 +104,8 @@ def across(pier: Pier, base: Base, other: Pier) -> Base:
 
 
 def _in_the_middle(pier: Pier, device: Restraint, other: Pier) -> Restraint:
-    """Return a device of ``pier`` in the middle of the base of ``other``, with its stiffness and damping coefficient."""
+    """Return a device of ``pier`` in the middle of the base of ``other``; its stiffness and damping coefficient stay, so that λ,
+    brace and ν, which are ratios to sizes of the pier, change."""
     levers = (other.half_width / pier.half_width) ** 2 * pier.size / other.size
     times = {"lam": levers, "brace": levers, "nu": pier.p / other.p}
     changes: dict[str, Any] = {name: getattr(device, name) * by for name, by in times.items() if hasattr(device, name)}

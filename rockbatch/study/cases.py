@@ -233,7 +233,8 @@ def _read_case(table: Table) -> _WrittenCase:
 
 
 def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: Base) -> None:
-    """Note a problem of pier and base at its key, or at K or F_y, from which β or η follows, with the value needed."""
+    """Add a problem of pier and base to the table, at its key, or at K or F_y, from which β or η follows, with the value
+    needed."""
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(problem.key, "")
     mass = pier.mass_t
     if source in chosen and mass is not None:
@@ -262,7 +263,8 @@ def _other_unit(name: str, value: float, needed: float, gravity: float) -> str:
 
 
 def _complain_unless_usual(table: Table, chosen: Chosen, pier: Pier) -> None:
-    """Note an unusual mass, stiffness, yield force or area of a support under this pier, unless it is confirmed."""
+    """Add to the table that a mass, stiffness, yield force or area of a support is unusual under this pier, unless it is
+    confirmed."""
     if "mass_t" in chosen:
         for problem in unlikely_mass(pier, table.confirmed):
             table.complain_about(chosen["mass_t"], in_table(problem))

@@ -112,7 +112,7 @@ class DesignBound:
         return f"[[{BOUND}]] {shown(self.name)}"
 
     def as_in_run_json(self) -> dict[str, Any]:
-        """Return its entry in run.json."""
+        """Return its entry in run.json: name, source, changes in words, and the cases that lack keys of it."""
         return {
             "bound": self.name,
             "source": self.source,

@@ -111,7 +111,8 @@ def varied(case: Case, values: KeyValues) -> Case:
 
 
 def values_of(case: Case) -> KeyValues:
-    """Return the values of all quantities that a case may vary, without ε where it does not apply and ζ if not given."""
+    """Return the values of all quantities that a case may vary, by their keys, those in kN if the mass is known; without ε where
+    it does not apply and ζ if not given."""
     pier = {name: getattr(case.pier, name) for name in OF_PIER}
     base = {field.name: getattr(case.base, field.name) for field in fields(case.base)}
     if base.get("zeta") is None:

@@ -61,7 +61,7 @@ def too_many(number: int, what: str) -> str:
 
 
 def complain_where_due(table: Table, chosen: Chosen, problem: Problem) -> None:
-    """Note a problem at the chosen value of its key, or for the table if no value of that key is chosen."""
+    """Add a problem to the table, at the chosen value of its key, or at the table itself if no value of that key is chosen."""
     if problem.key in chosen:
         table.complain_about(chosen[problem.key], in_table(problem))
     else:

@@ -200,7 +200,7 @@ class Study(Shown):
     @classmethod
     @checked
     def from_toml(cls, text: str, path: str | os.PathLike[str] = "study.toml", *, motions: Motions = None) -> "Study":
-        """Check a study that is the TOML ``text``, as :func:`load_study` checks a file.
+        """Return the study that is the TOML ``text``, checked as :func:`load_study` checks a file.
 
         ``path`` is what messages and results call it; paths in the study are relative to its folder. No such file is needed.
         ``motions`` as for :func:`load_study`.
@@ -212,9 +212,10 @@ class Study(Shown):
     def from_dict(
         cls, tables: Mapping[str, object], path: str | os.PathLike[str] = "study.toml", *, motions: Motions = None
     ) -> "Study":
-        """Check a study of the tables and keys of a study file, such as ``{"pier": {"alpha": 0.13, "p": 0.38}, "case": […]}``.
+        """Return the study of the tables and keys of a study file, such as ``{"pier": {"alpha": 0.13, "p": 0.38}, "case": […]}``,
+        checked.
 
-        Mistakes are reported as those of a file, by table and key. ``path`` and ``motions`` as for :meth:`from_toml`.
+        Mistakes are raised as those of a file, by table and key. ``path`` and ``motions`` as for :meth:`from_toml`.
         """
         return _checked_study(TomlFile.parse(Path(path), as_toml(plain_table(tables)), SECTIONS, lined=False), motions)
 
@@ -247,7 +248,8 @@ class Study(Shown):
 
     @property
     def in_file(self) -> bool:
-        """Return whether the file at ``path`` holds this study as it is, so that a command can read it again."""
+        """Return whether the file at ``path`` holds this study as it is, so that a command can read it again; False if it cannot
+        be read."""
         try:
             return TomlFile.text_of(self.path) == self.text
         except InputError:
@@ -388,7 +390,8 @@ def _as_in_run_json(case: Case) -> dict[str, object]:
 
 
 def _heights(cases: Sequence[Case], output: Output) -> dict[str, set[float]]:
-    """Return the heights [m] at which rules may be about sections of the cases' piers, by what their demands need."""
+    """Return the heights [m] of sections that rules may be about, by the name of what their demand needs, for the piers of
+    ``cases``."""
     piers = {case.pier for case in cases}
     return {needs: heights(output.of(kind), piers) for needs, kind, heights in parts("study.HEIGHTS")}
 

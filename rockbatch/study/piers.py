@@ -379,7 +379,8 @@ def _under_bounds(
 
 
 def _pier_of(table: Table, chosen: Chosen, parts: int) -> tuple[Pier, Values] | None:
-    """Return the pier of one choice of values and its values by key; None for an impossible one, which is noted."""
+    """Return the pier of one choice of values and its values by key; None for an impossible one, with its problems added to
+    ``table``."""
     values = {name: setting.value for name, setting in chosen.items()}
     try:
         pier = _pier(values, parts, table.confirmed)
@@ -460,7 +461,7 @@ def _pier_of_parts(values: KeyValues, parts: int, common: KeyValues) -> Pier:
 
 
 def _check_one_size(table: Table) -> None:
-    """Note a size that is missing or given in several ways, and α and μ beside sides from which they follow."""
+    """Add to ``table`` that the size is missing or given in several ways, and α and μ beside sides from which they follow."""
     parts = table.has("part")
     written = [name for name in table.names if name in ("p", "size_m", "width_m", "height_m")]
     sides = [name for name in written if name in ("width_m", "height_m")]

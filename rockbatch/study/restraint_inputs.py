@@ -34,7 +34,7 @@ def is_of_restraint(name: str) -> bool:
 
 
 def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter]:
-    """Return all finite parameters of devices by names with numbers: "damper_1.f"."""
+    """Return all parameters of devices that are finite, with their places and fields, by names with numbers: "damper_1.f"."""
     parameters_by_name: dict[str, Parameter] = {}
     counts: Counter[str] = Counter()
     given_by = fields_of(pier)
@@ -81,7 +81,8 @@ def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str
 
 
 def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
-    """Return a message for each input of devices that is ambiguous in this case, by name, with what to write instead."""
+    """Return a message for each input of devices that is ambiguous in this case, by name, with what to write instead; {} for
+    none."""
     numbers = numbered(case.pier, case.base.restraints)
     problems: dict[str, str] = {}
     fixed: dict[tuple[int, str], str] = {}

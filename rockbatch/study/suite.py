@@ -85,7 +85,8 @@ _OF_RECORDS = (
 
 
 def _without_records(spec: MotionSpec, both_axes: bool) -> list[str]:
-    """Return a message for each key that only recorded motions use, in a study without any; motions from Python use them."""
+    """Return a message for each key that only recorded motions use, in a study without any; [] if it has records, or motions from
+    Python."""
     if spec.paths or spec.override is not None:
         return []
     usual = {field.name: field.default for field in fields(spec)} | {"offset": Offset(), "select": Selection()}

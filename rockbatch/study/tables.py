@@ -110,7 +110,7 @@ def name_of(table: Mapping[str, TomlValue]) -> str:
 
 
 def are_tables(value: TomlValue | None) -> TypeGuard[list[TomlTable]]:
-    """Return whether ``value`` is a list of tables, and not empty."""
+    """Return whether ``value`` is a list of tables; False for []."""
     return isinstance(value, list) and bool(value) and all(isinstance(item, dict) for item in value)
 
 
@@ -164,7 +164,7 @@ def _basic(text: str) -> str:
 
 
 def _written(value: TomlValue) -> str:
-    """Return a value as TOML writes it; a text of several lines keeps them."""
+    """Return a value as TOML writes it: true, 0.5, "text" (several lines in triple quotes), [1, 2], { a = 1 }."""
     if isinstance(value, str) and "\n" in value:
         return '"""\n' + "\n".join(_basic(line)[1:-1] for line in value.split("\n")) + '"""'
     if isinstance(value, str):

@@ -115,7 +115,8 @@ def _read_spectrum(table: Table, vertical: bool) -> SpectrumTarget | None:
 
 
 def _code_name(value: object) -> str:
-    """Return the name in :data:`CODES` that `value` is but for case and spaces; empty for a file or pairs."""
+    """Return the name in :data:`CODES` that ``value`` is but for capitals and blanks, "EN 1998-1" for "en1998-1"; "" for a file
+    or pairs."""
     if not isinstance(value, str):
         return ""
     plain = {name.replace(" ", "").lower(): name for name in CODES}
@@ -123,7 +124,8 @@ def _code_name(value: object) -> str:
 
 
 def _spectrum(table: Table, code: str, read: KeyValues) -> Spectrum | None:
-    """Return the spectrum of ``code``, or of a file or pairs if that is empty; None if a mistake was noted."""
+    """Return the spectrum of ``code``, or of a file or pairs if that is ""; None with a problem added to ``table`` for a
+    mistake."""
     damping, linear = read.get("damping", 0.05), read.get("interpolation") == "linear"
     if code and "interpolation" in read:
         table.complain(f"interpolation: is for tables, and {code} is none; leave it out", "interpolation")

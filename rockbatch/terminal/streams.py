@@ -81,7 +81,8 @@ def shown(text: str, instead: str) -> str:
 
 
 def coloured(text: str, colour: str | None) -> str:
-    """Return ``text`` in an ANSI colour if stdout is a terminal that accepts colours (no NO_COLOR, TERM=dumb)."""
+    """Return ``text`` in an ANSI ``colour`` such as "31"; as it is for None, if stdout is no terminal, or if NO_COLOR or
+    TERM=dumb is set."""
     plain = "NO_COLOR" in os.environ or os.environ.get("TERM") == "dumb" or not sys.stdout.isatty()
     return text if plain or colour is None else f"\x1b[{colour}m{text}\x1b[0m"
 

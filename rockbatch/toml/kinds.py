@@ -31,7 +31,8 @@ class KindError(ValueError):
         self.meant, self.whole = meant, whole
 
     def advice(self) -> str:
-        """Return what was probably meant, and what was expected if that is short."""
+        """Return "did you mean 0.5? expected a number", the second sentence only if short; without a meant value "expected …"; a
+        ``whole`` message as it is."""
         if not self.meant or self.whole:
             return str(self) if self.whole else f"expected {self}"
         return f"did you mean {self.meant}?" + (f" expected {self}" if len(str(self)) < _SHORT else "")
@@ -42,7 +43,7 @@ class Kind(Protocol):
 
     @property
     def words(self) -> str:
-        """The expected values in words, for messages and the reference."""
+        """Return the expected values in words, for messages and the reference."""
 
     def __call__(self, value: object) -> Any:
         """Return the value as the program uses it. Raises :class:`KindError` for one that is not of this kind."""

@@ -90,7 +90,8 @@ class TomlFile:
 
     @classmethod
     def parse(cls, path: Path, text: str, sections: Sequence[Section] = (), *, lined: bool = True) -> "TomlFile":
-        """Parse the text of a file, which need not be there any more. Raises :class:`InputError` as :meth:`read` does.
+        """Return the file of a text, which need not be on the disk any more. Raises :class:`InputError` with the line at which it
+        is no TOML.
 
         A text that is not ``lined`` was not written by its user: messages do not give its lines.
         """
@@ -274,11 +275,12 @@ class Table:
         return read
 
     def requires(self, keys: Mapping[str, Key], name: str) -> bool:
-        """Return whether a key has to be written, given the values of the keys on which it depends."""
+        """Return whether a key has to be written, given the values of the keys on which it depends; False if one of these is not
+        written."""
         return keys[name].required and all(self.data.get(other) in values for other, values in keys[name].only.items())
 
     def _check_missing(self, keys: Mapping[str, Key]) -> None:
-        """Note required keys that are missing, and keys that contradict each other."""
+        """Add to the problems the required keys that are missing, and keys that contradict each other."""
         for name, key in keys.items():
             if self.requires(keys, name) and not self.has(name):
                 few = isinstance(key.kind, Choice) and not key.kind.listed_by
@@ -310,7 +312,8 @@ class Table:
         return ""
 
     def _note_doubts(self, keys: Mapping[str, Key], usable: dict[str, list[Setting]]) -> None:
-        """Note confirmed keys that the table lacks, and unusual values that are not confirmed."""
+        """Add to the problems the confirmed keys that the table lacks, and unusual values that are not confirmed; take
+        ``confirm`` out of ``usable``."""
         if keys.get("confirm") is CONFIRM["confirm"]:
             present = [shown(name) for name in self.data if name in keys and name != "confirm"]
             for setting in usable.pop("confirm", ()):
@@ -324,7 +327,8 @@ class Table:
                     self.complain_about(setting, in_table(problem))
 
     def _usable(self, name: str, key: Key, value: object) -> list[Setting]:
-        """Return the usable values of a key with their places, both ends of a range or none; note the others."""
+        """Return the usable values of a key with their places, of a range both ends or none; the others become problems, as do
+        repeated ones."""
         whole = Setting(value, (*self.key_path, name))
         items = [whole]
         if isinstance(value, list):
@@ -366,7 +370,7 @@ class Table:
             return None
 
     def _not_one(self, name: str, key: Key, whole: Setting) -> None:
-        """Note a list, or several tables, where the key takes a single value or table."""
+        """Add the problem of a list, or of several tables, where the key takes a single value or table."""
         if isinstance(key.kind, Other) and all(isinstance(item, dict) for item in whole.value):
             header = ".".join(part for part in whole.key_path if isinstance(part, str))
             self.complain(f"{name}: expected one table; write [{header}] on a line of its own, once", name)
@@ -374,7 +378,7 @@ class Table:
             self._wrong(name, key, whole, KindError("one value, not a list"))
 
     def _wrong(self, name: str, key: Key, setting: Setting, wrong: KindError) -> None:
-        """Note a value that its kind refuses, with an example unless the message has one."""
+        """Add the problem of a value that its kind refuses, with an example unless the message has one."""
         example = "" if wrong.meant or wrong.whole or options(key) else f"; write for example {name} = {key.example}"
         message = f"{name} = {shown(setting.value)}: {wrong.advice()}{example}"
         self.complain_about(setting, _problem(OutOfRange if wrong.whole else WrongType, message))
@@ -387,7 +391,11 @@ class Table:
         self.complain(_problem(UnknownKey, f"{written}: {complaint}; {self._instead(name, keys, other)}"), name)
 
     def _instead(self, name: str, keys: Mapping[str, Key], other: Iterable[str]) -> str:
-        """Return what to write instead of an unknown key: another of this table first, then the table where it belongs."""
+        """Return what to write instead of an unknown key: another of this table first, then the table where it belongs, else all
+        keys.
+
+        A key that is probably meant counts as misspelt from then on, so that it is not reported as missing.
+        """
         place = tuple(part for part in self.key_path if isinstance(part, str))
         own = next((section for section in self.file.sections if section.at == place), Section(place, "", keys))
         own = keys if isinstance(keys, Section) else own

@@ -155,7 +155,8 @@ class AnalysisFolder:
         cases: Sequence[Case],
         row: RowOf,
     ) -> None:
-        """Carry out ``runs`` and write the ``row`` of each into ``file``, unless it holds them; ``cases`` cover their kernels."""
+        """Carry out ``runs`` and write the ``row`` of each into ``file``, unless it holds them; kernels for ``cases`` are
+        compiled before."""
         if self.has(file, digest):
             self.keep(file, digest)
             return

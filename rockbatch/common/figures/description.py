@@ -174,7 +174,7 @@ class Axis:
 
     @property
     def plain(self) -> str:
-        """Return the label without the signs of subscripts."""
+        """Return the label without the signs of subscripts: "θmax/α" of "θ_max/α"."""
         return "".join(words for words, _ in subscripts(self.label))
 
 

@@ -129,7 +129,11 @@ class ShownFigure(MatplotlibFigure):
 
 
 def drawn(figure: Figure, width_mm: float, ax: Axes | None = None) -> MatplotlibFigure:
-    """Draw a figure ``width_mm`` wide, or in the place of ``ax``: in it if there is one panel; return the whole figure."""
+    """Return the matplotlib figure in which ``figure`` is drawn, ``width_mm`` wide; or that of ``ax``, in which one panel, and in
+    whose place several, are drawn.
+
+    Raises ``InputError`` for an ``ax`` that is none, or that is in no grid if there are several panels.
+    """
     _check_axes(ax)
     with mpl.rc_context(_STYLE):
         if ax is None:
@@ -246,7 +250,7 @@ def _legend_of(entries: Entries) -> Style:
 
 
 def _colour_bar(place: FigureBase, axes: Sequence[Axes], figure: Figure) -> None:
-    """Draw the scale of tones, if marks have any."""
+    """Draw the scale of tones of the first marks that have any; nothing without them."""
     for mark in (mark for panel in figure.panels for mark in panel.marks):
         if isinstance(mark, Points) and mark.shade:
             scale = mark.shade[0]
@@ -368,7 +372,7 @@ def _area(look: Look) -> Style:
 
 @singledispatch
 def _draw(mark: Mark, axes: Axes) -> Artist:
-    """Draw a mark; return what stands for it in the legend."""
+    """Draw a mark; return the artist that stands for it in the legend. Raises ``TypeError`` for another object."""
     raise TypeError(f"{type(mark).__name__}: no mark of a figure")
 
 

@@ -188,7 +188,7 @@ def checked_reading(reading: Component | Unusable) -> Component | Unusable:
 
 
 def _not_recognised(file: RecordFile) -> str:
-    """Return the refusal of a file of no known format, with a remedy."""
+    """Return the message about a file of no known format, with a remedy."""
     suffix = file.path.suffix
     names = " or ".join(dict.fromkeys(form.name for form in FORMATS if suffix.lower() in form.suffixes))
     foreign = next((words for magic, words in _FOREIGN.items() if file.data.startswith(magic)), "")

@@ -144,7 +144,10 @@ def _missing_unit(i: int, column: Column, unit: str) -> str:
 
 
 def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[list[Column], tuple[str, ...]]:
-    """Return the columns by header and study, and notes on them; raise ``InputError`` for a spectrum, or another count."""
+    """Return the columns by header and study, and notes on them.
+
+    Raises ``InputError`` for a spectrum, or a table without header for which the study states another number of columns.
+    """
     width = table.shape[1]
     columns = (
         _behind_an_index(without_index_name(header), table)
@@ -200,7 +203,8 @@ def _counts_rows(column: Samples) -> bool:
 
 
 def _merged_column(header: Column, stated: str) -> Column | None:
-    """Return a column of the header, completed by the study's label for it; None if they contradict each other."""
+    """Return a column of the header, completed by the study's label for it, or left out by its "-"; None if they contradict each
+    other."""
     if stated == "-":
         return Column(stated)
     study = Column(stated)
@@ -256,7 +260,10 @@ def _guessed_columns(header: list[str], table: Samples) -> tuple[list[Column], t
 def _on_one_step(
     columns: list[Column], table: Samples, header: list[str], options: ReadOptions
 ) -> tuple[float, Samples, tuple[str, ...]]:
-    """Return the sampling interval [s], by the column of time or as stated, the table at even times, and notes."""
+    """Return the sampling interval [s], by the column of time or as stated, the table at even times, and notes.
+
+    Raises ``InputError`` for several columns of time, no step at all, or a header that states another step than the times have.
+    """
     times = [i for i, column in enumerate(columns) if column.is_time]
     if len(times) > 1:
         raise InputError(f"found {len(times)} columns of time; expected one")

@@ -145,7 +145,8 @@ def _header(lines: list[str], start: int) -> _Header:
 
 
 def _width_and_count(text: str, index: int) -> tuple[int, int]:
-    """Return width and numbers per line of a Fortran format such as 8F10.5 or 1PE15.6."""
+    """Return width and numbers per line of a Fortran format: (10, 8) of 8F10.5, (15, 1) of 1PE15.6. Raises ``InputError`` for
+    others."""
     match = _FORMAT.fullmatch(text)
     if match is None:
         raise InputError(f'line {index + 1}: found the format "({text[:20]})"; expected one such as (8F10.5)')

@@ -29,7 +29,8 @@ def is_emod3d(head: bytes) -> bool:
 
 
 def read_emod3d(file: RecordFile) -> list[Component | Unusable]:
-    """Return the component; raise ``InputError`` if the file is incomplete, or if the user has not stated its unit."""
+    """Return the component, alone in a list; raise ``InputError`` if the file is incomplete, or if the user has not stated its
+    unit."""
     lines = lines_of(file.text)
     fields = read_header(lines, 0, _TEXT)
     npts, dt = count_and_step(fields, "npts", "dt")

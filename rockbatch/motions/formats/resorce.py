@@ -25,7 +25,8 @@ def is_resorce(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file; raise ``InputError`` with the line or the missing key if it is incomplete."""
+    """Return the recording of a file, alone in a list; raise ``InputError`` with the line or the missing key if it is
+    incomplete."""
     lines = lines_of(text)
     index, unit = line_with(_UNIT, lines, 20, "Acceleration time series in m/s/s")
     header = keys_of(lines[:index], *_NEEDED)

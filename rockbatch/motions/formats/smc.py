@@ -43,7 +43,8 @@ def is_smc(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file; raise ``InputError`` with the line if it is incomplete."""
+    """Return the recording of a file, alone in a list; raise ``InputError`` with the line if it is incomplete, or of another
+    quantity."""
     lines = lines_of(text)
     title = read_header(lines, 0, _TEXT[:1])
     if title["kind"] not in _KINDS:

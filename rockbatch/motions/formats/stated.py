@@ -60,7 +60,7 @@ class _Quantity:
 
 
 def _peaks(sampled: Sampled, stated: Stated) -> list[float]:
-    """Return the peaks of the samples with and without their offset."""
+    """Return the largest absolute sample as it is, and less the mean of the samples, in their unit."""
     return [_largest(sampled.as_read - offset) for offset in (0.0, sampled.as_read.mean())]
 
 

@@ -113,7 +113,8 @@ def _counted(
 
 
 def _count_and_step(numbers: Sequence[float]) -> tuple[float, str] | None:
-    """Return the count in one to three numbers, with a step before or after it, and both as a header line; None if none.
+    """Return the count in one to three numbers, with a step before or after it, and both as a header line; None for other
+    numbers.
 
     A third number, such as RspMatch's count of leading zeros, is ignored.
     """
@@ -188,7 +189,8 @@ def _in_numbers(sign: str, text: str, lines: list[str]) -> bool:
 
 
 def _even_rows(lines: Sequence[str], width: int, between: str, decimal: str) -> "array[float]":
-    """Return the numbers of the first ``lines``, up to the first that is unlike ``width`` plainly written numbers.
+    """Return the numbers of the first ``lines`` by pieces of :data:`_PIECE`, up to the first piece that has a line unlike
+    ``width`` plainly written numbers.
 
     They equal those of :func:`_numbers`, but are faster. In pieces, since all words at once would take thirty times the size of
     the text.
