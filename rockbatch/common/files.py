@@ -56,7 +56,7 @@ _JOINING = (
 _VIRAMAS = r"\u094d\u09cd\u0a4d\u0acd\u0b4d\u0bcd\u0c4d\u0ccd\u0d4d\u0dca"
 _EMOJI = r"\u2600-\u27bf\U0001f300-\U0001faff"
 _UNPRINTABLE = re.compile(
-    # what joins or parts letters of Persian and Indian scripts and emoji is seen there (as in RFC 5892, appendix A), and stays
+    # signs that join or part letters of Persian and Indian scripts, and emoji, are seen (RFC 5892, appendix A), and stay
     rf"(?!(?<=[{_JOINING}])\u200c[\u0620\u0622-\u064a\u0671-\u0673\u0675-\u06d3]|(?<=[{_VIRAMAS}])[\u200c\u200d][\u0904-\u0dff]"
     rf"|(?<=[{_EMOJI}\ufe0f])\u200d[{_EMOJI}]|(?<=[{_EMOJI}])\ufe0f)"
     r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff"  # controls, line breaks, bytes that are no text
@@ -202,7 +202,7 @@ def replacing(path: Path) -> Iterator[Path]:
             temporary.chmod(0o666 & ~umask)
             with temporary.open("rb+") as file:
                 os.fsync(file.fileno())  # else a power cut might leave the name without the contents
-            refuse_irregular(path)  # it may have come meanwhile
+            refuse_irregular(path)  # something else may have taken the name meanwhile
             temporary.replace(path)
         except BaseException:
             temporary.unlink(missing_ok=True)
@@ -311,7 +311,7 @@ def legible(text: str, keep: str = "") -> str:
         if match[0] in keep:
             return match[0]
         code = ord(match[0])
-        byte = code - 0xDC00 if 0xDC80 <= code <= 0xDCFF else code  # how Python carries such a byte
+        byte = code - 0xDC00 if 0xDC80 <= code <= 0xDCFF else code  # how Python carries a byte that is no text
         return f"\\x{byte:02x}" if byte <= 0xFF else f"\\u{byte:04x}" if byte <= 0xFFFF else f"\\U{byte:08x}"
 
     return text if text.isascii() and text.isprintable() else _UNPRINTABLE.sub(escaped, text)

@@ -124,7 +124,10 @@ _LENGTH_IN_M = {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 
 
 def length_factor(unit: str) -> float | None:
-    """Return the factor that turns a length or a velocity, in "cm" or "cm/sec", into m or m/s; None for another unit."""
+    """Return the factor that turns a length or a velocity, in "cm" or "cm/sec", into m or m/s; None for another unit.
+
+    What follows the slash is not looked at.
+    """
     return _LENGTH_IN_M.get(unit.strip().lower().partition("/")[0])
 
 

@@ -202,7 +202,9 @@ def _from_disk(path: Path, first: int | None = None) -> bytes:
     with whole_input(path) as (file, size):
         if size > LARGEST:
             raise InputError(f"larger than {LARGEST // 2**20} MiB{'; unpack it' if is_archive(path) else ''}")
-        return file.read(size if first is None else min(first, size))  # read() allocates what it is asked for
+        return file.read(
+            size if first is None else min(first, size)
+        )  # read() allocates as many bytes as it is asked for
 
 
 def _from_gzip(data: bytes, first: int | None = None) -> bytes:

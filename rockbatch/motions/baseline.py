@@ -36,9 +36,9 @@ class Offset:
 
 
 def remove_offset(component: Component, offset: Offset) -> Component:
-    """Return ``component`` less its offset by the rule, with a note on it; as it is if the rule takes off nothing.
+    """Return ``component`` less its offset by the rule, with a note of the offset; what needs no removal comes back as it is.
 
-    Raises ``InputError`` for a window outside the record.
+    Of a raw component, "keep" leaves the offset in, with a note. Raises ``InputError`` for a window outside the record.
     """
     if offset.rule == "keep":
         if not component.raw:

@@ -10,7 +10,7 @@ from rockbatch.motions.limits import MOST_SAMPLES, MOST_STEPS
 from rockbatch.motions.motion import Samples
 
 _SAME_STEP = 1e-6  # relative: steps that differ by less are the same, printed otherwise
-_SAME_SAMPLE = 0.01  # of dt: what printing may cost the time of a sample
+_SAME_SAMPLE = 0.01  # of dt: greatest error of a sample's time by its printing
 _SIMULTANEOUS = 0.1  # of dt: starts that jitter by less count as simultaneous
 _CLOCK = 1e-6  # s: times since 1970 are no better than this
 

@@ -40,7 +40,7 @@ def _judge_set(station: Sequence[Component]) -> list[Component]:
     components = _copies_as_their_originals(_with_names(station))
     # copied headers are void whatever they say; only then can the remaining statements speak for or against angles of 0°
     for i, statement, reason in [*_copied_headers(components), *_void_defaults(components)]:
-        components[i] = _without(components[i], statement, reason)
+        components[i] = _without_statement(components[i], statement, reason)
     components = list(map(_with_believed_defaults, components))
     contradictions = {i: text for i, c in enumerate(components) if (text := _contradiction(c))}
     for i, j, text in _impossible_pairs(components, contradictions):
@@ -147,7 +147,7 @@ def _void_defaults(components: Sequence[Component]) -> Iterator[tuple[int, State
             yield i, statement, "programs write 0° where they know no angle"
 
 
-def _without(component: Component, void: Statement, reason: str) -> Component:
+def _without_statement(component: Component, void: Statement, reason: str) -> Component:
     """Return a component without a ``void`` statement, its direction decided by the others, with a finding."""
     remaining = tuple(s for s in component.statements if s is not void)
     orientation = decided_orientation(remaining, component.orientation.label)

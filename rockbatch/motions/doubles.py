@@ -77,7 +77,7 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
         copy, original, factor = components[i], components[j], factors[i, j]
         left_out.append(LeftOut(copy.name, copy.source, _reason(copy, original, factor), of=original.source))
         decided = original.preferred or rank[i][1:4] != rank[j][1:4]
-        if finding := _difference(copy, original, factor, decided):
+        if finding := _finding_on_copy(copy, original, factor, decided):
             findings.setdefault(j, []).append(finding)
     for i, j in (pair for pair in scaled if not stands_for.keys() & pair):
         for k, other in ((i, components[j]), (j, components[i])):
@@ -190,7 +190,7 @@ def tell_use_of_originals(left_out: Iterable[LeftOut], motions: MotionSet) -> li
     return [replace(file, reason=file.reason + fate(file)) if file.of else file for file in left_out]
 
 
-def _difference(copy: Component, used: Component, factor: float | None, decided: bool) -> Finding | None:
+def _finding_on_copy(copy: Component, used: Component, factor: float | None, decided: bool) -> Finding | None:
     """Return a finding on a left-out ``copy`` that is the ``used`` one times a ``factor``, or whose peak is 1.5 times larger or
     smaller; else None.
 

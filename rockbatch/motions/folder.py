@@ -225,7 +225,7 @@ def _unless_changed(readings: list[Reading], file: SourceFile, state: tuple[int,
     """Return the readings of a file, or one unusable reading if it has components and is no longer in the ``state`` before: it is
     being written.
 
-    ``name`` is the station's part of the file's name.
+    ``name`` is the station's part of the file's name. A file that is gone counts as unchanged.
     """
     has_records = any(isinstance(reading, Component) for reading in readings)
     if not has_records or archives.state(file.path) in (state, ()):

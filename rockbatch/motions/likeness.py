@@ -42,7 +42,7 @@ _BANDS = np.concatenate((np.arange(0.0, 12.5, 0.125), np.arange(12.5, 50.0, 0.5)
 _SIMILAR = 0.9  # of amplitudes in bands: a little below _CERTAIN, which it bounds but for the edges of bands
 
 _COHERENT = 0.995  # median over bands: copies filtered to 1–5 Hz have more, neighbours in an array 0.992 at most
-_BAND, _FEWEST_BANDS = 0.5, 6  # Hz, and how many of them a median needs
+_BAND, _FEWEST_BANDS = 0.5, 6  # width of a band [Hz], and least number of bands for a median
 _ENERGETIC = 0.01  # of the largest energy of a band: less is noise, or was filtered out
 _TAPER = 0.1  # of a record, at either end
 _WINDOWED = (1.5, 4.5)  # Hz: a band that filters leave alone
@@ -264,7 +264,7 @@ def suffix_of(component: Component) -> str:
     return bare(Path(file_of(component.source))).suffix.lower()
 
 
-def _samples(component: Component) -> bytes:
+def _digest_of_samples(component: Component) -> bytes:
     """Return a digest of the sampling interval and the samples."""
     return hashlib.sha256(repr(component.dt).encode() + component.acceleration.tobytes()).digest()
 
@@ -288,7 +288,7 @@ class _Table:
         self.file, self.suffix = _codes(map(_file, components)), _codes(map(suffix_of, components))
         self.numbered = _codes(c.site if is_numbered(c.site) else "" for c in components)
         self.sensor, self.event = _codes(c.sensor.number for c in components), _codes(c.event for c in components)
-        self.samples = _codes(map(_samples, components))
+        self.samples = _codes(map(_digest_of_samples, components))
         self.way = _codes(map(_kind_of_direction, components))
         self.azimuth = np.array([c.orientation.azimuth for c in components], dtype=float)
         self.start = np.array([c.start for c in components], dtype=float)
@@ -307,7 +307,7 @@ class _Table:
 
     def _pointing_alike(self, i: int, j: Indices) -> Truths:
         """Return whether components ``j`` have the direction of ``i``, by azimuths within 1°, or by their labels without
-        azimuths."""
+        azimuths; also if both are unknown."""
         angles = np.abs((self.azimuth[j] - self.azimuth[i] + 180.0) % 360.0 - 180.0)
         return (self.way[j] == self.way[i]) & ~(angles > SAME_AZIMUTH)
 

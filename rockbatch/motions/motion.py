@@ -61,7 +61,7 @@ class Finding:
     what: str  # in a word or two, for tables
     text: str  # in a sentence, with its remedy
     gross: bool = False  # whether the motion is held back until confirmed
-    key: str = "confirm"  # which confirms it, under [motions] and in manifests; "confirm" confirms all findings
+    key: str = "confirm"  # the key that confirms it, under [motions] and in manifests; "confirm" confirms all findings
 
 
 COMPONENTS = ("horizontal", "vertical", "across")

@@ -176,7 +176,7 @@ class MotionSet(Shown):
     def _beneath(self) -> "pd.DataFrame":
         """Return the table of the motions, its main columns alone, rounded and without those of which nothing is known."""
         table = self.table()[_AT_A_GLANCE].round(3)
-        return table.loc[:, (table != "").any()]  # without words that nobody knows
+        return table.loc[:, (table != "").any()]  # without columns of text that are empty for all
 
 
 def row(motion: Motion) -> dict[str, Cell]:

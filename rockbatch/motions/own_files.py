@@ -47,7 +47,7 @@ def is_own(path: Path) -> bool:
             return content(path, len(_HISTORIES_BEGIN)).startswith(_HISTORIES_BEGIN)
         return suffix in _TABLES and _is_head(content(path, _MOST_OF_A_HEAD))
     except (InputError, OSError):
-        return False  # whoever reads it says what is wrong with it
+        return False  # its reader reports what is wrong with it
 
 
 def _is_head(begin: bytes) -> bool:

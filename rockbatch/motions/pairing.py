@@ -209,8 +209,8 @@ def _why_dead(h: Component, v: Component) -> str:
 
 
 def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
-    """Return the motion of a horizontal and its vertical component, over their common time; without the vertical if it ends
-    before the peak.
+    """Return the motion of a horizontal and its vertical component, over their common time; without the vertical if that leaves
+    the peak out.
 
     ``notes`` come before those on this.
     """

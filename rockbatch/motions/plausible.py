@@ -79,14 +79,14 @@ def unlikely_peak(candidate: Candidate) -> Finding | None:
     horizontal = candidate.motion.pga / candidate.gravity
     vertical = (candidate.motion.pga_vertical or 0.0) / candidate.gravity
     if LOWEST <= horizontal <= HIGHEST >= vertical:
-        return _strong(max(horizontal, vertical)) if candidate.component.unit.strip().lower() == "g" else None
+        return _strong_peak(max(horizontal, vertical)) if candidate.component.unit.strip().lower() == "g" else None
     peak = f"PGA {horizontal:.3g} g"
     if vertical > HIGHEST:
         peak += f", vertical {vertical:.3g} g,"
     return Finding("PGA", f"{peak} outside {LOWEST:g}–{HIGHEST:g} g: check the unit", gross=True, key="confirm_pga")
 
 
-def _strong(peak: float) -> Finding | None:
+def _strong_peak(peak: float) -> Finding | None:
     """Return a finding on a peak [g] above 2 g, which would be a usual one in m/s²; None below."""
     if peak <= STRONG:
         return None

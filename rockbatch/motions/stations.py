@@ -149,7 +149,7 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
             if len({first_of(i) for i, _ in namesakes}) > 1:
                 for (i, a), (j, b) in pairs:
                     low, high = sorted((first_of(i), first_of(j)))
-                    if low != high and (_share_record(a, b) or _copies(a, b)):
+                    if low != high and (_share_record(a, b) or _are_copies(a, b)):
                         root[high] = low
     for triple in _turned_triples(stations):
         low = min(map(first_of, triple))
@@ -210,7 +210,7 @@ def _share_record(a: Component, b: Component) -> bool:
     return not (first.network and second.network and first.network != second.network) and in_one_event(a, b)
 
 
-def _copies(a: Component, b: Component) -> bool:
+def _are_copies(a: Component, b: Component) -> bool:
     """Return whether the samples of two components are equal except for a factor."""
     first, second = a.acceleration, b.acceleration
     if len(first) != len(second) or abs(a.dt - b.dt) > 1e-6 * a.dt:

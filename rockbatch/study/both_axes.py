@@ -31,7 +31,7 @@ def with_other_axes(file: TomlFile, cases: Sequence[Case], motions: MotionSpec) 
     for case in cases:
         both.append(case)
         if KEY in case.columns:
-            table = tables[names.index(case.name) if case.name in names else 0]  # a single one need not have a name
+            table = tables[names.index(case.name) if case.name in names else 0]  # a single case need not have a name
             wrong = list(_obstacles(case, motions, names))
             for problem in wrong:
                 table.complain(f"{KEY}: {problem}", KEY)

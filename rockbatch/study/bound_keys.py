@@ -93,8 +93,8 @@ def read_bounds(file: TomlFile) -> list[DesignBound]:
 
 
 def _flat(data: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the keys and values of a [[bound]], of tables within by their paths, as TOML reads a path without quotes: {"case":
-    {"eta": 2}} gives ("case.eta", 2).
+    """Yield the keys and values of a [[bound]], those of tables within pier and case by their paths, as TOML reads a path without
+    quotes: {"case": {"eta": 2}} gives ("case.eta", 2).
 
     A table at the path of a known key, such as { times = 1.2 }, is a value, as is an empty table.
     """
@@ -152,7 +152,7 @@ def _read_change(table: Table, path: str) -> Change | None:
 
 
 def _factor(written: Mapping[str, Any]) -> float | None:
-    """Return the factor of a table { times = 1.2 }, from 1e-6 to 1e6; None for another table or another factor."""
+    """Return the factor of a table { times = 1.2 }, above 1e-6 and below 1e6; None for another table or another factor."""
     times = written.get("times")
     if set(written) != {"times"} or isinstance(times, bool) or not isinstance(times, float | int):
         return None

@@ -147,7 +147,12 @@ def _case_of(case: _WrittenCase, chosen: Chosen, pier: Pier, pier_values: Values
     if not wrong and pier.mass_t is not None:
         _complain_unless_usual(case.table, chosen, pier)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | values
-    for name in ("restraints", "confirm", "flexural_impact", "vertical_over_formula"):  # columns of their own have them
+    for name in (
+        "restraints",
+        "confirm",
+        "flexural_impact",
+        "vertical_over_formula",
+    ):  # devices have their own
         applying.pop(name, None)
     if not base.has_epsilon:
         applying.pop("epsilon", None)
@@ -244,7 +249,9 @@ def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: 
         }
         strength, stiffness = (f"{name} above {value:.4g}" for name, value in needed.items())
         remedies = {"eta": strength, "beta": stiffness}
-        if "yield_kN" in chosen and base.beta > pier.least_beta:  # β is too low only for springs so near to yielding
+        if (
+            "yield_kN" in chosen and base.beta > pier.least_beta
+        ):  # β would do for springs that are further from yielding
             remedies["beta"] = f"{strength}, or {stiffness}"
         weighing = f"mass_t = {mass:g}" if "mass_t" in chosen else f"the {mass:g} t of [pier]"
         derived = f"{source} = {chosen[source].value:g} with {weighing}"

@@ -275,7 +275,7 @@ class Device:
         arguments |= {field: values[key] / unit for key, (field, unit) in fields_of(pier).items() if key in values}
         arguments["confirm"] = tuple(FIELD_OF.get(name, name) for name in sorted(self.table.confirmed))
         if values.get("kind") == "hysteretic":
-            arguments.setdefault("yield_m", 0.001)  # a missing one is noted; a possible value lets the rest be checked
+            arguments.setdefault("yield_m", 0.001)  # a missing value is a problem already, and the rest can be checked
         if self.what in ("stop", "deck_spring"):  # likewise
             arguments.setdefault("gap_m", 0.0)
             arguments.setdefault("lam", 1.0)

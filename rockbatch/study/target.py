@@ -168,7 +168,8 @@ def _spectrum_of_file(table: Table, written: str, damping: float, linear: bool) 
 
 
 def _eurocode_spectrum(table: Table, read: KeyValues, damping: float) -> EurocodeSpectrum | None:
-    """Return the horizontal spectrum of EN 1998-1; None without a_g or with periods that do not grow.
+    """Return the horizontal spectrum of EN 1998-1; None without a_g, or type and ground where needed, or with periods that do not
+    grow.
 
     Type and ground are needed unless S, T_B, T_C and T_D are all given, which take the place of theirs.
     """

@@ -11,7 +11,7 @@ from rockbatch.common.showing import shown
 from rockbatch.common.units import LEAST, MOST, Bounds, of_percent
 from rockbatch.toml.meant import words_meant
 
-_SHORT = 100  # characters of what is expected beside a suggestion
+_SHORT = 100  # most characters of an expectation that is added to a suggestion
 
 Schema = dict[str, Any]
 """A JSON schema, draft 7."""

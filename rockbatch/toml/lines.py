@@ -74,7 +74,7 @@ class _Scan:
     def mark(self, key_path: KeyPath, line: int) -> None:
         """Keep the line of a place, and of the tables that a dotted key implies, unless one is kept already.
 
-        Raises :class:`TooDeepError` below the deepest level of tables that is read.
+        Raises :class:`TooDeepError` for a place more than 32 deep.
         """
         if len(key_path) > _DEEPEST:
             raise TooDeepError(f"line {line}: tables or lists within one another, more than {_DEEPEST} deep")

@@ -453,7 +453,7 @@ def _has_required(file: Path, sections: Sequence[Section]) -> bool:
 
 
 def with_slashes(written: str) -> str:
-    r"""Return a path with slashes in place of backslashes, and of the characters that TOML made of these: "C:\\new" may have been
+    r"""Return a path with slashes in place of backslashes, and of the characters that TOML made of these: "C:\new" in a study is
     read with a line break."""
     return written.translate(_SLASHED)
 

@@ -141,8 +141,8 @@ class Axis:
     numbered: bool = True
 
     def fraction(self, values: float | Array) -> Array:
-        """Return places along the axis: 0 at ``low``, 1 at ``high``, beyond these outside; NaN or infinite for no positive value
-        of a ``log`` axis."""
+        """Return places along the axis: 0 at ``low``, 1 at ``high``, less or more outside; NaN or infinite on a ``log`` axis for
+        values not above 0."""
         values = np.asarray(values, dtype=np.float64)
         if self.log:
             return np.log(values / self.low) / math.log(self.high / self.low)

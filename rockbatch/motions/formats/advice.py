@@ -17,7 +17,7 @@ from rockbatch.motions.record_file import ReadOptions
 
 _UNITS = (("g", "m/s2", "cm/s2", "mm/s2"), ("mg", "in/s2", "ft/s2"))  # the second if none of the first is plausible
 _TRIED: Mapping[str, str | float] = {"unit": "m/s2", "dt": 0.01}  # any unit and step show whether a file can be read
-_OTHER_UNIT = "cm/s2"  # read in it, components without a unit of their own differ
+_OTHER_UNIT = "cm/s2"  # a second unit: read in it, components without a unit of their own have other samples
 _MOST_LACKS = 3  # readings with more and more statements
 _WHERE = (
     "under [motions] in the study, for all files that state none (the others keep their own), or for this file in motions.toml, "

@@ -18,7 +18,7 @@ from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.origin import origin_of
 
 _HEADER = 27  # lines
-_RATE = 21  # line of the header at which it begins
+_RATE = 21  # line of the header that begins with the sampling rate
 _WIDTH, _PER_LINE = 13, 10
 _TITLE = re.compile(r"^\* *VOL(?P<volume>[0-9])DS +FILE: *(?P<file>\S+)")
 _DURATION = r"DURATION *= *(?P<duration>[0-9.]{1,12})"

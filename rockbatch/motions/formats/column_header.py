@@ -36,10 +36,10 @@ _UNIT = r"[(\[]\s*+(?P<unit>[^()\[\]]*[^()\[\]\s])\s*+[)\]]"
 _NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>(?:.*?\S)??)\s*+{_UNIT}", re.IGNORECASE)
 _LABELLED = re.compile(rf"(?P<label>[^\s,;()\[\]](?:[^,;\t()\[\]]*[^\s,;()\[\]])?)\s*+{_UNIT}")
 _WORD = re.compile(rf"(?P<label>[^\s,;()\[\]]+)(?:\s*{_UNIT})?")  # a label of one word, perhaps with its unit
-_FIELD = re.compile(rf"(?P<label>[^()\[\]]*[^()\[\]\s])\s*(?:{_UNIT})?")  # one between commas or tabs
+_FIELD = re.compile(rf"(?P<label>[^()\[\]]*[^()\[\]\s])\s*(?:{_UNIT})?")  # a label between commas or tabs
 _VALUE = re.compile(
     r"[:=]|\d\.\d|(?<!\w)\.\d|^\*[A-Za-z&-]+ *,"
-)  # the last one is a keyword, as MIDAS and Abaqus write them
+)  # the last alternative is a keyword of MIDAS or Abaqus
 _KEYED = re.compile(r"[^()\[\],;\t]*[:=]|\*[A-Za-z&-]+ *,")  # "File type: accelerations (g)" is no label
 _COMPONENTS = re.compile(r"^(?:components?|channels?|columns)\s*[:=]\s*(?P<labels>\S.*)$", re.IGNORECASE)
 _STATED = re.compile(r"^units?\s*[:=]\s*(?P<unit>\S+)", re.IGNORECASE)

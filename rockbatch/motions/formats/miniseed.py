@@ -159,7 +159,7 @@ def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -
     if is_clock(stats.channel):
         raise InputError(f"{trace.id} is the recorder's clock, no ground motion")
     start = stats.starttime.timestamp
-    entry = None if "sensitivity" in file.options.instead else _entry(file, trace)
+    entry = None if "sensitivity" in file.options.instead else _epoch_with_sensitivity(file, trace)
     covering = (epoch for epoch in file.inventories.epochs_of(trace.id) if epoch.start <= start < epoch.end)
     statements = _directions(trace.id, entry or next(covering, None))
     if entry is not None:
@@ -219,7 +219,7 @@ def _directions(channel_id: str, entry: stationxml.Channel | None) -> tuple[Stat
     return tuple(statements)
 
 
-def _entry(file: RecordFile, trace: "obspy.Trace") -> stationxml.Channel | None:
+def _epoch_with_sensitivity(file: RecordFile, trace: "obspy.Trace") -> stationxml.Channel | None:
     """Return the epoch of StationXML that has a channel's sensitivity at the time of the trace; ``None`` without one.
 
     If epochs contradict each other, ``None`` if the study states the sensitivity; else ``Unstated`` is raised.
