@@ -147,12 +147,8 @@ def _case_of(case: _WrittenCase, chosen: Chosen, pier: Pier, pier_values: Values
     if not wrong and pier.mass_t is not None:
         _complain_unless_usual(case.table, chosen, pier)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | values
-    for name in (
-        "restraints",
-        "confirm",
-        "flexural_impact",
-        "vertical_over_formula",
-    ):  # devices have their own
+    # devices have columns of their own, the others have none
+    for name in ("restraints", "confirm", "flexural_impact", "vertical_over_formula"):
         applying.pop(name, None)
     if not base.has_epsilon:
         applying.pop("epsilon", None)
@@ -249,9 +245,8 @@ def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: 
         }
         strength, stiffness = (f"{name} above {value:.4g}" for name, value in needed.items())
         remedies = {"eta": strength, "beta": stiffness}
-        if (
-            "yield_kN" in chosen and base.beta > pier.least_beta
-        ):  # β would do for springs that are further from yielding
+        # β would do for springs that are further from yielding
+        if "yield_kN" in chosen and base.beta > pier.least_beta:
             remedies["beta"] = f"{strength}, or {stiffness}"
         weighing = f"mass_t = {mass:g}" if "mass_t" in chosen else f"the {mass:g} t of [pier]"
         derived = f"{source} = {chosen[source].value:g} with {weighing}"
