@@ -4,8 +4,7 @@ import sys
 
 
 def main() -> int:
-    """Run the command line and return its exit code; Ctrl-C while modules are still being imported ends with the same message and
-    130."""
+    """Run the command line and return its exit code; Ctrl-C while modules are still imported ends with its message and 130."""
     try:
         import os
 

@@ -65,8 +65,7 @@ class Command:
 
 
 def _study(arguments: argparse.Namespace) -> "Study":
-    """Return the study of the file on the command line, with --motions and --strict applied. Raises ``InputError`` with its
-    mistakes."""
+    """Return the study file with --motions and --strict applied. Raises ``InputError`` with its mistakes."""
     from rockbatch.study import load_study
 
     study = load_study(arguments.study, motions=arguments.motions)

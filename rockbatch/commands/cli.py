@@ -113,8 +113,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Sequence[str]:
-    """Return the arguments with "help" and "version" replaced by options; exit with 2 and a suggestion if the first word is not a
-    command."""
+    """Return the arguments with "help" and "version" as options; exit with 2 and a suggestion for another first word."""
     word, *rest = arguments or [""]
     if word in COMMANDS or not word or word.startswith("-"):
         return arguments
@@ -126,8 +125,7 @@ def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Se
 
 
 def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
-    """Return the end of a message on ``unknown`` options: "; did you mean --jobs?", or that the command takes none; "" without a
-    suggestion."""
+    """Return the end of a message on ``unknown`` options: "; did you mean --jobs?", or that there are none; "" else."""
     options = [name for name in COMMANDS[command].arguments if name.startswith("-")] if command else ["--version"]
     if not options:
         return f"; `rockbatch {command}` takes none"
@@ -143,8 +141,7 @@ def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
 
 
 def _key_meant(unknown: Sequence[str]) -> str:
-    """Return the end of a message on an option that is a key of a study: "; it is a key of the study: write …"; "" for another
-    option."""
+    """Return the end of a message on an option that is a key of a study, "; it is a key of the study: write …", else ""."""
     from rockbatch.study.load import SECTIONS
 
     option, _, given = unknown[0].partition("=")
@@ -166,16 +163,14 @@ def _other_word(word: str, options: Sequence[str]) -> str | None:
 
 
 def _similar(word: str, options: Sequence[str]) -> str | None:
-    """Return an option spelt similarly; None without any, for another word of an option of any command, and never an option that
-    discards results."""
+    """Return an option spelt similarly that discards no results; None without any, or for a word of other options."""
     if any(word in words.split() for words in _OPTIONS_MEANT.values()):
         return None
     return closest(word, [name for name in options if name not in DISCARDING])
 
 
 def _exit_code(parsed: argparse.Namespace) -> int:
-    """Run a command and return its exit code; 2 after wrong input or an error of files or memory, 130 after Ctrl-C, both with a
-    message."""
+    """Run a command and return its exit code, with a message 2 after wrong input or errors of files, 130 after Ctrl-C."""
     is_taken = any(isinstance(value, Path) and is_stdout(value) for value in vars(parsed).values())
     try:
         with redirect_stdout(sys.stderr) if is_taken else nullcontext(), warnings.catch_warnings():

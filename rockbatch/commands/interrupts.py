@@ -47,8 +47,10 @@ def answered_interrupts() -> Iterator[None]:
 
 
 def _watch(bell: socket.socket) -> None:
-    """Wait for Ctrl-C until the other end of the socket is closed; then announce it, and end the process (130) at a second one,
-    or unless the other end closes within :data:`GRACE_S`."""
+    """Wait for Ctrl-C until the other end of the socket is closed; then announce the end, and end the process with 130.
+
+    It ends at a second Ctrl-C, or after :data:`GRACE_S`, unless the other end is closed before.
+    """
     number = _next(bell)
     while number not in (_END, signal.SIGINT):
         number = _next(bell)

@@ -110,8 +110,7 @@ def counts(suite: MotionSet) -> str:
 
 
 def overview(suite: MotionSet) -> str:
-    """Return counts, a scorecard of the doubtful and strongest records, and faults by reason, in about :data:`MOST_LINES`
-    lines."""
+    """Return counts, a scorecard of the doubtful and strongest records, and faults by reason, some :data:`MOST_LINES` lines."""
     entries = {
         "Not used": [(file.source, file.reason) for file in suite.unusable],
         "Look at these": [(motion.named, finding.text) for motion in suite for finding in motion.findings],
@@ -160,10 +159,9 @@ def _cell(value: object, form: str) -> str:
 
 
 def _by_reason(title: str, entries: Sequence[tuple[str, str]], most: int) -> list[str]:
-    """Return a title, and a line for each of the ``most`` rarest reasons with their number and an example, then the number of
-    others; [] without entries.
+    """Return a title, and a line for each of the ``most`` rarest reasons, then the number of others; [] without entries.
 
-    Reasons that differ only in names and numbers are one.
+    A line has the number, the reason and an example. Reasons that differ only in names and numbers are one.
     """
     reasons = sorted(grouped(entries, lambda entry: _VARIABLE.sub("", entry[1])).values(), key=len)
     lines = ["", title] if entries else []

@@ -20,8 +20,7 @@ from rockbatch.workflow.running import FinishedBatch, merge, run_into
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Carry out the runs of a study or a share of them, or estimate their cost; print the results, and return the exit code, 0
-    after a share."""
+    """Carry out the runs of a study, or a share of them, or estimate their cost; print the results, and return the exit code."""
     if arguments.dry_run:
         return _expect(study, arguments)
     directory = folder(arguments)

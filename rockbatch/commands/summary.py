@@ -58,8 +58,7 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
 
 
 def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
-    """Return a sentence on each kind of runs to look at: settlements that depend on the law, linearised kinematics too far, lean,
-    sliding; [] for none."""
+    """Return a sentence each on settlements that depend on the law, rotations too large, leans, and sliding; [] for none."""
 
     def warning(runs: npt.NDArray[np.bool_], singular: str, plural: str) -> str:
         """Return the words for the number of these runs, in singular or plural; "" for none."""

@@ -191,8 +191,7 @@ class NoDirection(Unstated):
 
 
 def refuse(problems: Iterable[Problem | str]) -> None:
-    """Raise the problems as the most special class that all of them share; do nothing if there are none. A plain sentence is an
-    ``InputError``."""
+    """Raise the problems as the most special class that all share, a plain sentence as ``InputError``; do nothing without any."""
     if problems := InputError(*problems).problems:
         lines = [(problem.kind or InputError).__mro__ for problem in problems]
         raise next(kind for kind in lines[0] if all(kind in line for line in lines))(*problems)

@@ -166,8 +166,7 @@ def read_text(path: Path) -> str:
 
 
 def sha256_of(path: Path) -> str:
-    """Return the SHA-256 digest of a file of a folder of results, in hexadecimal digits. Raises ``InputError`` as :func:`opened`
-    does."""
+    """Return the SHA-256 of a file of a folder of results, in hexadecimal digits. Raises ``InputError`` as :func:`opened`."""
     with opened(path) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
@@ -183,8 +182,7 @@ def made_folder(path: Path) -> Path:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Context manager: yield a temporary file that takes the place of ``path`` at the end of the block, or is removed on an
-    error.
+    """Context manager: yield a temporary file that takes the place of ``path`` at the block's end, or is removed on an error.
 
     A reader finds the earlier file or the new one, never a part. Raises ``InputError`` if something else than a regular file
     stands there.
@@ -333,8 +331,7 @@ def csv_plain(cell: str) -> str:
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> str:
-    """Return the text of a CSV file with a header; of ``rows``, the values in these ``columns``, "" for a missing one, as by
-    :func:`csv_lines`."""
+    """Return the text of a CSV file with a header, and of ``rows`` their values in these ``columns``, as by :func:`csv_lines`."""
     rows = list(rows)
     lines = csv_lines([[row.get(name) for row in rows] for name in columns])
     return csv_line(columns) + "".join(f"{line}\n" for line in lines)
@@ -379,8 +376,7 @@ def _text_cell(text: str) -> str:
 
 
 def read_table(path: Path) -> "pd.DataFrame":
-    """Return a table that :func:`csv_text` wrote; names in it that look like numbers stay names, and missing names are "". Raises
-    as :func:`opened`."""
+    """Return a table that :func:`csv_text` wrote; names that look like numbers stay names, and missing names are ""."""
     with opened(path) as file:
         table = pd.read_csv(file, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(NAMES, "str"))
     for name in table.columns.intersection(list(NAMES)):

@@ -16,8 +16,7 @@ def fits(name: str, pattern: str) -> bool:
 
 
 def chosen(pattern: str, names: Iterable[str]) -> list[str]:
-    """Return the names that ``pattern`` chooses: the one that equals it, else those that it matches as a glob; [] if none
-    does."""
+    """Return the names that ``pattern`` chooses: the one that equals it, else those that it matches as a glob, or []."""
     names = list(names)
     return [pattern] if pattern in names else [name for name in names if fits(name, pattern)]
 

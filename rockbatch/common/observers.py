@@ -51,8 +51,7 @@ def _of_packages(name: str) -> list[tuple[str, Any]]:
 
 
 def parts(name: str) -> list[Any]:
-    """Return the attribute ``name``, "study.OUTPUT", of each observer that has this module and attribute, in the order of the
-    observers."""
+    """Return the attribute ``name``, "study.OUTPUT", of each observer that has this module and attribute, in their order."""
     module, _, attribute = name.partition(".")
     homes = [f"rockbatch.observers.{observer}.{module}" for observer in OBSERVERS]
     modules = [import_module(home) for home in homes if find_spec(home)]

@@ -68,8 +68,7 @@ def several(n: int, noun: str) -> str:
 
 
 def shown(value: object, limit: int = 60) -> str:
-    """Return the value as TOML writes it, "pads" in quotes, with "…" at the end if longer than ``limit``, and legible whatever it
-    holds."""
+    """Return the value as TOML writes it, a text in quotes, legible, and cut with "…" if longer than ``limit``."""
     if isinstance(value, bool):
         written = str(value).lower()
     elif isinstance(value, str):

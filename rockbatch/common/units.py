@@ -16,8 +16,7 @@ LEAST, MOST = 1e-15, 1e15
 
 
 def of_percent(value: float, low: float, high: float) -> float | None:
-    """Return ``value``/100 if it is from 2 to 100 and bounds are those of a share, 0 and 1, so that it is probably in percent;
-    else None."""
+    """Return ``value``/100 if it is from 2 to 100 and the bounds are 0 and 1, and so probably in percent; else None."""
     return value / 100.0 if low == 0.0 and high == 1.0 and 2.0 <= value <= 100.0 else None
 
 

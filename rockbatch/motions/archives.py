@@ -53,8 +53,7 @@ def is_archive(path: Path | PurePosixPath) -> bool:
 
 
 def not_read(path: Path) -> str:
-    """Return the reason why an archive of another kind, by its suffix (.7z, .rar), is not read; "" for archives that are read and
-    other files."""
+    """Return why an archive of another kind (.7z, .rar) is not read, by its suffix; "" for a .zip or .tar and other files."""
     if bare(path).suffix.lower() in _PACKED and not is_archive(path):
         return "an archive that is not read (.zip and .tar.gz are, and .gz of one record); unpack it"
     return ""
@@ -100,8 +99,7 @@ class _Archive(ABC):
 
 
 def members(archive: Path) -> Iterator[Member]:
-    """Yield the files of an archive in order of their names, without hidden and read-me files; one that must not be opened with
-    its reason.
+    """Yield the files of an archive by name, without hidden and read-me files; one that must not be opened with its reason.
 
     Raises ``InputError`` for a damaged archive, and for one too large or with too many files.
     """
@@ -143,8 +141,7 @@ def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
 
 
 def is_member(path: Path) -> bool:
-    """Return whether a path leads to a file in an archive, also one that must not be opened; False if the archive cannot be
-    read."""
+    """Return whether a path leads to a file in an archive, also a refused one; False if the archive cannot be read."""
     archive = archive_of(path)
     try:
         return archive is not None and path in _paths_in(archive, state_of(archive.stat()))
@@ -174,8 +171,7 @@ def state(path: Path) -> tuple[int, ...]:
 
 
 def files_in(folder: Path) -> list[Path]:
-    """Return paths of the regular files directly in a folder, of the disk or of an archive, in order; of an archive without those
-    that must not be opened."""
+    """Return paths of the regular files directly in a folder, in order; in an archive without those that must not be opened."""
     archive = folder if is_archive(folder) and folder.is_file() else archive_of(folder)
     if archive is None:
         return sorted(path for path in folder.iterdir() if path.is_file())

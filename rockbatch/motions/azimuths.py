@@ -68,8 +68,7 @@ def _azimuth(component: Component) -> float:
 
 
 def _initial_along(first: Component, second: Component, common: Common, azimuth: float) -> Initial | None:
-    """Return velocity [m/s] and displacement [m] along ``azimuth`` at the first common sample; ``None`` if either component has
-    no initial state."""
+    """Return velocity [m/s] and displacement [m] along ``azimuth`` at the first common sample; ``None`` if either is unknown."""
     if first.initial is None or second.initial is None:
         return None
     velocity = displacement = 0.0

@@ -64,8 +64,7 @@ def _sign_between(a: Component, b: Component) -> float:
 
 
 def _gain_ratio(a: Component, b: Component, sign: float) -> float | None:
-    """Return the amplitude of ``b`` over that of ``a``, turned by ``sign``, if their motions are alike but for it, negative for
-    opposite signs.
+    """Return the amplitude of ``b`` over that of ``a`` times ``sign`` if their motions are alike, negative for opposite signs.
 
     ``None`` if they are not alike, have fewer than 100 common samples, or differ by less than :data:`_FACTOR`.
     """

@@ -34,8 +34,7 @@ def overlap(a: Component, b: Component) -> bool:
 
 
 def too_unlike(a: Component, b: Component) -> str:
-    """Return why the steps or lengths of two components forbid common samples: a ratio of steps, or a number of samples, too
-    large; else ""."""
+    """Return why steps or lengths of two components forbid common samples: a ratio or number of samples too large; else ""."""
     if max(a.dt, b.dt) > MOST_STEPS * min(a.dt, b.dt):
         return f"dt = {b.dt:g} s beside {a.dt:g} s of {a.name}, more than {MOST_STEPS} times apart"
     if min(a.duration, b.duration) > MOST_SAMPLES * min(a.dt, b.dt):
@@ -85,8 +84,7 @@ def on_common_samples(first: Component, second: Component, names: tuple[str, str
 
 
 def _offset(first: Component, second: Component, name: str) -> tuple[float, list[str]]:
-    """Return the delay of the second component [s], rounded to whole samples within jitter, and the note on that; 0 if a start
-    time is unknown."""
+    """Return the delay of the second component [s], whole samples within jitter, with a note; 0 if a start time is unknown."""
     if first.start is None or second.start is None:
         return 0.0, []
     offset, step = second.start - first.start, min(first.dt, second.dt)

@@ -114,6 +114,5 @@ class Component:
 
     @property
     def upward(self) -> Samples:
-        """Return the acceleration of a vertical component [m/s²], positive up, shape (npts,): reversed if the file has it
-        positive down."""
+        """Return the acceleration of a vertical component [m/s²], shape (npts,), positive up whatever it is in the file."""
         return -self.acceleration if self.orientation.down else self.acceleration

@@ -79,8 +79,7 @@ def digest(motion: Motion) -> str:
 
 
 def _pulse(motion: Motion) -> dict[str, object]:
-    """Return the entry {"pulse_period_s": period}, the period [s] of a motion's pulse by Baker (2007) to four digits; None if it
-    is not pulse-like."""
+    """Return {"pulse_period_s": period [s] of a motion's pulse by Baker (2007), to four digits}; None in it without a pulse."""
     period = pulse_period(motion)
     return {"pulse_period_s": None if period is None else float(f"{period:.4g}")}
 

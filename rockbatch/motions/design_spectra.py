@@ -231,8 +231,7 @@ class NzsSpectrum:
         return _within(self.limits, periods, values)
 
     def _near(self, t: Array) -> Array:
-        """Return the near-fault factor N(T, D) at periods ``t`` [s], in their shape: 1 up to 1.5 s, beyond 20 km, and for R up to
-        0.75."""
+        """Return the near-fault factor N(T, D) at periods ``t`` [s], as shaped: 1 up to 1.5 s, beyond 20 km, or R ≤ 0.75."""
         share = min(1.0, max(0.0, (FAR_KM - self.fault_km) / 18.0)) if self.return_period_factor > 0.75 else 0.0
         return 1.0 + share * (np.interp(t, [1.5, 4.0, 5.0], [1.0, 1.6, 1.72]) - 1.0)
 

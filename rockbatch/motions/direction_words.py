@@ -216,8 +216,7 @@ def folded(text: str) -> str:
 
 
 def words(meaning: str) -> set[str]:
-    """Return the words of all languages for a meaning, such as "up", in capitals without accents; an empty set for an unknown
-    one."""
+    """Return the words of all languages for a meaning such as "up", in capitals without accents; set() for an unknown one."""
     return {word for language in WORDS.values() for word in _words_in(language, meaning)}
 
 

@@ -54,8 +54,7 @@ def _judge_set(station: Sequence[Component]) -> list[Component]:
 def _hold_back(
     component: Component, contradiction: str, components: Sequence[Component], contradictions: dict[int, str]
 ) -> Component:
-    """Return a component of a set that is held back, with its own ``contradiction``, or with that of the first one of the set
-    that has any."""
+    """Return a component of a set that is held back, with its own ``contradiction`` or the first one of the set."""
     if contradiction:
         return replace(component, contradiction=contradiction, orientation=unknown(component.orientation.label))
     first, text = next(iter(contradictions.items()))
@@ -77,8 +76,7 @@ def _same_samples(a: Component, b: Component) -> bool:
 
 
 def _with_names(station: Sequence[Component]) -> list[Component]:
-    """Return components whose file names no longer count as weak statements, if each name gives another direction; else as they
-    are.
+    """Return components whose file names are no weak statements any more, if each gives another direction; else as they are.
 
     "North" or "z" alone may be the name of a place or a copy; beside "East" it is a direction.
     """
@@ -93,8 +91,7 @@ def _with_names(station: Sequence[Component]) -> list[Component]:
 
 
 def _copies_as_their_originals(station: Sequence[Component]) -> list[Component]:
-    """Return components, in which a copy whose statements contradict each other has those of a sound component with the same
-    samples."""
+    """Return components, those with contradictory statements with the statements of a sound one of the same samples, if any."""
     components = list(station)
     for i, component in enumerate(station):
         if _contradiction(component):
@@ -114,8 +111,7 @@ def _contradiction(component: Component) -> str:
 
 
 def _copied_headers(components: Sequence[Component]) -> Iterator[tuple[int, Statement, str]]:
-    """Yield place, statement and reason of channel codes or headers that give one direction in a whole set, of which the file
-    names give different ones."""
+    """Yield place, statement and reason of codes or headers that give one direction in a set whose file names give several."""
     for kind in _COPIED:
         of_kind = [(i, s) for i, c in enumerate(components) if (s := _strong_statement(c, kind)) and not _by_user(c)]
         names = [name.orientation for i, _ in of_kind if (name := _strong_statement(components[i], Kind.NAME))]

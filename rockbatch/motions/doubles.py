@@ -109,8 +109,7 @@ def _factor_finding(component: Component, other: Component) -> Finding:
 def _shared_verticals(
     components: Sequence[Component], stands_for: Mapping[int, int]
 ) -> Iterator[tuple[int, list[int]]]:
-    """Yield the place of the only vertical of a set if it is a copy of another station's vertical, with places of the set's
-    horizontals in use."""
+    """Yield the place of a set's only vertical, if a copy of another station's, and those of the set's used horizontals."""
 
     def place(i: int) -> tuple[str, str]:
         return components[i].folder, components[i].station or components[i].site
@@ -191,8 +190,7 @@ def tell_use_of_originals(left_out: Iterable[LeftOut], motions: MotionSet) -> li
 
 
 def _finding_on_copy(copy: Component, used: Component, factor: float | None, decided: bool) -> Finding | None:
-    """Return a finding on a left-out ``copy`` that is the ``used`` one times a ``factor``, or whose peak is 1.5 times larger or
-    smaller; else None.
+    """Return a finding on a left-out ``copy`` times a ``factor``, or with a peak 1.5 times larger or smaller; else None.
 
     A factor other than ±1 that is not ``decided``, as by a file's name, is gross: it has to be confirmed.
     """

@@ -53,8 +53,7 @@ class Statement:
         return apart > _ROUNDED
 
     def differs_from(self, other: "Statement") -> bool:
-        """Return whether one direction is vertical and the other is not, or azimuths differ by over 5°; one unknown azimuth
-        differs from none."""
+        """Return whether only one is vertical, or azimuths differ by over 5°; an unknown azimuth differs from none."""
         a, b = self.orientation.azimuth, other.orientation.azimuth
         apart = 0.0 if a is None or b is None else abs((a - b + 180.0) % 360.0 - 180.0)
         return self.orientation.vertical != other.orientation.vertical or apart > _ROUNDED
@@ -76,8 +75,7 @@ class Statement:
 
 
 def decided_orientation(statements: Sequence[Statement], label: str = "") -> Orientation:
-    """Return the orientation of the most believed statement, by the order of :class:`Kind`; without any, an unknown one with
-    ``label``.
+    """Return the orientation of the most believed statement, by :class:`Kind`; an unknown one with ``label`` without any.
 
     Default and weak statements count only if there are no others. Angles without an azimuth give way to a statement of a
     horizontal component's azimuth.
@@ -112,10 +110,9 @@ _UPRIGHT, _LEVEL = 80.0, 10.0  # degrees of dip: least of a vertical channel, gr
 
 
 def same_direction(a: Orientation, b: Orientation) -> bool:
-    """Return whether two known orientations agree: both vertical, up or down, or azimuths within 1°, or without azimuths the same
-    label.
+    """Return whether two known orientations agree: vertical, azimuths within 1°, or equal labels without azimuths.
 
-    False if one is unknown, or only one has an azimuth.
+    False if one is unknown, or only one has an azimuth; up and down are the same.
     """
     if not (a.known and b.known) or a.vertical != b.vertical:
         return False

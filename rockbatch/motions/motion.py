@@ -323,8 +323,7 @@ class Motion(Shown):
         )
 
     def __setstate__(self, state: dict[str, object]) -> None:
-        """Restore a copy, or a motion from another process, with samples that cannot be changed: pickling drops the read-only
-        flag."""
+        """Restore a copy, or a motion from another process, with samples that cannot be changed: pickling loses this flag."""
         vars(self).update(state)
         for component in COMPONENTS:
             if (samples := state.get(component)) is not None:
@@ -340,8 +339,7 @@ class Motion(Shown):
 
     @property
     def label(self) -> str:
-        """Return its name in words, "Imperial Valley 1979, Meloland, 270"; if the header states none, its file, or the name of a
-        pulse or sequence."""
+        """Return its name in words, "Imperial Valley 1979, Meloland, 270", else its file, or a pulse's name."""
         by_name = self.source in ("", "pulse") or len(self.shocks) > 1
         return self.origin.label or (self.name if by_name else self.source)
 

@@ -96,8 +96,7 @@ class MotionSet(Shown):
 
     @property
     def labels(self) -> dict[str, str]:
-        """Return names for people by names in tables; motions that would share one get the long form, then their name in tables,
-        too."""
+        """Return names for people by names in tables; shared ones in full length, then with the name in tables behind them."""
         labels = {motion.name: motion.label for motion in self.motions}
         for longer in (lambda motion: motion.origin.full_label or motion.label, lambda motion: motion.named):
             times = Counter(labels.values())
@@ -128,8 +127,7 @@ class MotionSet(Shown):
     @overload
     def __getitem__(self, which: slice) -> list[Motion]: ...
     def __getitem__(self, which: int | str | slice) -> Motion | list[Motion]:
-        """Return a motion by its index or name, or a list by a slice; raise ``InputError`` for an unknown name, ``IndexError``
-        for an index out of range."""
+        """Return a motion by index or name, or a list by a slice; ``InputError`` for an unknown name, else ``IndexError``."""
         if isinstance(which, Integral | slice):
             return self.motions[which]
         if not isinstance(which, str):
@@ -161,8 +159,7 @@ class MotionSet(Shown):
         )
 
     def _facts(self) -> tuple[str, dict[str, str]]:
-        """Return the title and, by name, the facts that :class:`Shown` prints: records, PGA, verticals, files not used and left
-        out."""
+        """Return the title and, by name, the facts that :class:`Shown` prints: records, PGA, verticals, files not used."""
         pga = sorted(motion.pga / GRAVITY for motion in self.motions)
         vertical = sum(motion.vertical is not None for motion in self.motions)
         return several(len(self), "ground motion") or "no ground motions", {

@@ -208,8 +208,7 @@ def _channels(stem: str) -> list[Orientation]:
 
 
 def _contradicted(orientation: Orientation, stem: str) -> bool:
-    """Return whether ``stem`` has a vertical channel's code though ``orientation``, taken from it, is not vertical (horizontal or
-    unknown)."""
+    """Return whether ``stem`` has a vertical channel's code and ``orientation`` is not vertical, but horizontal or unknown."""
     return not orientation.vertical and any(channel.vertical for channel in _channels(stem))
 
 
@@ -231,8 +230,10 @@ def _is_number(site: str, label: str, stem: str) -> bool:
 
 
 def counted(stems: Iterable[str]) -> set[str]:
-    """Return the stems that end in three digits which are no azimuths, since two of them, otherwise equal, are neither parallel
-    nor near a right angle: GM_010, GM_011."""
+    """Return the stems that end in three digits which are no azimuths: GM_010 and GM_011.
+
+    Two that are otherwise equal are then neither parallel nor near a right angle.
+    """
     numbered: set[str] = set()
     for group in grouped((stem for stem in stems if re.fullmatch(r".*\d{3}", stem)), lambda stem: stem[:-3]).values():
         if _in_series(int(stem[-3:]) for stem in group):

@@ -51,8 +51,7 @@ def is_own(path: Path) -> bool:
 
 
 def _is_head(begin: bytes) -> bool:
-    """Return whether the first line of a table or journal, where a journal has a checksum and digests first, names columns of
-    rockbatch."""
+    """Return whether the first line of a table or journal, after a journal's checksum and digests, has columns of rockbatch."""
     first = begin.removeprefix(b"\xef\xbb\xbf").partition(b"\n")[0].decode(errors="replace")
     cells = {cell.strip(' \r"') for cell in re.split("[,;\t]", first)}
     return any(names <= cells for names in _NAMED_TOGETHER)

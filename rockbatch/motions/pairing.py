@@ -188,8 +188,7 @@ def _candidates(horizontal: Component, station: int, verticals: Sequence[Sequenc
 
 
 def _partner(h: Component, together: Sequence[Component]) -> tuple[Component | None, list[tuple[Component, str]]]:
-    """Return the only suitable vertical of those ``together`` with a horizontal component, and the refused ones, each with the
-    reason.
+    """Return the only suitable vertical of those ``together`` with a horizontal component, and the refused ones with reasons.
 
     None if none is suitable, or several are, which are then refused.
     """
@@ -209,8 +208,7 @@ def _why_dead(h: Component, v: Component) -> str:
 
 
 def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
-    """Return the motion of a horizontal and its vertical component, over their common time; without the vertical if that leaves
-    the peak out.
+    """Return the motion of a horizontal and its vertical component over their common time; without ``v`` if that lacks the peak.
 
     ``notes`` come before those on this.
     """

@@ -119,8 +119,7 @@ def unlikely(amplitude_g: float, period: float, dt: float) -> dict[str, str]:
 
 
 def pulse_length(shape: str, period: float, gamma: float | None = None) -> float:
-    """Return the duration T_p [s] of a pulse with ``period`` [s], by the table at the head of this module; ``gamma`` for
-    "mavroeidis-papageorgiou" alone."""
+    """Return the duration T_p [s] of a pulse of ``period`` [s], by the table at the head of this module."""
     return _formula(shape, 1.0, period, gamma, 0.0)[1]
 
 

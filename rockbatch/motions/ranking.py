@@ -93,8 +93,7 @@ class RankedRecord:
 
     @cached_property
     def values(self) -> dict[str, Cell]:
-        """Return the values of :data:`COLUMNS` for the stronger component, with the other's PGA [g] and the doubts about both;
-        None if unknown."""
+        """Return :data:`COLUMNS` for the stronger component, with the other's PGA [g] and doubts about both; None if unknown."""
         known: dict[str, Cell] = dict.fromkeys(COLUMNS)
         known["record"] = self.name
         if self.motions:
@@ -149,8 +148,10 @@ def _unused_records(unusable: Iterable[Unusable]) -> Iterator[RankedRecord]:
 
 
 def use_of(file: Unusable | LeftOut) -> Use:
-    """Return the ``Use`` of a file without a motion in the set: held back if its user can state or confirm what it lacks, not
-    used if not, a copy, or left out."""
+    """Return the ``Use`` of a file without a motion: held back if its user can state or confirm what it lacks, else not used.
+
+    A file that was left out is a copy, or left out.
+    """
     if isinstance(file, LeftOut):
         return Use.COPY if file.of else Use.LEFT_OUT
     return Use.HELD_BACK if file.motion or file.kind in _DOUBTS or file.lacks else Use.NOT_READ
@@ -169,8 +170,7 @@ def _finding_names(motions: Sequence[Motion]) -> list[str]:
 
 
 def _other_pga_g(motion: Motion, others: Iterable[Motion]) -> float | None:
-    """Return the PGA [g] of the strongest other component of a motion's station, else of the component across the motion; None
-    without both."""
+    """Return the PGA [g] of the strongest other component of a station, else of the one across ``motion``; None without both."""
     across = max((other.pga for other in others if other is not motion), default=None)
     if across is None and motion.across is not None:
         across = float(np.abs(motion.across).max())
@@ -184,8 +184,7 @@ def pulse_period(motion: Motion) -> float | None:
 
 
 def rows(motions: MotionSet) -> list[dict[str, Cell]]:
-    """Return the rows of ``rockbatch motions --csv``: one per motion in order, then one per file that is not used or left out,
-    with its ``reason``."""
+    """Return the rows of ``rockbatch motions --csv``: one per motion, then per unused or left-out file, with its ``reason``."""
     stations = motions.stations()
     not_used: list[Unusable | LeftOut] = [*motions.unusable, *motions.left_out]
     used = [_row(motion, stations[motion.of_station]) | {"use": Use.USED.value} for motion in motions]
@@ -197,8 +196,7 @@ def rows(motions: MotionSet) -> list[dict[str, Cell]]:
 
 
 def _row(motion: Motion, components: Sequence[Motion]) -> dict[str, Cell]:
-    """Return the row of a motion, with the PGA [g] of the strongest other horizontal component of its station and the period of
-    its pulse [s]."""
+    """Return the row of a motion, with the PGA [g] of its station's strongest other component and the period of its pulse [s]."""
     return row(motion) | {"pga_h2_g": _other_pga_g(motion, components), "pulse_period_s": pulse_period(motion)}
 
 

@@ -98,8 +98,7 @@ class ReadOptions:
         return replace(self, **values, instead=self.instead.union(stated))
 
     def overruled(self, unit: str, dt: float, gravity: float) -> tuple[str, ...]:
-        """Return notes on the study's unit and step where a file states another ``unit`` or ``dt`` [s], which counts; () if they
-        agree."""
+        """Return notes on the study's unit and step where a file's own ``unit`` or ``dt`` [s] overrules them; () else."""
         notes = []
         if self.unit is not None and "unit" not in self.instead:
             by_file, stated = acceleration_factor(unit, gravity), acceleration_factor(self.unit, gravity)
@@ -111,8 +110,7 @@ class ReadOptions:
 
 
 def no_acceleration(called: str, kind: str) -> InputError:
-    """Return the error that what is ``called`` so, "CI.LRL..HHN", holds another ``kind`` of samples, "velocities", than
-    accelerations."""
+    """Return the error that a file, ``called`` so in it, holds another ``kind`` of samples than accelerations, "velocities"."""
     return InputError(
         f"{called} holds {kind}, and accelerations are expected; if it does hold them, write unit = … for this file in "
         "motions.toml"
@@ -143,8 +141,7 @@ class RecordFile:
 
 
 def text_of(data: bytes) -> str:
-    """Return the text of bytes: UTF-16 with its mark (Excel's "Unicode text"), else UTF-8, with or without its mark, else
-    Latin-1.
+    """Return the text of bytes: UTF-16 with its mark (Excel's "Unicode text"), else UTF-8, with its mark or not, else Latin-1.
 
     Raises ``InputError`` for bytes with the mark of UTF-16 which are none.
     """

@@ -111,8 +111,7 @@ def at_target(
 
 
 def scale_as_listed(motion_set: MotionSet) -> MotionSet:
-    """Return all motions scaled by the factors of PEER's lists beside them, with a note; those that no list has a factor of are
-    unusable."""
+    """Return all motions scaled by their factors in PEER's lists, with a note; those without a listed factor are unusable."""
     lacking = [motion for motion in motion_set if motion.listed.scale is None]
     reason = 'has no scale factor: scale = "list" takes those of PEER\'s _SearchResults.csv in its folder'
     unusable = [Unusable(m.name, m.files, f"{m.label} {reason}", station=m.of_station) for m in lacking]
@@ -149,8 +148,7 @@ def scale_to_targets(
 
 
 def verticals(motions: Sequence[Motion]) -> list[Motion]:
-    """Return a motion of the first vertical component of each station, named as the station; none for stations without one, or at
-    rest."""
+    """Return the first vertical component of each station as a motion, named as the station; none of those missing or at rest."""
     moving = {motion.of_station: motion for motion in reversed(motions) if motion.pga_vertical}
     return [
         Motion(name, motion.dt, motion.vertical, source=motion.vertical_source)
@@ -202,8 +200,7 @@ def scale_verticals(
 
 
 def _without_pair(motions: Sequence[Motion], target: Target | SpectrumTarget) -> list[Unusable]:
-    """Return the motions of stations without a pair, as unusable for a target that takes both components; [] for other
-    targets."""
+    """Return the motions of stations without a pair as unusable, for a target that takes both components; [] for others."""
     if target.pairs not in TWO_COMPONENT_RULES or (isinstance(target, SpectrumTarget) and target.factors == "none"):
         return []
     unusable = []

@@ -116,8 +116,7 @@ SEQUENCE = Section(
 
 
 def read_sequences(file: TomlFile, *at: str) -> tuple[ShockSequence, ...]:
-    """Return the sequences in the tables ``[[at]]`` of a study or manifest; a mistaken one is left out, and the problem added to
-    the file."""
+    """Return the sequences in the tables ``[[at]]`` of a study or manifest; mistakes are added to the file's problems."""
     sequences: list[ShockSequence] = []
     for table in file.tables(*at, title="name"):
         read = table.read(SEQUENCE)
@@ -245,8 +244,7 @@ def _check_size(parts: Sequence[Motion], dt: float, name: str, pause: float) -> 
 
 
 def _resampled(motion: Motion, dt: float, notes: list[str]) -> Motion:
-    """Return a motion interpolated linearly to a sampling interval ``dt`` [s], and append a note; the motion itself if it has
-    that interval."""
+    """Return a motion interpolated linearly to an interval ``dt`` [s], and append a note; itself if it has that interval."""
     if abs(motion.dt - dt) <= _SAME * dt:
         return motion
     notes.append(f"{motion.name} interpolated linearly from dt = {motion.dt:g} s to {dt:g} s")
@@ -293,8 +291,7 @@ def _concatenated(
 
 
 def _with_common_origin(parts: Sequence[Motion], whole: Motion) -> Motion:
-    """Return ``whole`` with the sources and findings of all ``parts``, and facts such as the magnitude if all parts share them,
-    else None."""
+    """Return ``whole`` with the sources and findings of all ``parts``, and facts that all share, such as magnitude, else None."""
     return replace(
         whole,
         source=_in_turn(part.source for part in parts),

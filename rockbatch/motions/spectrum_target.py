@@ -175,8 +175,7 @@ class SpectrumTarget:
         return [station_spectra(station, periods, self.spectrum.damping)[self.pairs] / gravity for station in stations]
 
     def remarks(self, motions: Sequence[Motion]) -> list[str]:
-        """Return remarks on the target for these ``motions``, a sentence each: a limit of the code that is exceeded, and pairs
-        judged apart; [] for none."""
+        """Return a sentence on a limit of the code that the target exceeds, and on pairs judged apart; [] for none."""
         paired = any(len(station) == 2 for station in _stations(motions))
         apart = self.pairs == "apart" and self.spectrum.code and paired
         return list(filter(None, (self.spectrum.beyond, _APART if apart else "")))

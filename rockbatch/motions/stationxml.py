@@ -103,8 +103,7 @@ class Inventories:
 
 
 def contradiction(channels: Sequence[Channel]) -> str:
-    """Return two statements that contradict each other, of one or more epochs of a channel with sensitivities; "" if all
-    agree."""
+    """Return two statements of a channel's epochs, all with sensitivities, that contradict each other; "" if all agree."""
     for channel in channels:
         if channel.stages and channel.sensitivity and abs(channel.stages / channel.sensitivity - 1.0) > _SAME_STAGES:
             return f"{channel.gain} ({channel.named}) and {channel.stages:.6g} as the product of its stages' gains"
@@ -118,8 +117,7 @@ def contradiction(channels: Sequence[Channel]) -> str:
 
 
 def _same_gain(a: Channel, b: Channel) -> bool:
-    """Return whether two channels with sensitivities have the same counts per m/s², to 0.1 %; in units of no acceleration, the
-    same number and unit."""
+    """Return whether counts per m/s² of two channels agree to 0.1 %; in units of no acceleration, number and unit exactly."""
     assert a.sensitivity
     assert b.sensitivity
     try:
@@ -130,8 +128,7 @@ def _same_gain(a: Channel, b: Channel) -> bool:
 
 
 def _same_direction(a: Channel, b: Channel) -> bool:
-    """Return whether dip and azimuth agree, each within 1°; True if one channel has no dip, and whatever the azimuths if one is
-    missing or the channels are upright."""
+    """Return whether dip and azimuth agree within 1°; unknown ones agree, and azimuths of upright channels do not count."""
     if a.dip is None or b.dip is None:
         return True
     if abs(a.dip - b.dip) > _SAME_DIP:
@@ -192,8 +189,7 @@ class _Reader:
         self.gains: list[float | None] = []
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
-        """Enter an element, and keep the attributes of networks, stations and channels. Raises ``_NoStationXML`` for another
-        root."""
+        """Enter an element; keep attributes of networks, stations and channels. Raises ``_NoStationXML`` for another root."""
         name = tag.rpartition("}")[2]
         if (not self.above and name != _ROOT) or len(self.above) > _DEEPEST:
             raise _NoStationXML

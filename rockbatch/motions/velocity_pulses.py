@@ -73,8 +73,7 @@ def _largest(v: Samples, dt: float) -> tuple[float, int]:
 
 
 def _wavelet_sum(v: Samples, scale: float, place: int) -> Array:
-    """Return the pulse, shape (npts,): the sum of ten wavelets of one scale, each the largest of the remainder near the index
-    ``place``."""
+    """Return the pulse, shape (npts,): ten wavelets of one scale, each the largest of the remainder near index ``place``."""
     near = math.ceil(_NEAR * scale)
     window = slice(max(place - near, 0), place + near + 1)
     wavelet = _wavelet(scale)

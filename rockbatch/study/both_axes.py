@@ -67,8 +67,7 @@ def _obstacles(case: Case, motions: MotionSpec, names: Container[object]) -> Ite
 
 
 def _case_across(table: Table, case: Case) -> list[Case]:
-    """Return the case across the axis of ``case`` as a list of one; [] if its pier is impossible, with the problem added to
-    ``table``."""
+    """Return the case across the axis of ``case`` in a list; [] if its pier is impossible, and a problem is added."""
     width = float(case.columns[KEY])
     pier_table = table.file.table("pier")
     confirmed = {name.replace(KEY, "width_m") for name in table.confirmed}
@@ -104,8 +103,10 @@ def across(pier: Pier, base: Base, other: Pier) -> Base:
 
 
 def _in_the_middle(pier: Pier, device: Restraint, other: Pier) -> Restraint:
-    """Return a device of ``pier`` in the middle of the base of ``other``; its stiffness and damping coefficient stay, so that λ,
-    brace and ν, which are ratios to sizes of the pier, change."""
+    """Return a device of ``pier`` in the middle of the base of ``other``, with its stiffness and damping coefficient.
+
+    λ, brace and ν, which are ratios to sizes of the pier, change for that.
+    """
     levers = (other.half_width / pier.half_width) ** 2 * pier.size / other.size
     times = {"lam": levers, "brace": levers, "nu": pier.p / other.p}
     changes: dict[str, Any] = {name: getattr(device, name) * by for name, by in times.items() if hasattr(device, name)}

@@ -93,10 +93,10 @@ def read_bounds(file: TomlFile) -> list[DesignBound]:
 
 
 def _flat(data: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the keys and values of a [[bound]], those of tables within pier and case by their paths, as TOML reads a path without
-    quotes: {"case": {"eta": 2}} gives ("case.eta", 2).
+    """Yield keys and values of a [[bound]]: {"case": {"eta": 2}} gives ("case.eta", 2), as TOML reads paths without quotes.
 
-    A table at the path of a known key, such as { times = 1.2 }, is a value, as is an empty table.
+    Tables within pier and case are walked so; one at the path of a known key, such as { times = 1.2 }, is a value, as is an empty
+    one.
     """
     for name, value in data.items():
         path = prefix + name
@@ -112,8 +112,7 @@ def key_at(path: str) -> Key | None:
 
 
 def why_fixed(path: str, example: str) -> str:
-    """Return why a bound or a design cannot change the key at ``path``: it is unknown, or another value of it makes another
-    design; "" if it can be changed.
+    """Return why a bound or a design cannot change the key at ``path``, unknown or of another design; "" if it can.
 
     ``example`` is a path to write instead.
     """

@@ -234,8 +234,7 @@ def _read_case(table: Table) -> _WrittenCase:
 
 
 def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: Base) -> None:
-    """Add a problem of pier and base to the table, at its key, or at K or F_y, from which β or η follows, with the value
-    needed."""
+    """Add a problem of pier and base to the table, at its key, or at K or F_y, from which β or η follows, with what is needed."""
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(problem.key, "")
     mass = pier.mass_t
     if source in chosen and mass is not None:
@@ -257,16 +256,14 @@ def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: 
 
 
 def _other_unit(name: str, value: float, needed: float, gravity: float) -> str:
-    """Return what to write if ``value`` is in another unit, in which it would exceed ``needed``: a force or stiffness in MN, or
-    in kN with a weight for the mass; "" if neither would."""
+    """Return "if it is in MN, write …; else ", or of a weight in place of the mass, if ``value`` were enough then; else ""."""
     if value * gravity > needed:
         return f"if a mass is a weight in kN, write it over {gravity:g}; else "
     return f"if it is in MN, write {name} = {1000.0 * value:g}; else " if 1000.0 * value > needed else ""
 
 
 def _complain_unless_usual(table: Table, chosen: Chosen, pier: Pier) -> None:
-    """Add to the table that a mass, stiffness, yield force or area of a support is unusual under this pier, unless it is
-    confirmed."""
+    """Add to the table an unusual mass, stiffness, yield force or area of a support of this pier, unless it is confirmed."""
     if "mass_t" in chosen:
         for problem in unlikely_mass(pier, table.confirmed):
             table.complain_about(chosen["mass_t"], in_table(problem))

@@ -39,8 +39,10 @@ class Change:
         return f"{self.path} = {f'{self.value:.10g}' if isinstance(self.value, float) else shown(self.value)}"
 
     def among(self, names: Iterable[str]) -> list[str]:
-        """Return those of ``names`` that are values of its key: of "case.damper.f" "damper_1_f" and "damper_2_f", of
-        "case.damper_2.f" the second alone; [] if none is."""
+        """Return those of ``names`` that are values of its key: "damper_1_f" and "damper_2_f" of "case.damper.f"; [] if none.
+
+        Of "case.damper_2.f" it is "damper_2_f" alone.
+        """
         _, *table, name = self.path.split(".")
         pattern = re.escape(name)
         if table:
@@ -130,8 +132,7 @@ def parted(table: str) -> tuple[str, str]:
 def placed(
     file: TomlFile, bounds: Sequence[DesignBound], of_pier: Sequence[str], cases: Mapping[str, Sequence[str]]
 ) -> tuple[DesignBound, ...]:
-    """Return the bounds, each with its cases that lack some of its keys as ``lacking``; a key that [pier] lacks, or every case,
-    becomes a problem of ``file`` and is in no ``lacking``.
+    """Return the bounds with their ``lacking`` cases; keys that [pier], or every case, lacks become problems of ``file`` instead.
 
     ``of_pier`` are the names of the chosen values of the pier, and ``cases`` those of each case.
     """
@@ -151,8 +152,7 @@ def placed(
 
 
 def _why_none(change: Change, having: Iterable[Iterable[str]]) -> str:
-    """Return the message about a change of a key that [pier], or every case, lacks; ``having`` are the names of the keys that are
-    given."""
+    """Return the message on a change of a key that [pier], or every case, lacks; ``having`` are the names of the given keys."""
     where = "[pier]" if change.of_pier else "a [[case]]"
     state = f"{where} has no such key" if change.of_pier else "no case has this key"
     if change.times is not None:

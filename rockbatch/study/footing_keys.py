@@ -89,8 +89,7 @@ def on_foot(pier: Pier, width_m: float) -> Pier:
 
 
 def at_pivots(devices: tuple[Restraint, ...], pier: Pier) -> tuple[Restraint, ...]:
-    """Return ``devices`` with those at pivots of ``pier`` at offsets [m] from the middle, so that a wider foot leaves them in
-    place.
+    """Return ``devices``, those at pivots of ``pier`` at offsets [m] from the middle, so that a wider foot leaves them in place.
 
     One that stands at both pivots becomes two.
     """
@@ -107,8 +106,7 @@ def at_pivots(devices: tuple[Restraint, ...], pier: Pier) -> tuple[Restraint, ..
 def footing_of(
     values: Mapping[str, Any], pier: Pier, devices: tuple[Restraint, ...]
 ) -> tuple[FootingBase, list[Problem]]:
-    """Return the base of a case on a footing, and its problems; if there are any, an elastic base in its place lets other keys be
-    checked.
+    """Return the base of a case on a footing, and its problems; with problems, an elastic base lets other keys be checked.
 
     ``pier`` is that on the foot.
     """
@@ -131,8 +129,7 @@ def footing_of(
 
 
 def _ill_combined(values: Mapping[str, Any]) -> list[Problem]:
-    """Return a problem for each key whose required companion is missing, and for bearing_MPa beside safety_factor, which fix the
-    same; [] if all is well."""
+    """Return a problem for each key whose required companion is missing, and for strength given in two ways; [] for none."""
     wrong = [
         Problem(key, values[key], f"{other} is missing beside it", kind=MissingKey)
         for key, others in _BESIDE.items()
@@ -146,8 +143,7 @@ def _ill_combined(values: Mapping[str, Any]) -> list[Problem]:
 
 
 def _footing_base(values: Mapping[str, Any], pier: Pier, fields: dict[str, Any]) -> FootingBase:
-    """Return the footing from β, from the stiffness of its bed, or from soil, whichever ``values`` has. Raises ``InputError`` for
-    impossible values."""
+    """Return the footing by β, the stiffness of its bed, or soil, whichever is given. Raises ``InputError`` if impossible."""
     if "beta" in values:
         return FootingBase(**fields)
     fields |= {"bearing_MPa": values.get("bearing_MPa")}

@@ -87,8 +87,10 @@ _RANGES: dict[str, tuple[Mapping[str, Key], dict[str, str]]] = {
 
 
 def ranges(of: str = "", kind: Kind | None = None) -> dict[str, Key]:
-    """Return the keys of a pier and its case, or ``of`` a device such as "damper", that an analysis may vary, each as a pair of
-    ends; their values are of the ``kind`` given, or of that of the study."""
+    """Return the keys of a case, or ``of`` a device such as "damper", that analyses may vary, each as a pair of ends.
+
+    Their values are of the ``kind`` given, or of that of the study.
+    """
     keys, examples = _RANGES[of]
     return {
         name: Key(kind or keys[name].kind, example, keys[name].words, pair=True) for name, example in examples.items()
@@ -111,8 +113,10 @@ def varied(case: Case, values: KeyValues) -> Case:
 
 
 def values_of(case: Case) -> KeyValues:
-    """Return the values of all quantities that a case may vary, by their keys, those in kN if the mass is known; without ε where
-    it does not apply and ζ if not given."""
+    """Return the values of all quantities of a case that may vary, by key, without ε where it does not apply and ζ if not given.
+
+    Those in kN are among them if the mass is known.
+    """
     pier = {name: getattr(case.pier, name) for name in OF_PIER}
     base = {field.name: getattr(case.base, field.name) for field in fields(case.base)}
     if base.get("zeta") is None:
@@ -135,8 +139,7 @@ def impossible(case: Case, values: KeyValues) -> list[tuple[str, str]]:
 
 
 def outside(name: str, ends: Sequence[float], value: float | None, case: Case) -> str:
-    """Return a message, with the range widened, if the ``value`` of the case is outside the range ``ends``; "" if it is within or
-    None."""
+    """Return a message with a wider range if the ``value`` of the case is outside the range ``ends``; "" if within, or None."""
     low, high = ends
     if value is None or low <= value <= high:
         return ""

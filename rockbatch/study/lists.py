@@ -25,10 +25,9 @@ class Grid:
 
     @classmethod
     def of(cls, table: Table, keys: Mapping[str, Key], prefix: str = "", other: Iterable[str] = ()) -> "Grid":
-        """Return the values of a table's keys, called "part_1_mass_t" with the ``prefix`` "part_1_"; ``other`` keys are read
-        elsewhere.
+        """Return the values of a table's keys, called "part_1_mass_t" with the ``prefix`` "part_1_".
 
-        Wrong ones become problems of the table's file and are left out.
+        ``other`` keys are read elsewhere. Wrong values become problems of the table's file and are left out.
         """
         settings = {}
         for name, value in table.read(keys, other=other, places=True).items():

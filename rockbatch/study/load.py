@@ -212,8 +212,7 @@ class Study(Shown):
     def from_dict(
         cls, tables: Mapping[str, object], path: str | os.PathLike[str] = "study.toml", *, motions: Motions = None
     ) -> "Study":
-        """Return the study of the tables and keys of a study file, such as ``{"pier": {"alpha": 0.13, "p": 0.38}, "case": […]}``,
-        checked.
+        """Return the study of the tables and keys of a file, ``{"pier": {"alpha": 0.13, "p": 0.38}, "case": […]}``, checked.
 
         Mistakes are raised as those of a file, by table and key. ``path`` and ``motions`` as for :meth:`from_toml`.
         """
@@ -248,8 +247,7 @@ class Study(Shown):
 
     @property
     def in_file(self) -> bool:
-        """Return whether the file at ``path`` holds this study as it is, so that a command can read it again; False if it cannot
-        be read."""
+        """Return whether the file at ``path`` holds this study as it is, and can be read again by a command."""
         try:
             return TomlFile.text_of(self.path) == self.text
         except InputError:
@@ -260,8 +258,7 @@ class Study(Shown):
         return TomlFile.parse(self.path, self.text, SECTIONS, lined=self.lined)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
-        """Return the heading and, by name, the facts that :class:`Shown` prints: pier, motions, cases, varied, checks,
-        numerics."""
+        """Return the title and, by name, the facts that :class:`Shown` prints: pier, motions, cases, varied, checks, numerics."""
         piers = {f"alpha {case.pier.alpha:.4g} rad, R0 {case.pier.size:.4g} m" for case in self.cases}
         names = Counter(case.name for case in self.cases)
         spec, step = self.motions, self.numerics
@@ -390,8 +387,7 @@ def _as_in_run_json(case: Case) -> dict[str, object]:
 
 
 def _heights(cases: Sequence[Case], output: Output) -> dict[str, set[float]]:
-    """Return the heights [m] of sections that rules may be about, by the name of what their demand needs, for the piers of
-    ``cases``."""
+    """Return the heights [m] of sections that rules may be about, by what their demands need, for the piers of ``cases``."""
     piers = {case.pier for case in cases}
     return {needs: heights(output.of(kind), piers) for needs, kind, heights in parts("study.HEIGHTS")}
 
@@ -416,8 +412,7 @@ def _device_kinds(cases: Sequence[Case]) -> set[str]:
 
 
 def _references(file: TomlFile, cases: Sequence[Case], varied: Iterable[str]) -> tuple[Reference, ...]:
-    """Return the references that have all required keys; values of ``varied`` keys that no case of the name has become problems
-    of ``file``."""
+    """Return the references that have all required keys; values of ``varied`` keys that no such case has become problems."""
     named = [table.data.get("name", table.data.get("base")) for table in file.tables("case", title="name")]
     names = choice(*dict.fromkeys(name for name in named if isinstance(name, str)))
     of_parts = {name: Key(not_negative, "0.0") for name in varied if name not in (*REFERENCE, BOUND)}

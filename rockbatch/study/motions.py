@@ -367,8 +367,7 @@ def _read_motions(table: Table) -> KeyValues:
 
 
 def _source_path(table: Table, n: int, written: str) -> Path:
-    """Return the ``n``-th path of [motions], from the folder of the study; one that does not exist becomes a problem of the
-    table."""
+    """Return the ``n``-th path of [motions], from the folder of the study; a missing one becomes a problem of the table."""
     try:
         path = table.file.path.parent / Path(written).expanduser()
     except RuntimeError:
@@ -416,8 +415,7 @@ def _read_fema_components(file: TomlFile) -> tuple[FemaSpec, ...]:
 
 
 def _read_pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
-    """Return each [[motions.pulse]] that has every required key; impossible values and repeated names become problems of
-    ``file``."""
+    """Return each [[motions.pulse]] with all required keys; impossible values and repeated names become problems of ``file``."""
     pulses: list[PulseSpec] = []
     names: set[str] = set()
     for table in file.tables("motions", "pulse", title="name"):
@@ -432,8 +430,7 @@ def _read_pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
 
 
 def _check_pulse(table: Table, spec: PulseSpec) -> None:
-    """Add to ``table`` what is impossible about a pulse, at the key of its problem, or else unusual values that are not
-    confirmed."""
+    """Add impossible values of a pulse to the table, at the key of their problem, or else unusual ones that are not confirmed."""
     try:
         spec.motion(GRAVITY)
     except InputError as error:

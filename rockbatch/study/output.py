@@ -55,8 +55,7 @@ class Output:
         return bool(self.keys.get(key))
 
     def also(self, keys: Collection[str]) -> "Output":
-        """Return the output with those of ``keys`` that are yes or no switched on, too; other and unknown ``keys`` change
-        nothing."""
+        """Return the output with those of ``keys`` that are yes or no switched on, too; other ``keys`` change nothing."""
         known = self.keys
         return self.with_keys(**known | {key: True for key in keys if known.get(key) is False})
 

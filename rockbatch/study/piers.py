@@ -379,8 +379,7 @@ def _under_bounds(
 
 
 def _pier_of(table: Table, chosen: Chosen, parts: int) -> tuple[Pier, Values] | None:
-    """Return the pier of one choice of values and its values by key; None for an impossible one, with its problems added to
-    ``table``."""
+    """Return the pier of one choice of values, and its values by key; None if impossible, with problems added to the table."""
     values = {name: setting.value for name, setting in chosen.items()}
     try:
         pier = _pier(values, parts, table.confirmed)

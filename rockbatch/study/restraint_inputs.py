@@ -70,8 +70,7 @@ def values_of_devices(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, 
 
 
 def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str, float]) -> tuple[Restraint, ...]:
-    """Return the devices with ``values`` by names that :func:`parameters` has, in the units of their keys; ``pier`` converts
-    those in kN."""
+    """Return the devices with ``values`` by names of :func:`parameters`, in the units of their keys; ``pier`` converts kN."""
     places, changed = parameters(pier, restraints), list(restraints)
     for name, value in values.items():
         place, field, divisor = places[name]
@@ -81,8 +80,7 @@ def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str
 
 
 def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
-    """Return a message for each input of devices that is ambiguous in this case, by name, with what to write instead; {} for
-    none."""
+    """Return a message with what to write instead for each input of devices that is ambiguous in this case, by name."""
     numbers = numbered(case.pier, case.base.restraints)
     problems: dict[str, str] = {}
     fixed: dict[tuple[int, str], str] = {}

@@ -268,8 +268,10 @@ class Device:
         return {key.removeprefix(prefix): setting for key, setting in chosen.items() if key.startswith(prefix)}
 
     def made(self, pier: Pier, chosen: Chosen, *, judged: bool) -> Restraint | None:
-        """Return the device with the chosen values; None if impossible. Impossible values become problems of its table, as do
-        unusual ones if ``judged``."""
+        """Return the device with the chosen values; None if impossible.
+
+        Impossible values become problems of its table, as do unusual ones if ``judged``.
+        """
         values = {key: setting.value for key, setting in self.values(chosen).items()}
         arguments: KeyValues = {name: values[name] for name in ("kind", "at", "side", "height_m") if name in values}
         arguments |= {field: values[key] / unit for key, (field, unit) in fields_of(pier).items() if key in values}
@@ -354,8 +356,7 @@ _NEEDED = {
 
 
 def _check_given(table: Table, kind: str) -> None:
-    """Add to ``table`` the problem of a damper without force or coefficient, a tendon without prestress and stiffness, another
-    device without stiffness, or a hysteretic damper without yield_mm."""
+    """Add to the table that a device lacks its force, coefficient, prestress or stiffness, or a hysteretic one yield_mm."""
     first, second, *_ = _NEEDED[kind]
     if not any(map(table.has, _NEEDED[kind])):
         example = f"write for example {first} = {DEVICES.get(kind, DAMPER)[first].example}, or"

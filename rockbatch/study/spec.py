@@ -94,8 +94,7 @@ class MotionSpec:
 
     @property
     def simulated(self) -> str:
-        """Return the polarity that is simulated, "+" if both are asked for; the other is its mirror image, as the pier is
-        symmetric."""
+        """Return the polarity that is simulated, "+" if both are asked for, since "-" is its mirror image of a symmetric pier."""
         return "+" if "+" in self.polarity else "-"
 
 

@@ -55,8 +55,7 @@ _UNFIT_FOR_SPECTRUM = dict.fromkeys(
 
 
 def read_target(table: Table, vertical: bool = False) -> Target | SpectrumTarget | None:
-    """Return what records, or their ``vertical`` components, are scaled to; None if the table has a mistake, which becomes a
-    problem."""
+    """Return what records, or their ``vertical`` components, are scaled to; None for a mistake, which becomes a problem."""
     if any(TARGET.known_as(name, ("spectrum",)) for name in table.data):
         return _read_spectrum(table, vertical)
     return _read_measure(table, vertical)
@@ -115,8 +114,7 @@ def _read_spectrum(table: Table, vertical: bool) -> SpectrumTarget | None:
 
 
 def _code_name(value: object) -> str:
-    """Return the name in :data:`CODES` that ``value`` is but for capitals and blanks, "EN 1998-1" for "en1998-1"; "" for a file
-    or pairs."""
+    """Return the name in :data:`CODES` that ``value`` is but for capitals and blanks; "" for a file, pairs or other values."""
     if not isinstance(value, str):
         return ""
     plain = {name.replace(" ", "").lower(): name for name in CODES}
@@ -124,8 +122,7 @@ def _code_name(value: object) -> str:
 
 
 def _spectrum(table: Table, code: str, read: KeyValues) -> Spectrum | None:
-    """Return the spectrum of ``code``, or of a file or pairs if that is ""; None with a problem added to ``table`` for a
-    mistake."""
+    """Return the spectrum of ``code``, or of a file or pairs if that is ""; None for a mistake, which becomes a problem."""
     damping, linear = read.get("damping", 0.05), read.get("interpolation") == "linear"
     if code and "interpolation" in read:
         table.complain(f"interpolation: is for tables, and {code} is none; leave it out", "interpolation")
@@ -168,8 +165,7 @@ def _spectrum_of_file(table: Table, written: str, damping: float, linear: bool) 
 
 
 def _eurocode_spectrum(table: Table, read: KeyValues, damping: float) -> EurocodeSpectrum | None:
-    """Return the horizontal spectrum of EN 1998-1; None without a_g, or type and ground where needed, or with periods that do not
-    grow.
+    """Return the horizontal spectrum of EN 1998-1; None if a needed key is missing, or periods do not grow.
 
     Type and ground are needed unless S, T_B, T_C and T_D are all given, which take the place of theirs.
     """

@@ -40,8 +40,7 @@ class Terminal(Listener):
 
     @contextmanager
     def progress(self, total: int) -> Iterator[Advance]:
-        """Context manager: yield a function that takes numbers of finished runs, and shows a bar with the time remaining in a
-        terminal, plain lines elsewhere."""
+        """Context manager: yield a function that takes numbers of finished runs, and shows a bar, or lines outside a terminal."""
         stream = sys.stderr or io.StringIO()
         # A pseudo-terminal may have size 0
         if not (stream.isatty() and min(os.get_terminal_size(stream.fileno())) > 0):
@@ -66,8 +65,7 @@ def _repeated(motions: MotionSet) -> list[tuple[str, str]]:
 
 
 def _lines(total: int, stream: TextIO) -> Advance:
-    """Return a function that takes numbers of finished runs, and prints their sum and the time remaining [s], at most every
-    :data:`SECONDS_BETWEEN_LINES`."""
+    """Return a function that takes numbers of finished runs, and every 2 s at most prints their sum and the time left [s]."""
     started = printed = time.monotonic()
     done = 0
 

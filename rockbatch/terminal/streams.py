@@ -43,8 +43,10 @@ def show(text: str) -> None:
 
 
 def tell(stream: TextIO | None, text: str) -> None:
-    """Print ``text`` to a stream, with escapes for characters it cannot encode; give the stream up if it fails. A stream that is
-    None or given up gets nothing."""
+    """Print ``text`` to a stream, with escapes for characters it cannot encode; give the stream up if it fails.
+
+    A stream that is None, or was given up, gets nothing.
+    """
     if stream is None or stream in _lost:
         return
     terminal = stream.isatty()
@@ -81,8 +83,7 @@ def shown(text: str, instead: str) -> str:
 
 
 def coloured(text: str, colour: str | None) -> str:
-    """Return ``text`` in an ANSI ``colour`` such as "31"; as it is for None, if stdout is no terminal, or if NO_COLOR or
-    TERM=dumb is set."""
+    """Return ``text`` in an ANSI ``colour`` such as "31"; plain for None, NO_COLOR, TERM=dumb, or if stdout is no terminal."""
     plain = "NO_COLOR" in os.environ or os.environ.get("TERM") == "dumb" or not sys.stdout.isatty()
     return text if plain or colour is None else f"\x1b[{colour}m{text}\x1b[0m"
 

@@ -76,8 +76,7 @@ def _names(path: Path, number: int, names: Sequence[str], known: Collection[str]
 
 
 def _value(cell: str, kind: Kind, delimiter: str, gaps: bool) -> object:
-    """Return the value of a cell; an empty cell, or "nan", is NaN with ``gaps``. Raises :class:`KindError` for one that is not of
-    the ``kind``."""
+    """Return the value of a cell, with ``gaps`` NaN for an empty one. Raises :class:`KindError` for one of another ``kind``."""
     if gaps and cell.lower() in ("", "nan"):
         return math.nan
     if isinstance(kind, Text):

@@ -31,8 +31,10 @@ class KindError(ValueError):
         self.meant, self.whole = meant, whole
 
     def advice(self) -> str:
-        """Return "did you mean 0.5? expected a number", the second sentence only if short; without a meant value "expected …"; a
-        ``whole`` message as it is."""
+        """Return "did you mean 0.5?", then "expected …" if that is short; without a meant value "expected …" alone.
+
+        A ``whole`` message is returned as it is.
+        """
         if not self.meant or self.whole:
             return str(self) if self.whole else f"expected {self}"
         return f"did you mean {self.meant}?" + (f" expected {self}" if len(str(self)) < _SHORT else "")
@@ -169,8 +171,7 @@ class Choice:
         raise KindError(words, " or ".join(map(shown, self._meant(value))))
 
     def _meant(self, value: object) -> list[object]:
-        """Return the options that a misspelt word, or a number in quotes, may stand for; [] if none is similar, or for a value
-        that is not text."""
+        """Return the options that a misspelt word, or a number in quotes, may stand for; [] for none, and for other values."""
         if same := [option for option in self.options if not isinstance(option, str) and str(option) == value]:
             return same
         words = [option for option in self.options if isinstance(option, str)]
@@ -222,8 +223,7 @@ def choice(*options: str, called: Mapping[str, object] | None = None) -> Choice:
 
 
 def within(bounds: Bounds) -> Number:
-    """Return the kind of a number within ``bounds``, such as a positive one if these exclude 0, whose first message is about the
-    sign."""
+    """Return the kind of a number within ``bounds``; if these exclude 0, the first message is about the sign."""
     return replace(positive, bounds=bounds) if bounds.low > 0 or bounds.above else Number(bounds=bounds)
 
 

@@ -64,8 +64,7 @@ class TomlFile:
 
     @classmethod
     def read(cls, path: Path, sections: Sequence[Section] = ()) -> "TomlFile":
-        """Return a file, read and parsed. Raises :class:`InputError` if it cannot be read, or with the line at which it is no
-        TOML."""
+        """Return a file, read and parsed. Raises :class:`InputError` if it cannot be read, with the line if it is no TOML."""
         text = cls.text_of(path, sections)
         return cls.parse(path, text, sections)
 
@@ -90,8 +89,7 @@ class TomlFile:
 
     @classmethod
     def parse(cls, path: Path, text: str, sections: Sequence[Section] = (), *, lined: bool = True) -> "TomlFile":
-        """Return the file of a text, which need not be on the disk any more. Raises :class:`InputError` with the line at which it
-        is no TOML.
+        """Return the file of a text, which need not be on the disk. Raises :class:`InputError` with the line that is no TOML.
 
         A text that is not ``lined`` was not written by its user: messages do not give its lines.
         """
@@ -108,8 +106,7 @@ class TomlFile:
             raise BadSyntax(syntax_error(path, text, str(error))) from None
 
     def complain(self, key_path: KeyPath, message: str | Problem, label: str = "") -> None:
-        """Add a mistake about the value at ``key_path`` to the problems, once; a missing value has the line where its table
-        starts.
+        """Add a mistake about the value at ``key_path`` to the problems, once; a missing value has the line of its table.
 
         ``label`` names the table. A ``message`` that is a problem keeps its kind. A full file takes no more.
         """
@@ -167,8 +164,10 @@ class TomlFile:
         return self.value(key_path) is not None or key_path in self.misspelt
 
     def tables(self, *key_path: str | int, title: str) -> list["Table"]:
-        """Return the tables ``[[key_path]]``, [] if missing; another value becomes a problem. The key ``title`` of each names it
-        in messages."""
+        """Return the tables ``[[key_path]]``, [] if missing, or with a problem for another value.
+
+        The key ``title`` of each names it in messages.
+        """
         name = ".".join(part for part in key_path if isinstance(part, str))
         value = self.value(key_path)
         if value is None:
@@ -212,8 +211,7 @@ class Table:
 
     @contextmanager
     def noting(self, *key: str | int) -> Iterator[None]:
-        """Context manager: add the problems of an ``InputError`` in the block, as mistakes about a key, to those of the file, and
-        go on after it."""
+        """Context manager: turn an ``InputError`` in the block into mistakes about a key, added to the file's problems."""
         try:
             yield
         except InputError as error:
@@ -275,8 +273,7 @@ class Table:
         return read
 
     def requires(self, keys: Mapping[str, Key], name: str) -> bool:
-        """Return whether a key has to be written, given the values of the keys on which it depends; False if one of these is not
-        written."""
+        """Return whether a key has to be written, given the keys on which it depends; False if one of these is not written."""
         return keys[name].required and all(self.data.get(other) in values for other, values in keys[name].only.items())
 
     def _check_missing(self, keys: Mapping[str, Key]) -> None:
@@ -294,8 +291,7 @@ class Table:
                 self.complain(_problem(Contradiction, f"{named}{clash.message}"), clash.at or first)
 
     def _not_applying(self, keys: Mapping[str, Key], name: str) -> str:
-        """Return why the key ``name`` does not apply beside the values of the keys on which it depends; "" if it does, or these
-        are not known."""
+        """Return why the key ``name`` does not apply beside the values of other keys; "" if it does, or these are not known."""
         for other, values in keys[name].only.items():
             instead = " or ".join(f"{other} = {shown(value)}" for value in values)
             if other not in self.data:
@@ -312,8 +308,7 @@ class Table:
         return ""
 
     def _note_doubts(self, keys: Mapping[str, Key], usable: dict[str, list[Setting]]) -> None:
-        """Add to the problems the confirmed keys that the table lacks, and unusual values that are not confirmed; take
-        ``confirm`` out of ``usable``."""
+        """Add problems of confirmed keys that the table lacks, and of unusual values; take ``confirm`` out of ``usable``."""
         if keys.get("confirm") is CONFIRM["confirm"]:
             present = [shown(name) for name in self.data if name in keys and name != "confirm"]
             for setting in usable.pop("confirm", ()):
@@ -327,8 +322,7 @@ class Table:
                     self.complain_about(setting, in_table(problem))
 
     def _usable(self, name: str, key: Key, value: object) -> list[Setting]:
-        """Return the usable values of a key with their places, of a range both ends or none; the others become problems, as do
-        repeated ones."""
+        """Return the usable values of a key with their places, of a range both ends or none; others become problems."""
         whole = Setting(value, (*self.key_path, name))
         items = [whole]
         if isinstance(value, list):
@@ -391,8 +385,7 @@ class Table:
         self.complain(_problem(UnknownKey, f"{written}: {complaint}; {self._instead(name, keys, other)}"), name)
 
     def _instead(self, name: str, keys: Mapping[str, Key], other: Iterable[str]) -> str:
-        """Return what to write instead of an unknown key: another of this table first, then the table where it belongs, else all
-        keys.
+        """Return what to write instead of an unknown key: another of this table, the table where it belongs, or all keys.
 
         A key that is probably meant counts as misspelt from then on, so that it is not reported as missing.
         """
@@ -442,8 +435,7 @@ def _unreadable(path: Path, error: OSError, sections: Sequence[Section]) -> Inpu
 
 
 def _has_required(file: Path, sections: Sequence[Section]) -> bool:
-    """Return whether a file has a header of each table that is required: a file of rules is no study. False if it cannot be
-    read."""
+    """Return whether a file has a header of each table that is required, as no file of rules has; False if it cannot be read."""
     try:
         text = file.read_text(encoding="utf-8", errors="replace")
     except OSError:
@@ -453,8 +445,7 @@ def _has_required(file: Path, sections: Sequence[Section]) -> bool:
 
 
 def with_slashes(written: str) -> str:
-    r"""Return a path with slashes in place of backslashes, and of the characters that TOML made of these: "C:\new" in a study is
-    read with a line break."""
+    r"""Return a path with slashes for backslashes, and for characters that TOML made of these, as a line break of "C:\new"."""
     return written.translate(_SLASHED)
 
 

@@ -148,10 +148,9 @@ class Section(Mapping[str, Key]):
         return known_as(name, names, self.also, self.at[-1] if self.at else "")
 
     def advice(self, name: str) -> tuple[str, str]:
-        """Return the key to write in place of an unknown name, and the advice: ("mass_t", "write mass_t, the weight in kN over
-        9.81") for weight_kN.
+        """Return the key to write in place of an unknown name, and the advice, each "" if there is none.
 
-        The key is "" if the advice is about none; both are "" if no advice is known.
+        weight_kN gives ("mass_t", "write mass_t, the weight in kN over 9.81").
         """
         advice = next(filter(None, map(self.instead.get, without_unit(name))), "")
         return ("", advice) if isinstance(advice, str) else (advice[0], f"write {advice[0]}, {advice[1]}")
@@ -166,8 +165,7 @@ class Section(Mapping[str, Key]):
 
 
 def joined(section: Section, *more: Section) -> Section:
-    """Return ``section`` with the keys of the others, and their homes, other names of keys and clashes; texts and pattern are its
-    own."""
+    """Return ``section`` with the keys, homes, other names and clashes of all sections; its texts and pattern stay its own."""
     sections = (section, *more)
     return replace(
         section,
@@ -208,8 +206,7 @@ _GENERAL = {
 
 
 def home(sections: Iterable[Section], name: str, place: tuple[str, ...]) -> str:
-    """Return the headers of tables, but that at ``place``, with a key of this name: "[pier] or [[case]]"; "" for none, or a
-    general name."""
+    """Return the headers of tables, but that at ``place``, with a key ``name``: "[pier] or [[case]]"; "" for a general name."""
     others = (section for section in sections if section.at and section.at != place)
     headers = dict.fromkeys(section.header for section in others if name in section and not section.free)
     return "" if name in _GENERAL else " or ".join(headers)

@@ -71,8 +71,7 @@ def _is_toml(text: str) -> bool:
 
 
 def _backslashes(value: str) -> str:
-    """Return ``value`` with slashes for backslashes: every system reads such paths, and TOML takes backslashes for other
-    characters."""
+    """Return ``value`` with slashes for backslashes: every system reads these, and TOML takes backslashes for characters."""
     return value.replace("\\", "/")
 
 
@@ -102,8 +101,7 @@ def _number(value: str) -> str:
 
 
 def _without_unit(key: str, value: str) -> str:
-    """Return a number without its unit, if that is the one in which its key ends: "4.0" for "4.0 m" of width_m; all else as it
-    is."""
+    """Return a number without the unit in which its key ends, "4.0" for "4.0 m" of width_m; all else as it is."""
     number, _, unit = value.rpartition(" ")
     same = unit and key.lower().endswith("_" + re.sub(r"[ /·*^]", "_", unit).replace("²", "2").lower())
     return _number(number.strip()) if same else value

@@ -155,8 +155,7 @@ class AnalysisFolder:
         cases: Sequence[Case],
         row: RowOf,
     ) -> None:
-        """Carry out ``runs`` and write the ``row`` of each into ``file``, unless it holds them; kernels for ``cases`` are
-        compiled before."""
+        """Carry out ``runs`` and write the ``row`` of each into ``file``, unless it has them; kernels are those of ``cases``."""
         if self.has(file, digest):
             self.keep(file, digest)
             return
@@ -168,8 +167,7 @@ class AnalysisFolder:
             self.keep(file, digest)
 
     def has(self, file: str, digest: Mapping[str, str]) -> bool:
-        """Return whether ``file`` already holds the runs with ``digest``; False with ``fresh``. Raises ``InputError`` if it holds
-        them and was edited."""
+        """Return whether ``file`` has the runs with ``digest``; False with ``fresh``. ``InputError`` if it has and was edited."""
         path, earlier = self.directory / file, self._earlier.get(file)
         if not (isinstance(earlier, dict) and earlier.get("runs") == digest and is_plain(path)):
             return False
@@ -183,8 +181,7 @@ class AnalysisFolder:
     def journal(
         self, file: str, columns: Sequence[str], digest: Mapping[str, str], beside: Sequence[str] = ()
     ) -> Iterator[Journal]:
-        """Context manager: yield the journal of the runs in ``file``; announce the finished runs in it, at the start and after
-        Ctrl-C.
+        """Context manager: yield the journal of the runs in ``file``; announce its finished runs, at the start and after Ctrl-C.
 
         ``beside`` are names of further cells of its rows, as :class:`Journal` takes them.
         """
@@ -201,8 +198,7 @@ class AnalysisFolder:
                 raise
 
     def keep(self, file: str, digest: Mapping[str, str] | None = None) -> None:
-        """List ``file`` in NAME.json as finished, with the digests of its contents and of its runs, those known before if
-        None."""
+        """List ``file`` in NAME.json as finished, with the digests of its contents and of its runs, if None as before."""
         self.info["files"].append(file)
         noted = self.info["digests"].get(file, {}) if digest is None else {"runs": dict(digest)}
         self.info["digests"] = self.info["digests"] | {file: noted | {"sha256": sha256_of(self.directory / file)}}

@@ -239,8 +239,7 @@ def _verdicts(saved: Saved, study: Study) -> list[Verdict]:
 
 
 def _ranges(numbers: Sequence[int], most: int = 5) -> str:
-    """Return rising indices, one or more, as ranges of numbers from 1: "1 to 12, 17"; of more than ``most`` ranges the first,
-    then "…"."""
+    """Return rising indices, one or more, as ranges from 1: "1 to 12, 17"; of more than ``most`` the first, then "…"."""
     starts = [i for i, number in enumerate(numbers) if i == 0 or number != numbers[i - 1] + 1]
     ends = [i - 1 for i in starts[1:]] + [len(numbers) - 1]
     ranges = []

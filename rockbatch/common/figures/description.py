@@ -141,8 +141,7 @@ class Axis:
     numbered: bool = True
 
     def fraction(self, values: float | Array) -> Array:
-        """Return places along the axis: 0 at ``low``, 1 at ``high``, less or more outside; NaN or infinite on a ``log`` axis for
-        values not above 0."""
+        """Return places along the axis: 0 at ``low``, 1 at ``high``, beyond outside; on a ``log`` axis NaN or −inf up to 0."""
         values = np.asarray(values, dtype=np.float64)
         if self.log:
             return np.log(values / self.low) / math.log(self.high / self.low)
@@ -203,8 +202,7 @@ def log_spanning(label: str, *arrays: Array, margin: float = 0.15, about: int = 
 
 
 def decades(label: str, values: Iterable[float], about: int = 6) -> Axis:
-    """Return a logarithmic axis over whole powers of ten that holds the positive ``values``, the highest below its end; 1 to 10
-    for none."""
+    """Return a logarithmic axis of whole decades that holds positive ``values``, the highest below its end; 1 to 10 for none."""
     powers = [math.log10(value) for value in values] or [0.0]
     low = math.floor(min(powers))
     return Axis(label, 10.0**low, 10.0 ** (math.floor(max(powers)) + 1), log=True, about=about)
@@ -288,8 +286,7 @@ class Figure:
 
 
 def thin(x: Array, y: Array, buckets: int) -> tuple[Array, Array]:
-    """Return fewer points of a history that draw the same: of each of ``buckets``, one for a pixel, the first, the last, the
-    least and the largest.
+    """Return fewer points of a history that draw the same: of each of ``buckets``, a pixel, the first, last, least and largest.
 
     ``x``, shape (n,), is in order; ``y`` may have NaN. Four points for a bucket, or fewer, come back as they are.
     """

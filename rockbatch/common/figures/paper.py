@@ -129,10 +129,10 @@ class ShownFigure(MatplotlibFigure):
 
 
 def drawn(figure: Figure, width_mm: float, ax: Axes | None = None) -> MatplotlibFigure:
-    """Return the matplotlib figure in which ``figure`` is drawn, ``width_mm`` wide; or that of ``ax``, in which one panel, and in
-    whose place several, are drawn.
+    """Return the matplotlib figure in which ``figure`` is drawn, ``width_mm`` wide, or that of ``ax``.
 
-    Raises ``InputError`` for an ``ax`` that is none, or that is in no grid if there are several panels.
+    One panel is drawn in ``ax``, several in its place. Raises ``InputError`` for an ``ax`` that is none, or if there are several
+    panels and it is in no grid.
     """
     _check_axes(ax)
     with mpl.rc_context(_STYLE):
@@ -264,8 +264,7 @@ Arranged = tuple[list[list[Panel]], list[float], float]
 
 
 def _arranged(figure: Figure, width_mm: float, tallest: float) -> Arranged:
-    """Return the panels in rows, stacked as they are or as many abreast as there is room for, with heights and distance of
-    columns.
+    """Return panels in rows, stacked as they are or as many abreast as have room, with heights and distance of columns.
 
     Of panels that share their axes more stand abreast, and lower, if the rows would together be higher than ``tallest`` mm.
     """

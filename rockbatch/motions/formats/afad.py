@@ -31,8 +31,7 @@ def is_afad(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the components N-S, E-W and U-D; raise ``InputError`` with the line if the file is incomplete, or if its unit is
-    missing."""
+    """Return the components N-S, E-W and U-D; raise ``InputError`` if the file is incomplete, or does not state its unit."""
     lines = lines_of(text)
     heads = next((i for i in range(min(_MOST, len(lines))) if _labels(lines[i])), None)
     if heads is None:

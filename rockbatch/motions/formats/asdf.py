@@ -67,8 +67,7 @@ def read_asdf(file: RecordFile) -> list[Component | Unusable]:
 
 
 def _own_member(group: "h5py.Group", name: str) -> object:
-    """Return a member stored in the group itself; ``None`` if there is none of this name, and for links, which may lead into
-    other files."""
+    """Return a member stored in the group itself; ``None`` if missing, and for links, which may lead into other files."""
     return group.get(name) if isinstance(group.get(name, getlink=True), h5py.HardLink) else None
 
 

@@ -92,8 +92,7 @@ def read_component(file: RecordFile) -> list[Component | Unusable]:
 
 
 def _parse(text: str) -> list[Recording]:
-    """Return the recording of an AT2 file, alone in a list, with unit "" if it states none; raise ``InputError`` with the line if
-    unusable.
+    """Return the recording of an AT2 file in a list, unit "" if unstated; raise ``InputError`` with the line if unusable.
 
     PEER's records are corrected; other files do not say.
     """

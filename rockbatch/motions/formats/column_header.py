@@ -186,8 +186,7 @@ def _is_of_motion(unit: str) -> bool:
 
 
 def without_index_name(header: Sequence[str]) -> list[str]:
-    """Return those lines of the header that name a first column as a row index, "", "index" or "No.", without that name; [] for
-    others."""
+    """Return the header lines that begin with the name of a row index, "", "index" or "No.", without that name."""
     return [_INDEX.sub("", line) for line in header if _INDEX.match(line)]
 
 
@@ -217,8 +216,7 @@ def columns_without_units(header: Sequence[str], width: int) -> list[Column] | N
 
 
 def _labels_of(line: str) -> list[list[Column]]:
-    """Return the two ways to read a line of labels as columns: by words, if it has nothing else, and by fields between commas,
-    semicolons or tabs."""
+    """Return the ways to read a line of labels as columns: by words, if they cover it, and by commas, semicolons or tabs."""
     words = [_column(match) for match in _WORD.finditer(line)]
     fields = [match for field in re.split(r"[,;\t]", line) if (match := _FIELD.fullmatch(field.strip()))]
     by_words = [] if _WORD.sub("", line).strip(" \t,;") else [words]

@@ -127,8 +127,7 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
 
 
 def _unit_of(column: Column, of_all: str | None, options: ReadOptions) -> str:
-    """Return a column's unit: its own, but the study's if its own is no unit of acceleration and the study states one; else that
-    ``of_all``, or ""."""
+    """Return a column's unit, else that ``of_all``, else ""; the study's, if stated, in place of a unit of no acceleration."""
     if column.unit and not is_acceleration(column.unit) and options.unit:
         return options.unit
     return column.unit or of_all or ""
@@ -203,8 +202,7 @@ def _counts_rows(column: Samples) -> bool:
 
 
 def _merged_column(header: Column, stated: str) -> Column | None:
-    """Return a column of the header, completed by the study's label for it, or left out by its "-"; None if they contradict each
-    other."""
+    """Return a header's column, completed by the study's label or left out by its "-"; None if they contradict each other."""
     if stated == "-":
         return Column(stated)
     study = Column(stated)

@@ -145,8 +145,7 @@ def _header(lines: list[str], start: int) -> _Header:
 
 
 def _width_and_count(text: str, index: int) -> tuple[int, int]:
-    """Return width and numbers per line of a Fortran format: (10, 8) of 8F10.5, (15, 1) of 1PE15.6. Raises ``InputError`` for
-    others."""
+    """Return width and numbers per line of a Fortran format: (10, 8) of 8F10.5. Raises ``InputError`` for other texts."""
     match = _FORMAT.fullmatch(text)
     if match is None:
         raise InputError(f'line {index + 1}: found the format "({text[:20]})"; expected one such as (8F10.5)')
@@ -209,8 +208,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
 
 
 def _initial(header: _Header) -> Initial | None:
-    """Return the ground's velocity [m/s] and displacement [m] at the first sample, by real numbers 68 and 69; ``None`` if number
-    68 is unknown."""
+    """Return the ground's velocity [m/s] and displacement [m] at the first sample; ``None`` if real number 68 is unknown."""
     velocity, displacement = header.reals[67:69]
     if velocity == header.unknown:
         return None

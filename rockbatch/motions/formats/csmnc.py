@@ -41,8 +41,7 @@ def is_csmnc(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file, alone in a list; raise ``InputError`` with the line if it is incomplete, or of another
-    quantity."""
+    """Return the recording in a list; raise ``InputError`` with the line if it is incomplete, or of another quantity."""
     lines = lines_of(text)
     _, kind = line_with(_KIND, lines, _MOST, "UNCORRECTED ACCELERATION UNIT: CM/SEC/SEC")
     if not kind["what"].upper().startswith("ACC"):  # the Center's own description has "ACCCELERATION"

@@ -44,8 +44,7 @@ def declared_series(lines: list[str], start: int) -> tuple[float, dict[str, Seri
 
 
 def _block(lines: list[str], start: int, expected: tuple[str, ...]) -> tuple[str, float, Series, int]:
-    """Return the kind ("acc", "vel", "dis") of the series declared by ``lines[start]``, its interval [s], the values with their
-    unit, and the index of the line after it.
+    """Return kind ("acc", "vel", "dis"), interval [s], values with unit of the series at ``lines[start]``, and the next index.
 
     Raises ``InputError`` unless its kind is one of those ``expected``, its count is 1 or more, it states a unit, and its interval
     is possible.

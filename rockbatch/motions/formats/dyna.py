@@ -30,7 +30,7 @@ def is_dyna(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file, alone in a list; raise ``InputError`` with the missing keys, or the line that is wrong."""
+    """Return the recording in a list; raise ``InputError`` with the missing keys, or the line that is wrong."""
     lines = lines_of(text)
     header = _header(lines)
     if header.get("NETWORK") in _TURKISH:

@@ -60,8 +60,7 @@ def read_header(lines: Sequence[str], start: int, layout: Sequence[HeaderLine]) 
 
 
 def past_mark(lines: Sequence[str], start: int, after: str) -> int:
-    """Return the index of the line after the mark "/&" at ``lines[start]``; raise ``InputError`` if it is not there, ``after``
-    the data so named."""
+    """Return the index after the mark "/&" at ``lines[start]``; raise ``InputError`` if it is not there ``after`` these data."""
     if not line_at(lines, start).startswith("/&"):
         raise _mismatch(lines, start, f'"/&" after {after}; fetch it again')
     return start + 1

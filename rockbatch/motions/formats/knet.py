@@ -40,7 +40,7 @@ def is_knet(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file, alone in a list; raise ``InputError`` with the line if it is incomplete."""
+    """Return the recording in a list; raise ``InputError`` with the line if it is incomplete."""
     lines = lines_of(text)
     quake, start = moment_of(read_header(lines, 0, _EVENT)), moment_of(header := read_header(lines, 0, _TEXT))
     day = "" if quake is None else datetime.fromtimestamp(quake - _JAPAN, UTC).strftime("%Y-%m-%d %H:%M")

@@ -60,8 +60,7 @@ def is_sac(head: bytes) -> bool:
 
 
 def _byte_order(data: bytes) -> str | None:
-    """Return the byte order, "<" or ">", in which the header's version is 6 or 7; None if neither, or if the data end before
-    it."""
+    """Return the byte order, "<" or ">", in which the header's version is 6 or 7; None if none, or if the data are short."""
     whole = len(data) >= _VERSION_AT + 4
     return next(
         (order for order in "<>" if whole and np.frombuffer(data, f"{order}i4", 1, _VERSION_AT)[0] in (6, 7)), None
@@ -69,8 +68,7 @@ def _byte_order(data: bytes) -> str | None:
 
 
 def read_sac(file: RecordFile) -> list[Component | Unusable]:
-    """Return the component of a SAC file, alone in a list, in the study's unit: data / sensitivity × unit; raise ``Unstated`` if
-    it states neither.
+    """Return the component in a list, in the study's unit: data / sensitivity × unit; raise ``Unstated`` if it states neither.
 
     SAC's entry for the kind of data (IDEP) is no statement of the unit: files in g that claim nm/s² are common. Velocities and
     displacements are refused by it, and by the channel of a seismometer, unless a manifest states the file's unit.

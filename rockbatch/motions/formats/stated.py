@@ -117,8 +117,7 @@ def contradictions(statements: Sequence[Stated], sampled: Sampled, gravity: floa
 
 
 def _contradiction(stated: Stated, sampled: Sampled, gravity: float) -> Finding | None:
-    """Return the finding on a statement that the samples contradict; None within its tolerances, and for a text that is no
-    number.
+    """Return the finding on a statement that the samples contradict; None within its tolerances, and if it is no number.
 
     Raises ``Truncated`` for another count of samples.
     """

@@ -113,8 +113,7 @@ def _counted(
 
 
 def _count_and_step(numbers: Sequence[float]) -> tuple[float, str] | None:
-    """Return the count in one to three numbers, with a step before or after it, and both as a header line; None for other
-    numbers.
+    """Return the count in one to three numbers, with a step before or after it, and both as a header line; else None.
 
     A third number, such as RspMatch's count of leading zeros, is ignored.
     """
@@ -128,8 +127,7 @@ def _count_and_step(numbers: Sequence[float]) -> tuple[float, str] | None:
 
 
 def _pairs(rows: Sequence[float], remainder: Sequence[float], width: int) -> Samples | None:
-    """Return numbers as pairs of time and value, shape (npts, 2); ``None`` unless they are five pairs or more whose times grow
-    evenly.
+    """Return numbers as pairs of time and value, shape (npts, 2); ``None`` unless there are five whose times grow evenly.
 
     Programs for structures write several pairs on a line; they differ from other tables by these times.
     """
@@ -189,8 +187,7 @@ def _in_numbers(sign: str, text: str, lines: list[str]) -> bool:
 
 
 def _even_rows(lines: Sequence[str], width: int, between: str, decimal: str) -> "array[float]":
-    """Return the numbers of the first ``lines`` by pieces of :data:`_PIECE`, up to the first piece that has a line unlike
-    ``width`` plainly written numbers.
+    """Return the numbers of the ``lines`` before the first piece of :data:`_PIECE` with a line unlike ``width`` plain numbers.
 
     They equal those of :func:`_numbers`, but are faster. In pieces, since all words at once would take thirty times the size of
     the text.
@@ -213,8 +210,7 @@ def _even_rows(lines: Sequence[str], width: int, between: str, decimal: str) -> 
 
 
 def _numbers(line: str, between: str, decimal: str) -> list[float] | None:
-    """Return the numbers of a line, also touching ones and with D exponents; [] for a blank line, ``None`` if it has anything
-    else."""
+    """Return the numbers of a line, also touching ones and with D exponents; [] for a blank line, ``None`` for other texts."""
     if "_" in line:  # Python would read 1_0 as ten
         return None
     if '"' in line:

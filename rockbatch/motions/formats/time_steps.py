@@ -78,8 +78,7 @@ def from_pairs(pairs: Samples, channel: str) -> tuple[float, Samples, tuple[str,
 
 
 def _since_first(t: Samples) -> Samples:
-    """Return times after the first, without the digits that floats lose of seconds since 1970; times with enough digits as they
-    are."""
+    """Return times after the first without the digits that floats lose of seconds since 1970; exact times as they are."""
     decimals = math.floor(-math.log10(float(np.spacing(np.abs(t).max()))))
     return t if decimals > _MOST_DIGITS else np.round(t - t[0], decimals)
 

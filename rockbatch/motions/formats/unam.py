@@ -131,8 +131,7 @@ def _value_of_each(header: dict[str, str], key: str, count: int) -> list[str]:
 
 
 def _texts_of(text: str, count: int) -> list[str]:
-    """Return the values of an optional key for all channels, between slashes; "" for each channel if their number is another
-    one."""
+    """Return the values of an optional key for all channels, between slashes; "" for each if there is another number of them."""
     texts = [part.strip() for part in text.strip("/ ").split("/")]
     return texts if len(texts) == count else [""] * count
 
@@ -151,8 +150,7 @@ def _common_value(header: dict[str, str], key: str, count: int) -> str:
 
 
 def _first_sample_line(lines: list[str], start: int, labels: list[str]) -> int:
-    """Return the index of the first sample's line, after rulers and the directions ``labels``; raise ``InputError`` if it is not
-    found."""
+    """Return the index of the first sample's line, after rulers and ``labels``; raise ``InputError`` if it is not found."""
     named = False
     for i in range(start + 1, min(start + _BEHIND, len(lines))):
         words = [word.partition(";")[0] for word in lines[i].split()]

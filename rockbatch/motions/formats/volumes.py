@@ -76,8 +76,7 @@ _STATED = {  # statements about the samples in the text, which some files of CSM
 
 
 def _is_dialect(name: str, head: bytes) -> bool:
-    """Return whether the first bytes are a header in the dialect ``name``: "CSMIP", "RENADIC" or "USC"; each file has one
-    dialect."""
+    """Return whether the first bytes are a header in the dialect ``name``, "CSMIP", "RENADIC" or "USC", and in no other."""
     lines = head.decode("latin-1").splitlines()
     volume = _volume(lines, 0)
     if volume is None:

@@ -118,8 +118,7 @@ CHECKS: dict[str, Callable[[bytes], bytes]] = {"MSEED": check_mseed, "KINEMETRIC
 
 @contextmanager
 def _collecting_unraisable() -> Iterator[list[str]]:
-    """Context manager: yield a list of the errors that ObsPy's callbacks from C cannot raise; Python would print them on the
-    terminal."""
+    """Context manager: yield a list of errors that ObsPy's callbacks from C cannot raise, and Python would print."""
     errors: list[str] = []
     hook = sys.unraisablehook
     sys.unraisablehook = lambda unraised: errors.append(f"{type(unraised.exc_value).__name__}: {unraised.exc_value}")
