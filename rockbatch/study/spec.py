@@ -94,7 +94,7 @@ class MotionSpec:
 
     @property
     def simulated(self) -> str:
-        """Return the polarity that is simulated, "+" if both are asked for, since "-" is its mirror image of a symmetric pier."""
+        """Return the polarity that is simulated: "+" if both are asked for, as "-" mirrors it on a symmetric pier."""
         return "+" if "+" in self.polarity else "-"
 
 

@@ -243,11 +243,11 @@ class Table:
         other: Iterable[str] = (),
         places: bool = False,
     ) -> KeyValues:
-        """Return the usable values by key, in the order of the file; note what is unusable, unknown or missing.
+        """Return the usable values by key, in the order of the file; what is unusable, unknown or missing becomes a problem.
 
-        A caller may go on checking with what is left: :meth:`TomlFile.finish` raises in the end.
-        ``unfit`` gives reasons why keys of other tables do not apply here; ``other`` keys are read elsewhere. The value of a key
-        that takes a list is a tuple, or with ``places`` a list of :class:`Setting`. ``confirm`` is left to :attr:`confirmed`.
+        A caller may go on checking with what is left: :meth:`TomlFile.finish` raises in the end. ``unfit`` gives reasons why keys
+        of other tables do not apply here; ``other`` keys are read elsewhere. The value of a key that takes a list is a tuple, or
+        with ``places`` a list of :class:`Setting`. ``confirm`` is left to :attr:`confirmed`.
         """
         unfit = unfit or {}
         usable: dict[str, list[Setting]] = {}

@@ -155,7 +155,7 @@ class AnalysisFolder:
         cases: Sequence[Case],
         row: RowOf,
     ) -> None:
-        """Carry out ``runs`` and write the ``row`` of each into ``file``, unless it has them; kernels are those of ``cases``."""
+        """Carry out ``runs`` and write the ``row`` of each into ``file``, unless it has them; compile kernels for ``cases``."""
         if self.has(file, digest):
             self.keep(file, digest)
             return
@@ -198,7 +198,10 @@ class AnalysisFolder:
                 raise
 
     def keep(self, file: str, digest: Mapping[str, str] | None = None) -> None:
-        """List ``file`` in NAME.json as finished, with the digests of its contents and of its runs, if None as before."""
+        """List ``file`` in NAME.json as finished, with the digest of its contents and the ``digest`` of its runs.
+
+        With None for that, the digest of its runs stays as it was.
+        """
         self.info["files"].append(file)
         noted = self.info["digests"].get(file, {}) if digest is None else {"runs": dict(digest)}
         self.info["digests"] = self.info["digests"] | {file: noted | {"sha256": sha256_of(self.directory / file)}}

@@ -286,7 +286,7 @@ class Figure:
 
 
 def thin(x: Array, y: Array, buckets: int) -> tuple[Array, Array]:
-    """Return fewer points of a history that draw the same: of each of ``buckets``, a pixel, the first, last, least and largest.
+    """Return fewer points of a history that draw the same: of each bucket, a pixel wide, the first, last, least and largest.
 
     ``x``, shape (n,), is in order; ``y`` may have NaN. Four points for a bucket, or fewer, come back as they are.
     """

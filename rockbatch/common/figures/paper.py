@@ -131,8 +131,8 @@ class ShownFigure(MatplotlibFigure):
 def drawn(figure: Figure, width_mm: float, ax: Axes | None = None) -> MatplotlibFigure:
     """Return the matplotlib figure in which ``figure`` is drawn, ``width_mm`` wide, or that of ``ax``.
 
-    One panel is drawn in ``ax``, several in its place. Raises ``InputError`` for an ``ax`` that is none, or if there are several
-    panels and it is in no grid.
+    One panel is drawn in ``ax``, several in its place. Raises ``InputError`` for an ``ax`` that is no Axes, or if there are
+    several panels and it is in no grid.
     """
     _check_axes(ax)
     with mpl.rc_context(_STYLE):

@@ -161,7 +161,7 @@ def add_name_statement(component: Component, name: str, orientation: Orientation
 
 
 def _is_of_sensor(label: str, component: Component) -> bool:
-    """Return whether ``label`` is digits that end a station's name, a location code, or two digits beside a channel code."""
+    """Return whether ``label`` is digits that end its station, its location code, or two digits beside a channel code."""
     if not label.isdigit():
         return False
     station = re.sub(r"[\W_]", "", component.sensor.station or component.origin.station)

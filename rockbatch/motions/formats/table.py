@@ -127,7 +127,7 @@ def _count_and_step(numbers: Sequence[float]) -> tuple[float, str] | None:
 
 
 def _pairs(rows: Sequence[float], remainder: Sequence[float], width: int) -> Samples | None:
-    """Return numbers as pairs of time and value, shape (npts, 2); ``None`` unless there are five whose times grow evenly.
+    """Return numbers as pairs of time and value, shape (npts, 2); ``None`` unless at least five whose times grow evenly.
 
     Programs for structures write several pairs on a line; they differ from other tables by these times.
     """
