@@ -26,7 +26,8 @@ MOST_RUNS = 1000
 def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str, str]) -> str:
     """Return θ_max/α as text: a block for each pier, a line for each record, a column for each case.
 
-    ``records`` maps the names of records, in order, to labels. A status other than "ok" precedes its value.
+    Of more than :data:`MOST_RUNS` runs, only the ten largest values are listed. ``records`` maps the names of records, in order,
+    to labels. A status other than "ok" precedes its value.
     """
     runs = with_case(table)
     if len(runs) > MOST_RUNS:

@@ -126,7 +126,7 @@ class AsceSpectrum:
         return f"ASCE 7, S_DS = {self.sds_g:g} g, S_D1 = {self.sd1_g:g} g, T_L = {self.tl_s:g} s, 5 %"
 
     def at(self, periods: Array) -> Array:
-        """Return the spectral acceleration [g] at periods [s]; NaN outside ``limits``."""
+        """Return the spectral acceleration [g] at periods [s] of 0 or more, all of which are within ``limits``."""
         ts = self.sd1_g / self.sds_g
         t0 = 0.2 * ts
         t = np.maximum(periods, 1e-12)
@@ -154,7 +154,7 @@ class AashtoSpectrum:
         return f"AASHTO, A_s = {self.as_g:g} g, S_DS = {self.sds_g:g} g, S_D1 = {self.sd1_g:g} g, 5 %"
 
     def at(self, periods: Array) -> Array:
-        """Return the spectral acceleration [g] at periods [s]; NaN outside ``limits``."""
+        """Return the spectral acceleration [g] at periods [s] of 0 or more, all of which are within ``limits``."""
         ts = self.sd1_g / self.sds_g
         t0 = 0.2 * ts
         t = np.maximum(periods, 1e-12)

@@ -91,7 +91,7 @@ def _with_names(station: Sequence[Component]) -> list[Component]:
 
 
 def _copies_as_their_originals(station: Sequence[Component]) -> list[Component]:
-    """Return components, those with contradictory statements with the statements of a sound one of the same samples, if any."""
+    """Return components, each contradictory one with the statements of a sound one of the same samples, if there is any."""
     components = list(station)
     for i, component in enumerate(station):
         if _contradiction(component):
@@ -125,7 +125,11 @@ def _copied_headers(components: Sequence[Component]) -> Iterator[tuple[int, Stat
 
 
 def _void_defaults(components: Sequence[Component]) -> Iterator[tuple[int, Statement, str]]:
-    """Yield place, statement and reason of angles of 0° that are void: contradicted, or shared by several components."""
+    """Yield place, statement and reason of angles of 0° that are void: other statements contradict them, or other components do.
+
+    Others of the sensor do if no statement agrees, and one has the same angle, or one an angle other than 0° and none a right
+    angle.
+    """
     angles = [(i, s) for i, c in enumerate(components) if (s := _strong_statement(c, Kind.ANGLES)) and not _by_user(c)]
     for i, statement in (pair for pair in angles if pair[1].default):
         others = [s for s in components[i].statements if s is not statement and not s.weak]

@@ -104,8 +104,10 @@ def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
 
 
 def _source_file(path: Path, source: str) -> SourceFile:
-    """Return a regular file, with its kind as ``companion`` if its name, its suffix or content that this program wrote shows that
-    it is no record, or else with a ``refusal`` if it is an archive that is not read."""
+    """Return a regular file, as a ``companion`` if it is known to be no record, with a ``refusal`` if it is an archive not read.
+
+    It is known by its name, its suffix, or content that this program wrote.
+    """
     if path.name.lower() == _SEARCH_RESULTS:
         return SourceFile(path, source, companion="a table about the records")
     suffix = archives.bare(path).suffix.lower()

@@ -339,7 +339,7 @@ def _readings(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
 
 
 def _readings_of_entries(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
-    """Return the readings of one file with a manifest's ``entries`` applied; errors of reading are raised."""
+    """Return the readings of one file with its entries in the manifest applied; errors of reading are raised."""
     path = archives.bare(file.path)
     entries = settings.manifest.entries_for(file.path)
     if any(not entry.use and entry.component is None for entry in entries):

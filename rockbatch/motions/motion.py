@@ -396,7 +396,10 @@ class Motion(Shown):
 
     @property
     def exchanged(self) -> "Motion":
-        """Return the motion with ``horizontal`` and ``across`` exchanged, its azimuth 90° further; it must have both."""
+        """Return the motion, which has both, with ``horizontal`` and ``across`` exchanged.
+
+        Its azimuth is 90° further, and its initial state unknown.
+        """
         assert self.across is not None
         azimuth = None if self.azimuth is None else (self.azimuth + 90.0) % 360.0
         return replace(self, horizontal=self.across, across=self.horizontal, azimuth=azimuth, initial=None)

@@ -103,7 +103,7 @@ def is_upward(label: str) -> bool:
 
 
 def is_place_or_direction(label: str) -> bool:
-    """Return whether a label is an English direction that may end the name of a place: "North", "West"."""
+    """Return whether a label is an English word for a direction that may end a place's name: "North", "West"; not "N"."""
     return len(key := _key(label)) > 2 and key in _ENGLISH and key in _AZIMUTHS
 
 

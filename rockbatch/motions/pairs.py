@@ -94,7 +94,7 @@ def common_samples(first: Motion, second: Motion) -> tuple[Samples, Samples]:
 
 
 def square_pair(motions: Sequence[Motion]) -> tuple[Motion, Motion]:
-    """Return the first two of a station's motions that are square to each other.
+    """Return the first two of a station's motions that are square to each other, or may be, and have common samples.
 
     Raises ``InputError`` for a station without such a pair, with the reason.
     """

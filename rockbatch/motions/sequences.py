@@ -62,7 +62,10 @@ class ShockSequence:
             raise InputError(*wrong)
 
     def as_motion(self, parts: Sequence[Motion]) -> Motion:
-        """Return its records ``parts``, in their order, as one motion."""
+        """Return its records ``parts``, in their order, as one motion, with its pause, factors and polarities.
+
+        Raises ``InputError`` as :func:`sequence`.
+        """
         n = len(parts)
         factors = self.factors * (n if len(self.factors) == 1 else 1) or (1.0,) * n
         signs = self.polarity * (n if len(self.polarity) == 1 else 1) or ("+",) * n

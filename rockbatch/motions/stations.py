@@ -210,7 +210,7 @@ def _share_record(a: Component, b: Component) -> bool:
 
 
 def _are_copies(a: Component, b: Component) -> bool:
-    """Return whether the samples of two components are equal except for a factor."""
+    """Return whether samples of two components of one length and step are equal but for a factor; False if one has no motion."""
     first, second = a.acceleration, b.acceleration
     if len(first) != len(second) or abs(a.dt - b.dt) > 1e-6 * a.dt:
         return False

@@ -87,7 +87,7 @@ _RANGES: dict[str, tuple[Mapping[str, Key], dict[str, str]]] = {
 
 
 def ranges(of: str = "", kind: Kind | None = None) -> dict[str, Key]:
-    """Return the keys of a case, or ``of`` a device such as "damper", that analyses may vary, each as a pair of ends.
+    """Return the keys that analyses may vary, each as a pair of ends: those of a case, or ``of`` a device such as "damper".
 
     Their values are of the ``kind`` given, or of that of the study.
     """

@@ -127,7 +127,7 @@ class Case:
     changed: dict[str, float | str] = field(default_factory=dict)
 
     def with_columns(self, varied: Iterable[str]) -> "Case":
-        """Return the case with no other columns than those of ``varied`` keys."""
+        """Return the case with no other columns than those of ``varied`` keys, and without its ``changed`` values."""
         return replace(self, columns={name: self.columns[name] for name in varied if name in self.columns}, changed={})
 
 

@@ -115,7 +115,11 @@ def are_tables(value: TomlValue | None) -> TypeGuard[list[TomlTable]]:
 
 
 def without_lost_cases(before: Mapping[str, TomlValue], after: Mapping[str, TomlValue]) -> TomlTable:
-    """Return the tables ``after`` a change, without checks and references that are about removed cases alone."""
+    """Return the tables ``after`` a change, without what checks and references say of removed cases.
+
+    Those about removed cases alone go; of others, the patterns that choose removed cases only. Nothing goes if either has no list
+    of cases.
+    """
     result = dict(after)
     cases_before, cases = before.get("case"), after.get("case")
     if not (are_tables(cases_before) and are_tables(cases)):

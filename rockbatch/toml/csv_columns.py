@@ -19,9 +19,9 @@ def columns_of(path: Path, kinds: Mapping[str, Kind], *, gaps: bool = False) -> 
     """Return the columns of a CSV file by the names in its first line, of equal length, with values of these ``kinds``.
 
     Lines that begin with # are comments, and lines of empty cells alone are skipped. With semicolons between the cells, decimals
-    may have commas. With ``gaps`` an empty cell is NaN. Raises ``InputError`` with the file and the lines for an unknown or
-    repeated column, cells that are not of their kind, lines with fewer or more cells than names, and a file without a row below
-    its heading.
+    may have commas. With ``gaps`` a cell that is empty or "nan" is NaN. Raises ``InputError`` with the file and the lines for an
+    unknown or repeated column, cells that are not of their kind, lines with fewer or more cells than names, and a file without a
+    row below its heading.
     """
     rows, delimiter = _rows(path)
     names = _names(path, *rows[0], kinds)
@@ -76,7 +76,7 @@ def _names(path: Path, number: int, names: Sequence[str], known: Collection[str]
 
 
 def _value(cell: str, kind: Kind, delimiter: str, gaps: bool) -> object:
-    """Return the value of a cell, with ``gaps`` NaN for an empty one. Raises :class:`KindError` for one of another ``kind``."""
+    """Return the value of a cell; with ``gaps`` "" and "nan" are NaN. Raises :class:`KindError` for one of another ``kind``."""
     if gaps and cell.lower() in ("", "nan"):
         return math.nan
     if isinstance(kind, Text):

@@ -70,8 +70,7 @@ class TomlFile:
 
     @staticmethod
     def text_of(path: Path, sections: Sequence[Section] = ()) -> str:
-        """Return the text of a file of ``sections``. Raises :class:`InputError` where it cannot be read, is too large or no
-        UTF-8."""
+        """Return the text of a file of ``sections``. Raises :class:`InputError` if it is unreadable, too large or no UTF-8."""
         try:
             with io.BufferedReader(opened_input(path)) as opened:
                 content = opened.read(LARGEST + 1)

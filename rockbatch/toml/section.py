@@ -206,7 +206,7 @@ _GENERAL = {
 
 
 def home(sections: Iterable[Section], name: str, place: tuple[str, ...]) -> str:
-    """Return headers of tables, but that at ``place``, with a key ``name``: "[pier] or [[case]]"; "" if none or if general."""
+    """Return table headers, but that at ``place``, with a key ``name``: "[pier] or [[case]]"; "" for none or a common name."""
     others = (section for section in sections if section.at and section.at != place)
     headers = dict.fromkeys(section.header for section in others if name in section and not section.free)
     return "" if name in _GENERAL else " or ".join(headers)

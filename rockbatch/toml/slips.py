@@ -90,7 +90,7 @@ def _word(value: str) -> str:
 
 
 def _number(value: str) -> str:
-    """Return a number as TOML writes it: digits at both sides of the point, and no spaces or commas between thousands.
+    """Return a number as TOML writes it: digits around the point, no blanks or commas between thousands; others as they are.
 
     A single comma may be one of decimals or of a list, or of thousands, and stays.
     """

@@ -46,7 +46,7 @@ def line_of(place: int, kind: str = "level") -> Look:
 
 
 def marks_of(place: int, is_open: bool = False) -> Look:
-    """Return the look of marks among several: no common factor, so 70 differ in colour or shape."""
+    """Return the look of marks among several: 70 differ in colour or shape, whose numbers have no common factor."""
     return Look("", place % COLOURS + 1, shape=SHAPES[place % len(SHAPES)], open=is_open)
 
 

@@ -76,7 +76,7 @@ def _times_of_peak(sampled: Sampled, stated: Stated) -> list[float]:
 
 
 def _durations(sampled: Sampled, stated: Stated) -> list[float]:
-    """Return the number of samples times the interval [s], and that after the time of the first sample."""
+    """Return the number of samples times the interval [s], and that plus the time of the first sample."""
     duration = sampled.dt * len(sampled.values)
     return [duration, stated.begins + duration]
 

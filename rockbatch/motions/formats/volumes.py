@@ -114,7 +114,10 @@ def parse_pairs(text: str) -> list[Recording]:
 
 
 def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | None], int]:
-    """Return the channel whose title is ``lines[first]`` with the first time of its pairs [s], and the index after it."""
+    """Return the channel whose title is ``lines[first]`` with the first time of its pairs [s], and the index after it.
+
+    Raises ``InputError`` with the line for another title, for spectra (Volume III), and for an incomplete channel.
+    """
     volume = _volume(lines, first)
     if volume is None:
         raise InputError(
