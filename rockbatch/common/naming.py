@@ -37,4 +37,5 @@ def alike(name: str, others: Collection[str]) -> str:
 
 
 def _look(name: str) -> str:
+    """Return a name with letters that look Latin as Latin ones, composed in one way, and single blanks."""
     return " ".join(unicodedata.normalize("NFC", name).translate(_LIKE_LATIN).split())

@@ -195,15 +195,16 @@ def content(path: Path, first: int | None = None) -> bytes:
 
 
 def _from_disk(path: Path, first: int | None = None) -> bytes:
+    """Return the contents of a file on the disk, or its ``first`` bytes; raise ``InputError`` if it is irregular or too large."""
     with whole_input(path) as (file, size):
         if size > LARGEST:
             raise InputError(f"larger than {LARGEST // 2**20} MiB{'; unpack it' if is_archive(path) else ''}")
-        return file.read(
-            size if first is None else min(first, size)
-        )  # read() allocates as many bytes as it is asked for
+        # read() allocates as many bytes as it is asked for
+        return file.read(size if first is None else min(first, size))
 
 
 def _from_gzip(data: bytes, first: int | None = None) -> bytes:
+    """Return the unpacked ``data``, or its ``first`` bytes; raise ``InputError`` for other or damaged data, or too much of it."""
     most = min(LARGEST, max(_NEVER_TOO_LARGE, _GROWTH * len(data)))
     try:
         with gzip.GzipFile(fileobj=io.BytesIO(data)) as file:

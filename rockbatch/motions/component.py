@@ -48,6 +48,7 @@ class Sensor:
         return bool(self.network) and self.network == other.network
 
     def _codes_differ(self, other: "Sensor") -> bool:
+        """Return whether network, location, place or channel differ, where both sensors have them."""
         mine, others = ((sensor.network, sensor.location, sensor.place, sensor.channel) for sensor in (self, other))
         return any(None not in (a, b) and _bare(str(a)) != _bare(str(b)) for a, b in zip(mine, others, strict=True))
 

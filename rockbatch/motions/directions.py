@@ -72,6 +72,7 @@ def _strong_statement(component: Component, *kinds: Kind) -> Statement | None:
 
 
 def _same_samples(a: Component, b: Component) -> bool:
+    """Return whether two components have one step and equal samples."""
     return a.dt == b.dt and np.array_equal(a.acceleration, b.acceleration)
 
 

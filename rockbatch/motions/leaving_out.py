@@ -82,4 +82,5 @@ class LeaveOut:
 
 
 def _left_out(name: str, source: str, pattern: str, station: str) -> LeftOut:
+    """Return a file that the study leaves out by ``pattern``, with the key leave_out as the reason."""
     return LeftOut(name, source, f"leave_out = [{shown(pattern)}] in the study", station, named=True)

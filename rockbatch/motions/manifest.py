@@ -162,6 +162,7 @@ class Manifest:
         return manifest
 
     def _add_entries(self, file: TomlFile) -> None:
+        """Add the entries and sequences of a manifest; files outside its folder, missing or repeated become problems."""
         self.files.append(file)
         Table(file, (), "", file.data).read({}, other=("record", "sequence"))
         self.sequences += [(str(file.path), sequence) for sequence in read_sequences(file, "sequence")]

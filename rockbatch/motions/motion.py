@@ -256,6 +256,7 @@ class Motion(Shown):
         unit : str
             Of both components: "g", "m/s2", "cm/s2", …
         vertical : array_like, shape (npts,), optional
+            Vertical ground acceleration, positive up.
         gravity : float
             What "g" is [m/s²].
         confirm : sequence of str

@@ -119,12 +119,14 @@ def ranked_records(motions: MotionSet) -> list[RankedRecord]:
 
 
 def _order(record: RankedRecord) -> tuple[int, float]:
+    """Return the sort key of a record: its group, as :func:`ranked_records` lists them, and the negative PGA [m/s²]."""
     groups = (Use.HELD_BACK, Use.NOT_READ, None, Use.USED, Use.COPY)
     odd = record.use is Use.USED and record.doubtful
     return groups.index(None if odd else record.use), -record.motions[0].pga if record.motions else 0.0
 
 
 def _used_record(components: Sequence[Motion]) -> RankedRecord:
+    """Return the record of a station's used motions, the strongest first, with the names of their findings as doubts."""
     by_strength = sorted(components, key=lambda motion: -motion.pga)
     first = by_strength[0]
     return RankedRecord(

@@ -137,6 +137,7 @@ def _same_direction(a: Channel, b: Channel) -> bool:
 
 
 def _direction(channel: Channel) -> str:
+    """Return a channel's azimuth, if known, and its dip, which must be known, in words: "azimuth 90°, dip 0°"."""
     azimuth = "" if channel.azimuth is None else f"azimuth {channel.azimuth:g}°, "
     return f"{azimuth}dip {channel.dip:g}°"
 

@@ -338,9 +338,8 @@ def _panel(axes: Axes, panel: Panel, across: float, entries: Entries) -> None:
 def _axis(axes: Axes, which: str, scale: Axis) -> None:
     axis = axes.xaxis if which == "x" else axes.yaxis
     if scale.log:
-        axis.set_major_locator(
-            FixedLocator([scale.low, scale.high])
-        )  # else it looks for ticks in a range that is not set yet
+        # without a fixed locator matplotlib looks for ticks in a range that is not set yet
+        axis.set_major_locator(FixedLocator([scale.low, scale.high]))
         getattr(axes, f"set_{which}scale")("log")
     getattr(axes, f"set_{which}lim")(scale.low, scale.high)
     ticks = scale.ticks()

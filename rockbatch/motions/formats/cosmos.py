@@ -178,9 +178,8 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
     corrected = not header.what.lower().startswith(("raw", "uncorr"))
     description = ", ".join(filter(None, [location, place, "corrected" if corrected else "uncorrected"]))
     event = line_at(header.text, 1)
-    name = re.sub(
-        r"^[A-Z]{2}:", "", re.split(r" {2,}", fields["words"].strip())[-1]
-    )  # "USGS  AK:Anchorage;R B Atwood Bld"
+    # "USGS  AK:Anchorage;R B Atwood Bld"
+    name = re.sub(r"^[A-Z]{2}:", "", re.split(r" {2,}", fields["words"].strip())[-1])
     year, month, day, hour, minute = (header.integers[i] for i in (39, 41, 42, 43, 44))
     stated = [Stated("duration", series["seconds"])]
     for quantity, value in (("duration", length), ("peak", peak), ("time of the peak", time_of_peak)):
