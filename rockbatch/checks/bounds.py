@@ -126,7 +126,7 @@ def _on_both_axes(axes: Sequence[Bounds], how: str) -> Bounds:
 
 
 def _by_record(runs: Bounds, counting: npt.NDArray[np.bool_], counted_as: Texts) -> Bounds:
-    """Return the demand of each record: the worst of its runs that are ``counting``. Empty if every run is left out."""
+    """Return the demand of each record, by sorted names: the worst of its ``counting`` runs. Empty if every run is left out."""
     names, record = np.unique(counted_as[counting], return_inverse=True)
 
     def worst(of_runs: Values) -> Values:
@@ -205,9 +205,10 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
 
 
 def _chaotic(demand: Demand, runs: Rows, error: Values) -> npt.NDArray[np.bool_]:
-    """Return True for each run whose demand is chaotic, shape (n,): its ``error`` is withdrawn, or that of the peak.
+    """Return True for each chaotic run without an ``error``, and, but for a residual, without one of its peak either, shape (n,).
 
-    An earlier version did not write the column: a run that ended well, and claims no error beside others that do, counts as such.
+    An earlier version did not write the column: a run that ended well, and claims no error beside others that do, counts as
+    such.
     """
     of_peak, ended_well = runs.numbers("theta_max_error"), np.isin(runs.texts("status"), ("ok", "flight"))
     withheld = np.isnan(of_peak) & ended_well & bool(np.isfinite(of_peak).any())
@@ -216,7 +217,7 @@ def _chaotic(demand: Demand, runs: Rows, error: Values) -> npt.NDArray[np.bool_]
 
 
 def counted(rule: Rule, suites: Iterable[Rows]) -> str:
-    """Return the number of runs that did not go through, and how they count: "1 overturned (infinite), 2 flight (unknown)"."""
+    """Return how many runs did not go through, and how each counts: "1 overturned (infinite), 2 not run (unknown)"; or ""."""
     numbers: Counter[str] = Counter()
     for runs in suites:
         numbers.update(np.where(runs.missing, NOT_RUN, runs.texts("status")).tolist())

@@ -21,7 +21,7 @@ _ROUNDING = 1e-9
 
 
 def problems(curve: Curve) -> Iterator[str]:
-    """Yield what is wrong with a curve: it must have two points or more, by ascending N, no M below 0, and be concave."""
+    """Yield a phrase for each fault of a curve: under two points, M below 0, N not ascending, or not concave."""
     if len(curve) < 2:
         yield "has fewer than two points; write [N, M] pairs from the greatest tension to the greatest compression"
     below = [f"[{n:g}, {m:g}]" for n, m in curve if m < 0.0]
@@ -53,7 +53,7 @@ def resistance(curve: Curve, axial: Values) -> Values:
 
 
 def _share(curve: Curve, axial: Values, moment: Values) -> Values:
-    """Return M/M_Rd(N), shape (n,); infinite beyond the ends of the curve, and where only M has no capacity."""
+    """Return M/M_Rd(N), shape (n,): 0 for M = 0; infinite for N beyond the ends of the curve, and for M > 0 where M_Rd = 0."""
     most = resistance(curve, axial)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(moment > 0.0, moment / most, 0.0)

@@ -120,7 +120,10 @@ def judge(
 
 
 def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", fit: Fitted) -> Rows:
-    """Return runs with the forces in the section of a rule, from the table that it needs; NaN for a run without that section."""
+    """Return runs with the forces in the section of a rule, from the table that it needs; NaN for a run without that section.
+
+    Raises ``InputError`` if a run has two sections at the height of the rule.
+    """
     its = sections[sections["height_m"].isin(fit.sections)]
     if fit.rule.capacity is not None:
         its = used(fit.rule.capacity, its)
@@ -131,7 +134,7 @@ def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", fit: Fitted) -> R
 
 
 def _has_columns(runs: "pd.DataFrame", columns: Collection[str]) -> bool:
-    """Return whether results have one of the ``columns`` of a key of [output], or no device that they are about."""
+    """Return whether results have a column of these of a key of [output]; True also if no pier has the devices they are of."""
     devices = {"", *(COLUMNS[name].device for name in runs if name in COLUMNS)}  # other devices have no columns here
     return any(name in runs for name in columns) or not any(COLUMNS[name].device in devices for name in columns)
 
@@ -190,7 +193,10 @@ def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, co
 
 
 def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
-    """Return the verdict on a property of the case, the worse of both axes; ``none`` is the verdict without its numbers."""
+    """Return the verdict on a property of the case, the worse of both axes; it does not apply if that needs a mass not given.
+
+    ``none`` is the verdict without its numbers.
+    """
     worse = max if rule.sense == "at most" else min
     value = worse(float(DEMANDS[rule.demand].evaluate(axis.suite, axis.case).value[0]) for axis in axes)
     if math.isnan(value):
@@ -200,7 +206,7 @@ def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
 
 
 def _place(axis: Axis) -> str:
-    """Return "along the axis" or "across the axis"."""
+    """Return "across the axis" for a case across the axis of another one (``across_of``), else "along the axis"."""
     return "across the axis" if axis.case.get("across_of") else "along the axis"
 
 
@@ -223,7 +229,10 @@ def _absent(rule: Rule, axis: Axis) -> str:
 
 
 def _with_numbers(verdict: Verdict, value: float, low: float, high: float) -> Verdict:
-    """Return the verdict with a value and its bounds, and with their ratio to the limit and margin; NaN for a value of NaN."""
+    """Return the verdict with a value, its bounds, ratio to the limit, and margin, negative beyond the limit.
+
+    NaN for a value of NaN. The ratio to a limit of 0 is infinite, and 0 for a value of 0.
+    """
     limit = verdict.limit
     numerator, denominator, margin = value, limit, limit - value
     if verdict.sense == "at least":
@@ -257,7 +266,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
         statistic.remark(demand.records.high) if statistic.remark and n else "",
         unknown,
         *(of_event.remarks if of_event else ()),
-        "" if none.count == "component" else _directions(lacking(counting, counted_as)),
+        "" if none.count == "component" else _remark_on_directions(lacking(counting, counted_as)),
         *dict.fromkeys(remark for of_axis in laws for remark in of_axis),
         "" if demand.records.estimated or DEMANDS[rule.demand].event else "no error estimate",
         *dict.fromkeys(_chaotic(int(its.chaotic.sum())) for its in demand.axes),
@@ -313,8 +322,8 @@ def _chaotic(runs: int) -> str:
     return f"{words} known to a factor of {SCATTER:g}"
 
 
-def _directions(records: Mapping[str, tuple[int, int]]) -> str:
-    """Return the remark on records of which some runs do not count, with the numbers of runs; empty for none."""
+def _remark_on_directions(records: Mapping[str, tuple[int, int]]) -> str:
+    """Return the remark on records of which only some runs count: "not every direction counts, …: WTMC (3 of 4)"; "" for none."""
     if not records:
         return ""
     names = [f"{name} ({used} of {total})" for name, (used, total) in records.items()]

@@ -80,9 +80,10 @@ def open_landings(demand: Demand, runs: Rows, case: Case) -> npt.NDArray[np.bool
 
 
 def unconverged(demand: Demand, error: Values, case: Case) -> npt.NDArray[np.bool_]:
-    """Return True for each run in which nothing says what the modes change that a bending shaft is not followed in, shape (n,).
+    """Return True for each run with no estimate of what the modes left out of a bending shaft add to the demand, shape (n,).
 
-    ``error`` is that of the demand: of two modes or more it has what the last of them changes, and NaN stands for none.
+    That is: one mode alone, an ``error`` of NaN (that of the demand has the part of the last mode), or the acceleration of a
+    point. False throughout for a rigid shaft, and for a demand that landings or bending do not affect.
     """
     alone = number_of_modes(case) == 1
     return (np.isnan(error) | alone | _at_a_point(demand, case)) & _follows_modes(demand, case)

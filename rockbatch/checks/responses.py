@@ -118,7 +118,10 @@ def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], *, at_each_scale
 
 
 def _greatest(rows: Rows, case: Case) -> Iterator[tuple[str, float, int]]:
-    """Yield the demand of each response of a case, its greatest value in these rows, and the place of the row in the table."""
+    """Yield each response of a case, its greatest value in these rows, and the place of that row in the whole table.
+
+    Responses that the case does not have, and those without a finite value, are left out.
+    """
     for name in RESPONSES if len(rows) else ():
         if not DEMANDS[name].applies_to(case) or (name == "theta_res_rad" and case["base"] != "rigid"):
             continue
@@ -168,7 +171,7 @@ def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst
 
 
 def in_words(worst: Worst) -> str:
-    """Return the value of a response with its units: "1.49 m (1486 mm)"; a range if two spring laws were run."""
+    """Return the value of a response with its units: "1.49 m (1486 mm)"; a settlement by two spring laws as a range."""
     value, pier = worst.value, worst.case["pier"]
     if worst.demand == "theta_max_over_alpha":
         theta = value * float(pier["alpha"])

@@ -102,7 +102,7 @@ def _unmet(rule: Rule, matches: Mapping[str, Collection[str]], available: Availa
 
 
 def _no_section(rule: Rule, own: Collection[float], sections: Collection[float]) -> Iterator[Problem]:
-    """Yield the problem of a rule about a section that has no ``own`` among ``sections`` [m]."""
+    """Yield the problem of a rule on a section if no ``sections`` [m] are known, or none is at its height (``own`` is empty)."""
     if not DEMANDS[rule.demand].in_section:
         return
     if not sections:

@@ -155,7 +155,7 @@ def badness(verdict: Verdict) -> tuple[int, float]:
 
 
 def _column(verdicts: Sequence[Verdict]) -> Column:
-    """Return the column of one check, with its limit in the unit that suits its size."""
+    """Return the column of one check, with its limit in the unit that suits its size: "≤ 50 mm"; "none" for a ban."""
     first, heights = verdicts[0], {verdict.at_m for verdict in verdicts if not math.isnan(verdict.at_m)}
     if first.is_ban:
         return Column(first.check, "none", 1.0)
