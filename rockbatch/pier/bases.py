@@ -297,7 +297,7 @@ IMPULSIVE = (RigidBase.name,)
 
 
 def in_kilonewtons(pier: Pier, base: Base) -> dict[str, float]:
-    """Return K = β² p² M/2 [kN/m] and F_y = η M g/2 [kN] by study key; empty without a mass, or without two springs."""
+    """Return K = β² p² M/2 [kN/m], and F_y = η M g/2 [kN] if it yields, by study key; {} without mass or two springs."""
     if pier.mass_t is None or not base.two_springs:
         return {}
     values = {"stiffness_kN_m": 0.5 * pier.mass_t * vertical_frequency(pier, base) ** 2}

@@ -72,7 +72,7 @@ RATCHETING = tuple(name for name, law in LAWS.items() if law.creep is not None)
 
 
 def steady(word: str) -> str:
-    """Return the quoted names of the laws that do not ratchet, joined by commas and ``word``: "and" or "or"."""
+    """Return the quoted names of the laws that do not ratchet, joined by commas and ``word``: '"epp" and "hardening"'."""
     names = [f'"{name}"' for name in LAWS if name not in RATCHETING]
     return f" {word} ".join((", ".join(names[:-1]), names[-1]))
 

@@ -88,7 +88,7 @@ USUAL = {
 
 
 def wrong_blow(flexural_impact: str) -> str:
-    """Return why ``flexural_impact`` is not a rule of impacts on an elastic shaft; "" for "momentum", the only one."""
+    """Return the problem text of a ``flexural_impact`` other than "momentum", the only rule of a blow; "" for that."""
     if flexural_impact == "momentum":
         return ""
     if flexural_impact == "rate":
@@ -135,7 +135,7 @@ class Traits(InNotebook):
         refuse(wrong or unusual(USUAL, self.confirm, **{name: values[name] for name in USUAL if name in values}))
 
     def _wrong_together(self) -> list[Problem]:
-        """Return a problem for each contradiction between fields."""
+        """Return a problem for each contradiction between fields; none unless a class overrides it."""
         return []
 
     @property
