@@ -316,7 +316,7 @@ TRAILING = (
 
 
 def _of_observers(group: str) -> list[Quantity]:
-    """Return the quantities that observers bring at a place of the table, by the name that its ``group`` has there."""
+    """Return the quantities that all observers list under ``group``, a place in the table such as "FIRST"; [] for none."""
     return [quantity for quantities in parts(f"quantities.{group}") for quantity in quantities]
 
 
@@ -489,7 +489,7 @@ def as_markdown() -> str:
 
 
 def listed() -> dict[str, list[str]]:
-    """Return the names of all demands, grouped by what they depend on: the list in the example of checks."""
+    """Return the names of all demands by the heading of what they depend on: {"of every run": ["theta_max_over_alpha", …], …}."""
     return grouped(DEMANDS, _dependence)
 
 

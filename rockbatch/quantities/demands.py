@@ -199,7 +199,7 @@ OF_INTERACTION = {
 
 
 def in_flight(column: str) -> Evaluate:
-    """Return the evaluation of a column of flights; 0 for a complete run without a flight."""
+    """Return a function for a column of flights, without errors; 0 for a run that stood or overturned without a flight."""
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
         value, status = runs.numbers(column), runs.texts("status")

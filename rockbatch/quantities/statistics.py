@@ -19,7 +19,7 @@ MEAN_FROM = 7
 
 
 def quantile(values: Values, q: float) -> float:
-    """Return the quantile of ``values``, shape (n,), linear between ranks; infinite if a rank that it needs is infinite."""
+    """Return the quantile of ``values``, shape (n,), linear between ranks; infinite if a rank it needs is, NaN for n = 0."""
     return float(quantiles(np.sort(values), np.array([0]), np.array([len(values)]), q)[0])
 
 
@@ -88,7 +88,10 @@ def _p84_95_remark(values: Values) -> str:
 
 
 def _lognormal(values: Values) -> float:
-    """Return exp(m + z s), with mean m and deviation s of the logarithms; NaN for a single value, and if one is 0."""
+    """Return exp(m + z s), with mean m and deviation s of the logarithms; infinite if a value is.
+
+    NaN for a single value, and if one is 0.
+    """
     if np.isinf(values).any():
         return math.inf
     if len(values) < 2 or (values <= 0.0).any():
@@ -102,8 +105,9 @@ def _lognormal(values: Values) -> float:
 def _lognormal_interval(value: Values, low: Values, high: Values) -> tuple[float, float]:
     """Return the 95 % interval of the lognormal quantile, for all values between ``low`` and ``high``.
 
-    (m + z σ − x̄)/s √n has a non-central t distribution of ν = n − 1 and δ = z √n. The standard deviation of values that change
-    by d changes by no more than |d|/√(n − 1).
+    (m + z σ − x̄)/s √n has a non-central t distribution of ν = n − 1 and δ = z √n. The standard deviation of values that
+    change by d changes by no more than |d|/√(n − 1). Both ends are infinite if a ``low`` is; 0 and infinity for a single
+    value, a ``low`` of 0, or an infinite ``high``.
     """
     n = len(value)
     if np.isinf(low).any():

@@ -179,7 +179,10 @@ def as_dicts(runs: "pd.DataFrame") -> list[Row]:
 
 
 def foundation_key(case: str, columns: Mapping[str, object], varied: Sequence[str]) -> Key:
-    """Return the key of a foundation: case and varied values except the pier's; ``columns`` maps varied keys to values."""
+    """Return the key of a foundation: case name, and varied values but those of the pier and ``vertical``.
+
+    ``columns`` maps varied keys to values; a key that it lacks is "".
+    """
     return (case, *(as_in_peaks(columns.get(key)) for key in varied if _of_foundation(key)))
 
 
@@ -188,7 +191,7 @@ def _of_foundation(key: str) -> bool:
 
 
 def pier_key(columns: Mapping[str, object], varied: Sequence[str]) -> Key:
-    """Return the key of a pier: its varied values; ``columns`` maps varied keys to values."""
+    """Return the key of a pier: its varied values, "" for one that ``columns`` lacks; () if no key of the pier is varied."""
     return tuple(as_in_peaks(columns.get(key)) for key in varied if key in PIER_KEYS)
 
 

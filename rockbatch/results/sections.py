@@ -14,7 +14,7 @@ SECTIONS = "sections.csv"
 
 
 def section_rows(pier: Pier, sections: Sequence[Section]) -> list[dict[str, Any]]:
-    """Return a row for each section of a run of ``pier``."""
+    """Return a row for each section of a run of ``pier``; None for its forces in kN if the mass is not known."""
     rows = []
     for height, *forces, error in sections:
         in_kilonewtons = [None if pier.mass_t is None else pier.mass_t * force for force in forces]
