@@ -22,7 +22,11 @@ class Sized(NamedTuple):
 
 
 def scales_of(pier: Pier) -> Mapping[str, float]:
-    """Return the scales of quantities by name: of the weight, of friction tan α, and of a pier that leans by α; per unit mass."""
+    """Return sizes by kind of quantity ("force", "gap", "energy", …), a hundredth of which a change must reach to matter.
+
+    Per unit mass and in SI units: of the weight ("force", "moment"), 1 ("share"), tan α ("friction"), and of a pier that
+    leans by α (the rest). :func:`greatest_change` divides by no less.
+    """
     gap = 2.0 * pier.half_width * pier.alpha
     return {
         "force": pier.gravity,

@@ -158,7 +158,7 @@ def _moving(t: Array, theta: Array) -> tuple[float, float]:
 
 
 def _thinned(t: Array, y: Array, moving: tuple[float, float], pixels: int) -> tuple[Array, Array]:
-    """Return a history thinned to ``pixels`` while the pier moves, and to ``pixels`` per whole record outside."""
+    """Return times and values of a history thinned to ``pixels`` while the pier moves, and outside as for the whole record."""
     first, last = np.searchsorted(t, moving)
     parts = []
     for part in (slice(0, first), slice(first, last + 1), slice(last + 1, len(t))):
@@ -263,7 +263,7 @@ def _entry(run: Drawn) -> str:
 
 
 def _standing(one: History, row: int) -> Array:
-    """Return the values of a quantity up to the first |θ|/α beyond :data:`OVER`, shorter than those of a pier that stands."""
+    """Return the values of a quantity up to the first |θ|/α beyond :data:`OVER`, all of them for a pier that stands."""
     t, theta = one.curves[0]
     beyond = np.flatnonzero(np.abs(theta) > OVER)
     times, values = one.curves[row]
@@ -341,7 +341,7 @@ def _springs(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
 
 
 def _bed(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
-    """Return the moment of the bed about the middle of the foot, and how deep that is, against the rotation."""
+    """Return two panels over the rotation [mrad]: moment of the bed about the middle of the foot, and depth of that middle."""
     pier, history = response.pier, response.history
     theta = 1000.0 * response.theta
     left, right = (history[f"force_{side}"].to_numpy(dtype=np.float64) for side in ("left", "right"))

@@ -169,7 +169,7 @@ class Response(Shown):
 
     @classmethod
     def unread(cls, read: Callable[[], "Response"], **known: Any) -> Self:
-        """Return the response of fields that are ``known``; the histories are those of another one, ``read`` when needed."""
+        """Return a response of ``known`` fields, whose histories are those of the response that ``read`` returns if needed."""
         response = object.__new__(cls)
         response.__dict__.update(known, _read=read)
         return response
@@ -177,7 +177,7 @@ class Response(Shown):
     if not TYPE_CHECKING:  # of which a checker would conclude that any attribute exists
 
         def __getattr__(self, name: str) -> Any:
-            """Return a table of histories that have not been read."""
+            """Return a table of histories not read yet, reading all of them; raise ``AttributeError`` for any other name."""
             read = self.__dict__.get("_read") if name in READ_LATER else None
             if read is None:
                 raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}", name=name, obj=self)
@@ -186,7 +186,7 @@ class Response(Shown):
             return self.__dict__[name]
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return what a copy or a pickle has, its histories read: it does not depend on compiled code."""
+        """Return the fields for a copy or a pickle, with the histories read, so that they do not depend on compiled code."""
         tables = {table: getattr(self, table) for table in READ_LATER}
         return {name: value for name, value in self.__dict__.items() if name != "_read"} | tables
 
@@ -337,7 +337,7 @@ class Response(Shown):
         """Draw force against deformation of one device or support into ``ax``, as :meth:`plot_rotation` does; return the axes.
 
         ``of`` is "damper 1", "left" and so on; by default the first device, or the left support without any. Raises
-        ``InputError`` for another one, with those that there are.
+        ``InputError`` for an unknown name, and lists the names.
         """
         from rockbatch.common.figures.paper import panel_in
         from rockbatch.outcome.figures import loops

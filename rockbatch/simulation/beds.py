@@ -49,7 +49,10 @@ def with_fewer_strips(base: FootingBase) -> FootingBase:
 
 
 def with_strips_error(outcome: Outcome, fewer: Outcome) -> Outcome:
-    """Return ``outcome`` with the share of the strips in its errors, from that of half as many at the same step."""
+    """Return ``outcome`` with the share of the strips in its errors, from that of half as many at the same step.
+
+    Without errors and noted if ``fewer`` strips end otherwise; unchanged for a pier that did not stand.
+    """
     if outcome.status != "ok" or outcome.bed is None:
         return outcome
     if fewer.status != outcome.status:

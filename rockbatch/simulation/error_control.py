@@ -95,7 +95,10 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
 def _with_model_error(
     runs: Sequence[Run], outcomes: Sequence[Outcome | None], quiet_s: float, stop: Stop
 ) -> list[Outcome | None]:
-    """Return ``outcomes`` with the share of the bed's strips or the shaft's modes in their errors, by runs with fewer of them."""
+    """Return ``outcomes`` with the share of the bed's strips or the shaft's modes in their errors, by runs with fewer.
+
+    None for an outcome whose coarser run was stopped.
+    """
     found = list(outcomes)
     fewer = list[tuple[int, Run, int]]()
     for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True)):

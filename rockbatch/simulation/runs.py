@@ -130,7 +130,7 @@ class Stop:
 
 
 def quiet_samples(quiet_s: float, dt: float) -> int:
-    """Return the number of samples of a free-vibration tail, rounded up."""
+    """Return the number of samples of ``dt`` [s] in a free-vibration tail of ``quiet_s`` [s], rounded up."""
     return math.ceil(quiet_s / dt - 1e-9)
 
 
@@ -151,7 +151,7 @@ def _equipment(runs: Sequence[Run]) -> Equipment | None:
 
 
 def alike(run: Run) -> tuple[object, ...]:
-    """Return what runs must have in common to be computed side by side, beside their steps: system, and kinds of devices."""
+    """Return a key equal for runs that can be computed side by side at one step: their system, and kinds of devices."""
     return (*kernel_of(run.pier, run.base), signature(elements(run.pier, run.base)))
 
 
