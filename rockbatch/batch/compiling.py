@@ -83,7 +83,7 @@ def _compile(task: Task) -> None:
 
 
 def _compile_elsewhere(waiting: "deque[Task]") -> None:
-    """Compile waiting tasks, from the last, in another process; failures are left to this one."""
+    """Compile waiting tasks, from the last, in another process; what fails there is compiled in this one."""
     while task := _next_task(waiting.pop):
         with suppress(OSError):
             subprocess.run(

@@ -147,7 +147,7 @@ def announced_if_slow(listener: Listener, words: str) -> "Iterator[None]":
 
 
 def once(study: "Study") -> str:
-    """Return a remark that mirror images count once if a study has both polarities; else ""."""
+    """Return " (polarity: mirror images, counted once)" if a study has both polarities; else ""."""
     return " (polarity: mirror images, counted once)" if len(study.motions.polarity) > 1 else ""
 
 

@@ -47,7 +47,7 @@ _OF_FORCES = {
 
 
 def complain(file: TomlFile, settings: Forces, piers: Iterable[Pier]) -> None:
-    """Note keys that only forces use in a study without, which cost a second run with every step."""
+    """Add a problem to ``file`` for each key of a [[case]] that only forces use, unless the study has forces."""
     if settings.forces:
         return
     for table in file.tables("case", title="name"):

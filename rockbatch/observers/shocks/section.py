@@ -17,7 +17,7 @@ AT_REST = 0.001
 
 
 def section(finished: Finished) -> Markup:
-    """Report the response to each shock; empty if no motion is a sequence."""
+    """Return the report's section of the response to each shock; empty if no motion is a sequence."""
     path = finished.directory / SHOCKS
     rows = as_dicts(read_shocks(path, finished.info["varied"])) if path.exists() else []
     if not rows:
