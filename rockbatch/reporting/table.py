@@ -202,7 +202,7 @@ def _cells(kind: str, values: Iterable[object], form: str, **attributes: object)
 
 
 def _text(value: object, form: str) -> str:
-    """Return a value as HTML, formatted by ``form``; numbers, which are many, need no escaping."""
+    """Return a value as escaped HTML, a float formatted by ``form``; "" for None and NaN."""
     if isinstance(value, Markup):
         return value
     return number(value, form) if isinstance(value, float) else escape(number(value, form))
@@ -222,7 +222,7 @@ _HERE = Markup("\0")
 
 
 def shown_of(shown: int, all_: int, chosen_by: str = "first") -> Markup:
-    """Return a sentence that only ``shown`` of ``all_`` rows are shown; empty if all are."""
+    """Return a sentence that only ``shown`` of ``all_`` rows are shown, the ``chosen_by`` ones; empty if all are."""
     if shown >= all_:
         return Markup("")
     return tag("p", f"The {chosen_by} {shown:,} of {all_:,} rows are shown.", class_="muted")

@@ -54,7 +54,7 @@ def _of_target(finished: Finished, entry: str) -> list[Verdict]:
 
 
 def _below(finished: Finished, entry: str) -> str:
-    """Return words on the scales at which the suite's mean is below a target: "required, at scale 0.5"; empty if at none."""
+    """Return "required" if the suite's mean is below a target at scale 1 alone, else "required, at scale 0.5, 1"; "" if not."""
     failing = [verdict for verdict in _of_target(finished, entry) if verdict.verdict == FAIL]
     scales = [verdict.scale for verdict in failing if verdict.demand == MEAN_OVER_TARGET]
     if scales in ([], [1.0]):
