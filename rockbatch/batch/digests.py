@@ -21,7 +21,7 @@ _TOP = Path(__file__).parents[1]
 
 
 def digests(motions: Iterable[Motion], **settings: object) -> dict[str, str]:
-    """Return digests for a :class:`Journal`: of motions, of each setting by its ``repr``, and of the program."""
+    """Return digests of 16 digits for a :class:`Journal` by name: "motions", "program", and each setting, by its ``repr``."""
     hashes = {name: hashlib.sha256(repr(value).encode()) for name, value in settings.items()}
     hashes["motions"] = hashlib.sha256()
     for motion in motions:

@@ -232,7 +232,7 @@ class _Cases:
         return Line(NOT_DECIDED, _capital(text), self._with_ends(names), ())
 
     def _with_ends(self, names: Sequence[str]) -> str:
-        """Return the names of cases, first those with runs that do not end standing, with the number of these."""
+        """Return up to three names of cases, first those with most runs cut short: "pads, 2 of 10 runs overturned; piles"."""
         runs = {name: joined(self.runs[name]) for name in names if name in self.runs}
         ends = {name: runs[name].in_words if name in runs else "" for name in names}
         order = sorted(names, key=lambda name: -sum(runs[name].ended.values()) if ends[name] else 0)
@@ -301,7 +301,7 @@ class _Cases:
         )
 
     def _place(self, verdict: Verdict) -> str:
-        """Return case and check of a verdict in words, without a case that is the only one, and its bound."""
+        """Return "pads, drift, under stiff ground": case (unless it is the only one), check, and bound of the design, if any."""
         case = self.case_of(verdict) if len(self.every) > 1 else ""
         return ", ".join(filter(None, (case, verdict.check, under(verdict.columns))))
 
@@ -348,7 +348,7 @@ class _Cases:
         return sentences
 
     def _reason_of_verdict(self, verdict: Verdict) -> str:
-        """Return a sentence on why a check is not decided, with its limit and the run that leaves it open."""
+        """Return a sentence on why a check is not decided: its note, then the limit and run if bounds straddle the limit."""
         case = " ".join(
             filter(None, (f" in {self.case_of(verdict)}" if len(self.every) > 1 else "", under(verdict.columns)))
         )
@@ -374,7 +374,7 @@ class _Cases:
 
 
 def _excess(verdict: Verdict) -> float:
-    """Return the ratio by which a check exceeds its limit; infinite for events that must not occur, and without a ratio."""
+    """Return demand over limit of a failing check; infinite for events that must not occur, and for a ratio of NaN."""
     return math.inf if verdict.is_ban or math.isnan(verdict.ratio) else verdict.ratio
 
 
@@ -384,7 +384,7 @@ def _capital(words: str) -> str:
 
 
 def _few(names: Sequence[str]) -> str:
-    """Return up to :data:`MOST_NAMES` names; empty for more, which the scorecard lists."""
+    """Return the names with semicolons between them if there are at most three; "" for more, which the scorecard lists."""
     return "; ".join(names) if len(names) <= MOST_NAMES else ""
 
 

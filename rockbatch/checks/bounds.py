@@ -106,7 +106,7 @@ def _of_records(rule: Rule, records: Bounds) -> tuple[float, float, float]:
 
 
 def _statistic(rule: Rule, values: Values) -> float:
-    """Return the statistic of values, shape (n,), or the number of those above the threshold; NaN for n = 0."""
+    """Return the statistic of values, shape (n,), or with "count" the number above the rule's threshold; NaN for n = 0."""
     if len(values) == 0:
         return math.nan
     statistic = STATISTICS[rule.statistic or "max"]
@@ -138,16 +138,17 @@ def _by_record(runs: Bounds, counting: npt.NDArray[np.bool_], counted_as: Texts)
 
 
 def _governing(runs: Bounds, counting: npt.NDArray[np.bool_], *, by_bound: bool) -> int | None:
-    """Return the place of the run that demands most, or may (``by_bound``); None if no run demands anything."""
+    """Return the index of the counting run that demands most, by upper bounds if ``by_bound``; None if no demand is above 0."""
     first, second = (runs.high, runs.value) if by_bound else (runs.value, runs.high)
     order = [i for i in np.lexsort((-second, -first)) if counting[i]]  # a stable sort: of equal ones the first
     return int(order[0]) if order and first[order[0]] > 0 else None
 
 
 def lacking(counting: npt.NDArray[np.bool_], counted_as: Texts) -> dict[str, tuple[int, int]]:
-    """Return the numbers of runs that count and of runs expected, for each record of which some runs do not count.
+    """Return (runs that count, runs expected) of each record with runs of which some, but not all, count; {} if there is none.
 
-    The worst direction of such a record may be a missing one.
+    Expected are the runs of the record, or the usual number of the others if that is more. The missing direction may be the
+    worst.
     """
     planned, remaining = Counter(counted_as), Counter(counted_as[counting])
     usual = max(Counter(planned.values()).items(), key=lambda item: (item[1], item[0]))[0] if planned else 0

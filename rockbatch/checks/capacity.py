@@ -61,10 +61,10 @@ def _share(curve: Curve, axial: Values, moment: Values) -> Values:
 
 
 def used(curve: Curve, corners: "pd.DataFrame") -> "pd.DataFrame":
-    """Return a row for each run with the greatest share of a capacity that it uses, and its error.
+    """Return a row for each run with the greatest share of a capacity that it uses, infinite beyond the curve, and its error.
 
-    ``corners`` are the rows of interaction.csv of one section. The share is NaN if the error decides whether N is beyond an end
-    of the curve, and so may be any; the error is NaN where none was estimated.
+    ``corners`` are the rows of interaction.csv of one section. The share is NaN if the error decides whether N is beyond an
+    end of the curve, and so may be any; the error is NaN where none was estimated.
     """
     keys = [name for name in corners if name not in OF_INTERACTION]
     axial, moment, error = (corners[name].to_numpy(np.float64) for name in list(OF_INTERACTION)[1:])

@@ -211,7 +211,7 @@ def _place(axis: Axis) -> str:
 
 
 def _absent(rule: Rule, axis: Axis) -> str:
-    """Return the reason why the demand of a rule does not apply on an axis; empty if it does."""
+    """Return why the demand of a rule does not apply on an axis: "the pier has no damper"; "" if it applies."""
     demand, (case, suite) = DEMANDS[rule.demand], axis
     if not demand.applies_to(case):
         return f"a {case['base']} base has no {rule.demand}"
@@ -286,7 +286,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
 
 
 def _on_each(demand: OfSuite, axes: Sequence[Axis]) -> str:
-    """Return the demand of the run that governs on each of two axes; empty on one."""
+    """Return the demands of the governing run on two axes: "0.2 along the axis, 0.3 across the axis"; "" on one axis."""
     run = demand.governing
     if len(axes) == 1 or run is None:
         return ""
@@ -295,7 +295,7 @@ def _on_each(demand: OfSuite, axes: Sequence[Axis]) -> str:
 
 
 def _far(rule: Rule, value: float) -> str:
-    """Return the remark that no run comes near the limit, probably for a wrong unit; empty if one does or it is confirmed."""
+    """Return the remark that the value is below a hundredth of the limit; "" if it is not, is 0 or confirmed, or for a count."""
     key = limit_key(rule)
     if rule.statistic == "count" or key in rule.confirm or not 0.0 < FAR * value < rule.limit:
         return ""
@@ -303,7 +303,7 @@ def _far(rule: Rule, value: float) -> str:
 
 
 def _laws(demanded: Demanded, suite: Rows, deciding: int | None) -> list[str]:
-    """Return remarks that the worse of two spring laws counts, with the demands of the run ``deciding``; none of one law."""
+    """Return remarks that the worse of two spring laws counts, with both demands of run ``deciding``; [] if one law was run."""
     by_other = demanded.by_other
     if by_other is None:
         return []
@@ -332,7 +332,7 @@ def _remark_on_directions(records: Mapping[str, tuple[int, int]]) -> str:
 
 
 def _decide(rule: Rule, low: float, high: float, unmet: str = "") -> tuple[str, str]:
-    """Return the verdict on a demand within these bounds, and ``unmet`` unless it passes; with an unmet condition it cannot."""
+    """Return (verdict, ``unmet``) on a demand within these bounds: with an unmet condition it can fail, but not pass."""
     within, beyond = high <= rule.limit, low > rule.limit
     if rule.sense == "at least":
         within, beyond = low >= rule.limit, high < rule.limit
@@ -349,7 +349,7 @@ def _between(low: float, high: float) -> str:
 
 
 def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> str:
-    """Return the condition on the number of records that is not met, and whose condition it is; empty if all are met."""
+    """Return the unmet condition on the records: "5 stations count, EN 1998-1 asks for 7"; "" if all are met."""
     statistic = STATISTICS[rule.statistic or "max"]
     least, authority = statistic.least, statistic.code or (f"the {statistic.words}" if statistic.least > 1 else "")
     if rule.least is not None:

@@ -90,12 +90,12 @@ def unconverged(demand: Demand, error: Values, case: Case) -> npt.NDArray[np.boo
 
 
 def _at_a_point(demand: Demand, case: Case) -> bool:
-    """Return whether the demand is an acceleration of a point, which modes give slowly where dashpots stop the foot."""
+    """Return whether the demand is an acceleration of a point of a bending shaft on dashpots, which modes give slowly."""
     return demand.pointwise and bends(case) and not lands_by_impulse(case)
 
 
 def _follows_modes(demand: Demand, case: Case) -> bool:
-    """Return whether the modes of a bending shaft take up the blow of a landing in the demand.
+    """Return whether the modes of a bending shaft take up the blow of a landing: the demand has landings and bending in it.
 
     The shaft does not give along its axis, so that what stands on end of it, N and the feet's forces, is an impulse as ever.
     """

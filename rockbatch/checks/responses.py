@@ -80,7 +80,7 @@ class Worst(NamedTuple):
         return math.nan if lever is None else lever(self.case)
 
     def place_among(self, heights: Collection[float]) -> str:
-        """Return its height in words if ``heights`` are several; empty for one, which the head of the column has."""
+        """Return " at 72 m" if ``heights`` are several; "" for one, which stands in the head of the column."""
         return at(self.height) if len(heights) > 1 else ""
 
     @property
@@ -97,12 +97,8 @@ def standing(runs: "pd.DataFrame") -> npt.NDArray[np.bool_]:
 def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], *, at_each_scale: bool = False) -> list[Worst]:
     """Return the worst response of every case, at all scales or at each, for each of :data:`RESPONSES` that it has.
 
-    Parameters
-    ----------
-    runs : DataFrame
-        Rows of peaks.csv, of all cases.
-    cases : sequence of mappings
-        Cases as run.json has them.
+    ``runs`` are rows of peaks.csv of all cases, and ``cases`` as in run.json. None of a case without a run that ends
+    standing.
     """
     worst = []
     stood, table = standing(runs), Rows(runs)
@@ -154,10 +150,10 @@ def worst_of_all(worst: Iterable[Worst]) -> dict[str, Worst]:
 
 
 def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst]:
-    """Return the responses that govern the design of a case and that no check bounds.
+    """Return the worst responses of a case that govern its design and that no check bounds; [] if all are bounded.
 
-    Rotation always governs, and stands for drift and uplift; the drift of a shaft that bends governs beside it; settlement, tilt
-    and ductility do where a support yields, the residual rotation where dampers hold the pier at one on rigid ground.
+    Rotation always governs, and stands for drift and uplift; the drift of a shaft that bends governs beside it; settlement,
+    tilt and ductility do where a support yields, the residual rotation where dampers hold the pier at one on rigid ground.
     ``worst`` and ``verdicts`` are those of the case.
     """
     checked = {verdict.demand for verdict in verdicts if verdict.verdict != DOES_NOT_APPLY}
@@ -187,5 +183,5 @@ def in_words(worst: Worst) -> str:
 
 
 def _millimetres(metres: float) -> str:
-    """Return a length in mm, to whole mm from 0.1 m on, else with three significant digits."""
+    """Return a length [m] as text in mm, without unit: whole mm from 0.1 m on, else three significant digits."""
     return f"{1000 * metres:,.0f}" if metres >= 0.1 else f"{1000 * metres:.3g}"

@@ -153,7 +153,7 @@ class Rule:
 
     @cached_property
     def ways(self) -> dict[str, str]:
-        """Way of counting a run by its status, one of :data:`COUNTING`: overturned, flight and failed."""
+        """Way of counting, one of :data:`COUNTING`, by status: {"overturned": "infinite", …}; all infinite by ASCE 7-16."""
         given = {"overturned": self.overturned, "flight": self.flight, "failed": self.failed}
         usual = dict.fromkeys(USUAL, "infinite") if self.statistic == "asce7-16" else USUAL
         return {status: way or usual[status] for status, way in given.items()}
@@ -172,7 +172,7 @@ class Rule:
 
     @property
     def words(self) -> str:
-        """Name of the quantity that is compared with the limit: "mean of theta_max_over_alpha"."""
+        """What is compared with the limit: "mean of theta_max_over_alpha"; "no record overturns"; "eta" of a case."""
         return self.words_at(self.at_m)
 
     def words_at(self, height: float | None) -> str:
@@ -387,7 +387,7 @@ def _unknown_words(rule: Rule) -> list[Problem]:
 
 
 def _misfits(rule: Rule) -> list[Problem]:
-    """Return the contradictions between the attributes of a rule, each at one of these."""
+    """Return a problem for each contradiction between the attributes of a rule, with one of these as its key; [] for none."""
     wrong = (*_wrong_limit(rule), *_wrong_threshold(rule), *_wrong_for_code(rule), *_wrong_for_demand(rule))
     problems = [Problem(key, None, text, kind=Contradiction, named=False) for key, text in wrong]
     demand, code = DEMANDS[rule.demand], rule.statistic == "asce7-16"

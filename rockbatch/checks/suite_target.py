@@ -103,7 +103,7 @@ def _share(target: Target, scale: float) -> Condition:
 
 
 def _verticals(info: Mapping[str, Any]) -> Iterator[Condition]:
-    """Yield the condition that every station has the vertical component that is fitted."""
+    """Yield the condition that all recorded stations have the vertical component: their number, at least that of stations."""
     recorded = [record for record in info["records"] if record["source"] not in UNRECORDED]
     stations = {str(record.get("station") or record["record"]): False for record in recorded}
     stations |= {

@@ -114,7 +114,7 @@ class Verdict:
 
     @property
     def note(self) -> str:
-        """Return the remarks in one line."""
+        """Return the remarks in one line, with semicolons between them; "" for none."""
         return SEPARATOR.join(self.remarks)
 
     @property
@@ -129,7 +129,7 @@ class Verdict:
 
     @property
     def is_lower_bound(self) -> bool:
-        """True if the demand is at least its value, without an upper bound."""
+        """True if the upper bound alone is infinite: the demand is at least its value. False if that is for modes left out."""
         return math.isinf(self.high) and math.isfinite(self.value) and MODES not in self.omitted
 
     @property

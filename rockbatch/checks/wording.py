@@ -21,7 +21,7 @@ MOST = 30
 
 
 def name_of(verdict: Verdict) -> str:
-    """Return the name of the check, followed by the condition for a condition of a code on the suite."""
+    """Return the name of the check, for a condition of a code on the suite followed by it: "suite to target (stations)"."""
     if verdict.case or verdict.demand == MEAN_OVER_TARGET:
         return verdict.check
     return f"{verdict.check} ({verdict.words})"
@@ -71,7 +71,7 @@ def compared(value: float, limit: float, least: int = 4) -> str:
 
 
 def is_nothing(value: float, limit: float) -> bool:
-    """Return whether a demand is rounding beside its limit."""
+    """Return whether a demand is below 10⁻⁶ of the size of its limit, as rounding is; False for a limit of 0."""
     return abs(value) < ROUNDING * abs(limit)
 
 
@@ -213,7 +213,7 @@ def at(height: float) -> str:
 
 
 def requirements(verdicts: Iterable[Verdict]) -> dict[str, list[str]]:
-    """Return the requirements of each check by name, one for each height at which its demand is read."""
+    """Return up to three requirements of each check, by name, one for each height of its demand; then "likewise at 5 more …"."""
     asked = {name: list(dict.fromkeys(map(requirement, same))) for name, same in grouped(verdicts, name_of).items()}
     return {
         name: words
@@ -232,7 +232,7 @@ def requirement(verdict: Verdict) -> str:
 
 
 def unchecked(verdict: Verdict) -> str:
-    """Return on what a code's statistic rests, as the clause itself could not be checked; empty for other statistics."""
+    """Return the sources of a code's statistic, whose clause itself could not be checked; "" for other statistics."""
     return STATISTICS[verdict.statistic].unchecked if verdict.statistic in STATISTICS else ""
 
 

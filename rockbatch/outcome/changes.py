@@ -41,7 +41,10 @@ def scales_of(pier: Pier) -> Mapping[str, float]:
 
 
 def greatest_change(quantities: Mapping[str, Sized], fine: object, coarse: object, pier: Pier) -> tuple[str, float]:
-    """Return the name and relative change of the quantity that changes most from ``coarse`` to ``fine``; None counts as 0."""
+    """Return the name and relative change of the quantity that changes most from ``coarse`` to ``fine``; None counts as 0.
+
+    Changes are relative to the greatest ``fine`` value, or to :data:`FLOOR` of the quantity's scale if that is more.
+    """
     scales = scales_of(pier)
     changes = {}
     for name, (fields, scale) in quantities.items():

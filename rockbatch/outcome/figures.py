@@ -92,7 +92,7 @@ class History:
 
     @property
     def outcome(self) -> str:
-        """Return the largest |θ|/α with its time as text, or how the run ended early."""
+        """Return the largest |θ|/α with its time, "0.2345 at 12.3 s", or how the run ended early: "overturned at 8.1 s"."""
         if self.status in OUTCOMES:
             return f"{OUTCOMES[self.status]} at {self.end[0]:.1f} s"
         return f"{abs(self.peak[1]):.4f} at {self.peak[0]:.1f} s"
@@ -253,7 +253,7 @@ def _scale(histories: Sequence[History], row: int) -> Axis:
 
 
 def _lane(runs: int) -> float:
-    """Return the height of the strokes of one pier's events, as a share of the panel; 0 if they are not drawn."""
+    """Return the height of the strokes of one pier's events, as a share of the panel; 0 for more than four runs."""
     return 0.05 if runs == 1 else 0.03 if runs <= MOST_LANES else 0.0
 
 

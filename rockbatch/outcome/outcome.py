@@ -85,7 +85,7 @@ class BedDemands:
     pressure_error: float | None = None
 
     def mirrored(self) -> "BedDemands":
-        """Return the demands of the mirror image."""
+        """Return the demands of the mirror image: edges exchanged, and ``pressure_at`` with the other sign."""
         return replace(
             self,
             pressure_at=0.0 - self.pressure_at,

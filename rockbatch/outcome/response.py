@@ -160,7 +160,7 @@ class Response(Shown):
     sections: "pd.DataFrame | None" = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
-        """Say the units of the tables in their ``attrs``."""
+        """Set ``attrs["units"]`` of the tables of history, forces and impacts, those that are given."""
         of_tables = {"history": HISTORY_UNITS, "forces": {"t": "s"} | FORCE_UNITS, "impacts": IMPACT_UNITS}
         for name, units in of_tables.items():
             table = getattr(self, name)

@@ -87,7 +87,7 @@ class RigidBase(WithShaft):
         warnings.warn(message, Superseded, stacklevel=4)
 
     def parameters(self, pier: Pier) -> dict[str, object]:
-        """Return this base under ``pier`` by the keys of run.json."""
+        """Return this base under ``pier`` by the keys of run.json; ``restitution`` is None for Housner's value."""
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
         values: dict[str, object] = {"restitution": of_frame if self.restitution is None else self.restitution}
         values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
@@ -175,7 +175,7 @@ class ElasticBase(WithShaft):
 
     @property
     def first_loading(self) -> Curve:
-        """Return the curve of the springs' first loading, over static force and deflection."""
+        """Return the curve of the springs' first loading, over static force and deflection: straight, without end."""
         return Straight(math.inf)
 
     @property

@@ -129,7 +129,7 @@ class Stretch(NamedTuple):
 
 
 def _stretches(pier: Pier) -> tuple[Stretch, ...]:
-    """Return the shaft by its parts' rigidities, which add up where parts stand beside each other; else of E I = 1."""
+    """Return the shaft in stretches by its parts' rigidities, which add up side by side; else a single one of E I = 1."""
     parts = [part for part in pier.parts or () if part.length_m and part.flexural_rigidity_kNm2]
     if pier.flexural_period_s is not None or not parts:
         return (Stretch(0.0, pier.highest, 1.0, 0.0),)

@@ -78,6 +78,6 @@ def steady(word: str) -> str:
 
 
 def meanings() -> str:
-    """Return the quoted names of all laws with their meanings, joined by semicolons."""
+    """Return the quoted names of all laws with their meanings: '"bouc-wen", smooth, …; "epp", …; or "hardening", …'."""
     *others, last = (f'"{name}", {law.meaning}' for name, law in LAWS.items())
     return f"{'; '.join(others)}; or {last}"

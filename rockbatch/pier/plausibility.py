@@ -19,7 +19,10 @@ def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Prob
 
 
 def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Problem]:
-    """Return a problem for each device that is impossible under ``pier``; empty if all are possible."""
+    """Return a problem for each device that is impossible under ``pier``: at a frame's deck, off the base, or more friction.
+
+    Friction is solved at two places at most. [] if all are possible.
+    """
     wrong = []
     at_deck = any(isinstance(device, DeckSpring) or device.at == "deck" for device in restraints)
     if at_deck and pier.deck_over_columns is not None:

@@ -145,22 +145,22 @@ class Traits(InNotebook):
 
     @property
     def has_exponent(self) -> bool:
-        """Return True if the springs' law has an exponent n."""
+        """Return whether the springs' law has an exponent n: False unless a class overrides it."""
         return False
 
     @property
     def has_epsilon(self) -> bool:
-        """Return True if impacts have a restitution ε of the landing pivot."""
+        """Return whether impacts have a restitution ε of the landing pivot: False unless a class overrides it."""
         return False
 
     @property
     def asks_tension(self) -> bool:
-        """Return True if impacts need tension from a support, which it does not have."""
+        """Return whether impacts need tension from a support, which it has not: False unless a class overrides it."""
         return False
 
     @property
     def ratchets(self) -> bool:
-        """Return True if the springs settle cyclically under vibration (ratcheting)."""
+        """Return whether the springs settle cyclically under vibration (ratcheting): False unless a class overrides it."""
         return False
 
     @property
@@ -169,7 +169,7 @@ class Traits(InNotebook):
         return self.yields or holds_a_tilt(self.restraints)
 
     def by_other_law(self) -> Self:
-        """Return the base with its springs by the other law if its own law ratchets; otherwise itself."""
+        """Return the base by the other spring law if its own ratchets: itself unless a class overrides it."""
         return self
 
 

@@ -118,7 +118,7 @@ class Demand:
 
     @property
     def brings(self) -> set[str]:
-        """Keys of [output] that a check of it brings: the other law, since the worse counts."""
+        """Keys of [output] that a check of it brings: {"both_laws"} if there is another law's value, as the worse counts."""
         return {"both_laws"} if self.other_law else set()
 
     @property

@@ -199,7 +199,7 @@ class Quantity:
 
     @property
     def applies(self) -> str:
-        """Runs to which the quantity applies, in words; empty for all."""
+        """Runs to which the quantity applies: "yielding springs, if the pier stayed upright"; empty for all."""
         base = BASES_IN_WORDS[self.bases]
         run = "if the pier stayed upright" if self.stood else "if it occurs" if self.sometimes else ""
         return ", ".join(filter(None, (base, run)))

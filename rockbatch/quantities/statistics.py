@@ -128,7 +128,7 @@ def _lognormal_interval(value: Values, low: Values, high: Values) -> tuple[float
 
 
 def _lognormal_remark(values: Values) -> str:
-    """Return what decides a check of the lognormal quantile, in words."""
+    """Return the remark that the 95 % interval decides, or that a value of 0 has no lognormal distribution."""
     if (values <= 0.0).any():
         return "a record demands nothing, which no lognormal distribution has"
     return "its 95 % interval decides, as if the records were of a lognormal distribution"
@@ -143,7 +143,10 @@ def _max(values: Values) -> float:
 
 
 def _asce7_16(values: Values) -> float:
-    """Return the mean by ASCE 7-16; infinite values are unacceptable responses, of which two or more give infinity."""
+    """Return the mean by ASCE 7-16; infinite values are unacceptable responses, of which two or more give infinity.
+
+    One counts as 120 % of the median, or the mean of the others if that is greater.
+    """
     acceptable = values[np.isfinite(values)]
     if len(acceptable) == len(values):
         return _mean(values)

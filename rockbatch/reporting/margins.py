@@ -28,7 +28,7 @@ def headline(pair: Pair) -> str:
 
 
 def _state(side: str, study: Finished) -> str:
-    """Return what a study comes to: cases that pass with the closest to a limit, and those that do not with the worst."""
+    """Return what a study comes to: "A passes all in 2 of 3 cases, closest 83 % (…), and fails …"; "A has no limits"."""
     if not any(verdict.case for verdict in study.verdicts):
         return f"{side} has no limits"
     rows = scorecard(study.verdicts, named_designs(study), study.suites, study.worst_at_scales).rows
@@ -156,7 +156,7 @@ def _key(pair: Pair, place: int, verdict: Verdict) -> tuple[object, ...]:
 
 
 def _written(study: Finished, cell: tuple[Cell, str] | None) -> Iterator[object]:
-    """Yield demand, share of the limit and governing record of a cell; empty without one."""
+    """Yield three cells of a design: demand, share of the limit with its sign, and governing record; "not checked" for None."""
     if cell is None:
         yield from ("", tag("span", "not checked", class_="muted"), "")
         return

@@ -142,7 +142,7 @@ def _parts(
 
 
 def _width(head: Head, cells: Iterable[object], longest: int) -> int:
-    """Return the width of a column in characters, with the gap to the next one."""
+    """Return the width of a column in characters, at most ``longest`` for its cells, with the gap to the next one."""
     of_head = max((len(word) for word in re.split(r"[ \n]+", _plain(head.text))), default=0)
     return GAP + max(of_head, max((min(len(_plain(_text(cell, head.form))), longest) for cell in cells), default=0))
 

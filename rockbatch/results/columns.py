@@ -106,7 +106,7 @@ def units(study: Study) -> dict[str, str]:
 
 
 def with_units(table: "pd.DataFrame", of_columns: Mapping[str, str]) -> "pd.DataFrame":
-    """Return the ``table`` with the units of its columns in ``table.attrs["units"]``."""
+    """Set ``table.attrs["units"]`` to the units of its columns, and return the same table."""
     table.attrs["units"] = dict(of_columns)
     return table
 

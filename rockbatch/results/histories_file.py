@@ -75,7 +75,7 @@ OF_TWO_SPRINGS = ("z_left", "z_right")
 
 
 def columns_of(base: Base | type[Base], bends: bool) -> list[str]:
-    """Return the columns of a history that apply to a pier on ``base`` whose shaft ``bends`` or not."""
+    """Return the columns of a history of a pier on ``base``, without those of springs or of the shaft that do not apply."""
     lacking = () if base.two_springs else OF_TWO_SPRINGS if base.on_springs else OF_SPRINGS
     return [name for name in HISTORY_UNITS if name not in lacking and (bends or name != "deflection")]
 

@@ -133,7 +133,7 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
 
 
 def groups_of(runs: "pd.DataFrame", piers: Sequence[str]) -> "Iterator[tuple[str, pd.DataFrame]]":
-    """Yield a description and the runs of each scale, pier and vertical component.
+    """Yield a description, "" if only one is run, and the runs of each scale, pier and vertical component.
 
     A generator, since all groups together take as much memory as ``runs``.
     """

@@ -257,7 +257,7 @@ def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[
 
 
 def _expected(name: str) -> str:
-    """Return the values that a column allows, in words."""
+    """Return the values that a column allows: "0, 1" for a fact, "a whole number" for a count, else "a number"."""
     if name in FACTS:
         return "0, 1"
     return "a whole number" if name in COUNTS else "a number"

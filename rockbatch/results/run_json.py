@@ -224,7 +224,7 @@ def rocking_periods(cases: Sequence[Case], target: SpectrumTarget) -> dict[str, 
 
 
 def _period_at(pier: Pier, base: Base) -> list[float]:
-    """Return the free-rocking period [s] at :data:`rockbatch.pier.statics.COMPARED` of α; empty if it overturns there."""
+    """Return the free-rocking period [s] at a tenth of α in a list; [] if the pier overturns there or its swings are uneven."""
     free, amplitude = FreeRocking(pier, base), COMPARED * pier.alpha
     if free.turn.unstable is not None and free.turn.unstable <= amplitude:
         return []

@@ -33,7 +33,7 @@ def read_sections(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
 
 
 def columns_in(runs: "pd.DataFrame") -> tuple[dict[str, str], dict[str, str]]:
-    """Return headings with units, and columns, of shear, moment and axial forces: in kN if all rows have these, else over M."""
+    """Return headings with units, and columns, by force ("shear", "moment", …): in kN if all rows have these, else over M."""
     over_mass = bool(runs["section_shear_kN"].isna().any())
     symbols = {"shear": "V", "moment": "moment", "axial_least": "N", "axial_greatest": "N", "axial_at_moment": "N"}
     heads, columns = {}, {}

@@ -15,7 +15,7 @@ FEWER_STRIPS = "half as many strips come to another end: {status}; no error is c
 
 
 def of_bed(pier: Pier, base: FootingBase, result: Result, survived: bool) -> dict[str, Any]:
-    """Return what only piers on a footing have, by fields of Outcome: residuals if they ``survived``, demands on the bed."""
+    """Return fields of Outcome for a pier on a footing: demands on its ``bed``, and residuals if it ``survived``."""
     more: dict[str, Any] = {}
     edges: dict[str, float] = {}
     if survived and math.isfinite(result.lean):

@@ -209,7 +209,10 @@ def _with_notes(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float,
 
 
 def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: str) -> Outcome:
-    """Return the finest of a run's ``levels`` as a failed outcome: it keeps its values, and claims no errors."""
+    """Return the finest of a run's ``levels`` as a failed outcome, with its values and the reason, without errors.
+
+    Unchanged if it failed itself.
+    """
     finest = levels[-1].outcome
     if finest.status == "failed":
         return finest

@@ -172,7 +172,7 @@ def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
 
 
 def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str, Samples]:
-    """Return columns of a history on springs: state, pivots, forces, energy without devices (THEORY.md, Results of a run)."""
+    """Return columns of a history on springs: state, pivots, support forces, energy without devices since the start."""
     m = springs(pier, base)
     v, theta, z_left, z_right = rows.v, rows.theta, rows.z_left, rows.z_right
     b, h = m.half_width, m.height

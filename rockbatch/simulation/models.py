@@ -377,7 +377,7 @@ def _linear_part(pier: Pier, base: Base, element: Element, coefficient: float, e
 
 
 def _fastest(pier: Pier, base: Base) -> float:
-    """Return the greatest rate [1/s] of a pier without devices on springs; on rigid ground the bound for dampers, STEEP p."""
+    """Return the greatest rate [1/s] on springs, without devices; on rigid ground :data:`STEEP` p, the bound for dampers."""
     if not base.on_springs:
         return STEEP * pier.p
     return _fastest_on_springs(springs(pier, base)) if base.bends else fastest(pier, base)
@@ -457,8 +457,7 @@ def acceleration_at(samples: Samples, dt: float, t: Samples | float) -> Samples:
 
 
 def first_substeps(pier: Pier, base: Base, dt: float) -> int:
-    """Return the steps per sample of ``dt`` [s] of a first run, by the model's highest frequency; at least FIRST_ON_ROCK on a
-    rigid base."""
+    """Return the steps per sample of ``dt`` [s] of a first run, by the model's highest frequency; on a rigid base two or more."""
     return max(_substeps_for(FREQUENCY_STEP, pier, base, dt), 1 if base.on_springs else FIRST_ON_ROCK)
 
 

@@ -37,7 +37,7 @@ AT_REST = 1e-9
 
 
 def names(pier: Pier, base: Base) -> list[str]:
-    """Return the names of all devices, in their order: "damper 1 left", "damper 1 right", "tendon 1"."""
+    """Return the names of devices at each place, in order: "damper 1 left", "damper 1 right", "tendon 1", "deck spring 1"."""
     labels, counts = list[str](), Counter[str]()
     for device in base.restraints:
         counts[device.what] += 1

@@ -284,7 +284,7 @@ def _with_static_rotation(run: Run, result: Result, equipment: Equipment, number
 
 
 def _device_demands(run: Run, use: np.recarray) -> dict[str, float]:
-    """Return the demands on devices by the fields of Outcome, for the kinds that the base has."""
+    """Return the greatest demands on devices by the fields of Outcome; {} without devices, only kinds that the base has."""
     kinds = np.array([device.what for device in run.base.restraints for _ in places(run.pier, device)])
     dampers, tendons = (use[kinds == stop_kind].view(np.recarray) for stop_kind in ("damper", "tendon"))
     demands: dict[str, float] = {}
@@ -415,7 +415,7 @@ def cause_of_flight(
 
 
 def _spring_results(pier: Pier, base: ElasticBase, result: Result, survived: bool) -> dict[str, float]:
-    """Return the fields of Outcome on springs: residuals if the pier ``survived``, and demands on yielding springs."""
+    """Return fields of Outcome on springs: residuals if the pier ``survived``, demands if they yield; {} for neither."""
     more: dict[str, float] = {}
     if survived:
         # From the base's tilt to the rotation, static on the deformed base (THEORY.md, eq. 20)

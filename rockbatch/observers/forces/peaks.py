@@ -260,7 +260,7 @@ def _per_bounce(run: Run, events: np.recarray, after: np.ndarray) -> Samples | f
     """Return the factor from J_h/J_v of each impact in total to that of a single bounce; 1 except when coming to rest.
 
     Rest sums up ever lower bounces, each of which leaves the share e of the velocity: for one, J_h is (1 − e) and J_v (1 + e)
-    of the impulses of an immediate stop (THEORY.md, Forces).
+    of the impulses of an immediate stop (THEORY.md, Forces). 1 for all on springs.
     """
     if run.base.on_springs:
         return 1.0

@@ -41,7 +41,7 @@ class Rocking(Observer):
         return outcome.theta_max_error is not None
 
     def read(self, recording: Recording, outcome: Outcome) -> Apart:
-        """Return rocking and lean."""
+        """Return the greatest rocking about the lean, and lean and rocking at the peak [rad]."""
         base = recording.run.base
         assert isinstance(base, ElasticBase)
         return apart(recording.run.pier, base, recording.rows)

@@ -38,7 +38,7 @@ class EffectsOfShocks(Observer):
         return max(quiet_s, last.until - last.end)
 
     def read(self, recording: Recording, outcome: Outcome) -> OfShocks:
-        """Return the effects of each shock, and their peaks."""
+        """Return the effects of each shock, without errors, and the peaks from which errors follow."""
         return of_shocks(recording.run, outcome, recording.rows)
 
     def add(self, run: Run, outcome: Outcome, fine: OfShocks | None, coarse: OfShocks | None) -> Outcome:

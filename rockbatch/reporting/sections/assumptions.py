@@ -67,7 +67,7 @@ def _ground(cases: Collection[Case]) -> str:
 
 
 def _landings(cases: Collection[Case]) -> str:
-    """Return how energy is lost in landings, by the base and its numbers."""
+    """Return sentences on how landings lose energy, for each kind of base with its numbers, and its cases unless all."""
     parts = []
     if impulsive := [case for case in cases if lands_by_impulse(case)]:
         given = {case["parameters"].get("restitution") for case in impulsive if not bends(case)}
@@ -89,7 +89,7 @@ def _landings(cases: Collection[Case]) -> str:
 
 
 def _flight(cases: Collection[Case]) -> str:
-    """Return what happens when both pivots leave the ground."""
+    """Return a sentence for each way in which a flight of both pivots goes on or ends, with its cases unless all."""
     flying: dict[str, list[Case]] = {}
     for case in cases:
         flying.setdefault(case["parameters"].get("flight", "guided"), []).append(case)

@@ -116,7 +116,7 @@ def _parts(finished: Finished) -> list[Row]:
 
 
 def _piers(finished: Finished) -> list[Row]:
-    """Return the distinct piers with what the program computed of them, each with its cases if there are several."""
+    """Return each distinct pier as run.json has it, under ``case`` with the names of its cases if piers differ."""
     cases_of: dict[tuple[object, ...], list[Case]] = {}
     for case in finished.info["cases"]:
         cases_of.setdefault(tuple(case["pier"].items()), []).append(case)

@@ -40,7 +40,7 @@ DEVICES = tuple(f"{kind}_" for kind in KINDS)
 
 
 def section(finished: Finished, level: str = "h3") -> Markup:
-    """Describe piers, foundations and records; ``level`` is the tag of its subheadings."""
+    """Return piers, foundations and records in words; ``level`` is the tag of its subheadings."""
     cases, records = finished.info["cases"], finished.info["records"]
     factors = [float(record.get("factor", 1.0)) for record in records]
     ends = dict.fromkeys(f"{factor:.4g}" for factor in (min(factors, default=1.0), max(factors, default=1.0)))
@@ -114,7 +114,7 @@ def _foot(cases: Sequence[Case]) -> dict[str, float]:
 
 
 def drawings(finished: Finished) -> list[Markup]:
-    """Draw each distinct pier with its devices, captioned with its cases if there are several."""
+    """Return a sketch of each distinct pier with its devices, up to four, captioned with its cases if piers differ."""
     has_deck = "deck_mass_t" in finished.pier_as_given
     shown: dict[tuple[object, ...], tuple[Row, list[str]]] = {}
     for case in finished.info["cases"]:

@@ -186,7 +186,7 @@ def _share(names: Sequence[str], total: int) -> str:
 
 
 def _reasons(design: _Design, stations: Stations) -> Iterator[str]:
-    """Yield why a design that meets every limit is not decided."""
+    """Yield why a design that meets every limit is not decided: responses without a limit, its suite, or unusable records."""
     if design.free:
         words = dict.fromkeys(RESPONSES[its.demand].words for its in design.free)
         yield f"no check limits its {', '.join(words)}"
@@ -198,7 +198,7 @@ def _reasons(design: _Design, stations: Stations) -> Iterator[str]:
 
 
 def _suite(finished: Finished, design: _Design) -> str:
-    """Return the motions under which the design was run."""
+    """Return the sentence on the motions under which the design was run: their number, factors, directions and verticals."""
     records = finished.info["records"]
     recorded = [record for record in records if record["source"] not in UNRECORDED]
     parts = []
