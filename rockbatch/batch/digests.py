@@ -15,7 +15,7 @@ SHOW = ("commands", "terminal", "reporting", "__init__.py", "__main__.py", "comm
 """Packages and modules that only display rows; all others influence rows or the choice of runs."""
 
 OF_SLICES = ("command.py", "section.py", "figure.py")
-"""Modules of analyses and observers that only show rows, likewise."""
+"""Modules of analyses and observers that only display rows."""
 
 _TOP = Path(__file__).parents[1]
 

@@ -140,6 +140,6 @@ def _spread(steps: Sequence[float]) -> list[int]:
     chosen = [round((i + 0.5) * len(steps) / number - 0.5) for i in range(number)]
     chosen = sorted(
         chosen, key=lambda i: (i * 7919) % len(steps)
-    )  # shuffled, so that cutting the list off keeps it spread
+    )  # shuffled, so that the runs of a list cut off are still spread
     sums = accumulate(steps[i] for i in chosen)
     return [i for place, (i, total) in enumerate(zip(chosen, sums, strict=True)) if total <= STEPS_TRIED or place == 0]

@@ -82,7 +82,7 @@ def answer(
         None if passing or doubted or not of_cases else every.unchecked_alone(),
     ]
     missing = missing_stations(stations)
-    # It qualifies what passes; what fails does so without these stations, too
+    # Missing stations qualify a pass; a failure holds without them, too
     lines = [missing, *lines] if meeting else [*lines, missing]
     return [*_lines_on_suite(below), *filter(None, lines)]
 

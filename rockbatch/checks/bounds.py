@@ -101,7 +101,7 @@ def _of_records(rule: Rule, records: Bounds) -> tuple[float, float, float]:
     if interval is not None and len(records.value):
         low, high = interval(*records[:3])
     if rule.statistic == "asce7-16" and np.isinf(records.high).sum() > np.isinf(records.low).sum():
-        high = math.inf  # a response that is not known is not one of the unacceptable
+        high = math.inf  # an unknown response does not count as an unacceptable one
     return value, low, high
 
 
@@ -189,7 +189,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
             unknown |= ended
         elif way == "left out":
             counting &= ~ended
-    missing = np.isnan(value)  # such as the residual of a run that was cut short
+    missing = np.isnan(value)  # as the residual of a run that was cut short is
     unknown |= missing
     # A peak or a count is at least its value when the run was cut short; the value of an unsettled run bounds nothing
     nothing = missing | (unknown & (status == "failed"))

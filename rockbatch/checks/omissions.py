@@ -23,7 +23,7 @@ LANDINGS_OF_BENDING = "landings under a bending shaft"
 IMPULSES, BENDING = "impulses", "bending"
 
 FACTORS = "1.6 to 2.9"
-"""Base shear by twenty finite elements over that of a rigid shaft: of one with twice the mass of its top (THEORY.md, Forces)."""
+"""Base shear by twenty finite elements over that of a rigid shaft, of twice the mass on its top (THEORY.md, Forces)."""
 
 
 class Omission(NamedTuple):

@@ -51,7 +51,7 @@ RESPONSES = {
 springs the residual rotation follows from the tilt."""
 
 LOST = "runs that do not end standing"
-"""Heading of the number of such runs, beside the responses of the others."""
+"""Heading of the number of runs without a response, beside the responses of the others."""
 
 PERMANENT = ("settlement_m", "base_tilt_rad")
 """Responses of yielding supports only."""

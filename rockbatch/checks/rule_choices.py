@@ -44,7 +44,7 @@ class Available(NamedTuple):
 
 
 class Fitted(NamedTuple):
-    """A rule, what it is about of the cases, scales and sections [m] of a study, and its problems there."""
+    """A rule, the cases, scales and sections [m] of a study to which it applies, and its problems there."""
 
     rule: Rule
     cases: frozenset[str]

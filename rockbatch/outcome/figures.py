@@ -53,7 +53,7 @@ OVER = 1.5
 MOVES = 0.02
 """Share of the largest rotation, or of α if that is smaller, from which a pier counts as moving."""
 CUT = 0.9
-"""Share of the record above which the stretch in which piers move is not cut out of it."""
+"""Share of the record from which on it is drawn whole, instead of the stretch in which piers move."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +75,7 @@ class History:
     band : float
         |θ/α| up to which both supports of a weakly rocking pier stay loaded (THEORY.md, eq. 10); 0 on the rigid base.
     springs, devices : tuple of Panel
-        Force against deflection of both springs; force against elongation of the first dampers and tendons.
+        Force against deflection of both springs; force against elongation of the first devices.
     """
 
     status: str

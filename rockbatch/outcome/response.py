@@ -112,7 +112,7 @@ class Response(Shown):
     scale : float
         Factor on all components of the motion.
     restraints : DataFrame or None
-        Elongation [m] and force [N/kg], positive in tension, of every damper and tendon at the rows of ``history``, such as
+        Elongation [m] and force [N/kg], positive in tension, of every device at the rows of ``history``, such as
         ``damper 1 left force``; ``None`` without.
     row : Series or None
         The run's row of ``peaks.csv``, by the names and in the units of its columns; NaN or "" where a column does not
@@ -285,11 +285,12 @@ class Response(Shown):
         )
 
     def device_work(self, least_stroke_m: float = 0.01) -> "pd.DataFrame":
-        """Return the work of every damper and tendon, a row each, from the rows of the history; raise ``InputError`` without any.
+        """Return the work of every device, a row for each of its places, from the rows of the history.
 
-        ``travel_m``, cumulative travel, of a damper without its brace; ``energy_J_kg``, work per unit mass of the pier, and
-        ``energy_kJ``, NaN if the mass is not known; ``half_cycles`` with a range of at least ``least_stroke_m``, by rainflow
-        counting (ASTM E1049-85); ``strain_over_yield``, the greatest of a tendon that can yield, else NaN.
+        Raises ``InputError`` without devices. ``travel_m``, cumulative travel, of a damper without its brace;
+        ``energy_J_kg``, work per unit mass of the pier, and ``energy_kJ``, NaN if the mass is not known; ``half_cycles``
+        with a range of at least ``least_stroke_m``, by rainflow counting (ASTM E1049-85); ``strain_over_yield``, the
+        greatest of a tendon that can yield, else NaN.
 
         Examples
         --------
@@ -303,7 +304,7 @@ class Response(Shown):
         from rockbatch.outcome.device_work import Courses, work_of
 
         if self.restraints is None:
-            raise InputError(f"{self._title}: there is no damper and no tendon")
+            raise InputError(f"{self._title}: there are no devices")
         columns = list(self.restraints.columns[1:])
         elongation, pull = (self.restraints[columns[first::2]].to_numpy(dtype=np.float64) for first in (0, 1))
         work = work_of(self.pier, self.base, Courses(elongation, pull), least_stroke_m)
@@ -315,7 +316,7 @@ class Response(Shown):
 
     def plot(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
         """Return a matplotlib Figure of rotation, angular velocity, energy, ground motion and events against time, and of the
-        loops of supports, dampers and tendons, ``width_mm`` wide or in the place of ``ax``:
+        loops of supports and devices, ``width_mm`` wide or in the place of ``ax``:
         ``response.plot().savefig("pier.pdf")``."""
         from rockbatch.common.figures.paper import drawn
         from rockbatch.outcome.figures import of_one

@@ -43,7 +43,7 @@ class RigidBase(WithShaft):
 
     ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means :attr:`Pier.restitution`, Housner's
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
-    ``restraints`` are dampers and tendons between the pier and the ground.
+    ``restraints`` are devices between the pier and the ground: dampers, tendons, stops and deck springs.
     ``friction``, if known, is the coefficient of the interface: a run reports where its forces need more (THEORY.md, Forces).
     ``flight``, ``flight_limit_mm``, ``area_m2`` and ``confirm`` are as on springs (:class:`ElasticBase`).
     With ``shaft = "elastic"`` the pier bends in its ``flexural_modes`` lowest modes, by default in four or as many as its masses
@@ -77,7 +77,7 @@ class RigidBase(WithShaft):
     """β of ground that does not give: the limit of springs."""
 
     def __post_init__(self, flexural_impact: str | None) -> None:
-        """Check the fields; warn if ``flexural_impact`` is given, which has no effect any more."""
+        """Check the fields; warn of ``flexural_impact`` "momentum", without effect; ``WrongType`` for any other than that."""
         self._check()
         if flexural_impact is None:
             return

@@ -14,8 +14,8 @@ class Ground(Protocol):
 
 
 class Springs(Ground, Protocol):
-    """Ground that gives: its damping ratio, if any, η, by which deflections are measured, and its rocking stiffness over that
-    of the same springs at both edges."""
+    """Ground that gives: its damping ratio, if any, η, by which deflections are measured, and its rocking stiffness over the
+    stiffness of the same springs at both edges."""
 
     @property
     def zeta(self) -> float | None: ...

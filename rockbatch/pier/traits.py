@@ -17,7 +17,7 @@ LEAST_ETA = 1.000001
 """Least η: closer to 1, Bouc–Wen and hardening springs would sink without bound to carry the weight."""
 
 MOST_EXPONENT = 1000.0
-"""Greatest n of Bouc–Wen springs: their corner is as sharp as that of elastic–perfectly plastic ones, which have none."""
+"""Greatest n of Bouc–Wen springs: their corner is as sharp as that of elastic–perfectly plastic springs, without n."""
 
 FLIGHT_LIMIT_MM = 5.0
 """Height of flight [mm] beyond which a run has a note, unless the base gives another."""

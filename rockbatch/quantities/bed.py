@@ -1,4 +1,4 @@
-"""Quantities of a footing's bed, which a study with such a base brings."""
+"""Quantities of a footing's bed, in the tables of studies with a footing."""
 
 from collections.abc import Callable
 from typing import Any

@@ -172,7 +172,7 @@ FIXED = (
     ),
     Quantity("substeps", "integration steps per sample", "substeps", kind="count"),
 )  # fmt: skip
-"""Quantities that every table has, in its order; then come those of the keys that the study varies."""
+"""Quantities that every table has, in its order, before the keys that the study varies."""
 
 _CHANGED = "a motion 10⁻⁸ stronger or weaker"
 _KNOWN = "; empty with a fixed step, and of a run that failed"
@@ -312,7 +312,7 @@ TRAILING = (
         '; empty with kinematics = "finite"',
     ),
 )  # fmt: skip
-"""Quantities that follow those of the varied keys. A table of an earlier version may lack the last of them."""
+"""Quantities that every table has behind the varied keys. A table of an earlier version may lack the last of them."""
 
 
 def _of_observers(group: str) -> list[Quantity]:

@@ -16,7 +16,7 @@ from rockbatch.quantities.cases import ONE, Case, Lever, alpha, bends, holds_a_t
 from rockbatch.quantities.statistics import Values
 
 AT_HEIGHTS = {"sections": "sections = 5", "interaction": "interaction_m = [0.0]"}
-"""What demands in sections of the shaft need, and what to write under [output] for it."""
+"""Tables that demands in sections of the shaft need, and the line under [output] that brings each."""
 
 FORCES = "base_shear_m_s2"
 """A column that every run with forces has."""

@@ -138,7 +138,7 @@ def _designs(pair: Pair, place: int) -> dict[tuple[object, ...], Side]:
     found: dict[tuple[object, ...], Side] = {}
     for label, verdicts in by_label.items():
         key = _key(pair, place, verdicts[0])
-        if key in found:  # a value that only one study varies: not to be guessed
+        if key in found:  # only one study varies the value that tells them apart: they have no counterpart
             key = (*key, SIDES[place], label)
         card = scorecard(verdicts, of_label)
         cells = zip(card.columns, card.rows[0].cells, strict=True)

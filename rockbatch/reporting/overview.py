@@ -143,7 +143,7 @@ def _all(finished: Finished) -> str:
 
 
 def groups_worst_first(runs: "pd.DataFrame", by: str) -> list[Any]:
-    """Return the distinct values of column ``by``, those with most runs that overturn, fly or fail, then rotate most, first."""
+    """Return the distinct values of column ``by``, worst first: by overturned runs, then flights, failed runs, rotation."""
     groups = runs[by]
     ended = [(runs["status"] == status).groupby(groups).sum() for status in ("overturned", "flight", "failed")]
     stood = runs["theta_max_over_alpha"].where(runs["status"] == "ok").groupby(groups).max().fillna(0.0)

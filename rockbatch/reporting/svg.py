@@ -300,7 +300,7 @@ def _frame(box: Box) -> Markup:
         parts += [text(box.left - 4, float(box.down(at)) + 4, words, class_="e") for at, words in rows.items()]
     if x.numbered:
         every = math.ceil(7.0 * max(map(len, columns.values()), default=1) * len(columns) / box.width) if x.names else 1
-        shown = list(columns.items())[::every]  # every one would make names overlap
+        shown = list(columns.items())[::every]  # names of all columns would overlap
         parts += [text(float(box.across(at)), box.foot + 13, words, class_="m") for at, words in shown]
     return join(*parts)
 

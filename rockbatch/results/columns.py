@@ -141,7 +141,9 @@ def as_series(cells: Mapping[str, object]) -> "pd.Series":
     """Return a row of peaks.csv as a Series named after its record; optional columns only if they have a value."""
     present = [column for column in OPTIONAL if cells.get(column.name) is not None]
     columns = names((*FIXED, *TRAILING, *present))
-    values = [_as_in_table(name, cells.get(name)) for name in columns]  # a table of one row takes ten times as long
+    values = [
+        _as_in_table(name, cells.get(name)) for name in columns
+    ]  # making a table of one row takes ten times as long
     return pd.Series(values, index=columns, dtype=object, name=str(cells["record"]))
 
 

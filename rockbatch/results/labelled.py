@@ -124,7 +124,7 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
     if across := {case["case"] for case in info["cases"] if case.get("across_of")}:
         runs["pga"] = runs["pga"].where(
             ~runs["case"].isin(across), runs["pga_g"]
-        )  # run.json has that of the other component
+        )  # run.json has the PGA of the other component
     runs["with_vertical"] = _with_vertical(runs)
     keys = [key for key in varied if key in PIER_KEYS]
     digits = [digits_that_tell(values) for values in zip(*piers, strict=True)]

@@ -1,4 +1,4 @@
-"""shocks.csv: what each shock of a sequence does to a pier, a row for each shock of each run."""
+"""shocks.csv: effects of each shock of a sequence on a pier, a row for each shock of each run."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path

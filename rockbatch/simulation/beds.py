@@ -1,4 +1,4 @@
-"""Runs on a footing: what they came to, and the share of their errors that the number of strips has."""
+"""Runs on a footing: their outcome, and the share of the number of strips in its errors."""
 
 import math
 from dataclasses import replace

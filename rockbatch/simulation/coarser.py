@@ -1,4 +1,4 @@
-"""What a model with fewer strips of its bed, or fewer modes of its shaft, changes: a share of every error."""
+"""Change of results by fewer strips of a bed, or fewer modes of a shaft: a share of every error."""
 
 import math
 from dataclasses import replace
@@ -52,7 +52,7 @@ def _with_modes_error(outcome: Outcome, other: Outcome, chance: float) -> Outcom
 
 
 MOST_DAMPING = 0.1
-"""Damping ratio of the last mode beyond which its forces at a blow say nothing of those of further modes."""
+"""Damping ratio of the last mode beyond which its forces at a blow give no bound for further modes."""
 
 
 def of_last_mode(run: Run, change: float, chance: float) -> float:

@@ -76,7 +76,10 @@ class Observer:
         return fine
 
     def add(self, run: Run, outcome: Outcome, fine: Any, coarse: Any) -> Outcome:
-        """Return ``outcome`` with the results ``fine`` of its history and ``coarse`` by twice the step; None if not read."""
+        """Return ``outcome`` with the results ``fine`` of its history and ``coarse`` by twice the step; None if not read.
+
+        Unchanged unless a class overrides it.
+        """
         return outcome
 
     def histories(self, recording: Recording) -> "Mapping[str, pd.DataFrame]":

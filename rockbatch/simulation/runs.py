@@ -57,7 +57,7 @@ _STATUS = {
     types.OVERTURNED: "overturned",
     types.FLIGHT: "flight",
 }
-"""Statuses by those of the core; a run with any other has failed."""
+"""Statuses by the statuses of the core; a run with any other status has failed."""
 
 _FAILURES = {
     types.CHATTER: Failure.CONTACTS,

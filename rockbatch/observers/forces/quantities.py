@@ -62,7 +62,7 @@ def _in_kilonewtons(
 
 
 _TIMES_MASS = {"m/s^2": "kN", "m/s": "kN*s", "m^2/s^2": "kN*m"}
-"""Units of quantities over the mass [t], and of these."""
+"""Units of quantities over the mass, and of the same quantities times the mass [t]."""
 
 
 def _over_mass(

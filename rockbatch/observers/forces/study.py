@@ -43,7 +43,7 @@ _OF_FORCES = {
     "friction": "is compared only with the friction demand; write forces = true under [output], which computes it",
     "contact_stiffness_kN_m": "is of the force of a landing; write forces = true under [output], which computes it",
 }
-"""Keys of a [[case]] that only forces use, and what is missing without them."""
+"""Keys of a [[case]] that only forces use, each with its problem without forces."""
 
 
 def complain(file: TomlFile, settings: Forces, piers: Iterable[Pier]) -> None:

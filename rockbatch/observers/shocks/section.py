@@ -1,4 +1,4 @@
-"""Sequences shock by shock: peaks, and what is left of each when the next begins."""
+"""Sequences shock by shock: peaks, and the residuals when the next shock begins."""
 
 import math
 from collections import Counter

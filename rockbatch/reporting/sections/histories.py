@@ -29,7 +29,7 @@ MOTION = ("record", "polarity", "scale", "pier")
 
 
 class Picture(NamedTuple):
-    """The drawings of one motion, and what its caption depends on."""
+    """The drawings of one motion, and facts for its caption."""
 
     title: str
     cut: Axis | None

@@ -29,7 +29,7 @@ OF_PIER = {
     "flexural_period_s": "flexural period [s]",
     "shaft_share": "share of the shaft in the mass",
 }
-"""Heads of what run.json states of a pier, where a key of the study has another meaning or none."""
+"""Heads of values of a pier in run.json whose names mean something else in a study, or nothing."""
 OF_FOUNDATION = {
     "omega_v": "ω_v [rad/s]",
     "delta_s_m": "static deflection [m]",
