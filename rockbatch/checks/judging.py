@@ -309,9 +309,10 @@ def _laws(demanded: Demanded, suite: Rows, deciding: int | None) -> list[str]:
         return []
     remarks = ["the worse of two spring laws counts"]
     if deciding is not None and np.isfinite(by_other[deciding]):
-        remarks[0] += f": {demanded.own[deciding]:.4g} by that of the case, {by_other[deciding]:.4g} by the other"
+        remarks[0] += f": {demanded.own[deciding]:.4g} by the law of the case, {by_other[deciding]:.4g} by the other"
     missing = int((np.isnan(by_other) & (suite.texts("status") == "ok")).sum())
-    return [*remarks, f"by the other {missing} of the runs did not go through"] if missing else remarks
+    runs = "1 run" if missing == 1 else f"{missing} runs"
+    return [*remarks, f"{runs} did not go through by the other law"] if missing else remarks
 
 
 def _chaotic(runs: int) -> str:
