@@ -91,7 +91,8 @@ def marks_of(parameters):
     tied = any(
         isinstance(each, Restraint) for one in parameters for each in (one if isinstance(one, tuple) else (one,))
     )
-    marks = {"slow"} if any(isinstance(each, str) and "finite" in each for each in parameters) else set()
+    finite = any(isinstance(each, str) and "finite" in each for each in parameters)
+    marks = {"thorough" if tied else "slow"} if finite else set()
     for base in parameters:
         traits = compiled_traits(base, tied) if isinstance(base, Base) else set()
         if traits and traits not in ({"devices"}, {"damped"}):

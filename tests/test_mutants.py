@@ -131,7 +131,7 @@ JUDGED = {
 """Errors, the tests that they meet, and which notices them."""
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_an_error_is_noticed_by_a_sound_test_that_fails_with_it(tmp_path):
     from places import mutants
 
