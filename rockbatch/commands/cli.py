@@ -165,7 +165,7 @@ def _other_word(word: str, options: Sequence[str]) -> str | None:
 
 
 def _similar(word: str, options: Sequence[str]) -> str | None:
-    """Return the most similar of the options that discard no results; None if none is, or ``word`` is another option's name."""
+    """Return the most similar of the options that discard no results; None if none is, or ``word`` is another name for one."""
     if any(word in words.split() for words in _OPTIONS_MEANT.values()):
         return None
     return closest(word, [name for name in options if name not in DISCARDING])
