@@ -60,9 +60,10 @@ def given_rules(rules: str | os.PathLike[str] | Iterable[Rule]) -> tuple[Rule, .
 
 
 def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
-    """Return the rules of the [[check]] tables of a file; other tables of a study file are ignored.
+    """Return the rules of the [[check]] tables of a file, and of a file that its [suite] names.
 
-    Raises ``InputError`` with every mistake and its line.
+    Other tables of a study file are ignored. Raises ``InputError`` with every mistake and its line, and for a file without
+    checks.
     """
     file = _opened(Path(path))
     if "pier" not in file.data:
@@ -125,7 +126,7 @@ def _rules(
     usual: KeyValues,
     names: set[str],
 ) -> list[Rule]:
-    """Return the rules of the [[check]] tables without mistakes, with ``usual`` values of keys; add their names to ``names``."""
+    """Return the rules of the sound [[check]] tables, with ``usual`` values of keys; ``names`` gets their names."""
     rules: list[Rule] = []
     for table in tables:
         before = len(table.file.problems)
