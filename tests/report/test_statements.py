@@ -367,6 +367,7 @@ def test_verdicts_on_a_case_that_was_not_run_are_refused(tmp_path):
         rb.statement(results)
 
 
+@pytest.mark.slow
 def test_page_and_sheet_have_the_statements_of_as_many_cases_as_are_read(tmp_path):
     names = [f"c{i}" for i in range(MOST_CASES + 1)]
     peaks = pd.concat([runs((0.1, 0.2), name) for name in names], ignore_index=True)
