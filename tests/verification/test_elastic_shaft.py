@@ -35,7 +35,7 @@ from rockbatch.core.types import (
     Pull,
 )
 from rockbatch.motions.motion import Motion
-from rockbatch.observers.forces.peaks import at_rows
+from rockbatch.simulation.base_forces import at_rows
 from rockbatch.pier import modes_of
 from rockbatch.pier.bending import flexural_period
 from rockbatch.simulation import Run, run_fixed, written_run

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
-from rockbatch.observers.forces.peaks import at_rows
+from rockbatch.simulation.base_forces import at_rows
 from rockbatch.observers.sections.observe import ForcesInSections
 from rockbatch.outcome.changes import LEAST
 from rockbatch.outcome.outcome import Section
