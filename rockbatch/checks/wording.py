@@ -190,6 +190,8 @@ def governing(verdict: Verdict) -> str:
     text = f"{'left open by' if left_open else 'governs:' if alone else 'largest:'} {run(verdict)}"
     if verdict.is_ban:
         return text
+    if math.isnan(verdict.governing):
+        return text
     if math.isinf(verdict.governing):
         return f"{text}, beyond any limit"
     return f"{text}, {number(verdict.governing)} {_unit_of_demand(verdict)}".rstrip() + at(verdict.at_m)

@@ -102,7 +102,7 @@ def _is(verdict: Verdict, *, at_worst: bool) -> str:
     """Return the value of a verdict with its verb and its bounds, and that of the design if it is the worst of several."""
     bound = f", {_bound(verdict)}" if at_worst else ""
     if math.isnan(verdict.value):
-        return f"has no value{bound}"
+        return f"{'is not known' if math.isinf(verdict.high) else 'has no value'}{bound}"
     if math.isinf(verdict.value):
         return f"is beyond any limit{bound}"
     low, value, high = (_number(number, verdict) for number in (verdict.low, verdict.value, verdict.high))
