@@ -20,7 +20,6 @@ from rockbatch.simulation.runs import Run
 from rockbatch.simulation.sections import forces_in_sections
 from rockbatch.study import Output
 
-
 SHARES = np.array([0.25, 0.5, 0.75])
 """Shares of a step at which forces of the base are interpolated."""
 
