@@ -112,11 +112,11 @@ def used(curve: Curve, corners: "pd.DataFrame") -> "pd.DataFrame":
     )
     of_runs = shares.groupby(keys, sort=False, dropna=False).max().reset_index()
     value, least, most = (of_runs[name].to_numpy(np.float64) for name in ("over_capacity", "least", "high"))
-    unknown = np.isinf(most) & np.isfinite(least)
+    unbounded = np.isinf(most)
     with np.errstate(invalid="ignore"):
         # E_Rd is concave: what it loses by an error of N is more than what it gains by the opposite one
-        widest = np.where(np.isinf(least), 0.0, most - value)
+        widest = np.where(unbounded, np.inf, most - value)
     return of_runs[[*keys, "height_m"]].assign(
-        over_capacity=np.where(unknown, least, value),
-        over_capacity_error=np.where(of_runs["known"].to_numpy(bool), np.where(unknown, np.inf, widest), np.nan),
+        over_capacity=np.where(unbounded, least, value),
+        over_capacity_error=np.where(of_runs["known"].to_numpy(bool), widest, np.nan),
     )
