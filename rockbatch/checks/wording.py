@@ -158,7 +158,7 @@ class Notes:
         """Return the common remarks with their checks, and how runs that do not end standing count: a sentence each."""
         notes = [f"{', '.join(checks)}: {remark}." for remark, checks in self._common.items()]
         sentences = [
-            f"{', '.join(checks)}: runs that do not end standing count so: {kind}."
+            f"{', '.join(checks)}: runs that do not end standing count as follows: {kind}."
             for kind, checks in self._counting.items()
         ]
         return notes + sentences
