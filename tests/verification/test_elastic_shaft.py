@@ -35,10 +35,10 @@ from rockbatch.core.types import (
     Pull,
 )
 from rockbatch.motions.motion import Motion
-from rockbatch.observers.forces.peaks import at_rows
 from rockbatch.pier import modes_of
 from rockbatch.pier.bending import flexural_period
 from rockbatch.simulation import Run, run_fixed, written_run
+from rockbatch.simulation.base_forces import at_rows
 from rockbatch.simulation.coarser import of_last_mode
 from rockbatch.simulation.histories import of_modes
 from rockbatch.simulation.models import flexible_block
