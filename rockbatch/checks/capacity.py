@@ -41,7 +41,7 @@ def whole(parts: Sequence[Capacity]) -> Capacity | tuple[object, ...]:
 
 
 def problems(curve: Curve) -> Iterator[str]:
-    """Yield what is wrong with a curve: it must have two points or more, by ascending N, none below 0, and be concave."""
+    """Yield a phrase for each fault of a curve: under two points, below 0, N not ascending, or not concave."""
     if len(curve) < 2:
         yield "has fewer than two points; write [N, M] pairs from the greatest tension to the greatest compression"
     below = [f"[{n:g}, {m:g}]" for n, m in curve if m < 0.0]
@@ -75,7 +75,7 @@ def resistance(curve: Curve, axial: Values) -> Values:
 
 
 def _share(effect: Values, most: Values) -> Values:
-    """Return E/E_Rd, shape (n,); infinite where ``most``, E_Rd, is NaN or only it is 0."""
+    """Return E/E_Rd, shape (n,): 0 for E = 0; infinite where ``most``, E_Rd, is NaN, and for E > 0 where it is 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(effect > 0.0, effect / most, 0.0)
     return np.where(np.isnan(most), np.inf, share)
@@ -89,7 +89,7 @@ def _most_within(curve: Curve, low: Values, high: Values) -> Values:
 
 
 def used(curve: Curve, corners: "pd.DataFrame") -> "pd.DataFrame":
-    """Return a row for each run with the greatest share of a capacity that it uses, and its error.
+    """Return a row for each run with the greatest share of a capacity that it uses, infinite beyond the curve, and its error.
 
     ``corners`` are the rows of interaction.csv of one section, or of the base. If the error decides whether N is beyond an end of
     the curve, the share may be any from the one returned upwards, and its error is infinite; it is NaN where none was estimated.

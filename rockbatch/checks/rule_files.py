@@ -18,7 +18,7 @@ from rockbatch.toml.section import Key, Section
 
 SUITE = Section(
     ("suite",),
-    "What holds for every check that does not say otherwise, and where more of them are.",
+    "Values of keys for every check that does not give its own, and a file of further checks.",
     {
         "count": Key(choice(*COUNTS), '"component"', f"{COUNT}.", default=COUNTS[0]),
         "per_event": Key(count, "4", f"{PER_EVENT}; no limit if it is not given."),
@@ -61,9 +61,10 @@ def given_rules(rules: str | os.PathLike[str] | Iterable[Rule]) -> tuple[Rule, .
 
 
 def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
-    """Return the rules of the [[check]] tables of a file; other tables of a study file are ignored.
+    """Return the rules of the [[check]] tables of a file, and of a file that its [suite] names.
 
-    Raises ``InputError`` with every mistake and its line.
+    Other tables of a study file are ignored. Raises ``InputError`` with every mistake and its line, and for a file without
+    checks.
     """
     file = _opened(Path(path))
     if "pier" not in file.data:
@@ -126,7 +127,7 @@ def _rules(
     usual: KeyValues,
     names: set[str],
 ) -> list[Rule]:
-    """Return the rules of the [[check]] tables without mistakes, with ``usual`` values of keys; add their names to ``names``."""
+    """Return the rules of the sound [[check]] tables, with ``usual`` values of keys; ``names`` gets their names."""
     rules: list[Rule] = []
     for table in tables:
         before = len(table.file.problems)

@@ -16,7 +16,7 @@ from rockbatch.quantities.cases import ONE, Case, Lever, alpha, bends, holds_a_t
 from rockbatch.quantities.statistics import Values
 
 AT_HEIGHTS = {"sections": "sections = 5", "interaction": "interaction_m = [0.0]"}
-"""What demands in sections of the shaft need, and what to write under [output] for it."""
+"""Tables that demands in sections of the shaft need, and the line under [output] that brings each."""
 
 OF_BASE = "interaction_base"
 """Key of [output] for shear and normal force of the base at the same moment."""
@@ -206,7 +206,7 @@ OF_INTERACTION = {
 
 
 def in_flight(column: str) -> Evaluate:
-    """Return the evaluation of a column of flights; 0 for a complete run without a flight."""
+    """Return a function for a column of flights, without errors; 0 for a run that stood or overturned without a flight."""
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
         value, status = runs.numbers(column), runs.texts("status")

@@ -55,7 +55,7 @@ def _friction_hold(pier: Pier, base: RigidBase) -> Hold:
 
 
 def _outline(pier: Pier, base: RigidBase) -> Outline:
-    """Return the outline of a pier.
+    """Return the outline of a pier: size, width, and the place of its deck.
 
     The deck of a frame rests on corners of its columns, twice as far from their pivots as their centres of mass are.
     """

@@ -51,6 +51,7 @@ def independent(response, motion):
     return rows
 
 
+@pytest.mark.slow
 def test_the_numbers_are_those_of_the_history_read_by_other_code():
     found = read_motions("motions/near_fault")
     motion = rb.sequence([found["CHAN15"], found["CHAN24"], found["CHAN15"]], pause=6.0, factors=[2.0, 2.0, 1.0])
@@ -84,8 +85,8 @@ def test_what_is_left_after_each_shock_is_what_a_run_of_the_shocks_so_far_ends_w
 
 def test_a_base_that_yields_settles_with_every_shock_and_never_rises():
     settled = of(SOFT, *[shock(amplitude=7.0)] * 4, pause=40.0).shocks["settlement_m"]
-    assert (settled.diff().dropna() >= -1e-12).all()
-    assert settled.iloc[0] > 0.0
+    assert len(settled) == 4
+    assert (settled.diff(1).fillna(settled.iloc[0]) > 1e-6).all()
 
 
 def test_an_elastic_base_has_no_residual_and_a_rigid_one_without_dampers_none_at_all():
@@ -93,6 +94,7 @@ def test_an_elastic_base_has_no_residual_and_a_rigid_one_without_dampers_none_at
     assert of(rb.RigidBase(), shock(), shock()).shocks[["theta_res_over_alpha", "settlement_m"]].isna().all(axis=None)
 
 
+@pytest.mark.slow
 def test_dampers_that_hold_a_tilt_hold_it_until_the_next_shock():
     base = rb.RigidBase(restraints=(rb.Damper("friction", f=0.6),))
     table = of(base, shock(amplitude=9.0), shock(amplitude=9.0), pause=40.0).shocks
@@ -131,6 +133,7 @@ def study(folder, name="study.toml", **more):
     return write_study(folder, text, name)
 
 
+@pytest.mark.slow
 def test_the_table_has_a_row_for_each_shock_of_each_run_that_was_simulated(tmp_path):
     path, out = study(tmp_path), tmp_path / "out"
     peaks = rb.run(path, out=out, jobs=1)

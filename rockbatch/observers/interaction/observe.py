@@ -72,7 +72,10 @@ class InteractionInSections(Observer):
         return with_errors(fine, fewer, of_last_mode(run, 1.0, CHANCE))
 
     def add(self, run: Run, outcome: Outcome, fine: list[Envelope] | None, coarse: list[Envelope] | None) -> Outcome:
-        """Return ``outcome`` with a row of the table for each corner of ``fine``, if any, with errors by ``coarse``."""
+        """Return ``outcome`` with a row of the table for each corner of ``fine``, with errors by ``coarse``.
+
+        No rows without ``fine`` or a mass.
+        """
         if fine is None or run.pier.mass_t is None:
             return outcome.with_table(self.table, [])
         rows = []
@@ -85,7 +88,7 @@ class InteractionInSections(Observer):
 
 
 def requested(output: Output) -> InteractionInSections | None:
-    """Return the observer that a study asks for, if any."""
+    """Return the observer if [output] of a study asks for it, else None."""
     settings = output.of(Interaction)
     chosen = InteractionInSections(settings.interaction_m, settings.interaction_base)
     return chosen if chosen.heights or chosen.base else None

@@ -1,4 +1,4 @@
-"""Sequences shock by shock: peaks, and what is left of each when the next begins."""
+"""Sequences shock by shock: peaks, and the residuals when the next shock begins."""
 
 import math
 from collections import Counter
@@ -17,7 +17,7 @@ AT_REST = 0.001
 
 
 def section(finished: Finished) -> Markup:
-    """Report the response to each shock; empty if no motion is a sequence."""
+    """Return the report's section of the response to each shock; empty if no motion is a sequence."""
     path = finished.directory / SHOCKS
     rows = as_dicts(read_shocks(path, finished.info["varied"])) if path.exists() else []
     if not rows:
