@@ -31,11 +31,8 @@ def draw() -> Figure:
     axes = figure.subplots()
     axes.plot(axial / 1e3, moment / 1e3, lw=0.6, color="0.6", label="path of the run")
     axes.plot(corners.axial / 1e3, corners.effect / 1e3, ".-", ms=4, lw=1.0, label="its envelope")
-    axes.plot(
-        *([value / 1e3 for value in values] for values in zip(*check.curve, strict=True)),
-        color="tab:red",
-        label="capacity",
-    )
+    most = zip(*((n / 1e3, m / 1e3) for n, m in check.curve), strict=True)
+    axes.plot(*most, color="tab:red", label="capacity")
     axes.plot(min(axial) / 1e3, max(moment) / 1e3, "x", color="k", label="greatest M with least N")
     axes.legend(frameon=False)
     axes.set(xlabel="N [MN], compression positive", ylabel="|M| [MN m]", ylim=(0, None), xlim=(None, 80))

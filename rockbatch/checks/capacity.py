@@ -75,7 +75,7 @@ def resistance(curve: Curve, axial: Values) -> Values:
 
 
 def _share(effect: Values, most: Values) -> Values:
-    """Return E/E_Rd, shape (n,); infinite where ``most``, E_Rd, is NaN or only it is 0."""
+    """Return E/E_Rd, shape (n,): 0 for E = 0; infinite where ``most``, E_Rd, is NaN, and for E > 0 where it is 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(effect > 0.0, effect / most, 0.0)
     return np.where(np.isnan(most), np.inf, share)

@@ -44,7 +44,7 @@ class Available(NamedTuple):
 
 
 class Fitted(NamedTuple):
-    """A rule, the cases, scales and sections [m] (NaN: the base) of a study to which it applies, and its problems there."""
+    """A rule, the cases, scales and sections [m] of a study to which it applies, NaN for the base, and its problems there."""
 
     rule: Rule
     cases: frozenset[str]
@@ -119,9 +119,9 @@ def _no_section(rule: Rule, own: Collection[float], sections: Collection[float])
 
 
 def _without_dead_load(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
-    """Yield the problem of a capacity that has no resistance at the axial force of the dead load of any of the ``cases``.
+    """Yield the problem of a capacity whose curve does not reach the axial force of the dead load of any of the ``cases``.
 
-    That force is the weight at the base and in a section at the foot, and less above.
+    That force is the weight at the base and in a section at the foot, and less above. No problem without a known mass.
     """
     ends = [axial for axial, _ in rule.curve or ()]
     weights, at_foot = [weight(case) for case in cases if "mass_t" in case["pier"]], not rule.at_m

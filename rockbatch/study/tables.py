@@ -105,7 +105,7 @@ def _named(tables: list[TomlTable], names: Iterable[str], *place: str) -> dict[s
 
 
 def name_of(table: Mapping[str, TomlValue]) -> str:
-    """Return the name of a table among others of its kind: its preset, or of a single case its base, may be its name."""
+    """Return the name of a table, else its preset, or its base, by which a single case may be called, else ""."""
     return str(next((table[key] for key in ("name", "preset", "base") if key in table), ""))
 
 

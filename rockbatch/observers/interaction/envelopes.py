@@ -36,7 +36,7 @@ class Envelope(NamedTuple):
 
 
 def envelope(height: float | None, axial: Values, effect: Values) -> Envelope:
-    """Return the envelope of forces at many moments.
+    """Return the corners of the least concave envelope of |``effect``| over ``axial``, by ascending axial force.
 
     A ratio of E to a concave capacity, over time, is greatest at one of its corners (THEORY.md, Forces in sections).
     """
@@ -83,7 +83,7 @@ def thinned(of: Envelope) -> Envelope:
 
 
 def _turns_right(first: tuple[float, float], second: tuple[float, float], third: tuple[float, float]) -> bool:
-    """Return whether a path through three points, by ascending N, turns to the right at the second."""
+    """Return whether a path through three points, by ascending N, turns to the right at the second; False if it is straight."""
     (n, m), (n2, m2), (n3, m3) = first, second, third
     return (n2 - n) * (m3 - m) < (m2 - m) * (n3 - n)
 

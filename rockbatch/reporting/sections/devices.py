@@ -6,9 +6,9 @@ from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.reporting.sections.worst import of_cases
 
 LEGEND = (
-    "Largest value of each case over its records. Energies of dampers, stops and deck springs in J/kg are totals; other columns, "
-    "and the work of a damper in kJ, are for the most heavily loaded device. ≥: some runs stopped early; the true value may be "
-    "larger."
+    "Greatest values of each case over its records. Energies of dampers, stops and deck springs in J/kg are totals; other "
+    "columns, and the work of a damper, are of the device that has most of it. ≥: some runs of the case stopped early; the true "
+    "value may be larger."
 )
 
 
