@@ -149,7 +149,7 @@ def test_a_limit_is_odd_only_where_it_is_so_for_all_its_cases(tmp_path):
          'confirm = "heigth_m": this table has no such key; write one of "width_m", "height_m", "mass_t"'),
         ("numerics", "1e-4", '1e-4\nconfirm = "quiet_s"', 'this table has no such key; write one of "tolerance"'),
         ("numerics", "tolerance = 1e-4", 'confirm = "quiet_s"', 'this table has no such key; leave it out'),
-        ("check", "= 0.1", '= 0.1\nconfirm = "name"', 'confirm = "name": expected one of "at_most", "at_least", "above"'),
+        ("check", "= 0.1", '= 0.1\nconfirm = "name"', 'confirm = "name": expected one of "at_most", "at_least", "above", "capacity"'),
         ("numerics", "1e-4", "9e-13", "tolerance = 9e-13: must be 1e-12 or above, because rounding alone makes as much"),
         ("numerics", "1e-4", "0", "tolerance = 0: expected a number above 0; write for example tolerance = 1e-4"),
     ],
