@@ -1,19 +1,20 @@
 """Evaluation of rules on results: pass, fail or not decided."""
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
 
 import numpy as np
 
-from rockbatch.checks.bounds import SCATTER, Axis, Demanded, OfSuite, counted, lacking, of_suite
+from rockbatch.checks.bounds import SCATTER, Axis, Demanded, OfSuite, lacking, of_suite
 from rockbatch.checks.capacity import used
 from rockbatch.checks.endings import left_open
 from rockbatch.checks.events import OfEvent, largest_event
 from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.rule_choices import FAR, Available, Fitted, fitted, limit_key
-from rockbatch.checks.rules import Rule
+from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
@@ -22,7 +23,7 @@ from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.quantities.limits import OTHER_LAW
-from rockbatch.quantities.rows import complete, counts_as, rows_of_cases, simulated, with_case
+from rockbatch.quantities.rows import NOT_RUN, complete, counts_as, rows_of_cases, simulated, with_case
 from rockbatch.quantities.statistics import STATISTICS
 
 MOST_NAMES = 5
@@ -114,7 +115,7 @@ def judge(
             for fit, own in zip(fits, tables, strict=True):
                 if name in fit.cases and scale in fit.scales:
                     of_rule = [Axis(axis.case, axis.suite.same_rows_of(own)) for axis in axes]
-                    judged.append((fit.rule, _verdict(fit.rule, of_rule, scale, fit.rule.count or count, events or {})))
+                    judged.append(_verdict(fit.rule, of_rule, scale, fit.rule.count or count, events or {}))
             verdicts += left_open(judged, [axis.suite for axis in axes])
     return verdicts
 
@@ -180,13 +181,26 @@ def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, co
         basis=rule.basis,
         reason=rule.reason,
         counting=rule.counting,
-        counted=counted(rule, suites),
+        counted=_ended_early(rule, suites),
         remarks=(),
         count="" if demand.per_case else count,
         unit="" if rule.statistic == "count" else demand.unit,
         at_m=math.nan if height is None else height,
         axes=combined,
     )
+
+
+def _ended_early(rule: Rule, suites: Iterable[Rows]) -> str:
+    """Return the number of runs that did not go through, and how they count: "1 overturned (infinite), 2 flight (unknown)"."""
+    numbers: Counter[str] = Counter()
+    for runs in suites:
+        numbers.update(np.where(runs.missing, NOT_RUN, runs.texts("status")).tolist())
+    parts = []
+    for name in (*USUAL, NOT_RUN):
+        if n := numbers[name]:
+            way = rule.ways["failed" if name == NOT_RUN else name]
+            parts.append(f"{n} {name} ({way})" if DEMANDS[rule.demand].per_run else f"{n} {name}")
+    return ", ".join(parts)
 
 
 def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
