@@ -58,6 +58,13 @@ def write(path: Path, table: Iterable[Mapping[str, object]]) -> Path:
     return path
 
 
+def present(path: Path, key: str) -> Path:
+    """Return ``path``; raise ``InputError`` if there is no such file, with the ``key`` of a study that asks for it."""
+    if not path.exists():
+        raise InputError(f"{path}: not there; add {key} to the study and start `rockbatch run` again")
+    return path
+
+
 def read_beside(
     path: Path, varied: Sequence[str], columns: Iterable[str], texts: Collection[str] = ()
 ) -> "pd.DataFrame":
