@@ -20,7 +20,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
+from rockbatch.quantities.cases import Case, creeps, has_device, is_across, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.rows import NOT_RUN, complete, counts_as, rows_of_cases, simulated, with_case
@@ -83,7 +83,7 @@ def judge(
         needs: rows for needs, rows in (("sections", sections), ("interaction", interaction)) if rows is not None
     }
     available = Available(
-        cases=list(dict.fromkeys(str(case["case"]) for case in cases if not case.get("across_of"))),
+        cases=list(dict.fromkeys(str(case["case"]) for case in cases if not is_across(case))),
         scales=scales,
         other_law=OTHER_LAW in runs or not any(map(creeps, cases)),
         output=[key for key, columns in BROUGHT.items() if _has_columns(runs, columns)],
@@ -215,7 +215,7 @@ def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
 
 def _place(axis: Axis) -> str:
     """Return "along the axis" or "across the axis"."""
-    return "across the axis" if axis.case.get("across_of") else "along the axis"
+    return "across the axis" if is_across(axis.case) else "along the axis"
 
 
 def _absent(rule: Rule, axis: Axis) -> str:

@@ -394,7 +394,7 @@ class Motion(Shown):
             "check": ", ".join(finding.what for finding in self.findings),
         }
 
-    @property
+    @cached_property
     def exchanged(self) -> "Motion":
         """Return the motion with ``horizontal`` and ``across`` exchanged; it must have both."""
         assert self.across is not None
