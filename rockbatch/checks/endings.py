@@ -13,7 +13,6 @@ import numpy.typing as npt
 
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, NOT_DECIDED, PASS, Verdict
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.rows import counts_as
 
 
@@ -67,7 +66,7 @@ def _ended(suite: Rows, ending: str) -> npt.NDArray[np.bool_]:
 
 def _allowed(event: str, verdicts: Sequence[Verdict]) -> bool:
     """Return whether one of the verdicts is on the number of records with this event."""
-    return any(its.demand == event or (its.statistic == _SAYS_ALL and DEMANDS[its.demand].per_run) for its in verdicts)
+    return any(verdict.demand == event or verdict.statistic == _SAYS_ALL for verdict in verdicts)
 
 
 def _reason(verdict: Verdict, suites: Sequence[Rows], ended: Mapping[str, Sequence[npt.NDArray[np.bool_]]]) -> str:
