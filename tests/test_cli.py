@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -314,8 +314,11 @@ def terminal(monkeypatch, rows, columns):
     with os.fdopen(theirs, "w") as stream:
         monkeypatch.setattr("sys.stderr", stream)
         yield shown
-        stream.flush()
-        shown.append(os.read(ours, 100_000).decode())
+    pieces = []  # a terminal hands over what it shows in pieces, of which the last may come late
+    with suppress(OSError):  # at the end, since the other side is closed
+        while piece := os.read(ours, 100_000):
+            pieces.append(piece)
+    shown.append(b"".join(pieces).decode())
     os.close(ours)
 
 

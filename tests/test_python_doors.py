@@ -204,6 +204,7 @@ def test_an_interrupted_run_goes_on_from_python(study, commanded, tmp_path, monk
     assert 6 not in counts  # finished: histories alone are made again
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("name", ANALYSES)
 def test_an_analysis_has_the_tables_of_the_command_and_saves_them(study, commanded, nowhere, name):
     before = files(commanded)

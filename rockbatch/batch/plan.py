@@ -11,7 +11,7 @@ from rockbatch.study import Study
 
 
 def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
-    """Return a motion times ``scale``, its horizontal component reversed for polarity "-"; itself if unchanged."""
+    """Return a motion times ``scale``, with its horizontal component reversed for polarity "-"; the same object for 1 and "+"."""
     if scale == 1.0 and polarity == "+":
         return motion
     return motion.times(scale, reverse=polarity == "-")

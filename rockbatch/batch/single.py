@@ -138,7 +138,7 @@ def simulate(
 
 
 def _read(kept: "HistoriesOfRun", run: Run, outcome: Outcome, quiet_s: float, wait: bool) -> Response:
-    """Return the histories of a run that nothing else observes."""
+    """Return the histories of a run that no other observer reads; recorded apart if it is too long for observers."""
     (outcome,) = observed([run], [outcome], [kept], quiet_s, error=False, wait=wait)
     return outcome.tables.get(kept.table) or _recorded(kept, run, outcome, quiet_s, wait)
 

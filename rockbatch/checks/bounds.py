@@ -100,12 +100,12 @@ def _of_records(rule: Rule, records: Bounds) -> tuple[float, float, float]:
     if interval is not None and len(records.value):
         low, high = interval(*records[:3])
     if rule.statistic == "asce7-16" and np.isinf(records.high).sum() > np.isinf(records.low).sum():
-        high = math.inf  # a response that is not known is not one of the unacceptable
+        high = math.inf  # an unknown response does not count as an unacceptable one
     return value, low, high
 
 
 def _statistic(rule: Rule, values: Values) -> float:
-    """Return the statistic of values, shape (n,), or the number of those above the threshold; NaN for n = 0."""
+    """Return the statistic of values, shape (n,), or with "count" the number above the rule's threshold; NaN for n = 0."""
     if len(values) == 0:
         return math.nan
     statistic = STATISTICS[rule.statistic or "max"]
@@ -125,7 +125,7 @@ def _on_both_axes(axes: Sequence[Bounds], how: str) -> Bounds:
 
 
 def _by_record(runs: Bounds, counting: npt.NDArray[np.bool_], counted_as: Texts) -> Bounds:
-    """Return the demand of each record: the worst of its runs that are ``counting``. Empty if every run is left out."""
+    """Return the demand of each record, by sorted names: the worst of its ``counting`` runs. Empty if every run is left out."""
     names, record = np.unique(counted_as[counting], return_inverse=True)
 
     def worst(of_runs: Values) -> Values:
@@ -137,16 +137,17 @@ def _by_record(runs: Bounds, counting: npt.NDArray[np.bool_], counted_as: Texts)
 
 
 def _governing(runs: Bounds, counting: npt.NDArray[np.bool_], *, by_bound: bool) -> int | None:
-    """Return the place of the run that demands most, or may (``by_bound``); None if no run demands anything."""
+    """Return the index of the counting run that demands most, by upper bounds if ``by_bound``; None if no demand is above 0."""
     first, second = (runs.high, runs.value) if by_bound else (runs.value, runs.high)
     order = [i for i in np.lexsort((-second, -first)) if counting[i]]  # a stable sort: of equal ones the first
     return int(order[0]) if order and first[order[0]] > 0 else None
 
 
 def lacking(counting: npt.NDArray[np.bool_], counted_as: Texts) -> dict[str, tuple[int, int]]:
-    """Return the numbers of runs that count and of runs expected, for each record of which some runs do not count.
+    """Return (runs that count, runs expected) of each record with runs of which some, but not all, count; {} if there is none.
 
-    The worst direction of such a record may be a missing one.
+    Expected are the runs of the record, or the usual number of the others if that is more. The missing direction may be the
+    worst.
     """
     planned, remaining = Counter(counted_as), Counter(counted_as[counting])
     usual = max(Counter(planned.values()).items(), key=lambda item: (item[1], item[0]))[0] if planned else 0
@@ -187,7 +188,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
             unknown |= ended
         elif way == "left out":
             counting &= ~ended
-    missing = np.isnan(value)  # such as the residual of a run that was cut short
+    missing = np.isnan(value)  # as the residual of a run that was cut short is
     unknown |= missing
     # A peak or a count is at least its value when the run was cut short; the value of an unsettled run bounds nothing
     nothing = missing | (unknown & (status == "failed"))
@@ -204,9 +205,10 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
 
 
 def _chaotic(demand: Demand, runs: Rows, error: Values) -> npt.NDArray[np.bool_]:
-    """Return True for each run whose demand is chaotic, shape (n,): its ``error`` is withdrawn, or that of the peak.
+    """Return True for each chaotic run without an ``error``, and, but for a residual, without one of its peak either, shape (n,).
 
-    An earlier version did not write the column: a run that ended well, and claims no error beside others that do, counts as such.
+    An earlier version did not write the column: a run that ended well, and claims no error beside others that do, counts as
+    such.
     """
     of_peak, ended_well = runs.numbers("theta_max_error"), np.isin(runs.texts("status"), ("ok", "flight"))
     withheld = np.isnan(of_peak) & ended_well & bool(np.isfinite(of_peak).any())

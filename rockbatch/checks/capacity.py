@@ -21,7 +21,7 @@ _ROUNDING = 1e-9
 
 
 def problems(curve: Curve) -> Iterator[str]:
-    """Yield what is wrong with a curve: it must have two points or more, by ascending N, no M below 0, and be concave."""
+    """Yield a phrase for each fault of a curve: under two points, M below 0, N not ascending, or not concave."""
     if len(curve) < 2:
         yield "has fewer than two points; write [N, M] pairs from the greatest tension to the greatest compression"
     below = [f"[{n:g}, {m:g}]" for n, m in curve if m < 0.0]
@@ -53,7 +53,7 @@ def resistance(curve: Curve, axial: Values) -> Values:
 
 
 def _share(curve: Curve, axial: Values, moment: Values) -> Values:
-    """Return M/M_Rd(N), shape (n,); infinite beyond the ends of the curve, and where only M has no capacity."""
+    """Return M/M_Rd(N), shape (n,): 0 for M = 0; infinite for N beyond the ends of the curve, and for M > 0 where M_Rd = 0."""
     most = resistance(curve, axial)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(moment > 0.0, moment / most, 0.0)
@@ -61,10 +61,10 @@ def _share(curve: Curve, axial: Values, moment: Values) -> Values:
 
 
 def used(curve: Curve, corners: "pd.DataFrame") -> "pd.DataFrame":
-    """Return a row for each run with the greatest share of a capacity that it uses, and its error.
+    """Return a row for each run with the greatest share of a capacity that it uses, infinite beyond the curve, and its error.
 
-    ``corners`` are the rows of interaction.csv of one section. The share is NaN if the error decides whether N is beyond an end
-    of the curve, and so may be any; the error is NaN where none was estimated.
+    ``corners`` are the rows of interaction.csv of one section. The share is NaN if the error decides whether N is beyond an
+    end of the curve, and so may be any; the error is NaN where none was estimated.
     """
     keys = [name for name in corners if name not in OF_INTERACTION]
     axial, moment, error = (corners[name].to_numpy(np.float64) for name in list(OF_INTERACTION)[1:])

@@ -59,18 +59,18 @@ def _undecided(
 
 
 def _ended(suite: Rows, ending: str) -> npt.NDArray[np.bool_]:
-    """Return True for each run with this ending of :data:`ENDINGS`, shape (n,)."""
+    """Return True for each run with this ending of :data:`ENDINGS`, shape (n,); one that overturned is none that may overturn."""
     status = suite.texts("status")
     return suite.facts("may_overturn") & (status != "overturned") if ending == MAY_OVERTURN else status == ending
 
 
 def _allowed(event: str, verdicts: Sequence[Verdict]) -> bool:
-    """Return whether one of the verdicts is on the number of records with this event."""
+    """Return whether a verdict is on the number of records with this event: its demand is the event, or its code ASCE 7-16."""
     return any(verdict.demand == event or verdict.statistic == _SAYS_ALL for verdict in verdicts)
 
 
 def _reason(verdict: Verdict, suites: Sequence[Rows], ended: Mapping[str, Sequence[npt.NDArray[np.bool_]]]) -> str:
-    """Return the number of records with each of these endings, and the check to write."""
+    """Return how many records have these endings, and the check to write: "1 of 8 stations overturns the pier, and no …"."""
     names = [counts_as(suite, verdict.count)[0] for suite in suites]
     total = len({*np.concatenate(names)})
     parts = list(_numbers(ended, names))

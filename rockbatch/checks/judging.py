@@ -121,7 +121,10 @@ def judge(
 
 
 def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", fit: Fitted) -> Rows:
-    """Return runs with the forces in the section of a rule, from the table that it needs; NaN for a run without that section."""
+    """Return runs with the forces in the section of a rule, from the table that it needs; NaN for a run without that section.
+
+    Raises ``InputError`` if a run has two sections at the height of the rule.
+    """
     its = sections[sections["height_m"].isin(fit.sections)]
     if fit.rule.capacity is not None:
         its = used(fit.rule.capacity, its)
@@ -132,7 +135,7 @@ def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", fit: Fitted) -> R
 
 
 def _has_columns(runs: "pd.DataFrame", columns: Collection[str]) -> bool:
-    """Return whether results have one of the ``columns`` of a key of [output], or no device that they are about."""
+    """Return whether results have a column of these of a key of [output]; True also if no pier has the devices they are of."""
     devices = {"", *(COLUMNS[name].device for name in runs if name in COLUMNS)}  # other devices have no columns here
     return any(name in runs for name in columns) or not any(COLUMNS[name].device in devices for name in columns)
 
@@ -191,7 +194,7 @@ def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, co
 
 
 def _ended_early(rule: Rule, suites: Iterable[Rows]) -> str:
-    """Return the number of runs that did not go through, and how they count: "1 overturned (infinite), 2 flight (unknown)"."""
+    """Return how many runs did not go through, and how each counts: "1 overturned (infinite), 2 not run (unknown)"; or ""."""
     numbers: Counter[str] = Counter()
     for runs in suites:
         numbers.update(np.where(runs.missing, NOT_RUN, runs.texts("status")).tolist())
@@ -204,7 +207,10 @@ def _ended_early(rule: Rule, suites: Iterable[Rows]) -> str:
 
 
 def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
-    """Return the verdict on a property of the case, the worse of both axes; ``none`` is the verdict without its numbers."""
+    """Return the verdict on a property of the case, the worse of both axes; it does not apply if that needs a mass not given.
+
+    ``none`` is the verdict without its numbers.
+    """
     worse = max if rule.sense == "at most" else min
     value = worse(float(DEMANDS[rule.demand].evaluate(axis.suite, axis.case).value[0]) for axis in axes)
     if math.isnan(value):
@@ -214,12 +220,12 @@ def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
 
 
 def _place(axis: Axis) -> str:
-    """Return "along the axis" or "across the axis"."""
+    """Return "across the axis" for a case across the axis of another one (``across_of``), else "along the axis"."""
     return "across the axis" if is_across(axis.case) else "along the axis"
 
 
 def _absent(rule: Rule, axis: Axis) -> str:
-    """Return the reason why the demand of a rule does not apply on an axis; empty if it does."""
+    """Return why the demand of a rule does not apply on an axis: "the pier has no damper"; "" if it applies."""
     demand, (case, suite) = DEMANDS[rule.demand], axis
     if not demand.applies_to(case):
         return f"a {case['base']} base has no {rule.demand}"
@@ -237,7 +243,10 @@ def _absent(rule: Rule, axis: Axis) -> str:
 
 
 def _with_numbers(verdict: Verdict, value: float, low: float, high: float) -> Verdict:
-    """Return the verdict with a value and its bounds, and with their ratio to the limit and margin; NaN for a value of NaN."""
+    """Return the verdict with a value, its bounds, ratio to the limit, and margin, negative beyond the limit.
+
+    NaN for a value of NaN. The ratio to a limit of 0 is infinite, and 0 for a value of 0.
+    """
     limit = verdict.limit
     numerator, denominator, margin = value, limit, limit - value
     if verdict.sense == "at least":
@@ -271,7 +280,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
         statistic.remark(demand.records.high) if statistic.remark and n else "",
         unknown,
         *(of_event.remarks if of_event else ()),
-        "" if none.count == "component" else _directions(lacking(counting, counted_as)),
+        "" if none.count == "component" else _remark_on_directions(lacking(counting, counted_as)),
         *dict.fromkeys(remark for of_axis in laws for remark in of_axis),
         "" if demand.records.estimated or DEMANDS[rule.demand].event else "no error estimate",
         *dict.fromkeys(_chaotic(int(its.chaotic.sum())) for its in demand.axes),
@@ -291,7 +300,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
 
 
 def _on_each(demand: OfSuite, axes: Sequence[Axis]) -> str:
-    """Return the demand of the run that governs on each of two axes; empty on one."""
+    """Return the demands of the governing run on two axes: "0.2 along the axis, 0.3 across the axis"; "" on one axis."""
     run = demand.governing
     if len(axes) == 1 or run is None:
         return ""
@@ -300,7 +309,7 @@ def _on_each(demand: OfSuite, axes: Sequence[Axis]) -> str:
 
 
 def _far(rule: Rule, value: float) -> str:
-    """Return the remark that no run comes near the limit, probably for a wrong unit; empty if one does or it is confirmed."""
+    """Return the remark that the value is below a hundredth of the limit; "" if it is not, is 0 or confirmed, or for a count."""
     key = limit_key(rule)
     if rule.statistic == "count" or key in rule.confirm or not 0.0 < FAR * value < rule.limit:
         return ""
@@ -308,15 +317,16 @@ def _far(rule: Rule, value: float) -> str:
 
 
 def _laws(demanded: Demanded, suite: Rows, deciding: int | None) -> list[str]:
-    """Return remarks that the worse of two spring laws counts, with the demands of the run ``deciding``; none of one law."""
+    """Return remarks that the worse of two spring laws counts, with both demands of run ``deciding``; [] if one law was run."""
     by_other = demanded.by_other
     if by_other is None:
         return []
     remarks = ["the worse of two spring laws counts"]
     if deciding is not None and np.isfinite(by_other[deciding]):
-        remarks[0] += f": {demanded.own[deciding]:.4g} by that of the case, {by_other[deciding]:.4g} by the other"
+        remarks[0] += f": {demanded.own[deciding]:.4g} by the law of the case, {by_other[deciding]:.4g} by the other"
     missing = int((np.isnan(by_other) & (suite.texts("status") == "ok")).sum())
-    return [*remarks, f"by the other {missing} of the runs did not go through"] if missing else remarks
+    runs = "1 run" if missing == 1 else f"{missing} runs"
+    return [*remarks, f"{runs} did not go through by the other law"] if missing else remarks
 
 
 def _chaotic(runs: int) -> str:
@@ -327,8 +337,8 @@ def _chaotic(runs: int) -> str:
     return f"{words} known to a factor of {SCATTER:g}"
 
 
-def _directions(records: Mapping[str, tuple[int, int]]) -> str:
-    """Return the remark on records of which some runs do not count, with the numbers of runs; empty for none."""
+def _remark_on_directions(records: Mapping[str, tuple[int, int]]) -> str:
+    """Return the remark on records of which only some runs count: "not every direction counts, …: WTMC (3 of 4)"; "" for none."""
     if not records:
         return ""
     names = [f"{name} ({used} of {total})" for name, (used, total) in records.items()]
@@ -337,7 +347,7 @@ def _directions(records: Mapping[str, tuple[int, int]]) -> str:
 
 
 def _decide(rule: Rule, low: float, high: float, unmet: str = "") -> tuple[str, str]:
-    """Return the verdict on a demand within these bounds, and ``unmet`` unless it passes; with an unmet condition it cannot."""
+    """Return (verdict, ``unmet``) on a demand within these bounds: with an unmet condition it can fail, but not pass."""
     within, beyond = high <= rule.limit, low > rule.limit
     if rule.sense == "at least":
         within, beyond = low >= rule.limit, high < rule.limit
@@ -354,7 +364,7 @@ def _between(low: float, high: float) -> str:
 
 
 def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> str:
-    """Return the condition on the number of records that is not met, and whose condition it is; empty if all are met."""
+    """Return the unmet condition on the records: "5 stations count, EN 1998-1 asks for 7"; "" if all are met."""
     statistic = STATISTICS[rule.statistic or "max"]
     least, authority = statistic.least, statistic.code or (f"the {statistic.words}" if statistic.least > 1 else "")
     if rule.least is not None:

@@ -44,7 +44,7 @@ class Available(NamedTuple):
 
 
 class Fitted(NamedTuple):
-    """A rule, what it is about of the cases, scales and sections [m] of a study, and its problems there."""
+    """A rule, the cases, scales and sections [m] of a study to which it applies, and its problems there."""
 
     rule: Rule
     cases: frozenset[str]
@@ -102,7 +102,7 @@ def _unmet(rule: Rule, matches: Mapping[str, Collection[str]], available: Availa
 
 
 def _no_section(rule: Rule, own: Collection[float], sections: Collection[float]) -> Iterator[Problem]:
-    """Yield the problem of a rule about a section that has no ``own`` among ``sections`` [m]."""
+    """Yield the problem of a rule on a section if no ``sections`` [m] are known, or none is at its height (``own`` is empty)."""
     if not DEMANDS[rule.demand].in_section:
         return
     if not sections:
@@ -117,9 +117,9 @@ def _no_section(rule: Rule, own: Collection[float], sections: Collection[float])
 
 
 def _without_dead_load(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
-    """Yield the problem of a capacity that has no moment at the axial force of the dead load of any of the ``cases``.
+    """Yield the problem of a capacity whose curve does not reach the axial force of the dead load of any of the ``cases``.
 
-    That force is the weight in a section at the foot, and less above.
+    That force is the weight in a section at the foot, and less above. No problem without a known mass.
     """
     ends = [axial for axial, _ in rule.capacity or ()]
     weights = [weight(case) for case in cases if "mass_t" in case["pier"]]
@@ -164,7 +164,7 @@ def limit_key(rule: Rule) -> str:
 
 
 def _far_from(name: str, value: float, cases: Sequence[Case]) -> str:
-    """Return a message about a limit far from the parameter of every case, or from the weight; empty if it is near one."""
+    """Return a message on a limit far from the parameter of every case, or from the weight; "" if near one, or unknown."""
     demand = DEMANDS[name]
     if demand.per_case:
         no_runs = Rows(pd.DataFrame())

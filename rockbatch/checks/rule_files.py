@@ -63,9 +63,10 @@ def given_rules(rules: str | os.PathLike[str] | Iterable[Rule]) -> tuple[Rule, .
 
 
 def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
-    """Return the rules of the [[check]] tables of a file; other tables of a study file are ignored.
+    """Return the rules of the [[check]] tables of a file, and of a file that its [suite] names.
 
-    Raises ``InputError`` with every mistake and its line.
+    Other tables of a study file are ignored. Raises ``InputError`` with every mistake and its line, and for a file without
+    checks.
     """
     file = _opened(Path(path))
     if "pier" not in file.data:
@@ -130,7 +131,7 @@ def _rules(
     unmet: Callable[[Rule], Iterable[Problem]] | None,
     names: set[str],
 ) -> tuple[list[Rule], KeyValues]:
-    """Return the rules of the [[check]] tables without mistakes, and the values of [suite], or else the ``usual`` ones.
+    """Return the rules of the sound [[check]] tables, and the values of [suite], or else the ``usual`` ones.
 
     ``section`` has the keys of [suite]. Mistakes become problems of ``file``, such as a name that is among ``names``, to which
     those of the tables are added.

@@ -148,19 +148,19 @@ class Rule:
 
     @property
     def sense(self) -> str:
-        """ "at most" or "at least"."""
+        """ "at most" if ``at_most`` is given, else "at least"."""
         return "at most" if self.at_most is not None else "at least"
 
     @cached_property
     def ways(self) -> dict[str, str]:
-        """Way of counting a run by its status, one of :data:`COUNTING`: overturned, flight and failed."""
+        """Way of counting, one of :data:`COUNTING`, by status: {"overturned": "infinite", …}; all infinite by ASCE 7-16."""
         given = {"overturned": self.overturned, "flight": self.flight, "failed": self.failed}
         usual = dict.fromkeys(USUAL, "infinite") if self.statistic == "asce7-16" else USUAL
         return {status: way or usual[status] for status, way in given.items()}
 
     @property
     def on_both_axes(self) -> str:
-        """Way to combine the demands on both axes, in words: "SRSS of both axes"; for a property of the case, the worse."""
+        """Way to combine both axes: "SRSS of both axes"; of an event "on either axis", with ``at_least`` the lesser."""
         if DEMANDS[self.demand].event:
             return EITHER
         return BOTH_AXES[self.both_axes or "greater"] if self.sense == "at most" else LESSER
@@ -172,7 +172,7 @@ class Rule:
 
     @property
     def words(self) -> str:
-        """Name of the quantity that is compared with the limit: "mean of theta_max_over_alpha"."""
+        """What is compared with the limit: "mean of theta_max_over_alpha"; "no record overturns"; "eta" of a case."""
         return self.words_at(self.at_m)
 
     def words_at(self, height: float | None) -> str:
@@ -192,7 +192,7 @@ class Rule:
 
     @property
     def counting(self) -> str:
-        """Ways of counting runs that do not go through, in words; empty for events and properties of the case."""
+        """Ways of counting runs cut short: "overturned: infinite; flight, failed: unknown"; "" unless it is of every run."""
         if not DEMANDS[self.demand].per_run:
             return ""
         by_way = grouped(self.ways, self.ways.__getitem__)
@@ -200,7 +200,7 @@ class Rule:
 
 
 def is_ban(demand: str, statistic: str, limit: float) -> bool:
-    """Return whether a check with these asks that an event (``demand``) happens under no record."""
+    """Return whether a check bans an event such as "overturned": its statistic is "max", and its limit in 0 ≤ limit < 1."""
     return demand in DEMANDS and DEMANDS[demand].event and statistic == "max" and 0 <= limit < 1
 
 
@@ -372,7 +372,7 @@ CHECK = Section(
 
 
 def _unknown_words(rule: Rule) -> list[Problem]:
-    """Return the problem of each attribute that is not one of the words that its key allows."""
+    """Return a problem for each attribute that is not one of the words of its key; None, numbers and lists are not looked at."""
     wrong = []
     for name, key in CHECK.items():
         value = getattr(rule, name)
@@ -387,7 +387,7 @@ def _unknown_words(rule: Rule) -> list[Problem]:
 
 
 def _misfits(rule: Rule) -> list[Problem]:
-    """Return the contradictions between the attributes of a rule, each at one of these."""
+    """Return a problem for each contradiction between the attributes of a rule, with one of these as its key; [] for none."""
     wrong = (*_wrong_limit(rule), *_wrong_threshold(rule), *_wrong_for_code(rule), *_wrong_for_demand(rule))
     problems = [Problem(key, None, text, kind=Contradiction, named=False) for key, text in wrong]
     demand, code = DEMANDS[rule.demand], rule.statistic == "asce7-16"
@@ -419,7 +419,7 @@ def _wrong_limit(rule: Rule) -> Iterator[tuple[str, str]]:
 
 
 def _wrong_threshold(rule: Rule) -> Iterator[tuple[str, str]]:
-    """Yield the problem of a threshold that is missing beside "count", or given beside another statistic."""
+    """Yield the problem of ``above`` missing beside "count", but for events and properties, or given with another statistic."""
     demand = DEMANDS[rule.demand]
     if rule.above is not None and rule.statistic != "count":
         yield "above", 'above: is for statistic = "count"; leave it out'

@@ -114,7 +114,7 @@ class Verdict:
 
     @property
     def note(self) -> str:
-        """Return the remarks in one line."""
+        """Return the remarks in one line, with semicolons between them; "" for none."""
         return SEPARATOR.join(self.remarks)
 
     @property
@@ -124,12 +124,12 @@ class Verdict:
 
     @property
     def left_open(self) -> str:
-        """Return the name of the first omission without which the demand has no upper bound; empty if there is none."""
+        """Return the first omission that leaves the demand without an upper bound, by name; empty if there is none."""
         return next((name for name in self.omitted if not OMISSIONS[name].decides), "")
 
     @property
     def is_lower_bound(self) -> bool:
-        """True if the demand is at least its value, without an upper bound."""
+        """True if the upper bound alone is infinite: the demand is at least its value. False if that is for modes left out."""
         return math.isinf(self.high) and math.isfinite(self.value) and MODES not in self.omitted
 
     @property
@@ -161,7 +161,7 @@ def as_table(verdicts: Iterable[Verdict]) -> "pd.DataFrame":
 
 
 def _table(verdicts: Iterable[Verdict]) -> tuple[list[str], list[dict[str, object]]]:
-    """Return columns and rows of checks.csv."""
+    """Return the names of the columns of checks.csv, those of varied values behind ``case``, and a mapping for each row."""
     rows: list[dict[str, object]] = []
     varied: dict[str, None] = {}
     for verdict in verdicts:
@@ -210,7 +210,7 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
 
 
 def _value(text: str) -> float | str:
-    """Return the value of a varied key, a number if it is one. Raises ``ValueError`` for NaN or an infinite one."""
+    """Return the value of a varied key: a number, or a text. Raises ``ValueError`` for NaN or an infinite number."""
     try:
         number = float(text)
     except ValueError:

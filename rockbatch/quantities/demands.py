@@ -16,7 +16,7 @@ from rockbatch.quantities.cases import ONE, Case, Lever, alpha, bends, holds_a_t
 from rockbatch.quantities.statistics import Values
 
 AT_HEIGHTS = {"sections": "sections = 5", "interaction": "interaction_m = [0.0]"}
-"""What demands in sections of the shaft need, and what to write under [output] for it."""
+"""Tables that demands in sections of the shaft need, and the line under [output] that brings each."""
 
 FORCES = "base_shear_m_s2"
 """A column that every run with forces has."""
@@ -118,7 +118,7 @@ class Demand:
 
     @property
     def brings(self) -> set[str]:
-        """Keys of [output] that a check of it brings: the other law, since the worse counts."""
+        """Keys of [output] that a check of it brings: {"both_laws"} if there is another law's value, as the worse counts."""
         return {"both_laws"} if self.other_law else set()
 
     @property
@@ -199,7 +199,7 @@ OF_INTERACTION = {
 
 
 def in_flight(column: str) -> Evaluate:
-    """Return the evaluation of a column of flights; 0 for a complete run without a flight."""
+    """Return a function for a column of flights, without errors; 0 for a run that stood or overturned without a flight."""
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
         value, status = runs.numbers(column), runs.texts("status")

@@ -118,7 +118,7 @@ def _no_case(name: str, side: str, names: Sequence[str]) -> str:
 
 
 def _distance(first: Mapping[Place, object], second: Mapping[Place, object]) -> int:
-    """Return the number of inputs that differ between two cases."""
+    """Return the number of keys whose values differ between two cases; a key that only one of them has counts."""
     return sum(first.get(place) != second.get(place) for place in {*first, *second})
 
 

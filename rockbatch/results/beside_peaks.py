@@ -49,7 +49,7 @@ def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iter
 
 
 def write(path: Path, table: Iterable[Mapping[str, object]]) -> Path:
-    """Write rows with the same keys to a CSV, completely or not at all; return its path."""
+    """Write rows with the same keys to a CSV, completely or not at all; return its path. No rows give ``NAMING`` as heads."""
     rows = list(table)
     write_whole(path, csv_text(list(rows[0]) if rows else list(NAMING), rows))
     return path
@@ -97,7 +97,7 @@ def write_semicolons(directory: Path) -> Path:
 
 
 def _with_comma(cell: str) -> str:
-    """Return a number with a decimal comma, infinity as :data:`LARGEST`, and words of a varied key unchanged."""
+    """Return a cell with a decimal comma if it is a number, infinity as :data:`LARGEST`; words and empty cells unchanged."""
     try:
         return LARGEST if float(cell) == math.inf else cell.replace(".", ",")
     except ValueError:

@@ -128,7 +128,7 @@ def peaks_of_cases(results: Labelled) -> Figure:
     """Return one panel of all peaks that have a value or an ending: a column of points for each foundation."""
     runs = _nonempty(results.runs)
     ticks = [one.tick for one in results.series]
-    if len(set(ticks)) < len(ticks):  # rigid ones, which are lines elsewhere, have letters of their own
+    if len(set(ticks)) < len(ticks):  # rigid foundations, which are lines elsewhere, have letters of their own
         ticks = [str(place) for place in range(1, len(ticks) + 1)]
     series = [
         replace(one, rigid=False, index=place, tick=tick)

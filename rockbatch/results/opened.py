@@ -180,7 +180,7 @@ class Results(Shown, Saved):
         return simulated(self.peaks)[["record", "case", *self.info["varied"], *results]]
 
     def _no_history(self, name: str, value: float | str, among: "pd.DataFrame") -> str:
-        """Return the message that no history ``among`` these has this value, with the nearest one or the choices."""
+        """Return the message that no history has this value of ``name``, with the nearest value, or choices ``among`` these."""
         values = among[name].dropna().unique().tolist()
         nearest = closest(value, map(str, values)) if isinstance(value, str) else None
         hint = f"there are {_listed(map(shown, values))}" if values else "it applies to none of them"
@@ -222,7 +222,7 @@ def open_results(directory: str | os.PathLike[str]) -> Results:
 
 
 def _candidates(fitting: "pd.DataFrame", criteria: dict[str, float | str]) -> str:
-    """List runs by the values that distinguish them, apart from the ``criteria`` already used."""
+    """List up to eight runs in words, by the values that distinguish them, apart from the ``criteria`` already used."""
     apart = [name for name in fitting.columns if name not in ("status", *criteria) and fitting[name].nunique() > 1]
     runs = [{name: value for name, value in run.items() if value == value} for run in fitting[apart].to_dict("records")]
     return _listed(", ".join(f"{name} = {shown(value)}" for name, value in run.items()) for run in runs)

@@ -1,4 +1,4 @@
-"""Runs on a footing: what they came to, and the share of their errors that the number of strips has."""
+"""Runs on a footing: their outcome, and the share of the number of strips in its errors."""
 
 import math
 from dataclasses import replace
@@ -15,7 +15,7 @@ FEWER_STRIPS = "half as many strips come to another end: {status}; no error is c
 
 
 def of_bed(pier: Pier, base: FootingBase, result: Result, survived: bool) -> dict[str, Any]:
-    """Return what only piers on a footing have, by fields of Outcome: residuals if they ``survived``, demands on the bed."""
+    """Return fields of Outcome for a pier on a footing: demands on its ``bed``, and residuals if it ``survived``."""
     more: dict[str, Any] = {}
     edges: dict[str, float] = {}
     if survived and math.isfinite(result.lean):
@@ -49,7 +49,10 @@ def with_fewer_strips(base: FootingBase) -> FootingBase:
 
 
 def with_strips_error(outcome: Outcome, fewer: Outcome) -> Outcome:
-    """Return ``outcome`` with the share of the strips in its errors, from that of half as many at the same step."""
+    """Return ``outcome`` with the share of the strips in its errors, from that of half as many at the same step.
+
+    Without errors and noted if ``fewer`` strips end otherwise; unchanged for a pier that did not stand.
+    """
     if outcome.status != "ok" or outcome.bed is None:
         return outcome
     if fewer.status != outcome.status:

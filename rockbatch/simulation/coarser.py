@@ -1,4 +1,4 @@
-"""What a model with fewer strips of its bed, or fewer modes of its shaft, changes: a share of every error."""
+"""Change of results by fewer strips of a bed, or fewer modes of a shaft: a share of every error."""
 
 import math
 from dataclasses import replace
@@ -23,15 +23,16 @@ def with_fewer_modes(run: Run) -> Run | None:
 
 
 def coarser(run: Run) -> Run | None:
-    """Return the run of a coarser model at the same step; None for a model without one."""
+    """Return the run of a coarser model at the same step, of half as many strips or one mode fewer; None if there is none."""
     if isinstance(run.base, FootingBase):
         return Run(run.pier, with_fewer_strips(run.base), run.motion)
     return with_fewer_modes(run)
 
 
 def with_model_error(outcome: Outcome, other: Outcome, chance: float) -> Outcome:
-    """Return ``outcome`` with the change from the ``other`` one, of the coarser model, in its errors; of modes, which converge at
-    no known order, ``chance`` times.
+    """Return ``outcome`` with errors raised by the change from the coarser model's outcome ``other``.
+
+    Of strips by a third of the change; of modes, which converge at no known order, by ``chance`` times the change.
     """
     return with_strips_error(outcome, other) if outcome.bed is not None else _with_modes_error(outcome, other, chance)
 
@@ -51,14 +52,14 @@ def _with_modes_error(outcome: Outcome, other: Outcome, chance: float) -> Outcom
 
 
 MOST_DAMPING = 0.1
-"""Damping ratio of the last mode beyond which its forces at a blow say nothing of those of further modes."""
+"""Damping ratio of the last mode beyond which its forces at a blow give no bound for further modes."""
 
 
 def of_last_mode(run: Run, change: float, chance: float) -> float:
-    """Return the part of a force's error that the modes have, by the relative ``change`` with one fewer; NaN if it says nothing.
+    """Return the error of a force by the modes left out: ``chance`` times the relative ``change`` with one mode fewer.
 
-    A blow stops the base at once, which the damping force 2 ζ_i ω_i u̇_i of every mode meets: where ζ_i grows with ω_i, the sum
-    has no limit.
+    NaN if the last mode has more than :data:`MOST_DAMPING`: a blow stops the base at once, which the damping force 2 ζ_i ω_i
+    u̇_i of every mode meets, and where ζ_i grows with ω_i, the sum has no limit.
     """
     base = run.base
     assert isinstance(base, WithShaft)

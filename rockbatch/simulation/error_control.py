@@ -95,7 +95,10 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
 def _with_model_error(
     runs: Sequence[Run], outcomes: Sequence[Outcome | None], quiet_s: float, stop: Stop
 ) -> list[Outcome | None]:
-    """Return ``outcomes`` with the share of the bed's strips or the shaft's modes in their errors, by runs with fewer of them."""
+    """Return ``outcomes`` with the share of the bed's strips or the shaft's modes in their errors, by runs with fewer.
+
+    None for an outcome whose coarser run was stopped.
+    """
     found = list(outcomes)
     fewer = list[tuple[int, Run, int]]()
     for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True)):
@@ -206,7 +209,10 @@ def _with_notes(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float,
 
 
 def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: str) -> Outcome:
-    """Return the finest of a run's ``levels`` as a failed outcome: it keeps its values, and claims no errors."""
+    """Return the finest of a run's ``levels`` as a failed outcome, with its values and the reason, without errors.
+
+    Unchanged if it failed itself.
+    """
     finest = levels[-1].outcome
     if finest.status == "failed":
         return finest

@@ -20,7 +20,7 @@ _STANDING = Start()
 
 @lru_cache(maxsize=4096)
 def start_of(pier: Pier, base: Base) -> Start:
-    """Return the initial state of a run; that of a pier without an initial rotation is all 0."""
+    """Return the initial state of a run; that of a pier without an initial rotation is all 0, ``level`` NaN."""
     theta = pier.initial_rotation_rad
     if theta == 0.0:
         return _STANDING

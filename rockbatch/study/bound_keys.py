@@ -30,7 +30,7 @@ _EXAMPLE = '"case.stiffness_kN_m" = { times = 2.0 }'
 
 
 def _check_name(name: str) -> None:
-    """Raise :class:`KindError` for the name of a bound that tables would read as a number."""
+    """Raise :class:`KindError` if the name of a bound reads as a number ("1.15", "nan"); return None for others."""
     try:
         float(name)
     except ValueError:
@@ -68,7 +68,10 @@ BOUNDS = Section(
 
 
 def read_bounds(file: TomlFile) -> list[DesignBound]:
-    """Return the bounds of a study; note their mistakes, but for keys that no pier and no case has."""
+    """Return every [[bound]] of a study; its mistakes become problems of ``file``, and a mistaken change is left out of it.
+
+    Whether the pier or any case gives the keys that it changes is checked by :func:`placed`.
+    """
     bounds: list[DesignBound] = []
     for place, table in enumerate(file.tables(BOUND, title="name")):
         flat = replace(table, data=dict(_flat(table.data)))
@@ -90,7 +93,11 @@ def read_bounds(file: TomlFile) -> list[DesignBound]:
 
 
 def _flat(data: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield keys and values of a table; those of tables within, as TOML reads a path without quotes, by their paths."""
+    """Yield keys and values of a [[bound]]: {"case": {"eta": 2}} gives ("case.eta", 2), as TOML reads paths without quotes.
+
+    Tables within pier and case are walked so; one at the path of a known key, such as { times = 1.2 }, is a value, as is an empty
+    one.
+    """
     for name, value in data.items():
         path = prefix + name
         is_table = isinstance(value, dict) and path.split(".")[0] in ("pier", "case") and key_at(path) is None
@@ -98,14 +105,17 @@ def _flat(data: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]
 
 
 def key_at(path: str) -> Key | None:
-    """Return the key at a path; None if there is none."""
+    """Return the key at a path such as "pier.mass_t" or "case.damper_2.f"; None for an unknown table or key."""
     *tables, name = path.split(".")
     of = ".".join(parted(table)[0] for table in tables)
     return _TABLES[of].get(name) if of in _TABLES else None
 
 
 def why_fixed(path: str, example: str) -> str:
-    """Return why no value of a design is at a path, with an ``example`` of one that is; empty if one is."""
+    """Return why bounds and designs cannot change the key at ``path``: it is unknown, or makes another design; "" if they can.
+
+    ``example`` is a path to write instead.
+    """
     if key_at(path) is None:
         near = closest(path, [f"{of}.{name}" for of, names in _TABLES.items() for name in names if name not in _FIXED])
         instead = f"did you mean {near}?" if near else f"write a key of [pier] or [[case]], such as {example}"
@@ -116,7 +126,7 @@ def why_fixed(path: str, example: str) -> str:
 
 
 def _read_change(table: Table, path: str) -> Change | None:
-    """Return the change of one key; None for a mistake, which is noted."""
+    """Return the change at one path; None for an unknown or fixed key or a wrong value, with the problem added to ``table``."""
     written, key = table.data[path], key_at(path)
     if key is None or path.rpartition(".")[2] in _FIXED:
         table.complain(why_fixed(path, _EXAMPLE), path)
@@ -141,7 +151,7 @@ def _read_change(table: Table, path: str) -> Change | None:
 
 
 def _factor(written: Mapping[str, Any]) -> float | None:
-    """Return the factor of a table { times = 1.2 }; None if it is no such table, or no possible factor."""
+    """Return the factor of a table { times = 1.2 }, above 1e-6 and below 1e6; None for another table or another factor."""
     times = written.get("times")
     if set(written) != {"times"} or isinstance(times, bool) or not isinstance(times, float | int):
         return None

@@ -94,7 +94,7 @@ class MotionSpec:
 
     @property
     def simulated(self) -> str:
-        """The polarity that is simulated, "+" if both are asked for; the other is its mirror image, as the pier is symmetric."""
+        """Return the polarity that is simulated: "+" if both are asked for, as "-" mirrors it on a symmetric pier."""
         return "+" if "+" in self.polarity else "-"
 
 
@@ -136,7 +136,7 @@ class Case:
         return record.exchanged if self.across_of else record
 
     def with_columns(self, varied: Iterable[str]) -> "Case":
-        """Return the case with no other columns than those of ``varied`` keys."""
+        """Return the case with no other columns than those of ``varied`` keys, and without its ``changed`` values."""
         return replace(self, columns={name: self.columns[name] for name in varied if name in self.columns}, changed={})
 
 

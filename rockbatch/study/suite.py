@@ -86,7 +86,7 @@ _OF_RECORDS = (
 
 
 def _without_records(spec: MotionSpec, both_axes: bool) -> list[str]:
-    """Return a message for each key that only recorded motions use, in a study without any; motions from Python use them."""
+    """Return a message for each key that only recorded motions use, in a study without these; [] if it has records."""
     if spec.paths or spec.override is not None:
         return []
     usual = {field.name: field.default for field in fields(spec)} | {"offset": Offset(), "select": Selection()}
@@ -133,7 +133,7 @@ def _with_pairs(motions: MotionSet, pulses: Sequence[Motion]) -> tuple[MotionSet
 
 
 def _without_the_square(motions: MotionSet, azimuths: Sequence[float]) -> MotionSet:
-    """Return motions without those along the last of ``azimuths``, which become components across the first."""
+    """Return motions without those along the last of ``azimuths``, which go across those along the first of the same length."""
     first, square = (f"_az{azimuth:03g}" for azimuth in (azimuths[0], azimuths[-1]))
     across = {motion.of_station: motion for motion in motions if motion.name.endswith(square)}
     along = [motion for motion in motions if across.get(motion.of_station) is not motion]

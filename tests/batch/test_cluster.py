@@ -98,6 +98,7 @@ def carried_out_by_dask(file, out):
     return said.getvalue(), (out / "peaks.csv").read_bytes()
 
 
+@pytest.mark.slow
 def test_the_command_line_carries_out_a_study_on_a_cluster(file, tmp_path, study, runs, in_this_process):
     said, found = carried_out_by_dask(file, tmp_path / "out")
     assert "on a dask cluster of 1 thread (this machine)" in said

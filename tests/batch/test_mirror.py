@@ -181,6 +181,7 @@ def test_a_journal_that_has_lost_one_of_two_mirror_images_gets_that_one_again(st
 # What is counted
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("pages")
 def test_statistics_checks_and_the_report_count_mirror_images_once(study, tmp_path, capsys):
     out = tmp_path / "both"

@@ -120,6 +120,7 @@ def test_every_observer_is_deleted_below():
     }
 
 
+@pytest.mark.sweep(fast=len(FAST), slow=2)
 @pytest.mark.parametrize("name", [n if n in FAST else pytest.param(n, marks=pytest.mark.slow) for n in OBSERVERS])
 def test_an_observer_is_deleted_with_its_folder_and_its_name(tmp_path, name):
     """Tables of a study that asks for all others are the same to the byte, and its key is unknown."""

@@ -52,6 +52,7 @@ def independent(response, motion):
     return rows
 
 
+@pytest.mark.slow
 def test_the_numbers_are_those_of_the_history_read_by_other_code():
     found = read_motions("motions/near_fault")
     motion = rb.sequence([found["CHAN15"], found["CHAN24"], found["CHAN15"]], pause=6.0, factors=[2.0, 2.0, 1.0])
@@ -94,6 +95,7 @@ def test_an_elastic_base_has_no_residual_and_a_rigid_one_without_dampers_none_at
     assert of(rb.RigidBase(), shock(), shock()).shocks[["theta_res_over_alpha", "settlement_m"]].isna().all(axis=None)
 
 
+@pytest.mark.slow
 def test_dampers_that_hold_a_tilt_hold_it_until_the_next_shock():
     base = rb.RigidBase(restraints=(rb.Damper("friction", f=0.6),))
     table = of(base, shock(amplitude=9.0), shock(amplitude=9.0), pause=40.0).shocks

@@ -42,6 +42,7 @@ def judged(table, *rules, cases=None):
     return judge(rules, table, cases or [case(), across()])
 
 
+@pytest.mark.sweep(fast=15)
 @pytest.mark.parametrize("seed", range(20))
 @pytest.mark.parametrize("way", WAYS)
 def test_the_statistic_and_its_bounds_are_of_each_stations_combined_demand(way, seed):

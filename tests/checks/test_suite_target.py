@@ -1,5 +1,6 @@
 """A suite below its target spectrum fails a check of its own, which comes first and decides; one that reaches it passes."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -178,6 +179,9 @@ def test_a_range_that_does_not_reach_the_periods_of_the_piers_does_not_meet_a_co
         if found.demand == "suite_shortest_period"
     ]
     assert (shortest.verdict, shortest.note) == (NOT_DECIDED, "no pier has a period of rocking")
+    assert wording.limit(shortest) == "not known"
+    assert wording.requirement(shortest) == "shortest period of the range at most an unknown limit"
+    assert (wording.number(math.nan), wording.number(math.inf), wording.number(-math.inf)) == ("", "∞", "-∞")
 
 
 def test_a_suite_that_a_code_would_not_accept_leaves_nothing_green(tmp_path, capsys):

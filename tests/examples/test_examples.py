@@ -26,6 +26,7 @@ def test_every_config_is_an_example_and_the_first_study_comes_first():
     assert NAMES[0] == FIRST
 
 
+@pytest.mark.sweep(fast=5)
 @pytest.mark.parametrize("name", NAMES)
 def test_a_copy_is_the_same_study_on_its_own_records(name, tmp_path):
     written = copy(name, tmp_path / "mine", "pier.toml")
@@ -123,6 +124,7 @@ def test_examples_are_listed_with_what_they_need(capsys):
     assert "near_fault" not in needs
 
 
+@pytest.mark.slow
 def test_a_wheel_has_them(tmp_path):
     """Built from this checkout, unpacked elsewhere, and used there."""
     subprocess.run(

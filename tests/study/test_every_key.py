@@ -268,6 +268,7 @@ OF_DEVICE = {
 }  # fmt: skip
 
 
+@pytest.mark.sweep(fast=3)
 @pytest.mark.parametrize("kind", PIERS)
 def test_every_key_of_a_pier_is_used_or_refused_beside_every_other(kind):
     """A height beside parts was read, and ignored."""
@@ -286,6 +287,7 @@ def test_every_key_of_a_case_is_used_or_refused_beside_every_other(base):
     assert {key for key in base if key in OF_CASE} <= used
 
 
+@pytest.mark.sweep(fast=4)
 @pytest.mark.parametrize("base", [ROCK, PADS], ids=["rigid", "elastic"])
 @pytest.mark.parametrize("kind", DEVICES)
 def test_every_key_of_a_device_is_used_or_refused_beside_every_other(kind, base):
@@ -806,19 +808,28 @@ USES["[release]"] = {
 
 
 def _takes_long(header):
-    """Return whether a table is a case, which has the most keys, or one of an analysis, whose studies take longer."""
-    return (
-        header.strip("[]").partition(".")[0] in ("design", "fragility", "spectrum", "sensitivity", "release")
-        or header == "[[case]]"
-    )
+    """Return whether a table is one of an analysis, whose studies take longer."""
+    return header.strip("[]").partition(".")[0] in ("design", "fragility", "spectrum", "sensitivity", "release")
 
 
+@pytest.mark.sweep(fast=10)
 @pytest.mark.parametrize(
-    "header", [pytest.param(header, marks=pytest.mark.slow) if _takes_long(header) else header for header in USES]
+    "header",
+    [
+        pytest.param(header, marks=pytest.mark.slow) if _takes_long(header) else header
+        for header in USES
+        if header != "[[case]]"
+    ],
 )
 def test_another_value_of_every_key_tells(header, uncompiled):
     idle = {key: use.value for key, use in USES[header].items() if not outcome(use, key, uncompiled)}
     assert not idle
+
+
+@pytest.mark.sweep(slow=16)
+@pytest.mark.parametrize("key", USES["[[case]]"])
+def test_another_value_of_every_key_of_a_case_tells(key, uncompiled):
+    assert outcome(USES["[[case]]"][key], key, uncompiled)
 
 
 @pytest.mark.parametrize("histories", ["all", "none"])

@@ -156,6 +156,7 @@ class Working(TiedTwoSprings):
         self.leg._turning = integrated
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize(
     "device",
     [

@@ -61,6 +61,7 @@ def compared(
     return expected[:, 2], expected[:, 3:], samples
 
 
+@pytest.mark.slow
 def test_a_pier_rocks_flies_and_lands_as_its_mass_points_do(uncompiled):
     """Both corners down, one, none: 10⁻⁸ of α in θ, through impacts and flights of more than a millisecond."""
     base = rb.RigidBase(shaft="elastic", flexural_damping=0.02, flexural_modes=2)

@@ -38,7 +38,7 @@ class PeaksOfForces(Observer):
         return peak_forces(recording.run, recording.rows, self.least_normal)
 
     def beyond(self, run: Run, fine: Peaks, fewer: Peaks) -> Peaks:
-        """Return ``fine`` with the change from ``fewer`` modes as its error."""
+        """Return ``fine`` with the change by one mode ``fewer`` as its error, NaN if the last mode is damped too strongly."""
         return with_modes_error(run, fine[0], fewer[0], CHANCE), fine[1]
 
     def add(self, run: Run, outcome: Outcome, fine: Peaks | None, coarse: Peaks | None) -> Outcome:
@@ -60,6 +60,6 @@ class PeaksOfForces(Observer):
 
 
 def requested(output: Output) -> PeaksOfForces | None:
-    """Return the observer that a study asks for, if any."""
+    """Return the observer if [output] of a study asks for it, else None."""
     settings = output.of(Forces)
     return PeaksOfForces(settings.least_normal_share) if settings.forces else None

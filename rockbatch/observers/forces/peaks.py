@@ -155,7 +155,7 @@ def _friction_hold(pier: Pier, base: RigidBase) -> Hold:
 
 
 def _outline(pier: Pier, base: RigidBase) -> Outline:
-    """Return the outline of a pier.
+    """Return the outline of a pier: size, width, and the place of its deck.
 
     The deck of a frame rests on corners of its columns, twice as far from their pivots as their centres of mass are.
     """
@@ -167,12 +167,12 @@ def _outline(pier: Pier, base: RigidBase) -> Outline:
 
 
 def _events(rows: np.recarray, kinds: Sequence[float]) -> np.ndarray:
-    """Return the indices of the rows after events of these ``kinds``."""
+    """Return the indices of the rows after events of these ``kinds``, ascending; empty without such events."""
     return np.flatnonzero(np.isin(rows.kind, kinds))
 
 
 def impacts(rows: np.recarray, forces: np.recarray) -> Impacts:
-    """Return the impacts in ``rows``: speeds before them, and changes of momentum as impulses."""
+    """Return the impacts in ``rows``, with landing speeds from the rows before them, and changes of momentum as impulses."""
     landed = _events(rows, LANDINGS)
     before, kind = landed - 1, rows.kind[landed]
     speed_left, speed_right = np.abs(forces.speed_left[before]), np.abs(forces.speed_right[before])
@@ -260,7 +260,7 @@ def _per_bounce(run: Run, events: np.recarray, after: np.ndarray) -> Samples | f
     """Return the factor from J_h/J_v of each impact in total to that of a single bounce; 1 except when coming to rest.
 
     Rest sums up ever lower bounces, each of which leaves the share e of the velocity: for one, J_h is (1 − e) and J_v (1 + e)
-    of the impulses of an immediate stop (THEORY.md, Forces).
+    of the impulses of an immediate stop (THEORY.md, Forces). 1 for all on springs.
     """
     if run.base.on_springs:
         return 1.0
@@ -343,8 +343,9 @@ def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier, chance: float) 
 def with_modes_error(run: Run, fine: PeakForces, fewer: PeakForces, chance: float) -> PeakForces:
     """Return ``fine`` with ``chance`` times the greatest relative change from ``fewer``, by one mode fewer, as its error.
 
-    The friction demand of impacts is left out: each further mode takes about half of a landing's horizontal impulse, so that it
-    tends to 0, and is too great.
+    NaN if the last mode has more than :data:`rockbatch.simulation.coarser.MOST_DAMPING`. The friction demand of impacts is
+    left out: each further mode takes about half of a landing's horizontal impulse, so that this demand falls to 0 with more
+    modes, and is too great with any number of them.
     """
     of_modes = {name: sized for name, sized in OF_FORCES.items() if name != OF_IMPACTS}
     return replace(fine, error=of_last_mode(run, greatest_change(of_modes, fine, fewer, run.pier)[1], chance))

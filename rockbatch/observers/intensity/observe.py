@@ -64,7 +64,7 @@ def _column(period: float, rule: str = "") -> str:
 
 
 def requested_table(study: Study) -> str:
-    """Return the table beside peaks.csv that a study asks for; empty if it does not."""
+    """Return the name of the table beside peaks.csv if a study asks for it; else ""."""
     return TABLE if study.output.of(Measures).intensity else ""
 
 

@@ -53,7 +53,7 @@ def order_of(measure: Array, theta: Array, status: Sequence[str]) -> Order:
 
 
 def _spearman(x: Array, y: Array) -> float:
-    """Return Spearman's rank correlation, equal values sharing their mean rank; NaN for few or equal values."""
+    """Return Spearman's rank correlation, equal values sharing their mean rank; NaN for fewer than three, or if all are equal."""
     if len(x) < LEAST_RUNS:
         return math.nan
     of_x, of_y = _ranks(x), _ranks(y)
@@ -63,13 +63,13 @@ def _spearman(x: Array, y: Array) -> float:
 
 
 def _ranks(values: Array) -> Array:
-    """Return ranks from 1, equal values sharing their mean rank."""
+    """Return ranks from 1, equal values sharing their mean rank: 1, 2.5, 2.5, 4."""
     _, places, counts = np.unique(values, return_inverse=True, return_counts=True)
     return np.asarray((np.cumsum(counts) - 0.5 * (counts - 1))[places], dtype=np.float64)
 
 
 def _line(x: Array, y: Array) -> tuple[float, float]:
-    """Return the slope of the least-squares line and the standard deviation about it (n − 2); NaN for few or equal x."""
+    """Return slope of the least-squares line and standard deviation about it (n − 2); NaN for fewer than three, or equal x."""
     if len(x) < LEAST_RUNS or np.ptp(x) == 0:
         return math.nan, math.nan
     slope, intercept = np.polyfit(x, y, 1)

@@ -38,7 +38,7 @@ class Envelope(NamedTuple):
 
 
 def envelope(height: float, axial: Samples, moment: Samples) -> Envelope:
-    """Return the envelope of forces at many moments.
+    """Return the corners of the least concave envelope of |``moment``| over ``axial``, by ascending axial force.
 
     A ratio of moment to a concave capacity, over time, is greatest at one of its corners (THEORY.md, Forces in sections).
     """
@@ -54,7 +54,7 @@ def envelope(height: float, axial: Samples, moment: Samples) -> Envelope:
 
 
 def _turns_right(first: tuple[float, float], second: tuple[float, float], third: tuple[float, float]) -> bool:
-    """Return whether a path through three points, by ascending N, turns to the right at the second."""
+    """Return whether a path through three points, by ascending N, turns to the right at the second; False if it is straight."""
     (n, m), (n2, m2), (n3, m3) = first, second, third
     return (n2 - n) * (m3 - m) < (m2 - m) * (n3 - n)
 
@@ -98,7 +98,10 @@ class InteractionInSections(Observer):
         return with_errors(fine, fewer, of_last_mode(run, 1.0, CHANCE))
 
     def add(self, run: Run, outcome: Outcome, fine: list[Envelope] | None, coarse: list[Envelope] | None) -> Outcome:
-        """Return ``outcome`` with a row of the table for each corner of ``fine``, if any, with errors by ``coarse``."""
+        """Return ``outcome`` with a row of the table for each corner of ``fine``, with errors by ``coarse``.
+
+        No rows without ``fine`` or a mass.
+        """
         if fine is None or run.pier.mass_t is None:
             return outcome.with_table(self.table, [])
         rows = []
@@ -111,6 +114,6 @@ class InteractionInSections(Observer):
 
 
 def requested(output: Output) -> InteractionInSections | None:
-    """Return the observer that a study asks for, if any."""
+    """Return the observer if [output] of a study asks for it, else None."""
     heights = output.of(Interaction).interaction_m
     return InteractionInSections(heights) if heights else None

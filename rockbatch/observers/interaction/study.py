@@ -34,7 +34,7 @@ OUTPUT = Section(
 
 
 def complain(file: TomlFile, settings: Interaction, piers: Iterable[Pier]) -> None:
-    """Note sections that some pier does not have, or that have no forces in kN."""
+    """Add a problem to ``file`` for each reason that some pier lacks a section, and if a pier has no mass for forces in kN."""
     if not settings.interaction_m:
         return
     reasons = misfits(piers, settings.interaction_m, "interaction_m")
@@ -45,7 +45,7 @@ def complain(file: TomlFile, settings: Interaction, piers: Iterable[Pier]) -> No
 
 
 def heights(settings: Interaction, piers: Iterable[Pier]) -> set[float]:
-    """Return the heights [m] of the sections of all ``piers``; none of a pier that lacks some, which is noted."""
+    """Return the heights [m] of the sections of all ``piers``; a pier that lacks one, a problem by ``complain``, adds none."""
     return heights_in_all(piers, settings.interaction_m, "interaction_m") if settings.interaction_m else set()
 
 

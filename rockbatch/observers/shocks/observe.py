@@ -39,11 +39,14 @@ class EffectsOfShocks(Observer):
         return max(quiet_s, last.until - last.end)
 
     def read(self, recording: Recording, outcome: Outcome) -> OfShocks:
-        """Return the effects of each shock, and their peaks."""
+        """Return the effects of each shock, without errors, and the peaks from which errors follow."""
         return of_shocks(recording.run, outcome, recording.rows)
 
     def add(self, run: Run, outcome: Outcome, fine: OfShocks | None, coarse: OfShocks | None) -> Outcome:
-        """Return ``outcome`` with a row of the table for each shock: "failed" or "not read" without ``fine``."""
+        """Return ``outcome`` with a row of the table for each shock; without ``fine`` they have a status only.
+
+        "failed", or "not read" for a run too long to be held in memory.
+        """
         not_read = "failed" if outcome.status == "failed" else "not read"  # too long to be held in memory
         outcomes = [ShockOutcome(not_read)] * len(run.motion.shocks)
         if fine is not None:
@@ -52,5 +55,5 @@ class EffectsOfShocks(Observer):
 
 
 def requested(output: Output) -> EffectsOfShocks:
-    """Return the observer, which every study has that has a sequence."""
+    """Return the observer for any study; it reads only runs under a sequence of shocks."""
     return EffectsOfShocks()

@@ -1,4 +1,4 @@
-"""Sequences shock by shock: peaks, and what is left of each when the next begins."""
+"""Sequences shock by shock: peaks, and the residuals when the next shock begins."""
 
 import math
 from collections import Counter
@@ -18,7 +18,7 @@ AT_REST = 0.001
 
 
 def section(finished: Finished) -> Markup:
-    """Report the response to each shock; empty if no motion is a sequence."""
+    """Return the report's section of the response to each shock; empty if no motion is a sequence."""
     directory = finished.directory
     rows = as_dicts(read(directory, finished.info["varied"])) if (directory / TABLE).exists() else []
     if not rows:

@@ -1,4 +1,4 @@
-"""shocks.csv: what each shock of a sequence does to a pier, a row for each shock of each run."""
+"""shocks.csv: effects of each shock of a sequence on a pier, a row for each shock of each run."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -31,7 +31,7 @@ _TEXTS = ("shock_record", "shock_status")
 
 
 def shock_rows(motion: Motion, pier: Pier, outcomes: Sequence[ShockOutcome]) -> list[dict[str, Any]]:
-    """Return a row for each shock of ``motion`` as it was run."""
+    """Return a row for each shock of ``motion``, which has the scale of the run, by the columns of :data:`MEANING`."""
     rows = []
     for place, (shock, outcome) in enumerate(zip(motion.shocks, outcomes, strict=True), 1):
         first, last = round(shock.start / motion.dt), round(shock.end / motion.dt)

@@ -13,7 +13,7 @@ LEGEND = (
 
 
 def section(finished: Finished) -> Markup:
-    """Report the demands on devices, if there are any."""
+    """Return the table of demands on devices, a row for each case; empty without devices."""
     runs = finished.runs
     shown = [
         column

@@ -124,7 +124,7 @@ def test_intervals_hold_the_truth_about_as_often_as_they_say():
     assert held / 100 == pytest.approx([0.95, 0.95], abs=0.05)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_same_records_at_every_level_do_not_count_as_many_suites():
     """100 suites of 30 records at 12 levels: as fresh ones they would hold the median about 60 times in 100, not 95."""
     rng = np.random.default_rng(5)

@@ -177,6 +177,7 @@ def test_still_ground_is_refused():
         rb.spectrum(rb.Study.from_toml(STUDY), motions=[still], jobs=1)
 
 
+@pytest.mark.slow
 def test_peaks_are_drawn_where_their_intensity_and_frequency_are(tmp_path):
     """A panel for each base; each run where intensity.csv puts it: PGA/(g tan α) over the ratio of its two groups."""
     text = study_text(

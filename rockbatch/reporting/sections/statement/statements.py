@@ -53,7 +53,7 @@ class Statement(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The paragraph."""
+        """The sentences in one paragraph."""
         return " ".join(self.sentences)
 
 
@@ -161,7 +161,7 @@ def _names(finished: Finished, designs: Mapping[str, Sequence[CaseRuns]]) -> lis
 
 
 def _result(design: _Design, stations: Stations) -> str:
-    """Return whether the design passes, by which checks it does not, or why it is not decided."""
+    """Return the first sentence: that the design passes, fails which checks, is not decided and why, or is not checked."""
     subject = f"Case {quoted(design.name)}"
     failing, open_, met = (design.having(kind) for kind in (FAIL, NOT_DECIDED, PASS))
     total = len(design.checks) - len(design.having(DOES_NOT_APPLY))
@@ -186,7 +186,7 @@ def _share(names: Sequence[str], total: int) -> str:
 
 
 def _reasons(design: _Design, stations: Stations) -> Iterator[str]:
-    """Yield why a design that meets every limit is not decided."""
+    """Yield why a design that meets every limit is not decided: responses without a limit, its suite, or unusable records."""
     if design.free:
         words = dict.fromkeys(RESPONSES[its.demand].words for its in design.free)
         yield f"no check limits its {', '.join(words)}"
@@ -198,7 +198,7 @@ def _reasons(design: _Design, stations: Stations) -> Iterator[str]:
 
 
 def _suite(finished: Finished, design: _Design) -> str:
-    """Return the motions under which the design was run."""
+    """Return the sentence on the motions under which the design was run: their number, factors, directions and verticals."""
     records = finished.info["records"]
     recorded = [record for record in records if record["source"] not in UNRECORDED]
     parts = []
@@ -230,7 +230,10 @@ def _events(records: Sequence[Item]) -> str:
 
 
 def _conforming(info: Item, verdicts: Sequence[Verdict]) -> str:
-    """Return whether the suite meets the conditions of its target spectra at the scale of the verdicts on it."""
+    """Return sentences on the conditions of target spectra: "The suite meets all 3 conditions of …", or which it does not meet.
+
+    Without ``verdicts`` on it, that it was only compared with a target, or has none.
+    """
     if not verdicts:
         target = info.get("target")
         return (
