@@ -254,7 +254,7 @@ class Records:
         self._sent: dict[int, tuple[Motion, Future]] = {}
 
     def submit(self, runs: Iterable[StudyRun], numerics: Numerics, observers: Sequence[Observer]) -> "Future":
-        """Submit a group of runs, which refer to records by their position in a list."""
+        """Submit a group of runs, whose records are sent once each; return the future of their outcomes."""
         places: dict[int, int] = {}
         records = []
         members = []

@@ -17,7 +17,7 @@ from rockbatch.toml.section import Key, Section
 
 SUITE = Section(
     ("suite",),
-    "What holds for every check that does not say otherwise, and where more of them are.",
+    "Values of keys for every check that does not give its own, and a file of further checks.",
     {
         "count": Key(choice(*COUNTS), '"component"', f"{COUNT}.", default=COUNTS[0]),
         "per_event": Key(count, "4", f"{PER_EVENT}; no limit if it is not given."),

@@ -54,6 +54,8 @@ class Bounds:
         """Return the message about a value that is out of bounds, to follow "name = value: "."""
         if value <= 0.0 <= self.low and 0.0 not in self:
             return f"must be a number above 0{self.unit}"
+        if value > self.high == MOST:
+            return f"must be {MOST:g} at most"
         if callable(self.why):
             return self.why(value)
         share = of_percent(value, self.low, self.high)

@@ -213,12 +213,12 @@ class Response(Shown):
 
     @property
     def reason(self) -> str:
-        """Reason that the run failed, or that the pier left the ground; empty otherwise."""
+        """Reason that the run failed, or that the pier left the ground; "" otherwise. ``InputError`` without a row."""
         return str(self._of_row()["reason"])
 
     @property
     def note(self) -> str:
-        """Remarks on a valid run; empty otherwise."""
+        """Remarks on a valid run; "" without any. ``InputError`` without a row of peaks.csv."""
         return str(self._of_row()["note"])
 
     @property

@@ -38,16 +38,12 @@ EPSILON_AND_ZETA = "zeta is given too, and a damped support takes a landing with
 """Message on a support that has both."""
 
 
-def _strength(eta: float) -> str:
-    if eta > MOST:
-        return f"must be {MOST:g} at most"
-    return (
-        "the springs cannot carry the weight; eta = yield force over static force must be above 1 "
-        f"(at least {LEAST_ETA:.6f})"
-    )
+_STRENGTH = (
+    "the springs cannot carry the weight; eta = yield force over static force must be above 1 "
+    f"(at least {LEAST_ETA:.6f})"
+)
 
-
-BETA = Bounds(LEAST, MOST, why=lambda beta: f"must be {MOST:g} at most" if beta > MOST else "must be a number above 0")
+BETA = Bounds(LEAST, MOST, why="must be a number above 0")
 """Possible values of β; the least that holds a pier upright depends on the pier."""
 
 BOUNDS = {
@@ -62,7 +58,7 @@ BOUNDS = {
     "flexural_modes": Bounds(1, MOST_MODES, why=f"must be within 1..{MOST_MODES}, the number of the shaft's modes"),
     "zeta": Bounds(0.0, 1.0, why="damping of the supports, as a share of critical, must be within 0..1"),
     "epsilon": Bounds(0.0, 1.0, why="the landing pivot's restitution must be within 0..1"),
-    "eta": Bounds(LEAST_ETA, MOST, why=_strength),
+    "eta": Bounds(LEAST_ETA, MOST, why=_STRENGTH),
     "n": Bounds(1.0, MOST_EXPONENT, why=f"the Bouc–Wen exponent must be at least 1, and {MOST_EXPONENT:g} at most"),
 }
 """Possible values of the fields of bases; the least β and η depend on the pier and on tendons, too (`possible.py`)."""

@@ -64,14 +64,14 @@ def tolerance_rank(n: int, q: float = P84, confidence: float = CONFIDENCE) -> in
 
 
 def _between_ranks(n: int) -> str:
-    """Return how the quantile of ``n`` records is found, and the share of further records that exceed it."""
+    """Return "by interpolation between the ranks of 7, which 24 % of further records exceed", for ``n`` records."""
     return (
         f"by interpolation between the ranks of {n}, which {100.0 * exceedance(P84, n):.0f} % of further records exceed"
     )
 
 
 def _p84_remark(values: Values) -> str:
-    """Return how the quantile of these values is found, and the share of further records that exceed it."""
+    """Return how the quantile of these values is found, as :func:`_between_ranks` does for their number."""
     return _between_ranks(len(values))
 
 

@@ -111,6 +111,7 @@ def test_the_command_line_carries_out_a_study_on_processes_of_this_machine(file,
     assert carried_out_by_dask(file, tmp_path / "out")[1] == table(tmp_path, study, runs, Threads(2))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="no signal can be blocked here")
 def test_ctrl_c_while_a_cluster_starts_ends_this_process_and_not_its_workers(monkeypatch):
     """A terminal sends it to all of them. It was lost in that second, and the batch went on to its end."""

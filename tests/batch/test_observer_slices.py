@@ -35,8 +35,8 @@ KEYS = {
 GROUPS = ("FIRST", "QUANTITIES", "ERRORS", "FURTHER", "LAST")
 """Places of the columns that observers bring."""
 
-FAST = ("forces", "rocking", "sections")
-"""Those that are deleted in fast tests: one with columns, one without forces of its own, one with a table beside."""
+IN_CI = ("forces", "rocking", "sections")
+"""Those that are deleted in CI: one with columns, one without forces of its own, one with a table beside."""
 
 RUN = """
 import json, sys
@@ -120,8 +120,8 @@ def test_every_observer_is_deleted_below():
     }
 
 
-@pytest.mark.sweep(fast=len(FAST), slow=2)
-@pytest.mark.parametrize("name", [n if n in FAST else pytest.param(n, marks=pytest.mark.slow) for n in OBSERVERS])
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [n if n in IN_CI else pytest.param(n, marks=pytest.mark.thorough) for n in OBSERVERS])
 def test_an_observer_is_deleted_with_its_folder_and_its_name(tmp_path, name):
     """Tables of a study that asks for all others are the same to the byte, and its key is unknown."""
     study, asking = (

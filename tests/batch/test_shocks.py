@@ -86,8 +86,8 @@ def test_what_is_left_after_each_shock_is_what_a_run_of_the_shocks_so_far_ends_w
 
 def test_a_base_that_yields_settles_with_every_shock_and_never_rises():
     settled = of(SOFT, *[shock(amplitude=7.0)] * 4, pause=40.0).shocks["settlement_m"]
-    assert (settled.diff().dropna() >= -1e-12).all()
-    assert settled.iloc[0] > 0.0
+    assert len(settled) == 4
+    assert (settled.diff(1).fillna(settled.iloc[0]) > 1e-6).all()
 
 
 def test_an_elastic_base_has_no_residual_and_a_rigid_one_without_dampers_none_at_all():
@@ -134,6 +134,7 @@ def study(folder, name="study.toml", **more):
     return write_study(folder, text, name)
 
 
+@pytest.mark.slow
 def test_the_table_has_a_row_for_each_shock_of_each_run_that_was_simulated(tmp_path):
     path, out = study(tmp_path), tmp_path / "out"
     peaks = rb.run(path, out=out, jobs=1)

@@ -48,6 +48,7 @@ def test_the_first_study_is_held_against_the_limits_beside_it(tmp_path):
     assert [rule.name for rule in load_study(written[0]).checks if rule not in rules] == ["uplift of the heel"]
 
 
+@pytest.mark.slow
 def test_no_copy_names_a_file_of_checks_that_is_not_there(tmp_path):
     for name in NAMES:
         text = copy(name, tmp_path / name, "pier.toml")[0].read_text(encoding="utf-8")
@@ -78,6 +79,7 @@ def test_what_is_no_example_is_answered_with_those_that_are():
         copy("fig8", Path("mine"), "pier.toml")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("pages")
 def test_init_and_then_the_command_that_it_names_lead_to_a_report(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)

@@ -29,6 +29,7 @@ FRAMES = {
     "H1 and H2": (lambda a, b: turned(a, b, 12.0), ("H1", "H2")),
     "a mirror image, 1.02 times as strong": (lambda a, b: (1.02 * b, 1.02 * a), ("020", "110")),
 }  # fmt: skip
+"""What was done to the horizontal components of a copy, and how they are labelled."""
 
 
 @pytest.mark.parametrize("frame", FRAMES)
@@ -98,6 +99,7 @@ CHANGES = {
     "filtered to 1-5 Hz, cut and turned": lambda a: np.array(turned(*in_band(a, 1.0, 5.0)[:, 100:1100], 110.0)),
     "filtered to 0.3-8 Hz, reversed, half as strong": lambda a: -0.5 * in_band(a, 0.3, 8.0),
 }  # fmt: skip
+"""What was done to a copy without a vertical, of which no component is as it was."""
 
 
 def write_pair(folder, pair, labels=("000", "090"), **header):

@@ -24,6 +24,7 @@ def correlations(monkeypatch):
     return computed
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("events", [True, False])
 def test_sets_are_found_in_time_that_grows_with_their_number(tmp_path, correlations, events):
     """Records of one station in many earthquakes, or without a header, are hardly compared sample by sample."""

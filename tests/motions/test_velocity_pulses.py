@@ -94,6 +94,7 @@ def test_a_record_is_pulse_like_beyond_an_indicator_of_085(monkeypatch, indicato
     assert (period_of_pulse(v, 0.01) is not None) == is_pulse
 
 
+@pytest.mark.sweep(fast=2)
 @pytest.mark.parametrize("seed", range(6))
 def test_the_indicator_is_that_of_ten_wavelets_taken_away_one_by_one(seed):
     rng = np.random.default_rng(seed)

@@ -105,6 +105,7 @@ def test_beta_of_a_given_stiffness_is_not_taken_for_a_constant_of_the_foundation
     assert {series.label.replace("\u00a0", " ") for series in read(tmp_path).series} == {"1: η = 2.5", "2: η = 3.5"}
 
 
+@pytest.mark.slow
 def test_references_are_compared_with_every_run_they_fit(tmp_path):
     changes = {("RSN779_LOMAP_LGP000", "rigid"): {"theta_max_over_alpha": 0.12}}
     reference = {"columns": {}, "theta_max_over_alpha": 0.1, "source": "Palmeri & Makris (2007)"}

@@ -155,6 +155,7 @@ def test_a_record_called_na_keeps_its_name(tmp_path):
     assert {row[0] for row in Page(text).tables["peaks"][1:]} == {row.words for row in dot_rows(text)} == {"NA", "nan"}
 
 
+@pytest.mark.slow
 def test_neither_report_nor_comparison_loads_the_compiler_nor_what_it_does_not_need(tmp_path):
     folder = str(write_results(tmp_path))
     code = (

@@ -99,6 +99,7 @@ def test_a_fixed_number_of_substeps_is_its_own_setting(measured):
     assert row["error_max"] == pytest.approx(max(expected), abs=1e-15)
 
 
+@pytest.mark.slow
 def test_runs_that_end_otherwise_are_counted_and_have_no_error(measured):
     study, references, _ = measured
     over = [replace(one, outcome=replace(one.outcome, status="overturned")) for one in references[:2]]

@@ -365,6 +365,7 @@ def test_nothing_is_lognormal_about_zero(tmp_path):
         read_fragility(load_study(path))
 
 
+@pytest.mark.slow
 def test_what_is_drawn_is_not_added_a_second_time(tmp_path):
     """A dispersion says which drawn inputs it leaves out: all of them."""
     uncertain, modelling = {"lognormal": {"alpha": 0.1, "eta": 0.1}}, {"name": "supports", "value": 0.2}
