@@ -81,7 +81,7 @@ class Written:
 
     def _design(self, case: Case) -> Design:
         columns = of_design({name: case.columns[name] for name in self.varied if name in case.columns})
-        return Design(case.across_of or case.name, tuple(columns.items()))
+        return Design(case.name_along, tuple(columns.items()))
 
     def refusal(self, trial: Trial) -> str:
         """Return why the study is refused with the values of a trial; empty if it is not."""
@@ -108,7 +108,7 @@ class Written:
         except InputError as error:
             return str(error.messages[0]).removeprefix(f"{self.study.path}: ")
         columns: dict[str, float | str] = dict(zip(self.spec.paths, values, strict=True))
-        own = [each for each in study.cases if case in (each.name, each.across_of)]
+        own = [each for each in study.cases if each.name_along == case]
         by_design = grouped(own, self._design)
         names = (*self.varied, *self.spec.paths)
         return {
