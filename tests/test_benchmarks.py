@@ -133,6 +133,16 @@ def test_the_bare_step_is_compared_for_every_law_step_and_component(benchmark):
     assert all(float(row[2]) > 0 for row in devices)
 
 
+def test_steps_to_the_tolerance_are_counted_by_cause(benchmark):
+    """A halved run has twice the steps of the first; further ones have four times as many, and runs under changed motions two."""
+    rows = {row[1]: row for row in cells(benchmark("halvings").main(size=3, base="rigid"))}
+    assert rows["first"][2:] == ["100.0", "1.000"]
+    assert rows["halved"][2:] == ["100.0", "2.000"]
+    causes = [row for cause, row in rows.items() if cause not in ("first", "halved", "all")]
+    assert "changed: it magnifies errors of steps" in rows
+    assert float(rows["all"][3]) == pytest.approx(3.0 + sum(float(row[3]) for row in causes), abs=0.01)
+
+
 def test_scaling_has_its_four_tables(benchmark):
     module = benchmark("scaling")
     lines = module.main(repeats=1, most_runs=64, runs=2, seconds=4.0)

@@ -77,6 +77,7 @@ class Tally(NamedTuple):
     t_impact: float  # of the last impact [s]; NaN without one
     t_rest: float  # when the pier last came to rest [s]; NaN while it moves
     moved: float  # time at which a pivot last left the ground or landed [s]
+    repeated: float  # sub-steps that were integrated event by event
 
 
 class StepStatus(NamedTuple):
@@ -119,7 +120,7 @@ def start_clock(lanes, i, number, run):
     peak.theta[i], peak.time[i], peak.decided_at[i] = abs(theta), 0.0, UNSET
     peak.window[i], peak.next_window[i], peak.in_window[i] = 0.0, 1.0, abs(theta)  # the first one is the first sample
     tally.impacts[i] = tally.uplifts[i] = tally.events[i] = tally.counted[i] = tally.flights[i] = 0.0
-    tally.flight_duration[i] = tally.flight_height[i] = tally.moved[i] = 0.0
+    tally.flight_duration[i] = tally.flight_height[i] = tally.moved[i] = tally.repeated[i] = 0.0
     tally.airborne[i] = tally.t_flight[i] = tally.t_impact[i] = math.nan
     tally.t_rest[i] = 0.0 if theta == 0.0 else math.nan
 

@@ -227,6 +227,7 @@ def _step_by_events(context, i, substep):
     h, start, dt = lanes.clock.step[i], substep * lanes.clock.step[i], lanes.clock.dt[i]
     t_sample, number = lanes.clock.sample[i] * dt, int(lanes.clock.number[i])
     m, now = pier_in(traits, lanes, i)
+    lanes.tally.repeated[i] += 1.0
     done, which, status, parts = 0.0, NO_EVENT, SURVIVED, 0
     while done < h and status == SURVIVED:
         parts += 1
@@ -289,6 +290,7 @@ def _finish(traits, lanes, i, status, t, rows, results):
     result.status, result.t_end, result.rows = status, t, rows[number]
     result.theta_max, result.t_max = peak.theta[i], peak.time[i]
     result.impacts, result.uplifts, result.flights = int(tally.impacts[i]), int(tally.uplifts[i]), int(tally.flights[i])
+    result.repeated = int(tally.repeated[i])
     result.t_flight, result.flight_duration = tally.t_flight[i], tally.flight_duration[i]
     result.flight_height, result.t_impact, result.t_rest = tally.flight_height[i], tally.t_impact[i], tally.t_rest[i]
     result.v_end, result.theta_end = lanes.now.v[i], lanes.now.theta[i]

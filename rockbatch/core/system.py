@@ -13,6 +13,7 @@ import numpy as np
 from rockbatch.core.clock import EVENTFUL
 from rockbatch.core.kernel import hook, optional_hook
 from rockbatch.core.table import LANES
+from rockbatch.core.trigonometry import sine_and_cosine
 
 VECTOR = 1 if numba.config.DISABLE_JIT else 8  # type: ignore[attr-defined]
 """Lanes that the widest vector instructions take at a time; uncompiled there are none, and an empty lane would divide by zero."""
@@ -59,6 +60,18 @@ def end_step(m, y, start, contact, remaining):
 @hook
 def ground_power(m, y, contact, ground):
     """Return the power of the ground's inertia forces on the pier [W/kg]."""
+
+
+@optional_hook
+def rates_and_power(m, y, contact, ground, at):
+    """Return rates and ground power in a pass, of a pier with devices that is not in flight; ``at`` is its Attitude."""
+    return rates(m, y, contact, ground), ground_power(m, y, contact, ground)
+
+
+@optional_hook
+def sines_in_pass(m, angle):
+    """Return sine and cosine of a rotation [rad] in a pass."""
+    return sine_and_cosine(angle)
 
 
 @optional_hook

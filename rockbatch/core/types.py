@@ -150,4 +150,5 @@ class Result(NamedTuple):
     t_force: float
     yielding_rocks: float  # rocks to one side in which the ground under a footing has yielded
     t_yield: float  # when it first did [s]
+    repeated: int  # sub-steps integrated event by event, not by the pass
     rows: int  # rows of history that were written or would have been

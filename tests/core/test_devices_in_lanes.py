@@ -75,3 +75,25 @@ def test_the_pass_with_devices_gives_what_is_found_event_by_event(base, monkeypa
     assert outcomes_of(found) == passed
     # Both tendons go in one call; runs without devices, with braces, and with friction on springs have no such pass
     assert without.count(True) == len(RESTRAINTS) - (4 if base.on_springs else 3)
+
+
+def share_repeated(base, name, monkeypatch):
+    """Share of the sub-steps of runs with one kind of restraints that is integrated event by event."""
+    found, marched, march = crowd(base, (name,)), [], runs.march
+    monkeypatch.setattr(runs, "march", lambda *given: marched.append(march(*given)) or marched[-1])
+    outcomes = run_all_fixed(found, [4] * len(found), 1.0, Stop())
+    steps = sum(outcome.t_end / run.motion.dt * 4.0 for run, outcome in zip(found, outcomes, strict=True))
+    return sum(records.repeated.sum() for records in marched) / steps
+
+
+@pytest.mark.parametrize("name", ["viscous", "tendon", "hysteretic", "several"])
+@pytest.mark.parametrize(("base", "most"), [("epp", 0.05), ("rigid", 0.2)])
+def test_the_pass_takes_most_sub_steps_with_devices(base, most, name, monkeypatch):
+    """The noise throws blocks on rigid ground into the air now and then, where all sub-steps are repeated."""
+    assert 0.0 < share_repeated(BASES[base], name, monkeypatch) < most
+
+
+def test_without_a_pass_all_sub_steps_are_repeated(monkeypatch):
+    """Braced dampers have none, nor has friction on springs."""
+    assert share_repeated(BASES["rigid"], "braced", monkeypatch) == pytest.approx(1.0, abs=0.01)
+    assert share_repeated(BASES["epp"], "friction", monkeypatch) == pytest.approx(1.0, abs=0.01)

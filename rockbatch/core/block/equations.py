@@ -10,7 +10,13 @@ from rockbatch.core.trigonometry import flat_sine_and_cosine, sine_and_cosine
 @inlined
 def arms_about(m, theta, side):
     """Return ∂v/∂θ [m] of a block on its pivot on ``side``, and the height H [m] of its centre of mass above that pivot."""
-    sine, cosine = sine_and_cosine(theta)
+    return _arms_by(m, sine_and_cosine(theta), side)
+
+
+@inlined
+def _arms_by(m, sines, side):
+    """Return the results of :func:`arms_about` for sine and cosine of the rotation."""
+    sine, cosine = sines
     b = side * m.half_width
     return b * cosine - m.height * sine, m.height * cosine + b * sine
 
@@ -123,6 +129,23 @@ def _constrained_block(m, y, contact):
         return y
     v, slope = on_pivot(m, y.theta, side)
     return Rocking(v, y.theta, slope * y.omega, y.omega)
+
+
+@system.sines_in_pass.of(Block)
+def sines_in_pass(m, angle):
+    """Return sine and cosine of a rotation [rad] up to FLAT; other sub-steps do not stand."""
+    return flat_sine_and_cosine(angle)
+
+
+@system.rates_and_power.of(Block)
+def rates_and_power(m, y, contact, ground, at):
+    """Return rates and ground power of a block that rocks about a pivot or rests."""
+    side = side_of(contact)
+    slope, arm = _arms_by(m, (at.sine, at.cosine), side)
+    down, back = pull_down(m.pull)
+    turning = abs(side) * (tilt_acceleration(m, slope, arm, ground) - m.quickness * (back + down * slope))
+    power = -ground.horizontal * arm * y.omega - ground.vertical * y.v_rate
+    return Rocking(y.v_rate, y.omega, slope * turning - arm * y.omega * y.omega, turning), power
 
 
 @system.end_step.of(Block)

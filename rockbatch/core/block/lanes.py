@@ -91,6 +91,12 @@ def pier_in(traits, lanes, i):
     return m, Moment(y, contact, None)
 
 
+@system.in_pass.of(BlockTraits)
+def in_pass(traits, lanes, i):
+    """Return the Block of lane ``i``, its state and its Stance for a pass with devices, which keeps v and its rate, too."""
+    return _model(traits, lanes, i), get(lanes.now, i, Rocking), get(lanes.contact, i, Stance)
+
+
 @system.begin.of(BlockTraits)
 def begin(traits, lanes, i, run):
     """Put the model and the start of ``run`` into lane ``i``."""
@@ -113,7 +119,8 @@ def begin(traits, lanes, i, run):
 @system.take_in_step.of(BlockTraits)
 def take_in_step(traits, lanes, i, substep, history):
     """Advance the lane to the end of its sub-step; the driver records the peak."""
-    lanes.now.theta[i], lanes.now.omega[i] = lanes.end.theta[i], lanes.end.omega[i]
+    m, contact, now, end = _model(traits, lanes, i), get(lanes.contact, i, Stance), lanes.now, get(lanes.end, i, Tilt)
+    put(lanes.now, i, constrained(m, Rocking(now.v[i], end.theta, now.v_rate[i], end.omega), contact))
 
 
 @system.take_in_part.of(BlockTraits)
@@ -133,6 +140,8 @@ def note_devices(traits, lanes, i, devices):
     """Record by how much devices resist the uplift of a block at rest; return True if it is."""
     m, now = pier_in(traits, lanes, i)
     rests = now.contact.left != 0.0 and now.contact.right != 0.0
+    if devices is not None:
+        put(lanes.now, i, now.y)
     if devices is not None and rests:
         lanes.bounds.held_left[i] = resistance(m, devices, now.y, LEFT)
         lanes.bounds.held_right[i] = resistance(m, devices, now.y, RIGHT)

@@ -6,15 +6,15 @@ lane does not depend on its neighbours, so that a run gives the same bits in any
 
 from rockbatch.core import system
 from rockbatch.core.block.equations import side_of
-from rockbatch.core.block.model import BlockTraits, Rocker, Stance, Tilt
-from rockbatch.core.clock import CALM, EVENTFUL, ON_ITS_SIDE, STANDS, ground_at, peak_at_end
+from rockbatch.core.block.model import BlockTraits, Rocker, Rocking, Stance, Tilt
+from rockbatch.core.clock import CALM, EVENTFUL, STANDS, ground_at, peak_at_end
 from rockbatch.core.devices.passing import integrate, settle
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import inlined
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import inner_points
 from rockbatch.core.system import rates
-from rockbatch.core.table import get
+from rockbatch.core.table import get, put
 from rockbatch.core.trigonometry import FLAT
 from rockbatch.core.types import LEFT, RIGHT, Instant, Pull
 
@@ -101,7 +101,7 @@ def _judged(traits, lanes, shared, i, substep, settings):
     tilt, tilt_end = side * y.theta, side * end.theta
     early, late = inner_points(tilt, side * y.omega, tilt_end, side * end.omega, h)
     lowest, highest = min(early, late), max(early, late)
-    stays = min(min(lowest, tilt_end), min(tilt, ON_ITS_SIDE - tilt_end))
+    stays = min(min(lowest, tilt_end), min(tilt, FLAT - max(highest, max(tilt, tilt_end))))
     presses = min(normal_end, normal) - NEAR_FLIGHT * m.gravity
     moves = min(min(stays, presses), min(shared.verdict.clear[i], 1.0 - lanes.step_status.watched[i]))
     left, right = bounds.held_left[i], bounds.held_right[i]
@@ -112,8 +112,16 @@ def _judged(traits, lanes, shared, i, substep, settings):
     eventful = CALM if stands else EVENTFUL
     calm = max(highest - lanes.peak.theta[i] if y.omega * end.omega < 0.0 else -1.0, eventful) <= 0.0
     peak_at_end(lanes, i, tilt_end if calm else 0.0, substep)
-    lanes.now.theta[i] = end.theta if calm else y.theta
-    lanes.now.omega[i] = end.omega if calm else y.omega
+    put(
+        lanes.now,
+        i,
+        Rocking(
+            end.v if calm else y.v,
+            end.theta if calm else y.theta,
+            end.v_rate if calm else y.v_rate,
+            end.omega if calm else y.omega,
+        ),
+    )
     lanes.step_status.kind[i] = max(eventful, CALM if calm else STANDS)
 
 

@@ -9,7 +9,7 @@ import math
 from typing import NamedTuple
 
 from rockbatch.core.kernel import inlined
-from rockbatch.core.system import shift
+from rockbatch.core.system import shift, sines_in_pass
 from rockbatch.core.table import record
 from rockbatch.core.trigonometry import sine_and_cosine
 
@@ -49,9 +49,21 @@ def put_gap(line, at):
 @inlined
 def attitude(m, y, contact, level):
     """Return the Attitude in state ``y``; at rest the pier is at v = ``level`` [m]."""
+    return _tilted(m, y, contact, level, sine_and_cosine(y.theta))
+
+
+@inlined
+def attitude_in_pass(m, y, contact, level):
+    """Return the Attitude in state ``y`` of a pass."""
+    return _tilted(m, y, contact, level, sines_in_pass(m, y.theta))
+
+
+@inlined
+def _tilted(m, y, contact, level, sines):
+    """Return the Attitude in state ``y``, whose rotation has the ``sines``: sine and cosine."""
     if m.finite is None:
         return Attitude(y.theta, 1.0, 0.0, 1.0, y.v - level, 0.0)
-    sine, cosine = sine_and_cosine(y.theta)
+    sine, cosine = sines
     tangent = sine / (1.0 + cosine)
     rise = y.v - level + m.height * sine * tangent
     return Attitude(sine, cosine, tangent, math.sqrt(1.0 + tangent * tangent), rise, shift(m, contact))

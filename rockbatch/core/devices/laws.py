@@ -106,7 +106,13 @@ def slip_rate(of, pull):
 
 
 @inlined
-def viscous(of, speed):
+def linear(of, elongation, speed, state, mode, goes):
+    """Return the Response of a linear viscous damper."""
+    return Response(of.slope * speed, 0.0, of.slope * speed * speed)
+
+
+@inlined
+def viscous(of, elongation, speed, state, mode, goes):
     """Return the Response of a viscous damper."""
     if abs(speed) < of.linear_below:
         pull = of.slope * speed
@@ -116,15 +122,35 @@ def viscous(of, speed):
 
 
 @inlined
-def _hysteretic(of, speed, z, goes):
-    """Return the Response of a hysteretic damper: two-sided Bouc–Wen, n = 5."""
-    pull, share = of.strength * z, 1.0 - (power(min(abs(z), 1.0), None) if goes * z > 0.0 else 0.0)
+def friction(of, elongation, speed, state, mode, goes):
+    """Return the Response of a friction damper that slips."""
+    pull = of.strength * goes
+    return Response(pull, 0.0, pull * speed)
+
+
+@inlined
+def _unyielded(z, goes):
+    """Return the share of its elongation by which a hysteretic damper deforms elastically: two-sided Bouc–Wen, n = 5."""
+    return 1.0 - (power(min(abs(z), 1.0), None) if goes * z > 0.0 else 0.0)
+
+
+@inlined
+def hysteretic(of, elongation, speed, z, mode, goes):
+    """Return the Response of a hysteretic damper without a brace."""
+    pull = of.strength * z
+    return Response(pull, speed * of.stiffness * _unyielded(z, goes), pull * speed)
+
+
+@inlined
+def _braced_hysteretic(of, speed, z, goes):
+    """Return the Response of a hysteretic damper with or without a brace."""
+    pull, share = of.strength * z, _unyielded(z, goes)
     return Response(pull, speed * of.stiffness * share / (1.0 + of.give * share), pull * speed)
 
 
 @inlined
-def _tendon(of, elongation, speed, slack, mode):
-    """Return the Response of a tendon, whose permanent elongation grows while it yields."""
+def tendon(of, elongation, speed, slack, mode, goes):
+    """Return the Response of a tendon, whose permanent elongation grows while it yields; or of a spring, which stays TAUT."""
     if mode == TAUT:
         return Response(tension(of, elongation, slack), 0.0, 0.0)
     return Response(0.0, 0.0, 0.0) if mode == SLACK else Response(of.strength, speed, of.strength * speed)
@@ -149,20 +175,6 @@ def _stop(of, elongation, speed, deepest, mode):
 
 
 @inlined
-def without_powers(of, elongation, speed, state, mode, goes):
-    """Return the Response of an element whose law needs no call of ``pow``; of a viscous damper its linear part."""
-    if of.kind == VISCOUS:
-        return Response(of.slope * speed, 0.0, of.slope * speed * speed)
-    if of.kind == TENDON:
-        return _tendon(of, elongation, speed, state, mode)
-    if of.kind == HYSTERETIC:
-        return _hysteretic(of, speed, state, goes)
-    if of.kind == FRICTION:
-        return Response(of.strength * goes, 0.0, of.strength * goes * speed)
-    return Response(tension(of, elongation, state), 0.0, 0.0)
-
-
-@inlined
 def response(of, elongation, speed, state, mode, goes):
     """Return the Response of an element in ``mode`` that ``goes`` OPENS, CLOSES or STICKS.
 
@@ -170,12 +182,16 @@ def response(of, elongation, speed, state, mode, goes):
     greatest compression [m] of a stop.
     """
     if of.kind == VISCOUS:
-        return viscous(of, speed)
+        return viscous(of, elongation, speed, state, mode, goes)
     if of.kind == MAXWELL:
         return _braced(of, speed, state)
     if of.kind == CONTACT:
         return _stop(of, elongation, speed, state, mode)
-    return without_powers(of, elongation, speed, state, mode, goes)
+    if of.kind == HYSTERETIC:
+        return _braced_hysteretic(of, speed, state, goes)
+    if of.kind == FRICTION:
+        return friction(of, elongation, speed, state, mode, goes)
+    return tendon(of, elongation, speed, state, mode, goes)
 
 
 @kernel

@@ -7,10 +7,13 @@ their sum. The numbers of a lane are combined in the order of scalar code, so th
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from rockbatch.core.clock import EVENTFUL, ground_at
-from rockbatch.core.devices.elongation import Attitude, Gap, across, attitude, gap, lifted, put_gap
+from rockbatch.core.devices.elongation import Attitude, Gap, across, attitude_in_pass, gap, lifted, put_gap
 from rockbatch.core.devices.lanes import Mode, Progress, Works, devices_in, fetch
 from rockbatch.core.devices.laws import (
+    FRICTION,
     HYSTERETIC,
     SPRING,
     TAUT,
@@ -19,16 +22,28 @@ from rockbatch.core.devices.laws import (
     YIELDING,
     Element,
     Use,
+    friction,
+    hysteretic,
+    linear,
+    tendon,
     tension,
     viscous,
-    without_powers,
 )
 from rockbatch.core.devices.pull import END, GROWTH, PLASTIC, START, TRAVEL, device_rates
 from rockbatch.core.devices.use import take_in
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import inlined, inlined_once, kernel
 from rockbatch.core.roots import NO_ACCELERATION, excess, inner_points
-from rockbatch.core.system import end_step, ground_power, in_pass, lanes_in_pass, pier_in, rates, share, stage
+from rockbatch.core.system import (
+    end_step,
+    in_pass,
+    lanes_in_pass,
+    pier_in,
+    rates,
+    rates_and_power,
+    share,
+    stage,
+)
 from rockbatch.core.table import along, get, put, take_unless, taken, with_pull
 from rockbatch.core.types import Pull
 
@@ -57,7 +72,7 @@ def _stage_pier(traits, lanes, shared, i, y):
     """Set the staged state of the pier to ``y``, with its attitude, and its pull to that of no device."""
     m, _, contact = in_pass(traits, lanes, i)
     put(shared.stage, i, y)
-    put(shared.attitude, i, attitude(m, y, contact, shared.verdict.level[i]))
+    put(shared.attitude, i, attitude_in_pass(m, y, contact, shared.verdict.level[i]))
     put(shared.pull, i, Pull(0.0, 0.0))
 
 
@@ -76,54 +91,45 @@ def _leave_start(traits, lanes, each, shared, count):
 
 
 @inlined
-def _state_at_end(line, i, h):
+def _progress_at_end(line, i, h):
     """Return the Progress of a device at the end of a step of ``h`` [s]."""
     inner = along(get(line.start_rates, i, Progress), get(line.inner, i, Progress), 2.0)
-    end = along(get(line.now, i, Progress), along(inner, get(line.rates, i, Progress), 1.0), h * (1.0 / 6.0))
-    plastic = line.element.kind[i] == HYSTERETIC and abs(end.state) > 1.0 - PLASTIC
-    return Progress((1.0 if end.state > 0.0 else -1.0) if plastic else end.state, end.lost)
-
-
-def _loop_of(ends, powers):
-    """Return a kernel that takes one device in all lanes through a stage; ``ends``: that at the end; ``powers``: its law has."""
-
-    @kernel
-    def respond(traits, lanes, line, shared, count, part, weight):
-        at_deck = line.element.height[0] != 0.0
-        for i in range(count):
-            m, now, _ = in_pass(traits, lanes, i)
-            of, at, mode = get(line.element, i, Element), get(shared.attitude, i, Attitude), get(line.mode, i, Mode)
-            y, h = get(shared.stage, i, now), lanes.clock.step[i]
-            here = across(m, of, at, y) if at_deck else gap(m, of.offset + at.shift, at, y)
-            if ends:
-                end = _state_at_end(line, i, h)
-                put(line.end, i, end)
-                put(line.gap, i, here)
-                state = end.state
-            else:
-                state = line.now.state[i] + part * h * line.rates.state[i]
-            if powers:
-                response = viscous(of, here.speed)
-            else:
-                response = without_powers(of, here.elongation, here.speed, state, mode.mode, mode.goes)
-            moving = Progress(response.state_rate, response.loss_rate)
-            put(line.rates, i, moving)
-            if not ends:
-                put(line.inner, i, along(get(line.inner, i, Progress), moving, weight))
-            shared.pull.force[i] += response.force * here.by_v
-            shared.pull.moment[i] += response.force * here.arm
-
-    return respond
-
-
-_at_stage, _at_end = _loop_of(False, False), _loop_of(True, False)
-_by_powers_at_stage, _by_powers_at_end = _loop_of(False, True), _loop_of(True, True)  # not vectorised
+    return along(get(line.now, i, Progress), along(inner, get(line.rates, i, Progress), 1.0), h * (1.0 / 6.0))
 
 
 @inlined
-def _has_powers(line):
-    """Return True if the law of a device, of a kind and linear or not alike in all lanes, needs a call of ``pow``."""
-    return line.element.kind[0] == VISCOUS and line.element.linear_below[0] != math.inf
+def _unchanged(state):
+    """Return the ``state`` of a device at the end of a step."""
+    return state
+
+
+@inlined
+def _snapped(z):
+    """Return ``z`` of a hysteretic damper at the end of a step: ±1 if it counts as plastic."""
+    return (1.0 if z > 0.0 else -1.0) if abs(z) > 1.0 - PLASTIC else z
+
+
+@inlined
+def _gap_in(traits, lanes, line, shared, i):
+    """Return the Gap of a device of lane ``i`` in the stage; fields are selected, since a loop with a branch stays scalar."""
+    m, now, _ = in_pass(traits, lanes, i)
+    of, at, y = get(line.element, i, Element), get(shared.attitude, i, Attitude), get(shared.stage, i, now)
+    high, low, at_deck = across(m, of, at, y), gap(m, of.offset + at.shift, at, y), of.height != 0.0
+    return Gap(
+        high.elongation if at_deck else low.elongation,
+        high.speed if at_deck else low.speed,
+        high.by_v if at_deck else low.by_v,
+        high.by_theta if at_deck else low.by_theta,
+        high.bend if at_deck else low.bend,
+        high.arm if at_deck else low.arm,
+    )
+
+
+@inlined
+def _pulled(shared, i, here, force):
+    """Add the ``force`` [m/s²] of a device with the Gap ``here`` to the pull of lane ``i``."""
+    shared.pull.force[i] += force * here.by_v
+    shared.pull.moment[i] += force * here.arm
 
 
 @inlined
@@ -134,7 +140,8 @@ def _rates_under_devices(traits, lanes, shared, i, steps, part):
     ground = later(ground_at(lanes, i, steps * h), part * h)
     under = with_pull(m, get(shared.pull, i, Pull))
     p_delta = 0.0 if m.finite is not None else -m.height * y.theta * under.pull.force * y.omega
-    return rates(under, y, contact, ground), Works(ground_power(m, y, contact, ground), p_delta)
+    k, power = rates_and_power(under, y, contact, ground, get(shared.attitude, i, Attitude))
+    return k, Works(power, p_delta)
 
 
 @inlined
@@ -214,20 +221,35 @@ def _keeps_mode(of, mode, c):
 
 
 @inlined
-def _needs_shorter_step(of, goes, c):
-    """Return True if the law of a device is resolved only by a shorter step (``step_resolving_devices``)."""
-    near = GROWTH * max(abs(c.start.speed), of.linear_below) / (c.steepest * c.dt)
-    way = (abs(c.start.speed) + c.steepest * c.h) * c.dt * of.stiffness
-    steep, soft = of.kind == VISCOUS and of.exponent < 1.0, of.kind == HYSTERETIC and goes * c.state < 1.0
-    return near < 1.0 if steep else soft and TRAVEL / way < 1.0
+def _no_event(of, mode, c):
+    """Return a positive number: a linear device has no event."""
+    return 1.0
 
 
 @inlined
-def _clear(of, mode, c):
-    """Return a number that is positive if a device certainly has no event in the sub-step, and asks for no shorter step."""
-    keeps = _keeps_mode(of, mode.mode, c) if of.kind == TENDON else _keeps_direction(mode.goes, c)
-    keeps = 1.0 if of.linear_below == math.inf else keeps
-    return -1.0 if _needs_shorter_step(of, mode.goes, c) else keeps
+def _keeps_mode_of(of, mode, c):
+    """Return a number that is positive if a tendon keeps its mode; a spring does."""
+    return 1.0 if of.linear_below == math.inf else _keeps_mode(of, mode.mode, c)
+
+
+@inlined
+def _keeps_way(of, mode, c):
+    """Return a number that is positive if a friction damper keeps its direction."""
+    return _keeps_direction(mode.goes, c)
+
+
+@inlined
+def _keeps_steep(of, mode, c):
+    """Return a number that is positive if a viscous damper keeps its direction, and its step is short enough (``pull``)."""
+    near = GROWTH * max(abs(c.start.speed), of.linear_below) / (c.steepest * c.dt)
+    return -1.0 if of.exponent < 1.0 and near < 1.0 else _keeps_direction(mode.goes, c)
+
+
+@inlined
+def _keeps_branch(of, mode, c):
+    """Return a number that is positive if a hysteretic damper keeps its direction, and its step is short enough (``pull``)."""
+    way = (abs(c.start.speed) + c.steepest * c.h) * c.dt * of.stiffness
+    return -1.0 if mode.goes * c.state < 1.0 and TRAVEL / way < 1.0 else _keeps_direction(mode.goes, c)
 
 
 @inlined
@@ -239,17 +261,39 @@ def _greatest(f0, d0, f1, d1, h, best):
 
 
 @inlined
-def _greatest_force(of, mode, c, stroke, speed):
-    """Return the greatest |force| [m/s²] of a device but for power laws, and a number that is positive if it may be exceeded."""
+def _most_of_linear(of, mode, c, use, before):
+    """Return the greatest |force| [m/s²] of a linear damper with its stroke and speed in ``use``, and −1: it is not exceeded."""
+    return max(use.most, of.slope * use.speed), -1.0
+
+
+@inlined
+def _most_of_powers(of, mode, c, use, before):
+    """Return ``most`` unchanged, and a number that is positive if scalar code has to raise it, since the greatest speed rose."""
+    return use.most, use.speed - before.speed
+
+
+@inlined
+def _most_of_friction(of, mode, c, use, before):
+    """Return the greatest |force| [m/s²] of a friction damper, and −1."""
+    return max(use.most, abs(of.strength * mode.goes)), -1.0
+
+
+@inlined
+def _most_of_hysteretic(of, mode, c, use, before):
+    """Return the greatest |force| [m/s²] of a hysteretic damper, and −1."""
+    return max(use.most, of.strength * max(abs(c.state), abs(c.state_end))), -1.0
+
+
+@inlined
+def _most_of_tendon(of, mode, c, use, before):
+    """Return the greatest |force| [m/s²] of a tendon or a spring, and a number that is positive if it may be exceeded inside."""
     longest = max(c.start.elongation, c.end.elongation)
     early, late = inner_points(c.start.elongation, c.start.speed, c.end.elongation, c.end.speed, c.h)
     taut, turns = mode.mode == TAUT, min(c.start.speed, -c.end.speed) > 0.0
     pull, bound = abs(tension(of, longest, c.state_end)), tension(of, max(longest, max(early, late)), c.state_end)
-    others = of.stiffness * stroke if of.kind == SPRING else abs(of.strength * mode.goes)
-    others = of.strength * max(abs(c.state), abs(c.state_end)) if of.kind == HYSTERETIC else others
-    others = of.slope * speed if of.kind == VISCOUS else others
-    force = (pull if taut else 0.0) if of.kind == TENDON else others
-    return force, (bound if of.kind == TENDON and taut and turns else 0.0)
+    spring = of.kind == SPRING
+    most = max(use.most, of.stiffness * use.stroke if spring else (pull if taut else 0.0))
+    return most, -1.0 if spring else (bound if taut and turns else 0.0) - most
 
 
 @inlined
@@ -264,29 +308,12 @@ def _course(traits, lanes, line, shared, i):
 
 
 @inlined
-def _use_at_end(line, i, c):
-    """Return the Use of a device at the end of a sub-step, and a number that is positive if it may have an extreme inside."""
-    of, mode, use = get(line.element, i, Element), get(line.mode, i, Mode), get(line.use, i, Use)
+def _travelled(line, i, c):
+    """Return the Use of a device after a sub-step but for its force, and a number positive if an extreme may be inside."""
+    use, yielded = get(line.use, i, Use), c.state_end if line.element.kind[i] == TENDON else 0.0
     stroke, more = _greatest(c.start.elongation, c.start.speed, c.end.elongation, c.end.speed, c.h, use.stroke)
     speed, faster = _greatest(c.start.speed, c.lift, c.end.speed, c.lift_end, c.h, use.speed)
-    force, bound = _greatest_force(of, mode, c, stroke, speed)
-    powers = of.kind == VISCOUS and of.linear_below != math.inf
-    most = use.most if powers else max(use.most, force)
-    stronger = speed - use.speed if powers else bound - most
-    yielded = c.state_end if of.kind == TENDON else 0.0
-    return Use(most, stroke, speed, line.end.lost[i], yielded, use.times), max(max(more, faster), stronger)
-
-
-@kernel
-def _judge(traits, lanes, line, shared, count):
-    """Judge one device in all lanes."""
-    for i in range(count):
-        c = _course(traits, lanes, line, shared, i)
-        clear = _clear(get(line.element, i, Element), get(line.mode, i, Mode), c)
-        use, more = _use_at_end(line, i, c)
-        put(line.use_end, i, use)
-        shared.verdict.clear[i] = min(clear, shared.verdict.clear[i])
-        shared.verdict.more[i] = max(more, shared.verdict.more[i])
+    return Use(use.most, stroke, speed, line.end.lost[i], yielded, use.times), max(more, faster)
 
 
 @inlined
@@ -299,14 +326,75 @@ def _look_ahead(traits, lanes, shared, count, steps):
         put(shared.ahead, i, rates(with_pull(m, get(shared.start_pull, i, Pull)), y, contact, ground))
 
 
-@inlined
-def _respond(traits, lanes, each, shared, count, part, weight):
-    """Take all devices through an inner stage, and add ``weight`` times their rates to the sums of these."""
-    for j in range(len(each)):
-        if _has_powers(each[j]):
-            _by_powers_at_stage(traits, lanes, each[j], shared, count, part, weight)
+STAGE, END_OF_STEP, VERDICT = map(np.int64, range(3))
+"""What is done with a device in all lanes: a stage inside the step, its end, or whether the step stands."""
+
+
+def _law(respond, clear, most, state_at_end=None):
+    """Return a kernel that takes one device in all lanes through a stage, or judges it, by functions of its law.
+
+    A loop for each law is shorter than one that computes all laws and selects one.
+    """
+    ends = state_at_end or _unchanged
+
+    @kernel
+    def take(what, part, traits, lanes, line, shared, count):
+        if what == STAGE:
+            for i in range(count):
+                here, h = _gap_in(traits, lanes, line, shared, i), lanes.clock.step[i]
+                of, mode = get(line.element, i, Element), get(line.mode, i, Mode)
+                state = line.now.state[i] + part * h * line.rates.state[i]
+                response = respond(of, here.elongation, here.speed, state, mode.mode, mode.goes)
+                moving = Progress(response.state_rate, response.loss_rate)
+                put(line.rates, i, moving)
+                put(line.inner, i, along(get(line.inner, i, Progress), moving, 1.0 if part < 1.0 else 0.0))
+                _pulled(shared, i, here, response.force)
+        elif what == END_OF_STEP:
+            for i in range(count):
+                here, h = _gap_in(traits, lanes, line, shared, i), lanes.clock.step[i]
+                of, mode = get(line.element, i, Element), get(line.mode, i, Mode)
+                end = _progress_at_end(line, i, h)
+                state = ends(end.state)
+                response = respond(of, here.elongation, here.speed, state, mode.mode, mode.goes)
+                put(line.end, i, Progress(state, end.lost))
+                put(line.gap, i, here)
+                put(line.rates, i, Progress(response.state_rate, response.loss_rate))
+                _pulled(shared, i, here, response.force)
         else:
-            _at_stage(traits, lanes, each[j], shared, count, part, weight)
+            for i in range(count):
+                c = _course(traits, lanes, line, shared, i)
+                of, mode = get(line.element, i, Element), get(line.mode, i, Mode)
+                use, more = _travelled(line, i, c)
+                force, stronger = most(of, mode, c, use, get(line.use, i, Use))
+                put(line.use_end, i, Use(force, use.stroke, use.speed, use.lost, use.yielded, use.times))
+                shared.verdict.clear[i] = min(clear(of, mode, c), shared.verdict.clear[i])
+                shared.verdict.more[i] = max(max(more, stronger), shared.verdict.more[i])
+
+    return take
+
+
+_linear = _law(linear, _no_event, _most_of_linear)
+_by_powers = _law(viscous, _keeps_steep, _most_of_powers)  # not vectorised
+_tendon = _law(tendon, _keeps_mode_of, _most_of_tendon)
+_hysteretic = _law(hysteretic, _keeps_branch, _most_of_hysteretic, _snapped)
+_friction = _law(friction, _keeps_way, _most_of_friction)
+
+
+@inlined
+def _take_all(what, part, traits, lanes, each, shared, count):
+    """Take all devices through a stage ``part`` of a step after its start, or judge them; kinds are alike in all lanes."""
+    for j in range(len(each)):
+        line, kind = each[j], each[j].element.kind[0]
+        if kind == VISCOUS and line.element.linear_below[0] == math.inf:
+            _linear(what, part, traits, lanes, line, shared, count)
+        elif kind == VISCOUS:
+            _by_powers(what, part, traits, lanes, line, shared, count)
+        elif kind == HYSTERETIC:
+            _hysteretic(what, part, traits, lanes, line, shared, count)
+        elif kind == FRICTION:
+            _friction(what, part, traits, lanes, line, shared, count)
+        else:
+            _tendon(what, part, traits, lanes, line, shared, count)
 
 
 @inlined
@@ -321,20 +409,15 @@ def integrate(traits, lanes, equipment, runs, substep):
             _start(traits, lanes, equipment, i, steps)
     _leave_start(traits, lanes, each, shared, count)
     for number in range(3):
-        _respond(traits, lanes, each, shared, count, 1.0 if number == 2 else 0.5, 0.0 if number == 2 else 1.0)
+        _take_all(STAGE, 1.0 if number == 2 else 0.5, traits, lanes, each, shared, count)
         if number < 2:
             _to_next_stage(traits, lanes, shared, count, steps, 0.5, 0.5 if number == 0 else 1.0)
     _to_end(traits, lanes, shared, count, steps)
-    for j in range(len(each)):
-        if _has_powers(each[j]):
-            _by_powers_at_end(traits, lanes, each[j], shared, count, 1.0, 0.0)
-        else:
-            _at_end(traits, lanes, each[j], shared, count, 1.0, 0.0)
+    _take_all(END_OF_STEP, 1.0, traits, lanes, each, shared, count)
     _evaluate_end(traits, lanes, shared, count, steps)
     if equipment.bound_steps:
         _look_ahead(traits, lanes, shared, count, steps)
-    for j in range(len(each)):
-        _judge(traits, lanes, each[j], shared, count)
+    _take_all(VERDICT, 1.0, traits, lanes, each, shared, count)
     return count
 
 
