@@ -228,7 +228,7 @@ def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
 
 
 def _place(axis: Axis) -> str:
-    """Return "across the axis" for a case across the axis of another one (``across_of``), else "along the axis"."""
+    """Return "across the axis" for a case across the axis of another one, else "along the axis"."""
     return "across the axis" if is_across(axis.case) else "along the axis"
 
 

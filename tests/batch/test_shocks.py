@@ -8,7 +8,7 @@ from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.motions import read_motions
 from rockbatch.observers.shocks import TABLE
-from rockbatch.observers.shocks.table import MEANING
+from rockbatch.observers.shocks.table import MEANING, read
 
 PIER = rb.Pier(alpha=0.2, p=1.0)
 SOFT = rb.YieldingBase(beta=40, eta=2.0, spring="epp", zeta=0.1)
@@ -196,3 +196,9 @@ def test_a_shock_leaves_the_pier_where_supports_or_dampers_hold_it(restraints):
         assert row["settlement_m"] == pytest.approx(-0.5 * sum(unstressed), rel=1e-9)
         assert row["moving_over_alpha"] * PIER.alpha == pytest.approx(0.5 * (high - low), rel=1e-3)
         assert abs(rests) > 1e-5
+
+
+def test_a_table_without_a_varied_key_is_refused(tmp_path):
+    (tmp_path / TABLE).write_text(",".join(["record", "case", "polarity", "scale", *MEANING]) + "\n", encoding="utf-8")
+    with pytest.raises(rb.InputError, match=r"shocks\.csv: column eta is missing"):
+        read(tmp_path, ["eta"])

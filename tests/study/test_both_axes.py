@@ -4,14 +4,19 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from motion_files import wiggle, write_at2
 from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.analyses.fragility.runs import Point, ScaledRuns, level_plans
+from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Listener
+from rockbatch.batch.plan import Plan
 from rockbatch.common.errors import InputError
+from rockbatch.motions import MotionSet
 from rockbatch.pier import Damper, ElasticBase, Pier, Stop, Tendon
 from rockbatch.results import beside_peaks
 from rockbatch.study import Study, load_study
@@ -24,7 +29,7 @@ PADS = {"name": "pads", "base": "yielding", "stiffness_kN_m": 9e5, "yield_kN": 9
 
 
 def pair(name="A", dt=0.01, npts=600, seed=3):
-    first, second = (4.0 * wiggle(npts, seed + i) for i in range(2))
+    first, second = (size * wiggle(npts, seed + i) for i, size in enumerate((4.0, 3.0)))
     return rb.Motion(name, dt, first, across=second, station=name)
 
 
@@ -186,6 +191,29 @@ def test_analyses_take_the_axis_and_say_so():
     result = rb.fragility(made, progress=said)
     assert set(result.fragility["case"]) == {"rock"}
     assert "other_width_m: this analysis takes the cases along the axis of the pier only" in said.words
+
+
+def test_runs_beside_peaks_and_in_plans_are_under_the_component_of_their_axis():
+    made, motion = study([BLOCK]), pair()
+    ordered = [("rock", motion), ("rock across", motion.exchanged)]
+    assert [(run.case.name, run.record) for run in Plan(made, MotionSet([motion]))] == ordered
+    rows = [
+        {"record": "A", "case": name, "polarity": "+", "scale": 1.0, "status": "ok", "theta_max_over_alpha": 0.1}
+        for name, _ in ordered
+    ]
+    beside = beside_peaks.runs(pd.DataFrame(rows), made, [motion])
+    assert [(run.row["case"], run.motion, run.pier) for run in beside] == [
+        (name, record, case.pier) for (name, record), case in zip(ordered, made.cases, strict=True)
+    ]
+    spec = read_fragility(study([BLOCK], fragility={"measure": "PGA/(g tan alpha)", "levels": [0.5, 1.0]}))
+    plans = level_plans(made, spec, [motion])
+    assert [plan.unscaled for plan in plans] == [
+        [pytest.approx(record.pga / (case.pier.gravity * math.tan(case.pier.alpha)))]
+        for (_, record), case in zip(ordered, made.cases, strict=True)
+    ]
+    points = [Point(0, 1.0, case) for case in range(2)]
+    scaled = ScaledRuns(points, [motion], plans, lambda point: made.cases[point.case], "+")
+    assert [(run.case.name, run.record) for run in scaled] == ordered
 
 
 @pytest.mark.slow
