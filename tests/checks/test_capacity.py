@@ -284,6 +284,12 @@ def test_without_a_normal_force_friction_alone_holds_no_shear():
     assert judged(at_base([0.0, 1e4], [0.0, 100.0]), checked=friction).value == pytest.approx(100.0 / 6000.0)
 
 
+def test_the_least_share_within_an_error_is_at_the_top_of_the_curve():
+    """N is 0.5 to 19.5 kN and M at least 2.5 kN m; the curve has its top at 2 kN, and ends at 12 kN."""
+    found = used(((-10.0, 0.0), (2.0, 100.0), (12.0, 0.0)), corners([10.0], [50.0], 0.95)).iloc[0]
+    assert (found["over_capacity"], found["over_capacity_error"]) == (pytest.approx(0.025), math.inf)
+
+
 def test_a_number_is_a_capacity_of_which_the_limit_is_a_share():
     table = runs([0.1]).assign(heel_gap_left_m=0.3, heel_gap_right_m=0.2, base_shear_m_s2=1.0, forces_error=0.0)
     one = Rule("stroke", "heel_gap_m", 0.8, capacity=0.5, reason="r")
