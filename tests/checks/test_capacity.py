@@ -218,6 +218,8 @@ def test_an_envelope_that_is_thinned_reaches_less_by_what_its_error_gains():
     reach = [np.outer(np.cos(ways), of.axial / 5) + np.outer(np.sin(ways), of.effect / 7) for of in (whole, fewer)]
     assert 0.0 <= (reach[0].max(axis=1) - reach[1].max(axis=1)).max() <= FLATNESS
     assert thinned(Envelope(0.0, np.array([4.0]), np.array([2.0]))).error is None
+    flat = thinned(Envelope(0.0, np.array([0.0, 1.0, 2.0]), np.array([1.0, 1.0 + 0.5 * FLATNESS, 1.0])))
+    assert flat.axial.tolist() == [0.0, 1.0, 2.0]
 
 
 @pytest.mark.parametrize("seed", range(40))

@@ -19,8 +19,9 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.common.naming import chosen_by
 from rockbatch.motions import MotionSet
-from rockbatch.quantities.demands import OF_SECTIONS
+from rockbatch.quantities.demands import OF_INTERACTION, OF_SECTIONS
 from rockbatch.quantities.design import of_design
+from rockbatch.results.interaction import INTERACTION
 from rockbatch.results.run_json import describe_case
 from rockbatch.results.sections import SECTIONS
 from rockbatch.study import Case, Study
@@ -155,15 +156,16 @@ class Trials:
         about = (rule for rule in study.checks if not rule.case or name in chosen_by(tuple(rule.case), names))
         rules = [replace(rule, case=()) for rule in about]
         runs = peaks[peaks["case"].isin({str(case["case"]) for case in described})]
-        sections = self.waves.tables.get(SECTIONS)
+        beside = {name: _as_written(forces, _NUMBERS[name]) for name, forces in self.waves.tables.items()}
         verdicts = judge(
             rules,
             runs,
             described,
             {motion.name: motion.of_station for motion in motions},
             study.count,
-            None if sections is None else _as_written(sections),
+            beside.get(SECTIONS),
             {motion.name: motion.origin.event or "" for motion in motions},
+            interaction=beside.get(INTERACTION),
         )
         self.verdicts += verdicts
         of_values = grouped(verdicts, lambda verdict: _values(verdict.columns, self.written.spec))
@@ -183,9 +185,13 @@ class Trials:
                         self.omitted.setdefault(name, {})[verdict.check] = None
 
 
-def _as_written(sections: Sequence[Mapping[str, Any]]) -> "pd.DataFrame":
-    """Return rows of sections.csv as a table, their numbers with the digits that they have in the file."""
-    table, numbers = pd.DataFrame(sections), list(OF_SECTIONS)
+_NUMBERS = {SECTIONS: list(OF_SECTIONS), INTERACTION: list(OF_INTERACTION)}
+"""Columns with numbers of tables beside peaks.csv."""
+
+
+def _as_written(forces: Sequence[Mapping[str, Any]], numbers: list[str]) -> "pd.DataFrame":
+    """Return rows of a file as a table, their ``numbers`` with the digits that they have there."""
+    table = pd.DataFrame(forces)
     table[numbers] = table[numbers].astype("float64").map(rounded)
     return table
 

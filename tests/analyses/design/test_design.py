@@ -216,6 +216,24 @@ def test_checks_of_sections_are_judged_by_the_forces_of_each_value(tmp_path):
         assert value == judged
 
 
+def test_shares_of_capacities_are_judged_by_the_forces_of_each_value(tmp_path):
+    """Of the base and a section, whose rows are read again from the folder of a finished search."""
+    base = {"name": "joint", "demand": "base_shear_over_capacity", "capacity": {"per_N": 0.9, "constant": 9e3}}
+    foot = {"name": "foot", "demand": "section_moment_over_capacity", "at_m": 0.0, "capacity": 9e5}
+    checks = [check | {"at_most": 1.0, "reason": "r"} for check in (base, foot)]
+    of_study = study(OF_SPRINGS, cases=[SPRINGS], check=[*checks, STIFF], pier=TALL, output={"interaction_m": [0.0]})
+    found = rb.design(of_study, tmp_path / "design")
+    shares = found.design_checks.pivot(index="case.stiffness_kN_m", columns="check", values="value")
+    assert (shares[["joint", "foot"]].nunique() == 5).all()
+    assert set(found.design_interaction["height_m"].dropna()) == {0.0}
+    again = rb.design(of_study, tmp_path / "design")
+    pd.testing.assert_frame_equal(again.design_checks, found.design_checks, check_exact=True)
+    stiffness, values = next(iter(shares[["joint", "foot"]].iterrows()))
+    rb.run(of_study.with_(case={"soft": {"stiffness_kN_m": stiffness}}), tmp_path / "one")
+    judged = rb.check(tmp_path / "one").set_index("check")["value"]
+    assert values.to_dict() == pytest.approx(judged[["joint", "foot"]].to_dict(), rel=1e-9)
+
+
 def test_a_check_of_one_case_is_not_one_of_another():
     soft = MOMENT | {"case": "soft"}
     of_study = study(OF_SPRINGS, cases=[SPRINGS, SPRINGS | {"name": "other"}], check=[soft], pier=TALL, output=SECTIONS)
