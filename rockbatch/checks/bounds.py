@@ -2,20 +2,19 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from rockbatch.checks.omissions import omissions, open_landings, unconverged
-from rockbatch.checks.rules import USUAL, Rule
+from rockbatch.checks.rules import Rule
 from rockbatch.quantities.arrays import Rows, Texts
 from rockbatch.quantities.cases import Case, creeps
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.demands import Demand
 from rockbatch.quantities.limits import OTHER_LAW
-from rockbatch.quantities.rows import NOT_RUN
 from rockbatch.quantities.statistics import STATISTICS, Values
 
 SCATTER = 2.0
@@ -223,16 +222,3 @@ def _chaotic(demand: Demand, runs: Rows, error: Values) -> npt.NDArray[np.bool_]
     withheld = np.isnan(of_peak) & ended_well & bool(np.isfinite(of_peak).any())
     chaotic = np.where(np.isnan(runs.numbers("chaotic")), withheld, runs.facts("chaotic"))
     return np.isnan(error) & (np.isnan(of_peak) | demand.residual) & chaotic
-
-
-def counted(rule: Rule, suites: Iterable[Rows]) -> str:
-    """Return how many runs did not go through, and how each counts: "1 overturned (infinite), 2 not run (unknown)"; or ""."""
-    numbers: Counter[str] = Counter()
-    for runs in suites:
-        numbers.update(np.where(runs.missing, NOT_RUN, runs.texts("status")).tolist())
-    parts = []
-    for name in (*USUAL, NOT_RUN):
-        if n := numbers[name]:
-            way = rule.ways["failed" if name == NOT_RUN else name]
-            parts.append(f"{n} {name} ({way})" if DEMANDS[rule.demand].per_run else f"{n} {name}")
-    return ", ".join(parts)

@@ -2,29 +2,30 @@
 
 import json
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
 
 import numpy as np
 
-from rockbatch.checks.bounds import SCATTER, Axis, Demanded, OfSuite, counted, lacking, of_suite
+from rockbatch.checks.bounds import SCATTER, Axis, Demanded, OfSuite, lacking, of_suite
 from rockbatch.checks.capacity import used
 from rockbatch.checks.endings import left_open
 from rockbatch.checks.events import OfEvent, largest_event
 from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.rule_choices import FAR, Available, Fitted, fitted, limit_key
-from rockbatch.checks.rules import Rule
+from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
+from rockbatch.quantities.cases import Case, creeps, has_device, is_across, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.quantities.demands import OF_BASE
 from rockbatch.quantities.limits import OTHER_LAW
-from rockbatch.quantities.rows import complete, counts_as, rows_of_cases, simulated, with_case
+from rockbatch.quantities.rows import NOT_RUN, complete, counts_as, rows_of_cases, simulated, with_case
 from rockbatch.quantities.statistics import STATISTICS
 
 MOST_NAMES = 5
@@ -84,7 +85,7 @@ def judge(
         needs: rows for needs, rows in (("sections", sections), ("interaction", interaction)) if rows is not None
     }
     available = Available(
-        cases=list(dict.fromkeys(str(case["case"]) for case in cases if not case.get("across_of"))),
+        cases=list(dict.fromkeys(str(case["case"]) for case in cases if not is_across(case))),
         scales=scales,
         other_law=OTHER_LAW in runs or not any(map(creeps, cases)),
         output=[
@@ -121,7 +122,7 @@ def judge(
             for fit, own in zip(fits, tables, strict=True):
                 if name in fit.cases and scale in fit.scales:
                     of_rule = [Axis(axis.case, axis.suite.same_rows_of(own)) for axis in axes]
-                    judged.append((fit.rule, _verdict(fit.rule, of_rule, scale, fit.rule.count or count, events or {})))
+                    judged.append(_verdict(fit.rule, of_rule, scale, fit.rule.count or count, events or {}))
             verdicts += left_open(judged, [axis.suite for axis in axes])
     return verdicts
 
@@ -190,7 +191,7 @@ def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, co
         basis=rule.basis,
         reason=rule.reason,
         counting=rule.counting,
-        counted=counted(rule, suites),
+        counted=_ended_early(rule, suites),
         remarks=(),
         count="" if demand.per_case else count,
         unit="" if rule.statistic == "count" else demand.unit,
@@ -198,6 +199,19 @@ def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, co
         axes=combined,
         capacity="" if rule.curve is None else json.dumps(rule.curve),
     )
+
+
+def _ended_early(rule: Rule, suites: Iterable[Rows]) -> str:
+    """Return how many runs did not go through, and how each counts: "1 overturned (infinite), 2 not run (unknown)"; or ""."""
+    numbers: Counter[str] = Counter()
+    for runs in suites:
+        numbers.update(np.where(runs.missing, NOT_RUN, runs.texts("status")).tolist())
+    parts = []
+    for name in (*USUAL, NOT_RUN):
+        if n := numbers[name]:
+            way = rule.ways["failed" if name == NOT_RUN else name]
+            parts.append(f"{n} {name} ({way})" if DEMANDS[rule.demand].per_run else f"{n} {name}")
+    return ", ".join(parts)
 
 
 def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
@@ -215,7 +229,7 @@ def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
 
 def _place(axis: Axis) -> str:
     """Return "across the axis" for a case across the axis of another one (``across_of``), else "along the axis"."""
-    return "across the axis" if axis.case.get("across_of") else "along the axis"
+    return "across the axis" if is_across(axis.case) else "along the axis"
 
 
 def _absent(rule: Rule, axis: Axis) -> str:

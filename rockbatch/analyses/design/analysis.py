@@ -43,13 +43,9 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.motions.spectrum_target import SpectrumTarget
-from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.quantities.demands import OF_BASE
 from rockbatch.results.columns import columns
-from rockbatch.results.interaction import INTERACTION
 from rockbatch.results.labelled import as_dicts
 from rockbatch.results.run_json import describe, rocking_periods
-from rockbatch.results.sections import SECTIONS
 from rockbatch.study import Case, Motions, Study
 from rockbatch.workflow.analysis import Analysis, AnalysisFolder, run_analysis
 
@@ -74,10 +70,8 @@ class DesignSearch(Analysis):
         All verdicts, as rows of checks.csv.
     design_runs : DataFrame
         All runs, as rows of peaks.csv.
-    design_sections : DataFrame or None
-        If a check is about a section: the forces there, as rows of sections.csv.
-    design_interaction : DataFrame or None
-        If a check is about a capacity that depends on the axial force: the forces of one moment, as rows of interaction.csv.
+    design_sections, design_interaction : DataFrame or None
+        If a check is about a section: the forces there, as rows of sections.csv and of interaction.csv.
     spec : DesignSpec
         The settings in [design] of the study.
     """
@@ -197,8 +191,8 @@ def _write_tables(results: AnalysisFolder, spec: DesignSpec) -> dict[str, object
         results.keep_table(INTERVALS, intervals_table(trials.judged, spec, written.varied, written.designs))
         results.keep_table(VALUES, values_table(trials.judged, spec, written.varied))
         results.keep_table(CHECKS, as_table(trials.verdicts))
-        for name, forces in waves.tables.items():
-            results.keep_table(BESIDE[name], pd.DataFrame(forces))
+        for name, rows in waves.tables.items():
+            results.keep_table(BESIDE[name], pd.DataFrame(rows))
     results.keep(RUNS, digest)
     results.info["runs"] = waves.finished
     return {"spec": spec}
@@ -209,16 +203,12 @@ def _said(trial: Trial, spec: DesignSpec) -> str:
     return ", ".join(f"{path} = {value:.10g}" for path, value in zip(spec.paths, trial.values, strict=True))
 
 
-_TABLES = {"sections": SECTIONS, "interaction": INTERACTION, OF_BASE: INTERACTION}
-"""Tables of forces by what demands need."""
-
-
 @contextmanager
 def _waves(results: AnalysisFolder, study: Study, motions: MotionSet, digest: dict[str, str]) -> "Iterator[Waves]":
     """Open the waves of runs: from finished ones of the folder, or into a journal, of which the table is written at the end."""
-    needed = {_TABLES.get(DEMANDS[rule.demand].needs, "") for rule in study.checks} - {""}
-    requested = observers_beside(study.output, motions.motions) if needed else ()
-    observers = [observer for observer in requested if observer.table in needed]
+    of_one_moment = any(rule.at_m is not None or rule.curve is not None for rule in study.checks)
+    requested = observers_beside(study.output, motions.motions) if of_one_moment else ()
+    observers = [observer for observer in requested if observer.table in BESIDE]
     names = [observer.table for observer in observers]
     engine, listener = results.engine, results.listener
     if results.has(RUNS, digest):
@@ -227,8 +217,7 @@ def _waves(results: AnalysisFolder, study: Study, motions: MotionSet, digest: di
         finished = InMemory(columns(study))
         finished.update(enumerate(rows))
         waves = Waves(study, finished, engine, listener, observers)
-        for name in names:
-            waves.tables[name] = as_dicts(read_table(results.directory / BESIDE[name]))
+        waves.tables |= {name: as_dicts(read_table(results.directory / BESIDE[name])) for name in names}
         listener.say(f"{count(len(rows), 'run')} are finished in {results.directory} (--fresh runs them again)")
         yield waves
         return

@@ -14,9 +14,9 @@ from rockbatch.results.interaction import INTERACTION
 from rockbatch.results.sections import SECTIONS
 
 RUNS, CHECKS = "design_runs.csv", "design_checks.csv"
-BESIDE = {SECTIONS: "design_sections.csv", INTERACTION: "design_interaction.csv"}
-"""Files of forces in sections and of the base, by the tables of a run that they are like."""
 VALUES, INTERVALS = "design_values.csv", "design.csv"
+BESIDE = {SECTIONS: "design_sections.csv", INTERACTION: "design_interaction.csv"}
+"""Files of the rows beside those of the runs, by the names that a batch has for them."""
 GOVERNING = ("check", "under_bound", "at_scale", "station", "record", "ratio")
 """Of the check that governs: its name, the bound and scale at which it does, the run, and demand over limit."""
 ENDS = ("below", "above")

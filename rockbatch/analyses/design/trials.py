@@ -82,7 +82,7 @@ class Written:
 
     def _design(self, case: Case) -> Design:
         columns = of_design({name: case.columns[name] for name in self.varied if name in case.columns})
-        return Design(case.across_of or case.name, tuple(columns.items()))
+        return Design(case.name_along, tuple(columns.items()))
 
     def refusal(self, trial: Trial) -> str:
         """Return why the study is refused with the values of a trial; empty if it is not."""
@@ -109,7 +109,7 @@ class Written:
         except InputError as error:
             return str(error.messages[0]).removeprefix(f"{self.study.path}: ")
         columns: dict[str, float | str] = dict(zip(self.spec.paths, values, strict=True))
-        own = [each for each in study.cases if case in (each.name, each.across_of)]
+        own = [each for each in study.cases if each.name_along == case]
         by_design = grouped(own, self._design)
         names = (*self.varied, *self.spec.paths)
         return {
@@ -156,16 +156,15 @@ class Trials:
         about = (rule for rule in study.checks if not rule.case or name in chosen_by(tuple(rule.case), names))
         rules = [replace(rule, case=()) for rule in about]
         runs = peaks[peaks["case"].isin({str(case["case"]) for case in described})]
-        beside = {name: _as_written(forces, _NUMBERS[name]) for name, forces in self.waves.tables.items()}
         verdicts = judge(
             rules,
             runs,
             described,
             {motion.name: motion.of_station for motion in motions},
             study.count,
-            beside.get(SECTIONS),
+            self._beside(SECTIONS, OF_SECTIONS),
             {motion.name: motion.origin.event or "" for motion in motions},
-            interaction=beside.get(INTERACTION),
+            interaction=self._beside(INTERACTION, OF_INTERACTION),
         )
         self.verdicts += verdicts
         of_values = grouped(verdicts, lambda verdict: _values(verdict.columns, self.written.spec))
@@ -184,16 +183,14 @@ class Trials:
                     for name in verdict.omitted:
                         self.omitted.setdefault(name, {})[verdict.check] = None
 
-
-_NUMBERS = {SECTIONS: list(OF_SECTIONS), INTERACTION: list(OF_INTERACTION)}
-"""Columns with numbers of tables beside peaks.csv."""
-
-
-def _as_written(forces: Sequence[Mapping[str, Any]], numbers: list[str]) -> "pd.DataFrame":
-    """Return rows of a file as a table, their ``numbers`` with the digits that they have there."""
-    table = pd.DataFrame(forces)
-    table[numbers] = table[numbers].astype("float64").map(rounded)
-    return table
+    def _beside(self, name: str, numbers: Iterable[str]) -> "pd.DataFrame | None":
+        """Return a table beside the runs, its ``numbers`` with the digits that they have in its file; None without it."""
+        rows = self.waves.tables.get(name)
+        if rows is None:
+            return None
+        table, columns = pd.DataFrame(rows), list(numbers)
+        table[columns] = table[columns].astype("float64").map(rounded)
+        return table
 
 
 def _values(columns: Mapping[str, Any], spec: DesignSpec) -> tuple[tuple[float, ...], Columns]:

@@ -216,22 +216,45 @@ def test_checks_of_sections_are_judged_by_the_forces_of_each_value(tmp_path):
         assert value == judged
 
 
-def test_shares_of_capacities_are_judged_by_the_forces_of_each_value(tmp_path):
-    """Of the base and a section, whose rows are read again from the folder of a finished search."""
-    base = {"name": "joint", "demand": "base_shear_over_capacity", "capacity": {"per_N": 0.9, "constant": 9e3}}
-    foot = {"name": "foot", "demand": "section_moment_over_capacity", "at_m": 0.0, "capacity": 9e5}
-    checks = [check | {"at_most": 1.0, "reason": "r"} for check in (base, foot)]
-    of_study = study(OF_SPRINGS, cases=[SPRINGS], check=[*checks, STIFF], pier=TALL, output={"interaction_m": [0.0]})
-    found = rb.design(of_study, tmp_path / "design")
-    shares = found.design_checks.pivot(index="case.stiffness_kN_m", columns="check", values="value")
-    assert (shares[["joint", "foot"]].nunique() == 5).all()
-    assert set(found.design_interaction["height_m"].dropna()) == {0.0}
-    again = rb.design(of_study, tmp_path / "design")
+SHARE = {
+    "name": "share",
+    "demand": "section_moment_over_capacity",
+    "at_m": 10.0,
+    "capacity": [[-1e5, 0.0], [0.0, 1e5], [1e5, 0.0]],
+    "at_most": 0.9,
+    "reason": "r",
+}
+
+
+JOINT = {
+    "name": "joint",
+    "demand": "base_shear_over_capacity",
+    "capacity": {"constant": 9e3, "per_N": 0.9},
+    "at_most": 1.0,
+    "reason": "r",
+}
+
+
+def test_shares_of_a_capacity_of_the_base_are_judged_without_a_section():
+    found = rb.design(study(OF_SPRINGS, cases=[SPRINGS], check=[JOINT, STIFF], pier=TALL))
+    assert found.design_checks.query("check == 'joint'")["value"].nunique() == 5
+    assert found.design_interaction["height_m"].isna().all()
+
+
+def test_shares_of_a_capacity_are_judged_by_the_forces_of_each_value(tmp_path):
+    """Of the same moment, as a study written with the value has them; read again from a finished folder."""
+    of_study = study(OF_SPRINGS, cases=[SPRINGS], check=[SHARE, STIFF], pier=TALL, output={"interaction_m": [10.0]})
+    found = rb.design(of_study, tmp_path / "found")
+    own = found.design_checks.query("check == 'share'").set_index("case.stiffness_kN_m")["value"]
+    assert own.nunique() == len(own) == 5  # two of the scan, and three bisections
+    for stiffness, value in own.items():
+        written = of_study.with_(case={"soft": {"stiffness_kN_m": stiffness}})
+        rb.run(written, tmp_path / str(stiffness))
+        (judged,) = rb.check(tmp_path / str(stiffness)).query("check == 'share'")["value"]
+        assert value == float(f"{judged:.10g}")  # as design_checks.csv has it
+    again = rb.design(of_study, tmp_path / "found")
     pd.testing.assert_frame_equal(again.design_checks, found.design_checks, check_exact=True)
-    stiffness, values = next(iter(shares[["joint", "foot"]].iterrows()))
-    rb.run(of_study.with_(case={"soft": {"stiffness_kN_m": stiffness}}), tmp_path / "one")
-    judged = rb.check(tmp_path / "one").set_index("check")["value"]
-    assert values.to_dict() == pytest.approx(judged[["joint", "foot"]].to_dict(), rel=1e-9)
+    assert set(again.design_interaction["height_m"]) == {10.0}
 
 
 def test_a_check_of_one_case_is_not_one_of_another():
