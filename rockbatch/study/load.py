@@ -332,11 +332,11 @@ def _checked_study(file: TomlFile, motions: Motions) -> Study:
             ("motions", "polarity"),
             f"[motions]: {message}; keep one polarity, and list initial_rotation_rad = [0.05, -0.05] for the other side",
         )
-    for kind, complain in parts("study.COMPLAINS"):
-        complain(file, output.of(kind), [read.pier for read in piers])
     along = along_the_axis(cases)
     checks = read_checks(file, partial(_problems_of_rule, along, motion_spec, output, bool(piers)) if along else None)
     output = output.also({key for rule in checks.rules for key in DEMANDS[rule.demand].brings})
+    for kind, complain in parts("study.COMPLAINS"):
+        complain(file, output.of(kind), [read.pier for read in piers])
     placed_bounds = placed(file, bounds, keys_of_pier, keys_of_cases)
     file.finish()
     return Study(

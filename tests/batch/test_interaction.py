@@ -129,3 +129,8 @@ def test_a_capacity_that_cannot_be_used_is_refused_with_its_line_and_a_remedy(tm
     path = study_of(tmp_path, pier=pier, output=output, check=[check])
     with pytest.raises(rb.InputError, match=rf"study\.toml:\d+: .*{said}"):
         rb.load_study(path)
+
+
+def test_a_check_of_the_base_of_a_pier_without_a_mass_is_refused(tmp_path):
+    with pytest.raises(rb.InputError, match="interaction_base: its forces are in kN; write mass_t under"):
+        rb.load_study(study_of(tmp_path, pier={"width_m": 3.0, "height_m": 14.0}, check=[JOINT]))

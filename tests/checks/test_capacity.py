@@ -218,6 +218,8 @@ def test_an_envelope_that_is_thinned_reaches_less_by_what_its_error_gains():
     reach = [np.outer(np.cos(ways), of.axial / 5) + np.outer(np.sin(ways), of.effect / 7) for of in (whole, fewer)]
     assert 0.0 <= (reach[0].max(axis=1) - reach[1].max(axis=1)).max() <= FLATNESS
     assert thinned(Envelope(0.0, np.array([4.0]), np.array([2.0]))).error is None
+    flat = thinned(Envelope(0.0, np.array([0.0, 1.0, 2.0]), np.array([1.0, 1.0 + 0.5 * FLATNESS, 1.0])))
+    assert flat.axial.tolist() == [0.0, 1.0, 2.0]
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -282,6 +284,12 @@ def test_without_a_normal_force_friction_alone_holds_no_shear():
     found = judged(at_base([0.0, 1e4], [1000.0, 100.0], 0.01), checked=friction)
     assert (found.verdict, found.value, found.high) == ("fail", pytest.approx(990.0 / 60.0), math.inf)
     assert judged(at_base([0.0, 1e4], [0.0, 100.0]), checked=friction).value == pytest.approx(100.0 / 6000.0)
+
+
+def test_the_least_share_within_an_error_is_at_the_top_of_the_curve():
+    """N is 0.5 to 19.5 kN and M at least 2.5 kN m; the curve has its top at 2 kN, and ends at 12 kN."""
+    found = used(((-10.0, 0.0), (2.0, 100.0), (12.0, 0.0)), corners([10.0], [50.0], 0.95)).iloc[0]
+    assert (found["over_capacity"], found["over_capacity_error"]) == (pytest.approx(0.025), math.inf)
 
 
 def test_a_number_is_a_capacity_of_which_the_limit_is_a_share():

@@ -206,8 +206,8 @@ def _said(trial: Trial, spec: DesignSpec) -> str:
 @contextmanager
 def _waves(results: AnalysisFolder, study: Study, motions: MotionSet, digest: dict[str, str]) -> "Iterator[Waves]":
     """Open the waves of runs: from finished ones of the folder, or into a journal, of which the table is written at the end."""
-    of_sections = any(rule.at_m is not None for rule in study.checks)
-    requested = observers_beside(study.output, motions.motions) if of_sections else ()
+    of_one_moment = any(rule.at_m is not None or rule.curve is not None for rule in study.checks)
+    requested = observers_beside(study.output, motions.motions) if of_one_moment else ()
     observers = [observer for observer in requested if observer.table in BESIDE]
     names = [observer.table for observer in observers]
     engine, listener = results.engine, results.listener

@@ -333,10 +333,10 @@ def _levels(table: Table, read: dict[str, Any], stripes: Sequence[StripeRecords]
 
 
 def _limits(table: Table, rules: tuple[Rule, ...], wanted: tuple[str, ...] | None) -> tuple[Rule, ...]:
-    """Return the checks that are limit states, all by default, at all scales; those of the case alone, and those in sections,
-    which peaks do not have, are left out."""
+    """Return the checks that are limit states, all by default, at all scales; those of the case alone, and those in sections or
+    over a curve of capacity, which peaks do not have, are left out."""
     able = [rule for rule in rules if not DEMANDS[rule.demand].per_case and rule.demand != OVERTURNING.demand]
-    able = [rule for rule in able if rule.at_m is None]
+    able = [rule for rule in able if rule.at_m is None and rule.curve is None]
     if any(rule.name == OVERTURNING.name for rule in able):
         table.complain(f"a [[check]] is called {shown(OVERTURNING.name)}, as the limit state is; give it another name")
     if wanted is not None:

@@ -226,6 +226,21 @@ SHARE = {
 }
 
 
+JOINT = {
+    "name": "joint",
+    "demand": "base_shear_over_capacity",
+    "capacity": {"constant": 9e3, "per_N": 0.9},
+    "at_most": 1.0,
+    "reason": "r",
+}
+
+
+def test_shares_of_a_capacity_of_the_base_are_judged_without_a_section():
+    found = rb.design(study(OF_SPRINGS, cases=[SPRINGS], check=[JOINT, STIFF], pier=TALL))
+    assert found.design_checks.query("check == 'joint'")["value"].nunique() == 5
+    assert found.design_interaction["height_m"].isna().all()
+
+
 def test_shares_of_a_capacity_are_judged_by_the_forces_of_each_value(tmp_path):
     """Of the same moment, as a study written with the value has them; read again from a finished folder."""
     of_study = study(OF_SPRINGS, cases=[SPRINGS], check=[SHARE, STIFF], pier=TALL, output={"interaction_m": [10.0]})

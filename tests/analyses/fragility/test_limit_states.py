@@ -4,6 +4,7 @@ import pytest
 from fragility_samples import of_statuses
 
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states
+from rockbatch.analyses.fragility.study import _limits
 from rockbatch.checks import Rule
 from rockbatch.quantities.arrays import Rows
 
@@ -26,3 +27,14 @@ def test_whether_a_run_that_was_cut_short_would_have_overturned_is_undecided():
     runs = of_statuses(["ok", "overturned", "flight", "failed"])
     found = states(Rule("overturning", "overturned", at_most=0), Rows(runs), {"base": "rigid"})
     assert list(found) == [WITHSTOOD, EXCEEDED, UNDECIDED, UNDECIDED]
+
+
+def test_checks_of_forces_that_peaks_do_not_have_are_no_limit_states():
+    """Those in a section, and those over a curve; a capacity that is a number leaves the quantity of the run."""
+    rules = (
+        Rule("rotation", "theta_max_over_alpha", 0.5, reason="r"),
+        Rule("toe", "pivot_force_kN", 0.9, capacity=9e3, reason="r"),
+        Rule("joint", "base_shear_over_capacity", 1.0, capacity=9e3, reason="r"),
+        Rule("foot", "section_shear_kN", 9e3, at_m=0.0, reason="r"),
+    )
+    assert [(rule.name, rule.limit) for rule in _limits(None, rules, None)] == [("rotation", 0.5), ("toe", 8100.0)]
