@@ -1,4 +1,4 @@
-"""Quantities of a footing's bed, which a study with such a base brings."""
+"""Quantities of a footing's bed, in the tables of studies with a footing."""
 
 from collections.abc import Callable
 from typing import Any
@@ -16,7 +16,7 @@ def _on_footing(study: Any) -> bool:
 
 
 def _of_bed(field: str) -> Callable[[Run], Any]:
-    """Return the number of a field of ``BedDemands``."""
+    """Return a function that reads ``field`` of a run's ``BedDemands``; None for a run without a bed."""
     return lambda run: None if run.outcome.bed is None else getattr(run.outcome.bed, field)
 
 
@@ -34,7 +34,10 @@ def _strips_error(run: Run) -> float | None:
 
 
 def _edge_error(run: Run) -> float | None:
-    """Return the error of an edge's settlement [m]: that of the middle, and of the rotation at rest times half the width."""
+    """Return the error of an edge's settlement [m]: that of the middle, and of the rotation at rest times half the width.
+
+    None without a bed, or if one of the two errors is not known.
+    """
     middle, rotation = run.outcome.settlement_error, run.outcome.theta_res_error
     on_bed = run.outcome.bed is not None and middle is not None and rotation is not None
     return middle + run.pier.half_width * rotation if on_bed else None

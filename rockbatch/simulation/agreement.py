@@ -97,7 +97,7 @@ def same_counts(fine: Outcome, coarse: Outcome) -> bool:
 def windows(fine: Trial, coarse: Trial) -> tuple[Samples, Samples]:
     """Return the greater of two runs' extremes and their difference, per window [rad]; 0 if none reached it, inf if one did."""
     greatest, change = np.fmax(fine.extremes, coarse.extremes), np.abs(fine.extremes - coarse.extremes)
-    change[np.isnan(change)] = math.inf  # a window that one of them has not reached
+    change[np.isnan(change)] = math.inf  # a window that only one of the two runs has reached
     reached = ~np.isnan(greatest)
     return np.where(reached, greatest, 0.0), np.where(reached, change, 0.0)
 

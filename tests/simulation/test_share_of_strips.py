@@ -86,7 +86,7 @@ def test_errors_of_results_are_those_of_steps_and_strips_together():
     assert with_strips_error(replace(kept, theta_max_error=None), own, fewer, 5.0).theta_max_error is None
 
 
-def test_steps_may_add_a_tenth_of_what_the_strips_leave_and_no_less_than_the_tolerance():
+def test_steps_may_add_a_tenth_of_what_strips_leave_and_no_less_than_the_tolerance():
     share = share_of_strips(trial(0.02, 0.01, theta_res=0.0), trial(0.022, 0.014, theta_res=0.008), 5.0)
     wide, own = tolerances_beside(1e-5, share), tolerances_beside(1e-5, None)
     assert (wide.peak, wide.residual) == (pytest.approx(0.4 * 0.002), pytest.approx(0.4 * 0.008))

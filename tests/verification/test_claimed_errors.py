@@ -30,6 +30,7 @@ def moved(case, outcome, name):
     return max(abs(value - getattr(outcome, name)) for value in values)
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("number", [26, 79])
 def test_chaotic_peaks_on_the_rigid_base_have_no_error(benchmark, number):
     """Of the first a motion 10⁻⁸ stronger moves 3·10⁻⁵ α and one 10⁻⁸ weaker 0.13 α; the second took two trials that agreed."""

@@ -35,10 +35,10 @@ from rockbatch.core.types import (
     Pull,
 )
 from rockbatch.motions.motion import Motion
-from rockbatch.observers.forces.peaks import at_rows
 from rockbatch.pier import modes_of
 from rockbatch.pier.bending import flexural_period
 from rockbatch.simulation import Run, run_fixed, written_run
+from rockbatch.simulation.base_forces import at_rows
 from rockbatch.simulation.coarser import of_last_mode
 from rockbatch.simulation.histories import of_modes
 from rockbatch.simulation.models import flexible_block
@@ -61,6 +61,7 @@ def compared(
     return expected[:, 2], expected[:, 3:], samples
 
 
+@pytest.mark.slow
 def test_a_pier_rocks_flies_and_lands_as_its_mass_points_do(uncompiled):
     """Both corners down, one, none: 10⁻⁸ of α in θ, through impacts and flights of more than a millisecond."""
     base = rb.RigidBase(shaft="elastic", flexural_damping=0.02, flexural_modes=2)
