@@ -46,13 +46,17 @@ def with_modes_error(outcome: Outcome, other: Outcome, chance: float) -> Outcome
 
 FEWER_STRIPS = "half as many strips come to another end: {status}; no error is claimed"
 
-UNEVEN = 3.0
+UNEVEN = 4.0
 """Error that is claimed on a bed over the change by twice the step, or by half as many strips: an error of order 1 is all of the
 change by strips. That is the order where the ground yields in less than a strip, and where dashpots meet the edge of what is
 pressed; and neither change falls evenly."""
 
-LEAST = 1e-5
-"""Least change by strips over the peak: two runs may agree better than either is right."""
+EXTREMES = 1.5
+"""Least share of the strips in the error of the peak over the change of any extreme until then: two peaks may agree by chance,
+which a whole trajectory does not."""
+
+LEAST = 2e-5
+"""Least change of extremes over the peak: two runs may agree better than either is right."""
 
 STEPS = 0.1
 """Share of what the strips leave of an error that the steps may add: smaller ones buy nothing."""
@@ -78,23 +82,21 @@ class StripsShare(NamedTuple):
 def share_of_strips(own: Trial, fewer: Trial, half_width: float) -> StripsShare | None:
     """Return the StripsShare by a trial and one on half as many strips at the same step; None unless both end standing.
 
-    Two results may agree by chance, a whole trajectory does not: the peak's is no less than that of any extreme until then, nor
-    is that of the settlement, of an edge ``half_width`` [m] away; the residual rotation's no less than that of any extreme.
+    The settlement, and the residual rotation of a foot that is ``half_width`` [m] wide to each side, come of the same sets.
     """
     ends = own.outcome, fewer.outcome
     if not ends[0].status == ends[1].status == "ok":
         return None
-    beds = [end.bed for end in ends if end.bed is not None]
-    yields = any(bed.work for bed in beds)
     change = windows(own, fewer)[1]
     until = 1 + max(int(np.nanargmax(trial.extremes)) for trial in (own, fewer))
-    before, any_time = max(float(change[:until].max()), LEAST * ends[0].theta_max), float(change.max())
-    pressures = [bed.pressure for bed in beds if bed.pressure is not None]
+    before = max(float(change[:until].max()), LEAST * ends[0].theta_max)
+    sinks = _change(*ends, "settlement")
+    pressures = [end.bed.pressure for end in ends if end.bed is not None and end.bed.pressure is not None]
     return StripsShare(
-        peak=UNEVEN * max(abs(ends[0].theta_max - ends[1].theta_max), before),
-        residual=UNEVEN * max(_change(*ends, "theta_res"), yields * any_time),
-        settlement=UNEVEN * max(_change(*ends, "settlement"), yields * half_width * before),
-        extremes=UNEVEN * change,
+        peak=max(UNEVEN * _change(*ends, "theta_max"), EXTREMES * before),
+        residual=max(UNEVEN * _change(*ends, "theta_res"), EXTREMES * sinks / half_width),
+        settlement=UNEVEN * sinks,
+        extremes=EXTREMES * change,
         pressure=UNEVEN * abs(pressures[0] - pressures[1]) if pressures else None,
     )
 
