@@ -321,7 +321,7 @@ def test_a_device_has_a_force_and_the_rate_of_its_state(kind, unit):
     of = Element(*quantities(Element, (kind, *DEVICE)))
     of = of._replace(stiffness=40.0 / M) if kind == HYSTERETIC else of
     inner = {TENDON: 0.001 * M, CONTACT: 0.001 * M, SPRING: 0.0 * M, MAXWELL: 0.4 * ACCELERATION}.get(kind, 0.4 * ONE)
-    for mode in (device_laws.TAUT, device_laws.YIELDING):
+    for mode in (device_laws.TAUT,) if kind == SPRING else (device_laws.TAUT, device_laws.YIELDING):
         law = device_laws.response(of, 0.02 * M, 0.1 * SPEED, inner, mode, 1.0)
         assert_units([law.force], [ACCELERATION])
         assert law.state_rate == 0.0 or U.Quantity(law.state_rate).check(unit)
