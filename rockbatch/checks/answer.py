@@ -13,7 +13,7 @@ from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, wo
 from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
 from rockbatch.common.showing import shown
-from rockbatch.quantities.cases import of_pier
+from rockbatch.quantities.cases import name_along
 from rockbatch.quantities.design import BOUND, under
 from rockbatch.quantities.statistics import STATISTICS
 
@@ -153,7 +153,7 @@ def without_limits(cases: Mapping[str, Sequence[Verdict]], worst: Sequence[Worst
     ``worst`` are those of every case at each scale, as a case of verdicts is of one.
     """
     by_case = grouped(
-        worst, lambda response: (*_key(of_pier(response.case)[0], response.case["columns"]), response.scale)
+        worst, lambda response: (*_key(name_along(response.case), response.case["columns"]), response.scale)
     )
     free: dict[str, list[Worst]] = {}
     for name, verdicts in cases.items():

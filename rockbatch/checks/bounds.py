@@ -2,20 +2,19 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from rockbatch.checks.omissions import omissions, open_landings, unconverged
-from rockbatch.checks.rules import USUAL, Rule
+from rockbatch.checks.rules import Rule
 from rockbatch.quantities.arrays import Rows, Texts
 from rockbatch.quantities.cases import Case, creeps
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.demands import Demand
 from rockbatch.quantities.limits import OTHER_LAW
-from rockbatch.quantities.rows import NOT_RUN
 from rockbatch.quantities.statistics import STATISTICS, Values
 
 SCATTER = 2.0
@@ -74,6 +73,11 @@ class OfSuite(NamedTuple):
     governing: int | None
     demanded: float
 
+    @property
+    def is_unknown(self) -> bool:
+        """True if nothing is known of the demand: it may be any."""
+        return math.isinf(self.high) and self.value == self.low == 0.0
+
 
 _COMBINED: dict[str, Callable[[Values, Values], Values]] = {
     "greater": np.maximum,
@@ -90,7 +94,9 @@ def of_suite(rule: Rule, axes: Sequence[Axis], counted_as: Texts) -> OfSuite:
     records = _by_record(runs, counting, counted_as)
     value, low, high = _of_records(rule, records)
     governing = _governing(runs, counting, by_bound=low <= rule.limit < high)
-    demanded = math.nan if governing is None else float(runs.value[governing])
+    demanded = math.nan
+    if governing is not None and (math.isfinite(runs.high[governing]) or runs.value[governing] > 0.0):
+        demanded = float(runs.value[governing])
     return OfSuite(value, low, high, records, of_axes, counting, governing, demanded)
 
 
@@ -170,7 +176,8 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
         return Demanded(bounds, counting, own, None, np.zeros(len(runs), dtype=bool), [])
 
     estimated = bool(np.isfinite(error).any())
-    margin, wild = np.nan_to_num(error), _chaotic(demand, runs, error)
+    at_least = np.isinf(error)  # the value is a lower bound, and nothing bounds it from above
+    margin, wild = np.where(at_least, 0.0, np.nan_to_num(error)), _chaotic(demand, runs, error)
     low = np.where(wild, value / SCATTER, np.maximum(value - margin, 0.0))
     high = np.where(wild, value * SCATTER, value + margin)
     by_other = None
@@ -180,7 +187,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
     if rule.ways["overturned"] == "infinite":
         high = np.where(runs.facts("may_overturn"), np.inf, high)
-    unknown = open_landings(demand, runs, case) & np.isfinite(value)
+    unknown = at_least | (open_landings(demand, runs, case) & np.isfinite(value))
     for name, way in rule.ways.items():
         ended = status == name
         if way == "infinite":
@@ -215,16 +222,3 @@ def _chaotic(demand: Demand, runs: Rows, error: Values) -> npt.NDArray[np.bool_]
     withheld = np.isnan(of_peak) & ended_well & bool(np.isfinite(of_peak).any())
     chaotic = np.where(np.isnan(runs.numbers("chaotic")), withheld, runs.facts("chaotic"))
     return np.isnan(error) & (np.isnan(of_peak) | demand.residual) & chaotic
-
-
-def counted(rule: Rule, suites: Iterable[Rows]) -> str:
-    """Return how many runs did not go through, and how each counts: "1 overturned (infinite), 2 not run (unknown)"; or ""."""
-    numbers: Counter[str] = Counter()
-    for runs in suites:
-        numbers.update(np.where(runs.missing, NOT_RUN, runs.texts("status")).tolist())
-    parts = []
-    for name in (*USUAL, NOT_RUN):
-        if n := numbers[name]:
-            way = rule.ways["failed" if name == NOT_RUN else name]
-            parts.append(f"{n} {name} ({way})" if DEMANDS[rule.demand].per_run else f"{n} {name}")
-    return ", ".join(parts)

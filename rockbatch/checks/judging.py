@@ -1,28 +1,31 @@
 """Evaluation of rules on results: pass, fail or not decided."""
 
+import json
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
 
 import numpy as np
 
-from rockbatch.checks.bounds import SCATTER, Axis, Demanded, OfSuite, counted, lacking, of_suite
+from rockbatch.checks.bounds import SCATTER, Axis, Demanded, OfSuite, lacking, of_suite
 from rockbatch.checks.capacity import used
 from rockbatch.checks.endings import left_open
 from rockbatch.checks.events import OfEvent, largest_event
 from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.rule_choices import FAR, Available, Fitted, fitted, limit_key
-from rockbatch.checks.rules import Rule
+from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
+from rockbatch.quantities.cases import Case, creeps, has_device, is_across, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
+from rockbatch.quantities.demands import OF_BASE
 from rockbatch.quantities.limits import OTHER_LAW
-from rockbatch.quantities.rows import complete, counts_as, rows_of_cases, simulated, with_case
+from rockbatch.quantities.rows import NOT_RUN, complete, counts_as, rows_of_cases, simulated, with_case
 from rockbatch.quantities.statistics import STATISTICS
 
 MOST_NAMES = 5
@@ -82,11 +85,14 @@ def judge(
         needs: rows for needs, rows in (("sections", sections), ("interaction", interaction)) if rows is not None
     }
     available = Available(
-        cases=list(dict.fromkeys(str(case["case"]) for case in cases if not case.get("across_of"))),
+        cases=list(dict.fromkeys(str(case["case"]) for case in cases if not is_across(case))),
         scales=scales,
         other_law=OTHER_LAW in runs or not any(map(creeps, cases)),
-        output=[key for key, columns in BROUGHT.items() if _has_columns(runs, columns)],
-        sections={needs: set(rows["height_m"]) for needs, rows in at_heights.items()},
+        output=[
+            *(key for key, columns in BROUGHT.items() if _has_columns(runs, columns)),
+            *([] if interaction is None or interaction["height_m"].notna().all() else [OF_BASE]),
+        ],
+        sections={needs: set(rows["height_m"].dropna()) for needs, rows in at_heights.items()},
         piers=cases if doubted else (),
     )
     fits = [fitted(rule, available) for rule in rules]
@@ -98,6 +104,8 @@ def judge(
         raise InputError("the table has mirror images only, and not the runs that they mirror")
     table, scale_of = Rows(runs), runs["scale"].to_numpy(np.float64)
     polarities = [*dict.fromkeys(table.texts("polarity"))]
+    if interaction is not None:
+        at_heights[OF_BASE] = interaction
     tables = [
         at_section(runs, at_heights[DEMANDS[fit.rule.demand].needs], fit) if fit.sections else table for fit in fits
     ]
@@ -114,19 +122,19 @@ def judge(
             for fit, own in zip(fits, tables, strict=True):
                 if name in fit.cases and scale in fit.scales:
                     of_rule = [Axis(axis.case, axis.suite.same_rows_of(own)) for axis in axes]
-                    judged.append((fit.rule, _verdict(fit.rule, of_rule, scale, fit.rule.count or count, events or {})))
+                    judged.append(_verdict(fit.rule, of_rule, scale, fit.rule.count or count, events or {}))
             verdicts += left_open(judged, [axis.suite for axis in axes])
     return verdicts
 
 
 def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", fit: Fitted) -> Rows:
-    """Return runs with the forces in the section of a rule, from the table that it needs; NaN for a run without that section.
+    """Return runs with the forces in the section or base of a rule, from the table that it needs; NaN for a run without them.
 
     Raises ``InputError`` if a run has two sections at the height of the rule.
     """
     its = sections[sections["height_m"].isin(fit.sections)]
-    if fit.rule.capacity is not None:
-        its = used(fit.rule.capacity, its)
+    if fit.rule.curve is not None:
+        its = used(fit.rule.curve, its)
     keys = [name for name in its if name in runs]
     if its.duplicated(keys).any():
         raise InputError(f"a run has several sections at {fit.rule.at_m:g} m; start `rockbatch run` again")
@@ -183,13 +191,27 @@ def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, co
         basis=rule.basis,
         reason=rule.reason,
         counting=rule.counting,
-        counted=counted(rule, suites),
+        counted=_ended_early(rule, suites),
         remarks=(),
         count="" if demand.per_case else count,
         unit="" if rule.statistic == "count" else demand.unit,
         at_m=math.nan if height is None else height,
         axes=combined,
+        capacity="" if rule.curve is None else json.dumps(rule.curve),
     )
+
+
+def _ended_early(rule: Rule, suites: Iterable[Rows]) -> str:
+    """Return how many runs did not go through, and how each counts: "1 overturned (infinite), 2 not run (unknown)"; or ""."""
+    numbers: Counter[str] = Counter()
+    for runs in suites:
+        numbers.update(np.where(runs.missing, NOT_RUN, runs.texts("status")).tolist())
+    parts = []
+    for name in (*USUAL, NOT_RUN):
+        if n := numbers[name]:
+            way = rule.ways["failed" if name == NOT_RUN else name]
+            parts.append(f"{n} {name} ({way})" if DEMANDS[rule.demand].per_run else f"{n} {name}")
+    return ", ".join(parts)
 
 
 def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
@@ -207,7 +229,7 @@ def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
 
 def _place(axis: Axis) -> str:
     """Return "across the axis" for a case across the axis of another one (``across_of``), else "along the axis"."""
-    return "across the axis" if axis.case.get("across_of") else "along the axis"
+    return "across the axis" if is_across(axis.case) else "along the axis"
 
 
 def _absent(rule: Rule, axis: Axis) -> str:
@@ -272,7 +294,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
         *dict.fromkeys(_chaotic(int(its.chaotic.sum())) for its in demand.axes),
     ]
     judged = replace(
-        _with_numbers(none, demand.value, demand.low, demand.high),
+        _with_numbers(none, math.nan if demand.is_unknown else demand.value, demand.low, demand.high),
         records=n,
         verdict=verdict,
         count=count,

@@ -1,5 +1,6 @@
 """The observers, and the way by which what lies below them finds each without importing it."""
 
+from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, NamedTuple
@@ -50,9 +51,10 @@ def _of_packages(name: str) -> list[tuple[str, Any]]:
     return [(observer, getattr(home, name)) for observer, home in homes if hasattr(home, name)]
 
 
-def parts(name: str) -> list[Any]:
+@cache
+def parts(name: str) -> tuple[Any, ...]:
     """Return the attribute ``name``, "study.OUTPUT", of each observer that has this module and attribute, in their order."""
     module, _, attribute = name.partition(".")
     homes = [f"rockbatch.observers.{observer}.{module}" for observer in OBSERVERS]
     modules = [import_module(home) for home in homes if find_spec(home)]
-    return [getattr(home, attribute) for home in modules if hasattr(home, attribute)]
+    return tuple(getattr(home, attribute) for home in modules if hasattr(home, attribute))

@@ -395,7 +395,7 @@ class Motion(Shown):
             "check": ", ".join(finding.what for finding in self.findings),
         }
 
-    @property
+    @cached_property
     def exchanged(self) -> "Motion":
         """Return the motion, which has both, with ``horizontal`` and ``across`` exchanged.
 

@@ -16,9 +16,19 @@ Lever = Callable[[Case], float]
 """Factor of a case, such as a length by which a rotation becomes a displacement."""
 
 
+def is_across(case: Case) -> bool:
+    """Return whether a case is the one across the axis of its pier."""
+    return bool(case.get("across_of"))
+
+
+def name_along(case: Case) -> str:
+    """Return the name of the case along the axis of the same pier, which is its own unless it is across the axis."""
+    return str(case.get("across_of") or case["case"])
+
+
 def of_pier(case: Case) -> tuple[object, ...]:
     """Return a key that the cases of both axes of a pier share: the name of that along the axis, and the columns."""
-    return case.get("across_of") or case["case"], *case["columns"].items()
+    return name_along(case), *case["columns"].items()
 
 
 def always(value: float) -> Lever:

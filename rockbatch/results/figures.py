@@ -28,6 +28,7 @@ from rockbatch.common.figures.description import (
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.cases import is_across
 from rockbatch.quantities.rows import counts_as
 from rockbatch.results.labelled import Item, Labelled, Row, as_dicts, by_pga, ceiling, groups_of
 from rockbatch.results.labels import Series
@@ -226,7 +227,7 @@ def _with_self_similar_axes(runs: "pd.DataFrame", results: Labelled, info: Item)
 
     Runs across the axis of a pier are left out, too: run.json has only the PGV along it.
     """
-    along = [not results.cases[place].get("across_of") for place in zip(runs["series"], runs["pier"], strict=True)]
+    along = [not is_across(results.cases[place]) for place in zip(runs["series"], runs["pier"], strict=True)]
     runs = runs[along]
     piers = [results.cases[place]["pier"] for place in zip(runs["series"], runs["pier"], strict=True)]
     pgv = runs["record"].map({record["record"]: record["pgv_m_s"] for record in info["records"]}).replace(0.0, math.nan)

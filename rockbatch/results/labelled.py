@@ -12,7 +12,7 @@ import numpy as np
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.cases import Case
+from rockbatch.quantities.cases import Case, is_across, name_along
 from rockbatch.quantities.design import BOUND, of_design, under
 from rockbatch.quantities.rows import as_in_peaks, simulated, with_case
 from rockbatch.results.labels import Key, Series, digits_that_tell, named, quantity, under_bounds
@@ -92,7 +92,7 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
         grouped.setdefault(key, []).append(case)
         entries[key, pier_key(case["columns"], varied)] = case
     given = _keys_given(info["study"]["text"])
-    given |= {case["case"]: given.get(case["across_of"], set()) for case in info["cases"] if case.get("across_of")}
+    given |= {case["case"]: given.get(name_along(case), set()) for case in info["cases"] if is_across(case)}
     nominal = {key: cases for key, cases in grouped.items() if not under(cases[0]["columns"])}
     series = named(nominal, [key for key in varied if _of_foundation(key)], given)
     series = under_bounds(series, grouped) if BOUND in varied else series
@@ -121,7 +121,7 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
         runs[name] = kinds.map({kind: fact[column] for kind, fact in facts.items()})
     pga = {record["record"]: record["pga_g"] for record in info["records"]}
     runs["pga"] = runs["record"].map(pga).astype("float64") * runs["scale"]
-    if across := {case["case"] for case in info["cases"] if case.get("across_of")}:
+    if across := {case["case"] for case in info["cases"] if is_across(case)}:
         runs["pga"] = runs["pga"].where(
             ~runs["case"].isin(across), runs["pga_g"]
         )  # run.json has the PGA of the other component

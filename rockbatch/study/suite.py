@@ -12,6 +12,7 @@ from rockbatch.motions.scaling import scale_as_listed, scale_to_targets
 from rockbatch.motions.selection import Selection, selected
 from rockbatch.motions.sequences import add_sequences
 from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.study.both_axes import along_the_axis
 from rockbatch.study.load import Study
 from rockbatch.study.spec import MotionSpec
 
@@ -113,7 +114,7 @@ def _azimuths(study: Study) -> tuple[float, ...]:
 
 def _both_axes(study: Study) -> bool:
     """Return whether a case is run on both axes of its pier."""
-    return any(case.across_of for case in study.cases)
+    return len(along_the_axis(study.cases)) < len(study.cases)
 
 
 def _with_pairs(motions: MotionSet, pulses: Sequence[Motion]) -> tuple[MotionSet, list[Motion]]:

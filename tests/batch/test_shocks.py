@@ -7,7 +7,8 @@ from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.motions import read_motions
-from rockbatch.results.shocks import MEANING, SHOCKS
+from rockbatch.observers.shocks import TABLE
+from rockbatch.observers.shocks.table import MEANING
 
 PIER = rb.Pier(alpha=0.2, p=1.0)
 SOFT = rb.YieldingBase(beta=40, eta=2.0, spring="epp", zeta=0.1)
@@ -140,7 +141,7 @@ def test_the_table_has_a_row_for_each_shock_of_each_run_that_was_simulated(tmp_p
     results = rb.open_results(out)
     table = results.shocks
     rb.run(path, out=tmp_path / "two", jobs=2)
-    assert (out / SHOCKS).read_bytes() == (tmp_path / "two" / SHOCKS).read_bytes()
+    assert (out / TABLE).read_bytes() == (tmp_path / "two" / TABLE).read_bytes()
     assert table["shock_record"].tolist()[:2] == ["one-sine", "one-cosine"]
     assert list(table) == ["record", "case", "polarity", "scale", "beta", *MEANING]
     assert len(table) == 2 * 2 * 3  # shocks, scales, cases; the other polarity is the mirror image
@@ -164,10 +165,10 @@ def test_the_table_has_a_row_for_each_shock_of_each_run_that_was_simulated(tmp_p
 def test_the_table_goes_when_the_study_has_no_sequence_any_more(tmp_path):
     out = tmp_path / "out"
     rb.run(study(tmp_path, scale=1.0), out=out)
-    assert (out / SHOCKS).exists()
+    assert (out / TABLE).exists()
     text = study_text(pulses=[SINE], cases=[RIGID], output={"histories": "none"})
     rb.run(write_study(tmp_path, text), out=out, fresh=True)
-    assert not (out / SHOCKS).exists()
+    assert not (out / TABLE).exists()
     with pytest.raises(rb.InputError, match=r"shocks.csv: not there; add a \[\[motions.sequence\]\]"):
         _ = rb.open_results(out).shocks
 

@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rockbatch.motions import Motion
+from rockbatch.observers.shocks import TABLE
+from rockbatch.observers.shocks.effects import OfShocks, of_shocks, with_error
+from rockbatch.observers.shocks.table import shock_rows
 from rockbatch.outcome.outcome import Outcome, ShockOutcome
-from rockbatch.results.shocks import SHOCKS, shock_rows
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
-from rockbatch.simulation.shocks import OfShocks, of_shocks, with_error
 from rockbatch.study import Output
 
 
@@ -17,7 +18,7 @@ from rockbatch.study import Output
 class EffectsOfShocks(Observer):
     """What each shock of a sequence does, until a pause after the last."""
 
-    table = SHOCKS
+    table = TABLE
     every_step = False
 
     def observes(self, motions: Sequence[Motion]) -> bool:

@@ -8,6 +8,7 @@ from rockbatch.quantities.cases import (
     asks_tension,
     bends,
     devices,
+    is_across,
     is_frame,
     lands_by_impulse,
     number_of_modes,
@@ -32,7 +33,7 @@ def lines(finished: Finished, cases: Collection[Case]) -> list[str]:
 
 
 def _plane(cases: Collection[Case]) -> str:
-    if any(case.get("across_of") for case in cases):
+    if any(is_across(case) for case in cases):
         return "Two planar models of each pier, one for each axis; rolling on a corner and twisting are not modelled."
     return "Each pier moves in one vertical plane; rolling on a corner and twisting are not modelled."
 

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from rockbatch.checks.coverage import stations_of
 from rockbatch.pier.figures import devices, sketches
 from rockbatch.pier.restraints import KINDS
-from rockbatch.quantities.cases import Case, top
+from rockbatch.quantities.cases import Case, is_across, top
 from rockbatch.quantities.design import BOUND
 from rockbatch.quantities.quantity import FOOTING
 from rockbatch.reporting.finished import Finished
@@ -54,11 +54,11 @@ def section(finished: Finished, level: str = "h3") -> Markup:
     along: dict[tuple[float, ...], Case] = {}
     across: dict[tuple[float, ...], Case] = {}
     for case in cases:
-        piers = across if case.get("across_of") else along
+        piers = across if is_across(case) else along
         drift_at = top(case)
         key = *(case["pier"][key] for key in ("alpha", "p", "mu", "gravity")), drift_at
         piers.setdefault(key, case["pier"] | {"top_m": drift_at})
-    names_across = {case["case"] for case in cases if case.get("across_of")}
+    names_across = {case["case"] for case in cases if is_across(case)}
     return render(
         "reporting/sections/studied.html",
         finished=finished,
@@ -98,7 +98,7 @@ def in_a_line(finished: Finished) -> str:
     stations, records = stations_of(finished.info), finished.info["records"]
     of_all = "" if len(stations.used) == stations.total or not stations.known else f" of {stations.total}"
     suite = f"{len(stations.used)}{of_all} {'station' if stations.total == 1 else 'stations'}"
-    axes = 1 + any(case.get("across_of") for case in finished.info["cases"])
+    axes = 1 + any(is_across(case) for case in finished.info["cases"])
     motions = f"{counted(axes * len(records), 'component')} ({_vertical(finished)})"
     runs, stood = len(finished.runs), int((finished.runs["status"] == "ok").sum())
     ended = "all end standing" if stood == runs and not finished.not_run else f"{stood:,} end standing"

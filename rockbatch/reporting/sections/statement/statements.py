@@ -18,7 +18,7 @@ from rockbatch.checks.scorecard import scorecard
 from rockbatch.checks.suite_target import UNRECORDED
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import distinct, grouped
-from rockbatch.quantities.cases import Case, of_pier
+from rockbatch.quantities.cases import Case, is_across, name_along
 from rockbatch.quantities.design import of_design, under
 from rockbatch.quantities.rows import with_case
 from rockbatch.reporting.finished import Finished
@@ -131,7 +131,7 @@ def _designs(finished: Finished, stations: Stations) -> Iterator[_Design]:
 
     runs = grouped(finished.suites, key_of_row)
     verdicts = grouped((verdict for verdict in finished.verdicts if verdict.case), key_of_row)
-    cases = grouped(finished.info["cases"], lambda case: key_of(str(of_pier(case)[0]), case["columns"], math.nan))
+    cases = grouped(finished.info["cases"], lambda case: key_of(name_along(case), case["columns"], math.nan))
     card = scorecard(finished.verdicts, key_of_row, finished.suites, finished.worst_at_scales)
     kinds = {row.name: row.verdict for row in card.rows}
     free = without_limits(verdicts, finished.worst_at_scales)
@@ -205,7 +205,7 @@ def _suite(finished: Finished, design: _Design) -> str:
     if recorded:
         stations = {record.get("station") or record["record"] for record in recorded}
         n, plural = len(recorded), "s" * (len(recorded) > 1)
-        both = any(case.get("across_of") for case in design.cases)
+        both = any(is_across(case) for case in design.cases)
         components = f"{n} pair{plural} of horizontal components" if both else f"{n} horizontal component{plural}"
         parts.append(f"{components} of {counted(len(stations), 'station')}{_events(recorded)}")
     if made := len(records) - len(recorded):

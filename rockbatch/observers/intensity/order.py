@@ -1,4 +1,4 @@
-"""Intensity measures of each run's motion, scaled for a rocking pier, and how well they order the peaks."""
+"""How well each intensity measure orders the peaks: rank correlations, and lines through logarithms."""
 
 import math
 from collections.abc import Sequence
@@ -8,19 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.lazy import pd
+from rockbatch.observers.intensity.table import MEANING
 from rockbatch.results.suite_statistics import NO_PEAK
-
-INTENSITY = "intensity.csv"
-
-MEANING = {
-    "pga_over_g_tan_alpha": "PGA over g tan α, the ground acceleration that lifts the pier off rigid ground",
-    "p_pgv_over_g_tan_alpha": "p PGV over g tan α",
-    "bracketed_s": "bracketed duration: from the first to the last time that the acceleration exceeds g tan α [s]",
-    "uniform_s": "uniform duration: all the time that the acceleration exceeds g tan α [s]",
-    "cav_m_s": "cumulative absolute velocity, ∫|a| dt [m/s]",
-}
-"""Measures by column. In addition, ``sa_Ts_g`` is the 5 % damped spectral acceleration [g] at T seconds, and
-``sa_Ts_rotd100_g`` and the like are of the station's pair of horizontal components, empty without a pair."""
 
 LEAST_RUNS = 3
 """Fewest runs with values for a rank correlation or a regression line."""
