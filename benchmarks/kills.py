@@ -5,7 +5,8 @@
 Each command is carried out undisturbed, twice: a file in which the two differ, by a date or a duration, is compared by its
 presence alone. Then it is killed (SIGKILL, with its whole process group) at a random instant of its duration and repeated
 without a kill, as often as asked in turn over the commands. A kill fails if the repetition ends with another status, other
-files, other bytes, or fewer finished rows than were there; it is printed with its instant, and the exit code is 1.
+files, other bytes, or fewer finished rows than were there; it is printed with its instant, and the exit code is 1. A hidden
+file that was being written when the process died (``.NAME-….unfinished``) may stay; nothing reads it.
 """
 
 import argparse
@@ -21,6 +22,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import rockbatch
+from rockbatch.common.files import UNFINISHED
 
 MOTIONS = Path(__file__).parents[1] / "motions" / "near_fault"
 
@@ -80,8 +82,9 @@ samples = 8
 zeta = [0.02, 0.10]
 
 [spectrum]
-alphas = [0.15]
-ps = [0.5, 1.0]
+alpha = [0.15]
+p = [0.5, 1.0]
+points = 4
 """
 
 
@@ -141,7 +144,8 @@ def prepared(command: Command, folder: Path) -> None:
 
 
 def files(folder: Path) -> dict[str, bytes]:
-    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+    paths = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.suffix != UNFINISHED)
+    return {str(path.relative_to(folder)): path.read_bytes() for path in paths}
 
 
 def finished_rows(folder: Path) -> int:

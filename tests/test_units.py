@@ -1,4 +1,4 @@
-"""Units of acceleration in the spellings of headers, and bounds."""
+"""Units of acceleration in the spellings of headers; bounds, and what messages say of them and of keys."""
 
 import ast
 import importlib

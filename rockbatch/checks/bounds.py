@@ -73,6 +73,11 @@ class OfSuite(NamedTuple):
     governing: int | None
     demanded: float
 
+    @property
+    def is_unknown(self) -> bool:
+        """True if nothing is known of the demand: it may be any."""
+        return math.isinf(self.high) and self.value == self.low == 0.0
+
 
 _COMBINED: dict[str, Callable[[Values, Values], Values]] = {
     "greater": np.maximum,
@@ -89,7 +94,9 @@ def of_suite(rule: Rule, axes: Sequence[Axis], counted_as: Texts) -> OfSuite:
     records = _by_record(runs, counting, counted_as)
     value, low, high = _of_records(rule, records)
     governing = _governing(runs, counting, by_bound=low <= rule.limit < high)
-    demanded = math.nan if governing is None else float(runs.value[governing])
+    demanded = math.nan
+    if governing is not None and (math.isfinite(runs.high[governing]) or runs.value[governing] > 0.0):
+        demanded = float(runs.value[governing])
     return OfSuite(value, low, high, records, of_axes, counting, governing, demanded)
 
 
@@ -169,7 +176,8 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
         return Demanded(bounds, counting, own, None, np.zeros(len(runs), dtype=bool), [])
 
     estimated = bool(np.isfinite(error).any())
-    margin, wild = np.nan_to_num(error), _chaotic(demand, runs, error)
+    at_least = np.isinf(error)  # the value is a lower bound, and nothing bounds it from above
+    margin, wild = np.where(at_least, 0.0, np.nan_to_num(error)), _chaotic(demand, runs, error)
     low = np.where(wild, value / SCATTER, np.maximum(value - margin, 0.0))
     high = np.where(wild, value * SCATTER, value + margin)
     by_other = None
@@ -179,7 +187,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
     if rule.ways["overturned"] == "infinite":
         high = np.where(runs.facts("may_overturn"), np.inf, high)
-    unknown = open_landings(demand, runs, case) & np.isfinite(value)
+    unknown = at_least | (open_landings(demand, runs, case) & np.isfinite(value))
     for name, way in rule.ways.items():
         ended = status == name
         if way == "infinite":

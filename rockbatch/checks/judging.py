@@ -1,5 +1,6 @@
 """Evaluation of rules on results: pass, fail or not decided."""
 
+import json
 import math
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -22,6 +23,7 @@ from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, creeps, has_device, is_across, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
+from rockbatch.quantities.demands import OF_BASE
 from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.rows import NOT_RUN, complete, counts_as, rows_of_cases, simulated, with_case
 from rockbatch.quantities.statistics import STATISTICS
@@ -86,8 +88,11 @@ def judge(
         cases=list(dict.fromkeys(str(case["case"]) for case in cases if not is_across(case))),
         scales=scales,
         other_law=OTHER_LAW in runs or not any(map(creeps, cases)),
-        output=[key for key, columns in BROUGHT.items() if _has_columns(runs, columns)],
-        sections={needs: set(rows["height_m"]) for needs, rows in at_heights.items()},
+        output=[
+            *(key for key, columns in BROUGHT.items() if _has_columns(runs, columns)),
+            *([] if interaction is None or interaction["height_m"].notna().all() else [OF_BASE]),
+        ],
+        sections={needs: set(rows["height_m"].dropna()) for needs, rows in at_heights.items()},
         piers=cases if doubted else (),
     )
     fits = [fitted(rule, available) for rule in rules]
@@ -99,6 +104,8 @@ def judge(
         raise InputError("the table has mirror images only, and not the runs that they mirror")
     table, scale_of = Rows(runs), runs["scale"].to_numpy(np.float64)
     polarities = [*dict.fromkeys(table.texts("polarity"))]
+    if interaction is not None:
+        at_heights[OF_BASE] = interaction
     tables = [
         at_section(runs, at_heights[DEMANDS[fit.rule.demand].needs], fit) if fit.sections else table for fit in fits
     ]
@@ -121,13 +128,13 @@ def judge(
 
 
 def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", fit: Fitted) -> Rows:
-    """Return runs with the forces in the section of a rule, from the table that it needs; NaN for a run without that section.
+    """Return runs with the forces in the section or base of a rule, from the table that it needs; NaN for a run without them.
 
     Raises ``InputError`` if a run has two sections at the height of the rule.
     """
     its = sections[sections["height_m"].isin(fit.sections)]
-    if fit.rule.capacity is not None:
-        its = used(fit.rule.capacity, its)
+    if fit.rule.curve is not None:
+        its = used(fit.rule.curve, its)
     keys = [name for name in its if name in runs]
     if its.duplicated(keys).any():
         raise InputError(f"a run has several sections at {fit.rule.at_m:g} m; start `rockbatch run` again")
@@ -190,6 +197,7 @@ def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, co
         unit="" if rule.statistic == "count" else demand.unit,
         at_m=math.nan if height is None else height,
         axes=combined,
+        capacity="" if rule.curve is None else json.dumps(rule.curve),
     )
 
 
@@ -286,7 +294,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
         *dict.fromkeys(_chaotic(int(its.chaotic.sum())) for its in demand.axes),
     ]
     judged = replace(
-        _with_numbers(none, demand.value, demand.low, demand.high),
+        _with_numbers(none, math.nan if demand.is_unknown else demand.value, demand.low, demand.high),
         records=n,
         verdict=verdict,
         count=count,

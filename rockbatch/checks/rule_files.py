@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
+from rockbatch.checks.capacity import whole
 from rockbatch.checks.rules import AXES, BOTH_AXES, CHECK, COUNT, COUNTS, PER_EVENT, Rule
 from rockbatch.common.errors import InputError, Problem
 from rockbatch.common.showing import shown
@@ -153,6 +154,8 @@ def _rules(
             applying |= {"both_axes"} if demand and demand.directed else set()
             applying |= {"per_event"} if STATISTICS[read.get("statistic", "max")].code else set()
             read = {name: value for name, value in usual.items() if name in applying} | read
+            if "capacity" in read:
+                read["capacity"] = whole(read["capacity"])
             try:
                 rule = Rule(**read)
             except InputError as error:

@@ -162,7 +162,7 @@ class Notes:
         """Return the common remarks with their checks, and how runs that do not end standing count: a sentence each."""
         notes = [f"{', '.join(checks)}: {remark}." for remark, checks in self._common.items()]
         sentences = [
-            f"{', '.join(checks)}: runs that do not end standing count so: {kind}."
+            f"{', '.join(checks)}: runs that do not end standing count as follows: {kind}."
             for kind, checks in self._counting.items()
         ]
         return notes + sentences
@@ -196,6 +196,8 @@ def governing(verdict: Verdict) -> str:
     alone = verdict.is_ban or verdict.governing == verdict.value
     text = f"{'left open by' if left_open else 'governs:' if alone else 'largest:'} {run(verdict)}"
     if verdict.is_ban:
+        return text
+    if math.isnan(verdict.governing):
         return text
     if math.isinf(verdict.governing):
         return f"{text}, beyond any limit"

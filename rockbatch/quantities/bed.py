@@ -66,8 +66,8 @@ OF_FOOTING = (
         sometimes=True, weighed=True, error="bed_pressure_error_MPa", limits=(Limit(),)),
     _quantity("bed_pressure_s", "time of it", _of_bed("t_pressure"), "s"),
     _quantity("bed_pressure_at_m", "place of it to the right of the middle", _of_bed("pressure_at"), "m"),
-    _quantity("bed_pressure_error_MPa", "estimated error of the greatest pressure by the number of strips: its change by half as "
-        "many; empty with a fixed step", _of_bed("pressure_error"), "MPa", sometimes=True, weighed=True, stood=True),
+    _quantity("bed_pressure_error_MPa", "estimated error of the greatest pressure by the number of strips: 3 times its change by "
+        "half as many; empty with a fixed step", _of_bed("pressure_error"), "MPa", sometimes=True, weighed=True, stood=True),
     _quantity("yielding_half_cycles", "number of rocks to one side in which the ground yielded", _of_bed("yielding_rocks"), "1",
         kind="count", limits=(Limit(),)),
     _quantity("bed_work_J_kg", "plastic work of the ground, per unit mass of the pier", _of_bed("work"), "J/kg",
@@ -83,7 +83,8 @@ OF_FOOTING = (
         )),
     _quantity("edge_settlement_error_m", "estimated error of the settlements of both edges; empty with a fixed step",
         _edge_error, "m", stood=True, sometimes=True),
-    _quantity("strips_error", "share of the error of the greatest rotation over α that the number of strips has: a third of the "
-        "change by half as many; empty with a fixed step", _strips_error, "1", stood=True, sometimes=True),
+    _quantity("strips_error", "share of the error of the greatest rotation over α that the number of strips has: 3 times the "
+        "change by half as many, of it or of any extreme before; empty with a fixed step", _strips_error, "1",
+        stood=True, sometimes=True),
 )  # fmt: skip
 """Quantities of a footing's bed, at the end of a table."""

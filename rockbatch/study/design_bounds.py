@@ -65,7 +65,8 @@ class Change:
 class DesignBound:
     """A bound of a design: its name, its changes and their source.
 
-    ``lacking`` has the names of cases that lack keys of it, and run with these unchanged, with the paths of the keys.
+    ``lacking`` has the names of cases that lack keys of it, and run with these unchanged, with the paths of the keys. Of a bound
+    with ``any_of_these`` a case needs one key only, as of two units of one quantity.
     """
 
     name: str
@@ -74,6 +75,7 @@ class DesignBound:
     lacking: tuple[tuple[str, tuple[str, ...]], ...] = ()
     confirmed: frozenset[str] = frozenset()
     place: int = 0
+    any_of_these: bool = False
 
     def changed(self, chosen: Chosen, table: Table, *, of_pier: bool) -> Chosen:
         """Return the chosen values of a pier, or of a case, under this bound.
@@ -138,6 +140,9 @@ def placed(
     """
     result = []
     for bound in bounds:
+        if bound.any_of_these:
+            result.append(_placed_in_any(file, bound, cases))
+            continue
         lacking: dict[str, list[str]] = {}
         for change in bound.changes:
             having = {"[pier]": of_pier} if change.of_pier else cases
@@ -149,6 +154,17 @@ def placed(
                 lacking.setdefault(name, []).append(change.path)
         result.append(replace(bound, lacking=tuple((name, tuple(paths)) for name, paths in lacking.items())))
     return tuple(result)
+
+
+def _placed_in_any(file: TomlFile, bound: DesignBound, cases: Mapping[str, Sequence[str]]) -> DesignBound:
+    """Return a bound with the changes whose keys cases have, and the cases that have none; note it if no case has any."""
+    found = [change for change in bound.changes if any(map(change.among, cases.values()))]
+    paths = tuple(change.path for change in bound.changes)
+    if any(cases.values()) and not found:
+        text = f"no case has one of the keys that it changes: {', '.join(paths)}; leave it out"
+        file.complain((BOUND, bound.place, "preset"), text, bound.label)
+    lacking = tuple((name, paths) for name, keys in cases.items() if not any(change.among(keys) for change in found))
+    return replace(bound, changes=tuple(found), lacking=lacking)
 
 
 def _why_none(change: Change, having: Iterable[Iterable[str]]) -> str:

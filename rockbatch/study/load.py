@@ -373,7 +373,10 @@ def _problems_of_rule(
         cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
         other_law=True,  # a check that uses the other law requests its runs
-        output=[key for key in BROUGHT if output.has(key) or not _adds_columns(key, cases)],
+        output=[
+            *DEMANDS[rule.demand].brings,
+            *(key for key in BROUGHT if output.has(key) or not _adds_columns(key, cases)),
+        ],
         sections=_heights(cases, output) if known_piers else {needs: {rule.at_m or 0.0} for needs in AT_HEIGHTS},
         piers=[_as_in_run_json(case) for case in cases] if known_piers else (),
     )

@@ -105,8 +105,8 @@ def _named(tables: list[TomlTable], names: Iterable[str], *place: str) -> dict[s
 
 
 def name_of(table: Mapping[str, TomlValue]) -> str:
-    """Return the name of a table, else its base, by which a single case may be called, else ""."""
-    return str(table.get("name", table.get("base", "")))
+    """Return the name of a table, else its preset, or its base, by which a single case may be called, else ""."""
+    return str(next((table[key] for key in ("name", "preset", "base") if key in table), ""))
 
 
 def are_tables(value: TomlValue | None) -> TypeGuard[list[TomlTable]]:

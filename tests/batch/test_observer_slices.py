@@ -103,7 +103,13 @@ def study_of(folder, names, name="study.toml"):
 
 def test_every_observer_is_deleted_below():
     assert sorted(KEYS) == sorted(OBSERVERS)
-    assert {name for name in OBSERVERS if brought(name)[0]} == {"forces", "shocks", "sections", "intensity"}
+    assert {name for name in OBSERVERS if brought(name)[0]} == {
+        "forces",
+        "shocks",
+        "sections",
+        "interaction",
+        "intensity",
+    }
     assert {name for name in OBSERVERS if brought(name)[1]} == {*OBSERVERS} - {
         "shocks",
         "half_cycles",

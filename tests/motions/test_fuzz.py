@@ -167,7 +167,7 @@ def _change(folder: Path, ended: threading.Event, rng: np.random.Generator) -> N
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [20, pytest.param(200, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [20, pytest.param(200, marks=pytest.mark.thorough)])
 def test_folders_that_change_while_they_are_read_end_in_motions_or_words(tmp_path, count):
     counts = read_changing_folders(tmp_path, count, seed=1)
     assert counts.good > counts.refused  # nine of ten are read before they change

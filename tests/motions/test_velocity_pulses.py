@@ -143,7 +143,7 @@ def test_a_motion_is_judged_as_it_was_recorded_and_a_still_one_has_no_pulse():
     assert pulse_period(Motion("still", 0.01, np.zeros(100))) is None
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @needs_records
 def test_near_field_records_are_classified_as_published():
     from rockbatch.motions import fema_p695

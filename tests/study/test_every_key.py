@@ -522,7 +522,7 @@ USES: dict[str, dict[str, Use]] = {
         ),
         **uses(study(output={}), ("output",), {
             "histories": "none", "ledger": True, "forces": True, "intensity": True, "half_cycles": True, "sections": 3,
-            "sections_m": [0.0, 10.0], "interaction_m": [0.0, 10.0],
+            "sections_m": [0.0, 10.0], "interaction_m": [0.0, 10.0], "interaction_base": True,
         }, whole_folder),
         **uses(study(output={"forces": True}), ("output",), {"least_normal_share": 0.9999}, whole_folder),
         **uses(study(output={"intensity": True}), ("output",), {"sa_periods_s": [0.7]}, whole_folder),
@@ -841,8 +841,8 @@ def test_the_size_of_histories_is_refused_where_it_decides_nothing(histories):
 
 DRAWN_FROM = ("[sensitivity.choice", "[sensitivity.uniform", "[sensitivity.log_uniform")
 """Tables of inputs that a sensitivity draws; what each does to its answer is in tests/analyses/sensitivity."""
-NO_OTHER_VALUE = {("[[case]]", "flexural_impact")}
-"""Keys that take one value only, and say so in a remark."""
+NO_OTHER_VALUE = {("[[case]]", "flexural_impact"), ("[[bound]]", "preset")}
+"""Keys that take one value only; what a preset stands for is in test_design_bounds.py."""
 
 
 def test_another_value_of_a_key_with_one_is_refused():

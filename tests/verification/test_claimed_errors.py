@@ -84,3 +84,14 @@ def test_of_a_pool_no_claim_is_broken_by_more_than_the_tolerance(benchmark, monk
     assert [row.id for row in claiming if row.overturns] == []
     for result in range(len(claims.RESULTS)):
         assert [row.id for row in rows if row.beyond(result)] == []
+
+
+@pytest.mark.thorough
+def test_of_a_pool_on_footings_no_claim_is_broken(benchmark):
+    """Against 160 strips at half the step, and against endless ones: the first cases of those of verification.md."""
+    claims = benchmark("claims_on_footings")
+    rows = list(claims.survey(40, 5))
+    claiming = [row for row in rows if not math.isnan(row.claimed[0])]
+    assert len(claiming) >= 20
+    for result in range(len(claims.RESULTS)):
+        assert [row.id for row in rows if row.beyond(result)] == []

@@ -159,6 +159,7 @@ def test_friction_at_all_feet_holds_a_frame_until_its_lift_off(share, moves):
     assert (run_fixed(pier, base, motion, 4, 0.0).theta_max > 0.0) == moves
 
 
+@pytest.mark.sweep(slow=3)
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_random_frames_in_random_ground(seed):

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from rockbatch.common.lazy import pd
 from rockbatch.observers.forces.peaks import (
     PeakForces,
-    at_rows,
     forces_table,
     impacts_table,
     peak_forces,
@@ -15,6 +14,7 @@ from rockbatch.observers.forces.peaks import (
 )
 from rockbatch.observers.forces.study import Forces
 from rockbatch.outcome.outcome import Outcome
+from rockbatch.simulation.base_forces import at_rows
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording

@@ -9,19 +9,17 @@ import numpy as np
 
 from rockbatch.common.lazy import pd
 from rockbatch.core import types
-from rockbatch.core.devices.laws import FRICTION
-from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
-from rockbatch.core.observe.peaks import NEVER, NOTED, Extremes, Limits, Noted, RecordedRun, forces_of_run
+from rockbatch.core.observe.forces import FORCES, Forces
+from rockbatch.core.observe.peaks import NEVER, Noted
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.changes import LEAST, Sized, greatest_change
 from rockbatch.outcome.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.pier import Pier, RigidBase, YieldingBase, landing_force
+from rockbatch.simulation.base_forces import at_rows, observed
 from rockbatch.simulation.coarser import of_last_mode
 from rockbatch.simulation.histories import LANDINGS
-from rockbatch.simulation.models import acceleration_at, block, elements, ground_of, model, per_mode
-from rockbatch.simulation.restraints import apart, recorded
+from rockbatch.simulation.models import acceleration_at, block
 from rockbatch.simulation.runs import Run
-from rockbatch.simulation.starting import start_of
 
 _UPLIFTS = (types.SEPARATION_LEFT, types.SEPARATION_RIGHT, types.LIFT_OFF)
 
@@ -115,57 +113,6 @@ class Impacts(NamedTuple):
     vertical: Samples
 
 
-def at_rows(run: Run, rows: np.recarray) -> np.recarray:
-    """Return the forces (core.observe.forces.Forces) at ``rows`` that include both sides of every event."""
-    forces = np.recarray(len(rows), FORCES)
-    _observe(run, rows, 0.0, forces, np.zeros(0))
-    return forces
-
-
-def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarray, extremes: Samples) -> np.record:
-    """Fill ``forces`` at the rows, or ``extremes`` over ``rows`` at every step; return the record Noted.
-
-    An empty array is not filled. The friction demand is taken where N > ``least_normal`` M g.
-    """
-    noted = np.zeros(1, NOTED).view(np.recarray)
-    noted.slides = noted.pulls = NEVER
-    if len(rows) == 0:
-        return noted[0]
-    pier, base = run.pier, run.base
-    most = math.inf if base.friction is None else float(base.friction)
-    limits = Limits(most, least_normal * float(pier.gravity), start_of(pier, base).unstressed)
-    body = float(pier.deck) if base.on_springs else Body(_outline(pier, base), _friction_hold(pier, base))
-    plain, pulls = apart(base, rows)
-    devices = recorded(pier, base, rows) if base.restraints else None
-    recording = RecordedRun(plain, pulls, devices, ground_of(run.motion), float(run.motion.dt))
-    forces_of_run(model(pier, base), body, recording, Extremes(limits, extremes, noted), forces)
-    return noted[0]
-
-
-def _friction_hold(pier: Pier, base: RigidBase) -> Hold:
-    """Return the resistance of friction dampers to a pier that begins to turn about its left or right pivot."""
-    numbers = []
-    for side in (-1.0, 1.0):
-        rubs = [
-            (law.strength, pier.half_width - side * law.offset) for law in elements(pier, base) if law.kind == FRICTION
-        ]
-        numbers.append(sum(math.copysign(strength, d) for strength, d in rubs if d != 0.0))
-        numbers.append(sum(strength * abs(d) for strength, d in rubs) / pier.inertia_about_pivot)
-    return Hold(*map(float, numbers))
-
-
-def _outline(pier: Pier, base: RigidBase) -> Outline:
-    """Return the outline of a pier: size, width, and the place of its deck.
-
-    The deck of a frame rests on corners of its columns, twice as far from their pivots as their centres of mass are.
-    """
-    size, width = float(pier.size), 2.0 * float(pier.half_width)
-    if pier.deck_over_columns is not None:
-        return Outline(size, width, width / math.sin(pier.alpha) / size, 0.0)
-    bent = per_mode(base.modes(pier).at(pier.deck)) if base.bends else None
-    return Outline(size, width, 1.0, float(pier.deck - pier.height), bent)
-
-
 def _events(rows: np.recarray, kinds: Sequence[float]) -> np.ndarray:
     """Return the indices of the rows after events of these ``kinds``, ascending; empty without such events."""
     return np.flatnonzero(np.isin(rows.kind, kinds))
@@ -211,7 +158,7 @@ def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakF
     standing = np.flatnonzero(np.abs(rows.theta) <= pier.alpha)
     rows = rows[: standing[-1] + 1].view(np.recarray)
     extremes = np.zeros(len(Forces._fields))
-    noted = Noted(*_observe(run, rows, least_normal, np.recarray(0, FORCES), extremes).tolist())
+    noted = Noted(*observed(run, rows, least_normal, np.recarray(0, FORCES), extremes).tolist())
     most = Forces(*extremes.tolist())
     events = rows[(rows.kind > 0.0) | (rows.kind == types.BEFORE_EVENT)].view(np.recarray)
     landings = impacts(events, at_rows(run, events))

@@ -216,6 +216,32 @@ def test_checks_of_sections_are_judged_by_the_forces_of_each_value(tmp_path):
         assert value == judged
 
 
+SHARE = {
+    "name": "share",
+    "demand": "section_moment_over_capacity",
+    "at_m": 10.0,
+    "capacity": [[-1e5, 0.0], [0.0, 1e5], [1e5, 0.0]],
+    "at_most": 0.9,
+    "reason": "r",
+}
+
+
+def test_shares_of_a_capacity_are_judged_by_the_forces_of_each_value(tmp_path):
+    """Of the same moment, as a study written with the value has them; read again from a finished folder."""
+    of_study = study(OF_SPRINGS, cases=[SPRINGS], check=[SHARE, STIFF], pier=TALL, output={"interaction_m": [10.0]})
+    found = rb.design(of_study, tmp_path / "found")
+    own = found.design_checks.query("check == 'share'").set_index("case.stiffness_kN_m")["value"]
+    assert own.nunique() == len(own) == 5  # two of the scan, and three bisections
+    for stiffness, value in own.items():
+        written = of_study.with_(case={"soft": {"stiffness_kN_m": stiffness}})
+        rb.run(written, tmp_path / str(stiffness))
+        (judged,) = rb.check(tmp_path / str(stiffness)).query("check == 'share'")["value"]
+        assert value == float(f"{judged:.10g}")  # as design_checks.csv has it
+    again = rb.design(of_study, tmp_path / "found")
+    pd.testing.assert_frame_equal(again.design_checks, found.design_checks, check_exact=True)
+    assert set(again.design_interaction["height_m"]) == {10.0}
+
+
 def test_a_check_of_one_case_is_not_one_of_another():
     soft = MOMENT | {"case": "soft"}
     of_study = study(OF_SPRINGS, cases=[SPRINGS, SPRINGS | {"name": "other"}], check=[soft], pier=TALL, output=SECTIONS)

@@ -110,7 +110,7 @@ def test_the_band_leaves_one_half_where_the_interval_of_the_median_ends():
     assert found.probability(np.array([found.median])) == pytest.approx(0.5)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_intervals_hold_the_truth_about_as_often_as_they_say():
     """Suites of 30 records, by IDA up to a level that a sixth of them survives: 95 % within 5 % is 2.3 deviations of 100."""
     rng = np.random.default_rng(4)

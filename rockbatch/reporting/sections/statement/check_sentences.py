@@ -105,7 +105,7 @@ def _is(verdict: Verdict, *, at_worst: bool) -> str:
     """
     bound = f", {_bound(verdict)}" if at_worst else ""
     if math.isnan(verdict.value):
-        return f"has no value{bound}"
+        return f"{'is not known' if math.isinf(verdict.high) else 'has no value'}{bound}"
     if math.isinf(verdict.value):
         return f"is beyond any limit{bound}"
     low, value, high = (_number(number, verdict) for number in (verdict.low, verdict.value, verdict.high))
