@@ -195,6 +195,7 @@ def test_analyses_take_the_axis_and_say_so():
 
 def test_runs_beside_peaks_and_in_plans_are_under_the_component_of_their_axis():
     made, motion = study([BLOCK]), pair()
+    assert [case.name_along for case in made.cases] == ["rock", "rock"]
     ordered = [("rock", motion), ("rock across", motion.exchanged)]
     assert [(run.case.name, run.record) for run in Plan(made, MotionSet([motion]))] == ordered
     rows = [
