@@ -15,7 +15,6 @@ from jsonschema import Draft7Validator
 
 import rockbatch as rb
 from rockbatch.commands.cli import COMMANDS, main
-from rockbatch.pier.statics import FACTS, statics
 from rockbatch.results.labelled import labelled
 from rockbatch.study.load import load_study
 from rockbatch.study.schema import MANIFEST, STUDY, schema_of
@@ -80,21 +79,6 @@ def test_the_tutorial_comes_to_a_verdict(tmp_path, monkeypatch, capsys):
     assert "uplift of the" in told
     assert main(["check", "reports/pier", "--all"]) == code
     assert "no overturning: no record overturns the pier" in " ".join(capsys.readouterr().out.split())
-
-
-def test_the_worked_design_is_its_study_and_has_its_statics():
-    page, study = ROOT / "docs" / "pages" / "worked_design.md", ROOT / "configs" / "worked_design.toml"
-    of_study = study.read_text(encoding="utf-8").splitlines()
-    assert [line for text in blocks(page, "toml") for line in text.splitlines() if line not in of_study] == []
-    sheets = [statics(case.pier, case.base).row for case in load_study(study).cases]
-    shown = [sheets[place] for place in (0, 1, 2, 3, 5)]  # no dampers, 5, 10 and 15 %, 15 % on piles
-    rows = re.findall(r"^\| (.*?) \| (.*) \|$", page.read_text(encoding="utf-8"), re.MULTILINE)
-    facts = [fact for fact in FACTS if fact.heading in dict(rows)]
-    assert len(facts) == 7
-    for fact in facts:
-        assert [cell.strip() for cell in dict(rows)[fact.heading].split("|")] == [
-            fact.written(row[fact.name]) for row in shown
-        ]
 
 
 @pytest.mark.usefixtures("pages")
