@@ -35,7 +35,10 @@ def _homes() -> dict[str, str]:
 
 
 def __getattr__(name: str) -> Any:
-    """Load a public name when it is first used: the compiler costs 0.4 s, and a report needs none."""
+    """Return a public name, loaded when it is first used: the compiler costs 0.4 s, and a report needs none.
+
+    Raises ``AttributeError`` for another name.
+    """
     if name == "__all__":
         return sorted(_homes())
     return loading(__name__, {} if name.startswith("_") else _homes())(name)

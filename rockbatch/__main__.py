@@ -4,7 +4,7 @@ import sys
 
 
 def main() -> int:
-    """Run the command line; an interrupt while it is being loaded, at any instant of it, is reported as any other."""
+    """Run the command line and return its exit code; Ctrl-C while modules are still imported ends with its message and 130."""
     try:
         import os
 

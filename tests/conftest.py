@@ -3,6 +3,7 @@
 import functools
 import multiprocessing
 import os
+import random
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
 from importlib import import_module
@@ -90,7 +91,8 @@ def marks_of(parameters):
     tied = any(
         isinstance(each, Restraint) for one in parameters for each in (one if isinstance(one, tuple) else (one,))
     )
-    marks = {"slow"} if any(isinstance(each, str) and "finite" in each for each in parameters) else set()
+    finite = any(isinstance(each, str) and "finite" in each for each in parameters)
+    marks = {"thorough" if tied else "slow"} if finite else set()
     for base in parameters:
         traits = compiled_traits(base, tied) if isinstance(base, Base) else set()
         if traits and traits not in ({"devices"}, {"damped"}):
@@ -98,13 +100,38 @@ def marks_of(parameters):
     return marks
 
 
+def thin_out(items):
+    """Mark the cases of sweeps: ``sweep(fast=3, slow=9)`` keeps three fast and nine slow, drawn at random; others are thorough.
+
+    Without ``slow``, all that are not fast are slow; without ``fast``, none is.
+    """
+    cases = {}
+    for item in items:
+        if item.get_closest_marker("sweep") and not item.get_closest_marker("thorough"):
+            cases.setdefault((item.path, item.cls, item.originalname), []).append(item)
+    for (_, _, name), rest in cases.items():
+        kept = rest[0].get_closest_marker("sweep").kwargs
+        for limit, mark in (("fast", "slow"), ("slow", "thorough")):
+            if limit in kept or limit == "fast":
+                free = [item for item in rest if limit == "slow" or not item.get_closest_marker("slow")]
+                drawn = set(random.Random(name).sample(free, min(kept.get(limit, 0), len(free))))
+                rest = [item for item in rest if item not in drawn]
+                for item in rest:
+                    item.add_marker(mark)
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Mark tests of the physics that have a base with a kernel of its own among their parameters; what is thorough is slow."""
+    """Mark sweeps, and tests of the physics that have a base with a kernel of its own among their parameters.
+
+    What is thorough is slow.
+    """
     for item in items:
         if item.path.parent.name in PHYSICS and hasattr(item, "callspec") and "uncompiled" not in item.fixturenames:
             for mark in marks_of(item.callspec.params.values()):
                 item.add_marker(mark)
+    thin_out(items)
+    for item in items:
         if item.get_closest_marker("thorough"):
             item.add_marker("slow")
 

@@ -92,6 +92,7 @@ def test_errors_are_held_against_the_reported_ones_with_dampers_too(benchmark):
     ]
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize(
     ("package", "solver", "tolerance", "error"),
     [

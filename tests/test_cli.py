@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -87,6 +87,7 @@ def test_histories_of_another_record_are_added_on_demand_and_no_run_is_repeated(
     assert "--history weka: no such record; did you mean weak?" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_spreadsheet_with_decimal_commas_gets_the_same_numbers(tmp_path, capsys):
     study = write_study(tmp_path, study_text(title="A ; B", cases=(RIGID | {"name": "1.5"},), output={"forces": True}))
     out = tmp_path / "out"
@@ -110,6 +111,7 @@ def test_infinity_is_a_number_that_a_spreadsheet_computes_with(tmp_path):
     assert lines == ["record;friction_demand;beta", "inf;9,99E+307;1e-05", "1.5;;fast"]
 
 
+@pytest.mark.slow
 def test_the_table_is_the_same_bytes_with_any_number_of_jobs(study, tmp_path):
     for jobs in ("1", "3"):
         assert main(["run", str(study), "--out", str(tmp_path / jobs), "--jobs", jobs]) == 0
@@ -314,8 +316,11 @@ def terminal(monkeypatch, rows, columns):
     with os.fdopen(theirs, "w") as stream:
         monkeypatch.setattr("sys.stderr", stream)
         yield shown
-        stream.flush()
-        shown.append(os.read(ours, 100_000).decode())
+    pieces = []  # a terminal hands over what it shows in pieces, of which the last may come late
+    with suppress(OSError):  # at the end, since the other side is closed
+        while piece := os.read(ours, 100_000):
+            pieces.append(piece)
+    shown.append(b"".join(pieces).decode())
     os.close(ours)
 
 
@@ -441,6 +446,7 @@ def test_to_a_stream_that_has_failed_nothing_more_is_written(monkeypatch, capsys
     assert [is_lost(sys.stdout), is_lost(sys.stdout)] == [True, False]
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.skipif(sys.platform == "win32", reason="shells of Unix")
 @pytest.mark.parametrize(("redirected", "told"), [("| true", ""), ("> /dev/full", "cannot be printed (No space left")])
 @pytest.mark.usefixtures("pages")
@@ -641,6 +647,7 @@ def test_an_unknown_demand_is_answered_with_the_command_that_lists_them(tmp_path
         assert line.endswith(end)
 
 
+@pytest.mark.slow
 def test_reading_results_loads_no_record_format():
     code = "import sys, rockbatch.checks, rockbatch.reporting\n"
     code += "print([m for m in sys.modules if m.startswith('rockbatch.motions.formats')])"

@@ -1,16 +1,13 @@
 """A footing from its keys to its bed: stiffness, strength, refusals, statics."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from footing_runs import closed_form
 
 import rockbatch as rb
-from rockbatch.outcome.outcome import BedDemands, Outcome
 from rockbatch.pier.soil import Soil, bed_stiffness, gazetas, pais_kausel
-from rockbatch.simulation.beds import with_strips_error
 from rockbatch.study.footing_keys import at_pivots
 
 TALL = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
@@ -128,21 +125,6 @@ def test_sheet_of_a_footing_states_uplift_period_and_summit():
     assert sheet.moment_over_weight_m < 4.0 * (1.0 - 1.0 / 3.0)
     assert sheet.unstable_rad < math.atan(4.0 / TALL.height * (1.0 - 1.0 / 3.0))
     assert sheet.unstable_rad == pytest.approx(math.atan(4.0 / TALL.height * (1.0 - 1.0 / 3.0)), rel=0.03)
-
-
-def test_error_of_the_pressure_is_its_change_by_half_as_many_strips():
-    """Of order 1, where rotations take a third of theirs; none is claimed where half as many come to another end."""
-    bed = BedDemands(0.2, 20.0, 1.0, 2.0, 1.0, 4.0, 0, 0.0)
-    times = {"t_max": 1.0, "t_flight": None, "t_end": 9.0}
-    whole = Outcome(
-        "ok", "", theta_max=0.02, impacts=0, separations=1, substeps=4, theta_max_error=1e-5, bed=bed, **times
-    )
-    fewer = replace(whole, theta_max=0.0206, bed=replace(bed, pressure=1.8))
-    found = with_strips_error(whole, fewer)
-    assert found.bed.pressure_error == pytest.approx(0.2)
-    assert found.bed.strips_error == pytest.approx(0.0002)
-    assert found.theta_max_error == pytest.approx(0.00021)
-    assert with_strips_error(whole, replace(fewer, status="overturned")).bed.pressure_error is None
 
 
 def test_error_of_an_edge_is_that_of_the_middle_and_of_the_rotation_at_rest(study):

@@ -31,6 +31,7 @@ sys.exit(cli.main(["run", {study!r}, "--out", {out!r}]))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("grace", "times"), [(0.6, 1), pytest.param(600.0, 2, marks=pytest.mark.slow)])
 def test_an_interrupt_while_something_is_compiled_is_answered_and_ends_it(tmp_path, grace, times):
     study, out = write_study(tmp_path, study_text(cases=(RIGID,))), tmp_path / "out"

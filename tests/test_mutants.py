@@ -44,8 +44,41 @@ def test_errors_are_of_signs_comparisons_numbers_conditions_and_swaps():
         "0.5 → (0.55)",
         "not g(x, y) → (g(x, y))",
         "g(x, y) → (g(y, x))",
+        "sum(zip(x, strict=True), 1e-9) → pass",
         "max(x, y) - 3 → (max(x, y) + 3)",
+        "max(x, y) → (min(x, y))",
         "3 → (4)",
+    ]
+
+
+def test_errors_are_of_statements_functions_columns_thousands_and_messages():
+    from places import mutants
+
+    source = (
+        "def f(table, found):\n"
+        '    """Add it."""\n'
+        "    found.add(table)\n"
+        '    found["peak"] = 1e3 * table["first"].min()\n'
+        "    for each in found:\n"
+        "        continue\n"
+        "    if found.startswith(table):\n"
+        '        raise ValueError(f"{found} of {table:.3g}: {found}")\n'
+        '    return f"{table}"\n'
+    )
+    assert [str(mutant) for mutant in mutants(source)] == [
+        "found.add(table) → pass",
+        "found.add(table) → (found.discard(table))",
+        'found["peak"] = 1e3 * table["first"].min() → pass',
+        "found[\"peak\"] → (found['first'])",
+        "1e3 * table[\"first\"].min() → (1000.0 / table['first'].min())",
+        "1e3 → (1100.0)",
+        "1e3 → (1.0)",
+        "table[\"first\"].min() → (table['first'].max())",
+        "table[\"first\"] → (table['peak'])",
+        "continue → pass",
+        "found.startswith(table) → (found.endswith(table))",
+        "f\"{found} of {table:.3g}: {found}\" → (f'{table:.3g} of {found}: {found}')",
+        "f\"{found} of {table:.3g}: {found}\" → (f'{found} of {found}: {table:.3g}')",
     ]
 
 
@@ -98,7 +131,7 @@ JUDGED = {
 """Errors, the tests that they meet, and which notices them."""
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_an_error_is_noticed_by_a_sound_test_that_fails_with_it(tmp_path):
     from places import mutants
 

@@ -39,6 +39,7 @@ def test_a_folder_that_takes_no_files_is_not_said_to_be_in_use(tmp_path, capsys)
     assert "another process" not in said
 
 
+@pytest.mark.slow
 def test_names_beyond_ascii_are_taken_where_the_locale_is_ascii(tmp_path):
     study = write_study(tmp_path, study_text(pulses=(SINE | {"name": "Sinus \u00fc"},), cases=(RIGID,)))
     ascii_only = os.environ | {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}

@@ -154,6 +154,7 @@ def assert_same_folder(one, other, csvs):
         assert untimed(path) == untimed(other / path.name)
 
 
+@pytest.mark.slow
 def test_a_run_without_a_folder_leaves_no_file_and_gives_the_rows_of_the_table(study, commanded, nowhere):
     before = files(commanded)
     table = rb.run(study)
@@ -177,6 +178,7 @@ def test_a_run_into_a_folder_leaves_what_the_command_does(study, commanded, tmp_
     assert "Doors" in (out / "report.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_goes_on_from_python(study, commanded, tmp_path, monkeypatch):
     real, groups, out = rockbatch.batch.threads.outcomes_of, [], tmp_path / "out"
     monkeypatch.setattr(rockbatch.batch.groups, "LEAST_GROUP", 2)
@@ -204,6 +206,7 @@ def test_an_interrupted_run_goes_on_from_python(study, commanded, tmp_path, monk
     assert 6 not in counts  # finished: histories alone are made again
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("name", ANALYSES)
 def test_an_analysis_has_the_tables_of_the_command_and_saves_them(study, commanded, nowhere, name):
     before = files(commanded)
@@ -259,6 +262,7 @@ def test_the_accuracy_is_saved_as_the_command_writes_it(study, nowhere, monkeypa
         rb.accuracy(study, seconds=0)
 
 
+@pytest.mark.slow
 def test_a_report_is_made_of_one_folder_or_of_two(commanded, tmp_path):
     page = commanded / "run/report.html"
     earlier = page.read_bytes()
@@ -327,6 +331,7 @@ def test_without_a_word_a_bar_is_drawn_on_a_terminal_only(study, capfd, monkeypa
     assert "/6 [" in capfd.readouterr().err
 
 
+@pytest.mark.slow
 def test_doors_are_cheap_until_they_are_opened_and_checking_never_loads_the_compiler(commanded):
     code = "import sys, rockbatch as rb\ndir(rb); rb.report; rb.load_study\n"
     code += "print([m for m in ('numba', 'obspy', 'h5py', 'matplotlib', 'scipy') if m in sys.modules])\n"

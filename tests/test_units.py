@@ -1,8 +1,19 @@
-"""Units of acceleration in the spellings of headers, and bounds."""
+"""Units of acceleration in the spellings of headers; bounds, and what messages say of them and of keys."""
+
+import ast
+import importlib
+import math
+import pkgutil
+import re
+from itertools import chain
+from pathlib import Path
 
 import pytest
 
-from rockbatch.common.units import Bounds, acceleration_factor, length_factor
+import rockbatch
+from rockbatch.common.units import LEAST, Bounds, Usual, acceleration_factor, length_factor
+from rockbatch.quantities.catalogue import COLUMNS, DEMANDS
+from rockbatch.study.schema import STUDY
 
 
 @pytest.mark.parametrize(
@@ -38,6 +49,82 @@ def test_what_is_no_acceleration_is_refused_with_the_units_to_write(unit):
 )  # fmt: skip
 def test_what_must_be_above_0_says_so_of_others_their_bounds_are_said(bounds, value, words):
     assert bounds.message(value) == words
+
+
+# What messages say of bounds and keys
+
+TOP = Path(rockbatch.__file__).parent
+
+
+def tabled(kind):
+    """Return everything of a kind that a module has by name, or in a table, by what it is called there."""
+    names = [module.name for module in pkgutil.walk_packages([str(TOP)], "rockbatch.")]
+    modules = map(importlib.import_module, (name for name in names if not name.startswith("rockbatch.core")))
+    found = chain.from_iterable(
+        (value if isinstance(value, dict) else {name: value}).items()
+        for module in modules
+        for name, value in vars(module).items()
+    )
+    return {id(one): (name, one) for name, one in found if isinstance(one, kind)}.values()
+
+
+def numbers_in(text):
+    """Return the numbers of a text; π is one."""
+    found = re.findall(r"[-−]?(?:π/2|\d+(?:[ ,]\d{3})*(?:\.\d+)?(?:e[+-]?\d+)?)", text)
+    return [float(re.sub(r"[ ,]", "", each.replace("−", "-").replace("π/2", str(math.pi / 2)))) for each in found]
+
+
+@pytest.mark.parametrize(("name", "bounds"), tabled(Bounds))
+def test_a_message_names_the_bound_that_a_value_is_beyond(name, bounds):
+    for bound, beyond in ((bounds.high, 2.0 * bounds.high), (bounds.low, bounds.low - 0.1 * abs(bounds.low) - 1e-20)):
+        said = bounds.message(beyond)
+        least_above_0 = bound <= LEAST and re.search("above 0|0 or above|more than 0", said)
+        assert least_above_0 or any(number == pytest.approx(bound, rel=1e-4) for number in numbers_in(said)), said
+
+
+@pytest.mark.parametrize(("name", "usual"), tabled(Usual))
+def test_what_is_said_to_be_usual_needs_no_confirmation(name, usual):
+    words = usual.words.replace("within", "")
+    assert all(usual.holds(number) for number in numbers_in(words.partition(", which")[0])), words
+    for bound, beyond in ((usual.most, 2.0 * usual.most), (usual.least, 0.5 * usual.least)):
+        if bound:
+            (problem,) = usual.doubts(name, beyond)
+            assert numbers_in(problem.text)[0] == pytest.approx(bound)
+            assert usual.holds(bound)
+
+
+NUMBERED = re.compile(r"(damper|tendon|stop|deck_spring|part)_[\dn](_|$)")
+"""The prefix of a key of one of several devices or parts."""
+SYMBOLS = {"a_p", "k_t", "omega_g", "sa_0"}
+"""Words of formulas."""
+
+
+def texts():
+    """Yield the texts of the package that are no docstrings, each with its place."""
+    for path in sorted(TOP.rglob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        alone = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in alone:
+                yield f"{path.name}:{node.lineno}", node.value
+
+
+def known_names():
+    """Return the names of keys, columns and demands, of files, and of what the package has and takes."""
+    found = {name for section in STUDY for name in (*section, section.header.strip("[]").rpartition(".")[2])}
+    for _, text in texts():
+        found |= set() if " " in text else {text, *text.split(","), Path(text).stem}
+    for path in TOP.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            found |= {getattr(node, field, None) for field in ("id", "attr", "arg", "name")}
+    return found | {*COLUMNS, *DEMANDS, *SYMBOLS}
+
+
+def test_every_key_that_a_text_names_is_one():
+    known = known_names()
+    for place, text in texts():
+        for name in re.findall(r"(?<![\w/.$-])[a-z]+(?:_[A-Za-z0-9]+)+(?![\w/(-])", text if " " in text else ""):
+            assert NUMBERED.sub("", name) in {"", *known}, f"{place}: {name}"
 
 
 @pytest.mark.parametrize(

@@ -47,7 +47,7 @@ def make_ready(study: Study, listener: Listener, observers: Sequence[Observer] |
         listener.say("compiling the kernels (once for each kind of foundation, 10 to 30 s each)")
         for _ in range(min(cores() - 1, len(waiting)) if kept.usable() else 0):
             assistant = Thread(target=_compile_elsewhere, args=(waiting,), daemon=True)
-            with suppress(RuntimeError):  # without a further thread this one compiles all
+            with suppress(RuntimeError):  # if no further thread can start, this thread compiles all
                 assistant.start()
                 assistants.append(assistant)
 
@@ -83,7 +83,7 @@ def _compile(task: Task) -> None:
 
 
 def _compile_elsewhere(waiting: "deque[Task]") -> None:
-    """Compile waiting tasks, from the last, in another process; failures are left to this one."""
+    """Compile waiting tasks, from the last, in another process; what fails there is compiled in this one."""
     while task := _next_task(waiting.pop):
         with suppress(OSError):
             subprocess.run(

@@ -134,7 +134,7 @@ class Dask:
 
     @property
     def jobs(self) -> int:
-        """Return the number of threads of all workers that the scheduler last reported."""
+        """Return the number of threads of all workers that the scheduler last reported; 0 before it did."""
         if self._client is not None:
             with suppress(OSError):
                 self._threads = sum(worker["nthreads"] for worker in _workers(self._client).values())
@@ -236,7 +236,7 @@ def _able(workers: dict[str, Row]) -> set[str]:
 
 
 def _finished_groups(pending: "dict[Future, Group]") -> Iterator[Group]:
-    """Yield the finished ones of the submitted groups, with their outcomes."""
+    """Yield those of the submitted groups that are finished, with their outcomes."""
     for future, group in pending.items():
         if future.status == "finished":
             yield finished(group, future.result())
@@ -254,7 +254,7 @@ class Records:
         self._sent: dict[int, tuple[Motion, Future]] = {}
 
     def submit(self, runs: Iterable[StudyRun], numerics: Numerics, observers: Sequence[Observer]) -> "Future":
-        """Submit a group of runs, which refer to records by their position in a list."""
+        """Submit a group of runs, whose records are sent once each; return the future of their outcomes."""
         places: dict[int, int] = {}
         records = []
         members = []

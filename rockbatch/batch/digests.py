@@ -15,13 +15,13 @@ SHOW = ("commands", "terminal", "reporting", "__init__.py", "__main__.py", "comm
 """Packages and modules that only display rows; all others influence rows or the choice of runs."""
 
 OF_SLICES = ("command.py", "section.py", "figure.py")
-"""Modules of analyses and observers that only show rows, likewise."""
+"""Modules of analyses and observers that only display rows."""
 
 _TOP = Path(__file__).parents[1]
 
 
 def digests(motions: Iterable[Motion], **settings: object) -> dict[str, str]:
-    """Return digests for a :class:`Journal`: of motions, of each setting by its ``repr``, and of the program."""
+    """Return digests of 16 digits for a :class:`Journal` by name: "motions", "program", and each setting, by its ``repr``."""
     hashes = {name: hashlib.sha256(repr(value).encode()) for name, value in settings.items()}
     hashes["motions"] = hashlib.sha256()
     for motion in motions:

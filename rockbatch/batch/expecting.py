@@ -69,9 +69,10 @@ def expected(
     share: tuple[int, int] | None = None,
     records: Collection[str] = (),
 ) -> Expected:
-    """Time a few runs, spread over the study, on ``jobs`` threads, and extrapolate by the least number of steps.
+    """Return the cost of a batch, estimated by timing a few runs, spread over the study, on ``jobs`` threads.
 
-    ``share`` and ``records`` as in :func:`rockbatch.workflow.running.run_into`; a share keeps no histories.
+    Time goes with the least number of steps. ``share`` and ``records`` as in :func:`rockbatch.workflow.running.run_into`; a
+    share keeps no histories.
     """
     motions = ground_motions(study)
     listener.motions(motions)
@@ -131,11 +132,14 @@ def _tried(
 
 
 def _spread(steps: Sequence[float]) -> list[int]:
-    """Return indices spread evenly over all runs, at least one, whose ``steps`` sum to at most :data:`STEPS_TRIED`."""
+    """Return indices spread evenly over all runs, in shuffled order, whose ``steps`` sum to at most :data:`STEPS_TRIED`.
+
+    At least one, whatever its steps.
+    """
     number = min(TRIED, len(steps))
     chosen = [round((i + 0.5) * len(steps) / number - 0.5) for i in range(number)]
     chosen = sorted(
         chosen, key=lambda i: (i * 7919) % len(steps)
-    )  # shuffled, so that cutting the list off keeps it spread
+    )  # shuffled, so that the runs of a list cut off are still spread
     sums = accumulate(steps[i] for i in chosen)
     return [i for place, (i, total) in enumerate(zip(chosen, sums, strict=True)) if total <= STEPS_TRIED or place == 0]

@@ -86,7 +86,7 @@ def _of_peaks(study: Study) -> dict[str, Callable[..., Iterable[Row]]]:
 
 
 def _beside_peaks(batch: Batch) -> list[str]:
-    """Return the tables that stand beside peaks.csv."""
+    """Return the names of the tables that stand beside peaks.csv: those made of the peaks, then those of observers."""
     return [*_of_peaks(batch.study), *(observer.table for observer in batch.observers)]
 
 
@@ -101,7 +101,10 @@ def _tables(batch: Batch, saved: Results, journal: Journal) -> Iterator[tuple[st
 
 
 def _keep_histories(batch: Batch, saved: Results, records: Collection[str]) -> tuple[Path | None, InputError | None]:
-    """Write the histories of the study and of ``records``; return their file, None without any, and a refusal, if any."""
+    """Write the histories of the study and of ``records``; return their file and an error, each None if there is none.
+
+    The error is that of a full disk, without a file, or of histories too long for memory.
+    """
     study, runs, listener = batch.study, batch.runs, batch.listener
     chosen = to_keep(study, runs, saved.peaks.iloc[: len(runs)], records)
     if chosen.left_out:

@@ -38,7 +38,7 @@ def groups(runs: Sequence[StudyRun], numerics: Numerics, jobs: int, most: int = 
 
 
 def least_steps(run: StudyRun, numerics: Numerics) -> float:
-    """Return the number of steps of a run whose error estimate is accepted at first."""
+    """Return the least number of steps that a run takes: at its fixed step, or at the first trial's step and at half of it."""
     substeps = numerics.substeps or 3 * first_substeps(run.case.pier, run.case.base, run.record.dt)
     return steps_of(run.record, substeps, numerics.quiet_s)
 
@@ -46,7 +46,7 @@ def least_steps(run: StudyRun, numerics: Numerics) -> float:
 def outcomes_of(
     runs: Iterable[StudyRun], numerics: Numerics, observers: Sequence[Observer] = (), stop: Stop | None = None
 ) -> list[Outcome | None]:
-    """Simulate a group of runs, with the results of ``observers``; return None for runs that ``stop`` interrupted."""
+    """Simulate a group of runs, with the results of ``observers``, in order; all None if ``stop`` was set meanwhile."""
     stop = Stop() if stop is None else stop
     simulated = simulations(runs)
     outcomes = _run_all(simulated, numerics, stop)
@@ -73,7 +73,10 @@ def _run_all(runs: list[Run], numerics: Numerics, stop: Stop) -> list[Outcome | 
 def _with_comparisons(
     observer: Observer, runs: list[Run], outcomes: list[Outcome | None], numerics: Numerics, stop: Stop
 ) -> list[Outcome | None]:
-    """Simulate the runs that an ``observer`` compares with ``runs``; return ``outcomes`` with the comparison added."""
+    """Simulate the runs that an ``observer`` compares with ``runs``; return ``outcomes`` with the comparison added.
+
+    Unchanged if it compares a run with none; None if the run or its comparison was stopped.
+    """
     beside = dict[int, Run]()
     for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True)):
         if outcome is not None and (another := observer.beside(run, outcome)) is not None:

@@ -74,7 +74,7 @@ class _Rows:
         return (number for number, start in enumerate(self.starts) if start != ABSENT)
 
     def row(self, number: int) -> bytes:
-        """Return the row of a run as a line of the table."""
+        """Return the row of a finished run as a line of the table, with its cells beside, without the number of the run."""
         self.file.seek(self.starts[number])
         return _unfolded(self.file.read(self.sizes[number]))
 
@@ -246,7 +246,7 @@ class Journal:
         return dict(zip(self.columns, map(csv_plain, cells), strict=True))
 
     def cells_beside(self, number: int) -> dict[str, str]:
-        """Return the cells beside the row of a run by name; empty for an unfinished run."""
+        """Return the cells beside the row of a run by name; {} for an unfinished run, or a journal without such cells."""
         if not self.beside or number not in self:
             return {}
         cells = self._rows.row(number).rstrip(b"\n").decode().rsplit(",", len(self.beside))[1:]

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rockbatch.study import Study
 
 PATIENCE_S = 1.5
-"""Time [s] after which a listener receives a message on what is running."""
+"""Time [s] after which a listener receives a message on a slow step."""
 
 Advance = Callable[[int], object]
 """Called with the number of items finished since the last call."""
@@ -74,7 +74,7 @@ class Bars(Listener):
         started = time.monotonic()
         with tqdm(total=total, unit="run", leave=False, delay=self.delay, dynamic_ncols=True) as bar:
             mover = Thread(target=keep_moving, daemon=True)
-            with suppress(RuntimeError):  # without a further thread it moves only when items finish
+            with suppress(RuntimeError):  # if no further thread can start, the bar moves only when items finish
                 mover.start()
             self._bar = bar
             try:
@@ -147,7 +147,7 @@ def announced_if_slow(listener: Listener, words: str) -> "Iterator[None]":
 
 
 def once(study: "Study") -> str:
-    """Return a remark that mirror images count once if a study has both polarities; else ""."""
+    """Return " (polarity: mirror images, counted once)" if a study has both polarities; else ""."""
     return " (polarity: mirror images, counted once)" if len(study.motions.polarity) > 1 else ""
 
 

@@ -11,7 +11,7 @@ from rockbatch.study import Study
 
 
 def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
-    """Return a motion times ``scale``, its horizontal component reversed for polarity "-"; itself if unchanged."""
+    """Return a motion times ``scale``, with its horizontal component reversed for polarity "-"; the same object for 1 and "+"."""
     if scale == 1.0 and polarity == "+":
         return motion
     return motion.times(scale, reverse=polarity == "-")
@@ -74,8 +74,6 @@ class Plan(Runs):
         self.motions = tuple(motions.motions)
         self.polarity, self.scale = study.motions.polarity, study.motions.scale
         self.cases = study.cases
-        both = any(case.across_of for case in study.cases)
-        self.across = tuple(motion.exchanged for motion in self.motions) if both else ()
         self.simulated = study.motions.simulated
         self.mirrored = len(self.polarity) > 1
         self._of_one = len(self.scale) * len(self.cases)  # runs of a motion in one polarity
@@ -92,8 +90,8 @@ class Plan(Runs):
         motion, polarity = divmod(rest, len(self.polarity))
         sign = self.polarity[polarity]
         mirror_of = "" if sign == self.simulated else self.simulated
-        motions = self.across if self.cases[case].across_of else self.motions
-        return StudyRun(motions[motion], sign, self.scale[scale], self.cases[case], mirror_of)
+        on_axis = self.cases[case].motion(self.motions[motion])
+        return StudyRun(on_axis, sign, self.scale[scale], self.cases[case], mirror_of)
 
     def images(self, number: int) -> Sequence[int]:
         """See :class:`Runs`."""

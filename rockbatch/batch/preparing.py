@@ -147,7 +147,7 @@ def cost_of_finished(directory: Path, info: Row) -> Row | None:
 
 
 def to_be_replaced(directory: Path, study: Study) -> str | None:
-    """Describe the results in ``directory`` that those of ``study`` will replace; None without any.
+    """Describe the results in ``directory`` that those of ``study`` will replace; None if there are none that can be read.
 
     Raises ``InputError`` for results of another study: of another file or, if that is gone, with another title.
     """
@@ -167,7 +167,7 @@ def to_be_replaced(directory: Path, study: Study) -> str | None:
 
 
 def run_count(study: Study, motions: MotionSet) -> str:
-    """Return the number of runs as a product, mirror images of polarities not counted: "2 records × 5 cases = 10 runs"."""
+    """Return the number of runs as a product: "2 records × 5 cases = 10 runs"; with scales if several, no mirror images."""
     factors = {"record": len(motions.motions), "scale": len(study.motions.scale), "case": len(study.cases)}
     counted = [count(n, noun) for noun, n in factors.items() if n > 1 or noun in ("record", "case")]
     stations = len({motion.of_station for motion in motions.motions})
@@ -189,7 +189,7 @@ def check_records(records: Collection[str], motions: MotionSet) -> None:
 
 
 def share_of(runs: int, share: int, shares: int) -> range:
-    """Return the indices of the ``share``-th of ``shares`` of ``runs``; raise ``InputError`` for more shares than runs."""
+    """Return the indices of the ``share``-th of ``shares`` (from 1) of ``runs``; ``InputError`` for more shares than runs."""
     if shares > runs:
         raise InputError(f"--shard {share}/{shares}: the study has {count(runs, 'run')}; make as many shares or fewer")
     return range(runs * (share - 1) // shares, runs * share // shares)

@@ -9,6 +9,7 @@ from typing import TypedDict, Unpack
 from rockbatch.batch.observers import observers_beside, observers_of
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError, Problem, refuse
+from rockbatch.common.observers import parts
 from rockbatch.motions import Motion
 from rockbatch.motions.plausible import unlikely_samples
 from rockbatch.outcome.outcome import LEAST_NORMAL_SHARE, Outcome
@@ -16,7 +17,6 @@ from rockbatch.outcome.response import Response
 from rockbatch.pier import Base, Pier, problems, unlikely_devices
 from rockbatch.pier.sections import section_heights
 from rockbatch.results import sections as of_sections
-from rockbatch.results import shocks as of_shocks
 from rockbatch.results.columns import StudyRun, as_series, row
 from rockbatch.simulation.error_control import run_to_tolerance
 from rockbatch.simulation.histories import histories
@@ -127,7 +127,7 @@ def simulate(
     beside = {
         "row": as_series(row(finished)),
         "sections": of_sections.as_table(outcome.tables[of_sections.SECTIONS]) if sections else None,
-        "shocks": of_shocks.as_table(outcome.tables.get(of_shocks.SHOCKS, ())) if motion.shocks else None,
+        **{name: table(motion, outcome) for name, table in parts("table.OF_RESPONSE")},
     }
     if observers:
         response = outcome.tables.get(kept.table) or _recorded(kept, run, outcome, quiet_s, wait)
@@ -138,7 +138,7 @@ def simulate(
 
 
 def _read(kept: "HistoriesOfRun", run: Run, outcome: Outcome, quiet_s: float, wait: bool) -> Response:
-    """Return the histories of a run that nothing else observes."""
+    """Return the histories of a run that no other observer reads; recorded apart if it is too long for observers."""
     (outcome,) = observed([run], [outcome], [kept], quiet_s, error=False, wait=wait)
     return outcome.tables.get(kept.table) or _recorded(kept, run, outcome, quiet_s, wait)
 

@@ -49,7 +49,7 @@ def cores() -> int:
 
 
 def engine_of(jobs: int | Engine | None) -> Engine:
-    """Return threads, by default one for each processor, or the given engine; raise ``InputError`` for less than one."""
+    """Return ``jobs`` threads, one for each processor for None, or the given engine; ``InputError`` for fewer than one."""
     if jobs is None:
         return Threads(cores())
     if not isinstance(jobs, int):

@@ -13,7 +13,7 @@ from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, wo
 from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
 from rockbatch.common.showing import shown
-from rockbatch.quantities.cases import of_pier
+from rockbatch.quantities.cases import name_along
 from rockbatch.quantities.design import BOUND, under
 from rockbatch.quantities.statistics import STATISTICS
 
@@ -43,7 +43,7 @@ def answer(
     runs: Sequence[CaseRuns] = (),
     stations: Stations = ALL_STATIONS,
 ) -> list[Line]:
-    """Return the lines of the answer; a line passes only if every case is checked and every station used.
+    """Return the lines of the answer: failing suite, cases that pass, lack a limit, fail, are undecided or unchecked, if any.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def answer(
         None if passing or doubted or not of_cases else every.unchecked_alone(),
     ]
     missing = missing_stations(stations)
-    # It qualifies what passes; what fails does so without these stations, too
+    # Missing stations qualify a pass; a failure holds without them, too
     lines = [missing, *lines] if meeting else [*lines, missing]
     return [*_lines_on_suite(below), *filter(None, lines)]
 
@@ -93,7 +93,7 @@ def _is_low(below: Sequence[Verdict]) -> bool:
 
 
 def _lines_on_suite(verdicts: Sequence[Verdict]) -> list[Line]:
-    """Return the line on a suite that fails these checks of its own; nothing without any."""
+    """Return one line that the suite fails, with a sentence for each of its failing checks, at most three; [] if none fails."""
     sentences: dict[str, None] = {}  # most conditions are the same at every scale
     for verdict in verdicts:
         parts = filter(None, (wording.against(verdict), verdict.note))
@@ -115,7 +115,7 @@ def _line_under_failing_suite(line: Line | None, below: Sequence[Verdict]) -> Li
 
 
 def missing_stations(stations: Stations) -> Line | None:
-    """Return the line on stations without a motion or with fewer components than they have, with the reasons."""
+    """Return the line on stations without a usable motion, or with unusable files beside usable ones, by reason; None if none."""
     if not stations.unusable:
         return None
     whole = [name for name in stations.unusable if name not in stations.used]
@@ -153,7 +153,7 @@ def without_limits(cases: Mapping[str, Sequence[Verdict]], worst: Sequence[Worst
     ``worst`` are those of every case at each scale, as a case of verdicts is of one.
     """
     by_case = grouped(
-        worst, lambda response: (*_key(of_pier(response.case)[0], response.case["columns"]), response.scale)
+        worst, lambda response: (*_key(name_along(response.case), response.case["columns"]), response.scale)
     )
     free: dict[str, list[Worst]] = {}
     for name, verdicts in cases.items():
@@ -167,7 +167,7 @@ def without_limits(cases: Mapping[str, Sequence[Verdict]], worst: Sequence[Worst
 
 
 def _key(case: object, columns: Mapping[str, float | str]) -> tuple[object, ...]:
-    """Return the key that distinguishes cases, with numbers rounded to ten digits, as files have them."""
+    """Return a key that equal cases share: the name and the sorted varied values, numbers as text of nine digits."""
     values = ((name, value if isinstance(value, str) else f"{value:.9g}") for name, value in columns.items())
     return str(case), *sorted(values)
 
@@ -224,7 +224,7 @@ class _Cases:
         return Line(verdict, f"{passes}; {rest}", "", (*lists, *details))
 
     def unchecked_alone(self) -> Line | None:
-        """Return the line on cases that are not checked, if none of the others passes."""
+        """Return the line on all cases that are not checked, for an answer without other lines on them; None if none is."""
         names = self.unchecked
         if not names:
             return None
@@ -232,7 +232,7 @@ class _Cases:
         return Line(NOT_DECIDED, _capital(text), self._with_ends(names), ())
 
     def _with_ends(self, names: Sequence[str]) -> str:
-        """Return the names of cases, first those with runs that do not end standing, with the number of these."""
+        """Return up to three names of cases, first those with most runs cut short: "pads, 2 of 10 runs overturned; piles"."""
         runs = {name: joined(self.runs[name]) for name in names if name in self.runs}
         ends = {name: runs[name].in_words if name in runs else "" for name in names}
         order = sorted(names, key=lambda name: -sum(runs[name].ended.values()) if ends[name] else 0)
@@ -243,12 +243,12 @@ class _Cases:
         )
 
     def _cut_short(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence on those of the cases with runs that do not end standing; nothing without any."""
+        """Return a sentence on those of the cases with runs that do not end standing; () if every run of all stands."""
         ended = [name for name in names if any(runs.ended for runs in self.runs.get(name, ()))]
         return (f"Not every run ends standing: {self._with_ends(ended)}.",) if ended else ()
 
     def _coverage(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence on what share of further records exceeds the statistics by which these cases pass."""
+        """Return a sentence for each share of further records beyond the statistics by which these cases pass; () if none."""
         passed = [
             (statistic.coverage(verdict.records), verdict.check)
             for verdict in self._of(names, PASS)
@@ -261,7 +261,7 @@ class _Cases:
         )
 
     def _omitted(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence for each omission in the demands of checks that these cases pass."""
+        """Return a sentence for each omission in the demands of the checks that these cases pass; () for none."""
         passed = [(name, verdict.check) for verdict in self._of(names, PASS) for name in verdict.omitted]
         checks = grouped(passed, lambda pair: pair[0])
         sentences = []
@@ -271,7 +271,7 @@ class _Cases:
         return tuple(sentences)
 
     def _left_out(self) -> tuple[str, ...]:
-        """Return a sentence on stations that are left out by name; nothing without any."""
+        """Return a sentence on stations, and files of used stations, that are left out by name; () for none."""
         names = _wholly_or_in_part(self.stations.left_out, self.stations.used)
         return (f"Left out by name: {_listed(names, ', ')}.",) if names else ()
 
@@ -301,7 +301,7 @@ class _Cases:
         )
 
     def _place(self, verdict: Verdict) -> str:
-        """Return case and check of a verdict in words, without a case that is the only one, and its bound."""
+        """Return "pads, drift, under stiff ground": case (unless it is the only one), check, and bound of the design, if any."""
         case = self.case_of(verdict) if len(self.every) > 1 else ""
         return ", ".join(filter(None, (case, verdict.check, under(verdict.columns))))
 
@@ -311,7 +311,7 @@ class _Cases:
         return " under every bound" if any(under(verdict.columns) for verdict in self._of(self.every)) else ""
 
     def _failing_bounds(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence on those of the failing cases that pass as they are nominally, with the bounds that fail."""
+        """Return a sentence each for up to three failing cases that pass nominally, with the bounds that fail; () for none."""
         sentences = []
         for name in names:
             failing = dict.fromkeys(verdict.columns.get(BOUND, "") for verdict in self._of([name], FAIL))
@@ -348,7 +348,7 @@ class _Cases:
         return sentences
 
     def _reason_of_verdict(self, verdict: Verdict) -> str:
-        """Return a sentence on why a check is not decided, with its limit and the run that leaves it open."""
+        """Return a sentence on why a check is not decided: its note, then the limit and run if bounds straddle the limit."""
         case = " ".join(
             filter(None, (f" in {self.case_of(verdict)}" if len(self.every) > 1 else "", under(verdict.columns)))
         )
@@ -361,12 +361,12 @@ class _Cases:
         return ", ".join(filter(None, (f"{verdict.check}{case}: {verdict.note}", limit, cause))) + "."
 
     def _of(self, names: Sequence[str], *kinds: str) -> list[Verdict]:
-        """Return the verdicts of these cases: "pass" and other ``kinds``, or all if none is given."""
+        """Return the verdicts of these cases that are of one of ``kinds``, such as "pass"; all if no kind is given."""
         verdicts = (verdict for name in names for verdict in self.verdicts.get(name, ()))
         return [verdict for verdict in verdicts if not kinds or verdict.verdict in kinds]
 
     def _among(self, cases: Collection[str]) -> str:
-        """Return the number of cases among all: "2 of 6 cases", "both cases", "the only case"."""
+        """Return the number of cases among all: "2 of 6 cases", "all 3 cases", "both cases", "the only case"."""
         total = len(self.every)
         if len(cases) == total:
             return {1: "the only case", 2: "both cases"}.get(total, f"all {total} cases")
@@ -374,7 +374,7 @@ class _Cases:
 
 
 def _excess(verdict: Verdict) -> float:
-    """Return the ratio by which a check exceeds its limit; infinite for events that must not occur, and without a ratio."""
+    """Return demand over limit of a failing check; infinite for events that must not occur, and for a ratio of NaN."""
     return math.inf if verdict.is_ban or math.isnan(verdict.ratio) else verdict.ratio
 
 
@@ -384,11 +384,11 @@ def _capital(words: str) -> str:
 
 
 def _few(names: Sequence[str]) -> str:
-    """Return up to :data:`MOST_NAMES` names; empty for more, which the scorecard lists."""
+    """Return the names with semicolons between them if there are at most three; "" for more, which the scorecard lists."""
     return "; ".join(names) if len(names) <= MOST_NAMES else ""
 
 
 def _listed(names: Sequence[str], comma: str = "; ", most: int = MOST_FILES) -> str:
-    """Return up to ``most`` names with ``comma`` between them, and the number of the others."""
+    """Return up to ``most`` names with ``comma`` between them, then "and 3 more" for the number of the others."""
     more = len(names) - most
     return comma.join(names[:most]) + (f"{comma}and {more} more" if more > 0 else "")

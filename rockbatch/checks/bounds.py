@@ -2,20 +2,19 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from rockbatch.checks.omissions import omissions, open_landings, unconverged
-from rockbatch.checks.rules import USUAL, Rule
+from rockbatch.checks.rules import Rule
 from rockbatch.quantities.arrays import Rows, Texts
 from rockbatch.quantities.cases import Case, creeps
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.demands import Demand
 from rockbatch.quantities.limits import OTHER_LAW
-from rockbatch.quantities.rows import NOT_RUN
 from rockbatch.quantities.statistics import STATISTICS, Values
 
 SCATTER = 2.0
@@ -74,6 +73,11 @@ class OfSuite(NamedTuple):
     governing: int | None
     demanded: float
 
+    @property
+    def is_unknown(self) -> bool:
+        """True if nothing is known of the demand: it may be any."""
+        return math.isinf(self.high) and self.value == self.low == 0.0
+
 
 _COMBINED: dict[str, Callable[[Values, Values], Values]] = {
     "greater": np.maximum,
@@ -90,7 +94,9 @@ def of_suite(rule: Rule, axes: Sequence[Axis], counted_as: Texts) -> OfSuite:
     records = _by_record(runs, counting, counted_as)
     value, low, high = _of_records(rule, records)
     governing = _governing(runs, counting, by_bound=low <= rule.limit < high)
-    demanded = math.nan if governing is None else float(runs.value[governing])
+    demanded = math.nan
+    if governing is not None and (math.isfinite(runs.high[governing]) or runs.value[governing] > 0.0):
+        demanded = float(runs.value[governing])
     return OfSuite(value, low, high, records, of_axes, counting, governing, demanded)
 
 
@@ -101,12 +107,12 @@ def _of_records(rule: Rule, records: Bounds) -> tuple[float, float, float]:
     if interval is not None and len(records.value):
         low, high = interval(*records[:3])
     if rule.statistic == "asce7-16" and np.isinf(records.high).sum() > np.isinf(records.low).sum():
-        high = math.inf  # a response that is not known is not one of the unacceptable
+        high = math.inf  # an unknown response does not count as an unacceptable one
     return value, low, high
 
 
 def _statistic(rule: Rule, values: Values) -> float:
-    """Return the statistic of values, shape (n,), or the number of those above the threshold; NaN for n = 0."""
+    """Return the statistic of values, shape (n,), or with "count" the number above the rule's threshold; NaN for n = 0."""
     if len(values) == 0:
         return math.nan
     statistic = STATISTICS[rule.statistic or "max"]
@@ -126,7 +132,7 @@ def _on_both_axes(axes: Sequence[Bounds], how: str) -> Bounds:
 
 
 def _by_record(runs: Bounds, counting: npt.NDArray[np.bool_], counted_as: Texts) -> Bounds:
-    """Return the demand of each record: the worst of its runs that are ``counting``. Empty if every run is left out."""
+    """Return the demand of each record, by sorted names: the worst of its ``counting`` runs. Empty if every run is left out."""
     names, record = np.unique(counted_as[counting], return_inverse=True)
 
     def worst(of_runs: Values) -> Values:
@@ -138,16 +144,17 @@ def _by_record(runs: Bounds, counting: npt.NDArray[np.bool_], counted_as: Texts)
 
 
 def _governing(runs: Bounds, counting: npt.NDArray[np.bool_], *, by_bound: bool) -> int | None:
-    """Return the place of the run that demands most, or may (``by_bound``); None if no run demands anything."""
+    """Return the index of the counting run that demands most, by upper bounds if ``by_bound``; None if no demand is above 0."""
     first, second = (runs.high, runs.value) if by_bound else (runs.value, runs.high)
     order = [i for i in np.lexsort((-second, -first)) if counting[i]]  # a stable sort: of equal ones the first
     return int(order[0]) if order and first[order[0]] > 0 else None
 
 
 def lacking(counting: npt.NDArray[np.bool_], counted_as: Texts) -> dict[str, tuple[int, int]]:
-    """Return the numbers of runs that count and of runs expected, for each record of which some runs do not count.
+    """Return (runs that count, runs expected) of each record with runs of which some, but not all, count; {} if there is none.
 
-    The worst direction of such a record may be a missing one.
+    Expected are the runs of the record, or the usual number of the others if that is more. The missing direction may be the
+    worst.
     """
     planned, remaining = Counter(counted_as), Counter(counted_as[counting])
     usual = max(Counter(planned.values()).items(), key=lambda item: (item[1], item[0]))[0] if planned else 0
@@ -169,7 +176,8 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
         return Demanded(bounds, counting, own, None, np.zeros(len(runs), dtype=bool), [])
 
     estimated = bool(np.isfinite(error).any())
-    margin, wild = np.nan_to_num(error), _chaotic(demand, runs, error)
+    at_least = np.isinf(error)  # the value is a lower bound, and nothing bounds it from above
+    margin, wild = np.where(at_least, 0.0, np.nan_to_num(error)), _chaotic(demand, runs, error)
     low = np.where(wild, value / SCATTER, np.maximum(value - margin, 0.0))
     high = np.where(wild, value * SCATTER, value + margin)
     by_other = None
@@ -179,7 +187,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
     if rule.ways["overturned"] == "infinite":
         high = np.where(runs.facts("may_overturn"), np.inf, high)
-    unknown = open_landings(demand, runs, case) & np.isfinite(value)
+    unknown = at_least | (open_landings(demand, runs, case) & np.isfinite(value))
     for name, way in rule.ways.items():
         ended = status == name
         if way == "infinite":
@@ -188,7 +196,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
             unknown |= ended
         elif way == "left out":
             counting &= ~ended
-    missing = np.isnan(value)  # such as the residual of a run that was cut short
+    missing = np.isnan(value)  # as the residual of a run that was cut short is
     unknown |= missing
     # A peak or a count is at least its value when the run was cut short; the value of an unsettled run bounds nothing
     nothing = missing | (unknown & (status == "failed"))
@@ -205,24 +213,12 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
 
 
 def _chaotic(demand: Demand, runs: Rows, error: Values) -> npt.NDArray[np.bool_]:
-    """Return True for each run whose demand is chaotic, shape (n,): its ``error`` is withdrawn, or that of the peak.
+    """Return True for each chaotic run without an ``error``, and, but for a residual, without one of its peak either, shape (n,).
 
-    An earlier version did not write the column: a run that ended well, and claims no error beside others that do, counts as such.
+    An earlier version did not write the column: a run that ended well, and claims no error beside others that do, counts as
+    such.
     """
     of_peak, ended_well = runs.numbers("theta_max_error"), np.isin(runs.texts("status"), ("ok", "flight"))
     withheld = np.isnan(of_peak) & ended_well & bool(np.isfinite(of_peak).any())
     chaotic = np.where(np.isnan(runs.numbers("chaotic")), withheld, runs.facts("chaotic"))
     return np.isnan(error) & (np.isnan(of_peak) | demand.residual) & chaotic
-
-
-def counted(rule: Rule, suites: Iterable[Rows]) -> str:
-    """Return the number of runs that did not go through, and how they count: "1 overturned (infinite), 2 flight (unknown)"."""
-    numbers: Counter[str] = Counter()
-    for runs in suites:
-        numbers.update(np.where(runs.missing, NOT_RUN, runs.texts("status")).tolist())
-    parts = []
-    for name in (*USUAL, NOT_RUN):
-        if n := numbers[name]:
-            way = rule.ways["failed" if name == NOT_RUN else name]
-            parts.append(f"{n} {name} ({way})" if DEMANDS[rule.demand].per_run else f"{n} {name}")
-    return ", ".join(parts)

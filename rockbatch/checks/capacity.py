@@ -1,7 +1,8 @@
-"""The capacity of a section: its moment of resistance at each axial force, and the share of it that runs use.
+"""Capacities that depend on the axial force, and the share of them that runs use.
 
-The ratio is taken at the axial force N of the moment, M/M_Rd(N), as EN 1992 and EN 1998 compare them, and its greatest value over
-time counts. With a concave M_Rd it is greatest at a corner of the envelope of |M| over N, so that these corners suffice.
+The ratio of an effect E, such as the moment, is taken at the axial force N of its own moment, E/E_Rd(N), as EN 1992 and EN 1998
+compare them, and its greatest value over time counts. With a concave E_Rd it is greatest at a corner of the envelope of |E| over
+N, so that these corners suffice.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,14 +15,33 @@ from rockbatch.quantities.demands import OF_INTERACTION
 from rockbatch.quantities.statistics import Values
 
 Curve = Sequence[tuple[float, float]]
-"""Points (N, M_Rd) [kN, kN m], compression positive, by ascending N."""
+"""Points (N, E_Rd) by ascending N, compression positive: [kN, kN m] for a moment, [kN, kN] for a shear."""
+
+Capacity = float | tuple[tuple[float, float], ...]
+"""A number in the unit of the effect, or a curve."""
+
+FARTHEST = 1e9
+"""Axial force [kN] to which a straight line of capacity goes."""
 
 _ROUNDING = 1e-9
 """Share of the greatest capacity by which a point may be below a straight line through its neighbours."""
 
 
+def line(constant: float, per_axial: float = 0.0) -> tuple[tuple[float, float], ...]:
+    """Return the curve of ``constant`` + ``per_axial`` N, where it is not below 0."""
+    first = (-constant / per_axial, 0.0) if per_axial else (-FARTHEST, constant)
+    return first, (FARTHEST, constant + per_axial * FARTHEST)
+
+
+def whole(parts: Sequence[Capacity]) -> Capacity | tuple[object, ...]:
+    """Return the capacity that was written in ``parts``: one number, or a curve of all its points."""
+    if len(parts) == 1 and isinstance(parts[0], float):
+        return parts[0]
+    return tuple(point for part in parts for point in (part if isinstance(part, tuple) else (part,)))
+
+
 def problems(curve: Curve) -> Iterator[str]:
-    """Yield what is wrong with a curve: it must have two points or more, by ascending N, no M below 0, and be concave."""
+    """Yield a phrase for each fault of a curve: under two points, below 0, N not ascending, or not concave."""
     if len(curve) < 2:
         yield "has fewer than two points; write [N, M] pairs from the greatest tension to the greatest compression"
     below = [f"[{n:g}, {m:g}]" for n, m in curve if m < 0.0]
@@ -29,6 +49,8 @@ def problems(curve: Curve) -> Iterator[str]:
         yield (
             f"has a moment below 0 at {', '.join(below)}; write the half with M >= 0, which counts for both directions"
         )
+    if all(m == 0.0 for _, m in curve):
+        yield "is 0 at every N"
     for (n, m), (n2, m2) in pairwise(curve):
         if n2 <= n:
             yield (
@@ -47,50 +69,54 @@ def problems(curve: Curve) -> Iterator[str]:
 
 
 def resistance(curve: Curve, axial: Values) -> Values:
-    """Return M_Rd [kN m] at axial forces [kN], shape (n,); NaN beyond the ends of the curve."""
-    n, m = np.array(curve, dtype=np.float64).T
-    return np.asarray(np.interp(axial, n, m, left=np.nan, right=np.nan))
+    """Return E_Rd at axial forces [kN], shape (n,); NaN beyond the ends of the curve."""
+    n, e = np.array(curve, dtype=np.float64).T
+    return np.asarray(np.interp(axial, n, e, left=np.nan, right=np.nan))
 
 
-def _share(curve: Curve, axial: Values, moment: Values) -> Values:
-    """Return M/M_Rd(N), shape (n,); infinite beyond the ends of the curve, and where only M has no capacity."""
-    most = resistance(curve, axial)
+def _share(effect: Values, most: Values) -> Values:
+    """Return E/E_Rd, shape (n,): 0 for E = 0; infinite where ``most``, E_Rd, is NaN, and for E > 0 where it is 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where(moment > 0.0, moment / most, 0.0)
+        share = np.where(effect > 0.0, effect / most, 0.0)
     return np.where(np.isnan(most), np.inf, share)
 
 
-def used(curve: Curve, corners: "pd.DataFrame") -> "pd.DataFrame":
-    """Return a row for each run with the greatest share of a capacity that it uses, and its error.
+def _most_within(curve: Curve, low: Values, high: Values) -> Values:
+    """Return the greatest E_Rd between two axial forces [kN], shape (n,) each; NaN if all between is beyond the curve."""
+    n, e = max(curve, key=lambda point: point[1])
+    within = np.where((low <= n) & (n <= high), e, np.nan)
+    return np.fmax(within, np.fmax(resistance(curve, low), resistance(curve, high)))
 
-    ``corners`` are the rows of interaction.csv of one section. The share is NaN if the error decides whether N is beyond an end
-    of the curve, and so may be any; the error is NaN where none was estimated.
+
+def used(curve: Curve, corners: "pd.DataFrame") -> "pd.DataFrame":
+    """Return a row for each run with the greatest share of a capacity that it uses, infinite beyond the curve, and its error.
+
+    ``corners`` are the rows of interaction.csv of one section, or of the base. If the error decides whether N is beyond an end of
+    the curve, the share may be any from the one returned upwards, and its error is infinite; it is NaN where none was estimated.
     """
     keys = [name for name in corners if name not in OF_INTERACTION]
-    axial, moment, error = (corners[name].to_numpy(np.float64) for name in list(OF_INTERACTION)[1:])
-    groups = corners.groupby(keys, sort=False, dropna=False)
+    rows = corners.assign(effect=corners["moment_kNm"].fillna(corners["shear_kN"]))
+    axial, effect, error = (rows[name].to_numpy(np.float64) for name in ("axial_kN", "effect", "interaction_error"))
+    groups = rows.groupby(keys, sort=False, dropna=False)
     margin = np.nan_to_num(error)
-    sizes = [
-        margin * groups[name].transform(lambda values: values.abs().max()).to_numpy()
-        for name in ("axial_kN", "moment_kNm")
-    ]
-    of_axial, of_moment = sizes
-    ends = [_share(curve, axial + sign * of_axial, moment + of_moment) for sign in (-1.0, 1.0)]
-    shares = corners[keys].assign(
-        height_m=corners["height_m"],
-        over_capacity=_share(curve, axial, moment),
-        high=np.maximum(*ends),
-        beyond=(axial + of_axial <= curve[0][0]) | (axial - of_axial >= curve[-1][0]),
+    of_axial, of_effect = (
+        margin * groups[name].transform(lambda values: values.abs().max()).to_numpy() for name in ("axial_kN", "effect")
+    )
+    low, high = axial - of_axial, axial + of_axial
+    shares = rows[keys].assign(
+        height_m=rows["height_m"],
+        over_capacity=_share(effect, resistance(curve, axial)),
+        least=_share(effect - of_effect, _most_within(curve, low, high)),
+        high=np.maximum(*(_share(effect + of_effect, resistance(curve, end)) for end in (low, high))),
         known=~np.isnan(error),
     )
     of_runs = shares.groupby(keys, sort=False, dropna=False).max().reset_index()
-    value, high = of_runs["over_capacity"].to_numpy(np.float64), of_runs["high"].to_numpy(np.float64)
-    beyond, known = of_runs["beyond"].to_numpy(bool), of_runs["known"].to_numpy(bool)
-    unknown = np.isinf(high) & ~beyond
+    value, least, most = (of_runs[name].to_numpy(np.float64) for name in ("over_capacity", "least", "high"))
+    unbounded = np.isinf(most)
     with np.errstate(invalid="ignore"):
-        # M_Rd is concave: what it loses by an error of N is more than what it gains by the opposite one
-        widest = np.where(beyond, 0.0, high - value)
+        # E_Rd is concave: what it loses by an error of N is more than what it gains by the opposite one
+        widest = np.where(unbounded, np.inf, most - value)
     return of_runs[[*keys, "height_m"]].assign(
-        over_capacity=np.where(unknown, np.nan, value),
-        over_capacity_error=np.where(unknown | ~known, np.nan, widest),
+        over_capacity=np.where(unbounded, least, value),
+        over_capacity_error=np.where(of_runs["known"].to_numpy(bool), widest, np.nan),
     )

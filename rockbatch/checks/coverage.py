@@ -29,7 +29,7 @@ class CaseRuns(NamedTuple):
 
     @property
     def none_stands(self) -> bool:
-        """Return whether no run ends standing."""
+        """Return whether no run ends standing; True also for a case without runs."""
         return sum(self.ended.values()) >= self.runs
 
     @property
@@ -43,7 +43,7 @@ class CaseRuns(NamedTuple):
 
 
 def joined(cases: Sequence[CaseRuns]) -> CaseRuns:
-    """Return the runs of a case under all bounds of its design together."""
+    """Return one entry for several of the same case, under all bounds of its design: their runs and endings added up."""
     ended = {status: sum(case.ended.get(status, 0) for case in cases) for status in ENDED}
     return cases[0]._replace(
         runs=sum(case.runs for case in cases), ended={status: n for status, n in ended.items() if n}

@@ -11,10 +11,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.checks.rules import Rule
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, NOT_DECIDED, PASS, Verdict
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.rows import counts_as
 
 
@@ -38,37 +36,41 @@ _SAYS_ALL = "asce7-16"
 """Statistic whose code says how many records may have each ending."""
 
 
-def left_open(judged: Sequence[tuple[Rule, Verdict]], suites: Sequence[Rows]) -> list[Verdict]:
+def left_open(verdicts: Sequence[Verdict], suites: Sequence[Rows]) -> list[Verdict]:
     """Return the verdicts on a case at one scale; passes become undecided if an ending of its runs is in no check.
 
     ``suites`` are its runs, on one or both axes of its pier. Verdicts on properties of the case stay.
     """
-    applying = [rule for rule, verdict in judged if verdict.verdict != DOES_NOT_APPLY]
+    applying = [verdict for verdict in verdicts if verdict.verdict != DOES_NOT_APPLY]
     unchecked = [name for name, ending in ENDINGS.items() if not _allowed(ending.event, applying)]
     ended = {name: [_ended(suite, name) for suite in suites] for name in unchecked}
-    verdicts = [verdict for _, verdict in judged]
     if not any(runs.any() for of_status in ended.values() for runs in of_status):
-        return verdicts
-    for i, verdict in enumerate(verdicts):
-        if verdict.verdict == PASS and verdict.statistic:
-            remarks = (_reason(verdict, suites, ended), *verdict.remarks)
-            verdicts[i] = replace(verdict, verdict=NOT_DECIDED, remarks=remarks)
-    return verdicts
+        return [*verdicts]
+    return [_undecided(verdict, suites, ended) for verdict in verdicts]
+
+
+def _undecided(
+    verdict: Verdict, suites: Sequence[Rows], ended: Mapping[str, Sequence[npt.NDArray[np.bool_]]]
+) -> Verdict:
+    """Return a pass on a statistic as not decided, with the reason first; other verdicts as they are."""
+    if verdict.verdict != PASS or not verdict.statistic:
+        return verdict
+    return replace(verdict, verdict=NOT_DECIDED, remarks=(_reason(verdict, suites, ended), *verdict.remarks))
 
 
 def _ended(suite: Rows, ending: str) -> npt.NDArray[np.bool_]:
-    """Return True for each run with this ending of :data:`ENDINGS`, shape (n,)."""
+    """Return True for each run with this ending of :data:`ENDINGS`, shape (n,); one that overturned is none that may overturn."""
     status = suite.texts("status")
     return suite.facts("may_overturn") & (status != "overturned") if ending == MAY_OVERTURN else status == ending
 
 
-def _allowed(event: str, rules: Sequence[Rule]) -> bool:
-    """Return whether one of the rules limits the number of records with this event."""
-    return any(rule.demand == event or (rule.statistic == _SAYS_ALL and DEMANDS[rule.demand].per_run) for rule in rules)
+def _allowed(event: str, verdicts: Sequence[Verdict]) -> bool:
+    """Return whether a verdict is on the number of records with this event: its demand is the event, or its code ASCE 7-16."""
+    return any(verdict.demand == event or verdict.statistic == _SAYS_ALL for verdict in verdicts)
 
 
 def _reason(verdict: Verdict, suites: Sequence[Rows], ended: Mapping[str, Sequence[npt.NDArray[np.bool_]]]) -> str:
-    """Return the number of records with each of these endings, and the check to write."""
+    """Return how many records have these endings, and the check to write: "1 of 8 stations overturns the pier, and no …"."""
     names = [counts_as(suite, verdict.count)[0] for suite in suites]
     total = len({*np.concatenate(names)})
     parts = list(_numbers(ended, names))

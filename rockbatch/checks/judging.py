@@ -1,28 +1,31 @@
 """Evaluation of rules on results: pass, fail or not decided."""
 
+import json
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
 
 import numpy as np
 
-from rockbatch.checks.bounds import SCATTER, Axis, Demanded, OfSuite, counted, lacking, of_suite
+from rockbatch.checks.bounds import SCATTER, Axis, Demanded, OfSuite, lacking, of_suite
 from rockbatch.checks.capacity import used
 from rockbatch.checks.endings import left_open
 from rockbatch.checks.events import OfEvent, largest_event
 from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.rule_choices import FAR, Available, Fitted, fitted, limit_key
-from rockbatch.checks.rules import Rule
+from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
+from rockbatch.quantities.cases import Case, creeps, has_device, is_across, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
+from rockbatch.quantities.demands import OF_BASE
 from rockbatch.quantities.limits import OTHER_LAW
-from rockbatch.quantities.rows import complete, counts_as, rows_of_cases, simulated, with_case
+from rockbatch.quantities.rows import NOT_RUN, complete, counts_as, rows_of_cases, simulated, with_case
 from rockbatch.quantities.statistics import STATISTICS
 
 MOST_NAMES = 5
@@ -82,11 +85,14 @@ def judge(
         needs: rows for needs, rows in (("sections", sections), ("interaction", interaction)) if rows is not None
     }
     available = Available(
-        cases=list(dict.fromkeys(str(case["case"]) for case in cases if not case.get("across_of"))),
+        cases=list(dict.fromkeys(str(case["case"]) for case in cases if not is_across(case))),
         scales=scales,
         other_law=OTHER_LAW in runs or not any(map(creeps, cases)),
-        output=[key for key, columns in BROUGHT.items() if _has_columns(runs, columns)],
-        sections={needs: set(rows["height_m"]) for needs, rows in at_heights.items()},
+        output=[
+            *(key for key, columns in BROUGHT.items() if _has_columns(runs, columns)),
+            *([] if interaction is None or interaction["height_m"].notna().all() else [OF_BASE]),
+        ],
+        sections={needs: set(rows["height_m"].dropna()) for needs, rows in at_heights.items()},
         piers=cases if doubted else (),
     )
     fits = [fitted(rule, available) for rule in rules]
@@ -98,6 +104,8 @@ def judge(
         raise InputError("the table has mirror images only, and not the runs that they mirror")
     table, scale_of = Rows(runs), runs["scale"].to_numpy(np.float64)
     polarities = [*dict.fromkeys(table.texts("polarity"))]
+    if interaction is not None:
+        at_heights[OF_BASE] = interaction
     tables = [
         at_section(runs, at_heights[DEMANDS[fit.rule.demand].needs], fit) if fit.sections else table for fit in fits
     ]
@@ -114,16 +122,19 @@ def judge(
             for fit, own in zip(fits, tables, strict=True):
                 if name in fit.cases and scale in fit.scales:
                     of_rule = [Axis(axis.case, axis.suite.same_rows_of(own)) for axis in axes]
-                    judged.append((fit.rule, _verdict(fit.rule, of_rule, scale, fit.rule.count or count, events or {})))
+                    judged.append(_verdict(fit.rule, of_rule, scale, fit.rule.count or count, events or {}))
             verdicts += left_open(judged, [axis.suite for axis in axes])
     return verdicts
 
 
 def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", fit: Fitted) -> Rows:
-    """Return runs with the forces in the section of a rule, from the table that it needs; NaN for a run without that section."""
+    """Return runs with the forces in the section or base of a rule, from the table that it needs; NaN for a run without them.
+
+    Raises ``InputError`` if a run has two sections at the height of the rule.
+    """
     its = sections[sections["height_m"].isin(fit.sections)]
-    if fit.rule.capacity is not None:
-        its = used(fit.rule.capacity, its)
+    if fit.rule.curve is not None:
+        its = used(fit.rule.curve, its)
     keys = [name for name in its if name in runs]
     if its.duplicated(keys).any():
         raise InputError(f"a run has several sections at {fit.rule.at_m:g} m; start `rockbatch run` again")
@@ -131,7 +142,7 @@ def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", fit: Fitted) -> R
 
 
 def _has_columns(runs: "pd.DataFrame", columns: Collection[str]) -> bool:
-    """Return whether results have one of the ``columns`` of a key of [output], or no device that they are about."""
+    """Return whether results have a column of these of a key of [output]; True also if no pier has the devices they are of."""
     devices = {"", *(COLUMNS[name].device for name in runs if name in COLUMNS)}  # other devices have no columns here
     return any(name in runs for name in columns) or not any(COLUMNS[name].device in devices for name in columns)
 
@@ -180,17 +191,34 @@ def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, co
         basis=rule.basis,
         reason=rule.reason,
         counting=rule.counting,
-        counted=counted(rule, suites),
+        counted=_ended_early(rule, suites),
         remarks=(),
         count="" if demand.per_case else count,
         unit="" if rule.statistic == "count" else demand.unit,
         at_m=math.nan if height is None else height,
         axes=combined,
+        capacity="" if rule.curve is None else json.dumps(rule.curve),
     )
 
 
+def _ended_early(rule: Rule, suites: Iterable[Rows]) -> str:
+    """Return how many runs did not go through, and how each counts: "1 overturned (infinite), 2 not run (unknown)"; or ""."""
+    numbers: Counter[str] = Counter()
+    for runs in suites:
+        numbers.update(np.where(runs.missing, NOT_RUN, runs.texts("status")).tolist())
+    parts = []
+    for name in (*USUAL, NOT_RUN):
+        if n := numbers[name]:
+            way = rule.ways["failed" if name == NOT_RUN else name]
+            parts.append(f"{n} {name} ({way})" if DEMANDS[rule.demand].per_run else f"{n} {name}")
+    return ", ".join(parts)
+
+
 def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
-    """Return the verdict on a property of the case, the worse of both axes; ``none`` is the verdict without its numbers."""
+    """Return the verdict on a property of the case, the worse of both axes; it does not apply if that needs a mass not given.
+
+    ``none`` is the verdict without its numbers.
+    """
     worse = max if rule.sense == "at most" else min
     value = worse(float(DEMANDS[rule.demand].evaluate(axis.suite, axis.case).value[0]) for axis in axes)
     if math.isnan(value):
@@ -200,12 +228,12 @@ def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
 
 
 def _place(axis: Axis) -> str:
-    """Return "along the axis" or "across the axis"."""
-    return "across the axis" if axis.case.get("across_of") else "along the axis"
+    """Return "across the axis" for a case across the axis of another one (``across_of``), else "along the axis"."""
+    return "across the axis" if is_across(axis.case) else "along the axis"
 
 
 def _absent(rule: Rule, axis: Axis) -> str:
-    """Return the reason why the demand of a rule does not apply on an axis; empty if it does."""
+    """Return why the demand of a rule does not apply on an axis: "the pier has no damper"; "" if it applies."""
     demand, (case, suite) = DEMANDS[rule.demand], axis
     if not demand.applies_to(case):
         return f"a {case['base']} base has no {rule.demand}"
@@ -223,7 +251,10 @@ def _absent(rule: Rule, axis: Axis) -> str:
 
 
 def _with_numbers(verdict: Verdict, value: float, low: float, high: float) -> Verdict:
-    """Return the verdict with a value and its bounds, and with their ratio to the limit and margin; NaN for a value of NaN."""
+    """Return the verdict with a value, its bounds, ratio to the limit, and margin, negative beyond the limit.
+
+    NaN for a value of NaN. The ratio to a limit of 0 is infinite, and 0 for a value of 0.
+    """
     limit = verdict.limit
     numerator, denominator, margin = value, limit, limit - value
     if verdict.sense == "at least":
@@ -257,13 +288,13 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
         statistic.remark(demand.records.high) if statistic.remark and n else "",
         unknown,
         *(of_event.remarks if of_event else ()),
-        "" if none.count == "component" else _directions(lacking(counting, counted_as)),
+        "" if none.count == "component" else _remark_on_directions(lacking(counting, counted_as)),
         *dict.fromkeys(remark for of_axis in laws for remark in of_axis),
         "" if demand.records.estimated or DEMANDS[rule.demand].event else "no error estimate",
         *dict.fromkeys(_chaotic(int(its.chaotic.sum())) for its in demand.axes),
     ]
     judged = replace(
-        _with_numbers(none, demand.value, demand.low, demand.high),
+        _with_numbers(none, math.nan if demand.is_unknown else demand.value, demand.low, demand.high),
         records=n,
         verdict=verdict,
         count=count,
@@ -277,7 +308,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
 
 
 def _on_each(demand: OfSuite, axes: Sequence[Axis]) -> str:
-    """Return the demand of the run that governs on each of two axes; empty on one."""
+    """Return the demands of the governing run on two axes: "0.2 along the axis, 0.3 across the axis"; "" on one axis."""
     run = demand.governing
     if len(axes) == 1 or run is None:
         return ""
@@ -286,7 +317,7 @@ def _on_each(demand: OfSuite, axes: Sequence[Axis]) -> str:
 
 
 def _far(rule: Rule, value: float) -> str:
-    """Return the remark that no run comes near the limit, probably for a wrong unit; empty if one does or it is confirmed."""
+    """Return the remark that the value is below a hundredth of the limit; "" if it is not, is 0 or confirmed, or for a count."""
     key = limit_key(rule)
     if rule.statistic == "count" or key in rule.confirm or not 0.0 < FAR * value < rule.limit:
         return ""
@@ -294,15 +325,16 @@ def _far(rule: Rule, value: float) -> str:
 
 
 def _laws(demanded: Demanded, suite: Rows, deciding: int | None) -> list[str]:
-    """Return remarks that the worse of two spring laws counts, with the demands of the run ``deciding``; none of one law."""
+    """Return remarks that the worse of two spring laws counts, with both demands of run ``deciding``; [] if one law was run."""
     by_other = demanded.by_other
     if by_other is None:
         return []
     remarks = ["the worse of two spring laws counts"]
     if deciding is not None and np.isfinite(by_other[deciding]):
-        remarks[0] += f": {demanded.own[deciding]:.4g} by that of the case, {by_other[deciding]:.4g} by the other"
+        remarks[0] += f": {demanded.own[deciding]:.4g} by the law of the case, {by_other[deciding]:.4g} by the other"
     missing = int((np.isnan(by_other) & (suite.texts("status") == "ok")).sum())
-    return [*remarks, f"by the other {missing} of the runs did not go through"] if missing else remarks
+    runs = "1 run" if missing == 1 else f"{missing} runs"
+    return [*remarks, f"{runs} did not go through by the other law"] if missing else remarks
 
 
 def _chaotic(runs: int) -> str:
@@ -313,8 +345,8 @@ def _chaotic(runs: int) -> str:
     return f"{words} known to a factor of {SCATTER:g}"
 
 
-def _directions(records: Mapping[str, tuple[int, int]]) -> str:
-    """Return the remark on records of which some runs do not count, with the numbers of runs; empty for none."""
+def _remark_on_directions(records: Mapping[str, tuple[int, int]]) -> str:
+    """Return the remark on records of which only some runs count: "not every direction counts, …: WTMC (3 of 4)"; "" for none."""
     if not records:
         return ""
     names = [f"{name} ({used} of {total})" for name, (used, total) in records.items()]
@@ -323,7 +355,7 @@ def _directions(records: Mapping[str, tuple[int, int]]) -> str:
 
 
 def _decide(rule: Rule, low: float, high: float, unmet: str = "") -> tuple[str, str]:
-    """Return the verdict on a demand within these bounds, and ``unmet`` unless it passes; with an unmet condition it cannot."""
+    """Return (verdict, ``unmet``) on a demand within these bounds: with an unmet condition it can fail, but not pass."""
     within, beyond = high <= rule.limit, low > rule.limit
     if rule.sense == "at least":
         within, beyond = low >= rule.limit, high < rule.limit
@@ -340,7 +372,7 @@ def _between(low: float, high: float) -> str:
 
 
 def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> str:
-    """Return the condition on the number of records that is not met, and whose condition it is; empty if all are met."""
+    """Return the unmet condition on the records: "5 stations count, EN 1998-1 asks for 7"; "" if all are met."""
     statistic = STATISTICS[rule.statistic or "max"]
     least, authority = statistic.least, statistic.code or (f"the {statistic.words}" if statistic.least > 1 else "")
     if rule.least is not None:

@@ -23,7 +23,7 @@ LANDINGS_OF_BENDING = "landings under a bending shaft"
 IMPULSES, BENDING = "impulses", "bending"
 
 FACTORS = "1.6 to 2.9"
-"""Base shear by twenty finite elements over that of a rigid shaft: of one with twice the mass of its top (THEORY.md, Forces)."""
+"""Base shear by twenty finite elements over that of a rigid shaft, of twice the mass on its top (THEORY.md, Forces)."""
 
 
 class Omission(NamedTuple):
@@ -80,21 +80,22 @@ def open_landings(demand: Demand, runs: Rows, case: Case) -> npt.NDArray[np.bool
 
 
 def unconverged(demand: Demand, error: Values, case: Case) -> npt.NDArray[np.bool_]:
-    """Return True for each run in which nothing says what the modes change that a bending shaft is not followed in, shape (n,).
+    """Return True for each run with no estimate of what the modes left out of a bending shaft add to the demand, shape (n,).
 
-    ``error`` is that of the demand: of two modes or more it has what the last of them changes, and NaN stands for none.
+    That is: one mode alone, an ``error`` of NaN (that of the demand has the part of the last mode), or the acceleration of a
+    point. False throughout for a rigid shaft, and for a demand that landings or bending do not affect.
     """
     alone = number_of_modes(case) == 1
     return (np.isnan(error) | alone | _at_a_point(demand, case)) & _follows_modes(demand, case)
 
 
 def _at_a_point(demand: Demand, case: Case) -> bool:
-    """Return whether the demand is an acceleration of a point, which modes give slowly where dashpots stop the foot."""
+    """Return whether the demand is an acceleration of a point of a bending shaft on dashpots, which modes give slowly."""
     return demand.pointwise and bends(case) and not lands_by_impulse(case)
 
 
 def _follows_modes(demand: Demand, case: Case) -> bool:
-    """Return whether the modes of a bending shaft take up the blow of a landing in the demand.
+    """Return whether the modes of a bending shaft take up the blow of a landing: the demand has landings and bending in it.
 
     The shaft does not give along its axis, so that what stands on end of it, N and the feet's forces, is an impulse as ever.
     """

@@ -65,7 +65,7 @@ def bounds_in_words(info: Mapping[str, Any]) -> list[str]:
 
 
 def changes_of(bound: Mapping[str, Any]) -> str:
-    """Return the changes of a bound in run.json, with their source."""
+    """Return the changes of a bound in run.json with commas, and its source, if any, in brackets."""
     return ", ".join(bound["changes"]) + (f" ({bound['source']})" if bound["source"] else "")
 
 
@@ -81,13 +81,13 @@ def _prestress(case: Case) -> float:
 
 
 def _is_damped(case: Case) -> bool:
-    """Return whether dashpots of the supports, or dampers, damp the vertical vibration."""
+    """Return whether the supports have dashpots, or the pier has any damper, which damp the vertical vibration."""
     parameters = case["parameters"]
     return bool(parameters.get("zeta")) or any("kind" in device for device in parameters.get("restraints", ()))
 
 
 def _named(cases: Iterable[Case], among: Sequence[Case]) -> str:
-    """Return the names of ``cases``, with varied values if further cases of the name are ``among`` all; a number for many."""
+    """Return the names of ``cases``, with varied values unless all of a name are meant; "5 of 8 cases" for more than three."""
     names = []
     every = grouped(among, lambda case: str(case["case"]))
     for name, of_name in grouped(cases, lambda case: str(case["case"])).items():

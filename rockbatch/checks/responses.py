@@ -51,7 +51,7 @@ RESPONSES = {
 springs the residual rotation follows from the tilt."""
 
 LOST = "runs that do not end standing"
-"""Heading of the number of such runs, beside the responses of the others."""
+"""Heading of the number of runs without a response, beside the responses of the others."""
 
 PERMANENT = ("settlement_m", "base_tilt_rad")
 """Responses of yielding supports only."""
@@ -80,7 +80,7 @@ class Worst(NamedTuple):
         return math.nan if lever is None else lever(self.case)
 
     def place_among(self, heights: Collection[float]) -> str:
-        """Return its height in words if ``heights`` are several; empty for one, which the head of the column has."""
+        """Return " at 72 m" if ``heights`` are several; "" for one, which stands in the head of the column."""
         return at(self.height) if len(heights) > 1 else ""
 
     @property
@@ -97,12 +97,8 @@ def standing(runs: "pd.DataFrame") -> npt.NDArray[np.bool_]:
 def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], *, at_each_scale: bool = False) -> list[Worst]:
     """Return the worst response of every case, at all scales or at each, for each of :data:`RESPONSES` that it has.
 
-    Parameters
-    ----------
-    runs : DataFrame
-        Rows of peaks.csv, of all cases.
-    cases : sequence of mappings
-        Cases as run.json has them.
+    ``runs`` are rows of peaks.csv of all cases, and ``cases`` as in run.json. None of a case without a run that ends
+    standing.
     """
     worst = []
     stood, table = standing(runs), Rows(runs)
@@ -118,7 +114,10 @@ def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], *, at_each_scale
 
 
 def _greatest(rows: Rows, case: Case) -> Iterator[tuple[str, float, int]]:
-    """Yield the demand of each response of a case, its greatest value in these rows, and the place of the row in the table."""
+    """Yield each response of a case, its greatest value in these rows, and the place of that row in the whole table.
+
+    Responses that the case does not have, and those without a finite value, are left out.
+    """
     for name in RESPONSES if len(rows) else ():
         if not DEMANDS[name].applies_to(case) or (name == "theta_res_rad" and case["base"] != "rigid"):
             continue
@@ -151,10 +150,10 @@ def worst_of_all(worst: Iterable[Worst]) -> dict[str, Worst]:
 
 
 def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst]:
-    """Return the responses that govern the design of a case and that no check bounds.
+    """Return the worst responses of a case that govern its design and that no check bounds; [] if all are bounded.
 
-    Rotation always governs, and stands for drift and uplift; the drift of a shaft that bends governs beside it; settlement, tilt
-    and ductility do where a support yields, the residual rotation where dampers hold the pier at one on rigid ground.
+    Rotation always governs, and stands for drift and uplift; the drift of a shaft that bends governs beside it; settlement,
+    tilt and ductility do where a support yields, the residual rotation where dampers hold the pier at one on rigid ground.
     ``worst`` and ``verdicts`` are those of the case.
     """
     checked = {verdict.demand for verdict in verdicts if verdict.verdict != DOES_NOT_APPLY}
@@ -168,7 +167,7 @@ def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst
 
 
 def in_words(worst: Worst) -> str:
-    """Return the value of a response with its units: "1.49 m (1486 mm)"; a range if two spring laws were run."""
+    """Return the value of a response with its units: "1.49 m (1486 mm)"; a settlement by two spring laws as a range."""
     value, pier = worst.value, worst.case["pier"]
     if worst.demand == "theta_max_over_alpha":
         theta = value * float(pier["alpha"])
@@ -184,5 +183,5 @@ def in_words(worst: Worst) -> str:
 
 
 def _millimetres(metres: float) -> str:
-    """Return a length in mm, to whole mm from 0.1 m on, else with three significant digits."""
+    """Return a length [m] as text in mm, without unit: whole mm from 0.1 m on, else three significant digits."""
     return f"{1000 * metres:,.0f}" if metres >= 0.1 else f"{1000 * metres:.3g}"

@@ -14,7 +14,7 @@ from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, weight
 from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.quantities.demands import AT_HEIGHTS
+from rockbatch.quantities.demands import AT_HEIGHTS, OF_BASE
 
 FAR = 100.0
 """Greatest plausible ratio of a limit to its demand, or the reverse; beyond it a wrong unit is likelier."""
@@ -44,7 +44,7 @@ class Available(NamedTuple):
 
 
 class Fitted(NamedTuple):
-    """A rule, what it is about of the cases, scales and sections [m] of a study, and its problems there."""
+    """A rule, the cases, scales and sections [m] of a study to which it applies, NaN for the base, and its problems there."""
 
     rule: Rule
     cases: frozenset[str]
@@ -60,10 +60,12 @@ def fitted(rule: Rule, available: Available) -> Fitted:
     scales = [scale for scale in available.scales if not rule.scale or _is_among(scale, rule.scale)]
     heights = available.sections.get(DEMANDS[rule.demand].needs, ())
     at = [] if rule.at_m is None else [height for height in heights if is_height(height, rule.at_m)]
+    if DEMANDS[rule.demand].needs == OF_BASE:
+        at = [math.nan]
     problems = [*_unmet(rule, matches, available), *_no_section(rule, at, heights)]
     piers = [case for case in available.piers if str(case["case"]) in cases]
     if available.piers:
-        problems += _without_dead_load(rule, piers) if rule.capacity else _implausible(rule, piers)
+        problems += _without_dead_load(rule, piers) if rule.curve else _implausible(rule, piers)
     return Fitted(rule, cases, scales, at, problems)
 
 
@@ -102,7 +104,7 @@ def _unmet(rule: Rule, matches: Mapping[str, Collection[str]], available: Availa
 
 
 def _no_section(rule: Rule, own: Collection[float], sections: Collection[float]) -> Iterator[Problem]:
-    """Yield the problem of a rule about a section that has no ``own`` among ``sections`` [m]."""
+    """Yield the problem of a rule on a section if no ``sections`` [m] are known, or none is at its height (``own`` is empty)."""
     if not DEMANDS[rule.demand].in_section:
         return
     if not sections:
@@ -117,15 +119,15 @@ def _no_section(rule: Rule, own: Collection[float], sections: Collection[float])
 
 
 def _without_dead_load(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
-    """Yield the problem of a capacity that has no moment at the axial force of the dead load of any of the ``cases``.
+    """Yield the problem of a capacity whose curve does not reach the axial force of the dead load of any of the ``cases``.
 
-    That force is the weight in a section at the foot, and less above.
+    That force is the weight at the base and in a section at the foot, and less above. No problem without a known mass.
     """
-    ends = [axial for axial, _ in rule.capacity or ()]
-    weights = [weight(case) for case in cases if "mass_t" in case["pier"]]
-    if any(ends[0] <= most and ends[-1] >= (most if rule.at_m == 0.0 else 0.0) for most in weights) or not weights:
+    ends = [axial for axial, _ in rule.curve or ()]
+    weights, at_foot = [weight(case) for case in cases if "mass_t" in case["pier"]], not rule.at_m
+    if any(ends[0] <= most and ends[-1] >= (most if at_foot else 0.0) for most in weights) or not weights:
         return
-    at = "is" if rule.at_m == 0.0 else "is above 0 and at most"
+    at = "is" if at_foot else "is above 0 and at most"
     text = (
         f"capacity goes from N = {ends[0]:g} to {ends[-1]:g} kN, and that of the dead load {at} {max(weights):.4g} kN: "
         "write N in kN, positive in compression"
@@ -139,10 +141,11 @@ def _implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
     demand, value = DEMANDS[rule.demand], rule.above if rule.statistic == "count" else rule.limit
     if value is None or key in rule.confirm:
         return
+    given = rule.number_of_capacity or value
 
     def odd(text: str, what: str = "unit") -> Problem:
         remedy = f'check the {what}; if it is right, write confirm = ["{key}"] in this table'
-        return Problem(key, float(value), f"{text}; {remedy}", kind=Unusual)
+        return Problem(key, float(given), f"{text}; {remedy}", kind=Unusual)
 
     if value < 0:
         passing = "nothing" if key == "at_most" else "all"
@@ -159,12 +162,12 @@ def _implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
 
 
 def limit_key(rule: Rule) -> str:
-    """Return the key of the rule's limit: "at_most" or "at_least"."""
-    return rule.sense.replace(" ", "_")
+    """Return the key of the rule's limit: "at_most" or "at_least", or "capacity" where the limit is a share of one."""
+    return rule.sense.replace(" ", "_") if rule.number_of_capacity is None else "capacity"
 
 
 def _far_from(name: str, value: float, cases: Sequence[Case]) -> str:
-    """Return a message about a limit far from the parameter of every case, or from the weight; empty if it is near one."""
+    """Return a message on a limit far from the parameter of every case, or from the weight; "" if near one, or unknown."""
     demand = DEMANDS[name]
     if demand.per_case:
         no_runs = Rows(pd.DataFrame())

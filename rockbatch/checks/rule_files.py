@@ -1,10 +1,11 @@
 """Rules from TOML: the tables [[check]] of a study file or of a file of rules."""
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
+from rockbatch.checks.capacity import whole
 from rockbatch.checks.rules import AXES, BOTH_AXES, CHECK, COUNT, COUNTS, PER_EVENT, Rule
 from rockbatch.common.errors import InputError, Problem
 from rockbatch.common.showing import shown
@@ -17,7 +18,7 @@ from rockbatch.toml.section import Key, Section
 
 SUITE = Section(
     ("suite",),
-    "What holds for every check that does not say otherwise, and where more of them are.",
+    "Values of keys for every check that does not give its own, and a file of further checks.",
     {
         "count": Key(choice(*COUNTS), '"component"', f"{COUNT}.", default=COUNTS[0]),
         "per_event": Key(count, "4", f"{PER_EVENT}; no limit if it is not given."),
@@ -45,6 +46,9 @@ TOP = Section(
 )
 
 
+_SECOND = ("suite", "checks")
+"""Key of the file of checks that a file of checks, or a study, names."""
+
 SECTIONS = (TOP, SUITE, CHECK)
 """Tables of a file of checks."""
 
@@ -60,9 +64,10 @@ def given_rules(rules: str | os.PathLike[str] | Iterable[Rule]) -> tuple[Rule, .
 
 
 def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
-    """Return the rules of the [[check]] tables of a file; other tables of a study file are ignored.
+    """Return the rules of the [[check]] tables of a file, and of a file that its [suite] names.
 
-    Raises ``InputError`` with every mistake and its line.
+    Other tables of a study file are ignored. Raises ``InputError`` with every mistake and its line, and for a file without
+    checks.
     """
     file = _opened(Path(path))
     if "pier" not in file.data:
@@ -97,37 +102,45 @@ def read_checks(
     ``unmet`` returns problems of a rule in the study, as :func:`rockbatch.checks.rule_choices.fitted` finds them; ``opened``
     opens the file that [suite] names, or raises ``InputError``.
     """
-    suite, tables = file.table("suite"), file.tables("check", title="name")
-    read = {} if suite is None else suite.read(SUITE)
-    usual = {name: value for name, value in read.items() if name != "checks"}
     names: set[str] = set()
-    rules = _rules(tables, unmet, usual, names)
-    rules_file = None
-    if suite is not None and "checks" in read:
-        try:
-            rules_file = opened(file.path.parent / read["checks"])
-        except InputError as error:
-            for problem in error.problems:
-                text = f"checks = {shown(read['checks'])}: {problem}"
-                suite.complain(Problem("checks", read["checks"], text, kind=problem.kind, named=False), "checks")
-        else:
-            Table(rules_file, (), "", rules_file.data).read(TOP, other=("check", "suite"))
-            its, tables = rules_file.table("suite"), rules_file.tables("check", title="name")
-            own = {} if its is None else its.read({name: key for name, key in SUITE.items() if name != "checks"})
-            rules += _rules(tables, unmet, usual | own, names)
-            file.adopt(rules_file, (*suite.key_path, "checks"))
-    return Checks(tuple(rules), usual.get("count", COUNTS[0]), rules_file)
+    rules, usual = _rules(file, SUITE, {}, unmet, names)
+    second = _second(file, usual["checks"], opened) if "checks" in usual else None
+    if second is not None:
+        without_file = {name: key for name, key in SUITE.items() if name != "checks"}
+        rules += _rules(second, without_file, usual, unmet, names)[0]
+        file.adopt(second, _SECOND)
+    return Checks(tuple(rules), usual.get("count", COUNTS[0]), second)
+
+
+def _second(file: TomlFile, name: str, opened: Callable[[Path], TomlFile]) -> TomlFile | None:
+    """Return the file of checks of this name beside ``file``; None if it cannot be read, with the problems added to ``file``."""
+    try:
+        second = opened(file.path.parent / name)
+    except InputError as error:
+        for problem in error.problems:
+            text = f"checks = {shown(name)}: {problem}"
+            file.complain(_SECOND, Problem("checks", name, text, kind=problem.kind, named=False), "[suite]")
+        return None
+    Table(second, (), "", second.data).read(TOP, other=("check", "suite"))
+    return second
 
 
 def _rules(
-    tables: Iterable[Table],
-    unmet: Callable[[Rule], Iterable[Problem]] | None,
+    file: TomlFile,
+    section: Mapping[str, Key],
     usual: KeyValues,
+    unmet: Callable[[Rule], Iterable[Problem]] | None,
     names: set[str],
-) -> list[Rule]:
-    """Return the rules of the [[check]] tables without mistakes, with ``usual`` values of keys; add their names to ``names``."""
+) -> tuple[list[Rule], KeyValues]:
+    """Return the rules of the sound [[check]] tables, and the values of [suite], or else the ``usual`` ones.
+
+    ``section`` has the keys of [suite]. Mistakes become problems of ``file``, such as a name that is among ``names``, to which
+    those of the tables are added.
+    """
+    suite = file.table("suite")
+    usual = usual | (suite.read(section) if suite else {})
     rules: list[Rule] = []
-    for table in tables:
+    for table in file.tables("check", title="name"):
         before = len(table.file.problems)
         read = table.read(CHECK)
         name = read.get("name")
@@ -141,6 +154,8 @@ def _rules(
             applying |= {"both_axes"} if demand and demand.directed else set()
             applying |= {"per_event"} if STATISTICS[read.get("statistic", "max")].code else set()
             read = {name: value for name, value in usual.items() if name in applying} | read
+            if "capacity" in read:
+                read["capacity"] = whole(read["capacity"])
             try:
                 rule = Rule(**read)
             except InputError as error:
@@ -150,4 +165,4 @@ def _rules(
                 wrong = unmet(rule) if unmet else ()
             for problem in wrong:
                 table.complain(problem, *([problem.key] if problem.key in table.data else []))
-    return rules
+    return rules, usual

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from rockbatch.checks import capacity
+from rockbatch.checks.capacity import Curve
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import Contradiction, Problem, WrongType, refuse
 from rockbatch.common.grouping import grouped
@@ -49,7 +50,9 @@ srss
 """
 EITHER, LESSER = "on either axis", "the lesser of both axes"
 """Ways to combine events, and properties of a case of which more is better."""
-CONFIRMED = ("at_most", "at_least", "above")
+CONFIRMED = ("at_most", "at_least", "above", "capacity")
+MOST_SHARE = 10.0
+"""Greatest share of a capacity that a limit may be."""
 USUAL = {"overturned": "infinite", "flight": "unknown", "failed": "unknown"}
 
 
@@ -99,11 +102,13 @@ class Rule:
     both_axes : "greater", "srss", "100_30" or None
         How the demands of a record combine on both axes of a pier, one of :data:`BOTH_AXES`, in cases with ``other_width_m``;
         "greater" unless given, and of demands that do not add up (:attr:`rockbatch.quantities.demands.Demand.directed`).
-    capacity : tuple of pairs or None
-        Of section_moment_over_capacity: points of axial force, positive in compression, and moment of resistance [kN, kN m], by
-        ascending axial force.
+    capacity : float, tuple of pairs or None
+        Of a demand over a capacity: points of axial force, positive in compression, and resistance [kN, and kN m or kN], by
+        ascending axial force; a number is the same at every axial force. Of any other quantity of a run a number in its unit, of
+        which ``at_most`` is the share.
     confirm : tuple of str
-        Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.checks.rule_choices`).
+        Those of at_most, at_least, above and capacity that are right though nothing exceeds them
+        (:mod:`rockbatch.checks.rule_choices`).
 
     Raises ``InputError`` with all that is wrong, each problem with the name of its attribute as ``key``.
 
@@ -136,31 +141,44 @@ class Rule:
     at_m: float | None = None
     both_axes: str | None = None
     per_event: int | None = None
-    capacity: tuple[tuple[float, float], ...] | None = None
+    capacity: float | tuple[tuple[float, float], ...] | None = None
 
     def __post_init__(self) -> None:
         refuse(_unknown_words(self) or _misfits(self))
 
     @property
     def limit(self) -> float:
-        """The value of at_most or at_least; NaN without one."""
-        return float(next((limit for limit in (self.at_most, self.at_least) if limit is not None), math.nan))
+        """The value of at_most or at_least, times a capacity that is no curve; NaN without one."""
+        limit = float(next((limit for limit in (self.at_most, self.at_least) if limit is not None), math.nan))
+        return limit * (self.number_of_capacity or 1.0)
+
+    @property
+    def number_of_capacity(self) -> float | None:
+        """The capacity of which ``at_most`` is a share; None without one, and for a curve."""
+        return self.capacity if isinstance(self.capacity, float) and not DEMANDS[self.demand].over_capacity else None
+
+    @property
+    def curve(self) -> Curve | None:
+        """The curve of a capacity that depends on the axial force; None without one."""
+        if not DEMANDS[self.demand].over_capacity or self.capacity is None:
+            return None
+        return capacity.line(self.capacity) if isinstance(self.capacity, float) else self.capacity
 
     @property
     def sense(self) -> str:
-        """ "at most" or "at least"."""
+        """ "at most" if ``at_most`` is given, else "at least"."""
         return "at most" if self.at_most is not None else "at least"
 
     @cached_property
     def ways(self) -> dict[str, str]:
-        """Way of counting a run by its status, one of :data:`COUNTING`: overturned, flight and failed."""
+        """Way of counting, one of :data:`COUNTING`, by status: {"overturned": "infinite", …}; all infinite by ASCE 7-16."""
         given = {"overturned": self.overturned, "flight": self.flight, "failed": self.failed}
         usual = dict.fromkeys(USUAL, "infinite") if self.statistic == "asce7-16" else USUAL
         return {status: way or usual[status] for status, way in given.items()}
 
     @property
     def on_both_axes(self) -> str:
-        """Way to combine the demands on both axes, in words: "SRSS of both axes"; for a property of the case, the worse."""
+        """Way to combine both axes: "SRSS of both axes"; of an event "on either axis", with ``at_least`` the lesser."""
         if DEMANDS[self.demand].event:
             return EITHER
         return BOTH_AXES[self.both_axes or "greater"] if self.sense == "at most" else LESSER
@@ -172,7 +190,7 @@ class Rule:
 
     @property
     def words(self) -> str:
-        """Name of the quantity that is compared with the limit: "mean of theta_max_over_alpha"."""
+        """What is compared with the limit: "mean of theta_max_over_alpha"; "no record overturns"; "eta" of a case."""
         return self.words_at(self.at_m)
 
     def words_at(self, height: float | None) -> str:
@@ -192,7 +210,7 @@ class Rule:
 
     @property
     def counting(self) -> str:
-        """Ways of counting runs that do not go through, in words; empty for events and properties of the case."""
+        """Ways of counting runs cut short: "overturned: infinite; flight, failed: unknown"; "" unless it is of every run."""
         if not DEMANDS[self.demand].per_run:
             return ""
         by_way = grouped(self.ways, self.ways.__getitem__)
@@ -200,7 +218,7 @@ class Rule:
 
 
 def is_ban(demand: str, statistic: str, limit: float) -> bool:
-    """Return whether a check with these asks that an event (``demand``) happens under no record."""
+    """Return whether a check bans an event such as "overturned": its statistic is "max", and its limit in 0 ≤ limit < 1."""
     return demand in DEMANDS and DEMANDS[demand].event and statistic == "max" and 0 <= limit < 1
 
 
@@ -247,17 +265,35 @@ _CALLED = {
 _DEMAND = Choice(tuple(DEMANDS), called=_CALLED["demand"], listed_by="rockbatch check --list")
 
 
-def _point(value: object) -> tuple[float, float]:
-    """Return a point [N, M] as a pair of numbers. Raises :class:`KindError` for anything else."""
-    if not isinstance(value, list) or len(value) != 2:
-        raise KindError("points [N, M] in brackets")
-    return number(value[0]), number(value[1])
+def _part_of_capacity(value: object) -> capacity.Capacity:
+    """Return a number as it is, a point [N, M] as a curve of one point, a line as one of two; :class:`KindError` for others."""
+    if isinstance(value, dict):
+        if not value or not value.keys() <= {"constant", "per_N"}:
+            raise KindError("a line { constant = 500.0, per_N = 0.6 }")
+        return capacity.line(*(not_negative(value.get(key, 0.0)) for key in ("constant", "per_N")))
+    if isinstance(value, list):
+        if len(value) != 2:
+            raise KindError("points [N, M] in brackets")
+        return ((number(value[0]), number(value[1])),)
+    return positive(value)
 
 
-_POINT = Other(
-    "points [N, M] in brackets",
-    _point,
-    {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2},
+_NOT_NEGATIVE = {"type": "number", "minimum": 0}
+_CAPACITY = Other(
+    "a number, a line { constant, per_N }, or points [N, M] in brackets",
+    _part_of_capacity,
+    {
+        "anyOf": [
+            {"type": "number", "exclusiveMinimum": 0},
+            {
+                "type": "object",
+                "properties": {"constant": _NOT_NEGATIVE, "per_N": _NOT_NEGATIVE},
+                "additionalProperties": False,
+                "minProperties": 1,
+            },
+            {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2},
+        ]
+    },
 )
 
 CHECK = Section(
@@ -299,11 +335,13 @@ CHECK = Section(
             "`[suite]` says if it is not given.",
         ),
         "capacity": Key(
-            _POINT,
+            _CAPACITY,
             "[[-2000, 0], [0, 30000], [20000, 60000], [50000, 0]]",
-            "Of `section_moment_over_capacity`: points [N, M] of the axial force [kN], positive in compression, and the "
-            "moment of resistance [kN m], by ascending N, with straight lines between them and no capacity beyond the ends. "
-            "The demand is the greatest moment over the resistance at the axial force of the same moment.",
+            "Of `section_moment_over_capacity` points [N, M] of the axial force [kN], positive in compression, and the moment of "
+            "resistance [kN m], by ascending N, with straight lines between them and no capacity beyond the ends; of "
+            "`base_shear_over_capacity` points [N, V] in kN. A line, such as friction with a key, is "
+            "`{ constant = 500.0, per_N = 0.6 }`. The demand is the greatest moment or shear over the resistance at the axial "
+            "force of the same moment. Of any other demand of a run a number in its unit, of which `at_most` is the share.",
             many=True,
         ),
         "at_most": Key(number, "0.5", "The limit."),
@@ -372,7 +410,7 @@ CHECK = Section(
 
 
 def _unknown_words(rule: Rule) -> list[Problem]:
-    """Return the problem of each attribute that is not one of the words that its key allows."""
+    """Return a problem for each attribute that is not one of the words of its key; None, numbers and lists are not looked at."""
     wrong = []
     for name, key in CHECK.items():
         value = getattr(rule, name)
@@ -387,7 +425,7 @@ def _unknown_words(rule: Rule) -> list[Problem]:
 
 
 def _misfits(rule: Rule) -> list[Problem]:
-    """Return the contradictions between the attributes of a rule, each at one of these."""
+    """Return a problem for each contradiction between the attributes of a rule, with one of these as its key; [] for none."""
     wrong = (*_wrong_limit(rule), *_wrong_threshold(rule), *_wrong_for_code(rule), *_wrong_for_demand(rule))
     problems = [Problem(key, None, text, kind=Contradiction, named=False) for key, text in wrong]
     demand, code = DEMANDS[rule.demand], rule.statistic == "asce7-16"
@@ -419,7 +457,7 @@ def _wrong_limit(rule: Rule) -> Iterator[tuple[str, str]]:
 
 
 def _wrong_threshold(rule: Rule) -> Iterator[tuple[str, str]]:
-    """Yield the problem of a threshold that is missing beside "count", or given beside another statistic."""
+    """Yield the problem of ``above`` missing beside "count", but for events and properties, or given with another statistic."""
     demand = DEMANDS[rule.demand]
     if rule.above is not None and rule.statistic != "count":
         yield "above", 'above: is for statistic = "count"; leave it out'
@@ -465,12 +503,27 @@ def _wrong_for_demand(rule: Rule) -> Iterator[tuple[str, str]]:
 
 
 def _wrong_capacity(rule: Rule) -> Iterator[tuple[str, str]]:
-    """Yield problems of the capacity: missing, given for another demand, or no curve."""
-    needed = DEMANDS[rule.demand].needs == "interaction"
-    if needed and rule.capacity is None:
-        example = "[[-2000, 0], [0, 30000], [20000, 60000], [50000, 0]]"
-        yield "capacity", f"capacity is missing, points [N, M] in kN and kN m; write for example capacity = {example}"
-    if not needed and rule.capacity is not None:
-        yield "capacity", "capacity: is for section_moment_over_capacity; leave it out"
-    elif rule.capacity is not None:
-        yield from (("capacity", f"capacity {problem}") for problem in capacity.problems(rule.capacity))
+    """Yield problems of the capacity: missing, given for another demand, no curve, or with a limit that is no share of it."""
+    demand, given = DEMANDS[rule.demand], rule.capacity
+    if demand.over_capacity and given is None:
+        points, example = "points [N, M] in kN and kN m", CHECK["capacity"].example
+        if not demand.in_section:
+            points, example = "a line, or points [N, V] in kN", "{ per_N = 0.6 }"
+        yield "capacity", f"capacity is missing, {points}; write for example capacity = {example}"
+    if given is None:
+        return
+    if demand.over_capacity:
+        yield from (("capacity", f"capacity {problem}") for problem in capacity.problems(rule.curve or ()))
+    elif not isinstance(given, float):
+        curves = " and ".join(name for name, candidate in DEMANDS.items() if candidate.over_capacity)
+        yield "capacity", f"capacity: a curve is for {curves}; write a number, or leave it out"
+    elif not demand.per_run or rule.statistic == "count":
+        yield "capacity", f"capacity: {rule.demand} has none that it uses a share of; leave it out"
+    elif not given > 0.0:
+        yield "capacity", f"capacity = {given:g}: must be above 0"
+    elif rule.at_most is not None and rule.at_most > MOST_SHARE:
+        share = f"{rule.at_most / given:.3g}"
+        yield (
+            "at_most",
+            f"at_most = {rule.at_most:g}: is a share of the capacity; write at_most = {share}, or leave capacity out",
+        )

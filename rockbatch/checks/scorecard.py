@@ -87,7 +87,7 @@ class Scorecard(NamedTuple):
     rows: list[Row]
 
     def open_columns(self, most: int) -> list[int]:
-        """Return the indices of columns to show: all with a failing or undecided cell, and further ones up to ``most``."""
+        """Return the indices of the first columns to show: all with a failing or undecided cell, at least ``most``."""
         in_columns = zip(*(row.cells for row in self.rows), strict=True)
         telling = sum(
             any(cell and cell.verdict.verdict in (FAIL, NOT_DECIDED) for cell in cells) for cells in in_columns
@@ -148,14 +148,17 @@ def _worst(verdicts: Sequence[Verdict]) -> str:
 
 
 def badness(verdict: Verdict) -> tuple[int, float]:
-    """Return a sort key that grows with badness: passes, undecided, fails, and within each the share of the limit."""
+    """Return a sort key that grows with badness: pass or not applying, undecided, fail; within each the share of the limit.
+
+    That is −1 for NaN and for a ban that is met, and infinite for a ban that fails.
+    """
     kind = (DOES_NOT_APPLY, PASS, NOT_DECIDED, FAIL).index(verdict.verdict)
     ratio = -1.0 if math.isnan(verdict.ratio) else math.inf if verdict.is_ban and kind == 3 else verdict.ratio
     return max(kind, 1), -1.0 if kind == 0 or (verdict.is_ban and kind == 1) else ratio
 
 
 def _column(verdicts: Sequence[Verdict]) -> Column:
-    """Return the column of one check, with its limit in the unit that suits its size."""
+    """Return the column of one check, with its limit in the unit that suits its size: "≤ 50 mm"; "none" for a ban."""
     first, heights = verdicts[0], {verdict.at_m for verdict in verdicts if not math.isnan(verdict.at_m)}
     if first.is_ban:
         return Column(first.check, "none", 1.0)

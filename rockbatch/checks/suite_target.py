@@ -78,7 +78,7 @@ class Condition(NamedTuple):
 def suite_verdicts(info: Mapping[str, Any], scales: Iterable[float]) -> list[Verdict]:
     """Return the verdict on every condition on the suite, at each of the ``scales``, by the targets in run.json (``info``).
 
-    There is none for a target that is only compared, and for a suite without a fitted record.
+    None on a target that is only compared (``required`` false), or without a fitted record. Without ``scales``, at scale 1.
     """
     targets = {name: info.get(key) for key, name in NAMES.items()}
     verdicts: list[Verdict] = []
@@ -93,7 +93,7 @@ def suite_verdicts(info: Mapping[str, Any], scales: Iterable[float]) -> list[Ver
 
 
 def _share(target: Target, scale: float) -> Condition:
-    """Return the condition on the least ratio of the mean spectrum to the target."""
+    """Return the condition on the least ratio of the mean spectrum to the target; a ratio within 10⁻⁴ of the limit meets it."""
     least, period = least_over_target(target)
     value, limit = scale * least, float(target["at_least"])
     if math.isclose(value, limit, rel_tol=_ROUNDING):
@@ -103,7 +103,7 @@ def _share(target: Target, scale: float) -> Condition:
 
 
 def _verticals(info: Mapping[str, Any]) -> Iterator[Condition]:
-    """Yield the condition that every station has the vertical component that is fitted."""
+    """Yield the condition that all recorded stations have the vertical component: their number, at least that of stations."""
     recorded = [record for record in info["records"] if record["source"] not in UNRECORDED]
     stations = {str(record.get("station") or record["record"]): False for record in recorded}
     stations |= {
@@ -114,7 +114,7 @@ def _verticals(info: Mapping[str, Any]) -> Iterator[Condition]:
 
 
 def _conditions(target: Target, scale: float) -> Iterator[Condition]:
-    """Yield the conditions of the code of a target, if it has one, beside that on the mean spectrum."""
+    """Yield the conditions of a target's code, beside that on the mean spectrum; nothing for a target without a known code."""
     code = CODES.get(str(target.get("code")))
     if code is None or "stations" not in target:
         return
@@ -137,7 +137,7 @@ def _conditions(target: Target, scale: float) -> Iterator[Condition]:
 
 
 def _factors(kind: str, target: Target, bounds: tuple[float, ...], scale: float) -> Iterator[Condition]:
-    """Yield the conditions on the least and the greatest factor of a kind, if the code has ``bounds`` of them."""
+    """Yield the conditions on the least and greatest factor of a kind; none without ``bounds`` or factors of the target."""
     least, greatest = (scale * float(f"{factor:.4g}") for factor in _two(target, f"{kind}_factors"))
     if not bounds or math.isnan(least):
         return
@@ -149,13 +149,16 @@ def _factors(kind: str, target: Target, bounds: tuple[float, ...], scale: float)
 
 
 def _two(target: Target, name: str) -> tuple[float, float]:
-    """Return a pair of numbers of a target; NaN if it has none of this name."""
+    """Return the pair of numbers that a target has by this name; (NaN, NaN) if it has no pair."""
     values = target.get(name, ())
     return (float(values[0]), float(values[1])) if len(values) == 2 else (math.nan, math.nan)
 
 
 def _periods(target: Target, code: Code) -> Iterator[Condition]:
-    """Yield the conditions on the period range, by the period at 0.1 α of the piers, no further than the spectrum is defined."""
+    """Yield the conditions on both ends of the period range, in periods of the piers at 0.1 α; nothing if the code has no range.
+
+    The longest period asked for is no longer than the spectrum is defined; without a period of the piers the limits are NaN.
+    """
     if not code.longest:
         return
     low, high = target["range_s"]

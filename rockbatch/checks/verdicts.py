@@ -2,12 +2,14 @@
 
 import csv
 import functools
+import json
 import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
 from typing import Any
 
+from rockbatch.checks.capacity import Curve, problems
 from rockbatch.checks.omissions import MODES, OMISSIONS
 from rockbatch.checks.rules import COUNTS, is_ban
 from rockbatch.common.errors import InputError
@@ -49,7 +51,8 @@ class Verdict:
     records, runs : int
         Number of records that count, and of all runs of the suite.
     value, low, high : float
-        The statistic, and the bounds that errors and unknown runs leave; infinite if unknown, NaN without a record.
+        The statistic, and the bounds that errors and unknown runs leave, infinite if unknown. The value is NaN if nothing is
+        known of it; all are without a record.
     sense, limit
         "at most" or "at least", and the limit.
     ratio : float
@@ -78,6 +81,8 @@ class Verdict:
         What the demand leaves out, the gravest first: names of :data:`rockbatch.checks.omissions.OMISSIONS`; empty for nothing.
     axes : str
         How the demands on both axes of a pier combine, in words; empty on one axis.
+    capacity : str
+        Points of the capacity that depends on the axial force, as JSON; empty of other checks.
     """
 
     check: str
@@ -111,10 +116,16 @@ class Verdict:
     at_m: float = math.nan
     omits: str = ""
     axes: str = ""
+    capacity: str = ""
+
+    @property
+    def curve(self) -> Curve:
+        """Return the points of the capacity that depends on the axial force; none of other checks."""
+        return tuple((float(n), float(e)) for n, e in json.loads(self.capacity or "[]"))
 
     @property
     def note(self) -> str:
-        """Return the remarks in one line."""
+        """Return the remarks in one line, with semicolons between them; "" for none."""
         return SEPARATOR.join(self.remarks)
 
     @property
@@ -124,12 +135,12 @@ class Verdict:
 
     @property
     def left_open(self) -> str:
-        """Return the name of the first omission without which the demand has no upper bound; empty if there is none."""
+        """Return the first omission that leaves the demand without an upper bound, by name; empty if there is none."""
         return next((name for name in self.omitted if not OMISSIONS[name].decides), "")
 
     @property
     def is_lower_bound(self) -> bool:
-        """True if the demand is at least its value, without an upper bound."""
+        """True if the upper bound alone is infinite: the demand is at least its value. False if that is for modes left out."""
         return math.isinf(self.high) and math.isfinite(self.value) and MODES not in self.omitted
 
     @property
@@ -161,7 +172,7 @@ def as_table(verdicts: Iterable[Verdict]) -> "pd.DataFrame":
 
 
 def _table(verdicts: Iterable[Verdict]) -> tuple[list[str], list[dict[str, object]]]:
-    """Return columns and rows of checks.csv."""
+    """Return the names of the columns of checks.csv, those of varied values behind ``case``, and a mapping for each row."""
     rows: list[dict[str, object]] = []
     varied: dict[str, None] = {}
     for verdict in verdicts:
@@ -206,11 +217,16 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
     if values.get("omits") and not {*values["omits"].split(", ")} <= OMISSIONS.keys():
         raise ValueError(f"omits = {values['omits']!r}")
     columns = {name: text if name == BOUND else _value(text) for name, text in row.items() if name not in _KINDS}
-    return Verdict(columns={name: value for name, value in columns.items() if value != "" or name == BOUND}, **values)
+    verdict = Verdict(
+        columns={name: value for name, value in columns.items() if value != "" or name == BOUND}, **values
+    )
+    if verdict.capacity and any(problems(verdict.curve)):
+        raise ValueError(f"capacity = {verdict.capacity!r}")
+    return verdict
 
 
 def _value(text: str) -> float | str:
-    """Return the value of a varied key, a number if it is one. Raises ``ValueError`` for NaN or an infinite one."""
+    """Return the value of a varied key: a number, or a text. Raises ``ValueError`` for NaN or an infinite number."""
     try:
         number = float(text)
     except ValueError:

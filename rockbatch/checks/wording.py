@@ -21,14 +21,14 @@ MOST = 30
 
 
 def name_of(verdict: Verdict) -> str:
-    """Return the name of the check, followed by the condition for a condition of a code on the suite."""
+    """Return the name of the check, for a condition of a code on the suite followed by it: "suite to target (stations)"."""
     if verdict.case or verdict.demand == MEAN_OVER_TARGET:
         return verdict.check
     return f"{verdict.check} ({verdict.words})"
 
 
 def worst_first(verdicts: Iterable[Verdict]) -> list[Verdict]:
-    """Return failing verdicts, those on the suite first, then undecided ones, each by falling ratio; no others."""
+    """Return failing verdicts, those on the suite first, then undecided ones, each by falling ratio, NaN last; no others."""
     order = (FAIL, NOT_DECIDED)
 
     def key(verdict: Verdict) -> tuple[int, bool, float]:
@@ -55,8 +55,10 @@ def count_by_check(verdicts: Iterable[Verdict]) -> dict[str, dict[str, int]]:
 
 
 def number(value: float, neighbour: float = math.nan, least: int = 4) -> str:
-    """Return a value with ``least`` significant digits, or as many as show that it differs from its ``neighbour``."""
-    if not math.isfinite(value):
+    """Return a value with ``least`` significant digits, or as many as show that it differs from its ``neighbour``; "" for NaN."""
+    if math.isnan(value):
+        return ""
+    if math.isinf(value):
         return "∞" if value > 0 else "-∞"
     digits = next((n for n in range(least, 10) if value == neighbour or f"{value:.{n}g}" != f"{neighbour:.{n}g}"), 10)
     rounded = float(f"{value:.{digits}g}")
@@ -69,12 +71,12 @@ def compared(value: float, limit: float, least: int = 4) -> str:
 
 
 def is_nothing(value: float, limit: float) -> bool:
-    """Return whether a demand is rounding beside its limit."""
+    """Return whether a demand is below 10⁻⁶ of the size of its limit, as rounding is; False for a limit of 0."""
     return abs(value) < ROUNDING * abs(limit)
 
 
 def against(verdict: Verdict) -> str:
-    """Return demand and limit with their sign and unit: "1.486 m > 0.5 m"."""
+    """Return demand and limit with their sign and unit: "1.486 m > 0.5 m"; the sign is that of the value, whatever its bounds."""
     at_most = verdict.sense == "at most"
     signs, met = ("≤>", verdict.value <= verdict.limit) if at_most else ("≥<", verdict.value >= verdict.limit)
     words = f"{demanded(verdict)} {verdict.unit}".strip(), f"{number(verdict.limit)} {verdict.unit}".strip()
@@ -82,7 +84,7 @@ def against(verdict: Verdict) -> str:
 
 
 def demanded(verdict: Verdict) -> str:
-    """Return the demand as a number without its unit; of an event that must not occur, whether it does."""
+    """Return the demand without its unit, "≥ 1.2" for a lower bound, "" for NaN; of a ban "some", "none" or "not known"."""
     value = verdict.value
     if math.isnan(value):
         return ""
@@ -94,14 +96,16 @@ def demanded(verdict: Verdict) -> str:
 
 
 def limit(verdict: Verdict, signs: Sequence[str] = ("≤", "≥")) -> str:
-    """Return the limit with its sign, without its unit."""
+    """Return the limit with its sign, without its unit: "≤ 0.5"; "none" for a ban, "not known" for NaN."""
     if verdict.is_ban:
         return "none"
+    if math.isnan(verdict.limit):
+        return "not known"
     return f"{signs[verdict.sense != 'at most']}\u00a0{number(verdict.limit)}"
 
 
 def ratio(verdict: Verdict) -> str:
-    """Return demand over limit, with more digits near 1; empty for NaN and for a ban."""
+    """Return demand over limit: "0.87", "0.9987" near 1, "≥ 1.20" for a lower bound, "∞"; empty for NaN and for a ban."""
     if math.isnan(verdict.ratio) or verdict.is_ban:
         return ""
     if math.isinf(verdict.ratio):
@@ -120,7 +124,7 @@ def percent(ratio: float) -> str:
 
 
 def margin(verdict: Verdict) -> str:
-    """Return the distance to the limit, without its unit; empty for NaN and for a ban."""
+    """Return the distance to the limit without its unit, "≤ 0.1" for a lower bound of the demand; "" for NaN and for a ban."""
     if math.isnan(verdict.margin) or verdict.is_ban:
         return ""
     shown = number(verdict.margin, least=3)
@@ -158,7 +162,7 @@ class Notes:
         """Return the common remarks with their checks, and how runs that do not end standing count: a sentence each."""
         notes = [f"{', '.join(checks)}: {remark}." for remark, checks in self._common.items()]
         sentences = [
-            f"{', '.join(checks)}: runs that do not end standing count so: {kind}."
+            f"{', '.join(checks)}: runs that do not end standing count as follows: {kind}."
             for kind, checks in self._counting.items()
         ]
         return notes + sentences
@@ -177,18 +181,23 @@ def run(verdict: Verdict) -> str:
 
 
 def is_left_open(verdict: Verdict) -> bool:
-    """Return whether the demand may lie on either side of the limit."""
+    """Return whether a verdict is not decided because its demand may lie on either side of the limit."""
     return verdict.verdict == NOT_DECIDED and verdict.low <= verdict.limit < verdict.high
 
 
 def governing(verdict: Verdict) -> str:
-    """Return the run that governs, has the largest demand or leaves it open, with its own demand; empty without one."""
+    """Return the run that governs, with its own demand; empty if no run does.
+
+    "governs: …", "largest: …" if the statistic differs from its demand, "left open by …" if it leaves the check undecided.
+    """
     if not verdict.record:
         return ""
     left_open = is_left_open(verdict)
     alone = verdict.is_ban or verdict.governing == verdict.value
     text = f"{'left open by' if left_open else 'governs:' if alone else 'largest:'} {run(verdict)}"
     if verdict.is_ban:
+        return text
+    if math.isnan(verdict.governing):
         return text
     if math.isinf(verdict.governing):
         return f"{text}, beyond any limit"
@@ -206,7 +215,7 @@ def at(height: float) -> str:
 
 
 def requirements(verdicts: Iterable[Verdict]) -> dict[str, list[str]]:
-    """Return the requirements of each check by name, one for each height at which its demand is read."""
+    """Return up to three requirements of each check, by name, one for each height of its demand; then "likewise at 5 more …"."""
     asked = {name: list(dict.fromkeys(map(requirement, same))) for name, same in grouped(verdicts, name_of).items()}
     return {
         name: words
@@ -217,16 +226,15 @@ def requirements(verdicts: Iterable[Verdict]) -> dict[str, list[str]]:
 
 
 def requirement(verdict: Verdict) -> str:
-    """Return the requirement of the check: "design value by EN 1998-2 of top_drift_m at most 1.5 m"."""
-    return (
-        verdict.words
-        if verdict.is_ban
-        else f"{verdict.words} {verdict.sense} {verdict.limit:,g} {verdict.unit}".rstrip()
-    )
+    """Return the requirement of the check: "design value by EN 1998-2 of top_drift_m at most 1.5 m"; "no record overturns"."""
+    if verdict.is_ban:
+        return verdict.words
+    limit = "an unknown limit" if math.isnan(verdict.limit) else f"{verdict.limit:,g} {verdict.unit}".rstrip()
+    return f"{verdict.words} {verdict.sense} {limit}"
 
 
 def unchecked(verdict: Verdict) -> str:
-    """Return on what a code's statistic rests, as the clause itself could not be checked; empty for other statistics."""
+    """Return the sources of a code's statistic, whose clause itself could not be checked; "" for other statistics."""
     return STATISTICS[verdict.statistic].unchecked if verdict.statistic in STATISTICS else ""
 
 
@@ -242,7 +250,7 @@ def counting(verdicts: Iterable[Verdict]) -> list[str]:
     """Return a sentence for each way of counting records that the verdicts use: by station, by component."""
     sentences = {
         "station": "A record is a station: its components, angles and polarities are its directions, and the worst counts.",
-        "component": "A record is a horizontal component, with the worse of its polarities: those of one station count apart.",
+        "component": "A record is a horizontal component, with the worse of its polarities; those of a station count apart.",
     }
     counts = {verdict.count for verdict in verdicts}
     return [sentence for kind, sentence in sentences.items() if kind in counts]

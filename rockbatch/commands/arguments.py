@@ -65,7 +65,7 @@ class Command:
 
 
 def _study(arguments: argparse.Namespace) -> "Study":
-    """Load the study file, with --motions and --strict of the command line applied."""
+    """Return the study file with --motions and --strict applied. Raises ``InputError`` with its mistakes."""
     from rockbatch.study import load_study
 
     study = load_study(arguments.study, motions=arguments.motions)
@@ -152,7 +152,7 @@ _FILES = """\
 
 
 def _of_analysis(name: str, door: Door) -> Command:
-    """Return the command of an analysis."""
+    """Return the command ``name`` of an analysis, with the arguments of studies, of its engine if it has runs, and its own."""
     arguments = {**_STUDY, **(_ENGINE if door.engine else {}), **door.options}
     return Command(door.help, door.example, f"analyses.{name}.command.main", arguments, door.writes)
 

@@ -9,7 +9,7 @@ from rockbatch.terminal.streams import show
 
 
 def main(arguments: argparse.Namespace) -> int:
-    """Print folder, number and size of the compiled kernels, or remove them."""
+    """Print folder, number and size of the compiled kernels, or of those removed with --clear; return 0."""
     kernels = kept.clear() if arguments.clear else kept.files()
     size = f"{count(len(kernels), 'compiled kernel')}, {sum(kernel.size for kernel in kernels) / 1e6:.1f} MB"
     if arguments.clear:

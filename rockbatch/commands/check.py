@@ -35,7 +35,7 @@ _LEFT_OUT = (5, 4, 1)
 
 
 def main(arguments: argparse.Namespace) -> int:
-    """Check results against rules; print and write the verdicts, and rewrite the report if it exists."""
+    """Check results against rules; print and write the verdicts, rewrite an existing report; return the code of :func:`tell`."""
     saved = open_results(arguments.directory)
     results = verdicts(saved, arguments.rules)
     code = tell(results, write_verdicts(arguments.directory, results), saved, arguments.all)
@@ -45,7 +45,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def report(arguments: argparse.Namespace) -> int:
-    """Rewrite the report of finished results, write their calculation sheet, or compare two studies."""
+    """Rewrite the report of results, write their calculation sheet, or compare two studies; print the path, and return 0."""
     made = make_report(
         arguments.directory,
         arguments.other,
@@ -68,8 +68,8 @@ def mark(verdict: str) -> str:
 def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved, whole: bool = False) -> int:
     """Print the scorecard and the answer; return the exit code.
 
-    ``path`` is the file of verdicts; with ``whole`` their numbers and the checks' requirements are printed first. The exit
-    code is 1 if a check fails or is not decided, if no check applies, or if a file could not be used, else 0.
+    It is 0 if a verdict passes, none fails or is undecided, a check applies to the cases, and every file could be used; else 1.
+    ``path`` is the file of verdicts; with ``whole`` their numbers and the checks' requirements are printed first.
     """
     many = len(verdicts) > wording.MOST
     applicable = [verdict.verdict != DOES_NOT_APPLY for verdict in verdicts if verdict.case]
@@ -160,7 +160,7 @@ def _blocks(verdicts: Sequence[Verdict], notes: Notes) -> list[str]:
 
 
 def _numbers(verdicts: Sequence[Verdict]) -> list[str]:
-    """Return the head and a line for each verdict, with the columns that fit into the terminal."""
+    """Return the head and a line for each verdict; in a narrow terminal without margin, then ratio, then records."""
     head = ("check", wording.records_of(verdicts), "demand", "limit", "ratio", "margin", "unit", "verdict")
     lines, places, edge = [head, *map(_cells, verdicts)], list(range(len(head))), width() or math.inf
     for place in (None, *_LEFT_OUT):
@@ -187,7 +187,7 @@ def _cells(verdict: Verdict) -> tuple[str, ...]:
 
 
 def _plain(text: str) -> str:
-    """Replace characters that many terminals lack."""
+    """Return text with "inf", ">=", "<=" and plain spaces for signs that many terminals lack."""
     for sign, instead in {"\u00a0": " ", "∞": "inf", "≥": ">=", "≤": "<="}.items():
         text = text.replace(sign, instead)
     return text

@@ -2,6 +2,7 @@
 # PYTHON_ARGCOMPLETE_OK: shells with argcomplete's global completion complete it, too
 
 import argparse
+import functools
 import os
 import re
 import sys
@@ -70,6 +71,7 @@ class _Version(argparse.Action):
         parser.exit()
 
 
+@functools.cache
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     commands = "\n".join(f"  {name:<13}{command.help}" for name, command in COMMANDS.items())
@@ -90,7 +92,10 @@ def parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return the exit code (:data:`EXIT_CODES`); without a command, list the commands."""
+    """Run the command line and return the exit code (:data:`EXIT_CODES`); without a command, list the commands and return 2.
+
+    Wrong arguments end the process (``SystemExit``) with 2.
+    """
     open_missing()
     root = parser()
     if "_ARGCOMPLETE" in os.environ:  # called by the shell for completion
@@ -110,7 +115,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Sequence[str]:
-    """Replace "help" and "version" by options; exit with a suggestion if the first word is not a command."""
+    """Return the arguments with "help" and "version" as options; exit with 2 and a suggestion for an unknown command."""
     word, *rest = arguments or [""]
     if word in COMMANDS or not word or word.startswith("-"):
         return arguments
@@ -122,7 +127,7 @@ def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Se
 
 
 def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
-    """Return the end of a message on ``unknown`` options: "; did you mean --jobs?"; empty without a suggestion."""
+    """Return the end of a message on ``unknown`` options, "; did you mean --jobs?", or that the command takes none; "" else."""
     options = [name for name in COMMANDS[command].arguments if name.startswith("-")] if command else ["--version"]
     if not options:
         return f"; `rockbatch {command}` takes none"
@@ -138,7 +143,7 @@ def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
 
 
 def _key_meant(unknown: Sequence[str]) -> str:
-    """Return the end of a message on an option that is a key of a study, with its table; empty if it is none."""
+    """Return the end of a message on an option that is a key of a study, "; it is a key of the study: write …", else ""."""
     from rockbatch.study.load import SECTIONS
 
     option, _, given = unknown[0].partition("=")
@@ -154,20 +159,20 @@ def _key_meant(unknown: Sequence[str]) -> str:
 
 
 def _other_word(word: str, options: Sequence[str]) -> str | None:
-    """Return the option for which ``word`` is another word; None without any."""
+    """Return the option of which ``word`` is another name by :data:`_OPTIONS_MEANT`, if the command has it; else None."""
     meant = (name for name, words in _OPTIONS_MEANT.items() if word in words.split())
     return next((name for name in meant if name in options), None)
 
 
 def _similar(word: str, options: Sequence[str]) -> str | None:
-    """Return an option spelt similarly that discards no results; None without any, or if the word is of other commands."""
+    """Return the most similar of the options that discard no results; None if none is, or ``word`` is another name for one."""
     if any(word in words.split() for words in _OPTIONS_MEANT.values()):
         return None
     return closest(word, [name for name in options if name not in DISCARDING])
 
 
 def _exit_code(parsed: argparse.Namespace) -> int:
-    """Run a command and return its exit code, reporting errors in words."""
+    """Run a command and return its exit code; 2 after wrong input or errors of files, 130 after Ctrl-C, with a message."""
     is_taken = any(isinstance(value, Path) and is_stdout(value) for value in vars(parsed).values())
     try:
         with redirect_stdout(sys.stderr) if is_taken else nullcontext(), warnings.catch_warnings():

@@ -2,14 +2,14 @@
 
 import os
 import re
-import shutil
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from rockbatch.common.analyses import doors
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import made_folder
+from rockbatch.common.files import UNFINISHED, is_plain, made_folder, replacing
 from rockbatch.common.grouping import closest
 
 FIRST = "first_study"
@@ -77,28 +77,46 @@ def copy(name: str, to: Path, study: str) -> list[Path]:
     """Copy an example as ``study``, with its records and design checks, into the folder ``to``, which is made.
 
     Returns the paths of the study, the checks and, if the study has records, their folder. Raises ``InputError``, before
-    anything is written, if one of them exists.
+    anything is written, if one of them exists with other contents; what an interrupted copy has left is completed.
     """
     chosen = example(name)
     text = chosen.path.read_text(encoding="utf-8")
     match = _PATH.search(text)
-    records = folder() / "motions" / match[1] if match else None
-    written = [to / study, to / CHECKS, *([to / RECORDS] if records else [])]
+    contents = {
+        to / study: _adapted(text, name, study, match),
+        to / CHECKS: (chosen.path.parent / _CHECKED_IN).read_bytes(),
+    }
+    if match:
+        records = folder() / "motions" / match[1]
+        of_records = (path for path in records.rglob("*") if path.is_file())
+        contents |= {to / RECORDS / path.relative_to(records): path.read_bytes() for path in of_records}
+    written = [to / study, to / CHECKS, *([to / RECORDS] if match else [])]
     for path in written:
-        if os.path.lexists(path):
+        if os.path.lexists(path) and not _is_part_of(path, contents):
             raise InputError(f"{path} exists already; choose another folder, or move it")
-    made_folder(to)
-    if records:
-        shutil.copytree(records, to / RECORDS)
-    shutil.copyfile(chosen.path.parent / _CHECKED_IN, to / CHECKS)
+    for path, content in contents.items():
+        made_folder(path.parent)
+        with replacing(path) as temporary:
+            temporary.write_bytes(content)
+    return written
+
+
+def _is_part_of(path: Path, contents: Mapping[Path, bytes]) -> bool:
+    """Return whether a file has the content given for it, or a folder holds only such files, unfinished ones left out."""
+    if path in contents or path.is_symlink() or not path.is_dir():
+        return is_plain(path) and path.read_bytes() == contents.get(path)
+    return all(_is_part_of(other, contents) for other in path.iterdir() if other.suffix != UNFINISHED)
+
+
+def _adapted(text: str, name: str, study: str, match: re.Match[str] | None) -> bytes:
+    """Return the text of an example that finds its records and checks beside it, and calls itself ``study``."""
     text = _PATH.sub(f'"{RECORDS}"', text)
     text = text.replace(f"configs/{_CHECKED_IN.as_posix()}", CHECKS).replace(_CHECKED_IN.as_posix(), CHECKS)
     if match:
         text = text.replace(f"motions/{match[1]}", RECORDS)
     for mention in (f"configs/{name}.toml", f"{name}.toml"):
         text = text.replace(mention, study)
-    (to / study).write_text(text, encoding="utf-8")
-    return written
+    return text.encode()
 
 
 def _example(path: Path) -> Example:

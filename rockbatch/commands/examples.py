@@ -11,7 +11,7 @@ from rockbatch.terminal.streams import show
 
 
 def init(arguments: argparse.Namespace) -> int:
-    """Copy an example study with its records and checks, and print the next steps."""
+    """Copy an example study with its records and checks, print the paths and the next steps, and return 0."""
     study = "pier.toml" if arguments.example == FIRST else f"{arguments.example}.toml"
     for path in copy(arguments.example, arguments.folder, study):
         show(str(path))
@@ -33,7 +33,7 @@ def _called() -> str:
 
 
 def main(arguments: argparse.Namespace) -> int:
-    """List the examples."""
+    """List the examples, with how to copy and run them; return 0."""
     del arguments
     every = examples()
     width = max(len(example.name) for example in every)

@@ -20,10 +20,11 @@ _END, _LATE = 0, -1
 
 @contextmanager
 def answered_interrupts() -> Iterator[None]:
-    """Report an interrupt at once; end the process at a second one, or if it takes longer than :data:`GRACE_S`.
+    """Context manager: report Ctrl-C at once; end the process at a second one, or if it takes longer than :data:`GRACE_S`.
 
-    Python handles signals between bytecode instructions only, and compiling a kernel is one instruction of many seconds. A
-    thread that the signal wakes through a socket need not wait for it.
+    Python handles signals between bytecode instructions only, and compiling a kernel is one instruction of many seconds. A thread
+    that the signal wakes through a socket need not wait for it. Outside the main thread, or if the program handles Ctrl-C itself,
+    nothing changes.
     """
     ours = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     if not ours or threading.current_thread() is not threading.main_thread():
@@ -46,7 +47,10 @@ def answered_interrupts() -> Iterator[None]:
 
 
 def _watch(bell: socket.socket) -> None:
-    """Wait for Ctrl-C until the other end of the socket is closed; end the process if it does not end itself."""
+    """Wait for Ctrl-C until the other end of the socket is closed; then announce the end, and end the process with 130.
+
+    It ends at a second Ctrl-C, or after :data:`GRACE_S`, unless the other end is closed before.
+    """
     number = _next(bell)
     while number not in (_END, signal.SIGINT):
         number = _next(bell)

@@ -68,7 +68,10 @@ _VARIABLE = re.compile(r'"[^"]*"|\([^)]*\)|[^\s;:,]*(?:[\d/]|\.[\w.])[^\s;:,]*')
 
 
 def main(arguments: argparse.Namespace) -> int:
-    """Print the records of files or folders and the files not used; write a table, page or manifest if requested."""
+    """Print the records of files or folders and the files not used; write a table, page or manifest if requested.
+
+    The exit code is 2 if a file cannot be used and --strict is given, 1 if so without it, or without any record, else 0.
+    """
     columns = tuple(arguments.columns.split(",")) if arguments.columns else None
     options = ReadOptions(
         arguments.unit, arguments.dt, columns, arguments.sensitivity, arguments.role, arguments.layout
@@ -97,7 +100,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def counts(suite: MotionSet) -> str:
-    """Return a sentence with the numbers of files, usable recordings, and files not used or left out."""
+    """Return "3 files: 2 usable recordings of 1 station, 0 not used, 1 left out" with the numbers of the set."""
     sources = {source for motion in suite for source in (motion.source, motion.vertical_source) if source}
     for not_used in (suite.unusable, suite.left_out):
         sources |= {file.source for file in not_used}
@@ -107,7 +110,7 @@ def counts(suite: MotionSet) -> str:
 
 
 def overview(suite: MotionSet) -> str:
-    """Return counts, a scorecard of the doubtful and strongest records, and faults by reason, in :data:`MOST_LINES` lines."""
+    """Return counts, a scorecard of the doubtful and strongest records, and faults by reason, some :data:`MOST_LINES` lines."""
     entries = {
         "Not used": [(file.source, file.reason) for file in suite.unusable],
         "Look at these": [(motion.named, finding.text) for motion in suite for finding in motion.findings],
@@ -156,7 +159,10 @@ def _cell(value: object, form: str) -> str:
 
 
 def _by_reason(title: str, entries: Sequence[tuple[str, str]], most: int) -> list[str]:
-    """Return a line for each reason: count, reason and an example; reasons that differ only in names and numbers are one."""
+    """Return a title, and a line for each of the ``most`` rarest reasons, then the number of others; [] without entries.
+
+    A line has the number, the reason and an example. Reasons that differ only in names and numbers are one.
+    """
     reasons = sorted(grouped(entries, lambda entry: _VARIABLE.sub("", entry[1])).values(), key=len)
     lines = ["", title] if entries else []
     for same in reasons[:most]:
@@ -190,7 +196,7 @@ def _write(path: Path, suite: MotionSet) -> None:
 
 
 def _table(rows: Sequence[Mapping[str, object]]) -> str:
-    """Return the rows as text, without empty columns."""
+    """Return the rows as text, without columns that are empty in all of them."""
     used = {key: shown for key, shown in _SHOWN.items() if key == "record" or any(row[key] is not None for row in rows)}
     cells = [[_cell(row[key], form) for key, (_, form) in used.items()] for row in rows]
     flush_left = [place for place, key in enumerate(used) if key in TEXTS]

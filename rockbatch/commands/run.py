@@ -20,7 +20,7 @@ from rockbatch.workflow.running import FinishedBatch, merge, run_into
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Carry out the runs of a study or a share of them, or estimate their cost; print the results."""
+    """Carry out the runs of a study, or a share of them, or estimate their cost; print the results, and return the exit code."""
     if arguments.dry_run:
         return _expect(study, arguments)
     directory = folder(arguments)
@@ -41,7 +41,7 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
 
 
 def merge_shares(arguments: argparse.Namespace, study: Study) -> int:
-    """Join the shares of a study that several machines computed; print the results."""
+    """Join the shares of a study that several machines computed; print the results, and return the exit code."""
     finished = merge(folder(arguments), study, arguments.shares, Terminal(), sys.argv[1:])
     return _finished(finished, study, arguments.csv)
 
@@ -66,7 +66,10 @@ def in_words(seconds: float) -> str:
 
 
 def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> int:
-    """Print peaks, warnings, verdicts, files and failures; return the exit code."""
+    """Print peaks, warnings, verdicts, files and failures.
+
+    The exit code is 1 if a run failed, a file was not used, histories are missing, or a check did not pass; else 0.
+    """
     saved, code = finished.saved, 0
     if finished.without:
         say(str(finished.without))

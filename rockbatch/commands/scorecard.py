@@ -56,7 +56,7 @@ def of_checks(
 def _governing(
     columns: Sequence[tuple[str, Sequence[Cell | None]]], record_of: Callable[[Verdict], str]
 ) -> Iterator[str]:
-    """Yield for each check its governing records, the most frequent first, with their cases if there are several."""
+    """Yield for each check with governing records a line with these, the most frequent first, and their cases if several."""
     for check, cells in columns:
         verdicts = [cell.verdict for cell in cells if cell and cell.verdict.record]
         records = Counter(map(record_of, verdicts)).most_common()
@@ -112,7 +112,7 @@ def _written(cell: Cell | None) -> str:
 
 
 def _table(heads: Sequence[Sequence[str]], rows: Sequence[Sequence[str]]) -> str:
-    """Return rows below heads of several lines as text; of too many only the first, with a remark."""
+    """Return rows below heads of several lines as text, "" without heads; of more than :data:`MOST_CASES` the first alone."""
     depth = max(map(len, heads), default=0)
     top = [["", *line] for line in zip(*([""] * (depth - len(head)) + list(head) for head in heads), strict=True)]
     kept = rows if len(rows) <= MOST_CASES else rows[:OPEN_CASES]
@@ -122,7 +122,7 @@ def _table(heads: Sequence[Sequence[str]], rows: Sequence[Sequence[str]]) -> str
 
 
 def _showable(cell: str) -> str:
-    """Replace characters that the terminal cannot show."""
+    """Return the cell with ASCII words in place of the characters that the terminal cannot show."""
     for sign, plain in PLAIN.items():
         cell = cell.replace(sign, shown(sign, plain))
     return cell.replace("\u00a0", " ")

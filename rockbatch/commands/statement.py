@@ -7,6 +7,6 @@ from rockbatch.terminal.streams import show
 
 
 def main(arguments: argparse.Namespace) -> int:
-    """Print the statements, each on a line of its own unless they are shown in a terminal."""
+    """Print a paragraph on each case, or on those of --case; return 0."""
     show(statement(arguments.directory, arguments.case))
     return 0

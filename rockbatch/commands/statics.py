@@ -27,7 +27,7 @@ Line = Mapping[Any, object]
 
 
 def main(arguments: argparse.Namespace) -> int:
-    """Print the statics sheets of a study, and write them and their curves if requested."""
+    """Print the statics sheets of a study, and write them and their curves if requested; return 0."""
     study = load_study(arguments.file, motions=Motion("none", 0.01, np.zeros(2)))
     sheets = [(case, statics(case.pier, case.base)) for case in study.cases]
     entries = [describe_case(case) for case in study.cases]
@@ -58,7 +58,7 @@ def name_of(case: Case) -> str:
 
 
 def table(sheets: Sheets) -> str:
-    """Return the sheets side by side: a line for each quantity that any of them has."""
+    """Return the sheets side by side as text: a column for each case, and a line for each quantity that any of them has."""
     lines = []
     for fact in FACTS:
         values = [sheet.row[fact.name] for _, sheet in sheets]

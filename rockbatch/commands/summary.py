@@ -26,7 +26,8 @@ MOST_RUNS = 1000
 def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str, str]) -> str:
     """Return θ_max/α as text: a block for each pier, a line for each record, a column for each case.
 
-    ``records`` maps the names of records, in order, to labels. A status other than "ok" precedes its value.
+    Of more than :data:`MOST_RUNS` runs, only the ten largest values are listed. ``records`` maps the names of records, in order,
+    to labels. A status other than "ok" precedes its value.
     """
     runs = with_case(table)
     if len(runs) > MOST_RUNS:
@@ -47,7 +48,7 @@ def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str
 
 
 def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
-    """Return counts of statuses, and a table of the ten runs with the greatest rotations."""
+    """Return, as text, the number of runs of each status, and a table of the ten runs with the greatest rotations."""
     ended = ", ".join(f"{n} {status}" for status, n in runs["status"].value_counts().items())
     shown = ["record", "polarity", "scale", "case", *varied, "status", "theta_max_over_alpha", "theta_max_error"]
     largest = runs.nlargest(10, "theta_max_over_alpha")[shown]
@@ -58,10 +59,10 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
 
 
 def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
-    """Return warnings about the runs as a whole, a sentence each."""
+    """Return a sentence each on settlements that depend on the law, rotations too large, leans, and sliding; [] for none."""
 
     def warning(runs: npt.NDArray[np.bool_], singular: str, plural: str) -> str:
-        """Return the words for the number of these runs, in singular or plural; empty for none."""
+        """Return the words for the number of these runs, in singular or plural; "" for none."""
         n = int(runs.sum())
         return "" if n == 0 else singular if n == 1 else plural.format(n)
 
@@ -85,7 +86,7 @@ def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
 
 
 def of_targets(info: Item) -> list[str]:
-    """Return the remarks on the target spectra in ``info``, the content of run.json, a sentence each."""
+    """Return the remarks on the target spectra in ``info``, the content of run.json, a sentence each; [] without targets."""
     targets = (info.get(name) or {} for name in NAMES)
     return [f"target spectrum: {remark}" for target in targets for remark in target.get("remarks") or ()]
 
@@ -122,7 +123,7 @@ def flexible(study: Study) -> list[str]:
 
 
 def _other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
-    """Return a warning if settlements by the two spring laws differ by over 10 % and 1 mm; else empty."""
+    """Return a warning if settlements by the two spring laws differ by over 10 % and 1 mm in a run; else ""."""
     if "settlement_other_law_m" not in table:
         return ""
     of_case, by_other = table["settlement_m"], table["settlement_other_law_m"]

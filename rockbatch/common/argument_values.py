@@ -24,21 +24,21 @@ whole, seconds = positive(int, "at least 1"), positive(float, "above 0")
 
 
 def address(text: str) -> str:
-    """Return the address of a scheduler, as given; raise ``ArgumentTypeError`` if empty."""
+    """Return the address of a scheduler, as given; raise ``ArgumentTypeError`` if it is empty or blank."""
     if not text.strip():
         raise argparse.ArgumentTypeError("must be an address such as tcp://10.0.0.1:8786; it is empty")
     return text
 
 
 def place(text: str) -> Path:
-    """Return the path of a folder; raise ``ArgumentTypeError`` if the text is empty, which would be the current folder."""
+    """Return the path of a folder; raise ``ArgumentTypeError`` if the text is blank, which would be the current folder."""
     if not text.strip():
         raise argparse.ArgumentTypeError("must be a folder; it is empty: write . for this one")
     return Path(text)
 
 
 def shard(text: str) -> tuple[int, int]:
-    """Return shard and number of shards: "2/4" gives (2, 4); raise ``ArgumentTypeError`` for other texts."""
+    """Return shard and number of shards: "2/4" gives (2, 4); raise ``ArgumentTypeError`` for other texts, as "0/4" or "5/4"."""
     match = re.fullmatch(r"(\d+)/(\d+)", text, re.ASCII)
     share, shares = map(int, match.groups()) if match else (0, 0)
     if not 1 <= share <= shares:
@@ -55,10 +55,10 @@ def case_pair(text: str) -> tuple[str, str]:
 
 
 def flag(text: str) -> dict[str, Any]:
-    """Return the keywords of a flag with a help ``text``."""
+    """Return the keywords of ``ArgumentParser.add_argument`` for a flag with a help ``text``."""
     return {"action": "store_true", "help": text}
 
 
 def value(kind: Callable[[str], Any], metavar: str | None, text: str, **more: Any) -> dict[str, Any]:
-    """Return the keywords of an argument with a value."""
+    """Return the keywords of ``ArgumentParser.add_argument`` for an argument with a value of this ``kind``."""
     return {"type": kind, "metavar": metavar, "help": text, **more}

@@ -85,6 +85,7 @@ def _is_unpacked(parameter: inspect.Parameter) -> bool:
 
 
 def _alternatives(annotation: object) -> tuple[object, ...]:
+    """Return the types of a union, also within ``InitVar``; the annotation alone if it is no union."""
     if isinstance(annotation, InitVar):
         return _alternatives(annotation.type)
     if get_origin(annotation) in (Union, types.UnionType):
@@ -93,6 +94,7 @@ def _alternatives(annotation: object) -> tuple[object, ...]:
 
 
 def _is_known(kind: object) -> bool:
+    """Return whether values can be checked against a type: False without annotation, and for ``Any``, texts and arrays."""
     plain = get_origin(kind) or kind
     return plain is Literal or (
         isinstance(plain, type)
@@ -108,6 +110,7 @@ def _first_taken(value: object, alternatives: tuple[object, ...]) -> object:
 
 
 def _take(value: Any, kind: Any) -> object:
+    """Return ``value`` converted to the type ``kind``, or itself if it is of this type; else _REFUSED."""
     plain = get_origin(kind) or kind
     fits = False
     if plain in (int, float):
@@ -140,9 +143,9 @@ def _is_duration(value: object) -> bool:
 
 
 def _unfit_for_a_name(value: object) -> str:
-    """Return why a text or path cannot be a file's name: a NUL, or half of a surrogate pair; empty if it can.
+    """Return why a text or path cannot be the name of a file: a NUL, or half of a surrogate pair; "" if it can, or is neither.
 
-    Whether the file system of this machine has its letters is another matter, which whoever writes the file learns.
+    Whether the file system of this machine has its letters is found where the file is written.
     """
     name = os.fspath(value) if isinstance(value, os.PathLike) else value
     if not isinstance(name, str):
@@ -157,6 +160,7 @@ def _unfit_for_a_name(value: object) -> str:
 
 
 def _members(values: Sequence[object], inner: tuple[object, ...]) -> object:
+    """Return a tuple of ``values`` converted to the ``inner`` type, those of a pair as they are; _REFUSED if one is unfit."""
     if len(inner) == 2 and inner[1] is not ...:
         return tuple(values)
     converted = tuple(_first_taken(value, _alternatives(inner[0])) for value in values)
@@ -164,6 +168,7 @@ def _members(values: Sequence[object], inner: tuple[object, ...]) -> object:
 
 
 def _shown(value: object) -> str:
+    """Return the value as Python writes it, on one line of 60 characters at most."""
     try:
         text = " ".join(repr(value).split())
     except ValueError:  # more digits than Python writes
@@ -172,6 +177,7 @@ def _shown(value: object) -> str:
 
 
 def _message(value: object, alternatives: tuple[object, ...]) -> str:
+    """Return which types an argument must have, or for a fitting type why this value will not do."""
     if unfit := _unfit_for_a_name(value):
         return unfit
     if _is_endless(value):

@@ -102,7 +102,7 @@ class InputError(ValueError):
 
     @property
     def messages(self) -> tuple[str, ...]:
-        """The problems as sentences."""
+        """Return the problems as sentences."""
         return tuple(map(str, self.problems))
 
 
@@ -191,19 +191,19 @@ class NoDirection(Unstated):
 
 
 def refuse(problems: Iterable[Problem | str]) -> None:
-    """Raise the problems, if there are any, as the class that all of them share; a sentence is of no kind of its own."""
+    """Raise the problems as the most special class that all share, a plain sentence as ``InputError``; do nothing without any."""
     if problems := InputError(*problems).problems:
         lines = [(problem.kind or InputError).__mro__ for problem in problems]
         raise next(kind for kind in lines[0] if all(kind in line for line in lines))(*problems)
 
 
 def placed(problems: Iterable[Problem], place: str) -> list[Problem]:
-    """Return the problems at a place, before those that they have."""
+    """Return the problems with ``place`` before their own: "tendon 2" makes "tendon 2: psi = 7: …"."""
     return [replace(problem, place=": ".join(filter(None, (place, problem.place)))) for problem in problems]
 
 
 def remedy(name: str) -> str:
-    """Return the advice on an unusual value: check the unit, or confirm it by ``name``."""
+    """Return the advice on an unusual value: to check the unit, or to write ``name`` in ``confirm``."""
     return f'check the unit; if it is right, write confirm = ["{name}"]'
 
 

@@ -56,7 +56,7 @@ _JOINING = (
 _VIRAMAS = r"\u094d\u09cd\u0a4d\u0acd\u0b4d\u0bcd\u0c4d\u0ccd\u0d4d\u0dca"
 _EMOJI = r"\u2600-\u27bf\U0001f300-\U0001faff"
 _UNPRINTABLE = re.compile(
-    # what joins or parts letters of Persian and Indian scripts and emoji is seen there (as in RFC 5892, appendix A), and stays
+    # signs that join or part letters of Persian and Indian scripts, and emoji, are seen (RFC 5892, appendix A), and stay
     rf"(?!(?<=[{_JOINING}])\u200c[\u0620\u0622-\u064a\u0671-\u0673\u0675-\u06d3]|(?<=[{_VIRAMAS}])[\u200c\u200d][\u0904-\u0dff]"
     rf"|(?<=[{_EMOJI}\ufe0f])\u200d[{_EMOJI}]|(?<=[{_EMOJI}])\ufe0f)"
     r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff"  # controls, line breaks, bytes that are no text
@@ -111,9 +111,9 @@ def _open_at_once(path: Path, flags: int) -> int:
 
 @contextmanager
 def whole_input(path: Path) -> Iterator[tuple[BinaryIO, int]]:
-    """Yield a regular file, opened as by :func:`opened_input`, and its size [bytes].
+    """Context manager: yield a regular file, opened as by :func:`opened_input`, and its size [bytes].
 
-    Raises ``InputError`` for a pipe, a device, or a file into which something is written meanwhile.
+    Raises ``InputError`` for a pipe, a device, or a file that changes within the block.
     """
     with io.BufferedReader(opened_input(path)) as file:
         status = os.fstat(file.fileno())
@@ -125,9 +125,9 @@ def whole_input(path: Path) -> Iterator[tuple[BinaryIO, int]]:
 
 
 def state_of(status: os.stat_result) -> tuple[int, ...]:
-    """Return the identity of a file's contents: inode, device, size [bytes] and time of change [ns].
+    """Return the identity of a file's contents: inode, device, size [bytes] and time of modification [ns].
 
-    A time alone would not: files are copied with theirs, and clocks are set back.
+    A time alone would not do: files are copied with theirs, and clocks are set back.
     """
     return status.st_ino, status.st_dev, status.st_size, status.st_mtime_ns
 
@@ -139,12 +139,12 @@ def _not_plain(path: Path, kind: str) -> InputError:
 
 
 def _kind(status: os.stat_result) -> str:
-    """Return the kind of an irregular file in words, "a link"; empty for a regular one."""
+    """Return the kind of an irregular file in words, "a link"; "" for a regular one."""
     return next((words for is_kind, words in _KINDS if is_kind(status.st_mode)), "")
 
 
 def is_plain(path: Path) -> bool:
-    """Return whether ``path`` is a plain file."""
+    """Return whether ``path`` is a regular file itself; False for a link, a folder, or if it does not exist."""
     try:
         return stat.S_ISREG(os.lstat(path).st_mode)
     except (OSError, ValueError):
@@ -166,7 +166,7 @@ def read_text(path: Path) -> str:
 
 
 def sha256_of(path: Path) -> str:
-    """Return the digest of a file of a folder of results."""
+    """Return the SHA-256 of a file of a folder of results, in hexadecimal digits. Raises ``InputError`` as :func:`opened`."""
     with opened(path) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
@@ -182,7 +182,7 @@ def made_folder(path: Path) -> Path:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary file beside ``path`` that takes its place at the end of the ``with`` block, or is removed on an error.
+    """Context manager: yield a temporary file that takes the place of ``path`` at the block's end, or is removed on an error.
 
     A reader finds the earlier file or the new one, never a part. Raises ``InputError`` if something else than a regular file
     stands there.
@@ -200,7 +200,7 @@ def replacing(path: Path) -> Iterator[Path]:
             temporary.chmod(0o666 & ~umask)
             with temporary.open("rb+") as file:
                 os.fsync(file.fileno())  # else a power cut might leave the name without the contents
-            refuse_irregular(path)  # it may have come meanwhile
+            refuse_irregular(path)  # something else may have taken the name meanwhile
             temporary.replace(path)
         except BaseException:
             temporary.unlink(missing_ok=True)
@@ -249,13 +249,13 @@ def write_output(path: Path, text: str) -> None:
 
 
 def is_stdout(path: Path) -> bool:
-    """Return whether a user means the standard output by ``path``."""
+    """Return whether a user means the standard output by ``path``: "-" or "/dev/stdout"."""
     return path.as_posix() in _STDOUT
 
 
 @contextmanager
 def naming_full_disk(path: Path, assurance: str = "what was finished before is kept") -> Iterator[None]:
-    """Turn the operating system's error for a full disk, or a quota, into an ``InputError`` about ``path``."""
+    """Context manager: turn the operating system's error for a full disk, or a quota, into an ``InputError`` about ``path``."""
     try:
         yield
     except OSError as error:
@@ -270,7 +270,8 @@ def naming_full_disk(path: Path, assurance: str = "what was finished before is k
 def only_writer(folder: Path) -> Iterator[None]:
     """Context manager: lock ``folder`` for writing; raise ``InputError`` if another process holds the lock.
 
-    The operating system gives the lock back when its process ends, however it ends. What is forked meanwhile does not.
+    Unfinished files of a process that was killed are removed first. The operating system gives the lock back when its process
+    ends, however it ends. What is forked meanwhile does not.
     """
     from filelock import FileLock, Timeout
 
@@ -308,7 +309,7 @@ def legible(text: str, keep: str = "") -> str:
         if match[0] in keep:
             return match[0]
         code = ord(match[0])
-        byte = code - 0xDC00 if 0xDC80 <= code <= 0xDCFF else code  # how Python carries such a byte
+        byte = code - 0xDC00 if 0xDC80 <= code <= 0xDCFF else code  # how Python carries a byte that is no text
         return f"\\x{byte:02x}" if byte <= 0xFF else f"\\u{byte:04x}" if byte <= 0xFFFF else f"\\U{byte:08x}"
 
     return text if text.isascii() and text.isprintable() else _UNPRINTABLE.sub(escaped, text)
@@ -330,14 +331,14 @@ def csv_plain(cell: str) -> str:
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> str:
-    """Return the text of a CSV file with a header; rows as by :func:`csv_lines`."""
+    """Return the text of a CSV file with a header, and of ``rows`` their values in these ``columns``, as by :func:`csv_lines`."""
     rows = list(rows)
     lines = csv_lines([[row.get(name) for row in rows] for name in columns])
     return csv_line(columns) + "".join(f"{line}\n" for line in lines)
 
 
 def csv_line(cells: Iterable[object]) -> str:
-    """Return a line of a CSV file with ``cells`` as they are."""
+    """Return a line of a CSV file, with its line break, of ``cells`` as they are."""
     buffer = io.StringIO()
     csv.writer(buffer, lineterminator="\n").writerow(cells)
     return buffer.getvalue()
@@ -375,7 +376,7 @@ def _text_cell(text: str) -> str:
 
 
 def read_table(path: Path) -> "pd.DataFrame":
-    """Read a table that :func:`csv_text` wrote; names in it that look like numbers stay names."""
+    """Return a table that :func:`csv_text` wrote; names that look like numbers stay names, and missing names are ""."""
     with opened(path) as file:
         table = pd.read_csv(file, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(NAMES, "str"))
     for name in table.columns.intersection(list(NAMES)):

@@ -20,7 +20,7 @@ def grouped(items: Iterable[T], key: Callable[[T], K]) -> dict[K, list[T]]:
 
 
 def spread(items: Sequence[T], most: int) -> list[T]:
-    """Return at most ``most`` of ``items``, evenly over all of them, the first and the last among them."""
+    """Return at most ``most`` of ``items``, evenly over all, with the first and the last; the first alone if ``most`` is 1."""
     if len(items) <= most:
         return list(items)
     step = (len(items) - 1) / (most - 1) if most > 1 else 0.0
@@ -28,7 +28,7 @@ def spread(items: Sequence[T], most: int) -> list[T]:
 
 
 def distinct(names: Sequence[str], *longer: Callable[[int, str], str]) -> list[str]:
-    """Return names that differ: those that are there twice are made ``longer``, by one function after the other, then numbered.
+    """Return ``names`` made to differ: repeated ones made ``longer``, by one function after the other, then numbered, "a (2)".
 
     A function takes the place of a name, and the name.
     """

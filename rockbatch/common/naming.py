@@ -16,7 +16,7 @@ def fits(name: str, pattern: str) -> bool:
 
 
 def chosen(pattern: str, names: Iterable[str]) -> list[str]:
-    """Return the names that ``pattern`` chooses: the one that it is, else those that it matches as a glob."""
+    """Return the names that ``pattern`` chooses: the one that equals it, else those that it matches as a glob, or []."""
     names = list(names)
     return [pattern] if pattern in names else [name for name in names if fits(name, pattern)]
 
@@ -37,4 +37,5 @@ def alike(name: str, others: Collection[str]) -> str:
 
 
 def _look(name: str) -> str:
+    """Return a name with letters that look Latin as Latin ones, composed in one way, and single blanks."""
     return " ".join(unicodedata.normalize("NFC", name).translate(_LIKE_LATIN).split())

@@ -1,5 +1,6 @@
 """The observers, and the way by which what lies below them finds each without importing it."""
 
+from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, NamedTuple
@@ -29,7 +30,7 @@ class ReportPart(NamedTuple):
 
 
 def from_observer(name: str, function: str) -> Any:
-    """Return what an observer names ``function``, such as "observe.requested", loading its module."""
+    """Return the attribute of an observer, such as "observe.requested", importing its module."""
     module, _, attribute = function.partition(".")
     return getattr(import_module(f"rockbatch.observers.{name}.{module}"), attribute)
 
@@ -40,18 +41,20 @@ def tables() -> list[str]:
 
 
 def report_parts() -> list[tuple[str, ReportPart]]:
-    """Return the parts of the report that observers bring, with the observers' names."""
+    """Return the parts of the report that observers bring, each behind the name of its observer."""
     return _of_packages("REPORT")
 
 
 def _of_packages(name: str) -> list[tuple[str, Any]]:
+    """Return the attribute ``name`` of the observers' packages that have it, each with the observer's name, in their order."""
     homes = [(observer, import_module(f"rockbatch.observers.{observer}")) for observer in OBSERVERS]
     return [(observer, getattr(home, name)) for observer, home in homes if hasattr(home, name)]
 
 
-def parts(name: str) -> list[Any]:
-    """Return what observers name so, such as "study.OUTPUT", in their order; of those that have it."""
+@cache
+def parts(name: str) -> tuple[Any, ...]:
+    """Return the attribute ``name``, "study.OUTPUT", of each observer that has this module and attribute, in their order."""
     module, _, attribute = name.partition(".")
     homes = [f"rockbatch.observers.{observer}.{module}" for observer in OBSERVERS]
     modules = [import_module(home) for home in homes if find_spec(home)]
-    return [getattr(home, attribute) for home in modules if hasattr(home, attribute)]
+    return tuple(getattr(home, attribute) for home in modules if hasattr(home, attribute))

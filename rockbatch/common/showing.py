@@ -18,7 +18,7 @@ class InNotebook:
     """A dataclass that shows the fields that differ from their defaults as a table in a notebook; its ``repr`` is Python's."""
 
     def _facts(self) -> tuple[str, Mapping[str, str]]:
-        """Return the title, and facts by their names; empty ones are left out."""
+        """Return the title, and facts by their names; facts that are "" are not shown."""
         given = [(field.name, getattr(self, field.name), field.default) for field in fields(self)]  # type: ignore[arg-type]
         return type(self).__name__, {name: _short(value) for name, value, default in given if value != default}
 
@@ -43,7 +43,7 @@ class Shown(InNotebook, ABC):
 
     @abstractmethod
     def _facts(self) -> tuple[str, Mapping[str, str]]:
-        """Return the title, and facts by their names; empty ones are left out."""
+        """Return the title, and facts by their names; facts that are "" are not shown."""
 
     def __repr__(self) -> str:
         title, facts = self._facts()
@@ -68,7 +68,7 @@ def several(n: int, noun: str) -> str:
 
 
 def shown(value: object, limit: int = 60) -> str:
-    """Return the value as TOML writes it, cut where it is long, and legible whatever it holds."""
+    """Return the value as TOML writes it, a text in quotes, legible, and cut with "…" if longer than ``limit``."""
     if isinstance(value, bool):
         written = str(value).lower()
     elif isinstance(value, str):

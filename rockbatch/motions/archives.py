@@ -48,19 +48,19 @@ impossible offsets, OSError of gzip."""
 
 
 def is_archive(path: Path | PurePosixPath) -> bool:
-    """Return whether a path is named as an archive that is read as a folder: .zip, .tar, .tar.gz, .tgz."""
+    """Return whether a path is named as an archive that is read as a folder: .zip, .tar, .tar.gz, .tgz, in capitals or not."""
     return path.name.lower().endswith((".zip", *_TARS))
 
 
 def not_read(path: Path) -> str:
-    """Return the refusal of an archive of another kind, by its suffix; empty for archives that are read and other files."""
+    """Return why an archive of another kind (.7z, .rar) is not read, by its suffix; "" for a .zip or .tar and other files."""
     if bare(path).suffix.lower() in _PACKED and not is_archive(path):
         return "an archive that is not read (.zip and .tar.gz are, and .gz of one record); unpack it"
     return ""
 
 
 def bare(path: Path) -> Path:
-    """Return the path without a last .gz."""
+    """Return the path without a last .gz, in capitals or not."""
     return path.with_suffix("") if path.suffix.lower() == ".gz" else path
 
 
@@ -99,7 +99,7 @@ class _Archive(ABC):
 
 
 def members(archive: Path) -> Iterator[Member]:
-    """Yield the files of an archive in order of their names, but hidden and read-me files, as in folders.
+    """Yield the files of an archive by name, without hidden and read-me files; one that must not be opened with its reason.
 
     Raises ``InputError`` for a damaged archive, and for one too large or with too many files.
     """
@@ -120,7 +120,10 @@ def members(archive: Path) -> Iterator[Member]:
 
 
 def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
-    """Yield the files of an archive and of archives in it, with their sizes [bytes]; ``outer`` is the prefix of their names."""
+    """Yield the files of an archive, and of archives in it, with their sizes [bytes]; ``outer`` is the prefix of their names.
+
+    Hidden and read-me files are left out; an inner archive that cannot be read is a file with that reason.
+    """
     for entry in _opened_archive(archive, state(archive)).entries:
         name, path = PurePosixPath(entry.name), archive / _member_path(entry.name)
         if any(part.startswith(".") and part != ".." for part in name.parts) or name.stem.lower() == "readme":
@@ -138,7 +141,7 @@ def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
 
 
 def is_member(path: Path) -> bool:
-    """Return whether a path leads to a file in an archive; False if the archive cannot be read."""
+    """Return whether a path leads to a file in an archive, also a refused one; False if the archive cannot be read."""
     archive = archive_of(path)
     try:
         return archive is not None and path in _paths_in(archive, state_of(archive.stat()))
@@ -160,7 +163,7 @@ def archive_of(path: Path) -> Path | None:
 
 
 def state(path: Path) -> tuple[int, ...]:
-    """Return the :func:`state_of` the file on the disk that a path names or lies within; () if it is gone."""
+    """Return what :func:`state_of` says of the file on the disk that a path names or lies within; () if it is gone."""
     try:
         return state_of((archive_of(path) or path).stat())
     except OSError:
@@ -168,7 +171,7 @@ def state(path: Path) -> tuple[int, ...]:
 
 
 def files_in(folder: Path) -> list[Path]:
-    """Return paths of the regular files directly in a folder, of the disk or of an archive, in order; without refused ones."""
+    """Return paths of the regular files directly in a folder, in order; in an archive without those that must not be opened."""
     archive = folder if is_archive(folder) and folder.is_file() else archive_of(folder)
     if archive is None:
         return sorted(path for path in folder.iterdir() if path.is_file())
@@ -192,13 +195,16 @@ def content(path: Path, first: int | None = None) -> bytes:
 
 
 def _from_disk(path: Path, first: int | None = None) -> bytes:
+    """Return the contents of a file on the disk, or its ``first`` bytes; raise ``InputError`` if it is irregular or too large."""
     with whole_input(path) as (file, size):
         if size > LARGEST:
             raise InputError(f"larger than {LARGEST // 2**20} MiB{'; unpack it' if is_archive(path) else ''}")
-        return file.read(size if first is None else min(first, size))  # read() allocates what it is asked for
+        # read() allocates as many bytes as it is asked for
+        return file.read(size if first is None else min(first, size))
 
 
 def _from_gzip(data: bytes, first: int | None = None) -> bytes:
+    """Return the unpacked ``data``, or its ``first`` bytes; raise ``InputError`` for other or damaged data, or too much of it."""
     most = min(LARGEST, max(_NEVER_TOO_LARGE, _GROWTH * len(data)))
     try:
         with gzip.GzipFile(fileobj=io.BytesIO(data)) as file:
@@ -328,6 +334,6 @@ def _too_large(packed: int, most: int) -> str:
 
 
 def _member_path(name: str) -> PurePosixPath:
-    """Return a name in an archive as a path within it: without root and ".."."""
+    """Return a name in an archive as a path within it, without root and ".."; "?" if nothing else is left."""
     inside = [part for part in PurePosixPath(name).parts if part not in ("/", "//", "..")]
     return PurePosixPath(*inside) if inside else PurePosixPath("?")

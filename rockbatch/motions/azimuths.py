@@ -68,7 +68,7 @@ def _azimuth(component: Component) -> float:
 
 
 def _initial_along(first: Component, second: Component, common: Common, azimuth: float) -> Initial | None:
-    """Return velocity and displacement along ``azimuth`` at the first common sample; ``None`` if one component has none."""
+    """Return velocity [m/s] and displacement [m] along ``azimuth`` at the first common sample; ``None`` if either is unknown."""
     if first.initial is None or second.initial is None:
         return None
     velocity = displacement = 0.0

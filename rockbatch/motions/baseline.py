@@ -36,7 +36,10 @@ class Offset:
 
 
 def remove_offset(component: Component, offset: Offset) -> Component:
-    """Return ``component`` without its offset by the rule, with a note; raise ``InputError`` for a window outside the record."""
+    """Return ``component`` less its offset by the rule, with a note of the offset; what needs no removal comes back as it is.
+
+    Of a raw component, "keep" leaves the offset in, with a note. Raises ``InputError`` for a window outside the record.
+    """
     if offset.rule == "keep":
         if not component.raw:
             return component

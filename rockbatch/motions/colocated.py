@@ -64,7 +64,10 @@ def _sign_between(a: Component, b: Component) -> float:
 
 
 def _gain_ratio(a: Component, b: Component, sign: float) -> float | None:
-    """Return the ratio of ``b`` to ``a``, turned by ``sign``, if their motions are alike but for it; ``None`` if near 1."""
+    """Return the amplitude of ``b`` over that of ``a`` times ``sign`` if their motions are alike, negative for opposite signs.
+
+    ``None`` if they are not alike, have fewer than 100 common samples, or differ by less than :data:`_FACTOR`.
+    """
     if too_unlike(a, b):
         return None
     common = on_common_samples(a, b, ("one", "other"))

@@ -10,7 +10,7 @@ from rockbatch.motions.limits import MOST_SAMPLES, MOST_STEPS
 from rockbatch.motions.motion import Samples
 
 _SAME_STEP = 1e-6  # relative: steps that differ by less are the same, printed otherwise
-_SAME_SAMPLE = 0.01  # of dt: what printing may cost the time of a sample
+_SAME_SAMPLE = 0.01  # of dt: greatest error of a sample's time by its printing
 _SIMULTANEOUS = 0.1  # of dt: starts that jitter by less count as simultaneous
 _CLOCK = 1e-6  # s: times since 1970 are no better than this
 
@@ -34,7 +34,7 @@ def overlap(a: Component, b: Component) -> bool:
 
 
 def too_unlike(a: Component, b: Component) -> str:
-    """Return why two components cannot be brought to common samples, their steps or lengths; empty if they can."""
+    """Return why steps or lengths of two components forbid common samples: a ratio or number of samples too large; else ""."""
     if max(a.dt, b.dt) > MOST_STEPS * min(a.dt, b.dt):
         return f"dt = {b.dt:g} s beside {a.dt:g} s of {a.name}, more than {MOST_STEPS} times apart"
     if min(a.duration, b.duration) > MOST_SAMPLES * min(a.dt, b.dt):
@@ -84,7 +84,7 @@ def on_common_samples(first: Component, second: Component, names: tuple[str, str
 
 
 def _offset(first: Component, second: Component, name: str) -> tuple[float, list[str]]:
-    """Return the delay of the second component [s], rounded to whole samples within jitter, and the note on that."""
+    """Return the delay of the second component [s], whole samples within jitter, with a note; 0 if a start time is unknown."""
     if first.start is None or second.start is None:
         return 0.0, []
     offset, step = second.start - first.start, min(first.dt, second.dt)

@@ -27,7 +27,7 @@ class Sensor:
 
     @property
     def number(self) -> str:
-        """Return the station without leading zeros, which some agencies add."""
+        """Return the station without leading zeros, which some agencies add: "12" of "0012"; "" if unknown."""
         return self.station.lstrip("0")
 
     def may_be_same_as(self, other: "Sensor") -> bool:
@@ -48,6 +48,7 @@ class Sensor:
         return bool(self.network) and self.network == other.network
 
     def _codes_differ(self, other: "Sensor") -> bool:
+        """Return whether network, location, place or channel differ, where both sensors have them."""
         mine, others = ((sensor.network, sensor.location, sensor.place, sensor.channel) for sensor in (self, other))
         return any(None not in (a, b) and _bare(str(a)) != _bare(str(b)) for a, b in zip(mine, others, strict=True))
 
@@ -114,5 +115,5 @@ class Component:
 
     @property
     def upward(self) -> Samples:
-        """Return the acceleration of a vertical component [m/s²], positive up, shape (npts,)."""
+        """Return the acceleration of a vertical component [m/s²], shape (npts,), positive up whatever it is in the file."""
         return -self.acceleration if self.orientation.down else self.acceleration

@@ -79,7 +79,7 @@ def digest(motion: Motion) -> str:
 
 
 def _pulse(motion: Motion) -> dict[str, object]:
-    """Return the period [s] of a motion's pulse by Baker (2007); None if it is not pulse-like."""
+    """Return {"pulse_period_s": period [s] of a motion's pulse by Baker (2007), to four digits}; None in it without a pulse."""
     period = pulse_period(motion)
     return {"pulse_period_s": None if period is None else float(f"{period:.4g}")}
 
@@ -87,7 +87,7 @@ def _pulse(motion: Motion) -> dict[str, object]:
 def spectra(
     motions: list[Motion], fitted: list[Motion], gravity: float, target: SpectrumTarget | None
 ) -> Spectra | None:
-    """Return response spectra of a suite, None of more than 200 motions.
+    """Return response spectra of a suite; None if it has more than :data:`MOST_SPECTRA` motions.
 
     With a ``target``, they have its damping and periods, and are followed by it and by the mean of the motions ``fitted``.
     """
@@ -113,7 +113,7 @@ def _four_digits(values: npt.NDArray[np.float64]) -> list[float | None]:
 def suite_spectra(
     motions: list[Motion], gravity: float, damping: float = 0.05, periods: npt.ArrayLike = PERIODS
 ) -> Spectra:
-    """Return the horizontal response spectra of motions, in their order, at ``periods`` [s]."""
+    """Return the horizontal response spectra [g] of motions, in their order, at ``periods`` [s], all rounded to four digits."""
     undamped = np.asarray(periods, dtype=np.float64)
     spectra = [spectral_acceleration(m.horizontal, m.dt, undamped, damping) / gravity for m in motions]
     return {

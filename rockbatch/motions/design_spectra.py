@@ -92,7 +92,7 @@ class EurocodeSpectrum:
 
     @property
     def code(self) -> str:
-        """See :class:`Spectrum`; empty for a vertical spectrum, for which no conditions are known."""
+        """Return "EN 1998-1"; "" for a vertical spectrum, for which no conditions on suites are known."""
         return "" if self.shape == VERTICAL_SHAPE else "EN 1998-1"
 
     def __str__(self) -> str:
@@ -126,7 +126,7 @@ class AsceSpectrum:
         return f"ASCE 7, S_DS = {self.sds_g:g} g, S_D1 = {self.sd1_g:g} g, T_L = {self.tl_s:g} s, 5 %"
 
     def at(self, periods: Array) -> Array:
-        """Return the spectral acceleration [g] at periods [s]; NaN outside ``limits``."""
+        """Return the spectral acceleration [g] at periods [s] of 0 or more, all of which are within ``limits``."""
         ts = self.sd1_g / self.sds_g
         t0 = 0.2 * ts
         t = np.maximum(periods, 1e-12)
@@ -154,7 +154,7 @@ class AashtoSpectrum:
         return f"AASHTO, A_s = {self.as_g:g} g, S_DS = {self.sds_g:g} g, S_D1 = {self.sd1_g:g} g, 5 %"
 
     def at(self, periods: Array) -> Array:
-        """Return the spectral acceleration [g] at periods [s]; NaN outside ``limits``."""
+        """Return the spectral acceleration [g] at periods [s] of 0 or more, all of which are within ``limits``."""
         ts = self.sd1_g / self.sds_g
         t0 = 0.2 * ts
         t = np.maximum(periods, 1e-12)
@@ -211,7 +211,7 @@ class NzsSpectrum:
 
     @property
     def beyond(self) -> str:
-        """See :class:`Spectrum`."""
+        """Return a remark if Z R exceeds :data:`MOST_ZR`, the limit of the standard, which is not applied; else ""."""
         product = self.hazard_factor * self.return_period_factor
         if product <= MOST_ZR * (1.0 + 1e-9):
             return ""
@@ -231,7 +231,7 @@ class NzsSpectrum:
         return _within(self.limits, periods, values)
 
     def _near(self, t: Array) -> Array:
-        """Return the near-fault factor N(T, D), shape of ``t``."""
+        """Return the near-fault factor N(T, D) at periods ``t`` [s], as shaped: 1 up to 1.5 s, beyond 20 km, or R ≤ 0.75."""
         share = min(1.0, max(0.0, (FAR_KM - self.fault_km) / 18.0)) if self.return_period_factor > 0.75 else 0.0
         return 1.0 + share * (np.interp(t, [1.5, 4.0, 5.0], [1.0, 1.6, 1.72]) - 1.0)
 
@@ -270,7 +270,7 @@ class TableSpectrum:
 
     @property
     def limits(self) -> tuple[float, float]:
-        """See :class:`Spectrum`."""
+        """Return the first and the last period of the table [s]."""
         return self.periods[0], self.periods[-1]
 
     def at(self, periods: Array) -> Array:
@@ -285,7 +285,8 @@ class TableSpectrum:
 def read_spectrum(path: str | os.PathLike[str], damping: float = 0.05, linear: bool = False) -> TableSpectrum:
     """Return the spectrum in a text file: a period [s] and a spectral acceleration [g] on each line, after an optional header.
 
-    Raises ``InputError`` with a line that is no such pair.
+    Raises ``InputError`` for a file that cannot be read, with the line below the header that is no such pair, or for values that
+    make no spectrum.
     """
     path = Path(path)
     periods: list[float] = []
@@ -312,7 +313,7 @@ def read_spectrum(path: str | os.PathLike[str], damping: float = 0.05, linear: b
 
 
 def _within(limits: tuple[float, float], periods: Array, values: Array) -> Array:
-    """Return ``values``, NaN at periods [s] outside ``limits``."""
+    """Return ``values``, with NaN at periods [s] outside ``limits``."""
     low, high = limits
     inside = (np.asarray(periods) >= low * (1 - 1e-9)) & (np.asarray(periods) <= high * (1 + 1e-9))
     return np.where(inside, values, math.nan)

@@ -210,13 +210,13 @@ WORDS: dict[str, dict[str, str]] = {
 
 
 def folded(text: str) -> str:
-    """Return a text in capitals, without accents."""
+    """Return a text in capitals, without accents: "Dirección" gives "DIRECCION"."""
     plain = unicodedata.normalize("NFKD", text.replace("º", "°").replace("ı", "i").upper())
     return "".join(c for c in plain if not unicodedata.combining(c))
 
 
 def words(meaning: str) -> set[str]:
-    """Return the words of all languages for a meaning."""
+    """Return the words of all languages for a meaning such as "up", in capitals without accents; set() for an unknown one."""
     return {word for language in WORDS.values() for word in _words_in(language, meaning)}
 
 

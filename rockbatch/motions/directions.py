@@ -40,7 +40,7 @@ def _judge_set(station: Sequence[Component]) -> list[Component]:
     components = _copies_as_their_originals(_with_names(station))
     # copied headers are void whatever they say; only then can the remaining statements speak for or against angles of 0°
     for i, statement, reason in [*_copied_headers(components), *_void_defaults(components)]:
-        components[i] = _without(components[i], statement, reason)
+        components[i] = _without_statement(components[i], statement, reason)
     components = list(map(_with_believed_defaults, components))
     contradictions = {i: text for i, c in enumerate(components) if (text := _contradiction(c))}
     for i, j, text in _impossible_pairs(components, contradictions):
@@ -54,7 +54,7 @@ def _judge_set(station: Sequence[Component]) -> list[Component]:
 def _hold_back(
     component: Component, contradiction: str, components: Sequence[Component], contradictions: dict[int, str]
 ) -> Component:
-    """Return a component of a set held back, for its own ``contradiction`` or the first one in the set."""
+    """Return a component of a set that is held back, with its own ``contradiction`` or the first one of the set."""
     if contradiction:
         return replace(component, contradiction=contradiction, orientation=unknown(component.orientation.label))
     first, text = next(iter(contradictions.items()))
@@ -62,7 +62,7 @@ def _hold_back(
 
 
 def _by_user(component: Component) -> bool:
-    """Return whether the user states the component's direction, or chooses it before its copies."""
+    """Return whether the user states the component's direction, or prefers it to its copies (``use = true``)."""
     return component.preferred or any(statement.kind is Kind.USER for statement in component.statements)
 
 
@@ -72,11 +72,12 @@ def _strong_statement(component: Component, *kinds: Kind) -> Statement | None:
 
 
 def _same_samples(a: Component, b: Component) -> bool:
+    """Return whether two components have one step and equal samples."""
     return a.dt == b.dt and np.array_equal(a.acceleration, b.acceleration)
 
 
 def _with_names(station: Sequence[Component]) -> list[Component]:
-    """Return components whose file names are no longer weak statements, if the names give each another direction.
+    """Return components whose file names are no weak statements any more, if each gives another direction; else as they are.
 
     "North" or "z" alone may be the name of a place or a copy; beside "East" it is a direction.
     """
@@ -91,7 +92,7 @@ def _with_names(station: Sequence[Component]) -> list[Component]:
 
 
 def _copies_as_their_originals(station: Sequence[Component]) -> list[Component]:
-    """Return components, where a copy whose statements contradict has those of its original, with the same samples."""
+    """Return components, each contradictory one with the statements of a sound one of the same samples, if there is any."""
     components = list(station)
     for i, component in enumerate(station):
         if _contradiction(component):
@@ -111,7 +112,7 @@ def _contradiction(component: Component) -> str:
 
 
 def _copied_headers(components: Sequence[Component]) -> Iterator[tuple[int, Statement, str]]:
-    """Yield place, statement and reason of codes or headers that are equal in all files of a set with distinct names."""
+    """Yield place, statement and reason of codes or headers that give one direction in a set whose file names give several."""
     for kind in _COPIED:
         of_kind = [(i, s) for i, c in enumerate(components) if (s := _strong_statement(c, kind)) and not _by_user(c)]
         names = [name.orientation for i, _ in of_kind if (name := _strong_statement(components[i], Kind.NAME))]
@@ -125,7 +126,11 @@ def _copied_headers(components: Sequence[Component]) -> Iterator[tuple[int, Stat
 
 
 def _void_defaults(components: Sequence[Component]) -> Iterator[tuple[int, Statement, str]]:
-    """Yield place, statement and reason of angles of 0° that are void: contradicted, or shared by several components."""
+    """Yield place, statement and reason of angles of 0° that are void: other statements contradict them, or other components do.
+
+    Others of the sensor do if no statement agrees, and one has the same angle, or one an angle other than 0° and none a right
+    angle.
+    """
     angles = [(i, s) for i, c in enumerate(components) if (s := _strong_statement(c, Kind.ANGLES)) and not _by_user(c)]
     for i, statement in (pair for pair in angles if pair[1].default):
         others = [s for s in components[i].statements if s is not statement and not s.weak]
@@ -143,7 +148,7 @@ def _void_defaults(components: Sequence[Component]) -> Iterator[tuple[int, State
             yield i, statement, "programs write 0° where they know no angle"
 
 
-def _without(component: Component, void: Statement, reason: str) -> Component:
+def _without_statement(component: Component, void: Statement, reason: str) -> Component:
     """Return a component without a ``void`` statement, its direction decided by the others, with a finding."""
     remaining = tuple(s for s in component.statements if s is not void)
     orientation = decided_orientation(remaining, component.orientation.label)
@@ -155,7 +160,7 @@ def _without(component: Component, void: Statement, reason: str) -> Component:
 
 
 def _with_believed_defaults(component: Component) -> Component:
-    """Return a component whose angles of 0° count as any others: they have withstood ``_void_defaults``."""
+    """Return a component whose angles of 0° count as any others, since :func:`_void_defaults` did not find them void."""
     if not any(s.default for s in component.statements):
         return component
     statements = tuple(replace(s, default=False) for s in component.statements)
@@ -204,7 +209,7 @@ def _of_one_sensor(a: Component, b: Component) -> bool:
 
 
 def _skew_pair(a: Component, b: Component) -> str:
-    """Return a complaint on horizontal components of one sensor more than 30° off a right angle; empty for others."""
+    """Return a message on horizontal components of one sensor that are more than 30° off a right angle; "" for others."""
     first, second = a.orientation.azimuth, b.orientation.azimuth
     if a.sensor != b.sensor or first is None or second is None or same_direction(a.orientation, b.orientation):
         return ""

@@ -25,7 +25,10 @@ _SCALED = re.compile(r"(?<!un)(?<!not_)scaled", re.IGNORECASE)
 
 
 def without_boreholes(components: Sequence[Component]) -> tuple[list[Component], list[LeftOut]]:
-    """Return the components, and as left out those in boreholes below a surface sensor that recorded the same earthquake."""
+    """Return the components in use, and as left out those in boreholes below a surface sensor that recorded the same earthquake.
+
+    A manifest's choice (``use = true``) stays in use.
+    """
     surface = [c for c in components if c.sensor.number and not in_a_borehole(c)]
     at_surface = grouped(surface, lambda c: c.sensor.number)
     used_components: list[Component] = []
@@ -74,7 +77,7 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
         copy, original, factor = components[i], components[j], factors[i, j]
         left_out.append(LeftOut(copy.name, copy.source, _reason(copy, original, factor), of=original.source))
         decided = original.preferred or rank[i][1:4] != rank[j][1:4]
-        if finding := _difference(copy, original, factor, decided):
+        if finding := _finding_on_copy(copy, original, factor, decided):
             findings.setdefault(j, []).append(finding)
     for i, j in (pair for pair in scaled if not stands_for.keys() & pair):
         for k, other in ((i, components[j]), (j, components[i])):
@@ -106,7 +109,7 @@ def _factor_finding(component: Component, other: Component) -> Finding:
 def _shared_verticals(
     components: Sequence[Component], stands_for: Mapping[int, int]
 ) -> Iterator[tuple[int, list[int]]]:
-    """Yield the only vertical of a set, a copy of another station's vertical, with the set's horizontals that are used."""
+    """Yield the place of a set's only vertical, if a copy of another station's, and those of the set's used horizontals."""
 
     def place(i: int) -> tuple[str, str]:
         return components[i].folder, components[i].station or components[i].site
@@ -158,7 +161,7 @@ def _ranks(
 
 
 def _is_unit_ratio(factor: float) -> bool:
-    """Return whether a factor between copies, or its inverse, is the ratio of two units, such as m/s² and g."""
+    """Return whether a factor between copies, or its inverse, is the ratio of two units, such as m/s² and g; False near 1."""
     apart = abs(math.log(abs(factor)))
     return any(abs(apart - math.log(unit)) < _SAME_UNIT for unit in _UNITS)
 
@@ -174,7 +177,7 @@ def _reason(copy: Component, used: Component, factor: float | None) -> str:
 
 
 def tell_use_of_originals(left_out: Iterable[LeftOut], motions: MotionSet) -> list[LeftOut]:
-    """Return left-out files, copies with the addition whether the set ``motions`` uses their original."""
+    """Return left-out files; to the reason of a copy is added whether ``motions`` uses its original, or refuses it."""
     used = {source for motion in motions for source in (*motion.source.split(" + "), motion.vertical_source)}
     refused = {source for file in motions.unusable for source in file.source.split(", ")}
 
@@ -186,8 +189,11 @@ def tell_use_of_originals(left_out: Iterable[LeftOut], motions: MotionSet) -> li
     return [replace(file, reason=file.reason + fate(file)) if file.of else file for file in left_out]
 
 
-def _difference(copy: Component, used: Component, factor: float | None, decided: bool) -> Finding | None:
-    """Return a finding on a left-out ``copy`` that differs by a factor, gross unless ``decided``, or in its peak; else None."""
+def _finding_on_copy(copy: Component, used: Component, factor: float | None, decided: bool) -> Finding | None:
+    """Return a finding on a left-out ``copy`` times a ``factor``, or with a peak 1.5 times larger or smaller; else None.
+
+    A factor other than ±1 that is not ``decided``, as by a file's name, is gross: it has to be confirmed.
+    """
     if factor is not None:
         text = f"{copy.source}, left out, has the same samples times {factor:.4g}: check which of them is right"
         return Finding("factor", text, gross=not decided and abs(abs(factor) - 1.0) > _GROSS_FACTOR)

@@ -36,7 +36,7 @@ class Statement:
     weak: bool = False  # whether it may mean something else, and counts only without another statement
 
     def contradicts(self, other: "Statement") -> bool:
-        """Return whether at most one can be right.
+        """Return whether the two cannot both be right.
 
         Sensors turned to any azimuth still have codes with N and E, so these contradict an angle only if 90° off.
         """
@@ -53,7 +53,7 @@ class Statement:
         return apart > _ROUNDED
 
     def differs_from(self, other: "Statement") -> bool:
-        """Return whether roles or azimuths differ by more than rounding; False if only one has an azimuth."""
+        """Return whether only one is vertical, or azimuths differ by over 5°; an unknown azimuth differs from none."""
         a, b = self.orientation.azimuth, other.orientation.azimuth
         apart = 0.0 if a is None or b is None else abs((a - b + 180.0) % 360.0 - 180.0)
         return self.orientation.vertical != other.orientation.vertical or apart > _ROUNDED
@@ -65,17 +65,17 @@ class Statement:
 
     @property
     def has_number(self) -> bool:
-        """Return whether its azimuth is a number rather than N or E."""
+        """Return whether it is of angles, or its label has digits, "N35E", rather than letters alone."""
         return self.is_angle or any(c.isdecimal() for c in self.orientation.label)
 
     @property
     def states_sign(self) -> bool:
-        """Return whether it states if a vertical component is positive up or down, rather than vertical only."""
+        """Return whether it says if a vertical component is positive up or down: by angles, "UP" or "DWN", but not by "V"."""
         return self.is_angle or self.orientation.down or is_upward(self.orientation.label)
 
 
 def decided_orientation(statements: Sequence[Statement], label: str = "") -> Orientation:
-    """Return the orientation of the most believed statement, by the order of ``Kind``; unknown with ``label`` without any.
+    """Return the orientation of the most believed statement, by :class:`Kind`; an unknown one with ``label`` without any.
 
     Default and weak statements count only if there are no others. Angles without an azimuth give way to a statement of a
     horizontal component's azimuth.
@@ -110,7 +110,10 @@ _UPRIGHT, _LEVEL = 80.0, 10.0  # degrees of dip: least of a vertical channel, gr
 
 
 def same_direction(a: Orientation, b: Orientation) -> bool:
-    """Return whether two known orientations agree, by azimuths within 1°, else by labels; False if one is unknown."""
+    """Return whether two known orientations agree: vertical, azimuths within 1°, or equal labels without azimuths.
+
+    False if one is unknown, or only one has an azimuth; up and down are the same.
+    """
     if not (a.known and b.known) or a.vertical != b.vertical:
         return False
     if a.vertical:

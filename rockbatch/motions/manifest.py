@@ -126,12 +126,12 @@ class Entry:
 
     @property
     def use(self) -> bool:
-        """Return whether the file or component is to be used."""
+        """Return whether the file or component is to be used; True unless the entry says use = false."""
         return bool(self.values.get("use", True))
 
     @property
     def unused(self) -> str:
-        """Return the reason for leaving out its file or component."""
+        """Return the reason for leaving out its file or component: "use = false in motions.toml"."""
         return f"use = false in {self.table.file.path.name}"
 
     def is_for(self, unusable: Unusable) -> bool:
@@ -150,7 +150,7 @@ class Manifest:
 
     @classmethod
     def read(cls, paths: Iterable[Path]) -> "Manifest":
-        """Return the entries of the manifests at ``paths``."""
+        """Return the entries of the manifests at ``paths``; their mistakes wait for :meth:`finish`."""
         manifest = cls({}, [], [])
         for path in paths:
             try:
@@ -162,6 +162,7 @@ class Manifest:
         return manifest
 
     def _add_entries(self, file: TomlFile) -> None:
+        """Add the entries and sequences of a manifest; files outside its folder, missing or repeated become problems."""
         self.files.append(file)
         Table(file, (), "", file.data).read({}, other=("record", "sequence"))
         self.sequences += [(str(file.path), sequence) for sequence in read_sequences(file, "sequence")]
@@ -214,7 +215,7 @@ def _file_exists(path: Path) -> bool:
 
 
 def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
-    """Return ``options`` with the values of a manifest's entries for the whole file, which go before the file's own."""
+    """Return ``options`` with the values of entries for the whole file, which then go before the file's own, if there are any."""
     for entry in entries:
         if entry.component is None:
             stated = {key: entry.values[key] for key in _OPTIONS if key in entry.values}
@@ -225,7 +226,7 @@ def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
 def apply_entries(
     components: Sequence[Component], entries: Sequence[Entry], gravity: float, refused: Sequence[Unusable] = ()
 ) -> list[tuple[Component, bool]]:
-    """Return a file's components with its entries applied, and whether each is to be used; collect mistakes in the manifest.
+    """Return a file's components with its entries applied, and whether each is to be used; mistakes go to the manifest.
 
     ``refused`` are the unusable components of the file, for which entries may be, too.
     """
@@ -299,7 +300,7 @@ def _apply_entry(component: Component, entry: Entry, gravity: float) -> Componen
 
 
 def _unit_factor(component: Component, entry: Entry, gravity: float) -> float:
-    """Return the ratio of the manifest's unit to the component's, 1 if they agree; complain about a file in counts."""
+    """Return the ratio of the manifest's unit to the component's, 1 if they agree; for counts 1, and a problem is added."""
     if not component.unit:
         entry.table.complain("unit: the file has a scale of its own; leave it out, or write scale instead", "unit")
         return 1.0
@@ -308,7 +309,10 @@ def _unit_factor(component: Component, entry: Entry, gravity: float) -> float:
 
 
 def _orientation(orientation: Orientation, entry: Entry) -> Orientation:
-    """Return the orientation by an entry's role and azimuth; itself if the entry states neither."""
+    """Return the orientation by an entry's role and azimuth; ``orientation`` itself if the entry states neither.
+
+    An azimuth of a vertical component becomes a problem of the manifest.
+    """
     values = entry.values
     if not values.keys() & {"role", "azimuth"}:
         return orientation
@@ -322,7 +326,10 @@ def _orientation(orientation: Orientation, entry: Entry) -> Orientation:
 
 
 def is_manifest(path: Path) -> bool:
-    """Return whether a file named as a manifest is one: a ``motions.csv`` without a column "file" may be a record."""
+    """Return whether a file named as a manifest is one: True for .toml; for .csv if it has a column "file", or cannot be read.
+
+    Another ``motions.csv`` may be a record.
+    """
     if path.suffix == ".toml":
         return True
     try:
@@ -373,7 +380,10 @@ def _from_csv(path: Path) -> TomlFile:
 
 
 def _cell_value(name: str, cell: str, delimiter: str) -> str | int | float:
-    """Return a cell's value as in TOML: a text, whole number, truth value or float; else the text, which its key refuses."""
+    """Return the value of a cell: the text of keys with texts, True or False, a whole number of a channel, or a float.
+
+    A cell that is none of these comes back as text, which its key then refuses.
+    """
     if name in _TEXTS or (name == "component" and not _COUNTED.fullmatch(cell)):
         return cell
     if name == "component":

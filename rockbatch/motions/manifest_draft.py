@@ -97,7 +97,10 @@ def _component_key(component: Component, file_readings: Sequence[Reading]) -> st
 def _record_table(
     component: Component, name: str, called: str | int | None, station: str, double: str, with_unit: bool
 ) -> str:
-    """Return the table of a component in the file ``name``, ``called`` so in it, with remarks on missing and doubtful facts."""
+    """Return the table of a component of the file ``name``, ``called`` so in it, with remarks on missing and doubtful facts.
+
+    Without ``called`` it has no key component.
+    """
     orientation = component.orientation
     lines: list[tuple[str, str | float]] = [("file", name)]
     if called is not None:
@@ -129,5 +132,5 @@ def _remark(name: str, unusable: Unusable) -> str:
 
 
 def _toml_value(value: str | float) -> str:
-    """Return a value as TOML writes it, with characters that TOML or a terminal would not take escaped."""
+    """Return a value as TOML writes it, a text in quotes, with characters that TOML or a terminal would not take escaped."""
     return json.dumps(legible(value), ensure_ascii=False) if isinstance(value, str) else f"{value:g}"

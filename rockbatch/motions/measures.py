@@ -50,7 +50,7 @@ def initial_of(
 
 
 def state_at(acceleration: Samples, dt: float, initial: Initial, time: float) -> Initial:
-    """Return velocity and displacement at ``time`` [s] after the first sample and before the last."""
+    """Return velocity [m/s] and displacement [m] at ``time`` [s] after the first sample and before the last."""
     k = min(int(time / dt), len(acceleration) - 2)
     remainder = time - k * dt
     v, d = (float(series(acceleration, dt, initial)[k]) for series in (velocity, displacement))
@@ -77,10 +77,10 @@ def pgd(acceleration: Samples, dt: float, initial: Initial | None = None) -> flo
 
 
 def runs_away(displacements: Samples) -> bool:
-    """Return whether a displacement is mostly linear drift, which is not the ground's.
+    """Return whether a displacement is mostly linear drift, which is not the ground's; False for no displacement.
 
-    Subtracting the best line through the first sample then reduces its peak by more than 2.5. A permanent displacement,
-    however sudden, is not reduced so much.
+    Subtracting the best line through the first sample then divides its peak by more than 2.5. A permanent displacement, however
+    sudden, is not reduced so much.
     """
     moved = displacements - displacements[0]
     steps = np.arange(len(moved), dtype=float)
@@ -148,7 +148,7 @@ def bracketed_duration(acceleration: Samples, dt: float, threshold: float) -> fl
 
 
 def uniform_duration(acceleration: Samples, dt: float, threshold: float) -> float:
-    """Return the time [s] during which |a| exceeds ``threshold`` [m/s²], all exceedances together (Bolt 1973)."""
+    """Return the time [s] during which |a| exceeds ``threshold`` [m/s²], all exceedances together (Bolt 1973); 0 without any."""
 
     def above(a: Samples) -> float:
         least, largest = np.minimum(a[:-1], a[1:]), np.maximum(a[:-1], a[1:])

@@ -39,7 +39,7 @@ class Initial:
 
     @checked
     def times(self, factor: float) -> "Initial":
-        """Return the state for a motion ``factor`` times as large."""
+        """Return the state for a motion ``factor`` times as large: both velocity and displacement times it."""
         return Initial(self.velocity * factor, self.displacement * factor)
 
 
@@ -61,7 +61,7 @@ class Finding:
     what: str  # in a word or two, for tables
     text: str  # in a sentence, with its remedy
     gross: bool = False  # whether the motion is held back until confirmed
-    key: str = "confirm"  # which confirms it, under [motions] and in manifests; "confirm" confirms all findings
+    key: str = "confirm"  # the key that confirms it, under [motions] and in manifests; "confirm" confirms all findings
 
 
 COMPONENTS = ("horizontal", "vertical", "across")
@@ -256,6 +256,7 @@ class Motion(Shown):
         unit : str
             Of both components: "g", "m/s2", "cm/s2", …
         vertical : array_like, shape (npts,), optional
+            Vertical ground acceleration, positive up.
         gravity : float
             What "g" is [m/s²].
         confirm : sequence of str
@@ -323,7 +324,7 @@ class Motion(Shown):
         )
 
     def __setstate__(self, state: dict[str, object]) -> None:
-        """Restore a copy, or a motion from another process, with samples that cannot be changed: pickling loses that."""
+        """Restore a copy, or a motion from another process, with samples that cannot be changed: pickling loses this flag."""
         vars(self).update(state)
         for component in COMPONENTS:
             if (samples := state.get(component)) is not None:
@@ -339,7 +340,7 @@ class Motion(Shown):
 
     @property
     def label(self) -> str:
-        """Return its name in words, "Imperial Valley 1979, Meloland, 270"; its file if the header states none."""
+        """Return its name in words, "Imperial Valley 1979, Meloland, 270", else its file, or a pulse's name."""
         by_name = self.source in ("", "pulse") or len(self.shocks) > 1
         return self.origin.label or (self.name if by_name else self.source)
 
@@ -375,7 +376,7 @@ class Motion(Shown):
 
     @property
     def pga_g(self) -> float:
-        """Return the peak horizontal ground acceleration [9.81 m/s²], as in tables."""
+        """Return the peak horizontal ground acceleration [g], with g = 9.81 m/s² as in tables."""
         return self.pga / GRAVITY
 
     @property
@@ -384,7 +385,7 @@ class Motion(Shown):
         return None if self.vertical is None else float(np.abs(self.vertical).max())
 
     def _facts(self) -> tuple[str, dict[str, str]]:
-        """See :class:`Shown`."""
+        """Return the title and, by name, the facts that :class:`Shown` prints: record, samples, PGA, files, findings."""
         return f"ground motion {self.name}", {
             "record": self.origin.label,
             "samples": f"{self.npts} at {self.dt:g} s: {self.duration:.2f} s",
@@ -394,15 +395,18 @@ class Motion(Shown):
             "check": ", ".join(finding.what for finding in self.findings),
         }
 
-    @property
+    @cached_property
     def exchanged(self) -> "Motion":
-        """Return the motion with ``horizontal`` and ``across`` exchanged; it must have both."""
+        """Return the motion, which has both, with ``horizontal`` and ``across`` exchanged.
+
+        Its azimuth is 90° further, and its initial state unknown.
+        """
         assert self.across is not None
         azimuth = None if self.azimuth is None else (self.azimuth + 90.0) % 360.0
         return replace(self, horizontal=self.across, across=self.horizontal, azimuth=azimuth, initial=None)
 
     def scaled(self, factor: float) -> "Motion":
-        """Return the motion with both components ``factor`` times as large."""
+        """Return the motion with all components ``factor`` times as large."""
         return self.times(factor)
 
     @checked
@@ -419,7 +423,7 @@ class Motion(Shown):
         Returns
         -------
         Series, length n
-            Pseudo-spectral acceleration ``sa_g`` [9.81 m/s²] by ``period_s``.
+            Pseudo-spectral acceleration ``sa_g``, in g of 9.81 m/s², by ``period_s``.
 
         Raises ``InputError`` for impossible periods and damping.
         """
@@ -438,7 +442,10 @@ class Motion(Shown):
 
     @checked
     def times(self, factor: float, reverse: bool = False) -> "Motion":
-        """Return the motion with both components ``factor`` times as large, the horizontal one reversed if ``reverse``."""
+        """Return the motion with all components ``factor`` times as large, and the horizontal one reversed if ``reverse``.
+
+        Raises ``InputError`` if they overflow.
+        """
         along = -factor if reverse else factor
         times = copy(self)  # without the checks of __init__: the product is finite unless it overflows
         vars(times).pop("pga", None)

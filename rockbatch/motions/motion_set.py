@@ -96,7 +96,7 @@ class MotionSet(Shown):
 
     @property
     def labels(self) -> dict[str, str]:
-        """Return names for people by names in tables, lengthened for motions that would share one."""
+        """Return names for people by names in tables; shared ones in full length, then with the name in tables behind them."""
         labels = {motion.name: motion.label for motion in self.motions}
         for longer in (lambda motion: motion.origin.full_label or motion.label, lambda motion: motion.named):
             times = Counter(labels.values())
@@ -127,7 +127,7 @@ class MotionSet(Shown):
     @overload
     def __getitem__(self, which: slice) -> list[Motion]: ...
     def __getitem__(self, which: int | str | slice) -> Motion | list[Motion]:
-        """Return a motion by its index or name, or a list by a slice; raise ``InputError`` for an unknown name."""
+        """Return a motion by index or name, or a list by a slice; ``InputError`` for an unknown name, else ``IndexError``."""
         if isinstance(which, Integral | slice):
             return self.motions[which]
         if not isinstance(which, str):
@@ -146,7 +146,7 @@ class MotionSet(Shown):
         -------
         DataFrame, shape (len, 26)
             ``record``; ``file_h`` and ``file_v``, where its components are from; ``dt_s``, ``npts``, ``duration_s``;
-            ``pga_h_g``, ``pga_v_g`` [9.81 m/s²], ``pgv_h_m_s``, ``pgd_h_m``, ``arias_m_s`` and ``d5_95_s``, measures of the
+            ``pga_h_g``, ``pga_v_g`` in g of 9.81 m/s², ``pgv_h_m_s``, ``pgd_h_m``, ``arias_m_s`` and ``d5_95_s``, measures of the
             record (:mod:`rockbatch.motions.measures`); ``azimuth_deg``, ``magnitude``, ``distance_km``, where known;
             ``processed``, "yes" or "no", as its agency says; ``check``, what is odd about it; ``processing``, what was done
             to it here; ``event``, ``station_name``, ``direction``, as its header says; ``station``, what components that
@@ -159,7 +159,7 @@ class MotionSet(Shown):
         )
 
     def _facts(self) -> tuple[str, dict[str, str]]:
-        """See :class:`Shown`."""
+        """Return the title and, by name, the facts that :class:`Shown` prints: records, PGA, verticals, files not used."""
         pga = sorted(motion.pga / GRAVITY for motion in self.motions)
         vertical = sum(motion.vertical is not None for motion in self.motions)
         return several(len(self), "ground motion") or "no ground motions", {
@@ -171,9 +171,9 @@ class MotionSet(Shown):
         }
 
     def _beneath(self) -> "pd.DataFrame":
-        """See :class:`Shown`."""
+        """Return the table of the motions, its main columns alone, rounded and without those of which nothing is known."""
         table = self.table()[_AT_A_GLANCE].round(3)
-        return table.loc[:, (table != "").any()]  # without words that nobody knows
+        return table.loc[:, (table != "").any()]  # without columns of text that are empty for all
 
 
 def row(motion: Motion) -> dict[str, Cell]:

@@ -98,12 +98,12 @@ def _key(label: str) -> str:
 
 
 def is_upward(label: str) -> bool:
-    """Return whether a label means positive up ("UP"), rather than vertical only ("V")."""
+    """Return whether a label means positive up, "UP"; False for "V", which is vertical only, and for other labels."""
     return _key(label) in _UP
 
 
 def is_place_or_direction(label: str) -> bool:
-    """Return whether a label is an English direction that may end the name of a place: "North", "West"."""
+    """Return whether a label is an English word for a direction that may end a place's name: "North", "West"; not "N"."""
     return len(key := _key(label)) > 2 and key in _ENGLISH and key in _AZIMUTHS
 
 
@@ -193,7 +193,7 @@ def _in_name(label: str) -> Orientation | None:
 
 
 def direction_of_suffix(suffix: str) -> Orientation | None:
-    """Return the orientation of a file's suffix such as K-NET's .EW and .UD2; ``None`` for other suffixes."""
+    """Return the orientation of a file's suffix such as K-NET's .EW and .UD2, or .090; ``None`` for other suffixes."""
     label = suffix.lstrip(".")
     if label.isdigit() and label not in ("000", "090", "180", "270", "360"):
         return None
@@ -208,12 +208,12 @@ def _channels(stem: str) -> list[Orientation]:
 
 
 def _contradicted(orientation: Orientation, stem: str) -> bool:
-    """Return whether a name has a vertical channel's code, and ``orientation`` is horizontal."""
+    """Return whether ``stem`` has a vertical channel's code and ``orientation`` is not vertical, but horizontal or unknown."""
     return not orientation.vertical and any(channel.vertical for channel in _channels(stem))
 
 
 def _is_number(site: str, label: str, stem: str) -> bool:
-    """Return whether the end of a name is no direction: of a date or time, or the number of a station or file."""
+    """Return whether the end ``label`` of a name is no direction: part of a date or time, or the number of a station or file."""
     if _AT_MOMENT.search(stem):
         return True
     if not label.isdigit():
@@ -230,7 +230,10 @@ def _is_number(site: str, label: str, stem: str) -> bool:
 
 
 def counted(stems: Iterable[str]) -> set[str]:
-    """Return the stems that end in consecutive or other numbers far from right angles, and so no azimuths: GM_010, GM_011."""
+    """Return the stems that end in three digits which are no azimuths: GM_010 and GM_011.
+
+    Two that are otherwise equal are then neither parallel nor near a right angle.
+    """
     numbered: set[str] = set()
     for group in grouped((stem for stem in stems if re.fullmatch(r".*\d{3}", stem)), lambda stem: stem[:-3]).values():
         if _in_series(int(stem[-3:]) for stem in group):
@@ -239,9 +242,10 @@ def counted(stems: Iterable[str]) -> set[str]:
 
 
 def told_apart(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:
-    """Return station's part and orientation of stems that differ in one word only, each time a direction: a_UP, a_000.
+    """Return station's part and orientation of stems that differ in one word only, each time in another direction: a_UP, a_000.
 
-    Words count here that also name places, such as nord; numbers of files do not.
+    The directions must have a vertical, or two at a right angle. Words count here that also name places, such as nord; numbers of
+    files do not.
     """
     split_stems: dict[str, tuple[str, Orientation]] = {}
     groups: dict[tuple[str, ...], dict[str, Orientation]] = {}
@@ -282,7 +286,7 @@ def same_azimuth(a: float | None, b: float | None) -> bool:
 
 
 def not_square(a: float | None, b: float | None, names: str) -> str:
-    """Return a complaint about two azimuths [degrees] not square to each other within 1°; empty if they are, or unknown."""
+    """Return a message on two azimuths [degrees] that are not at a right angle within 1°; "" if they are, or one is unknown."""
     if a is None or b is None:
         return ""
     angle = _between(a, b)
@@ -307,5 +311,5 @@ def not_acceleration(channel: str) -> str:
 
 
 def is_clock(label: str) -> bool:
-    """Return whether a channel's label is that of the recorder's clock, such as "INTC", or SEED's "LCQ"."""
+    """Return whether a channel's label is that of the recorder's clock, such as "INTC", or SEED's "LCQ"; digits do not matter."""
     return _CLOCKS.fullmatch(re.sub(r"[^A-Z]", "", label.upper())) is not None

@@ -87,7 +87,7 @@ def origin_of(event: str = "", station: str = "", date: str = "") -> Origin:
 
 
 def with_direction(origin: Origin, orientation: Orientation) -> Origin:
-    """Return ``origin`` with a component's direction: its label, or its azimuth in three digits; "" without either."""
+    """Return ``origin`` with a component's direction, its label or else azimuth, numbers in three digits, or ""."""
     label = re.sub(r"\s*deg(?:rees)?\.?$", "", orientation.label.strip(), flags=re.IGNORECASE)
     if label.isdecimal():
         label = f"{int(label):03d}"

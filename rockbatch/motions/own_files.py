@@ -47,11 +47,11 @@ def is_own(path: Path) -> bool:
             return content(path, len(_HISTORIES_BEGIN)).startswith(_HISTORIES_BEGIN)
         return suffix in _TABLES and _is_head(content(path, _MOST_OF_A_HEAD))
     except (InputError, OSError):
-        return False  # whoever reads it says what is wrong with it
+        return False  # its reader reports what is wrong with it
 
 
 def _is_head(begin: bytes) -> bool:
-    """Return whether the first line of a table or a journal, which has a checksum and digests first, names columns of ours."""
+    """Return whether the first line of a table or journal, after a journal's checksum and digests, has columns of rockbatch."""
     first = begin.removeprefix(b"\xef\xbb\xbf").partition(b"\n")[0].decode(errors="replace")
     cells = {cell.strip(' \r"') for cell in re.split("[,;\t]", first)}
     return any(names <= cells for names in _NAMED_TOGETHER)

@@ -131,7 +131,7 @@ def _why_held(component: Component) -> type[InputError] | None:
 
 
 def _direction_question(component: Component) -> str:
-    """Return a request to state the direction of a component, unknown or contradictory, in motions.toml."""
+    """Return the request to state the direction of a component, unknown or contradictory, in motions.toml."""
     if component.contradiction:
         return (
             f"{component.contradiction}; in motions.toml, which `rockbatch motions FOLDER --write-manifest` drafts, write for "
@@ -188,7 +188,10 @@ def _candidates(horizontal: Component, station: int, verticals: Sequence[Sequenc
 
 
 def _partner(h: Component, together: Sequence[Component]) -> tuple[Component | None, list[tuple[Component, str]]]:
-    """Return the only suitable vertical of those ``together`` with a horizontal component, or None, and the refused ones."""
+    """Return the only suitable vertical of those ``together`` with a horizontal component, and the refused ones with reasons.
+
+    None if none is suitable, or several are, which are then refused.
+    """
     obstacles = [(v, _why_dead(h, v) or too_unlike(h, v)) for v in together]
     refused, suitable = [pair for pair in obstacles if pair[1]], [v for v, obstacle in obstacles if not obstacle]
     if len(suitable) < 2:
@@ -199,13 +202,16 @@ def _partner(h: Component, together: Sequence[Component]) -> tuple[Component | N
 
 
 def _why_dead(h: Component, v: Component) -> str:
-    """Return a refusal of a vertical that never moves while the horizontal does; empty if it moves."""
+    """Return the reason to refuse a vertical that never moves while the horizontal does; "" if it moves, or neither does."""
     still = float(np.ptp(v.acceleration)) <= _NEVER_MOVES * h.pga
     return "it never moves: a dead channel" if still and h.pga > 0.0 else ""
 
 
 def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
-    """Return the motion of a horizontal and its vertical component, over their common time, or without a ``v`` too short."""
+    """Return the motion of a horizontal and its vertical component over their common time; without ``v`` if that lacks the peak.
+
+    ``notes`` come before those on this.
+    """
     remarks = list(notes)
     dt, horizontal, vertical, initial, start = h.dt, h.acceleration, None, h.initial, h.start
     if v is not None:

@@ -94,7 +94,7 @@ def common_samples(first: Motion, second: Motion) -> tuple[Samples, Samples]:
 
 
 def square_pair(motions: Sequence[Motion]) -> tuple[Motion, Motion]:
-    """Return the first two of a station's motions that are square to each other.
+    """Return the first two of a station's motions that are square to each other, or may be, and have common samples.
 
     Raises ``InputError`` for a station without such a pair, with the reason.
     """
@@ -113,7 +113,7 @@ def square_pair(motions: Sequence[Motion]) -> tuple[Motion, Motion]:
 
 
 def pairing_obstacle(motions: Sequence[Motion]) -> str:
-    """Return why a station's motions have no pair square to each other; empty if they have one."""
+    """Return why no two of a station's motions are at a right angle and have common samples; "" if two are."""
     try:
         pair_of(motions)
     except InputError as error:
@@ -122,7 +122,7 @@ def pairing_obstacle(motions: Sequence[Motion]) -> str:
 
 
 def pair_of(motions: Sequence[Motion]) -> tuple[Samples, Samples]:
-    """Return two accelerations of a station square to each other, over their common time, shape (n,) each.
+    """Return the two accelerations of a station's pair, at a right angle, over their common time, shape (n,) each.
 
     Measures of them do not depend on the directions to which ``motions`` are rotated. Raises ``InputError`` as
     :func:`square_pair`.
@@ -176,11 +176,12 @@ def pair_spectrum(
     Returns
     -------
     DataFrame, shape (n, 6)
-        Pseudo-spectral accelerations [9.81 m/s²] by ``period_s``: ``first_g``, ``second_g``, the components; ``srss_g``, the root
-        of the sum of their squares; ``geomean_g``, their geometric mean; ``rotd50_g`` and ``rotd100_g``, the median and the
-        maximum over all directions (Boore 2010).
+        Pseudo-spectral accelerations, in g of 9.81 m/s², by ``period_s``: ``first_g``, ``second_g``, the components; ``srss_g``,
+        the root of the sum of their squares; ``geomean_g``, their geometric mean; ``rotd50_g`` and ``rotd100_g``, the median and
+        the maximum over all directions (Boore 2010).
 
-    Raises ``InputError`` for components that are no such pair, and impossible periods and damping.
+    Raises ``InputError`` for components that are not at a right angle or have no common samples, and for impossible periods and
+    damping.
 
     Examples
     --------

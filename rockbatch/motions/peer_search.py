@@ -30,7 +30,7 @@ Lists = Mapping[tuple[Path, str], Listed]
 
 
 def listed_in(files: Sequence[SourceFile]) -> Lists:
-    """Return the rows of all lists among these files, by folder and record; damaged lists are skipped."""
+    """Return the rows of all undamaged lists among these files, by folder and by "RSN779" or file name of the record."""
     lists: dict[tuple[Path, str], Listed] = {}
     for file in files:
         if file.path.name.lower() == NAME and not file.refusal:
@@ -46,12 +46,12 @@ def listed_in(files: Sequence[SourceFile]) -> Lists:
 
 
 def of_file(lists: Lists, path: Path, site: str) -> Listed:
-    """Return the row of a file in its folder's list, by its name or its number ``site``; ``NOT_LISTED`` without one."""
+    """Return the row of a file in its folder's list, by its name or its number ``site``; ``NOT_LISTED`` if neither is listed."""
     return lists.get((path.parent, path.name.lower())) or lists.get((path.parent, site)) or NOT_LISTED
 
 
 def _rows(text: str) -> list[dict[str, str]]:
-    """Return the rows of the table with a column of record numbers, by heads in lower case, up to its first other line."""
+    """Return the rows below heads with a record number, by heads in lower case, up to the first without; [] without heads."""
     rows: list[dict[str, str]] = []
     heads: list[str] = []
     for cells in csv.reader(text.splitlines(), skipinitialspace=True):
@@ -67,7 +67,7 @@ def _rows(text: str) -> list[dict[str, str]]:
 
 
 def _listed(row: Mapping[str, str]) -> Listed:
-    """Return the facts in a row; None for those whose column is missing or not above 0."""
+    """Return the facts in a row; None for those whose column is missing, or whose value is no number above 0."""
     values = {}
     for key, beginnings in _KEYS.items():
         heads = [head for beginning in beginnings for head in row if head.startswith(beginning)]

@@ -154,13 +154,13 @@ def stand(place: str, name: str) -> tuple[Stand, str]:
 
 
 def depth_as_place(depth: float | None) -> str | None:
-    """Return "depth 30 m" for a sensor below the surface [m]; None for one at the surface or hardly below it."""
+    """Return "depth 30 m" for a sensor at this depth below the surface [m]; None for 2 m or less, or an unknown depth."""
     return f"depth {depth:g} m" if depth is not None and depth > _LEAST_DEPTH else None
 
 
 @lru_cache(maxsize=1024)
 def _stand(text: str, is_name: bool) -> Stand:
-    """Return the location that a text states, the name of a station or the words for a place."""
+    """Return the location that a text states, the name of a station or the words for a place; the ground for any other text."""
     folded = _folded(text)
     if not folded:
         return Stand.GROUND
@@ -214,7 +214,7 @@ def _is_beside(before: str) -> bool:
 
 
 def _is_street(text: str, end: int) -> bool:
-    """Return whether the word that ends at ``end`` is the name of a street or a town: "Crest Drive"."""
+    """Return whether the word that ends at ``end`` is the name of a street or a town, by the word behind it: "Crest Drive"."""
     following = re.match(r"[ .]*([a-z]+)", text[end:])
     return following is not None and following[1] in _STREETS.split()
 

@@ -74,18 +74,18 @@ class Candidate:
 
 
 def unlikely_peak(candidate: Candidate) -> Finding | None:
-    """Return a finding on a PGA outside 0.001–5 g, so that the unit is probably wrong, or above 2 g in a file in g; else None."""
+    """Return a finding on a PGA outside 0.001–5 g, so probably of a wrong unit, or from 2 to 5 g in a file in g; else None."""
     horizontal = candidate.motion.pga / candidate.gravity
     vertical = (candidate.motion.pga_vertical or 0.0) / candidate.gravity
     if LOWEST <= horizontal <= HIGHEST >= vertical:
-        return _strong(max(horizontal, vertical)) if candidate.component.unit.strip().lower() == "g" else None
+        return _strong_peak(max(horizontal, vertical)) if candidate.component.unit.strip().lower() == "g" else None
     peak = f"PGA {horizontal:.3g} g"
     if vertical > HIGHEST:
         peak += f", vertical {vertical:.3g} g,"
     return Finding("PGA", f"{peak} outside {LOWEST:g}–{HIGHEST:g} g: check the unit", gross=True, key="confirm_pga")
 
 
-def _strong(peak: float) -> Finding | None:
+def _strong_peak(peak: float) -> Finding | None:
     """Return a finding on a peak [g] above 2 g, which would be a usual one in m/s²; None below."""
     if peak <= STRONG:
         return None
@@ -94,7 +94,7 @@ def _strong(peak: float) -> Finding | None:
 
 
 def unlikely_samples(motion: Motion, gravity: float) -> list[str]:
-    """Return a complaint about a PGA above 5 g of a motion from Python; [] for others, and if judged or confirmed already."""
+    """Return a message in a list on a PGA above 5 g of a motion from Python; [] for others, or if judged or confirmed."""
     peak = max(motion.pga, motion.pga_vertical or 0.0)
     candidate = motion.source == "pulse" or any(finding.what == "PGA" for finding in motion.findings)
     if candidate or "pga" in motion.confirm or peak <= HIGHEST * gravity:
@@ -155,7 +155,7 @@ def alternating(samples: Samples) -> float:
 
 
 def flat_top(candidate: Candidate) -> Finding | None:
-    """Return a finding on flat tops of four or more samples at the largest value: clipped by recorder or digitiser."""
+    """Return a finding on a flat top of four samples or more, or several of five in all, at the peak: clipped; else None."""
     for name, samples in (("", candidate.component.acceleration), ("vertical: ", candidate.motion.vertical)):
         tops = [] if samples is None else flat_tops(samples)
         if max(tops, default=0) >= _LONG_TOP or (len(tops) > 1 and sum(tops) > _LONG_TOP):
@@ -189,7 +189,7 @@ def flat_tops(samples: Samples) -> list[int]:
 
 
 def displacement(candidate: Candidate) -> Finding | None:
-    """Return a finding on a PGD above 15 m, gross if the record is corrected or above 100 m, or on a drift."""
+    """Return a finding on a PGD above 15 m, gross if the record is corrected or the PGD above 100 m, or on a drift; else None."""
     motion = candidate.motion
     pgd = measures.pgd(motion.horizontal, motion.dt, motion.initial)
     if pgd > FARTHEST:
@@ -216,7 +216,7 @@ def unequal_horizontals(candidate: Candidate) -> Finding | None:
 
 
 def copied_horizontal(candidate: Candidate) -> Finding | None:
-    """Return a finding on a horizontal component that is a copy of the station's other one, perhaps scaled and shifted."""
+    """Return a finding on a horizontal that is a copy of the station's other one, perhaps scaled and shifted; else None."""
     this, others = candidate.component, [c for c, _ in candidate.peaks if c is not candidate.component]
     if len(candidate.peaks) != 2 or not others or not same_step(this.dt, others[0].dt):
         return None
@@ -296,8 +296,8 @@ def lack_of_processing(candidate: Candidate) -> Finding | None:
     return Finding("unprocessed", "unprocessed: long-period noise not removed")
 
 
-def differing_copies(candidate: Candidate) -> Finding | None:
-    """Return the findings of the readers on both components, on headers and copies, as one; None without any."""
+def findings_of_readers(candidate: Candidate) -> Finding | None:
+    """Return what readers found on both components as one finding, gross if any part is; None if they found nothing."""
     both = (*candidate.component.findings, *candidate.motion.findings)
     if not both:
         return None
@@ -314,13 +314,13 @@ JUDGES: tuple[Callable[[Candidate], Finding | None], ...] = (
     copied_horizontal,
     unlike_vertical,
     in_a_structure,
-    differing_copies,
+    findings_of_readers,
     lack_of_processing,
 )
 
 
 def findings(candidate: Candidate) -> tuple[Finding, ...]:
-    """Return the findings of all ``JUDGES`` on a motion."""
+    """Return the findings of all ``JUDGES`` on a motion, in their order; () if it has no oddity."""
     return tuple(finding for judge in JUDGES if (finding := judge(candidate)) is not None)
 
 
@@ -338,7 +338,7 @@ def _unconfirmed(findings: Sequence[Finding], confirmed: Collection[str]) -> lis
 
 
 def confirmation_request(name: str, findings: Sequence[Finding], confirmed: Collection[str]) -> str:
-    """Return the gross findings on the motion ``name`` and how to confirm them; empty if ``confirmed`` has their keys."""
+    """Return the gross findings on the motion ``name`` and how to confirm them; "" if all are confirmed, or there are none."""
     unconfirmed = _unconfirmed(findings, confirmed)
     if not unconfirmed:
         return ""

@@ -107,7 +107,7 @@ def pulse(
 
 
 def unlikely(amplitude_g: float, period: float, dt: float) -> dict[str, str]:
-    """Return complaints by key: "amplitude" above 3 g, and "dt" [s] above a fifth of the period [s]; {} for usual values."""
+    """Return messages by key: "amplitude" if above 3 g, and "dt" [s] if above a fifth of the period [s]; {} for usual values."""
     doubts = {}
     if amplitude_g > MOST_PULSE:
         doubts["amplitude"] = (
@@ -119,7 +119,7 @@ def unlikely(amplitude_g: float, period: float, dt: float) -> dict[str, str]:
 
 
 def pulse_length(shape: str, period: float, gamma: float | None = None) -> float:
-    """Return the duration T_p [s] of a pulse with ``period`` [s], by the table at the head of this module."""
+    """Return the duration T_p [s] of a pulse of ``period`` [s], by the table at the head of this module."""
     return _formula(shape, 1.0, period, gamma, 0.0)[1]
 
 
@@ -132,7 +132,7 @@ def _problems(
     gamma: float | None,
     nu: float | None,
 ) -> list[Problem]:
-    """Return the problems of impossible values of a pulse."""
+    """Return the problems of impossible values of a pulse; [] if all are possible."""
     wrong = [
         Problem(name, value, "must be a number above 0 [s]", kind=OutOfRange)
         for name, value in (("period", period), ("dt", dt), ("duration", duration))

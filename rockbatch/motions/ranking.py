@@ -93,8 +93,7 @@ class RankedRecord:
 
     @cached_property
     def values(self) -> dict[str, Cell]:
-        """Return the values of :data:`COLUMNS` for the stronger component, with the other's PGA and the doubts of both; None if
-        unknown."""
+        """Return :data:`COLUMNS` for the stronger component, with the other's PGA [g] and doubts about both; None if unknown."""
         known: dict[str, Cell] = dict.fromkeys(COLUMNS)
         known["record"] = self.name
         if self.motions:
@@ -120,12 +119,14 @@ def ranked_records(motions: MotionSet) -> list[RankedRecord]:
 
 
 def _order(record: RankedRecord) -> tuple[int, float]:
+    """Return the sort key of a record: its group, as :func:`ranked_records` lists them, and the negative PGA [m/s²]."""
     groups = (Use.HELD_BACK, Use.NOT_READ, None, Use.USED, Use.COPY)
     odd = record.use is Use.USED and record.doubtful
     return groups.index(None if odd else record.use), -record.motions[0].pga if record.motions else 0.0
 
 
 def _used_record(components: Sequence[Motion]) -> RankedRecord:
+    """Return the record of a station's used motions, the strongest first, with the names of their findings as doubts."""
     by_strength = sorted(components, key=lambda motion: -motion.pga)
     first = by_strength[0]
     return RankedRecord(
@@ -134,7 +135,7 @@ def _used_record(components: Sequence[Motion]) -> RankedRecord:
 
 
 def _unused_records(unusable: Iterable[Unusable]) -> Iterator[RankedRecord]:
-    """Yield a record for the unusable components of each station with one ``Use``."""
+    """Yield a record for the unusable components of each station, and for each ``Use`` that they have."""
     for files in grouped(unusable, lambda file: (use_of(file), file.station or file.source)).values():
         held = sorted((file.motion for file in files if file.motion), key=lambda motion: -motion.pga)
         yield RankedRecord(
@@ -149,7 +150,10 @@ def _unused_records(unusable: Iterable[Unusable]) -> Iterator[RankedRecord]:
 
 
 def use_of(file: Unusable | LeftOut) -> Use:
-    """Return the ``Use`` of a file without a motion in the set."""
+    """Return the ``Use`` of a file without a motion: held back if its user can state or confirm what it lacks, else not used.
+
+    A file that was left out is a copy, or left out.
+    """
     if isinstance(file, LeftOut):
         return Use.COPY if file.of else Use.LEFT_OUT
     return Use.HELD_BACK if file.motion or file.kind in _DOUBTS or file.lacks else Use.NOT_READ
@@ -168,7 +172,7 @@ def _finding_names(motions: Sequence[Motion]) -> list[str]:
 
 
 def _other_pga_g(motion: Motion, others: Iterable[Motion]) -> float | None:
-    """Return the PGA across a motion [g]: of its strongest other horizontal component, a motion or not; None without one."""
+    """Return the PGA [g] of the strongest other component of a station, else of the one across ``motion``; None without both."""
     across = max((other.pga for other in others if other is not motion), default=None)
     if across is None and motion.across is not None:
         across = float(np.abs(motion.across).max())
@@ -182,7 +186,7 @@ def pulse_period(motion: Motion) -> float | None:
 
 
 def rows(motions: MotionSet) -> list[dict[str, Cell]]:
-    """Return the rows of ``rockbatch motions --csv``: a row per motion in order, then one per unused file with its ``reason``."""
+    """Return the rows of ``rockbatch motions --csv``: one per motion, then per unused or left-out file, with its ``reason``."""
     stations = motions.stations()
     not_used: list[Unusable | LeftOut] = [*motions.unusable, *motions.left_out]
     used = [_row(motion, stations[motion.of_station]) | {"use": Use.USED.value} for motion in motions]
@@ -194,7 +198,7 @@ def rows(motions: MotionSet) -> list[dict[str, Cell]]:
 
 
 def _row(motion: Motion, components: Sequence[Motion]) -> dict[str, Cell]:
-    """Return the row of a motion, with its station's other PGA [9.81 m/s²] and its pulse period [s]."""
+    """Return the row of a motion, with the PGA [g] of its station's strongest other component and the period of its pulse [s]."""
     return row(motion) | {"pga_h2_g": _other_pga_g(motion, components), "pulse_period_s": pulse_period(motion)}
 
 

@@ -93,12 +93,12 @@ class ReadOptions:
             raise InputError(*wrong)
 
     def with_statement(self, stated: Mapping[str, object]) -> "ReadOptions":
-        """Return these options with the statements of a manifest for one file, by field."""
+        """Return these options with the statements of a manifest for one file, by field, which go before those of the file."""
         values: dict[str, Any] = dict(stated)
         return replace(self, **values, instead=self.instead.union(stated))
 
     def overruled(self, unit: str, dt: float, gravity: float) -> tuple[str, ...]:
-        """Return notes on the study's unit and step, overruled by a file that states another ``unit`` or ``dt`` [s]."""
+        """Return notes on the study's unit and step where a file's own ``unit`` or ``dt`` [s] overrules them; () else."""
         notes = []
         if self.unit is not None and "unit" not in self.instead:
             by_file, stated = acceleration_factor(unit, gravity), acceleration_factor(self.unit, gravity)
@@ -110,7 +110,7 @@ class ReadOptions:
 
 
 def no_acceleration(called: str, kind: str) -> InputError:
-    """Return the refusal of a file ``called`` so whose header says that it holds another ``kind``, "velocities"."""
+    """Return the error that a file, ``called`` so in it, holds another ``kind`` of samples than accelerations, "velocities"."""
     return InputError(
         f"{called} holds {kind}, and accelerations are expected; if it does hold them, write unit = … for this file in "
         "motions.toml"
@@ -141,9 +141,9 @@ class RecordFile:
 
 
 def text_of(data: bytes) -> str:
-    """Return the text of bytes: UTF-16 with its mark (Excel's "Unicode text"), else UTF-8, else Latin-1.
+    """Return the text of bytes: UTF-16 with its mark (Excel's "Unicode text"), else UTF-8, with its mark or not, else Latin-1.
 
-    Raises ``InputError`` for bytes with that mark which are no UTF-16.
+    Raises ``InputError`` for bytes with the mark of UTF-16 which are none.
     """
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         try:

@@ -111,7 +111,7 @@ def at_target(
 
 
 def scale_as_listed(motion_set: MotionSet) -> MotionSet:
-    """Return all motions scaled by the factors of PEER's lists beside them, with a note; those without one are unusable."""
+    """Return all motions scaled by their factors in PEER's lists, with a note; those without a listed factor are unusable."""
     lacking = [motion for motion in motion_set if motion.listed.scale is None]
     reason = 'has no scale factor: scale = "list" takes those of PEER\'s _SearchResults.csv in its folder'
     unusable = [Unusable(m.name, m.files, f"{m.label} {reason}", station=m.of_station) for m in lacking]
@@ -148,7 +148,7 @@ def scale_to_targets(
 
 
 def verticals(motions: Sequence[Motion]) -> list[Motion]:
-    """Return a motion of each station's vertical component, named as the station; none for stations without one, or at rest."""
+    """Return the first vertical component of each station as a motion, named as the station; none of those missing or at rest."""
     moving = {motion.of_station: motion for motion in reversed(motions) if motion.pga_vertical}
     return [
         Motion(name, motion.dt, motion.vertical, source=motion.vertical_source)
@@ -200,7 +200,7 @@ def scale_verticals(
 
 
 def _without_pair(motions: Sequence[Motion], target: Target | SpectrumTarget) -> list[Unusable]:
-    """Return the motions of stations without a pair, unusable for a target that takes both components; else []."""
+    """Return the motions of stations without a pair as unusable, for a target that takes both components; [] for others."""
     if target.pairs not in TWO_COMPONENT_RULES or (isinstance(target, SpectrumTarget) and target.factors == "none"):
         return []
     unusable = []
@@ -212,7 +212,7 @@ def _without_pair(motions: Sequence[Motion], target: Target | SpectrumTarget) ->
 
 
 def _too_weak(motion: Motion, factor: float, target: SpectrumTarget, gravity: float) -> str:
-    """Return the refusal of a motion that needs a ``factor`` above ``MOST_FACTOR``, with the PGA that it would have."""
+    """Return the reason to refuse a motion that needs a ``factor`` above ``MOST_FACTOR``, with the PGA [g] that it would have."""
     vertical = "" if motion.pga_vertical is None else f", vertical {factor * motion.pga_vertical / gravity:.2g} g"
     return (
         f"takes {factor:.3g} times its motion, PGA {factor * motion.pga / gravity:.2g} g{vertical}, to meet {target}; beyond "

@@ -37,7 +37,7 @@ _MEASURES: dict[str, Callable[[Motion, float], float | None]] = {
 
 
 def selected(motion_set: MotionSet, selection: Selection, gravity: float = GRAVITY) -> MotionSet:
-    """Return the motions within ``selection``, others as left out; unknown magnitudes are unusable if magnitude is selected."""
+    """Return the motions within ``selection``, others left out; unknown magnitudes are unusable if magnitudes are selected."""
     chosen: list[Motion] = []
     unusable: list[Unusable] = []
     left_out: list[LeftOut] = []

@@ -62,7 +62,10 @@ class ShockSequence:
             raise InputError(*wrong)
 
     def as_motion(self, parts: Sequence[Motion]) -> Motion:
-        """Return its records ``parts``, in their order, as one motion."""
+        """Return its records ``parts``, in their order, as one motion, with its pause, factors and polarities.
+
+        Raises ``InputError`` as :func:`sequence`.
+        """
         n = len(parts)
         factors = self.factors * (n if len(self.factors) == 1 else 1) or (1.0,) * n
         signs = self.polarity * (n if len(self.polarity) == 1 else 1) or ("+",) * n
@@ -116,7 +119,7 @@ SEQUENCE = Section(
 
 
 def read_sequences(file: TomlFile, *at: str) -> tuple[ShockSequence, ...]:
-    """Return the sequences in the tables ``[[at]]`` of a study or manifest; collect mistakes in the file."""
+    """Return the sequences in the tables ``[[at]]`` of a study or manifest; mistakes are added to the file's problems."""
     sequences: list[ShockSequence] = []
     for table in file.tables(*at, title="name"):
         read = table.read(SEQUENCE)
@@ -215,7 +218,7 @@ def sequence(
 def _check(
     motions: Sequence[Motion], name: str, pause: float, factors: Sequence[float], polarity: Sequence[str]
 ) -> None:
-    """Raise ``InputError`` for impossible arguments of :func:`sequence`."""
+    """Raise ``InputError`` with all impossible arguments of :func:`sequence`; return None if there are none."""
     wrong = [] if motions else [f"{name}: a sequence has one motion at least"]
     if not 0 < pause < math.inf:
         wrong.append(f"{name}: pause = {pause:g}: must be a number above 0 [s]")
@@ -244,7 +247,7 @@ def _check_size(parts: Sequence[Motion], dt: float, name: str, pause: float) -> 
 
 
 def _resampled(motion: Motion, dt: float, notes: list[str]) -> Motion:
-    """Return a motion interpolated linearly to a sampling interval ``dt`` [s], and append a note; itself if it has that."""
+    """Return a motion interpolated linearly to an interval ``dt`` [s], and append a note; itself if it has that interval."""
     if abs(motion.dt - dt) <= _SAME * dt:
         return motion
     notes.append(f"{motion.name} interpolated linearly from dt = {motion.dt:g} s to {dt:g} s")
@@ -291,7 +294,7 @@ def _concatenated(
 
 
 def _with_common_origin(parts: Sequence[Motion], whole: Motion) -> Motion:
-    """Return ``whole`` with the sources and findings of all ``parts``, and the facts common to them; None for others."""
+    """Return ``whole`` with the sources and findings of all ``parts``, and facts that all share, such as magnitude, else None."""
     return replace(
         whole,
         source=_in_turn(part.source for part in parts),
@@ -313,7 +316,7 @@ def _in_turn(sources: Iterable[str]) -> str:
 
 
 def _common(values: Iterable[T]) -> T | None:
-    """Return the value of all; None if they differ."""
+    """Return the value that all ``values`` share; None if they differ."""
     different = set(values)
     return different.pop() if len(different) == 1 else None
 
@@ -366,9 +369,10 @@ def add_sequences(
 def _sequence_or_refusal(
     entry: ShockSequence, by_name: Mapping[str, Motion], reasons: Mapping[str, str], source: str
 ) -> Motion | Unusable | LeftOut:
-    """Return a sequence of the motions ``by_name``, or its refusal; ``reasons`` has those of unusable records by name.
+    """Return a sequence of the motions ``by_name``; unusable if a record of it is, or if they cannot be joined.
 
-    Raises ``InputError`` for names of no record in a study, where ``source`` is "".
+    ``reasons`` has those of unusable records by name. For unknown names raises ``InputError`` in a study, where ``source`` is "";
+    in a manifest the sequence is unusable, or left out if all are unknown.
     """
     missing = [name for name in entry.records if name not in by_name]
     reasons_of_parts = [f"its record {name} cannot be used: {reasons[name]}" for name in missing if name in reasons]
@@ -389,7 +393,7 @@ def _sequence_or_refusal(
 
 
 def _unknown_record(name: str, records: Mapping[str, Motion]) -> str:
-    """Return the complaint about a name of no record, with the closest one."""
+    """Return the message about a name of no record, with the closest one."""
     nearest = closest(name, records)
     return f"records: there is no record {shown(name)}; " + (
         f"did you mean {shown(nearest)}?" if nearest else "`rockbatch motions PATH` lists them"

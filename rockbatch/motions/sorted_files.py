@@ -19,7 +19,10 @@ _LONGEST = 100  # bytes of a file that holds a number
 
 
 def statements_beside(files: Sequence[SourceFile]) -> tuple[dict[Path, tuple[str, ...]], dict[Path, str]]:
-    """Return header lines for each record's file from the step and count files beside it, and a remark on each of those."""
+    """Return header lines for each record's file from the step and count files beside it, and for each of those what it is about.
+
+    Files that belong to no record, or hold no number, are in neither.
+    """
     named = {(file.path.parent, *_parts(match)): file for file in files if (match := _NAMED.fullmatch(file.path.stem))}
     stated: dict[Path, tuple[str, ...]] = {}
     companions: dict[Path, str] = {}
@@ -38,7 +41,7 @@ def _parts(match: Mapping[str, str] | re.Match[str]) -> tuple[str, str]:
 
 
 def _number(path: Path) -> str:
-    """Return the only number in a file as text; empty if the file holds anything else or cannot be read."""
+    """Return the only number in a file as text; "" if the file holds anything else or cannot be read."""
     try:
         text = archives.content(path, _LONGEST + 1).decode("latin-1").strip()
         float(text)

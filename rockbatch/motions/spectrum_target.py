@@ -103,12 +103,12 @@ class SpectrumTarget:
 
     @property
     def periods(self) -> Array:
-        """Return the periods of the fit [s], shape (n,)."""
+        """Return the periods of the fit [s], shape (n,): a hundred a decade, evenly in ln T, from the least to the largest."""
         low, high = self.range_s
         return np.geomspace(low, high, 1 + max(1, math.ceil(_A_DECADE * math.log10(high / low))))
 
     def factors_of(self, motions: Sequence[Motion], gravity: float) -> list[float]:
-        """Return the factor for each motion; infinite for one without motion.
+        """Return the factor for each motion; infinite for one without motion, and 1 for all if ``factors`` is "none".
 
         Raises ``InputError`` if the rule takes pairs, and a station has none (:func:`pairing_obstacle`).
         """
@@ -175,7 +175,7 @@ class SpectrumTarget:
         return [station_spectra(station, periods, self.spectrum.damping)[self.pairs] / gravity for station in stations]
 
     def remarks(self, motions: Sequence[Motion]) -> list[str]:
-        """Return remarks on the target for these ``motions``, a sentence each."""
+        """Return a sentence on a limit of the code that the target exceeds, and on pairs judged apart; [] for none."""
         paired = any(len(station) == 2 for station in _stations(motions))
         apart = self.pairs == "apart" and self.spectrum.code and paired
         return list(filter(None, (self.spectrum.beyond, _APART if apart else "")))
@@ -204,7 +204,7 @@ class SpectrumTarget:
         }
 
     def _conditions(self, motions: Sequence[Motion], gravity: float) -> dict[str, object]:
-        """Return the values for a code's further conditions: longest period, both spectra at 0 s, and ranges of factors.
+        """Return the values for a code's further conditions: longest period, both spectra at 0 s [g], and ranges of factors.
 
         The record factor k₁ of NZS 1170.5 fits a record by least squares of ln S_a; the family factor k₂ is the rest.
         """
@@ -225,7 +225,7 @@ class SpectrumTarget:
         return values
 
     def _peak(self, station: Sequence[Motion]) -> float:
-        """Return the value at 0 s of a member's spectrum [m/s²]: its PGA, or that measure of a pair."""
+        """Return the value at 0 s of a member's spectrum [m/s²]: the PGA of its first motion, or the rule's measure of a pair."""
         if self.pairs == "apart" or pairing_obstacle(station):
             return station[0].pga
         return pair_measures(*pair_of(station))[self.pairs]

@@ -103,7 +103,7 @@ def _by_file(record: list[Component]) -> Iterator[list[Component]]:
 
 
 def _by_name(record: list[Component]) -> list[list[Component]]:
-    """Return the components by site, if directions repeat, but within no site, each with two or more; else all together."""
+    """Return the components by site, if directions repeat but not within sites of two or more components; else all together."""
     sites = grouped(record, lambda c: c.site)
     if len(_directions(record)) == len(record) or len(sites) < 2:
         return [record]
@@ -148,7 +148,7 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
             if len({first_of(i) for i, _ in namesakes}) > 1:
                 for (i, a), (j, b) in pairs:
                     low, high = sorted((first_of(i), first_of(j)))
-                    if low != high and (_share_record(a, b) or _copies(a, b)):
+                    if low != high and (_share_record(a, b) or _are_copies(a, b)):
                         root[high] = low
     for triple in _turned_triples(stations):
         low = min(map(first_of, triple))
@@ -209,8 +209,8 @@ def _share_record(a: Component, b: Component) -> bool:
     return not (first.network and second.network and first.network != second.network) and in_one_event(a, b)
 
 
-def _copies(a: Component, b: Component) -> bool:
-    """Return whether the samples of two components are equal except for a factor."""
+def _are_copies(a: Component, b: Component) -> bool:
+    """Return whether samples of two components of one length and step are equal but for a factor; False if one has no motion."""
     first, second = a.acceleration, b.acceleration
     if len(first) != len(second) or abs(a.dt - b.dt) > 1e-6 * a.dt:
         return False

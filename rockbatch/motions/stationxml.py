@@ -25,7 +25,7 @@ _LEVELS = ((_ROOT, "Network"), (_ROOT, "Network", "Station"), (_ROOT, "Network",
 _SENSITIVITY = "Response/InstrumentSensitivity"
 _TEXTS = (f"{_SENSITIVITY}/Value", f"{_SENSITIVITY}/InputUnits/Name", "Azimuth", "Dip", "Depth")  # below a channel
 _GAIN = "Response/Stage/StageGain/Value"
-_LONGEST = 200  # characters of these
+_LONGEST = 200  # most characters of these texts
 _DEEPEST = 50  # elements within one another; the format has 9
 _SAME_GAIN = 1e-3  # relative: printed with few digits, or at another frequency
 _SAME_STAGES = 0.05  # relative difference of the sensitivity from the product of the stages' gains, by filters
@@ -58,7 +58,7 @@ class Channel:
 
     @property
     def gain(self) -> str:
-        """Return its sensitivity with its unit, for people."""
+        """Return its sensitivity, which must be known, with its unit, for people: "428000 counts per M/S**2"."""
         return f"{self.sensitivity:.10g} counts per {self.unit}"
 
 
@@ -103,7 +103,7 @@ class Inventories:
 
 
 def contradiction(channels: Sequence[Channel]) -> str:
-    """Return two contradictory statements of epochs of one channel, or of one epoch; empty if all agree."""
+    """Return two statements of a channel's epochs, all with sensitivities, that contradict each other; "" if all agree."""
     for channel in channels:
         if channel.stages and channel.sensitivity and abs(channel.stages / channel.sensitivity - 1.0) > _SAME_STAGES:
             return f"{channel.gain} ({channel.named}) and {channel.stages:.6g} as the product of its stages' gains"
@@ -117,7 +117,7 @@ def contradiction(channels: Sequence[Channel]) -> str:
 
 
 def _same_gain(a: Channel, b: Channel) -> bool:
-    """Return whether two channels with sensitivities have the same counts per m/s²; without units of acceleration, equal ones."""
+    """Return whether counts per m/s² of two channels agree to 0.1 %; in units of no acceleration, number and unit exactly."""
     assert a.sensitivity
     assert b.sensitivity
     try:
@@ -128,7 +128,7 @@ def _same_gain(a: Channel, b: Channel) -> bool:
 
 
 def _same_direction(a: Channel, b: Channel) -> bool:
-    """Return whether dip and azimuth agree; True if one channel has no dip."""
+    """Return whether dip and azimuth agree within 1°; unknown ones agree, and azimuths of upright channels do not count."""
     if a.dip is None or b.dip is None:
         return True
     if abs(a.dip - b.dip) > _SAME_DIP:
@@ -137,6 +137,7 @@ def _same_direction(a: Channel, b: Channel) -> bool:
 
 
 def _direction(channel: Channel) -> str:
+    """Return a channel's azimuth, if known, and its dip, which must be known, in words: "azimuth 90°, dip 0°"."""
     azimuth = "" if channel.azimuth is None else f"azimuth {channel.azimuth:g}°, "
     return f"{azimuth}dip {channel.dip:g}°"
 
@@ -189,6 +190,7 @@ class _Reader:
         self.gains: list[float | None] = []
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
+        """Enter an element; keep attributes of networks, stations and channels. Raises ``_NoStationXML`` for another root."""
         name = tag.rpartition("}")[2]
         if (not self.above and name != _ROOT) or len(self.above) > _DEEPEST:
             raise _NoStationXML
@@ -198,11 +200,13 @@ class _Reader:
             self.texts, self.gains = {}, []
 
     def data(self, text: str) -> None:
+        """Keep the text of the elements of a channel that are read."""
         key = self._key
         if (key in _TEXTS or key == _GAIN) and len(self.texts.get(key, "")) < _LONGEST:
             self.texts[key] = self.texts.get(key, "") + text[:_LONGEST]
 
     def end(self, tag: str) -> None:
+        """Leave an element, and add the channel if it is one."""
         if tuple(self.above) == _LEVELS[-1]:
             self.channels.append(self._channel())
         elif self._key == _GAIN:
@@ -215,6 +219,7 @@ class _Reader:
         return "/".join(self.above[len(_LEVELS[-1]) :])
 
     def _channel(self) -> Channel:
+        """Return the channel whose element ends, with the epoch of the innermost element that has dates."""
         levels = [self.attributes[level[-1]] for level in _LEVELS]
         network, station, channel = levels
         dated = next((level for level in reversed(levels) if level.keys() & {"startDate", "endDate"}), {})

@@ -54,7 +54,7 @@ def period_of_pulse(v: Samples, dt: float) -> float | None:
 
 
 def _indicator(v: Samples, pulse: Samples) -> float:
-    """Return PI of a velocity with this pulse, 0..1."""
+    """Return the pulse indicator PI, 0 to 1, of a velocity with this pulse."""
     residual = v - pulse
     peak, energy = np.abs(residual).max() / np.abs(v).max(), residual @ residual / (v @ v)
     return 1.0 / (1.0 + math.exp(-23.3 + 14.6 * float(peak) + 20.5 * float(energy)))
@@ -73,7 +73,7 @@ def _largest(v: Samples, dt: float) -> tuple[float, int]:
 
 
 def _wavelet_sum(v: Samples, scale: float, place: int) -> Array:
-    """Return the pulse, shape (npts,): the sum of ten wavelets of one scale near the index ``place``."""
+    """Return the pulse, shape (npts,): ten wavelets of one scale, each the largest of the remainder near index ``place``."""
     near = math.ceil(_NEAR * scale)
     window = slice(max(place - near, 0), place + near + 1)
     wavelet = _wavelet(scale)

@@ -1,1 +1,1 @@
-"""Optional outputs of runs, a folder each: what a study asks for beyond the peaks, read from one history of a run."""
+"""Optional outputs of runs, a folder each: results beyond the peaks, read from one history of a run."""

@@ -1,1 +1,1 @@
-"""What a run came to, its histories, and what follows from them without the core."""
+"""The outcome of a run, its histories, and quantities that follow from these without the core."""

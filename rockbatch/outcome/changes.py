@@ -22,7 +22,11 @@ class Sized(NamedTuple):
 
 
 def scales_of(pier: Pier) -> Mapping[str, float]:
-    """Return the scales of quantities by name: of the weight, of friction tan α, and of a pier that leans by α; per unit mass."""
+    """Return sizes by kind of quantity ("force", "gap", "energy", …), a hundredth of which a change must reach to matter.
+
+    Per unit mass and in SI units: of the weight ("force", "moment"), 1 ("share"), tan α ("friction"), and of a pier that
+    leans by α (the rest). :func:`greatest_change` divides by no less.
+    """
     gap = 2.0 * pier.half_width * pier.alpha
     return {
         "force": pier.gravity,
@@ -37,7 +41,10 @@ def scales_of(pier: Pier) -> Mapping[str, float]:
 
 
 def greatest_change(quantities: Mapping[str, Sized], fine: object, coarse: object, pier: Pier) -> tuple[str, float]:
-    """Return the name and relative change of the quantity that changes most from ``coarse`` to ``fine``; None counts as 0."""
+    """Return the name and relative change of the quantity that changes most from ``coarse`` to ``fine``; None counts as 0.
+
+    Changes are relative to the greatest ``fine`` value, or to :data:`FLOOR` of the quantity's scale if that is more.
+    """
     scales = scales_of(pier)
     changes = {}
     for name, (fields, scale) in quantities.items():

@@ -53,7 +53,7 @@ OVER = 1.5
 MOVES = 0.02
 """Share of the largest rotation, or of α if that is smaller, from which a pier counts as moving."""
 CUT = 0.9
-"""Share of the record above which the stretch in which piers move is not cut out of it."""
+"""Share of the record from which on it is drawn whole, instead of the stretch in which piers move."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +75,7 @@ class History:
     band : float
         |θ/α| up to which both supports of a weakly rocking pier stay loaded (THEORY.md, eq. 10); 0 on the rigid base.
     springs, devices : tuple of Panel
-        Force against deflection of both springs; force against elongation of the first dampers and tendons.
+        Force against deflection of both springs; force against elongation of the first devices.
     """
 
     status: str
@@ -92,7 +92,7 @@ class History:
 
     @property
     def outcome(self) -> str:
-        """Return the largest |θ|/α with its time as text, or how the run ended early."""
+        """Return the largest |θ|/α with its time, "0.2345 at 12.3 s", or how the run ended early: "overturned at 8.1 s"."""
         if self.status in OUTCOMES:
             return f"{OUTCOMES[self.status]} at {self.end[0]:.1f} s"
         return f"{abs(self.peak[1]):.4f} at {self.peak[0]:.1f} s"
@@ -158,7 +158,7 @@ def _moving(t: Array, theta: Array) -> tuple[float, float]:
 
 
 def _thinned(t: Array, y: Array, moving: tuple[float, float], pixels: int) -> tuple[Array, Array]:
-    """Return a history thinned to ``pixels`` while the pier moves, and to ``pixels`` per whole record outside."""
+    """Return times and values of a history thinned to ``pixels`` while the pier moves, and outside as for the whole record."""
     first, last = np.searchsorted(t, moving)
     parts = []
     for part in (slice(0, first), slice(first, last + 1), slice(last + 1, len(t))):
@@ -253,7 +253,7 @@ def _scale(histories: Sequence[History], row: int) -> Axis:
 
 
 def _lane(runs: int) -> float:
-    """Return the height of the strokes of one pier's events, as a share of the panel; 0 if they are not drawn."""
+    """Return the height of the strokes of one pier's events, as a share of the panel; 0 for more than four runs."""
     return 0.05 if runs == 1 else 0.03 if runs <= MOST_LANES else 0.0
 
 
@@ -263,7 +263,7 @@ def _entry(run: Drawn) -> str:
 
 
 def _standing(one: History, row: int) -> Array:
-    """Return the values of a quantity up to the first |θ|/α beyond :data:`OVER`, shorter than those of a pier that stands."""
+    """Return the values of a quantity up to the first |θ|/α beyond :data:`OVER`, all of them for a pier that stands."""
     t, theta = one.curves[0]
     beyond = np.flatnonzero(np.abs(theta) > OVER)
     times, values = one.curves[row]
@@ -341,7 +341,7 @@ def _springs(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
 
 
 def _bed(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
-    """Return the moment of the bed about the middle of the foot, and how deep that is, against the rotation."""
+    """Return two panels over the rotation [mrad]: moment of the bed about the middle of the foot, and depth of that middle."""
     pier, history = response.pier, response.history
     theta = 1000.0 * response.theta
     left, right = (history[f"force_{side}"].to_numpy(dtype=np.float64) for side in ("left", "right"))

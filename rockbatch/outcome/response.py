@@ -12,6 +12,7 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
+from rockbatch.common.units import ColumnUnits
 from rockbatch.pier import Base, Pier
 
 if TYPE_CHECKING:
@@ -112,7 +113,7 @@ class Response(Shown):
     scale : float
         Factor on all components of the motion.
     restraints : DataFrame or None
-        Elongation [m] and force [N/kg], positive in tension, of every damper and tendon at the rows of ``history``, such as
+        Elongation [m] and force [N/kg], positive in tension, of every device at the rows of ``history``, such as
         ``damper 1 left force``; ``None`` without.
     row : Series or None
         The run's row of ``peaks.csv``, by the names and in the units of its columns; NaN or "" where a column does not
@@ -160,16 +161,16 @@ class Response(Shown):
     sections: "pd.DataFrame | None" = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
-        """Say the units of the tables in their ``attrs``."""
+        """Set ``attrs["units"]`` of the tables of history, forces and impacts, those that are given."""
         of_tables = {"history": HISTORY_UNITS, "forces": {"t": "s"} | FORCE_UNITS, "impacts": IMPACT_UNITS}
         for name, units in of_tables.items():
             table = getattr(self, name)
             if table is not None:
-                table.attrs["units"] = {column: units[column] for column in table if column in units}
+                table.attrs["units"] = ColumnUnits({column: units[column] for column in table if column in units})
 
     @classmethod
     def unread(cls, read: Callable[[], "Response"], **known: Any) -> Self:
-        """Return the response of fields that are ``known``; the histories are those of another one, ``read`` when needed."""
+        """Return a response of ``known`` fields, whose histories are those of the response that ``read`` returns if needed."""
         response = object.__new__(cls)
         response.__dict__.update(known, _read=read)
         return response
@@ -177,7 +178,7 @@ class Response(Shown):
     if not TYPE_CHECKING:  # of which a checker would conclude that any attribute exists
 
         def __getattr__(self, name: str) -> Any:
-            """Return a table of histories that have not been read."""
+            """Return a table of histories not read yet, reading all of them; raise ``AttributeError`` for any other name."""
             read = self.__dict__.get("_read") if name in READ_LATER else None
             if read is None:
                 raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}", name=name, obj=self)
@@ -186,7 +187,7 @@ class Response(Shown):
             return self.__dict__[name]
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return what a copy or a pickle has, its histories read: it does not depend on compiled code."""
+        """Return the fields for a copy or a pickle, with the histories read, so that they do not depend on compiled code."""
         tables = {table: getattr(self, table) for table in READ_LATER}
         return {name: value for name, value in self.__dict__.items() if name != "_read"} | tables
 
@@ -212,12 +213,12 @@ class Response(Shown):
 
     @property
     def reason(self) -> str:
-        """Reason that the run failed, or that the pier left the ground; empty otherwise."""
+        """Reason that the run failed, or that the pier left the ground; "" otherwise. ``InputError`` without a row."""
         return str(self._of_row()["reason"])
 
     @property
     def note(self) -> str:
-        """Remarks on a valid run; empty otherwise."""
+        """Remarks on a valid run; "" without any. ``InputError`` without a row of peaks.csv."""
         return str(self._of_row()["note"])
 
     @property
@@ -285,11 +286,12 @@ class Response(Shown):
         )
 
     def device_work(self, least_stroke_m: float = 0.01) -> "pd.DataFrame":
-        """Return the work of every damper and tendon, a row each, from the rows of the history; raise ``InputError`` without any.
+        """Return the work of every device, a row for each of its places, from the rows of the history.
 
-        ``travel_m``, cumulative travel, of a damper without its brace; ``energy_J_kg``, work per unit mass of the pier, and
-        ``energy_kJ``, NaN if the mass is not known; ``half_cycles`` with a range of at least ``least_stroke_m``, by rainflow
-        counting (ASTM E1049-85); ``strain_over_yield``, the greatest of a tendon that can yield, else NaN.
+        Raises ``InputError`` without devices. ``travel_m``, cumulative travel, of a damper without its brace;
+        ``energy_J_kg``, work per unit mass of the pier, and ``energy_kJ``, NaN if the mass is not known; ``half_cycles``
+        with a range of at least ``least_stroke_m``, by rainflow counting (ASTM E1049-85); ``strain_over_yield``, the
+        greatest of a tendon that can yield, else NaN.
 
         Examples
         --------
@@ -303,7 +305,7 @@ class Response(Shown):
         from rockbatch.outcome.device_work import Courses, work_of
 
         if self.restraints is None:
-            raise InputError(f"{self._title}: there is no damper and no tendon")
+            raise InputError(f"{self._title}: there are no devices")
         columns = list(self.restraints.columns[1:])
         elongation, pull = (self.restraints[columns[first::2]].to_numpy(dtype=np.float64) for first in (0, 1))
         work = work_of(self.pier, self.base, Courses(elongation, pull), least_stroke_m)
@@ -315,7 +317,7 @@ class Response(Shown):
 
     def plot(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
         """Return a matplotlib Figure of rotation, angular velocity, energy, ground motion and events against time, and of the
-        loops of supports, dampers and tendons, ``width_mm`` wide or in the place of ``ax``:
+        loops of supports and devices, ``width_mm`` wide or in the place of ``ax``:
         ``response.plot().savefig("pier.pdf")``."""
         from rockbatch.common.figures.paper import drawn
         from rockbatch.outcome.figures import of_one
@@ -337,7 +339,7 @@ class Response(Shown):
         """Draw force against deformation of one device or support into ``ax``, as :meth:`plot_rotation` does; return the axes.
 
         ``of`` is "damper 1", "left" and so on; by default the first device, or the left support without any. Raises
-        ``InputError`` for another one, with those that there are.
+        ``InputError`` for an unknown name, and lists the names.
         """
         from rockbatch.common.figures.paper import panel_in
         from rockbatch.outcome.figures import loops

@@ -43,7 +43,7 @@ class RigidBase(WithShaft):
 
     ``restitution`` is the factor e on the angular velocity at an impact; ``None`` means :attr:`Pier.restitution`, Housner's
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
-    ``restraints`` are dampers and tendons between the pier and the ground.
+    ``restraints`` are devices between the pier and the ground: dampers, tendons, stops and deck springs.
     ``friction``, if known, is the coefficient of the interface: a run reports where its forces need more (THEORY.md, Forces).
     ``flight``, ``flight_limit_mm``, ``area_m2`` and ``confirm`` are as on springs (:class:`ElasticBase`).
     With ``shaft = "elastic"`` the pier bends in its ``flexural_modes`` lowest modes, by default in four or as many as its masses
@@ -77,7 +77,7 @@ class RigidBase(WithShaft):
     """β of ground that does not give: the limit of springs."""
 
     def __post_init__(self, flexural_impact: str | None) -> None:
-        """Check the fields; warn if ``flexural_impact`` is given, which has no effect any more."""
+        """Check the fields; warn of ``flexural_impact`` "momentum", without effect; ``WrongType`` for any other than that."""
         self._check()
         if flexural_impact is None:
             return
@@ -87,7 +87,7 @@ class RigidBase(WithShaft):
         warnings.warn(message, Superseded, stacklevel=4)
 
     def parameters(self, pier: Pier) -> dict[str, object]:
-        """Return this base under ``pier`` by the keys of run.json."""
+        """Return this base under ``pier`` by the keys of run.json; ``restitution`` is None for Housner's value."""
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
         values: dict[str, object] = {"restitution": of_frame if self.restitution is None else self.restitution}
         values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
@@ -175,7 +175,7 @@ class ElasticBase(WithShaft):
 
     @property
     def first_loading(self) -> Curve:
-        """Return the curve of the springs' first loading, over static force and deflection."""
+        """Return the curve of the springs' first loading, over static force and deflection: straight, without end."""
         return Straight(math.inf)
 
     @property
@@ -297,7 +297,7 @@ IMPULSIVE = (RigidBase.name,)
 
 
 def in_kilonewtons(pier: Pier, base: Base) -> dict[str, float]:
-    """Return K = β² p² M/2 [kN/m] and F_y = η M g/2 [kN] by study key; empty without a mass, or without two springs."""
+    """Return K = β² p² M/2 [kN/m], and F_y = η M g/2 [kN] if it yields, by study key; {} without mass or two springs."""
     if pier.mass_t is None or not base.two_springs:
         return {}
     values = {"stiffness_kN_m": 0.5 * pier.mass_t * vertical_frequency(pier, base) ** 2}

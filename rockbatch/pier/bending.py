@@ -12,7 +12,7 @@ import numpy.typing as npt
 from rockbatch.common.errors import Problem
 from rockbatch.pier.block import Pier
 from rockbatch.pier.parts import Part
-from rockbatch.pier.sections import ROUNDING, parts_of, share_above, unknown_masses
+from rockbatch.pier.sections import ROUNDING, distribution_problems, parts_of, share_above
 
 MOST_MODES = 4
 """Greatest number of modes that are followed."""
@@ -56,7 +56,7 @@ class Modes:
 
 def problems(pier: Pier) -> list[Problem]:
     """Return a problem for each reason that the shaft of ``pier`` cannot be taken as elastic; empty if it can."""
-    texts = unknown_masses(pier)
+    texts = distribution_problems(pier)
     rigid = [part for part in pier.parts or () if part.flexural_rigidity_kNm2 is not None]
     if not rigid and pier.flexural_period_s is None:
         texts.insert(
@@ -129,7 +129,7 @@ class Stretch(NamedTuple):
 
 
 def _stretches(pier: Pier) -> tuple[Stretch, ...]:
-    """Return the shaft by its parts' rigidities, which add up where parts stand beside each other; else of E I = 1."""
+    """Return the shaft in stretches by its parts' rigidities, which add up side by side; else a single one of E I = 1."""
     parts = [part for part in pier.parts or () if part.length_m and part.flexural_rigidity_kNm2]
     if pier.flexural_period_s is not None or not parts:
         return (Stretch(0.0, pier.highest, 1.0, 0.0),)
@@ -180,7 +180,7 @@ class BentAbove(NamedTuple):
 
 
 def bent_above(pier: Pier, modes: Modes, height: float) -> BentAbove:
-    """Return the integrals of the ``modes`` over the mass of ``pier`` above the section at ``height`` [m]."""
+    """Return the integrals of the ``modes`` over the mass of ``pier`` above the section at ``height`` [m]; zeros at the top."""
     parts = parts_of(pier)
     pieces = [(part, share) for part in parts if (share := share_above(part, height, ROUNDING * pier.highest)) > 0.0]
     n = len(modes.frequency)
@@ -200,7 +200,7 @@ def bent_above(pier: Pier, modes: Modes, height: float) -> BentAbove:
 
 
 def _points(part: Part, share: float = 1.0) -> tuple[Values, Values]:
-    """Return the masses [t] by which the upper ``share`` of a part is replaced, behind their heights [m]."""
+    """Return heights [m] and masses [t] of the points that replace the upper ``share`` of a part; one if it has no length."""
     length = share * (part.length_m or 0.0)
     if length == 0.0:
         return np.array([part.height_m]), np.array([part.mass_t])

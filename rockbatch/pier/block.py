@@ -390,7 +390,7 @@ class Pier(InNotebook):
 def share_of_shaft(alpha: float, mu: float, deck_over_columns: float | None = None) -> float:
     """Return :attr:`Pier.shaft_share` of a pier without parts: of a uniform shaft with a mass on top, or of a frame.
 
-    If the shaft has r times the mass on top, M h²/I0 = μ cos²α = 3 + 12/(r² + 4r).
+    If the shaft has r times the mass on top, M h²/I0 = μ cos²α = 3 + 12/(r² + 4r); 1 if that is 3 or less.
     """
     if deck_over_columns is not None:
         return 1.0 / (1.0 + deck_over_columns)

@@ -31,7 +31,7 @@ SPEED = 0.1
 """Speed [m/s] at which a viscous damper should have less than the pier's weight; heels of rocking piers reach 0.1 to 1 m/s."""
 
 THINNEST, WIDEST = 2.5e-5, 0.5
-"""Yield deflection of a hysteretic damper [m]; steel ones have 1 to 20 mm."""
+"""Bounds of the usual yield deflection of a hysteretic damper [m]; dampers of steel have 1 to 20 mm."""
 
 QUICKEST = 1e4
 """Relaxation rate [1/s] of a damper on a brace, linearised about its force at SPEED, above which the brace is as good as rigid

@@ -59,7 +59,7 @@ class Device(InNotebook, ABC):
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """What brings quantities: the name of its table, and that of a part of these."""
+        """Names by which the catalogue selects quantities: that of the device's table, and of a yielding tendon a second one."""
         return (self.what,)
 
     def __post_init__(self) -> None:
@@ -87,7 +87,7 @@ class Device(InNotebook, ABC):
 
 
 def wrong_words(place: float | str | None, *words: str) -> list[Problem]:
-    """Return the problem of a ``place`` that is a word other than ``words``; empty for numbers and None."""
+    """Return the problem of a ``place`` that is text other than ``words``; empty for one of these, a number (offset) or None."""
     if not isinstance(place, str) or place in words:
         return []
     text = f"must be {', '.join(map(shown, words))} or an offset in m"
@@ -100,7 +100,7 @@ def doubt(pier: Pier, device: Device) -> Doubt | None:
 
 
 def unlikely_devices(pier: Pier, devices: Sequence[Device]) -> list[Problem]:
-    """Return a problem for the first implausible, unconfirmed value of each device of ``pier``."""
+    """Return a problem for each device of ``pier`` with implausible, unconfirmed values, about the first of them."""
     return [_unusual(device, odd) for device in devices if (odd := doubt(pier, device))]
 
 

@@ -33,9 +33,10 @@ ONSET = 1e-12
 
 
 def bracketed(excess: Callable[[Array], Array], low: Array, high: Array, near: float) -> tuple[Array, Array, Array]:
-    """Return a bracket of the zero of the increasing ``excess``, and the position of the zero in it, 0 to 1.
+    """Return a bracket of the zero of the increasing ``excess``: its ends, and the position of the zero in it, 0 to 1.
 
     Bisection and regula falsi alternate; where friction makes ``excess`` jump across 0, the bracket encloses the jump.
+    Without a zero between ``low`` and ``high`` it shrinks to the end that is nearest to one.
     """
     below, above = excess(low), excess(high)
     for step in range(MOST_STEPS):
@@ -403,8 +404,10 @@ class SlowTurn:
         return Equilibria(*(np.concatenate(both)[places] for both in parts))
 
     def kinks(self, curve: Equilibria) -> Array:
-        """Return rotations [rad] within a curve, beside lift-off, at which a support or tendon yields, a tendon slackens, or a
-        stop or deck spring engages."""
+        """Return the rotations [rad] within a curve at which its slope jumps, beside lift-off; empty if it does not.
+
+        There a support or tendon yields, a tendon slackens, or a stop or deck spring engages.
+        """
         changes = self._changes(curve)
         for _ in range(PASSES):
             if len(changes):
@@ -430,7 +433,7 @@ class SlowTurn:
         return np.flatnonzero(np.any([regime[1:] != regime[:-1] for regime in regimes], axis=0))
 
     def strongest(self, quantity: str, curve: Equilibria, kinks: Array) -> tuple[float, float]:
-        """Return the greatest value of "moment" or "acceleration" along the curve, and the rotation there [rad]."""
+        """Return the greatest value of "moment" [m] or "acceleration" [g] along the curve, and the rotation there [rad]."""
         corners = (0.0, self.lift_off, *kinks)
         for _ in range(5):
             values = getattr(curve, quantity)

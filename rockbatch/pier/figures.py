@@ -136,9 +136,9 @@ class _Shape(NamedTuple):
 
 
 def sketches(piers: Sequence[Mapping[str, Any]], bases: Collection[str]) -> list[Figure]:
-    """Return sketches of the first possible piers, at one scale; ``piers`` as in run.json, ``bases`` the kinds of their bases.
+    """Return sketches of the first four possible piers, at one scale; ``piers`` as in run.json, ``bases`` their kinds.
 
-    A pier with impossible values is left out, since run.json may come from anybody.
+    A pier with impossible values is left out, since run.json may come from anybody; [] if none is left.
     """
     shapes = [shape for shape in map(_Shape.of, piers) if shape.possible][:MOST_PIERS]
     if not shapes:

@@ -34,7 +34,7 @@ class Straight:
         return np.minimum(deflection, self.most)
 
     def deflection(self, force: float) -> float:
-        """Return the deflection/δ_y under a ``force``/F_y < 1."""
+        """Return the deflection/δ_y under a ``force``/F_y < 1, the same number."""
         return force
 
     def tangent(self, force: Array) -> Array:

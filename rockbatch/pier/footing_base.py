@@ -154,8 +154,8 @@ class FootingBase(Traits):
     ) -> Self:
         """Return a footing from G [MPa] and ν of the soil: its bed has the rocking stiffness of the ``formula``.
 
-        With ``density_t_m3`` radiation damping joins ``zeta``. ``rest`` as in :meth:`from_stiffness`.
-        Raises ``InputError`` as that does.
+        With ``density_t_m3`` radiation damping joins ``zeta``. ``rest`` as in :meth:`from_stiffness`. Raises ``InputError``
+        as that method does, and for an unknown formula or impossible soil.
         """
         soil, width = Soil(shear_modulus_MPa, poisson, embedment_m), 2.0 * pier.half_width
         known = [] if formula in FORMULAS else [f"must be {' or '.join(map(shown, FORMULAS))}"]
@@ -172,7 +172,7 @@ class FootingBase(Traits):
 
 
 def wrong_soil(soil: Soil, length_m: float, density_t_m3: float | None = None) -> list[Problem]:
-    """Return what is impossible about soil and length of a footing."""
+    """Return a problem for each impossible value of the soil, the length of a footing, and a density that is given."""
     wrong = POSITIVE.problems("shear_modulus_MPa", soil.shear_modulus_MPa) + POSITIVE.problems("length_m", length_m)
     wrong += POISSON.problems("poisson", soil.poisson) + DEPTH.problems("embedment_m", soil.embedment_m)
     return wrong + POSITIVE.problems("density_t_m3", density_t_m3)

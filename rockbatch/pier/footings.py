@@ -93,7 +93,7 @@ def slow_turn(pier: Pier, base: Base, restraints: tuple[Restraint, ...] | None =
 
 
 def facts_of_bed(pier: Pier, base: Base) -> dict[str, float | None]:
-    """Return what the statics sheet says of the ground under a footing; nothing on other bases."""
+    """Return the statics sheet's facts on the ground under a footing, in MN m, kN m if the mass is known; {} on other bases."""
     if not isinstance(base, FootingBase):
         return {}
     facts = {"safety_factor": base.safety_factor, "vertical_over_formula": base.vertical_over_formula}

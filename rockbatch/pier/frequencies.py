@@ -14,8 +14,8 @@ class Ground(Protocol):
 
 
 class Springs(Ground, Protocol):
-    """Ground that gives: its damping ratio, if any, η, by which deflections are measured, and its rocking stiffness over that
-    of the same springs at both edges."""
+    """Ground that gives: its damping ratio, if any, η, by which deflections are measured, and its rocking stiffness over the
+    stiffness of the same springs at both edges."""
 
     @property
     def zeta(self) -> float | None: ...
@@ -51,7 +51,7 @@ def tilt_over_residual(gravity: float, height: float, half_width: float, omega_v
 
 
 def rocking_frequency(pier: Pier, base: Springs) -> float:
-    """Return the circular frequency ω_r [rad/s] of rocking in full contact, on elastic springs (THEORY.md, eq. 12)."""
+    """Return the circular frequency ω_r [rad/s] of elastic rocking in full contact (THEORY.md, eq. 12); 0 if it topples."""
     mu, alpha = pier.mu, pier.alpha
     stiffness = mu * base.rocking_share * (math.sin(alpha) * base.beta * pier.p) ** 2 - (1 + mu) * pier.p**2 * math.cos(
         alpha
@@ -62,8 +62,8 @@ def rocking_frequency(pier: Pier, base: Springs) -> float:
 def fastest(pier: Pier, base: Springs) -> float:
     """Return the greatest rate [rad/s] in full contact: of vertical vibration or rocking, or of decay if overdamped.
 
-    A vibration ω with the decay rate d has the rate ω if d ≤ ω, and d + √(d² − ω²) otherwise;
-    d is ζ ω_v of the vertical one, and ζ ω_v μ sin²α/(1 + μ cos²α) of rocking (THEORY.md, Damped supports).
+    A vibration ω with the decay rate d has the rate ω if d ≤ ω, and d + √(d² − ω²) otherwise; d is ζ ω_v of the vertical one,
+    and ζ ω_v c μ sin²α/(1 + μ cos²α) of rocking, where c is the base's ``rocking_share`` (THEORY.md, Damped supports).
     """
     damping = (base.zeta or 0.0) * vertical_frequency(pier, base)
     share = base.rocking_share * pier.mu * math.sin(pier.alpha) ** 2 / (1 + pier.mu * math.cos(pier.alpha) ** 2)

@@ -72,12 +72,12 @@ RATCHETING = tuple(name for name, law in LAWS.items() if law.creep is not None)
 
 
 def steady(word: str) -> str:
-    """Return the quoted names of the laws that do not ratchet, joined by commas and ``word``: "and" or "or"."""
+    """Return the quoted names of the laws that do not ratchet, joined by commas and ``word``: '"epp" and "hardening"'."""
     names = [f'"{name}"' for name in LAWS if name not in RATCHETING]
     return f" {word} ".join((", ".join(names[:-1]), names[-1]))
 
 
 def meanings() -> str:
-    """Return the quoted names of all laws with their meanings, joined by semicolons."""
+    """Return the quoted names of all laws with their meanings: '"bouc-wen", smooth, …; "epp", …; or "hardening", …'."""
     *others, last = (f'"{name}", {law.meaning}' for name, law in LAWS.items())
     return f"{'; '.join(others)}; or {last}"

@@ -52,7 +52,7 @@ class Part(NamedTuple):
 
 
 def in_floats(mass_t: float, height_m: float, inertia_t_m2: float = 0.0, *others: float | None) -> Part:
-    """Return the part with all values converted to float; ``others`` are its length and rigidities.
+    """Return the part with all values converted to float; ``others`` are its length and rigidities, None for those not given.
 
     Raises
     ------

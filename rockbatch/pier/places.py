@@ -40,7 +40,7 @@ def places(pier: Pier, restraint: Restraint) -> tuple[Place, ...]:
 
 
 def offsets(pier: Pier, restraint: Restraint) -> tuple[float, ...]:
-    """Return the offsets of ``restraint`` from the centre of the base [m]; none for places at the deck."""
+    """Return the offsets of ``restraint`` from the centre of the base [m], left before right; () for a device at the deck."""
     return tuple(place.offset for place in places(pier, restraint) if place.height == 0.0)
 
 
@@ -71,7 +71,7 @@ def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
 
 
 def symmetric(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
-    """Return True if the mirror image has the same devices at the same places."""
+    """Return True if the mirror image of the pier has equal devices at the same places; True without devices."""
     placed = [(place, _anywhere(device)) for device in restraints for place in places(pier, device)]
     return all(placed.count((_mirrored(place), device)) == placed.count((place, device)) for place, device in placed)
 

@@ -8,7 +8,7 @@ from rockbatch.pier.restraints import DeckSpring, Restraint, Tendon
 
 
 def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Problem]:
-    """Return the problem of unsymmetric tendons under a pier on springs; empty if they are symmetric."""
+    """Return the problem of tendons under a pier on springs without equal ones on the other side; [] if they are symmetric."""
     if symmetric(pier, tuple(device for device in restraints if isinstance(device, Tendon))):
         return []
     text = (
@@ -19,7 +19,10 @@ def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Prob
 
 
 def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Problem]:
-    """Return a problem for each device that is impossible under ``pier``; empty if all are possible."""
+    """Return a problem for each device that is impossible under ``pier``: at a frame's deck, off the base, or more friction.
+
+    Friction is solved at two places at most. [] if all are possible.
+    """
     wrong = []
     at_deck = any(isinstance(device, DeckSpring) or device.at == "deck" for device in restraints)
     if at_deck and pier.deck_over_columns is not None:
@@ -33,7 +36,7 @@ def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Prob
 
 
 def wrong_device(pier: Pier, device: Restraint) -> list[Problem]:
-    """Return the problem of a device more than the base's width from the axis; empty otherwise."""
+    """Return the problem of a device farther from the axis than the base's width; [] otherwise, and for one at the deck."""
     if isinstance(device, DeckSpring) or not isinstance(device.at, float | int):
         return []
     if abs(device.at) <= 2.0 * pier.half_width:

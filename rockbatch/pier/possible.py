@@ -42,7 +42,7 @@ def least_eta(pier: Pier, base: Base) -> float:
 def enough_eta(pier: Pier, base: Base) -> float:
     """Return η above which the springs carry weight and prestress, and hold the pier upright with the given β.
 
-    This inverts :func:`least_beta` if β suffices for elastic springs; otherwise it is :func:`least_eta`.
+    This inverts :func:`least_beta` if the base yields and β suffices for elastic springs; otherwise it is :func:`least_eta`.
     """
     least = least_eta(pier, base)
     if isinstance(base, YieldingBase) and base.beta > pier.least_beta:

@@ -320,14 +320,14 @@ KINDS: dict[str, type[Restraint]] = {kind.what: kind for kind in (Damper, Tendon
 
 
 def what_of(values: Mapping[str, object]) -> str:
-    """Return the kind of device, one of :data:`KINDS`, by which fields it has in run.json."""
+    """Return the kind of device, a key of :data:`KINDS`, by the names of its fields in run.json; "tendon" if no other fits."""
     if "side" in values:
         return "deck_spring"
     return "damper" if "kind" in values else "stop" if "gap_m" in values else "tendon"
 
 
 def kinds_of(values: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return :attr:`Device.kinds` of the device that has these fields in run.json."""
+    """Return :attr:`Device.kinds` of a device by its fields in run.json; a tendon that yields has "yielding tendon", too."""
     yields = values.get("strength") is not None and values["strength"] < math.inf
     return (what_of(values), YIELDING_TENDON) if yields else (what_of(values),)
 

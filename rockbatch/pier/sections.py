@@ -28,11 +28,14 @@ class Above(NamedTuple):
 
 def problems(pier: Pier) -> list[Problem]:
     """Return a problem for each reason that section forces of ``pier`` cannot be computed; empty if they can."""
-    return [Problem("sections", None, text) for text in unknown_masses(pier)]
+    return [Problem("sections", None, text) for text in distribution_problems(pier)]
 
 
-def unknown_masses(pier: Pier) -> list[str]:
-    """Return reasons that the distribution of ``pier``'s mass over its height is not known; empty if it is."""
+def distribution_problems(pier: Pier) -> list[str]:
+    """Return reasons that the distribution of ``pier``'s mass over its height is not known; [] if it is.
+
+    It is known of a solid rectangle, μ = 3, and of parts that all have a ``length_m``, 0 included; never of a frame.
+    """
     if pier.deck_over_columns is not None:
         return [
             "how the deck of a frame presses on each of its columns is not known; leave them out, or give a bent "
@@ -77,7 +80,7 @@ def section_heights(pier: Pier, sections: int | Sequence[float], key: str = "sec
 
 
 def heights_in_all(piers: Iterable[Pier], sections: int | Sequence[float], key: str = "sections_m") -> set[float]:
-    """Return the heights [m] of ``sections`` of all ``piers``; none of a pier of which :func:`misfits` complains."""
+    """Return the set of heights [m] of ``sections`` in all ``piers``; a pier of which :func:`misfits` complains adds none."""
     heights = set[float]()
     for pier in piers:
         with suppress(InputError):
@@ -86,7 +89,7 @@ def heights_in_all(piers: Iterable[Pier], sections: int | Sequence[float], key: 
 
 
 def misfits(piers: Iterable[Pier], sections: int | Sequence[float], key: str = "sections_m") -> list[str]:
-    """Return why some of the ``piers`` cannot have the ``sections``, each reason once."""
+    """Return why some of the ``piers`` cannot have the ``sections``, each reason once; [] if all can."""
     reasons = dict[str, None]()
     for pier in piers:
         try:
@@ -132,7 +135,7 @@ def share_above(part: Part, height: float, rounding: float) -> float:
 
 
 def _piece(part: Part, height: float, rounding: float) -> Above:
-    """Return mass [t], rise [m] and inertia [t m²] of the piece of a part above ``height``.
+    """Return mass [t], rise [m] and inertia [t m²] of the piece of a part above ``height`` [m]; zeros for a point mass below it.
 
     The inertia in excess of a rod's is spread evenly over the length, as that of a rectangle's width is.
     """

@@ -25,11 +25,11 @@ class WithShaft(Traits):
         return self.shaft == "elastic"
 
     def modes(self, pier: Pier) -> Modes:
-        """Return the modes of an elastic shaft of ``pier`` that are followed."""
+        """Return the modes of an elastic shaft of ``pier`` that a run follows: ``flexural_modes``, or at most four."""
         return modes_of(pier, self.flexural_modes or MOST_MODES)
 
     def damping_ratios(self, pier: Pier) -> npt.NDArray[np.float64]:
-        """Return ζ_i of these modes, shape (n,): the same of all, or in proportion to their frequencies, as of stiffness."""
+        """Return ζ_i of these modes, shape (n,): equal ("modal"), or in proportion to their frequencies ("stiffness")."""
         frequency = self.modes(pier).frequency
         of_first = 1.0 if self.flexural_damping_kind == "modal" else frequency / frequency[0]
         return self.flexural_damping * of_first * np.ones(len(frequency))

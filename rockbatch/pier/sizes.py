@@ -11,7 +11,7 @@ from rockbatch.common.units import LEAST, MOST, POSITIVE, Bounds, Usual
 
 
 def _if_in_degrees(angle: float) -> str:
-    """Return what to write if an angle [rad] is in degrees; nothing for one that is no number."""
+    """Return advice to append for an angle [rad] that may be in degrees: "; if it is in degrees, write 0.2"; "" for NaN, inf."""
     return f"; if it is in degrees, write {math.radians(angle):.4g}" if math.isfinite(angle) else ""
 
 
@@ -100,7 +100,7 @@ def unusual(usual: Mapping[str, Usual], confirm: Collection[str], **values: floa
 
 
 def unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], **heights: float | None) -> list[Problem]:
-    """Return a problem for a pier wider than high, and for implausible ``heights`` [m]; none of those in ``confirm``."""
+    """Return a problem for a pier wider than high, and one for each implausible height [m]; none for names in ``confirm``."""
     wrong = []
     if width_m > height_m and "width_m" not in confirm:
         text = (

@@ -181,7 +181,7 @@ class Statics(Shown):
 
     @property
     def flexural_over_rocking(self) -> float | None:
-        """Return the flexural period over that of rocking at θ/α = 0.1; None if either is not known."""
+        """Return the flexural period over that of rocking at θ/α = 0.1; None if one of the two is not known."""
         period = self._at_amplitude(self.swings_at.period)
         own = flexural_period(self.pier)
         return None if period is None or own is None else own / period
@@ -264,7 +264,7 @@ class Statics(Shown):
 
 
 def in_words(sheet: Statics) -> dict[str, str]:
-    """Return the sheet as lines of text by their names; "" for those that do not apply."""
+    """Return the sheet as lines of text by their headings: "lift-off", "strength", …; "" for those that do not apply."""
     alpha, weight, swings = sheet.pier.alpha, sheet.weight_kN, sheet.swings_at
 
     def acceleration(value: float | None, rotation: float | None, otherwise: str) -> str:
@@ -308,7 +308,7 @@ def in_words(sheet: Statics) -> dict[str, str]:
 
 
 def is_too_soft(sheet: Statics) -> bool:
-    """Return True if the flexural period is too long for a pier whose shaft is taken as rigid; False if unknown."""
+    """Return True if the flexural period is too long for a shaft taken as rigid; False if it is unknown, or the shaft bends."""
     return (sheet.flexural_over_rocking or 0.0) > MOST_FLEXURE and not sheet.base.bends
 
 
@@ -360,7 +360,7 @@ def statics(pier: Pier, foundation: Base) -> Statics:
 
 
 def sheet_of(pier: Pier, foundation: Base) -> Statics:
-    """Return the statics sheet as :func:`statics` does, without its check that the pier can stand on the foundation."""
+    """Return the statics sheet as :func:`statics` does, without checking that the pier can stand on the foundation."""
     even = symmetric(pier, foundation.restraints)
     sides = [_Side.of(pier, foundation, side) for side in ((1.0,) if even else (1.0, -1.0))]
     weaker, first = min(sides, key=lambda side: side.strength[0]), min(sides, key=lambda side: side.lift_off[0])

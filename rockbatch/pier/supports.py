@@ -30,7 +30,7 @@ def eta_of(pier: Pier, yield_kN: float) -> float:
 
 
 def _mass(pier: Pier, **value: float) -> float:
-    """Return the mass [t] of ``pier``; raise ``InputError`` without one, or if the named value is not positive."""
+    """Return the mass [t] of ``pier``. Raises ``InputError`` without one, or if the named value is not positive."""
     wrong = [problem for name, number in value.items() for problem in POSITIVE.problems(name, number)]
     if pier.mass_t is None:
         wrong.append(NO_MASS)
@@ -95,6 +95,6 @@ SUPPORTS = {
 
 
 def unlikely_supports(pier: Pier, confirm: Collection[str], **values: float | None) -> list[Problem]:
-    """Return a problem for each unusual value of :data:`SUPPORTS` that is not None and not in ``confirm``."""
+    """Return a problem for each unusual value of :data:`SUPPORTS`; none for None, or for a name in ``confirm``."""
     given = {name: value for name, value in values.items() if value is not None and name not in confirm}
     return [problem for name, value in given.items() for problem in SUPPORTS[name].doubts(pier, name, value)]

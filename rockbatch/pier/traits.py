@@ -17,7 +17,7 @@ LEAST_ETA = 1.000001
 """Least η: closer to 1, Bouc–Wen and hardening springs would sink without bound to carry the weight."""
 
 MOST_EXPONENT = 1000.0
-"""Greatest n of Bouc–Wen springs: their corner is as sharp as that of elastic–perfectly plastic ones, which have none."""
+"""Greatest n of Bouc–Wen springs: their corner is as sharp as that of elastic–perfectly plastic springs, without n."""
 
 FLIGHT_LIMIT_MM = 5.0
 """Height of flight [mm] beyond which a run has a note, unless the base gives another."""
@@ -38,16 +38,12 @@ EPSILON_AND_ZETA = "zeta is given too, and a damped support takes a landing with
 """Message on a support that has both."""
 
 
-def _strength(eta: float) -> str:
-    if eta > MOST:
-        return f"must be {MOST:g} at most"
-    return (
-        "the springs cannot carry the weight; eta = yield force over static force must be above 1 "
-        f"(at least {LEAST_ETA:.6f})"
-    )
+_STRENGTH = (
+    "the springs cannot carry the weight; eta = yield force over static force must be above 1 "
+    f"(at least {LEAST_ETA:.6f})"
+)
 
-
-BETA = Bounds(LEAST, MOST, why=lambda beta: f"must be {MOST:g} at most" if beta > MOST else "must be a number above 0")
+BETA = Bounds(LEAST, MOST, why="must be a number above 0")
 """Possible values of β; the least that holds a pier upright depends on the pier."""
 
 BOUNDS = {
@@ -62,7 +58,7 @@ BOUNDS = {
     "flexural_modes": Bounds(1, MOST_MODES, why=f"must be within 1..{MOST_MODES}, the number of the shaft's modes"),
     "zeta": Bounds(0.0, 1.0, why="damping of the supports, as a share of critical, must be within 0..1"),
     "epsilon": Bounds(0.0, 1.0, why="the landing pivot's restitution must be within 0..1"),
-    "eta": Bounds(LEAST_ETA, MOST, why=_strength),
+    "eta": Bounds(LEAST_ETA, MOST, why=_STRENGTH),
     "n": Bounds(1.0, MOST_EXPONENT, why=f"the Bouc–Wen exponent must be at least 1, and {MOST_EXPONENT:g} at most"),
 }
 """Possible values of the fields of bases; the least β and η depend on the pier and on tendons, too (`possible.py`)."""
@@ -88,7 +84,7 @@ USUAL = {
 
 
 def wrong_blow(flexural_impact: str) -> str:
-    """Return why ``flexural_impact`` is not a rule of impacts on an elastic shaft; "" for "momentum", the only one."""
+    """Return the problem text of a ``flexural_impact`` other than "momentum", the only rule of a blow; "" for that."""
     if flexural_impact == "momentum":
         return ""
     if flexural_impact == "rate":
@@ -135,7 +131,7 @@ class Traits(InNotebook):
         refuse(wrong or unusual(USUAL, self.confirm, **{name: values[name] for name in USUAL if name in values}))
 
     def _wrong_together(self) -> list[Problem]:
-        """Return a problem for each contradiction between fields."""
+        """Return a problem for each contradiction between fields; none unless a class overrides it."""
         return []
 
     @property
@@ -145,22 +141,22 @@ class Traits(InNotebook):
 
     @property
     def has_exponent(self) -> bool:
-        """Return True if the springs' law has an exponent n."""
+        """Return whether the springs' law has an exponent n: False unless a class overrides it."""
         return False
 
     @property
     def has_epsilon(self) -> bool:
-        """Return True if impacts have a restitution ε of the landing pivot."""
+        """Return whether impacts have a restitution ε of the landing pivot: False unless a class overrides it."""
         return False
 
     @property
     def asks_tension(self) -> bool:
-        """Return True if impacts need tension from a support, which it does not have."""
+        """Return whether impacts need tension from a support, which it has not: False unless a class overrides it."""
         return False
 
     @property
     def ratchets(self) -> bool:
-        """Return True if the springs settle cyclically under vibration (ratcheting)."""
+        """Return whether the springs settle cyclically under vibration (ratcheting): False unless a class overrides it."""
         return False
 
     @property
@@ -169,7 +165,7 @@ class Traits(InNotebook):
         return self.yields or holds_a_tilt(self.restraints)
 
     def by_other_law(self) -> Self:
-        """Return the base with its springs by the other law if its own law ratchets; otherwise itself."""
+        """Return the base by the other spring law if its own ratchets: itself unless a class overrides it."""
         return self
 
 

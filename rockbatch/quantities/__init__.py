@@ -1,1 +1,1 @@
-"""The catalogue of quantities: what a row of peaks.csv says, and what checks may ask of it. Knows no study and no run."""
+"""The catalogue of quantities: columns of peaks.csv, and demands that checks may make of them. Knows no study and no run."""

@@ -50,7 +50,7 @@ class Rows:
         return self.at(self.places[chosen], **{name: texts[chosen] for name, texts in self._own.items()})
 
     def same_rows_of(self, wider: "Rows") -> "Rows":
-        """Return the same rows of ``wider``, all rows of a table with further columns."""
+        """Return the rows of ``wider`` at the same places, where ``wider`` is the same table with further columns."""
         return wider.at(self.places, **self._own)
 
     def __len__(self) -> int:

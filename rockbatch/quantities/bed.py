@@ -1,4 +1,4 @@
-"""Quantities of a footing's bed, which a study with such a base brings."""
+"""Quantities of a footing's bed, in the tables of studies with a footing."""
 
 from collections.abc import Callable
 from typing import Any
@@ -16,7 +16,7 @@ def _on_footing(study: Any) -> bool:
 
 
 def _of_bed(field: str) -> Callable[[Run], Any]:
-    """Return the number of a field of ``BedDemands``."""
+    """Return a function that reads ``field`` of a run's ``BedDemands``; None for a run without a bed."""
     return lambda run: None if run.outcome.bed is None else getattr(run.outcome.bed, field)
 
 
@@ -34,7 +34,10 @@ def _strips_error(run: Run) -> float | None:
 
 
 def _edge_error(run: Run) -> float | None:
-    """Return the error of an edge's settlement [m]: that of the middle, and of the rotation at rest times half the width."""
+    """Return the error of an edge's settlement [m]: that of the middle, and of the rotation at rest times half the width.
+
+    None without a bed, or if one of the two errors is not known.
+    """
     middle, rotation = run.outcome.settlement_error, run.outcome.theta_res_error
     on_bed = run.outcome.bed is not None and middle is not None and rotation is not None
     return middle + run.pier.half_width * rotation if on_bed else None
@@ -63,8 +66,8 @@ OF_FOOTING = (
         sometimes=True, weighed=True, error="bed_pressure_error_MPa", limits=(Limit(),)),
     _quantity("bed_pressure_s", "time of it", _of_bed("t_pressure"), "s"),
     _quantity("bed_pressure_at_m", "place of it to the right of the middle", _of_bed("pressure_at"), "m"),
-    _quantity("bed_pressure_error_MPa", "estimated error of the greatest pressure by the number of strips: its change by half as "
-        "many; empty with a fixed step", _of_bed("pressure_error"), "MPa", sometimes=True, weighed=True, stood=True),
+    _quantity("bed_pressure_error_MPa", "estimated error of the greatest pressure by the number of strips: 3 times its change by "
+        "half as many; empty with a fixed step", _of_bed("pressure_error"), "MPa", sometimes=True, weighed=True, stood=True),
     _quantity("yielding_half_cycles", "number of rocks to one side in which the ground yielded", _of_bed("yielding_rocks"), "1",
         kind="count", limits=(Limit(),)),
     _quantity("bed_work_J_kg", "plastic work of the ground, per unit mass of the pier", _of_bed("work"), "J/kg",
@@ -80,7 +83,8 @@ OF_FOOTING = (
         )),
     _quantity("edge_settlement_error_m", "estimated error of the settlements of both edges; empty with a fixed step",
         _edge_error, "m", stood=True, sometimes=True),
-    _quantity("strips_error", "share of the error of the greatest rotation over α that the number of strips has: a third of the "
-        "change by half as many; empty with a fixed step", _strips_error, "1", stood=True, sometimes=True),
+    _quantity("strips_error", "share of the error of the greatest rotation over α that the number of strips has: 3 times the "
+        "change by half as many, of it or of any extreme before; empty with a fixed step", _strips_error, "1",
+        stood=True, sometimes=True),
 )  # fmt: skip
 """Quantities of a footing's bed, at the end of a table."""

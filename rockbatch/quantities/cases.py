@@ -16,9 +16,19 @@ Lever = Callable[[Case], float]
 """Factor of a case, such as a length by which a rotation becomes a displacement."""
 
 
+def is_across(case: Case) -> bool:
+    """Return whether a case is the one across the axis of its pier."""
+    return bool(case.get("across_of"))
+
+
+def name_along(case: Case) -> str:
+    """Return the name of the case along the axis of the same pier, which is its own unless it is across the axis."""
+    return str(case.get("across_of") or case["case"])
+
+
 def of_pier(case: Case) -> tuple[object, ...]:
     """Return a key that the cases of both axes of a pier share: the name of that along the axis, and the columns."""
-    return case.get("across_of") or case["case"], *case["columns"].items()
+    return name_along(case), *case["columns"].items()
 
 
 def always(value: float) -> Lever:
@@ -51,7 +61,7 @@ def top(case: Case) -> float:
 
 
 def weight(case: Case) -> float:
-    """Return the weight of the pier [kN]."""
+    """Return the weight of the pier [kN]; its mass must be known."""
     return float(case["pier"]["mass_t"]) * float(case["pier"]["gravity"])
 
 
@@ -101,7 +111,7 @@ LIGHT_SHAFT = 1.0 / 6.0
 
 
 def has_light_shaft(case: Case) -> bool:
-    """Return whether the shaft of a case is known to be light beside what it carries."""
+    """Return whether the shaft of a case has less than a sixth of the mass, by its parts, or by its shape without these."""
     pier = case["pier"]
     share = pier.get("shaft_share")
     if share is None:  # a pier without parts: its shape gives it
@@ -115,7 +125,7 @@ def lands_by_impulse(case: Case) -> bool:
 
 
 def stops_by_impulse(case: Case) -> bool:
-    """Return whether ε < 1, so that an impulse stops a part of every landing on springs."""
+    """Return whether ε < 1, so that an impulse stops a part of every landing on springs; False without ε."""
     return float(case["parameters"].get("epsilon", 1.0)) < 1.0
 
 

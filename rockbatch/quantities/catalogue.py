@@ -172,7 +172,7 @@ FIXED = (
     ),
     Quantity("substeps", "integration steps per sample", "substeps", kind="count"),
 )  # fmt: skip
-"""Quantities that every table has, in its order; then come those of the keys that the study varies."""
+"""Quantities that every table has, in its order, before the keys that the study varies."""
 
 _CHANGED = "a motion 10⁻⁸ stronger or weaker"
 _KNOWN = "; empty with a fixed step, and of a run that failed"
@@ -312,11 +312,11 @@ TRAILING = (
         '; empty with kinematics = "finite"',
     ),
 )  # fmt: skip
-"""Quantities that follow those of the varied keys. A table of an earlier version may lack the last of them."""
+"""Quantities that every table has behind the varied keys. A table of an earlier version may lack the last of them."""
 
 
 def _of_observers(group: str) -> list[Quantity]:
-    """Return the quantities that observers bring at a place of the table, by the name that its ``group`` has there."""
+    """Return the quantities that all observers list under ``group``, a place in the table such as "FIRST"; [] for none."""
     return [quantity for quantities in parts(f"quantities.{group}") for quantity in quantities]
 
 
@@ -489,7 +489,7 @@ def as_markdown() -> str:
 
 
 def listed() -> dict[str, list[str]]:
-    """Return the names of all demands, grouped by what they depend on: the list in the example of checks."""
+    """Return the names of all demands by the heading of what they depend on: {"of every run": ["theta_max_over_alpha", …], …}."""
     return grouped(DEMANDS, _dependence)
 
 

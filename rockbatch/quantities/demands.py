@@ -16,14 +16,17 @@ from rockbatch.quantities.cases import ONE, Case, Lever, alpha, bends, holds_a_t
 from rockbatch.quantities.statistics import Values
 
 AT_HEIGHTS = {"sections": "sections = 5", "interaction": "interaction_m = [0.0]"}
-"""What demands in sections of the shaft need, and what to write under [output] for it."""
+"""Tables that demands in sections of the shaft need, and the line under [output] that brings each."""
+
+OF_BASE = "interaction_base"
+"""Key of [output] for shear and normal force of the base at the same moment."""
 
 FORCES = "base_shear_m_s2"
 """A column that every run with forces has."""
 
 
 class Estimated(NamedTuple):
-    """Values of a demand, shape (n,), and their estimated errors; NaN if unknown."""
+    """Values of a demand, shape (n,), and their estimated errors; NaN if unknown, and an infinite error of a lower bound."""
 
     value: Values
     error: Values
@@ -65,7 +68,7 @@ class Demand:
         Value beyond which a limit decides nothing.
     verb : str
         Of an event: the words for a record that causes it.
-    needs : "", "forces", "rocking", or one of :data:`AT_HEIGHTS`
+    needs : "", "forces", "rocking", :data:`OF_BASE`, or one of :data:`AT_HEIGHTS`
         Key of [output] that brings the columns it takes; those of :data:`AT_HEIGHTS` are of a table of its own, at the height of
         the check.
     weighed : bool
@@ -83,6 +86,8 @@ class Demand:
     directed : bool
         True if each axis of the pier has one by itself, so that those of two axes add up. Of others, such as settlements,
         axial forces and counts, which have the weight or the whole pier in them on either axis, the greater counts.
+    over_capacity : bool
+        True for a share of a capacity that depends on the axial force, which a check states.
     """
 
     name: str
@@ -105,6 +110,7 @@ class Demand:
     bending: bool = False
     pointwise: bool = False
     directed: bool = False
+    over_capacity: bool = False
 
     def applies_to(self, case: Case) -> bool:
         """Return whether the demand applies to a case, by its base, its dampers or its shaft."""
@@ -118,8 +124,8 @@ class Demand:
 
     @property
     def brings(self) -> set[str]:
-        """Keys of [output] that a check of it brings: the other law, since the worse counts."""
-        return {"both_laws"} if self.other_law else set()
+        """Keys of [output] that a check of it brings: the other law, since the worse counts, and forces of one moment."""
+        return {"both_laws"} if self.other_law else {self.needs} & {OF_BASE}
 
     @property
     def words(self) -> str:
@@ -189,17 +195,18 @@ OF_SECTIONS = {
 """Columns of sections.csv behind those that name the run, with their meanings."""
 
 OF_INTERACTION = {
-    "height_m": "height of the section above the pivots [m]",
-    "axial_kN": "axial force, positive in compression [kN], ascending",
-    "moment_kNm": "greatest moment about the middle of the section beside it [kN m]",
-    "interaction_error": "error of all corners of a section, over its greatest axial force and moment: four times the change "
-    "when the step was halved; empty with a fixed step",
+    "height_m": "height of the section above the pivots [m]; empty for the base",
+    "axial_kN": "axial force of the section, or normal force of the base, positive in compression [kN], ascending",
+    "moment_kNm": "greatest moment about the middle of the section beside it [kN m]; empty for the base",
+    "shear_kN": "greatest shear of the base beside it, along the ground [kN]; empty for a section",
+    "interaction_error": "error of all corners of a section, over its greatest axial force and moment, or of the base likewise: "
+    "four times the change when the step was halved, and what leaving corners out may change; empty with a fixed step",
 }
-"""Columns of interaction.csv behind those that name the run, with their meanings: corners of the envelope of a section."""
+"""Columns of interaction.csv behind those that name the run, with their meanings: corners of envelopes of sections and bases."""
 
 
 def in_flight(column: str) -> Evaluate:
-    """Return the evaluation of a column of flights; 0 for a complete run without a flight."""
+    """Return a function for a column of flights, without errors; 0 for a run that stood or overturned without a flight."""
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
         value, status = runs.numbers(column), runs.texts("status")

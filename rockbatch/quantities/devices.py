@@ -23,19 +23,22 @@ def of_device(
 
 
 def _count(device: str, name: str, words: str, head: str) -> Quantity:
-    """Return a number of events of devices, which has no error."""
+    """Return the quantity of a number of events of devices, which has no error."""
     return of_device(name, words, name, "1", ReportFormat(head, ".0f"), kind="count", error="", device=device)
 
 
 def _force(device: str, symbol: str) -> Quantity:
-    """Return the greatest force of a kind of devices over the weight."""
+    """Return the quantity of the greatest force of a kind of devices over the weight."""
     kind = device.replace("_", " ")
     words, page = f"greatest force of a {kind} over the pier's weight", ReportFormat(f"{kind} {symbol}/(M g)", ".4f")
     return of_device(f"{device}_force_over_weight", words, f"{device}_force", "1", page, device=device)
 
 
 def _force_in_kilonewtons(device: str, symbol: str) -> Quantity:
-    """Return it in kN; checks take it from that over the weight, since earlier results have no other."""
+    """Return the quantity of the greatest force of a kind of devices [kN], None without a mass.
+
+    Checks take it from the force over the weight, since earlier results have no other.
+    """
 
     def value(run: Run) -> float | None:
         force, mass = getattr(run.outcome, f"{device}_force"), run.pier.mass_t
@@ -58,7 +61,7 @@ def _force_in_kilonewtons(device: str, symbol: str) -> Quantity:
 
 
 def _depth(device: str) -> Quantity:
-    """Return the greatest deflection of a stop or a deck spring."""
+    """Return the quantity of the greatest deflection of a stop or a deck spring beyond its gap [m]."""
     kind = device.replace("_", " ")
     words = f"greatest deflection of a {kind} beyond its gap"
     page = ReportFormat(f"{kind} deflection [mm]", ".1f", 1000)
@@ -66,7 +69,7 @@ def _depth(device: str) -> Quantity:
 
 
 def _energy(device: str) -> Quantity:
-    """Return the energy that all devices of a kind dissipate."""
+    """Return the quantity of the energy that all devices of a kind dissipate [J/kg]."""
     kinds = f"{device.replace('_', ' ')}s"
     words, page = f"energy dissipated by all {kinds}, per unit mass of the pier", ReportFormat(f"{kinds} [J/kg]", ".4f")
     return of_device(f"{device}_energy_J_kg", words, f"{device}_energy", "J/kg", page, device=device)

@@ -24,9 +24,10 @@ def rotation(of: str, name: str, unit: str, times: Lever, words: str = "") -> Li
 
 
 def greater(name: str, words: str, *limits: Limit) -> tuple[Limit, ...]:
-    """Return limits on the greater of the left and the right support, in the place of whose side ``name`` has "/".
+    """Return limits on the greater of the left and right support, whose columns have "_left" or "_right" for the "/" in ``name``.
 
-    ``words`` have "{}" for "each" or "a".
+    Without a "/" it ends the name: "ductility". ``words`` have "{}" for "a"; one limit in the columns' unit unless others are
+    given.
     """
     stem, _, ending = name.partition("/")
     columns = (f"{stem}_left{ending}", f"{stem}_right{ending}")

@@ -199,7 +199,7 @@ class Quantity:
 
     @property
     def applies(self) -> str:
-        """Runs to which the quantity applies, in words; empty for all."""
+        """Runs to which the quantity applies: "yielding springs, if the pier stayed upright"; empty for all."""
         base = BASES_IN_WORDS[self.bases]
         run = "if the pier stayed upright" if self.stood else "if it occurs" if self.sometimes else ""
         return ", ".join(filter(None, (base, run)))
@@ -215,11 +215,11 @@ class Quantity:
         )
 
     def demands(self) -> list[Demand]:
-        """Return the demands that checks make of this quantity."""
+        """Return the demands that checks make of this quantity, one for each of its ``limits``."""
         return [self._demand(limit) for limit in self.limits]
 
     def _demand(self, limit: Limit) -> Demand:
-        """Return the demand of a limit; unless that has its own evaluation, the largest magnitude of its columns."""
+        """Return the demand of a limit; unless the limit has its own evaluation, the largest magnitude of its columns."""
         columns = limit.columns or (self.name,)
         evaluate = limit.evaluate
         if evaluate is None and self.needs == "forces":
@@ -262,5 +262,5 @@ def in_print(unit: str) -> str:
 
 
 def fact(name: str, words: str, more: str = "", source: Callable[[Run], Any] | None = None, **facts: Any) -> Quantity:
-    """Return a quantity that is 1 where ``words`` hold and 0 where they do not, of the field of ``Outcome`` of its name."""
+    """Return a quantity that is 1 if ``words`` hold, 0 if not, by the field ``name`` of ``Outcome``, or by ``source``."""
     return Quantity(name, f"1 if {words}, 0 if not", source or name, more=more, kind="fact", sometimes=True, **facts)

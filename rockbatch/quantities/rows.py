@@ -15,7 +15,7 @@ NOT_RUN = "not run"
 
 
 def with_case(peaks: "pd.DataFrame") -> "pd.DataFrame":
-    """Return the rows of runs, without those of unusable files; the same table if there are none of these."""
+    """Return the rows of runs, without those of unusable files; the same table if there are no unusable files."""
     of_runs = peaks["case"] != ""
     return peaks if of_runs.all() else peaks[of_runs]
 

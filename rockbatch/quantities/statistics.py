@@ -19,7 +19,7 @@ MEAN_FROM = 7
 
 
 def quantile(values: Values, q: float) -> float:
-    """Return the quantile of ``values``, shape (n,), linear between ranks; infinite if a rank that it needs is infinite."""
+    """Return the quantile of ``values``, shape (n,), linear between ranks; infinite if a rank it needs is, NaN for n = 0."""
     return float(quantiles(np.sort(values), np.array([0]), np.array([len(values)]), q)[0])
 
 
@@ -64,14 +64,14 @@ def tolerance_rank(n: int, q: float = P84, confidence: float = CONFIDENCE) -> in
 
 
 def _between_ranks(n: int) -> str:
-    """Return how the quantile of ``n`` records is found, and the share of further records that exceed it."""
+    """Return "by interpolation between the ranks of 7, which 24 % of further records exceed", for ``n`` records."""
     return (
         f"by interpolation between the ranks of {n}, which {100.0 * exceedance(P84, n):.0f} % of further records exceed"
     )
 
 
 def _p84_remark(values: Values) -> str:
-    """Return how the quantile of these values is found, and the share of further records that exceed it."""
+    """Return how the quantile of these values is found, as :func:`_between_ranks` does for their number."""
     return _between_ranks(len(values))
 
 
@@ -88,7 +88,10 @@ def _p84_95_remark(values: Values) -> str:
 
 
 def _lognormal(values: Values) -> float:
-    """Return exp(m + z s), with mean m and deviation s of the logarithms; NaN for a single value, and if one is 0."""
+    """Return exp(m + z s), with mean m and deviation s of the logarithms; infinite if a value is.
+
+    NaN for a single value, and if one is 0.
+    """
     if np.isinf(values).any():
         return math.inf
     if len(values) < 2 or (values <= 0.0).any():
@@ -102,8 +105,9 @@ def _lognormal(values: Values) -> float:
 def _lognormal_interval(value: Values, low: Values, high: Values) -> tuple[float, float]:
     """Return the 95 % interval of the lognormal quantile, for all values between ``low`` and ``high``.
 
-    (m + z σ − x̄)/s √n has a non-central t distribution of ν = n − 1 and δ = z √n. The standard deviation of values that change
-    by d changes by no more than |d|/√(n − 1).
+    (m + z σ − x̄)/s √n has a non-central t distribution of ν = n − 1 and δ = z √n. The standard deviation of values that
+    change by d changes by no more than |d|/√(n − 1). Both ends are infinite if a ``low`` is; 0 and infinity for a single
+    value, a ``low`` of 0, or an infinite ``high``.
     """
     n = len(value)
     if np.isinf(low).any():
@@ -124,7 +128,7 @@ def _lognormal_interval(value: Values, low: Values, high: Values) -> tuple[float
 
 
 def _lognormal_remark(values: Values) -> str:
-    """Return what decides a check of the lognormal quantile, in words."""
+    """Return the remark that the 95 % interval decides, or that a value of 0 has no lognormal distribution."""
     if (values <= 0.0).any():
         return "a record demands nothing, which no lognormal distribution has"
     return "its 95 % interval decides, as if the records were of a lognormal distribution"
@@ -139,7 +143,10 @@ def _max(values: Values) -> float:
 
 
 def _asce7_16(values: Values) -> float:
-    """Return the mean by ASCE 7-16; infinite values are unacceptable responses, of which two or more give infinity."""
+    """Return the mean by ASCE 7-16; infinite values are unacceptable responses, of which two or more give infinity.
+
+    One counts as 120 % of the median, or the mean of the others if that is greater.
+    """
     acceptable = values[np.isfinite(values)]
     if len(acceptable) == len(values):
         return _mean(values)

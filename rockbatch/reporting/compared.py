@@ -45,7 +45,7 @@ def answer(pair: Pair) -> Markup:
 
 
 def _responses(studies: list[Finished], responses: list[dict[str, Worst]], stood: int) -> str:
-    """Return how the worst responses change from A to B, over the ``stood`` runs that end standing in both."""
+    """Return a sentence on the worst responses' change from A to B, over the ``stood`` runs that end standing in both."""
     lost = [int(study.runs["status"].isin((*NO_PEAK, "failed")).sum()) for study in studies]
     total = counted(len(studies[0].runs), "run")
     ended = f"Of {total} in common {lost[0]} of A and {lost[1]} of B do not end standing. " if any(lost) else ""
@@ -63,12 +63,12 @@ def _responses(studies: list[Finished], responses: list[dict[str, Worst]], stood
 
 
 def _change(first: float, second: float) -> float:
-    """Return the relative change; infinite from 0 to more, 0 from 0 to 0."""
+    """Return the relative change, 0.1 for 10 % more; infinite from 0 to more, 0 from 0 to 0."""
     return second / first - 1.0 if first > 0.0 else math.inf if second > 0.0 else 0.0
 
 
 def _pairs(pair: Pair) -> str:
-    """Report the number of pairs with a smaller and a larger rotation in B, and the range of B/A; empty without any ratio."""
+    """Return a sentence on how many pairs have a smaller and a larger rotation in B, and the range of B/A; "" without a ratio."""
     a, b = pair.runs
     first, second = (runs["theta_max_over_alpha"].where(runs["status"] == "ok").to_numpy(float) for runs in (a, b))
     comparable = (first > 0) & (second >= 0)
@@ -198,7 +198,7 @@ def _first(names: Sequence[str], most: int) -> str:
 
 
 def studies(pair: Pair) -> Markup:
-    """Describe both studies: responses, inputs and statics."""
+    """Return both studies, one after the other: greatest responses, inputs and statics."""
     parts: list[object] = [
         tag("p", f"{counted(len(pair.runs[0]), 'pair')} of runs of paired cases under the same ground motion.")
     ]
@@ -210,7 +210,7 @@ def studies(pair: Pair) -> Markup:
 
 
 def difference(pair: Pair) -> Markup:
-    """Show a diff of the study files, and the versions if they differ."""
+    """Return a diff of the study files, or that they are the same, and the versions of both if they differ."""
     a, b = (study.study["text"].splitlines() for study in pair.studies)
     lines = difflib.unified_diff(a, b, "A", "B", n=1, lineterm="")
     versions = [{"rockbatch": study.info["rockbatch"], **study.info["versions"]}.items() for study in pair.studies]

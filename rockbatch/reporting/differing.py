@@ -69,9 +69,9 @@ def differences(a: Finished, b: Finished, names: Mapping[str, str]) -> list[Diff
 
 
 def written(study: Mapping[str, Any], names: Mapping[str, str] | None = None) -> Written:
-    """Return the study of run.json as it is written, with the checks of the files that it names; empty if it is no TOML.
+    """Return the study of run.json as it is written, with the checks of the files that it names.
 
-    Cases go by the ``names`` of those with which they are paired.
+    Texts that are no TOML are skipped. Cases are renamed by ``names``, those with which they are paired.
     """
     result = Written({}, {}, set())
     texts = [study["text"], *(file["text"] for file in study.get("checks", ()))]
@@ -112,7 +112,10 @@ def _add(result: Written, table: Mapping[str, Any], place: Place, at: Place, nam
 
 
 def _labels(tables: Sequence[Mapping[str, Any]], key: str, names: Mapping[str, str]) -> Iterator[str]:
-    """Yield the name of each of the tables in a list, that of its pair for a case, or else its number."""
+    """Yield a label for each table in a list: its name (of a case its base without one), or else its number from 1.
+
+    A case of B that is paired has the name of its pair.
+    """
     for number, table in enumerate(tables, 1):
         name = table.get("name", table.get("base", str(number)) if key == "case" else str(number))
         yield names.get(str(name), str(name)) if key == "case" else str(name)
@@ -175,7 +178,10 @@ def _shown(value: object, digits: int) -> str:
 
 
 def _of_motions(a: Finished, b: Finished) -> list[Difference]:
-    """Return what differs in the motions that were run, by their digests, and in the files that could not be used."""
+    """Return one difference each for motions in one study only, motions that differ under the same name, and unused files.
+
+    Of these one for files that could not be used, and one for files left out; [] if all agree.
+    """
     only = [[name for name in x.records if name not in y.records] for x, y in ((a, b), (b, a))]
     rows = [Difference("motions in one only", *map(_listed, only))] if any(only) else []
     other = [name for name in a.records if name in b.records and _differ(a.records[name], b.records[name])]

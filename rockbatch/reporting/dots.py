@@ -150,7 +150,7 @@ def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Mark
     series = runs["series"].to_numpy()[order].tolist() if marks.series else [None] * len(order)
     first: dict[tuple[object, float], int] = {}
     for foundation, theta, place in zip(series, thetas, order.tolist(), strict=True):
-        first.setdefault((foundation, _across(theta, top)), place)  # others would be hidden beneath
+        first.setdefault((foundation, _across(theta, top)), place)  # further marks would be hidden beneath
     drawn = [_mark(run, x, marks) for (_, x), run in zip(first, as_dicts(runs.iloc[list(first.values())]), strict=True)]
     low, high = (number(theta, THETA_FORMAT) for theta in (thetas[-1:] + thetas[:1] or [math.nan, math.nan]))
     label = f"{words}: θmax/α {low} to {high}" if len(thetas) > 1 else f"{words}: θmax/α {high}"

@@ -81,7 +81,7 @@ class Finished(Contents, Labelled):
 
     @cached_property
     def suites(self) -> list[CaseRuns]:
-        """Return each case at each scale with its counts of runs that do not end standing."""
+        """Return each case at each scale with its number of planned runs, and of those that do not end standing."""
         return runs_of_cases(self.runs, self.info["cases"], len(self.info["records"]))
 
     @cached_property

@@ -143,7 +143,7 @@ def answered(*paragraphs: str, remarks: Iterable[str] = ()) -> Markup:
 
 
 def sentence(said: str, left_open: Iterable[str] = ()) -> Markup:
-    """Return a sentence followed by its reservations, marked as undecided."""
+    """Return a sentence followed by its reservations, marked as undecided, with semicolons between them."""
     return join(said, *(join("; ", tag("span", words, class_="undecided")) for words in left_open), ".")
 
 

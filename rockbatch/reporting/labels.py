@@ -9,7 +9,7 @@ from rockbatch.results.labels import symbol_of
 
 
 def counted(count: int, word: str) -> str:
-    """Return a count with its noun: "one run", "30 runs"."""
+    """Return a count with its noun: "one run", "30 runs", "1,200 runs", "0 runs"."""
     return f"{count:,} {word}s" if count != 1 else f"one {word}"
 
 

@@ -28,7 +28,7 @@ def headline(pair: Pair) -> str:
 
 
 def _state(side: str, study: Finished) -> str:
-    """Return what a study comes to: cases that pass with the closest to a limit, and those that do not with the worst."""
+    """Return what a study comes to: "A passes all in 2 of 3 cases, closest 83 % (…), and fails …"; "A has no limits"."""
     if not any(verdict.case for verdict in study.verdicts):
         return f"{side} has no limits"
     rows = scorecard(study.verdicts, named_designs(study), study.suites, study.worst_at_scales).rows
@@ -65,7 +65,7 @@ def _failing(study: Finished, rows: Sequence[Row], share: str, several: bool) ->
 
 
 def _undecided(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
-    """Return that cases are not decided, and by which checks or for want of which limits."""
+    """Return that cases are not decided, by which checks, or for lack of limits: "is not decided (drift, no limit on uplift)"."""
     checks = [cell.verdict.check for _, cell in _cells(rows) if cell.verdict.verdict == NOT_DECIDED]
     free = [f"no limit on {words}" for row in rows for words in row.unlimited]
     reasons = ", ".join(dict.fromkeys((*checks, *free)))
@@ -73,7 +73,7 @@ def _undecided(study: Finished, rows: Sequence[Row], share: str, several: bool) 
 
 
 def _unchecked(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
-    """Return that cases are not checked."""
+    """Return that cases are not checked: "is not checked in 2 of 3 cases"."""
     return f"is not checked{share}"
 
 
@@ -88,7 +88,7 @@ def _cells(rows: Sequence[Row]) -> Iterator[tuple[Row, Cell]]:
 
 
 def _worst(cells: Sequence[tuple[Row, Cell]]) -> tuple[Row, Cell] | None:
-    """Return the cell with the greatest share of its limit, with its row; None without any, as of bans alone."""
+    """Return the cell with the greatest share of its limit, and its row; None if no share is finite, as of bans alone."""
     known = [pair for pair in cells if math.isfinite(pair[1].verdict.ratio) and pair[1].percent]
     return max(known, key=lambda pair: pair[1].verdict.ratio, default=None)
 
@@ -138,7 +138,7 @@ def _designs(pair: Pair, place: int) -> dict[tuple[object, ...], Side]:
     found: dict[tuple[object, ...], Side] = {}
     for label, verdicts in by_label.items():
         key = _key(pair, place, verdicts[0])
-        if key in found:  # a value that only one study varies: not to be guessed
+        if key in found:  # only one study varies the value that tells them apart: they have no counterpart
             key = (*key, SIDES[place], label)
         card = scorecard(verdicts, of_label)
         cells = zip(card.columns, card.rows[0].cells, strict=True)
@@ -147,7 +147,7 @@ def _designs(pair: Pair, place: int) -> dict[tuple[object, ...], Side]:
 
 
 def _key(pair: Pair, place: int, verdict: Verdict) -> tuple[object, ...]:
-    """Return what identifies a design in both studies; a case without a counterpart has its own side in it."""
+    """Return the key that a design has in both studies; a case without a counterpart has "A" or "B" in its key."""
     columns = of_design(verdict.columns)
     values = [as_in_peaks(columns.get(name)) for name in pair.keys if name in columns]
     names = pair.names if place else {name: name for name in pair.names.values()}
@@ -156,7 +156,7 @@ def _key(pair: Pair, place: int, verdict: Verdict) -> tuple[object, ...]:
 
 
 def _written(study: Finished, cell: tuple[Cell, str] | None) -> Iterator[object]:
-    """Yield demand, share of the limit and governing record of a cell; empty without one."""
+    """Yield three cells of a design: demand, share of the limit with its sign, and governing record; "not checked" for None."""
     if cell is None:
         yield from ("", tag("span", "not checked", class_="muted"), "")
         return

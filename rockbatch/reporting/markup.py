@@ -50,7 +50,7 @@ def _attribute(key: str) -> str:
 
 
 def interval(low: str, high: str) -> Markup:
-    """Return "low – high" without a line break."""
+    """Return "low – high" of these texts, without a line break; they are not escaped."""
     return Markup(f"{low}\u00a0–\u2060\u00a0{high}")
 
 

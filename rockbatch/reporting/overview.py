@@ -47,7 +47,7 @@ def by_record(finished: Finished) -> Markup:
 def drawn_by_record(
     finished: Finished, columns: "Sequence[tuple[str, pd.DataFrame]]", limits: Sequence[Sequence[dots.Limit]] = ()
 ) -> Markup:
-    """Draw runs in rows by record; ``columns`` are (caption, runs), ``limits`` those of each column."""
+    """Return the figure of runs in rows by record; ``columns`` are (caption, runs), ``limits`` those of each column."""
     runs = pd.concat([of_column for _, of_column in columns]) if len(columns) > 1 else columns[0][1]
     names = groups_worst_first(runs, "record")
     single = names if len(names) <= MOST_ROWS else names[: MOST_ROWS - 1]
@@ -107,7 +107,7 @@ def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
 
 
 def by_foundation(finished: Finished) -> Markup:
-    """Draw the best of many foundations, a row each, and the others in one row; then all, folded; empty for few foundations."""
+    """Return the figure of many foundations: the best in rows, the others in one, then all, folded; empty for 24 or fewer."""
     if finished.runs.empty or finished.grouped["series"].nunique().max() <= MOST_SERIES:
         return Markup("")
     runs, columns = finished.runs, _columns(finished)
@@ -138,12 +138,12 @@ def _columns(finished: Finished) -> "list[tuple[str, pd.DataFrame]]":
 
 
 def _all(finished: Finished) -> str:
-    """Return the end of the caption's sentence, saying whether all piers and scales share a column."""
+    """Return the end of a caption: "." if each pier and scale has a column, ", of all piers and scales." if they share one."""
     return "." if finished.grouped.ngroups <= MOST_COLUMNS else ", of all piers and scales."
 
 
 def groups_worst_first(runs: "pd.DataFrame", by: str) -> list[Any]:
-    """Return the distinct values of column ``by``, those with most runs that overturn, fly or fail, then rotate most, first."""
+    """Return the distinct values of column ``by``, worst first: by overturned runs, then flights, failed runs, rotation."""
     groups = runs[by]
     ended = [(runs["status"] == status).groupby(groups).sum() for status in ("overturned", "flight", "failed")]
     stood = runs["theta_max_over_alpha"].where(runs["status"] == "ok").groupby(groups).max().fillna(0.0)

@@ -58,7 +58,7 @@ def _of_analyses() -> Iterator[Part]:
 
 
 def _of_analysis(name: str, function: str, contents: Contents) -> Markup:
-    """Draw a section of an analysis; return nothing, without loading its modules, if the folder has no files of it."""
+    """Return a section of an analysis; empty, without loading its modules, if the folder has no files of it."""
     if not any((contents.directory / f"{name}.{kind}").exists() for kind in ("json", "csv")):
         return Markup("")
     content: Markup = from_analysis(name, function)(contents)
@@ -75,7 +75,7 @@ def _with_observers(own: Iterable[Part]) -> Iterator[Part]:
 
 
 def _of_observer(name: str, finished: Finished) -> Markup:
-    """Draw the section of an observer."""
+    """Return the section of an observer, empty if it has nothing to show."""
     content: Markup = from_observer(name, "section.section")(finished)
     return content
 

@@ -9,6 +9,7 @@ from rockbatch.common.errors import refuse
 from rockbatch.common.grouping import closest, grouped
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
+from rockbatch.quantities.cases import is_across, name_along
 from rockbatch.quantities.design import BOUND
 from rockbatch.reporting.differing import Place, case_values
 from rockbatch.reporting.finished import Finished
@@ -82,7 +83,7 @@ def paired_cases(a: Finished, b: Finished, asked: Mapping[str, str]) -> dict[str
 
     Raises ``InputError`` for a name that is not there, or that is asked for twice.
     """
-    left, right = ([name for name, case in _firsts(study).items() if not case.get("across_of")] for study in (a, b))
+    left, right = ([name for name, case in _firsts(study).items() if not is_across(case)] for study in (a, b))
     wrong = [_no_case(name, "A", left) for name in asked if name not in left]
     wrong += [_no_case(name, "B", right) for name in asked.values() if name not in right]
     twice = [name for name, n in Counter(asked.values()).items() if n > 1]
@@ -98,9 +99,7 @@ def paired_cases(a: Finished, b: Finished, asked: Mapping[str, str]) -> dict[str
         pairs[first] = second
         rest[0].remove(first)
         rest[1].remove(second)
-    across = [
-        {case["across_of"]: name for name, case in _firsts(study).items() if case.get("across_of")} for study in (a, b)
-    ]
+    across = [{name_along(case): name for name, case in _firsts(study).items() if is_across(case)} for study in (a, b)]
     pairs |= {across[0][x]: across[1][y] for x, y in list(pairs.items()) if x in across[0] and y in across[1]}
     order = [*_firsts(a)]
     return {second: first for first, second in sorted(pairs.items(), key=lambda names: order.index(names[0]))}
@@ -119,7 +118,7 @@ def _no_case(name: str, side: str, names: Sequence[str]) -> str:
 
 
 def _distance(first: Mapping[Place, object], second: Mapping[Place, object]) -> int:
-    """Return the number of inputs that differ between two cases."""
+    """Return the number of keys whose values differ between two cases; a key that only one of them has counts."""
     return sum(first.get(place) != second.get(place) for place in {*first, *second})
 
 

@@ -39,7 +39,7 @@ class Part(NamedTuple):
 
 
 def _of_observers(finished: Finished) -> Iterator[Section]:
-    """Yield the sections of the observers whose columns the results have."""
+    """Yield a section for each observer that has one in reports, without content if the folder has no results of it."""
     for name, part in report_parts():
         yield Section(part.heading, part.anchor, from_observer(name, "section.section")(finished))
 

@@ -58,7 +58,7 @@ def pier_of(case: Case) -> Pier | None:
 
 
 def restraints_of(case: Case) -> tuple[Restraint, ...]:
-    """Return the devices of a case; empty for impossible values."""
+    """Return the devices of a case; () without any, and for impossible values of the pier or of any device."""
     entries, pier = case["parameters"].get("restraints"), pier_of(case)
     if not isinstance(entries, list) or pier is None:
         return ()

@@ -300,7 +300,7 @@ def _frame(box: Box) -> Markup:
         parts += [text(box.left - 4, float(box.down(at)) + 4, words, class_="e") for at, words in rows.items()]
     if x.numbered:
         every = math.ceil(7.0 * max(map(len, columns.values()), default=1) * len(columns) / box.width) if x.names else 1
-        shown = list(columns.items())[::every]  # every one would make names overlap
+        shown = list(columns.items())[::every]  # names of all columns would overlap
         parts += [text(float(box.across(at)), box.foot + 13, words, class_="m") for at, words in shown]
     return join(*parts)
 
@@ -332,7 +332,7 @@ def _lettered(label: str) -> Iterator[Markup]:
 
 
 def classes(look: Look) -> str:
-    """Return the CSS classes of a look."""
+    """Return the CSS classes of a look: "curve s1 d2 open" for a kind, a colour, dashes and an open mark; "ink" for black."""
     colour = f"s{look.colour}" if look.colour else "ink" if look.kind in ("", "level", "filled") else ""
     return " ".join(filter(None, (look.kind, colour, f"d{look.dash}" * bool(look.dash), "open" * look.open)))
 
@@ -345,7 +345,7 @@ def text(x: float | str, y: float, *content: object, class_: str = "") -> Markup
 def marker(
     look: Look, x: float | str, y: float, title: str = "", shade: float | None = None, case: str | None = None
 ) -> Markup:
-    """Draw a marker at (x, y), with a tooltip."""
+    """Return a marker at (x, y) [px, or "50%"] with a tooltip; "?" for failed runs. ``shade``, 0 to 1, makes it darker."""
     tooltip = tag("title", title) if title else Markup("")
     if look.shape == "failed":
         return text(x, y + 4, "?", tooltip, class_="m none")
@@ -364,7 +364,7 @@ def marker(
 
 @singledispatch
 def _draw(mark: object, box: Box) -> Markup:
-    """Draw a mark of a figure in its panel."""
+    """Return a mark of a figure as drawn in its panel; ``TypeError`` for what is no mark."""
     raise TypeError(f"{type(mark).__name__}: no mark of a figure")
 
 

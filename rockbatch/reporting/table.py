@@ -142,7 +142,7 @@ def _parts(
 
 
 def _width(head: Head, cells: Iterable[object], longest: int) -> int:
-    """Return the width of a column in characters, with the gap to the next one."""
+    """Return the width of a column in characters, at most ``longest`` for its cells, with the gap to the next one."""
     of_head = max((len(word) for word in re.split(r"[ \n]+", _plain(head.text))), default=0)
     return GAP + max(of_head, max((min(len(_plain(_text(cell, head.form))), longest) for cell in cells), default=0))
 
@@ -202,7 +202,7 @@ def _cells(kind: str, values: Iterable[object], form: str, **attributes: object)
 
 
 def _text(value: object, form: str) -> str:
-    """Return a value as HTML, formatted by ``form``; numbers, which are many, need no escaping."""
+    """Return a value as escaped HTML, a float formatted by ``form``; "" for None and NaN."""
     if isinstance(value, Markup):
         return value
     return number(value, form) if isinstance(value, float) else escape(number(value, form))
@@ -222,7 +222,7 @@ _HERE = Markup("\0")
 
 
 def shown_of(shown: int, all_: int, chosen_by: str = "first") -> Markup:
-    """Return a sentence that only ``shown`` of ``all_`` rows are shown; empty if all are."""
+    """Return a sentence that only ``shown`` of ``all_`` rows are shown, the ``chosen_by`` ones; empty if all are."""
     if shown >= all_:
         return Markup("")
     return tag("p", f"The {chosen_by} {shown:,} of {all_:,} rows are shown.", class_="muted")

@@ -38,23 +38,27 @@ class SimulatedRun(NamedTuple):
 
 def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[SimulatedRun]:
     """Yield the simulated runs of ``peaks``, without mirror images."""
-    along = {motion.name: motion for motion in motions}
+    records = {motion.name: motion for motion in motions}
     cases = {case_key(case.name, case.columns, study.varied): case for case in study.cases}
-    both = any(case.across_of for case in study.cases)
-    across = {motion.name: motion.exchanged for motion in motions} if both else {}
     columns_kept = [*NAMING, *study.varied, "status", "theta_max_over_alpha"]
     table = simulated(with_case(peaks))[columns_kept]
     for cells in table.to_dict("records"):
         row = {str(name): value for name, value in cells.items()}
         case = cases[case_key(row["case"], row, study.varied)]
-        motion = (across if case.across_of else along)[row["record"]]
-        yield SimulatedRun(row, motion, float(row["scale"]), case.pier)
+        yield SimulatedRun(row, case.motion(records[row["record"]]), float(row["scale"]), case.pier)
 
 
 def write(path: Path, table: Iterable[Mapping[str, object]]) -> Path:
-    """Write rows with the same keys to a CSV, completely or not at all; return its path."""
+    """Write rows with the same keys to a CSV, completely or not at all; return its path. No rows give ``NAMING`` as heads."""
     rows = list(table)
     write_whole(path, csv_text(list(rows[0]) if rows else list(NAMING), rows))
+    return path
+
+
+def present(path: Path, key: str) -> Path:
+    """Return ``path``; raise ``InputError`` if there is no such file, with the ``key`` of a study that asks for it."""
+    if not path.exists():
+        raise InputError(f"{path}: not there; add {key} to the study and start `rockbatch run` again")
     return path
 
 
@@ -93,7 +97,7 @@ def write_semicolons(directory: Path) -> Path:
 
 
 def _with_comma(cell: str) -> str:
-    """Return a number with a decimal comma, infinity as :data:`LARGEST`, and words of a varied key unchanged."""
+    """Return a cell with a decimal comma if it is a number, infinity as :data:`LARGEST`; words and empty cells unchanged."""
     try:
         return LARGEST if float(cell) == math.inf else cell.replace(".", ",")
     except ValueError:

@@ -25,7 +25,7 @@ from rockbatch.toml.reader import TomlFile
 PathLike = str | os.PathLike[str]
 
 _OF_SECTIONS = {"sections": (SECTIONS, read_sections), "interaction": (INTERACTION, read_interaction)}
-"""Tables of forces in sections, by what demands need of them, and functions that read these."""
+"""Tables of forces in sections, each with the function that reads it, by the ``needs`` of demands."""
 
 
 @checked
@@ -104,7 +104,7 @@ def verdicts(
         raise InputError("no checks: the study has no [[check]]; add some, or pass a file of rules")
     if not judged:
         return of_suite
-    # The limits of the study's own rules are compared with its piers when it is read
+    # The limits of a study's own rules are compared with its piers when the study is read
     doubted = given is not None
     sections, interaction = (in_sections.get(needs) for needs in _OF_SECTIONS)
     of_cases = judge(judged, table, cases, records, count, sections, events, interaction=interaction, doubted=doubted)

@@ -13,6 +13,7 @@ import numpy as np
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
+from rockbatch.common.units import ColumnUnits
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.outcome.outcome import Failure, Outcome
 from rockbatch.pier import Pier
@@ -47,7 +48,7 @@ class StudyRun(NamedTuple):
 
     @property
     def pga(self) -> float:
-        """Peak horizontal acceleration [m/s²], bitwise equal to that of the scaled record."""
+        """Peak horizontal acceleration of the motion [m/s²], times ``scale``; bitwise equal to that of the scaled record."""
         return self.record.pga * self.scale
 
 
@@ -106,8 +107,8 @@ def units(study: Study) -> dict[str, str]:
 
 
 def with_units(table: "pd.DataFrame", of_columns: Mapping[str, str]) -> "pd.DataFrame":
-    """Return the ``table`` with the units of its columns in ``table.attrs["units"]``."""
-    table.attrs["units"] = dict(of_columns)
+    """Set ``table.attrs["units"]`` to the units of its columns, and return the same table."""
+    table.attrs["units"] = ColumnUnits(of_columns)
     return table
 
 
@@ -119,12 +120,12 @@ def as_table(rows: Iterable[Mapping[str, object]], study: Study) -> "pd.DataFram
 
 
 def read_cells(cells: Mapping[str, str]) -> dict[str, float | str | None]:
-    """Convert the cells of a row of peaks.csv to numbers; texts stay, an empty number is None."""
+    """Convert the cells of a row of peaks.csv to numbers; texts stay, and words of varied keys; an empty number is None."""
     return {name: _value(name, text) for name, text in cells.items()}
 
 
 def _value(name: str, text: str) -> float | str | None:
-    """Return a cell of column ``name`` as the number that it is, None if it is empty; words stay."""
+    """Return a cell of column ``name``: texts and words as they are, a count as int, a number as float, an empty one None."""
     if name in TEXTS:
         return text
     if text == "":
@@ -138,10 +139,12 @@ def _value(name: str, text: str) -> float | str | None:
 
 
 def as_series(cells: Mapping[str, object]) -> "pd.Series":
-    """Return a row of peaks.csv as a Series named after its record, with the optional columns that it has."""
+    """Return a row of peaks.csv as a Series named after its record; optional columns only if they have a value."""
     present = [column for column in OPTIONAL if cells.get(column.name) is not None]
     columns = names((*FIXED, *TRAILING, *present))
-    values = [_as_in_table(name, cells.get(name)) for name in columns]  # a table of one row takes ten times as long
+    values = [
+        _as_in_table(name, cells.get(name)) for name in columns
+    ]  # making a table of one row takes ten times as long
     return pd.Series(values, index=columns, dtype=object, name=str(cells["record"]))
 
 

@@ -28,6 +28,7 @@ from rockbatch.common.figures.description import (
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.cases import is_across
 from rockbatch.quantities.rows import counts_as
 from rockbatch.results.labelled import Item, Labelled, Row, as_dicts, by_pga, ceiling, groups_of
 from rockbatch.results.labels import Series
@@ -108,7 +109,10 @@ def tooltip(series: Series, run: Row, several_sides: bool) -> str:
 
 
 def peaks_of_all(results: Labelled, info: Item) -> Figure:
-    """Return a figure of the peaks of all piers, scales and polarities, for the :data:`MOST_PANELS` worst records."""
+    """Return a figure of the peaks of all piers, scales and polarities, for the :data:`MOST_PANELS` worst records.
+
+    Raises ``InputError`` without runs, as the other figures of results.
+    """
     runs = _nonempty(results.runs)
     sides = [runs.loc[of_group.index, []].assign(side=words) for words, of_group in groups_of(runs, results.piers)]
     side = pd.concat(sides)["side"]
@@ -124,10 +128,13 @@ def peaks_of_all(results: Labelled, info: Item) -> Figure:
 
 
 def peaks_of_cases(results: Labelled) -> Figure:
-    """Return one panel of all peaks that have a value or an ending: a column of points for each foundation."""
+    """Return one panel of all peaks that have a value or an ending: a column of points for each foundation.
+
+    Raises ``InputError`` without runs.
+    """
     runs = _nonempty(results.runs)
     ticks = [one.tick for one in results.series]
-    if len(set(ticks)) < len(ticks):  # rigid ones, which are lines elsewhere, have letters of their own
+    if len(set(ticks)) < len(ticks):  # rigid foundations, which are lines elsewhere, have letters of their own
         ticks = [str(place) for place in range(1, len(ticks) + 1)]
     series = [
         replace(one, rigid=False, index=place, tick=tick)
@@ -156,7 +163,7 @@ def distributions(groups: "Sequence[tuple[str, pd.DataFrame]]", series: Sequence
 
 
 def distributions_of_all(results: Labelled, count: str) -> Figure:
-    """Return a figure of the distributions of all piers and scales."""
+    """Return a figure of the distributions of all piers and scales; ``InputError`` without runs."""
     return distributions(list(groups_of(_nonempty(results.runs), results.piers)), results.series, count)
 
 
@@ -185,7 +192,10 @@ def _distribution(words: str, runs: "pd.DataFrame", series: Sequence[Series], co
 
 
 def self_similar(results: Labelled, info: Item) -> Figure:
-    """Return the runs at PGA/(g tan α) over ω_g/p, a panel for each foundation, their θ_max/α as tone."""
+    """Return the runs at PGA/(g tan α) over ω_g/p, a panel for each foundation, their θ_max/α as tone.
+
+    Raises ``InputError`` if no run has a PGV.
+    """
     runs = _with_self_similar_axes(_nonempty(results.runs), results, info)
     theta = runs["theta_max_over_alpha"][(runs["status"] == "ok") & (runs["theta_max_over_alpha"] > 0)]
     low = float(theta.min()) if len(theta) else 0.1
@@ -217,7 +227,7 @@ def _with_self_similar_axes(runs: "pd.DataFrame", results: Labelled, info: Item)
 
     Runs across the axis of a pier are left out, too: run.json has only the PGV along it.
     """
-    along = [not results.cases[place].get("across_of") for place in zip(runs["series"], runs["pier"], strict=True)]
+    along = [not is_across(results.cases[place]) for place in zip(runs["series"], runs["pier"], strict=True)]
     runs = runs[along]
     piers = [results.cases[place]["pier"] for place in zip(runs["series"], runs["pier"], strict=True)]
     pgv = runs["record"].map({record["record"]: record["pgv_m_s"] for record in info["records"]}).replace(0.0, math.nan)

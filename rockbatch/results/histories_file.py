@@ -9,7 +9,7 @@
           pier, base    attributes: their parameters, as in rockbatch.pier; SI, angles in radians
           t, theta, …   the columns of Response.history, shape (n,); those of springs for piers on springs
           events        t, kind, pivot, before, after: the columns of Response.events
-          restraints    elongation and force of each damper and tendon, if any: Response.restraints
+          restraints    elongation and force of each device, if any: Response.restraints
           ledger        the terms of the energy ledger, if requested
           forces        the columns of Response.forces, if requested
           impacts       the columns of Response.impacts, with forces
@@ -75,7 +75,7 @@ OF_TWO_SPRINGS = ("z_left", "z_right")
 
 
 def columns_of(base: Base | type[Base], bends: bool) -> list[str]:
-    """Return the columns of a history that apply to a pier on ``base`` whose shaft ``bends`` or not."""
+    """Return the columns of a history of a pier on ``base``, without those of springs or of the shaft that do not apply."""
     lacking = () if base.two_springs else OF_TWO_SPRINGS if base.on_springs else OF_SPRINGS
     return [name for name in HISTORY_UNITS if name not in lacking and (bends or name != "deflection")]
 
@@ -119,7 +119,7 @@ def write(path: Path, responses: Iterable[Response], info: Item) -> None:
             for number, response in enumerate(responses):
                 _check_room(path, response)
                 _write(runs.create_group(_group_name(number)), response)
-                file.flush()  # HDF5 reports failed writes here, but not when it closes a dataset
+                file.flush()  # HDF5 reports failed writes on a flush, but not when it closes a dataset
         seal(temporary)
 
 
@@ -293,7 +293,7 @@ def _read(group: "h5py.Group") -> Response:
     places = events[["before", "after"]].to_numpy()
     if ((places < 0) | (places >= len(t))).any():
         raise ValueError("an event is beyond the end of the history")
-    # As rigid ground was before it could be chosen
+    # Earlier versions stopped at flight on rigid ground, where ``flight`` could not be chosen
     before = {"flight": "stop"} if "flight" in {field.name for field in fields(kind)} else {}
     tables: dict[str, Any] = {}
     for name, columns in _BESIDE.items():

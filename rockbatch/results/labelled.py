@@ -12,7 +12,7 @@ import numpy as np
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.cases import Case
+from rockbatch.quantities.cases import Case, is_across, name_along
 from rockbatch.quantities.design import BOUND, of_design, under
 from rockbatch.quantities.rows import as_in_peaks, simulated, with_case
 from rockbatch.results.labels import Key, Series, digits_that_tell, named, quantity, under_bounds
@@ -92,7 +92,7 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
         grouped.setdefault(key, []).append(case)
         entries[key, pier_key(case["columns"], varied)] = case
     given = _keys_given(info["study"]["text"])
-    given |= {case["case"]: given.get(case["across_of"], set()) for case in info["cases"] if case.get("across_of")}
+    given |= {case["case"]: given.get(name_along(case), set()) for case in info["cases"] if is_across(case)}
     nominal = {key: cases for key, cases in grouped.items() if not under(cases[0]["columns"])}
     series = named(nominal, [key for key in varied if _of_foundation(key)], given)
     series = under_bounds(series, grouped) if BOUND in varied else series
@@ -121,10 +121,10 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
         runs[name] = kinds.map({kind: fact[column] for kind, fact in facts.items()})
     pga = {record["record"]: record["pga_g"] for record in info["records"]}
     runs["pga"] = runs["record"].map(pga).astype("float64") * runs["scale"]
-    if across := {case["case"] for case in info["cases"] if case.get("across_of")}:
+    if across := {case["case"] for case in info["cases"] if is_across(case)}:
         runs["pga"] = runs["pga"].where(
             ~runs["case"].isin(across), runs["pga_g"]
-        )  # run.json has that of the other component
+        )  # run.json has the PGA of the other component
     runs["with_vertical"] = _with_vertical(runs)
     keys = [key for key in varied if key in PIER_KEYS]
     digits = [digits_that_tell(values) for values in zip(*piers, strict=True)]
@@ -133,7 +133,7 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
 
 
 def groups_of(runs: "pd.DataFrame", piers: Sequence[str]) -> "Iterator[tuple[str, pd.DataFrame]]":
-    """Yield a description and the runs of each scale, pier and vertical component.
+    """Yield a description, "" if only one is run, and the runs of each scale, pier and vertical component.
 
     A generator, since all groups together take as much memory as ``runs``.
     """
@@ -179,7 +179,10 @@ def as_dicts(runs: "pd.DataFrame") -> list[Row]:
 
 
 def foundation_key(case: str, columns: Mapping[str, object], varied: Sequence[str]) -> Key:
-    """Return the key of a foundation: case and varied values except the pier's; ``columns`` maps varied keys to values."""
+    """Return the key of a foundation: case name, and varied values but those of the pier and ``vertical``.
+
+    ``columns`` maps varied keys to values; a key that it lacks is "".
+    """
     return (case, *(as_in_peaks(columns.get(key)) for key in varied if _of_foundation(key)))
 
 
@@ -188,7 +191,7 @@ def _of_foundation(key: str) -> bool:
 
 
 def pier_key(columns: Mapping[str, object], varied: Sequence[str]) -> Key:
-    """Return the key of a pier: its varied values; ``columns`` maps varied keys to values."""
+    """Return the key of a pier: its varied values, "" for one that ``columns`` lacks; () if no key of the pier is varied."""
     return tuple(as_in_peaks(columns.get(key)) for key in varied if key in PIER_KEYS)
 
 

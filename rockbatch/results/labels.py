@@ -119,7 +119,7 @@ def quantity(key: str, value: object, digits: int = 10, case: Case | None = None
 
 
 def symbol_of(key: str) -> tuple[str, str]:
-    """Return symbol and unit of a study key, numbered from the second device of a kind: "C", "damper 2: C"."""
+    """Return symbol and unit of a study key, numbered from a second device: "C", "damper 2: C"; else the key itself and ""."""
     if key in SYMBOLS or not (device := of_device(key)):
         return SYMBOLS.get(key, (key, ""))
     symbol, unit = DEVICE_SYMBOLS.get(device.key, (device.key, ""))

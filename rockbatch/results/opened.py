@@ -9,20 +9,19 @@ from typing import TYPE_CHECKING
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import read_table
 from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
+from rockbatch.common.observers import from_observer
 from rockbatch.common.showing import Shown, several, shown
 from rockbatch.outcome.response import Response
 from rockbatch.quantities.catalogue import in_words
 from rockbatch.quantities.rows import simulated, with_case
+from rockbatch.results.beside_peaks import present
 from rockbatch.results.columns import with_units
 from rockbatch.results.histories_file import HISTORIES, Responses
-from rockbatch.results.intensity import INTENSITY, orders
 from rockbatch.results.labelled import Labelled, labelled
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.sections import SECTIONS, read_sections
-from rockbatch.results.shocks import SHOCKS, read_shocks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,23 +42,26 @@ class Results(Shown, Saved):
     @cached_property
     def intensity(self) -> "pd.DataFrame":
         """``intensity.csv``: measures of each run's motion; ``InputError`` unless [output] intensity = true."""
-        return read_table(self._beside(INTENSITY, "[output] intensity = true"))
+        return from_observer("intensity", "table.read")(self.directory)
 
     @cached_property
     def intensity_order(self) -> "pd.DataFrame":
-        """How well each measure orders the peaks, a row for each case, scale and measure; see
-        :class:`rockbatch.results.intensity.Order`."""
-        return orders(self.intensity, self.info["varied"])
+        """How well each measure orders the peaks, a row for each case, scale and measure.
+
+        ``rank_correlation`` is Spearman's; ``slope`` and ``dispersion`` are of a line through the logarithms of measure and
+        peak. All three are NaN with fewer than three runs.
+        """
+        return from_observer("intensity", "order.orders")(self.intensity, self.info["varied"])
 
     @cached_property
     def shocks(self) -> "pd.DataFrame":
         """``shocks.csv``: the response to each shock; ``InputError`` without a [[motions.sequence]]."""
-        return read_shocks(self._beside(SHOCKS, "a [[motions.sequence]]"), self.info["varied"])
+        return from_observer("shocks", "table.read")(self.directory, self.info["varied"])
 
     @cached_property
     def sections(self) -> "pd.DataFrame":
         """``sections.csv``: forces in sections of the shaft; ``InputError`` without [output] sections."""
-        return read_sections(self._beside(SECTIONS, "[output] sections = 5"), self.info["varied"])
+        return read_sections(present(self.directory / SECTIONS, "[output] sections = 5"), self.info["varied"])
 
     def plot_cdf(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
         """Draw the distribution of θ_max/α over the records as a matplotlib Figure.
@@ -72,12 +74,6 @@ class Results(Shown, Saved):
         from rockbatch.results.figures import distributions_of_all
 
         return drawn(distributions_of_all(self._labelled, str(self.info.get("count", "station"))), width_mm, ax)
-
-    def _beside(self, name: str, key: str) -> Path:
-        path = self.directory / name
-        if not path.exists():
-            raise InputError(f"{path}: not there; add {key} to the study and start `rockbatch run` again")
-        return path
 
     def response(self, record: str | None = None, case: str | None = None, **more: float | str) -> Response:
         """Return the response of one run.
@@ -184,7 +180,7 @@ class Results(Shown, Saved):
         return simulated(self.peaks)[["record", "case", *self.info["varied"], *results]]
 
     def _no_history(self, name: str, value: float | str, among: "pd.DataFrame") -> str:
-        """Return the message that no history ``among`` these has this value, with the nearest one or the choices."""
+        """Return the message that no history has this value of ``name``, with the nearest value, or choices ``among`` these."""
         values = among[name].dropna().unique().tolist()
         nearest = closest(value, map(str, values)) if isinstance(value, str) else None
         hint = f"there are {_listed(map(shown, values))}" if values else "it applies to none of them"
@@ -226,7 +222,7 @@ def open_results(directory: str | os.PathLike[str]) -> Results:
 
 
 def _candidates(fitting: "pd.DataFrame", criteria: dict[str, float | str]) -> str:
-    """List runs by the values that distinguish them, apart from the ``criteria`` already used."""
+    """List up to eight runs in words, by the values that distinguish them, apart from the ``criteria`` already used."""
     apart = [name for name in fitting.columns if name not in ("status", *criteria) and fitting[name].nunique() > 1]
     runs = [{name: value for name, value in run.items() if value == value} for run in fitting[apart].to_dict("records")]
     return _listed(", ".join(f"{name} = {shown(value)}" for name, value in run.items()) for run in runs)

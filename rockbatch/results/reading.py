@@ -110,7 +110,7 @@ def read_saved(directory: Path) -> Saved:
 
 
 def _instead_of(directory: Path) -> str:
-    """Return what to open instead of a folder without runs, in words: the page of its analyses, or another folder."""
+    """Return advice for a folder without runs: the page of its analyses if it has one, else to give a folder that has runs."""
     path = directory / ANALYSES_PAGE
     return f"its analyses are in {path}" if path.exists() else "give a folder that it has written"
 
@@ -229,7 +229,7 @@ def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
 
 
 def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[str]:
-    """Return a message with its line for each wrong row length, number, status and missing scale."""
+    """Return a message with its line for each wrong row length, number, status and missing scale, 20 at most; [] for none."""
     bad: list[str] = []
     try:
         with opened_text(path) as file:
@@ -257,7 +257,7 @@ def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[
 
 
 def _expected(name: str) -> str:
-    """Return the values that a column allows, in words."""
+    """Return the values that a column allows: "0, 1" for a fact, "a whole number" for a count, else "a number"."""
     if name in FACTS:
         return "0, 1"
     return "a whole number" if name in COUNTS else "a number"

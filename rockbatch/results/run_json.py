@@ -1,5 +1,6 @@
 """``run.json``: the study, its motions, and the versions of the packages used."""
 
+import functools
 import hashlib
 import json
 import math
@@ -142,12 +143,16 @@ VERSIONS_OF = ("numba", "numpy", "pandas", "obspy", "h5py")
 """Packages whose versions are recorded with results."""
 
 
-def versions() -> dict[str, str]:
-    """Return the versions of Python and the packages that results depend on, and the commit of a checkout."""
+@functools.cache
+def _of_packages() -> dict[str, str]:
     from importlib.metadata import version  # takes 20 ms, not needed to read results
 
-    packages = {name: version(name) for name in VERSIONS_OF}
-    return {"python": platform.python_version(), **packages} | ({"commit": commit()} if commit() else {})
+    return {name: version(name) for name in VERSIONS_OF}
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of Python and the packages that results depend on, and the commit of a checkout."""
+    return {"python": platform.python_version(), **_of_packages()} | ({"commit": commit()} if commit() else {})
 
 
 def describe(study: Study, motions: MotionSet) -> Row:
@@ -183,7 +188,7 @@ def describe(study: Study, motions: MotionSet) -> Row:
 
 
 def _not_used(file: Unusable) -> Row:
-    """Return the entry of a file that is not used, without its samples, if it was held back."""
+    """Return the entry of a file that is not used: its fields without the motion, what it ``lacks``, and its problem's class."""
     entry = {name: value for name, value in vars(file).items() if name != "motion"}
     return entry | {"lacks": list(file.lacks), "kind": file.kind.__name__}
 
@@ -196,7 +201,10 @@ def describe_study(study: Study) -> dict[str, str]:
 
 
 def is_of(directory: Path, sha256: str, records: Sequence[str] | None = None) -> bool:
-    """Return whether a folder has results of the study with digest ``sha256``, of exactly ``records`` if given."""
+    """Return whether a folder has results of the study with digest ``sha256``, of exactly ``records`` (in order) if given.
+
+    False if run.json is missing or damaged, or peaks.csv is not a plain file.
+    """
     try:
         info = json.loads(read_text(directory / INFO))
         alike = records is None or [record["record"] for record in info["records"]] == records
@@ -213,7 +221,7 @@ def _is_pulse(motion: Motion, study: Study) -> bool:
 
 
 def rocking_periods(cases: Sequence[Case], target: SpectrumTarget) -> dict[str, list[float]]:
-    """Return the shortest and longest free-rocking period at 0.1 α [s], for a code's conditions; empty if not needed."""
+    """Return the shortest and longest free-rocking period at 0.1 α [s] as ``rocking_s``; {} without a code or any period."""
     kinds = [(case.pier, case.base) for case in cases] if target.code else []
     distinct = [kind for i, kind in enumerate(kinds) if kind not in kinds[:i]]
     periods = [period for kind in distinct for period in _period_at(*kind)]
@@ -221,7 +229,7 @@ def rocking_periods(cases: Sequence[Case], target: SpectrumTarget) -> dict[str, 
 
 
 def _period_at(pier: Pier, base: Base) -> list[float]:
-    """Return the free-rocking period [s] at :data:`rockbatch.pier.statics.COMPARED` of α; empty if it overturns there."""
+    """Return the free-rocking period [s] at a tenth of α in a list; [] if the pier overturns there or its swings are uneven."""
     free, amplitude = FreeRocking(pier, base), COMPARED * pier.alpha
     if free.turn.unstable is not None and free.turn.unstable <= amplitude:
         return []
@@ -238,7 +246,7 @@ def _vertical_target(study: Study, motions: MotionSet, gravity: float) -> Row:
 
 
 def describe_case(case: Case) -> Row:
-    """Return the entry of a case in run.json."""
+    """Return the entry of a case in run.json, with ``across_of`` only if it is across the axis of another."""
     pier = case.pier
     return {
         "case": case.name,

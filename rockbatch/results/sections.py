@@ -14,7 +14,7 @@ SECTIONS = "sections.csv"
 
 
 def section_rows(pier: Pier, sections: Sequence[Section]) -> list[dict[str, Any]]:
-    """Return a row for each section of a run of ``pier``."""
+    """Return a row for each section of a run of ``pier``; None for its forces in kN if the mass is not known."""
     rows = []
     for height, *forces, error in sections:
         in_kilonewtons = [None if pier.mass_t is None else pier.mass_t * force for force in forces]
@@ -33,7 +33,7 @@ def read_sections(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
 
 
 def columns_in(runs: "pd.DataFrame") -> tuple[dict[str, str], dict[str, str]]:
-    """Return headings with units, and columns, of shear, moment and axial forces: in kN if all rows have these, else over M."""
+    """Return headings with units, and columns, by force ("shear", "moment", …): in kN if all rows have these, else over M."""
     over_mass = bool(runs["section_shear_kN"].isna().any())
     symbols = {"shear": "V", "moment": "moment", "axial_least": "N", "axial_greatest": "N", "axial_at_moment": "N"}
     heads, columns = {}, {}

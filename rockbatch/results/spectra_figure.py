@@ -25,7 +25,10 @@ LABELLED = COLOURS
 
 
 def drawable(spectra: Item) -> bool:
-    """Return whether periods rise and every spectrum has a value for each: run.json is untrusted."""
+    """Return whether periods rise and every spectrum has a value, not negative, or None for each: run.json is untrusted.
+
+    A target and its mean are both there or both missing.
+    """
     periods, more = spectra["period_s"], [spectra[name] for name in ("mean_sa_g", "target_sa_g") if name in spectra]
     shown = [*spectra["sa_g"], *more]
     rising = len(periods) > 1 and all(a < b for a, b in pairwise([0.0, *periods]))

@@ -23,7 +23,7 @@ def worst_records(runs: "pd.DataFrame", most: int) -> list[str]:
 
 
 def reasons_of_failure(runs: "pd.DataFrame") -> dict[str, int]:
-    """Return the counts of the two most frequent reasons of failed runs, each cut at its first colon or semicolon."""
+    """Return the two most frequent reasons of failed runs, cut at the first colon or semicolon, with their numbers."""
     failed = runs.loc[runs["status"] == "failed", "reason"].astype(str)
     counts = failed.str.split("[:;]", n=1).str[0].value_counts()
     return {str(reason): int(times) for reason, times in counts.head(2).items()}

@@ -12,7 +12,7 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Return a public name from its module, or for "kept" the module of compiled kernels on disk."""
+    """Return a public name from its module; for "kept" the module of compiled kernels on disk. ``AttributeError`` for others."""
     if name == "kept":
         return import_module("rockbatch.core.kept")
     for module, names in _HOMES.items():

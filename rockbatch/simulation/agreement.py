@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -40,8 +41,16 @@ PAIRS = {Agreement.THROUGHOUT: 1, Agreement.APART: 2, Agreement.RESULTS: 4}
 """Consecutive halvings that must agree to at least this extent: the weaker the agreement, the more are needed."""
 
 
-def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agreement:
-    """Return the extent to which two trials agree, with a ``tolerance`` on rotations [rad]; NONE if their statuses differ."""
+class Tolerances(NamedTuple):
+    """Changes of rotations [rad] by a smaller step that count as none."""
+
+    peak: float
+    residual: float
+    extremes: Samples  # of each window
+
+
+def agreement(fine: Trial, coarse: Trial, tolerances: Tolerances, pier: Pier) -> Agreement:
+    """Return the extent to which two trials agree within ``tolerances``; NONE if their statuses differ."""
     finer, coarser = fine.outcome, coarse.outcome
     if finer.status != coarser.status:
         return Agreement.NONE
@@ -49,21 +58,22 @@ def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agree
         moved = abs(
             finer.theta_max_in_motion - coarser.theta_max_in_motion
         )  # later motion of a failed run is no result
-        alike = finer.failure == coarser.failure and moved <= tolerance
+        alike = finer.failure == coarser.failure and moved <= tolerances.peak
         return Agreement.THROUGHOUT if alike and finer.failure in LEFT_ALONE else Agreement.NONE
     greatest, change = windows(fine, coarse)
     if finer.status == "overturned":
         standing = greatest < pier.alpha
         fell_together = abs(finer.t_end - coarser.t_end) <= SAME_TIME / pier.p
-        together = fell_together and not (change[standing] > max(tolerance, SAME_FALL * pier.alpha)).any()
+        differs = change > np.maximum(tolerances.extremes, SAME_FALL * pier.alpha)
+        together = fell_together and not (differs & standing).any()
         return Agreement.THROUGHOUT if together else Agreement.NONE
     if finer.status == "flight" and abs(flight_of(finer) - flight_of(coarser)) > SAME_TIME / pier.p:
         return Agreement.NONE
-    if max(finer.theta_max_error or 0.0, finer.theta_res_error or 0.0) > tolerance:
+    if (finer.theta_max_error or 0.0) > tolerances.peak or (finer.theta_res_error or 0.0) > tolerances.residual:
         return Agreement.NONE
     if abs(finer.t_max - coarser.t_max) > SAME_TIME / pier.p:  # another peak of about the same height
         return Agreement.RESULTS
-    differs = change > tolerance
+    differs = change > tolerances.extremes
     if not differs.any():
         same = same_counts(finer, coarser) or not (change > SAME_COURSE * finer.theta_max).any()
         return Agreement.THROUGHOUT if same else Agreement.APART
@@ -87,7 +97,7 @@ def same_counts(fine: Outcome, coarse: Outcome) -> bool:
 def windows(fine: Trial, coarse: Trial) -> tuple[Samples, Samples]:
     """Return the greater of two runs' extremes and their difference, per window [rad]; 0 if none reached it, inf if one did."""
     greatest, change = np.fmax(fine.extremes, coarse.extremes), np.abs(fine.extremes - coarse.extremes)
-    change[np.isnan(change)] = math.inf  # a window that one of them has not reached
+    change[np.isnan(change)] = math.inf  # a window that only one of the two runs has reached
     reached = ~np.isnan(greatest)
     return np.where(reached, greatest, 0.0), np.where(reached, change, 0.0)
 

@@ -84,7 +84,10 @@ def look_for_chaos(
 
 
 def _with_peak_of(probe: Trial, fine: Trial, outcome: Outcome, tolerance: float, pier: Pier, changed: str) -> Outcome:
-    """Return ``outcome`` with the error of θ_max raised by ``probe``, under a ``changed`` motion; withdrawn if it is chaotic."""
+    """Return ``outcome`` with the error of θ_max raised by ``probe``, a run under a motion ``changed`` as in "1e-08 weaker".
+
+    The error is withdrawn if that moves the peak by more than the tolerance; if ``probe`` overturns, ``may_overturn`` is set.
+    """
     tolerance *= pier.alpha
     if outcome.change_in_motion is not None:
         within = MARGIN * abs(probe.outcome.theta_max_in_motion - outcome.theta_max_in_motion)
@@ -113,7 +116,10 @@ def _with_peak_of(probe: Trial, fine: Trial, outcome: Outcome, tolerance: float,
 
 
 def without_error(outcome: Outcome, reason: str) -> Outcome:
-    """Return ``outcome`` with its peak marked as chaotic for ``reason``, without an error; unchanged if it has none."""
+    """Return ``outcome`` with its peak marked as chaotic for ``reason``, without errors of the peak and of devices.
+
+    Unchanged if its peak has no error.
+    """
     if outcome.theta_max_error is None:
         return outcome
     chaos = f"the peak is chaotic, {reason}: no error of it is claimed"

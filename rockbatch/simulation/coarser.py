@@ -2,12 +2,16 @@
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
+
+from rockbatch.core.clock import WINDOWS
+from rockbatch.motions.motion import Samples
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import FootingBase, WithShaft
-from rockbatch.simulation.beds import with_fewer_strips, with_strips_error
-from rockbatch.simulation.runs import Run
+from rockbatch.simulation.agreement import Tolerances, windows
+from rockbatch.simulation.runs import Run, Trial
 
 FEWER_MODES = "with one mode of the shaft fewer it ends as {status}: no error of it is claimed"
 _OF_SHAFT = ("theta_max", "deflection_max", "top_drift_max")
@@ -22,21 +26,11 @@ def with_fewer_modes(run: Run) -> Run | None:
     return Run(run.pier, replace(base, flexural_modes=n - 1), run.motion) if n > 1 else None
 
 
-def coarser(run: Run) -> Run | None:
-    """Return the run of a coarser model at the same step; None for a model without one."""
-    if isinstance(run.base, FootingBase):
-        return Run(run.pier, with_fewer_strips(run.base), run.motion)
-    return with_fewer_modes(run)
+def with_modes_error(outcome: Outcome, other: Outcome, chance: float) -> Outcome:
+    """Return ``outcome`` with ``chance`` times the change from the ``other`` one, by a mode fewer, in its errors.
 
-
-def with_model_error(outcome: Outcome, other: Outcome, chance: float) -> Outcome:
-    """Return ``outcome`` with the change from the ``other`` one, of the coarser model, in its errors; of modes, which converge at
-    no known order, ``chance`` times.
+    Modes converge at no known order.
     """
-    return with_strips_error(outcome, other) if outcome.bed is not None else _with_modes_error(outcome, other, chance)
-
-
-def _with_modes_error(outcome: Outcome, other: Outcome, chance: float) -> Outcome:
     if outcome.status != "ok":
         return outcome
     if other.status != outcome.status:
@@ -47,6 +41,96 @@ def _with_modes_error(outcome: Outcome, other: Outcome, chance: float) -> Outcom
         own, others, error = getattr(outcome, name), getattr(other, name), getattr(outcome, f"{name}_error")
         if error is not None:
             more[f"{name}_error"] = error + chance * abs(own - others)
+    return outcome.changed(**more)
+
+
+FEWER_STRIPS = "half as many strips come to another end: {status}; no error is claimed"
+
+UNEVEN = 3.0
+"""Error that is claimed on a bed over the change by twice the step, or by half as many strips: an error of order 1 is all of the
+change by strips. That is the order where the ground yields in less than a strip, and where dashpots meet the edge of what is
+pressed; and neither change falls evenly."""
+
+LEAST = 1e-5
+"""Least change by strips over the peak: two runs may agree better than either is right."""
+
+STEPS = 0.1
+"""Share of what the strips leave of an error that the steps may add: smaller ones buy nothing."""
+
+
+def with_fewer_strips(run: Run) -> Run | None:
+    """Return a run on half as many strips of its bed; None if it has none."""
+    if not isinstance(run.base, FootingBase):
+        return None
+    return Run(run.pier, replace(run.base, strips=run.base.strips // 2), run.motion)
+
+
+class StripsShare(NamedTuple):
+    """Share of the number of strips in errors of a run."""
+
+    peak: float  # [rad]
+    residual: float  # [rad]
+    settlement: float  # [m]
+    extremes: Samples  # of each window [rad]
+    pressure: float | None  # [MPa]
+
+
+def share_of_strips(own: Trial, fewer: Trial, half_width: float) -> StripsShare | None:
+    """Return the StripsShare by a trial and one on half as many strips at the same step; None unless both end standing.
+
+    Two results may agree by chance, a whole trajectory does not: the peak's is no less than that of any extreme until then, nor
+    is that of the settlement, of an edge ``half_width`` [m] away; the residual rotation's no less than that of any extreme.
+    """
+    ends = own.outcome, fewer.outcome
+    if not ends[0].status == ends[1].status == "ok":
+        return None
+    beds = [end.bed for end in ends if end.bed is not None]
+    yields = any(bed.work for bed in beds)
+    change = windows(own, fewer)[1]
+    until = 1 + max(int(np.nanargmax(trial.extremes)) for trial in (own, fewer))
+    before, any_time = max(float(change[:until].max()), LEAST * ends[0].theta_max), float(change.max())
+    pressures = [bed.pressure for bed in beds if bed.pressure is not None]
+    return StripsShare(
+        peak=UNEVEN * max(abs(ends[0].theta_max - ends[1].theta_max), before),
+        residual=UNEVEN * max(_change(*ends, "theta_res"), yields * any_time),
+        settlement=UNEVEN * max(_change(*ends, "settlement"), yields * half_width * before),
+        extremes=UNEVEN * change,
+        pressure=UNEVEN * abs(pressures[0] - pressures[1]) if pressures else None,
+    )
+
+
+def _change(one: Outcome, other: Outcome, name: str) -> float:
+    """Return the change of a result that both or none of two outcomes have; 0 for none."""
+    return abs((getattr(one, name) or 0.0) - (getattr(other, name) or 0.0))
+
+
+def tolerances_beside(tolerance: float, share: StripsShare | None) -> Tolerances:
+    """Return the Tolerances of a run: ``tolerance`` [rad], or the part of the ``share`` of its strips that steps may add."""
+    if share is None:
+        return Tolerances(tolerance, tolerance, np.full(WINDOWS, tolerance))
+    return Tolerances(
+        max(tolerance, STEPS * share.peak),
+        max(tolerance, STEPS * share.residual),
+        np.maximum(tolerance, STEPS * share.extremes),
+    )
+
+
+def with_strips_error(outcome: Outcome, own: Trial, fewer: Trial, half_width: float) -> Outcome:
+    """Return ``outcome`` with errors by steps and strips, of trials on its ``own`` strips and ``fewer`` at the same step."""
+    if outcome.status != "ok" or outcome.bed is None:
+        return outcome
+    share = share_of_strips(own, fewer, half_width)
+    if share is None:
+        unknown = dict.fromkeys(("theta_max_error", "theta_res_error", "settlement_error"))
+        return outcome.noted(FEWER_STRIPS.format(status=fewer.outcome.status), **unknown)
+    more: dict[str, Any] = {"bed": replace(outcome.bed, strips_error=share.peak, pressure_error=share.pressure)}
+    for name, of_strips in (
+        ("theta_max_error", share.peak),
+        ("theta_res_error", share.residual),
+        ("settlement_error", share.settlement),
+    ):
+        error = getattr(outcome, name)
+        more[name] = None if error is None else UNEVEN * error + of_strips
     return outcome.changed(**more)
 
 

@@ -25,7 +25,8 @@ def compiles() -> bool:
 def load_numba() -> None:
     """Load Numba's array functions without SciPy's linear algebra, which takes 0.2 s and is not used by the kernels.
 
-    Numba loads it only to check that it is installed; a kernel that multiplies matrices loads it when it is compiled.
+    Numba loads it only to check that it is installed; a kernel that multiplies matrices loads it when it is compiled. Does
+    nothing with a version of Numba that checks differently.
     """
     ensure_blas = getattr(linalg, "ensure_blas", None)
     if ensure_blas is None:  # a version of Numba that checks differently

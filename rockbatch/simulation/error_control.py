@@ -1,15 +1,22 @@
 """Step-halving error control: smaller steps until the results converge (THEORY.md, The error that a row reports)."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from rockbatch.core.clock import ON_ITS_SIDE, window_of
-from rockbatch.motions.motion import Motion
+from rockbatch.motions.motion import Motion, Samples
 from rockbatch.outcome.changes import change_of_devices
 from rockbatch.outcome.outcome import Failure, Outcome
 from rockbatch.pier import Base, Damper, Pier
 from rockbatch.simulation.agreement import COUNTS, Agreement, agreement, converged_extent, flight_of, windows
 from rockbatch.simulation.chaos import MARGIN, look_for_chaos, magnifies, residuals_wander, without_error
-from rockbatch.simulation.coarser import coarser, with_model_error
+from rockbatch.simulation.coarser import (
+    share_of_strips,
+    tolerances_beside,
+    with_fewer_modes,
+    with_fewer_strips,
+    with_modes_error,
+    with_strips_error,
+)
 from rockbatch.simulation.models import first_substeps, readings
 from rockbatch.simulation.runs import MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
 
@@ -59,25 +66,29 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
     first = [first_substeps(run.pier, run.base, run.motion.dt) for run in runs]
     levels = {i: [trial] for i, trial in enumerate(try_all(runs, first, quiet_s, stop)) if trial is not None}
     agreements: dict[int, list[Agreement]] = {i: [] for i in levels}
+    beds: dict[int, tuple[Trial, Trial]] = {}
     while levels:
         for i in [i for i in levels if _steps_of_next(runs[i], levels[i], quiet_s) > MOST_STEPS]:
             more = f"; the next try would take {_steps_of_next(runs[i], levels[i], quiet_s):.0e} steps"
             outcomes[i] = _not_converged(runs[i].pier, levels.pop(i), tolerance, more)
         unfinished, doubtful = list(levels), dict[int, Trial]()
         substeps = [2 * levels[i][-1].outcome.substeps for i in unfinished]
+        beds |= _on_beds(runs, levels, quiet_s, stop)
         for i, fine in zip(unfinished, try_all([runs[i] for i in unfinished], substeps, quiet_s, stop), strict=True):
             if fine is None:
                 del levels[i]
                 continue
             pier, coarse = runs[i].pier, levels[i][-1]
+            share = share_of_strips(*beds[i], pier.half_width) if i in beds else None
+            tolerances = tolerances_beside(tolerance * pier.alpha, share)
             fine = Trial(_with_errors(runs[i], fine.outcome, coarse.outcome), fine.extremes)
             levels[i].append(fine)
-            agreements[i].append(agreement(fine, coarse, tolerance * pier.alpha, pier))
+            agreements[i].append(agreement(fine, coarse, tolerances, pier))
             if extent := converged_extent(agreements[i]):
                 until = _window_at(runs[i], runs[i].motion.duration, quiet_s)
                 peak = _window_at(runs[i], fine.outcome.t_max, quiet_s)
-                outcome = _with_notes(fine, coarse, agreements[i][-1], tolerance * pier.alpha, peak)
-                outcome = _with_peak_in_motion(runs[i], fine, coarse, outcome, tolerance * pier.alpha, until)
+                outcome = _with_notes(fine, coarse, agreements[i][-1], tolerances.extremes, peak)
+                outcome = _with_peak_in_motion(runs[i], fine, coarse, outcome, tolerances.peak, until)
                 outcome = _with_drift(runs[i], outcome)
                 magnified = magnifies(runs[i], fine, coarse, outcome, until)
                 if magnified and extent == Agreement.RESULTS:
@@ -89,23 +100,36 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
             elif len(agreements[i]) == HALVINGS:
                 outcomes[i] = _not_converged(pier, levels.pop(i), tolerance, "")
         look_for_chaos(runs, outcomes, doubtful, tolerance, quiet_s, stop)
-    return _with_model_error(runs, outcomes, quiet_s, stop)
+    for i, bed in beds.items():
+        if (found := outcomes[i]) is not None:
+            outcomes[i] = with_strips_error(found, *bed, runs[i].pier.half_width)
+    return _with_modes_errors(runs, outcomes, quiet_s, stop)
 
 
-def _with_model_error(
+def _on_beds(
+    runs: Sequence[Run], levels: Mapping[int, Sequence[Trial]], quiet_s: float, stop: Stop
+) -> dict[int, tuple[Trial, Trial]]:
+    """Return the last of the ``levels`` of each run on a footing, and the trial on half as many strips at the same step."""
+    fewer = {i: other for i in levels if (other := with_fewer_strips(runs[i]))}
+    steps = [levels[i][-1].outcome.substeps for i in fewer]
+    trials = try_all(list(fewer.values()), steps, quiet_s, stop) if fewer else []
+    return {i: (levels[i][-1], trial) for i, trial in zip(fewer, trials, strict=True) if trial is not None}
+
+
+def _with_modes_errors(
     runs: Sequence[Run], outcomes: Sequence[Outcome | None], quiet_s: float, stop: Stop
 ) -> list[Outcome | None]:
-    """Return ``outcomes`` with the share of the bed's strips or the shaft's modes in their errors, by runs with fewer of them."""
+    """Return ``outcomes`` with the share of the modes of shafts in their errors, by runs with one fewer."""
     found = list(outcomes)
     fewer = list[tuple[int, Run, int]]()
     for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True)):
-        if outcome is not None and outcome.status == "ok" and (other := coarser(run)):
+        if outcome is not None and outcome.status == "ok" and (other := with_fewer_modes(run)):
             fewer.append((i, other, outcome.substeps))
     trials = try_all([run for _, run, _ in fewer], [steps for *_, steps in fewer], quiet_s, stop) if fewer else []
     for (i, *_), trial in zip(fewer, trials, strict=True):
         outcome = found[i]
         found[i] = (
-            with_model_error(outcome, trial.outcome, CHANCE) if trial is not None and outcome is not None else None
+            with_modes_error(outcome, trial.outcome, CHANCE) if trial is not None and outcome is not None else None
         )
     return found
 
@@ -177,8 +201,8 @@ def _with_drift(run: Run, outcome: Outcome) -> Outcome:
     )
 
 
-def _with_notes(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak: int) -> Outcome:
-    """Return the outcome of ``fine`` with notes on other results that did not converge; ``tolerance`` in rad.
+def _with_notes(fine: Trial, coarse: Trial, extent: Agreement, tolerances: Samples, peak: int) -> Outcome:
+    """Return the outcome of ``fine`` with notes on other results that did not converge, ``tolerances`` [rad] of each window.
 
     If rotations up to the window ``peak`` of the peak have not converged, no error is claimed: the peak then depends on digits
     that no record has, and runs that agree on it do so by chance.
@@ -187,7 +211,7 @@ def _with_notes(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float,
     if finer.status != "failed":
         finer = finer.changed(chaotic=False, may_overturn=False)
     greatest, change = windows(fine, coarse)
-    differs = change > tolerance
+    differs = change > tolerances
     if extent < Agreement.THROUGHOUT and differs.any():
         notes.append(f"lesser rotations, up to {greatest[differs].max():.2g} rad, have not settled")
         if differs[: peak + 1].any() and finer.status == "ok":

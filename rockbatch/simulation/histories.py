@@ -132,14 +132,20 @@ def _deflection(pier: Pier, base: WithShaft, rows: np.recarray) -> Samples:
 
 
 def of_modes(rows: np.recarray) -> tuple[Samples, Samples]:
-    """Return the coordinates [m] of a shaft's modes at ``rows``, and their rates [m/s], shape (modes, rows) each."""
+    """Return the coordinates [m] of all modes of a shaft at ``rows``, and their rates [m/s], shape (modes, rows) each.
+
+    Modes that the run does not follow are included, and stay 0.
+    """
     first = Flexing._fields.index("u_1")
     names, rates = Flexing._fields[first : first + MOST_MODES], Flexing._fields[first + MOST_MODES :]
     return np.array([rows[name] for name in names]), np.array([rows[name] for name in rates])
 
 
 def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
-    """Return state, edges of the foot, forces at them equal to the push, and energy without devices, at every step."""
+    """Return columns of a history on a footing at every step: state, edges of the foot, two forces there, energy.
+
+    The forces at the edges are equal to the push of the bed; the energy is without devices, and from the start.
+    """
     pier, base, nothing = run.pier, run.base, np.full(len(rows), np.nan)
     bed = np.recarray(len(rows), BED_STATE)
     follow_bed(model(pier, base), restraints.apart(base, rows)[0], bed)
@@ -166,7 +172,7 @@ def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
 
 
 def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str, Samples]:
-    """Return columns of a history on springs: state, pivots, forces, energy without devices (THEORY.md, Results of a run)."""
+    """Return columns of a history on springs: state, pivots, support forces, energy without devices since the start."""
     m = springs(pier, base)
     v, theta, z_left, z_right = rows.v, rows.theta, rows.z_left, rows.z_right
     b, h = m.half_width, m.height

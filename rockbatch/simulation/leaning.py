@@ -116,7 +116,7 @@ def _last_borne(unstressed: Samples, borne: Samples, at_first: float) -> Samples
 
 
 def noted_lean(outcome: Outcome, parts: Apart, alpha: float) -> Outcome:
-    """Return ``outcome`` with a note if its peak is mostly lean, in units of ``alpha`` [rad]."""
+    """Return ``outcome`` with a note, and ``theta_max_is``, if its peak is mostly lean; else unchanged. ``alpha`` is α [rad]."""
     if outcome.status != "ok" or not parts.leans:
         return outcome
     remark = (

@@ -222,7 +222,7 @@ def flexible_block(pier: Pier, base: RigidBase) -> FlexibleBlock:
 
 
 def per_mode(values: Samples, absent: float = 0.0) -> PerMode:
-    """Return a number of each mode for the core; ``absent`` for modes that a pier lacks, which stay at rest."""
+    """Return numbers of modes, shape (n,), as the core has them: for four modes, ``absent`` for those a pier lacks."""
     lacking = len(PerMode._fields) - len(values)
     return PerMode(*map(float, values), *[absent] * lacking)
 
@@ -377,7 +377,7 @@ def _linear_part(pier: Pier, base: Base, element: Element, coefficient: float, e
 
 
 def _fastest(pier: Pier, base: Base) -> float:
-    """Return the greatest rate [1/s] of a pier without devices on springs; on rigid ground the bound for dampers, STEEP p."""
+    """Return the greatest rate [1/s] on springs, without devices; on rigid ground :data:`STEEP` p, the bound for dampers."""
     if not base.on_springs:
         return STEEP * pier.p
     return _fastest_on_springs(springs(pier, base)) if base.bends else fastest(pier, base)
@@ -401,7 +401,7 @@ def _fastest_on_springs(m: Springs) -> float:
 
 
 def _lever(pier: Pier, base: Base, element: Element) -> float:
-    """Return the acceleration at a device by a unit force there per unit mass: in full contact, or about a corner."""
+    """Return the acceleration at a device by a unit force there per unit mass: on springs in full contact, else about a pivot."""
     if element.height != 0.0:
         inertia = pier.inertia + pier.height**2 if base.on_springs else pier.inertia_about_pivot
         return (element.height**2 + element.swing**2) / inertia
@@ -412,7 +412,7 @@ def _lever(pier: Pier, base: Base, element: Element) -> float:
 
 @lru_cache(maxsize=4096)
 def prestress(pier: Pier, base: Base) -> float:
-    """Return Σ P0/M of all tendons [m/s²]; 0 without any."""
+    """Return Σ P0/M of all tendons [m/s²], counted at every place; 0 without any."""
     return sum(law.prestress for law in elements(pier, base))
 
 
@@ -457,8 +457,7 @@ def acceleration_at(samples: Samples, dt: float, t: Samples | float) -> Samples:
 
 
 def first_substeps(pier: Pier, base: Base, dt: float) -> int:
-    """Return the steps per sample of ``dt`` [s] of a first run, by the model's highest frequency; at least FIRST_ON_ROCK on a
-    rigid base."""
+    """Return the steps per sample of ``dt`` [s] of a first run, by the model's highest frequency; on a rigid base two or more."""
     return max(_substeps_for(FREQUENCY_STEP, pier, base, dt), 1 if base.on_springs else FIRST_ON_ROCK)
 
 

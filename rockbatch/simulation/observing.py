@@ -42,23 +42,23 @@ class Observer:
     histories_of_steps: ClassVar[bool] = False
 
     def observes(self, motions: Sequence[Motion]) -> bool:
-        """Return True if the observer applies to runs under any of these ``motions``."""
+        """Return whether the observer applies to runs under any of these ``motions``: True unless a class overrides it."""
         return True
 
     def beside(self, run: Run, outcome: Outcome) -> Run | None:
-        """Return another run whose outcome is compared with that of ``run``; None without."""
+        """Return another run whose outcome is compared with that of ``run``: None, for none, unless a class overrides it."""
         return None
 
     def compare(self, outcome: Outcome, other: Outcome) -> Outcome:
-        """Return ``outcome`` with results of the ``other`` outcome, of the run by :meth:`beside`."""
+        """Return ``outcome`` with results of the ``other`` run by :meth:`beside`: unchanged unless a class overrides it."""
         return outcome
 
     def reads(self, run: Run, outcome: Outcome) -> bool:
-        """Return True if the observer reads the history of this run."""
+        """Return whether the observer reads the history of this run: all but refused ones, unless a class overrides it."""
         return outcome.was_run
 
     def claims_error(self, outcome: Outcome) -> bool:
-        """Return True if its results have an error estimate, which takes a history of twice the step."""
+        """Return whether results have an error, by a history of twice the step: unless a run failed or is chaotic."""
         return outcome.status != "failed" and not outcome.chaotic
 
     def quiet_s(self, run: Run, quiet_s: float) -> float:
@@ -69,15 +69,21 @@ class Observer:
         """Return the results of a history, of the type that :meth:`add` takes."""
 
     def beyond(self, run: Run, fine: Any, fewer: Any) -> Any:
-        """Return the results ``fine`` with what one mode ``fewer`` of the shaft changes as a part of their errors."""
+        """Return the results ``fine`` with what one mode ``fewer`` of the shaft changes as a part of their errors.
+
+        Unchanged unless a class overrides it.
+        """
         return fine
 
     def add(self, run: Run, outcome: Outcome, fine: Any, coarse: Any) -> Outcome:
-        """Return ``outcome`` with the results ``fine`` of its history and ``coarse`` by twice the step; None if not read."""
+        """Return ``outcome`` with the results ``fine`` of its history and ``coarse`` by twice the step; None if not read.
+
+        Unchanged unless a class overrides it.
+        """
         return outcome
 
     def histories(self, recording: Recording) -> "Mapping[str, pd.DataFrame]":
-        """Return tables by the fields of :class:`Response` that the observer adds to the histories of a run."""
+        """Return tables that the observer adds to a run's histories, by fields of :class:`Response`: {} unless overridden."""
         return {}
 
 
@@ -177,7 +183,10 @@ def _read_all(
 def _readings_of(
     recording: Recording, outcome: Outcome, observers: Iterable[Observer], quiet_s: float, longest: float
 ) -> Readings:
-    """Return the readings of a ``recording`` that continues for the time ``longest`` [s] after its motion."""
+    """Return what each observer reads in a ``recording``, which goes on ``longest`` [s] after its motion.
+
+    Observers that need no more than ``quiet_s`` read until the run's own end; those of samples read no steps between these.
+    """
     whole = {True: recording, False: recording.at_samples}
     own = recording.until(outcome.t_end) if longest > quiet_s else recording
     short = {True: own, False: own.at_samples}

@@ -37,7 +37,7 @@ class Recording(NamedTuple):
 
     @property
     def shown(self) -> np.ndarray:
-        """Return True for each row at a sample or event, and the last one."""
+        """Return True for each row at a sample or event, and for the last one, shape (rows,)."""
         shown: np.ndarray = self.rows.kind != types.STEP
         shown[-1:] = True  # an overturned pier may fall between samples
         return shown

@@ -37,7 +37,7 @@ AT_REST = 1e-9
 
 
 def names(pier: Pier, base: Base) -> list[str]:
-    """Return the names of all devices, in their order: "damper 1 left", "damper 1 right", "tendon 1"."""
+    """Return the names of devices at each place, in order: "damper 1 left", "damper 1 right", "tendon 1", "deck spring 1"."""
     labels, counts = list[str](), Counter[str]()
     for device in base.restraints:
         counts[device.what] += 1
@@ -59,7 +59,7 @@ def apart(base: Base, rows: np.recarray) -> tuple[np.recarray, Samples]:
 
 
 def recorded(pier: Pier, base: Base, rows: np.recarray) -> RecordedDevices:
-    """Return the dampers and tendons of ``base``, with their states at the ``rows`` of a history."""
+    """Return the devices of ``base`` as the core has them, with their states at the ``rows`` of a history."""
     laws = np.array([tuple(law) for law in elements(pier, base)], ELEMENT).view(np.recarray)
     level = start_of(pier, base).level
     return RecordedDevices(laws, rows.state.copy(), float(rows.v[0]) if math.isnan(level) else level)
@@ -124,7 +124,7 @@ def device_work(pier: Pier, base: Base, rows: np.recarray, least_stroke: float) 
 
 
 def with_devices(pier: Pier, base: Base, rows: np.recarray, terms: Samples) -> Samples:
-    """Add dampers and tendons to the energy balance [J/kg] of a run, whose ``terms`` are changed in place and returned."""
+    """Add the devices to the energy balance [J/kg] of a run, ``terms``, which are changed in place and returned."""
     table = terms.view(LEDGER)[:, 0].view(np.recarray)  # the same memory, by names
     kinds = np.array([law.kind == TENDON for law in elements(pier, base)])
     table.elastic += device_histories(pier, base, rows).stored

@@ -57,7 +57,7 @@ _STATUS = {
     types.OVERTURNED: "overturned",
     types.FLIGHT: "flight",
 }
-"""Statuses by those of the core; a run with any other has failed."""
+"""Statuses by the statuses of the core; a run with any other status has failed."""
 
 _FAILURES = {
     types.CHATTER: Failure.CONTACTS,
@@ -130,7 +130,7 @@ class Stop:
 
 
 def quiet_samples(quiet_s: float, dt: float) -> int:
-    """Return the number of samples of a free-vibration tail, rounded up."""
+    """Return the number of samples of ``dt`` [s] in a free-vibration tail of ``quiet_s`` [s], rounded up."""
     return math.ceil(quiet_s / dt - 1e-9)
 
 
@@ -151,7 +151,7 @@ def _equipment(runs: Sequence[Run]) -> Equipment | None:
 
 
 def alike(run: Run) -> tuple[object, ...]:
-    """Return what runs must have in common to be computed side by side, beside their steps: system, and kinds of devices."""
+    """Return a key equal for runs that can be computed side by side at one step: their system, and kinds of devices."""
     return (*kernel_of(run.pier, run.base), signature(elements(run.pier, run.base)))
 
 
@@ -284,7 +284,7 @@ def _with_static_rotation(run: Run, result: Result, equipment: Equipment, number
 
 
 def _device_demands(run: Run, use: np.recarray) -> dict[str, float]:
-    """Return the demands on devices by the fields of Outcome, for the kinds that the base has."""
+    """Return the greatest demands on devices by the fields of Outcome; {} without devices, only kinds that the base has."""
     kinds = np.array([device.what for device in run.base.restraints for _ in places(run.pier, device)])
     dampers, tendons = (use[kinds == stop_kind].view(np.recarray) for stop_kind in ("damper", "tendon"))
     demands: dict[str, float] = {}
@@ -415,7 +415,7 @@ def cause_of_flight(
 
 
 def _spring_results(pier: Pier, base: ElasticBase, result: Result, survived: bool) -> dict[str, float]:
-    """Return the fields of Outcome on springs: residuals if the pier ``survived``, and demands on yielding springs."""
+    """Return fields of Outcome on springs: residuals if the pier ``survived``, demands if they yield; {} for neither."""
     more: dict[str, float] = {}
     if survived:
         # From the base's tilt to the rotation, static on the deformed base (THEORY.md, eq. 20)

@@ -140,8 +140,10 @@ def recorded(run: Run, rows: np.recarray) -> Recorded:
 
 
 def in_body(of: Recorded, numbers: Places, shares: Samples) -> InBody:
-    """Return the accelerations at each of ``shares`` of the step to the row of this number, within which devices pull by their
-    laws."""
+    """Return the accelerations within each step before the rows ``numbers``, at the ``shares`` of it: 1 is at the row itself.
+
+    Within a step devices pull by their laws.
+    """
     pier, base = of.run.pier, of.run.base
     motion, pushes = np.recarray(len(numbers), MOTION), np.zeros((len(numbers), len(of.heights)))
     bending = np.zeros((len(numbers), 3, MOST_MODES))

@@ -20,7 +20,7 @@ _STANDING = Start()
 
 @lru_cache(maxsize=4096)
 def start_of(pier: Pier, base: Base) -> Start:
-    """Return the initial state of a run; that of a pier without an initial rotation is all 0."""
+    """Return the initial state of a run; that of a pier without an initial rotation is all 0, ``level`` NaN."""
     theta = pier.initial_rotation_rad
     if theta == 0.0:
         return _STANDING
@@ -99,7 +99,7 @@ def _deck_elongation(law: Element, theta: float, finite: bool) -> float:
 
 
 def _nonnegative_root(rising: Callable[[float], float]) -> float:
-    """Return x ≥ 0 at which a rising function is 0, or 0 if it is not negative there; it must become positive."""
+    """Return x ≥ 0 at which a rising function is 0, or 0 if it is not negative there; never returns if it stays negative."""
     from scipy.optimize import brentq
 
     low, high = 0.0, 1.0

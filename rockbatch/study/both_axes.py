@@ -21,9 +21,9 @@ KEY = "other_width_m"
 
 
 def with_other_axes(file: TomlFile, cases: Sequence[Case], motions: MotionSpec) -> list[Case]:
-    """Return the cases, each that gives the width of its other axis followed by the case of that axis.
+    """Return the cases, each with ``other_width_m`` followed by its case across the axis.
 
-    A case that cannot be run on both axes is noted in ``file``, with the reason.
+    A case that cannot be run on both axes is not followed, and the reasons become problems of ``file``.
     """
     tables = file.tables("case", title="name")
     names = [table.data.get("name") for table in tables]
@@ -31,7 +31,7 @@ def with_other_axes(file: TomlFile, cases: Sequence[Case], motions: MotionSpec) 
     for case in cases:
         both.append(case)
         if KEY in case.columns:
-            table = tables[names.index(case.name) if case.name in names else 0]  # a single one need not have a name
+            table = tables[names.index(case.name) if case.name in names else 0]  # a single case need not have a name
             wrong = list(_obstacles(case, motions, names))
             for problem in wrong:
                 table.complain(f"{KEY}: {problem}", KEY)
@@ -40,12 +40,12 @@ def with_other_axes(file: TomlFile, cases: Sequence[Case], motions: MotionSpec) 
 
 
 def _name_across(case: Case) -> str:
-    """Return the name of the case across the axis of ``case``."""
+    """Return the name of the case across the axis of ``case``: "soft across" for "soft"."""
     return f"{case.name} across"
 
 
 def _obstacles(case: Case, motions: MotionSpec, names: Container[object]) -> Iterator[str]:
-    """Yield each reason why a case cannot be run on both axes, with the remedy."""
+    """Yield each reason why a case cannot be run on both axes, with the remedy; ``names`` are those of all [[case]]."""
     if _name_across(case) in names:
         yield f"the case across the axis is called {shown(_name_across(case))}; give the case of that name another one"
     if "width_m" not in case.columns:
@@ -67,7 +67,7 @@ def _obstacles(case: Case, motions: MotionSpec, names: Container[object]) -> Ite
 
 
 def _case_across(table: Table, case: Case) -> list[Case]:
-    """Return the case across the axis of ``case``, or nothing if its pier is impossible, which is noted in ``table``."""
+    """Return the case across the axis of ``case`` in a list; [] if its pier is impossible, and a problem is added."""
     width = float(case.columns[KEY])
     pier_table = table.file.table("pier")
     confirmed = {name.replace(KEY, "width_m") for name in table.confirmed}
@@ -103,7 +103,10 @@ def across(pier: Pier, base: Base, other: Pier) -> Base:
 
 
 def _in_the_middle(pier: Pier, device: Restraint, other: Pier) -> Restraint:
-    """Return a device of ``pier`` in the middle of the base of ``other``, with its stiffness and damping coefficient."""
+    """Return a device of ``pier`` in the middle of the base of ``other``, with its stiffness and damping coefficient.
+
+    λ, brace and ν, which are ratios to sizes of the pier, change for that.
+    """
     levers = (other.half_width / pier.half_width) ** 2 * pier.size / other.size
     times = {"lam": levers, "brace": levers, "nu": pier.p / other.p}
     changes: dict[str, Any] = {name: getattr(device, name) * by for name, by in times.items() if hasattr(device, name)}

@@ -59,7 +59,11 @@ class Cases(NamedTuple):
 
 
 def read_cases(file: TomlFile, piers: Sequence[PierRead], bounds: Sequence[DesignBound] = ()) -> Cases:
-    """Return every [[case]] on every pier, each followed by itself under the ``bounds``, with all keys that apply as columns."""
+    """Return every combination of a [[case]], its listed values and a pier, each followed by itself under the ``bounds``.
+
+    Mistakes become problems of ``file``; a [[case]] of no known base is left out, and all are if they are more than
+    :data:`MOST_CASES`. Columns of a case are all keys that apply to it.
+    """
     tables = file.tables("case", title="name")
     if file.data.get("case", []) == [] and ("case",) not in file.misspelt:
         file.complain(("case",), '[[case]] is missing; write at least one, for example with base = "rigid"')
@@ -95,7 +99,7 @@ def read_cases(file: TomlFile, piers: Sequence[PierRead], bounds: Sequence[Desig
 
 
 def _with_bounds(case: _WrittenCase, chosen: Chosen, pier: PierRead, bounds: Sequence[DesignBound]) -> Iterator[Case]:
-    """Yield the case of one choice of values on a pier, and if that is sound, the same under each bound."""
+    """Yield the case of one choice of values on a pier, and if that has no problem, the same under each bound."""
     file = case.table.file
     problems_before = len(file.problems)
     nominal = _case_of(case, chosen, pier.pier, pier.values)
@@ -103,7 +107,7 @@ def _with_bounds(case: _WrittenCase, chosen: Chosen, pier: PierRead, bounds: Seq
     if not file.is_sound_since(problems_before):
         return
     for bound in bounds:
-        gathered = bound.noting(file)
+        gathered = bound.without_mistakes(file)
         table = bound.table(case.table, gathered)
         devices = [replace(device, table=bound.table(device.table, gathered)) for device in case.devices]
         changed_pier, pier_values = pier.under.get(bound.name, (pier.pier, pier.values))
@@ -114,7 +118,10 @@ def _with_bounds(case: _WrittenCase, chosen: Chosen, pier: PierRead, bounds: Seq
 
 
 def _case_of(case: _WrittenCase, chosen: Chosen, pier: Pier, pier_values: Values) -> Case:
-    """Return the case of one choice of values on a pier; note values that are impossible or unusual together."""
+    """Return the case of one choice of values on a pier, with a possible base if its own is impossible.
+
+    Values that are impossible or unusual together become problems of the file.
+    """
     values = {key: setting.value for key, setting in chosen.items()}
     any_pier = pier is _ANY_PIER
     if "mass_t" in values:
@@ -140,7 +147,8 @@ def _case_of(case: _WrittenCase, chosen: Chosen, pier: Pier, pier_values: Values
     if not wrong and pier.mass_t is not None:
         _complain_unless_usual(case.table, chosen, pier)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | values
-    for name in ("restraints", "confirm", "flexural_impact", "vertical_over_formula"):  # columns of their own have them
+    # devices have columns of their own, the others have none
+    for name in ("restraints", "confirm", "flexural_impact", "vertical_over_formula"):
         applying.pop(name, None)
     if not base.has_epsilon:
         applying.pop("epsilon", None)
@@ -192,7 +200,11 @@ def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
 
 
 def _read_case(table: Table) -> _WrittenCase:
-    """Return a [[case]]; note keys that are missing beside others or beside [pier]."""
+    """Return a [[case]] as it is written, its name by default its base, its base "" if unknown.
+
+    A strength or stiffness that is missing, or given without a mass, and a mass that [pier] states already become problems of the
+    file.
+    """
     grid = Grid.of(table, CASE, other=RESTRAINTS)
     base, name = (next((s.value for s in grid.settings.pop(key, ())), "") for key in ("base", "name"))
     weighed = has_mass(table.file)
@@ -222,7 +234,7 @@ def _read_case(table: Table) -> _WrittenCase:
 
 
 def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: Base) -> None:
-    """Note a problem of pier and base at its key, or at K or F_y, from which β or η follows, with the value needed."""
+    """Add a problem of pier and base to the table, at its key, or at K or F_y, from which β or η follows, with what is needed."""
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(problem.key, "")
     mass = pier.mass_t
     if source in chosen and mass is not None:
@@ -232,7 +244,8 @@ def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: 
         }
         strength, stiffness = (f"{name} above {value:.4g}" for name, value in needed.items())
         remedies = {"eta": strength, "beta": stiffness}
-        if "yield_kN" in chosen and base.beta > pier.least_beta:  # β is too low only for springs so near to yielding
+        # β would do for springs that are further from yielding
+        if "yield_kN" in chosen and base.beta > pier.least_beta:
             remedies["beta"] = f"{strength}, or {stiffness}"
         weighing = f"mass_t = {mass:g}" if "mass_t" in chosen else f"the {mass:g} t of [pier]"
         derived = f"{source} = {chosen[source].value:g} with {weighing}"
@@ -243,14 +256,14 @@ def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: 
 
 
 def _other_unit(name: str, value: float, needed: float, gravity: float) -> str:
-    """Return the remedy for a unit by which a stiffness or force would be enough: MN, or kN for the mass; empty for none."""
+    """Return "if it is in MN, write …; else ", or of a weight in place of the mass, if ``value`` were enough then; else ""."""
     if value * gravity > needed:
         return f"if a mass is a weight in kN, write it over {gravity:g}; else "
     return f"if it is in MN, write {name} = {1000.0 * value:g}; else " if 1000.0 * value > needed else ""
 
 
 def _complain_unless_usual(table: Table, chosen: Chosen, pier: Pier) -> None:
-    """Note an unusual mass, stiffness, yield force or area of a support under this pier, unless it is confirmed."""
+    """Add to the table an unusual mass, stiffness, yield force or area of a support of this pier, unless it is confirmed."""
     if "mass_t" in chosen:
         for problem in unlikely_mass(pier, table.confirmed):
             table.complain_about(chosen["mass_t"], in_table(problem))

@@ -28,7 +28,7 @@ class Change:
 
     @property
     def of_pier(self) -> bool:
-        """Return whether the key is one of the pier."""
+        """Return whether the change is of a key of [pier] or of its parts, not of a case."""
         return self.path.startswith("pier.")
 
     @property
@@ -39,7 +39,10 @@ class Change:
         return f"{self.path} = {f'{self.value:.10g}' if isinstance(self.value, float) else shown(self.value)}"
 
     def among(self, names: Iterable[str]) -> list[str]:
-        """Return which of the ``names`` of chosen values are those of its key: of all devices, or of a numbered one."""
+        """Return those of ``names`` that are values of its key: "damper_1_f" and "damper_2_f" of "case.damper.f"; [] if none.
+
+        Of "case.damper_2.f" it is "damper_2_f" alone.
+        """
         _, *table, name = self.path.split(".")
         pattern = re.escape(name)
         if table:
@@ -48,7 +51,10 @@ class Change:
         return [name for name in names if re.fullmatch(pattern, name)]
 
     def of(self, value: Any) -> Any:
-        """Return the value of its key, nominally ``value``. Raises :class:`KindError` for an impossible one."""
+        """Return the changed value of its key, nominally ``value``: a value of its own, or ``value`` times its factor.
+
+        Raises :class:`KindError` for an impossible product.
+        """
         if self.times is None:
             return self.value
         changed = value * self.times
@@ -59,7 +65,8 @@ class Change:
 class DesignBound:
     """A bound of a design: its name, its changes and their source.
 
-    ``lacking`` has the names of cases that lack keys of it, and run with these unchanged, with the paths of the keys.
+    ``lacking`` has the names of cases that lack keys of it, and run with these unchanged, with the paths of the keys. Of a bound
+    with ``any_of_these`` a case needs one key only, as of two units of one quantity.
     """
 
     name: str
@@ -68,9 +75,13 @@ class DesignBound:
     lacking: tuple[tuple[str, tuple[str, ...]], ...] = ()
     confirmed: frozenset[str] = frozenset()
     place: int = 0
+    any_of_these: bool = False
 
     def changed(self, chosen: Chosen, table: Table, *, of_pier: bool) -> Chosen:
-        """Return the chosen values of a pier, or of a case, under this bound; note impossible and unusual ones in ``table``."""
+        """Return the chosen values of a pier, or of a case, under this bound.
+
+        An impossible value stays nominal; the problem, or that of an unusual value, is added to ``table``.
+        """
         result = dict(chosen)
         for change in (change for change in self.changes if change.of_pier == of_pier):
             for name in change.among(chosen):
@@ -86,16 +97,16 @@ class DesignBound:
                         table.complain(in_table(problem))
         return result
 
-    def noting(self, file: TomlFile) -> TomlFile:
-        """Return the ``file`` without its mistakes, to gather those that a design has under this bound."""
+    def without_mistakes(self, file: TomlFile) -> TomlFile:
+        """Return a copy of ``file`` without its problems, to gather those that a design has under this bound."""
         return replace(file, problems=[], misspelt=set(file.misspelt))
 
     def table(self, table: Table, file: TomlFile) -> Table:
-        """Return a table of the study with its mistakes gathered in ``file``, and what the bound confirms confirmed."""
+        """Return a table of the study whose problems are added to ``file``, with the keys that the bound confirms confirmed."""
         return replace(table, file=file, data=table.data | {"confirm": [*table.confirmed, *self.confirmed]})
 
     def note(self, file: TomlFile, gathered: TomlFile) -> None:
-        """Note in ``file``, at this bound, the mistakes that were ``gathered`` under it."""
+        """Add the problems that were ``gathered`` under this bound to those of ``file``, at this bound."""
         for _, problem in gathered.problems:
             file.complain((BOUND, self.place), replace(problem, place="", key=""), self.label)
 
@@ -105,7 +116,7 @@ class DesignBound:
         return f"[[{BOUND}]] {shown(self.name)}"
 
     def as_in_run_json(self) -> dict[str, Any]:
-        """Return its entry in run.json."""
+        """Return its entry in run.json: name, source, changes in words, and the cases that lack keys of it."""
         return {
             "bound": self.name,
             "source": self.source,
@@ -123,12 +134,15 @@ def parted(table: str) -> tuple[str, str]:
 def placed(
     file: TomlFile, bounds: Sequence[DesignBound], of_pier: Sequence[str], cases: Mapping[str, Sequence[str]]
 ) -> tuple[DesignBound, ...]:
-    """Return the bounds with the cases that lack some of their keys; note keys that no pier or no case has.
+    """Return the bounds with their ``lacking`` cases; keys that [pier], or every case, lacks become problems of ``file`` instead.
 
     ``of_pier`` are the names of the chosen values of the pier, and ``cases`` those of each case.
     """
     result = []
     for bound in bounds:
+        if bound.any_of_these:
+            result.append(_placed_in_any(file, bound, cases))
+            continue
         lacking: dict[str, list[str]] = {}
         for change in bound.changes:
             having = {"[pier]": of_pier} if change.of_pier else cases
@@ -142,8 +156,19 @@ def placed(
     return tuple(result)
 
 
+def _placed_in_any(file: TomlFile, bound: DesignBound, cases: Mapping[str, Sequence[str]]) -> DesignBound:
+    """Return a bound with the changes whose keys cases have, and the cases that have none; note it if no case has any."""
+    found = [change for change in bound.changes if any(map(change.among, cases.values()))]
+    paths = tuple(change.path for change in bound.changes)
+    if any(cases.values()) and not found:
+        text = f"no case has one of the keys that it changes: {', '.join(paths)}; leave it out"
+        file.complain((BOUND, bound.place, "preset"), text, bound.label)
+    lacking = tuple((name, paths) for name, keys in cases.items() if not any(change.among(keys) for change in found))
+    return replace(bound, changes=tuple(found), lacking=lacking)
+
+
 def _why_none(change: Change, having: Iterable[Iterable[str]]) -> str:
-    """Return the message about a change of a key that nothing has; ``having`` are the names of the keys that are there."""
+    """Return the message on a change of a key that [pier], or every case, lacks; ``having`` are the names of the given keys."""
     where = "[pier]" if change.of_pier else "a [[case]]"
     state = f"{where} has no such key" if change.of_pier else "no case has this key"
     if change.times is not None:

@@ -89,7 +89,10 @@ def on_foot(pier: Pier, width_m: float) -> Pier:
 
 
 def at_pivots(devices: tuple[Restraint, ...], pier: Pier) -> tuple[Restraint, ...]:
-    """Return ``devices`` with those at both pivots of ``pier`` at their places: a wider foot leaves them there."""
+    """Return ``devices``, those at pivots of ``pier`` at offsets [m] from the middle, so that a wider foot leaves them in place.
+
+    One that stands at both pivots becomes two.
+    """
     ways: dict[float | str | None, tuple[float, ...]] = {None: (-1.0, 1.0), "left": (-1.0,), "right": (1.0,)}
     placed: list[Restraint] = []
     for device in devices:
@@ -103,7 +106,7 @@ def at_pivots(devices: tuple[Restraint, ...], pier: Pier) -> tuple[Restraint, ..
 def footing_of(
     values: Mapping[str, Any], pier: Pier, devices: tuple[Restraint, ...]
 ) -> tuple[FootingBase, list[Problem]]:
-    """Return the base of a case on a footing, and what is impossible about it; then a possible one lets the rest be checked.
+    """Return the base of a case on a footing, and its problems; with problems, an elastic base lets other keys be checked.
 
     ``pier`` is that on the foot.
     """
@@ -117,16 +120,16 @@ def footing_of(
         if ways:
             text = f"{' and '.join(ways)} are given, which fix the same; keep one"
         return fallback, [Problem("base", None, text, kind=Contradiction if ways else MissingKey)]
-    if wrong := _lacking(values):
+    if wrong := _ill_combined(values):
         return fallback, wrong
     try:
-        return _made(values, pier, fields), []
+        return _footing_base(values, pier, fields), []
     except InputError as error:
         return fallback, list(error.problems)
 
 
-def _lacking(values: Mapping[str, Any]) -> list[Problem]:
-    """Return a problem for each key without another that it requires, and for two that fix the same."""
+def _ill_combined(values: Mapping[str, Any]) -> list[Problem]:
+    """Return a problem for each key whose required companion is missing, and for strength given in two ways; [] for none."""
     wrong = [
         Problem(key, values[key], f"{other} is missing beside it", kind=MissingKey)
         for key, others in _BESIDE.items()
@@ -139,8 +142,8 @@ def _lacking(values: Mapping[str, Any]) -> list[Problem]:
     return wrong
 
 
-def _made(values: Mapping[str, Any], pier: Pier, fields: dict[str, Any]) -> FootingBase:
-    """Return the base by the way in which its stiffness is given."""
+def _footing_base(values: Mapping[str, Any], pier: Pier, fields: dict[str, Any]) -> FootingBase:
+    """Return the footing by β, the stiffness of its bed, or soil, whichever is given. Raises ``InputError`` if impossible."""
     if "beta" in values:
         return FootingBase(**fields)
     fields |= {"bearing_MPa": values.get("bearing_MPa")}

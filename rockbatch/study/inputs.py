@@ -87,7 +87,10 @@ _RANGES: dict[str, tuple[Mapping[str, Key], dict[str, str]]] = {
 
 
 def ranges(of: str = "", kind: Kind | None = None) -> dict[str, Key]:
-    """Return keys of a pier and its case, or ``of`` a device, as ranges, of their own kind or another."""
+    """Return the keys that analyses may vary, each as a pair of ends: those of a case, or ``of`` a device such as "damper".
+
+    Their values are of the ``kind`` given, or of that of the study.
+    """
     keys, examples = _RANGES[of]
     return {
         name: Key(kind or keys[name].kind, example, keys[name].words, pair=True) for name, example in examples.items()
@@ -110,7 +113,10 @@ def varied(case: Case, values: KeyValues) -> Case:
 
 
 def values_of(case: Case) -> KeyValues:
-    """Return the values of all quantities that a case may vary, without ε where it does not apply and ζ if not given."""
+    """Return the values of all quantities of a case that may vary, by key, without ε where it does not apply and ζ if not given.
+
+    Those in kN are among them if the mass is known.
+    """
     pier = {name: getattr(case.pier, name) for name in OF_PIER}
     base = {field.name: getattr(case.base, field.name) for field in fields(case.base)}
     if base.get("zeta") is None:
@@ -123,7 +129,7 @@ def values_of(case: Case) -> KeyValues:
 
 
 def impossible(case: Case, values: KeyValues) -> list[tuple[str, str]]:
-    """Return the problems of the case with other values, each a sentence and the name of its input; empty if possible."""
+    """Return the problems of the case with other values, each a sentence and the name of its input; [] if they are possible."""
     try:
         changed = varied(case, values)
         wrong: Sequence[Problem] = problems(changed.pier, changed.base)
@@ -133,7 +139,7 @@ def impossible(case: Case, values: KeyValues) -> list[tuple[str, str]]:
 
 
 def outside(name: str, ends: Sequence[float], value: float | None, case: Case) -> str:
-    """Return a message about a range without the ``value`` of the case, with a wider range; empty if it holds it, or for None."""
+    """Return a message with a wider range if the ``value`` of the case is outside the range ``ends``; "" if within, or None."""
     low, high = ends
     if value is None or low <= value <= high:
         return ""
@@ -144,7 +150,7 @@ def outside(name: str, ends: Sequence[float], value: float | None, case: Case) -
 
 
 def why_no_case(name: str, study: Study) -> str:
-    """Return the reason why no case of the study has this input."""
+    """Return the reason why no case of the study has this input, without asking whether one has."""
     if is_of_restraint(name):
         return why_none(name, study.cases)
     if name in IN_KILONEWTONS:

@@ -25,7 +25,10 @@ class Grid:
 
     @classmethod
     def of(cls, table: Table, keys: Mapping[str, Key], prefix: str = "", other: Iterable[str] = ()) -> "Grid":
-        """Read a table, with ``prefix`` before the names of its keys; ``other`` keys are read elsewhere."""
+        """Return the values of a table's keys, called "part_1_mass_t" with the ``prefix`` "part_1_".
+
+        ``other`` keys are read elsewhere. Wrong values become problems of the table's file and are left out.
+        """
         settings = {}
         for name, value in table.read(keys, other=other, places=True).items():
             settings[prefix + name] = value if keys[name].many else [Setting(value, (*table.key_path, name))]
@@ -33,9 +36,11 @@ class Grid:
         return cls(settings, tuple(prefix + name for name in lists if name != "confirm"))
 
     def __add__(self, other: "Grid") -> "Grid":
+        """Return the values of both; those of ``other`` count for keys in both."""
         return Grid(self.settings | other.settings, self.varied + other.varied)
 
     def __len__(self) -> int:
+        """Return the number of combinations, 1 without any key."""
         return math.prod(map(len, self.settings.values()))
 
     def __iter__(self) -> Iterator[Chosen]:
@@ -55,7 +60,7 @@ def too_many(number: int, what: str) -> str:
 
 
 def complain_where_due(table: Table, chosen: Chosen, problem: Problem) -> None:
-    """Note a problem at the chosen value of its key, or for the table if no value of that key is chosen."""
+    """Add a problem to the table, at the chosen value of its key, or at the table itself if no value of that key is chosen."""
     if problem.key in chosen:
         table.complain_about(chosen[problem.key], in_table(problem))
     else:

@@ -200,7 +200,7 @@ class Study(Shown):
     @classmethod
     @checked
     def from_toml(cls, text: str, path: str | os.PathLike[str] = "study.toml", *, motions: Motions = None) -> "Study":
-        """Check a study that is the TOML ``text``, as :func:`load_study` checks a file.
+        """Return the study that is the TOML ``text``, checked as :func:`load_study` checks a file.
 
         ``path`` is what messages and results call it; paths in the study are relative to its folder. No such file is needed.
         ``motions`` as for :func:`load_study`.
@@ -212,9 +212,9 @@ class Study(Shown):
     def from_dict(
         cls, tables: Mapping[str, object], path: str | os.PathLike[str] = "study.toml", *, motions: Motions = None
     ) -> "Study":
-        """Check a study of the tables and keys of a study file, such as ``{"pier": {"alpha": 0.13, "p": 0.38}, "case": […]}``.
+        """Return the study of the tables and keys of a file, ``{"pier": {"alpha": 0.13, "p": 0.38}, "case": […]}``, checked.
 
-        Mistakes are reported as those of a file, by table and key. ``path`` and ``motions`` as for :meth:`from_toml`.
+        Mistakes are raised as those of a file, by table and key. ``path`` and ``motions`` as for :meth:`from_toml`.
         """
         return _checked_study(TomlFile.parse(Path(path), as_toml(plain_table(tables)), SECTIONS, lined=False), motions)
 
@@ -247,7 +247,7 @@ class Study(Shown):
 
     @property
     def in_file(self) -> bool:
-        """Return whether the file at ``path`` holds this study as it is, so that a command can read it again."""
+        """Return whether the file at ``path`` holds this text, so a command can read the study again; False if unreadable."""
         try:
             return TomlFile.text_of(self.path) == self.text
         except InputError:
@@ -258,7 +258,7 @@ class Study(Shown):
         return TomlFile.parse(self.path, self.text, SECTIONS, lined=self.lined)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
-        """See :class:`Shown`."""
+        """Return the title and, by name, the facts that :class:`Shown` prints: pier, motions, cases, varied, checks, numerics."""
         piers = {f"alpha {case.pier.alpha:.4g} rad, R0 {case.pier.size:.4g} m" for case in self.cases}
         names = Counter(case.name for case in self.cases)
         spec, step = self.motions, self.numerics
@@ -359,7 +359,7 @@ def _checked_study(file: TomlFile, motions: Motions) -> Study:
 
 
 def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) -> Study:
-    """Return a study, loaded from a file unless it is one, with ``motions`` instead of its own unless None."""
+    """Return ``study``, loaded if it is the path of a file, with ``motions`` instead of its own unless None."""
     if not isinstance(study, Study):
         return load_study(study, motions=motions)
     return study if motions is None else study.with_(motions=motions)
@@ -372,8 +372,11 @@ def _problems_of_rule(
     available = Available(
         cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
-        other_law=True,  # a check that takes it brings it
-        output=[key for key in BROUGHT if output.has(key) or not _adds_columns(key, cases)],
+        other_law=True,  # a check that uses the other law requests its runs
+        output=[
+            *DEMANDS[rule.demand].brings,
+            *(key for key in BROUGHT if output.has(key) or not _adds_columns(key, cases)),
+        ],
         sections=_heights(cases, output) if known_piers else {needs: {rule.at_m or 0.0} for needs in AT_HEIGHTS},
         piers=[_as_in_run_json(case) for case in cases] if known_piers else (),
     )
@@ -387,13 +390,13 @@ def _as_in_run_json(case: Case) -> dict[str, object]:
 
 
 def _heights(cases: Sequence[Case], output: Output) -> dict[str, set[float]]:
-    """Return the heights [m] at which rules may be about sections of the cases' piers, by what their demands need."""
+    """Return the heights [m] of sections that rules may be about, by what their demands need, for the piers of ``cases``."""
     piers = {case.pier for case in cases}
     return {needs: heights(output.of(kind), piers) for needs, kind, heights in parts("study.HEIGHTS")}
 
 
 def _numerics(file: TomlFile) -> Numerics:
-    """Return [numerics]; a fixed number of substeps has no tolerance."""
+    """Return [numerics], or its defaults if the table is missing; a fixed number of substeps has no tolerance."""
     table = file.table("numerics")
     read = table.read(NUMERICS) if table else {}
     if "substeps" in read:
@@ -412,7 +415,7 @@ def _device_kinds(cases: Sequence[Case]) -> set[str]:
 
 
 def _references(file: TomlFile, cases: Sequence[Case], varied: Iterable[str]) -> tuple[Reference, ...]:
-    """Return the references; note values of ``varied`` keys that no case of the name has."""
+    """Return the references that have all required keys; values of ``varied`` keys that no such case has become problems."""
     named = [table.data.get("name", table.data.get("base")) for table in file.tables("case", title="name")]
     names = choice(*dict.fromkeys(name for name in named if isinstance(name, str)))
     of_parts = {name: Key(not_negative, "0.0") for name in varied if name not in (*REFERENCE, BOUND)}

@@ -55,9 +55,11 @@ class _Factor(Number):
     """A scale factor, or "list" for the factors in a list beside the records."""
 
     def __call__(self, value: object) -> Any:
+        """Return "list" as it is, else a number above 0. Raises :class:`KindError` for another value."""
         return value if value == _LIST else super().__call__(value)
 
     def schema(self) -> Schema:
+        """Return the JSON schema: a number above 0, or "list"."""
         return {"anyOf": [super().schema(), {"const": _LIST}]}
 
 
@@ -312,7 +314,10 @@ def as_source(motions: Motions) -> Path | MotionSet | None:
 
 
 def read_motions_table(file: TomlFile, replaced_by: Path | MotionSet | None = None) -> MotionSpec:
-    """Return [motions] with the tables within it; with ``replaced_by`` its own sources need not exist."""
+    """Return [motions] with the tables within it; with ``replaced_by`` that takes the place of its paths, components and pulses.
+
+    Mistakes become problems of ``file``, as do missing files and a study without any motion.
+    """
     table = file.table("motions")
     read = _read_motions(table) if table else {}
     fema = _read_fema_components(file)
@@ -362,7 +367,7 @@ def _read_motions(table: Table) -> KeyValues:
 
 
 def _source_path(table: Table, n: int, written: str) -> Path:
-    """Return the ``n``-th path of [motions], from the folder of the study; note one that does not exist."""
+    """Return the ``n``-th path of [motions], from the folder of the study; a missing one becomes a problem of the table."""
     try:
         path = table.file.path.parent / Path(written).expanduser()
     except RuntimeError:
@@ -375,7 +380,10 @@ def _source_path(table: Table, n: int, written: str) -> Path:
 
 
 def _read_offset(table: Table, read: KeyValues) -> Offset:
-    """Take offset and offset_window_s from ``read``, and return the rule; note "pre-event" without a window."""
+    """Take offset and offset_window_s from ``read``, and return the rule.
+
+    "pre-event" without a window becomes a problem of ``table``, and the rule that of a study without offset.
+    """
     rule, window = read.pop("offset", None), read.pop("offset_window_s", None)
     if rule != "pre-event":
         return Offset(rule) if rule else Offset()
@@ -394,7 +402,7 @@ def _no_such_file(path: Path, written: str, rule: str = "") -> str:
 
 
 def _read_fema_components(file: TomlFile) -> tuple[FemaSpec, ...]:
-    """Return the usable tables [[motions.fema_p695]]; note one that is given twice."""
+    """Return each [[motions.fema_p695]] with a usable station and azimuth; one that is given twice becomes a problem, too."""
     components: list[FemaSpec] = []
     for table in file.tables("motions", "fema_p695", title="station"):
         read = table.read(FEMA)
@@ -407,7 +415,7 @@ def _read_fema_components(file: TomlFile) -> tuple[FemaSpec, ...]:
 
 
 def _read_pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
-    """Return the tables [[motions.pulse]] that have every required key; note impossible values and repeated names."""
+    """Return each [[motions.pulse]] with all required keys; impossible values and repeated names become problems of ``file``."""
     pulses: list[PulseSpec] = []
     names: set[str] = set()
     for table in file.tables("motions", "pulse", title="name"):
@@ -422,7 +430,7 @@ def _read_pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
 
 
 def _check_pulse(table: Table, spec: PulseSpec) -> None:
-    """Note what is impossible about a pulse, at the key of its problem, or else unusual values that are not confirmed."""
+    """Add impossible values of a pulse to the table, at the key of their problem, or else unusual ones that are not confirmed."""
     try:
         spec.motion(GRAVITY)
     except InputError as error:

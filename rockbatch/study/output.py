@@ -31,7 +31,7 @@ class Output:
 
     @classmethod
     def with_keys(cls, **keys: Any) -> "Output":
-        """Return the output of a table with these ``keys``; raise ``InputError`` for those that nothing has."""
+        """Return the output of a table with these ``keys``, others at their defaults. Raises ``InputError`` for unknown ones."""
         if unknown := keys.keys() - OUTPUT.keys():
             raise InputError(
                 *(Problem(key, keys[key], "there is no such output", kind=UnknownKey) for key in sorted(unknown))
@@ -41,21 +41,21 @@ class Output:
 
     @cached_property
     def keys(self) -> dict[str, Any]:
-        """All keys with their values, given or not."""
+        """Return all keys with their values, given or default."""
         return {
             key: getattr(home, key) for home in (self, *map(self.of, _SETTINGS)) for key in OUTPUT if hasattr(home, key)
         }
 
     def of(self, kind: type[S]) -> S:
-        """Return the settings of the observer that has a dataclass of this ``kind``."""
+        """Return the settings of the observer whose dataclass is ``kind``, its defaults if none are given."""
         return next((chosen for chosen in self.settings if isinstance(chosen, kind)), kind())
 
     def has(self, key: str) -> bool:
-        """Return whether an optional output is asked for, by its ``key``."""
+        """Return whether an optional output is asked for, by its ``key``; False for an unknown one."""
         return bool(self.keys.get(key))
 
     def also(self, keys: Collection[str]) -> "Output":
-        """Return the output with the outputs of these ``keys``, too, of those that there are."""
+        """Return the output with those of ``keys`` that are yes or no switched on, too; other ``keys`` change nothing."""
         known = self.keys
         return self.with_keys(**known | {key: True for key in keys if known.get(key) is False})
 

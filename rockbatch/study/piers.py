@@ -330,9 +330,10 @@ class Piers(NamedTuple):
 
 
 def read_piers(file: TomlFile, bounds: Sequence[DesignBound] = ()) -> Piers:
-    """Return the piers of [pier], each also under those of the ``bounds`` that change it; no pier if there are mistakes.
+    """Return the piers of [pier], each also under those of the ``bounds`` that change it.
 
-    Keys of the n-th [[pier.part]] are called part_n_mass_t and so on.
+    Mistakes become problems of ``file``. An impossible pier is left out, and all are if the table has another mistake. Keys of
+    the n-th [[pier.part]] are called part_n_mass_t and so on.
     """
     table = file.table("pier", required="[pier] with alpha = 0.13 and p = 0.38, or with width_m and height_m")
     if table is None:
@@ -361,11 +362,14 @@ def read_piers(file: TomlFile, bounds: Sequence[DesignBound] = ()) -> Piers:
 def _under_bounds(
     table: Table, chosen: Chosen, parts: int, bounds: Sequence[DesignBound]
 ) -> dict[str, tuple[Pier, Values]]:
-    """Return the pier of one choice of values under each bound that changes it; note what is impossible or unusual then."""
+    """Return the pier of one choice of values under each bound that changes it, by the bound's name.
+
+    An impossible one is left out; problems are added to the file.
+    """
     piers = {}
     for bound in bounds:
         if any(change.of_pier for change in bound.changes):
-            gathered = bound.noting(table.file)
+            gathered = bound.without_mistakes(table.file)
             own = bound.table(table, gathered)
             changed = _pier_of(own, bound.changed(chosen, own, of_pier=True), parts)
             bound.note(table.file, gathered)
@@ -375,7 +379,7 @@ def _under_bounds(
 
 
 def _pier_of(table: Table, chosen: Chosen, parts: int) -> tuple[Pier, Values] | None:
-    """Return the pier of one choice of values and its values by key; None for an impossible one, which is noted."""
+    """Return the pier of one choice of values, and its values by key; None if impossible, with problems added to the table."""
     values = {name: setting.value for name, setting in chosen.items()}
     try:
         pier = _pier(values, parts, table.confirmed)
@@ -399,7 +403,10 @@ def has_mass(file: TomlFile) -> bool:
 
 
 def _pier(values: KeyValues, parts: int, confirmed: Collection[str]) -> Pier:
-    """Return the pier with these ``values``, of which reading has checked that they go together."""
+    """Return the pier with these ``values``, which reading has found to go together; ``parts`` is the number of its parts.
+
+    Raises ``InputError`` for an impossible pier, or for unusual values of keys that are not ``confirmed``.
+    """
     common = {name: values[name] for name in ("gravity", "top_m") if name in values} | {"confirm": tuple(confirmed)}
 
     def constructed(constructor: Callable[..., Pier], *names: str) -> Pier:
@@ -436,7 +443,7 @@ def with_width(values: Values, width_m: float, confirmed: Collection[str]) -> Pi
 
 
 def _pier_of_parts(values: KeyValues, parts: int, common: KeyValues) -> Pier:
-    """Return a pier of parts, with the deck as its last part."""
+    """Return a pier of parts, with the deck as its last part. Raises ``InputError`` for impossible ones and unusual decks."""
     written = (
         {name: values[f"part_{n}_{name}"] for name in PART if f"part_{n}_{name}" in values} for n in range(1, parts + 1)
     )
@@ -453,7 +460,7 @@ def _pier_of_parts(values: KeyValues, parts: int, common: KeyValues) -> Pier:
 
 
 def _check_one_size(table: Table) -> None:
-    """Note a size that is missing or given in several ways, and α and μ beside sides from which they follow."""
+    """Add to ``table`` that the size is missing or given in several ways, and α and μ beside sides from which they follow."""
     parts = table.has("part")
     written = [name for name in table.names if name in ("p", "size_m", "width_m", "height_m")]
     sides = [name for name in written if name in ("width_m", "height_m")]

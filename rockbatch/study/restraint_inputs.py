@@ -34,7 +34,7 @@ def is_of_restraint(name: str) -> bool:
 
 
 def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter]:
-    """Return all finite parameters of devices by names with numbers: "damper_1.f"."""
+    """Return all parameters of devices that are finite, with their places and fields, by names with numbers: "damper_1.f"."""
     parameters_by_name: dict[str, Parameter] = {}
     counts: Counter[str] = Counter()
     given_by = fields_of(pier)
@@ -70,7 +70,7 @@ def values_of_devices(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, 
 
 
 def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str, float]) -> tuple[Restraint, ...]:
-    """Return the devices with ``values`` by the names of :func:`parameters`; ``pier`` converts those in kN."""
+    """Return the devices with ``values`` by names of :func:`parameters`, in the units of their keys; ``pier`` converts kN."""
     places, changed = parameters(pier, restraints), list(restraints)
     for name, value in values.items():
         place, field, divisor = places[name]
@@ -80,7 +80,7 @@ def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str
 
 
 def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
-    """Return a message for each input of devices that is ambiguous in this case, by name, with what to write instead."""
+    """Return a message with what to write instead for each input of devices that is ambiguous in this case, by name."""
     numbers = numbered(case.pier, case.base.restraints)
     problems: dict[str, str] = {}
     fixed: dict[tuple[int, str], str] = {}
@@ -94,7 +94,7 @@ def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
 
 
 def why_none(name: str, cases: Iterable[Case]) -> str:
-    """Return the reason why no case has this parameter of a device."""
+    """Return the reason why no case has this parameter of a device, "damper_2.f", without asking whether one has."""
     table, key = name.split(".")
     match = TABLE.fullmatch(table)
     what, number = match.groups() if match else (table, None)

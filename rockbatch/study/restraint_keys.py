@@ -268,13 +268,16 @@ class Device:
         return {key.removeprefix(prefix): setting for key, setting in chosen.items() if key.startswith(prefix)}
 
     def made(self, pier: Pier, chosen: Chosen, *, judged: bool) -> Restraint | None:
-        """Return the device with the chosen values, None if impossible; note impossible ones, and unusual ones if ``judged``."""
+        """Return the device with the chosen values; None if impossible.
+
+        Impossible values become problems of its table, as do unusual ones if ``judged``.
+        """
         values = {key: setting.value for key, setting in self.values(chosen).items()}
         arguments: KeyValues = {name: values[name] for name in ("kind", "at", "side", "height_m") if name in values}
         arguments |= {field: values[key] / unit for key, (field, unit) in fields_of(pier).items() if key in values}
         arguments["confirm"] = tuple(FIELD_OF.get(name, name) for name in sorted(self.table.confirmed))
         if values.get("kind") == "hysteretic":
-            arguments.setdefault("yield_m", 0.001)  # a missing one is noted; a possible value lets the rest be checked
+            arguments.setdefault("yield_m", 0.001)  # a missing value is a problem already, and the rest can be checked
         if self.what in ("stop", "deck_spring"):  # likewise
             arguments.setdefault("gap_m", 0.0)
             arguments.setdefault("lam", 1.0)
@@ -289,7 +292,7 @@ class Device:
         return device
 
     def _complain(self, chosen: Chosen, problems: Iterable[Problem]) -> None:
-        """Note each problem at its key; one at a derived field with the key's value."""
+        """Add each problem to the table at its key; one of a field that follows from a key with the value of that key."""
         values = self.values(chosen)
         keys = {FIELD_OF.get(key, key): key for key in values}
         for problem in (replace(problem, place="") for problem in problems):
@@ -300,7 +303,7 @@ class Device:
             self.table.complain(problem, key or next(iter(values)))
 
     def _complain_unless_usual(self, pier: Pier, chosen: Chosen, device: Restraint) -> None:
-        """Note the first of its values that is unusual and not confirmed, at its key."""
+        """Add to the table the first value of the device that is unusual and not confirmed, at its key; nothing if none is."""
         values = self.values(chosen)
         keys = {FIELD_OF.get(key, key): key for key in values}
         doubts = doubt(pier, device)
@@ -311,7 +314,10 @@ class Device:
 
 
 def read_devices(case: Table) -> tuple[list[Device], Grid]:
-    """Return the devices of a case, and the values of their keys, called "damper_1_f" for the first damper."""
+    """Return the devices of a case, and the values of their keys, called "damper_1_f" for the first damper.
+
+    A damper of no known kind is left out; mistakes become problems of the file.
+    """
     devices: list[Device] = []
     grid = Grid()
     for section, keys in DEVICES.items():
@@ -350,7 +356,7 @@ _NEEDED = {
 
 
 def _check_given(table: Table, kind: str) -> None:
-    """Note a damper without a force, a tendon without prestress and stiffness, or another device without a stiffness."""
+    """Add to the table that a device lacks its force, coefficient, prestress or stiffness, or a hysteretic one yield_mm."""
     first, second, *_ = _NEEDED[kind]
     if not any(map(table.has, _NEEDED[kind])):
         example = f"write for example {first} = {DEVICES.get(kind, DAMPER)[first].example}, or"

@@ -82,7 +82,7 @@ def _excluded(section: Section, other: str) -> Iterator[Schema]:
 
 
 def _unless(section: Section, other: str, value: object, condition: Schema) -> Iterator[Schema]:
-    """Yield the exclusion, under ``condition``, of the keys that do not apply to a ``value`` of ``other``, if there are any."""
+    """Yield one exclusion, under ``condition``, of the keys that do not apply to this ``value`` of ``other``; none if all do."""
     names = [name for name, key in section.items() if other in key.only and value not in key.only[other]]
     if names:
         yield {"if": condition, "then": {"properties": dict.fromkeys(names, False)}}

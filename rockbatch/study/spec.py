@@ -94,7 +94,7 @@ class MotionSpec:
 
     @property
     def simulated(self) -> str:
-        """The polarity that is simulated, "+" if both are asked for; the other is its mirror image, as the pier is symmetric."""
+        """Return the polarity that is simulated: "+" if both are asked for, as "-" mirrors it on a symmetric pier."""
         return "+" if "+" in self.polarity else "-"
 
 
@@ -126,8 +126,17 @@ class Case:
     across_of: str = ""
     changed: dict[str, float | str] = field(default_factory=dict)
 
+    @property
+    def name_along(self) -> str:
+        """Return the name of the case along the axis of the same pier, which is its own unless it is across the axis."""
+        return self.across_of or self.name
+
+    def motion(self, record: Motion) -> Motion:
+        """Return the motion of a record along this case's axis; across the axis of a pier, its components are exchanged."""
+        return record.exchanged if self.across_of else record
+
     def with_columns(self, varied: Iterable[str]) -> "Case":
-        """Return the case with no other columns than those of ``varied`` keys."""
+        """Return the case with no other columns than those of ``varied`` keys, and without its ``changed`` values."""
         return replace(self, columns={name: self.columns[name] for name in varied if name in self.columns}, changed={})
 
 

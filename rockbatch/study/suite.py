@@ -12,6 +12,7 @@ from rockbatch.motions.scaling import scale_as_listed, scale_to_targets
 from rockbatch.motions.selection import Selection, selected
 from rockbatch.motions.sequences import add_sequences
 from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.study.both_axes import along_the_axis
 from rockbatch.study.load import Study
 from rockbatch.study.spec import MotionSpec
 
@@ -85,7 +86,7 @@ _OF_RECORDS = (
 
 
 def _without_records(spec: MotionSpec, both_axes: bool) -> list[str]:
-    """Return a message for each key that only recorded motions use, in a study without any; motions from Python use them."""
+    """Return a message for each key that only recorded motions use, in a study without these; [] if it has records."""
     if spec.paths or spec.override is not None:
         return []
     usual = {field.name: field.default for field in fields(spec)} | {"offset": Offset(), "select": Selection()}
@@ -113,7 +114,7 @@ def _azimuths(study: Study) -> tuple[float, ...]:
 
 def _both_axes(study: Study) -> bool:
     """Return whether a case is run on both axes of its pier."""
-    return any(case.across_of for case in study.cases)
+    return len(along_the_axis(study.cases)) < len(study.cases)
 
 
 def _with_pairs(motions: MotionSet, pulses: Sequence[Motion]) -> tuple[MotionSet, list[Motion]]:
@@ -132,7 +133,7 @@ def _with_pairs(motions: MotionSet, pulses: Sequence[Motion]) -> tuple[MotionSet
 
 
 def _without_the_square(motions: MotionSet, azimuths: Sequence[float]) -> MotionSet:
-    """Return motions without those along the last of ``azimuths``, which become components across the first."""
+    """Return motions without those along the last of ``azimuths``, which go across those along the first of the same length."""
     first, square = (f"_az{azimuth:03g}" for azimuth in (azimuths[0], azimuths[-1]))
     across = {motion.of_station: motion for motion in motions if motion.name.endswith(square)}
     along = [motion for motion in motions if across.get(motion.of_station) is not motion]

@@ -80,7 +80,7 @@ def _changed_value(old: TomlValue | None, new: object, *place: str) -> TomlValue
 
 
 def _changed_by_name(tables: list[TomlTable], changes: Mapping[str, object], *place: str) -> list[TomlValue]:
-    """Return tables with the changes by their names, without those that have None."""
+    """Return all tables in their order, with the changes of those that are named, without those whose change is None."""
     result: list[TomlValue] = []
     for name, table in _named(tables, changes, *place).items():
         change = changes.get(name, {})
@@ -90,7 +90,7 @@ def _changed_by_name(tables: list[TomlTable], changes: Mapping[str, object], *pl
 
 
 def _named(tables: list[TomlTable], names: Iterable[str], *place: str) -> dict[str, TomlTable]:
-    """Return tables by their names. Raises ``InputError`` if they lack one of ``names``."""
+    """Return all ``tables`` by their names. Raises ``InputError`` if one of ``names`` is not among these."""
     by_name = {name_of(table): table for table in tables}
     problems = []
     for name in names:
@@ -105,17 +105,21 @@ def _named(tables: list[TomlTable], names: Iterable[str], *place: str) -> dict[s
 
 
 def name_of(table: Mapping[str, TomlValue]) -> str:
-    """Return the name of a table among others of its kind; that of a single case may be its base."""
-    return str(table.get("name", table.get("base", "")))
+    """Return the name of a table, else its preset, or its base, by which a single case may be called, else ""."""
+    return str(next((table[key] for key in ("name", "preset", "base") if key in table), ""))
 
 
 def are_tables(value: TomlValue | None) -> TypeGuard[list[TomlTable]]:
-    """Return whether ``value`` is a list of tables, and not empty."""
+    """Return whether ``value`` is a list of tables; False for []."""
     return isinstance(value, list) and bool(value) and all(isinstance(item, dict) for item in value)
 
 
 def without_lost_cases(before: Mapping[str, TomlValue], after: Mapping[str, TomlValue]) -> TomlTable:
-    """Return the tables ``after`` a change, without checks and references that are about removed cases alone."""
+    """Return the tables ``after`` a change, without what checks and references say of removed cases.
+
+    Those about removed cases alone go; of others, the patterns that choose removed cases only. Nothing goes if either has no list
+    of cases.
+    """
     result = dict(after)
     cases_before, cases = before.get("case"), after.get("case")
     if not (are_tables(cases_before) and are_tables(cases)):
@@ -164,7 +168,7 @@ def _basic(text: str) -> str:
 
 
 def _written(value: TomlValue) -> str:
-    """Return a value as TOML writes it; a text of several lines keeps them."""
+    """Return a value as TOML writes it: true, 0.5, "text" (several lines in triple quotes), [1, 2], { a = 1 }."""
     if isinstance(value, str) and "\n" in value:
         return '"""\n' + "\n".join(_basic(line)[1:-1] for line in value.split("\n")) + '"""'
     if isinstance(value, str):

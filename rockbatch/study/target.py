@@ -55,14 +55,17 @@ _UNFIT_FOR_SPECTRUM = dict.fromkeys(
 
 
 def read_target(table: Table, vertical: bool = False) -> Target | SpectrumTarget | None:
-    """Return what records, or their ``vertical`` components, are scaled to; None if the table has a mistake, which is noted."""
+    """Return what records, or their ``vertical`` components, are scaled to; None for a mistake, which becomes a problem."""
     if any(TARGET.known_as(name, ("spectrum",)) for name in table.data):
         return _read_spectrum(table, vertical)
     return _read_measure(table, vertical)
 
 
 def _read_measure(table: Table, vertical: bool) -> Target | None:
-    """Return the target of one measure; None if the table has a mistake, which is noted."""
+    """Return the target by the one of pga_g, pgv_m_s and sa_g that the table gives; None for a mistake, which becomes a problem.
+
+    Of ``vertical`` components it takes no ``pairs``.
+    """
     problems_before = len(table.file.problems)
     unfit = dict.fromkeys((*SPECTRUM, *KEYS_OF_ANY_CODE), "is for a target with spectrum = …")
     read = table.read(
@@ -83,7 +86,7 @@ def _read_measure(table: Table, vertical: bool) -> Target | None:
 
 
 def _read_spectrum(table: Table, vertical: bool) -> SpectrumTarget | None:
-    """Return the target spectrum with its period range; None if the table has a mistake, which is noted."""
+    """Return the target spectrum with its period range; None for a mistake, which becomes a problem of the table's file."""
     problems_before = len(table.file.problems)
     written = table.data.get("spectrum", "")
     code = _code_name(written)
@@ -111,7 +114,7 @@ def _read_spectrum(table: Table, vertical: bool) -> SpectrumTarget | None:
 
 
 def _code_name(value: object) -> str:
-    """Return the name in :data:`CODES` that `value` is but for case and spaces; empty for a file or pairs."""
+    """Return the name in :data:`CODES` that ``value`` is but for capitals and blanks; "" for a file, pairs or other values."""
     if not isinstance(value, str):
         return ""
     plain = {name.replace(" ", "").lower(): name for name in CODES}
@@ -119,7 +122,7 @@ def _code_name(value: object) -> str:
 
 
 def _spectrum(table: Table, code: str, read: KeyValues) -> Spectrum | None:
-    """Return the spectrum of ``code``, or of a file or pairs if that is empty; None if a mistake was noted."""
+    """Return the spectrum of ``code``, or of a file or pairs if that is ""; None for a mistake, which becomes a problem."""
     damping, linear = read.get("damping", 0.05), read.get("interpolation") == "linear"
     if code and "interpolation" in read:
         table.complain(f"interpolation: is for tables, and {code} is none; leave it out", "interpolation")
@@ -162,7 +165,10 @@ def _spectrum_of_file(table: Table, written: str, damping: float, linear: bool) 
 
 
 def _eurocode_spectrum(table: Table, read: KeyValues, damping: float) -> EurocodeSpectrum | None:
-    """Return the horizontal spectrum of EN 1998-1; type and ground are needed unless S, T_B, T_C and T_D are all given."""
+    """Return the horizontal spectrum of EN 1998-1; None if a needed key is missing, or periods do not grow.
+
+    Type and ground are needed unless S, T_B, T_C and T_D are all given, which take the place of theirs.
+    """
     written = {name: read[name] for name in ("soil_factor", "tb_s", "tc_s", "td_s") if name in read}
     needed = ("type", "ground") if len(written) < 4 else ()
     for name in needed:

@@ -34,13 +34,13 @@ class Terminal(Listener):
             say(f"{files} left out: `rockbatch motions FOLDER` lists them with reasons")
 
     def say(self, text: str) -> None:
-        """See :class:`Listener`."""
+        """Print a message on stderr, above the bar if one is shown."""
         with self._bars.making_room():
             say(text)
 
     @contextmanager
     def progress(self, total: int) -> Iterator[Advance]:
-        """Show a bar with the time remaining in a terminal, plain lines elsewhere; see :class:`Listener`."""
+        """Context manager: yield a function that takes numbers of finished runs, and shows a bar, or lines outside a terminal."""
         stream = sys.stderr or io.StringIO()
         # A pseudo-terminal may have size 0
         if not (stream.isatty() and min(os.get_terminal_size(stream.fileno())) > 0):
@@ -65,7 +65,7 @@ def _repeated(motions: MotionSet) -> list[tuple[str, str]]:
 
 
 def _lines(total: int, stream: TextIO) -> Advance:
-    """Return a function that prints finished runs and time remaining, at most every :data:`SECONDS_BETWEEN_LINES`."""
+    """Return a function that takes numbers of finished runs, and every 2 s at most prints their sum and the time left [s]."""
     started = printed = time.monotonic()
     done = 0
 

@@ -13,6 +13,6 @@ def named(keys: Iterable[str], values: Iterable[Any]) -> str:
 
 
 def _words(key: str) -> str:
-    """Return a key, after the device that has it: "damper 2 f"; those of a first device after its kind alone."""
+    """Return a key in words, behind the device that has it: "damper 2 f"; a key of no device as it is."""
     device = of_device(key)
     return key if device is None else f"{device.words} {device.key}"

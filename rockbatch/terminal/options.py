@@ -8,7 +8,7 @@ from rockbatch.batch.threads import Engine, Threads, cores
 
 
 def folder(arguments: argparse.Namespace) -> Path:
-    """Return --out, or by default reports/STUDY."""
+    """Return the folder of --out, or by default reports/ and the name of the study file without its suffix."""
     return arguments.out or Path("reports") / arguments.study.stem
 
 

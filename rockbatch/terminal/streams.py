@@ -43,7 +43,10 @@ def show(text: str) -> None:
 
 
 def tell(stream: TextIO | None, text: str) -> None:
-    """Print ``text`` to a stream, with escapes for characters it cannot encode; give the stream up if it fails."""
+    """Print ``text`` to a stream, with escapes for characters it cannot encode; give the stream up if it fails.
+
+    A stream that is None, or was given up, gets nothing.
+    """
     if stream is None or stream in _lost:
         return
     terminal = stream.isatty()
@@ -66,7 +69,7 @@ def give_up(stream: TextIO, error: OSError) -> None:
 
 
 def is_lost(stream: TextIO) -> bool:
-    """Return whether a stream has failed, and reset that."""
+    """Return whether a stream was given up after it failed, and forget that."""
     return _lost.pop(stream, None) is not None
 
 
@@ -80,7 +83,7 @@ def shown(text: str, instead: str) -> str:
 
 
 def coloured(text: str, colour: str | None) -> str:
-    """Return ``text`` in an ANSI colour if stdout is a terminal that accepts colours (no NO_COLOR, TERM=dumb)."""
+    """Return ``text`` in an ANSI ``colour`` such as "31"; plain for None, NO_COLOR, TERM=dumb, or if stdout is no terminal."""
     plain = "NO_COLOR" in os.environ or os.environ.get("TERM") == "dumb" or not sys.stdout.isatty()
     return text if plain or colour is None else f"\x1b[{colour}m{text}\x1b[0m"
 
@@ -91,20 +94,20 @@ def width() -> int | None:
 
 
 def filled(text: str, first: int = 0, rest: int = 2) -> str:
-    """Wrap prose to the terminal's width, the first line indented by ``first`` columns, the others by ``rest``."""
+    """Return prose wrapped to the terminal's width, the first line indented by ``first`` columns, the others by ``rest``."""
     lines = _in_lines(text, min(WIDTH, width() or WIDTH), " " * first, " " * rest)
     return shown(lines, lines.encode("ascii", "replace").decode())
 
 
 def _in_lines(text: str, most: int, first: str, rest: str) -> str:
-    """Wrap prose to lines of at most ``most`` characters; longer words, such as paths, stay whole."""
+    """Return prose wrapped to lines of at most ``most`` characters; longer words, such as paths, stay whole."""
     return textwrap.fill(
         text, most, initial_indent=first, subsequent_indent=rest, break_long_words=False, break_on_hyphens=False
     )
 
 
 def _wrapped(text: str, most: int) -> str:
-    """Wrap lines longer than ``most`` at words, continuation lines indented by two more columns."""
+    """Return text with lines longer than ``most`` wrapped at words, continuation lines indented by two more columns."""
     lines = []
     for line in text.split("\n"):
         indent = " " * (len(line) - len(line.lstrip(" ")))
@@ -150,5 +153,5 @@ def in_width(
 
 
 def shortened(text: str, room: int) -> str:
-    """Replace the middle of ``text`` by "…" if it is longer than ``room``; names differ at their ends."""
+    """Return ``text`` with its middle replaced by "…" if it is longer than ``room``, since names differ at their ends."""
     return text if len(text) <= room else f"{text[: room // 4]}…{text[room // 4 + 1 - room :]}"

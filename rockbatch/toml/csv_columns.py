@@ -18,9 +18,10 @@ MOST_ROWS = 100_000
 def columns_of(path: Path, kinds: Mapping[str, Kind], *, gaps: bool = False) -> dict[str, list[Any]]:
     """Return the columns of a CSV file by the names in its first line, of equal length, with values of these ``kinds``.
 
-    Lines that begin with # are comments. With semicolons between the cells, decimals may have commas. With ``gaps`` an empty
-    cell is NaN. Raises ``InputError`` with the file and the line for an unknown column, a cell that is not of its kind,
-    or a line that is too short.
+    Lines that begin with # are comments, and lines of empty cells alone are skipped. With semicolons between the cells, decimals
+    may have commas. With ``gaps`` a cell that is empty or "nan" is NaN. Raises ``InputError`` with the file and the lines for an
+    unknown or repeated column, cells that are not of their kind, lines with fewer or more cells than names, and a file without a
+    row below its heading.
     """
     rows, delimiter = _rows(path)
     names = _names(path, *rows[0], kinds)
@@ -43,12 +44,15 @@ def columns_of(path: Path, kinds: Mapping[str, Kind], *, gaps: bool = False) -> 
 
 
 def heading_of(path: Path) -> list[str]:
-    """Return the names of the columns of a CSV file, as its first line has them."""
+    """Return the names of the columns of a CSV file, as its first line has them. Raises ``InputError`` without a row below it."""
     return _rows(path)[0][0][1]
 
 
 def _rows(path: Path) -> tuple[list[tuple[int, list[str]]], str]:
-    """Return the numbers and cells of the lines that are no comments, the heading first, and the delimiter."""
+    """Return the numbers and cells of the lines that are neither blank nor comments, the heading first, and the delimiter.
+
+    Raises ``InputError`` for a file without a row below its heading, or of more than :data:`MOST_ROWS` lines.
+    """
     numbered = enumerate(TomlFile.text_of(path).splitlines(), 1)
     lines = [(number, line) for number, line in numbered if line.strip() and not line.lstrip().startswith("#")]
     if len(lines) < 2 or len(lines) > MOST_ROWS:
@@ -72,7 +76,7 @@ def _names(path: Path, number: int, names: Sequence[str], known: Collection[str]
 
 
 def _value(cell: str, kind: Kind, delimiter: str, gaps: bool) -> object:
-    """Return the value of a cell. Raises :class:`KindError`; an empty cell is NaN with ``gaps``."""
+    """Return the value of a cell; with ``gaps`` "" and "nan" are NaN. Raises :class:`KindError` for one of another ``kind``."""
     if gaps and cell.lower() in ("", "nan"):
         return math.nan
     if isinstance(kind, Text):

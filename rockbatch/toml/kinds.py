@@ -11,7 +11,7 @@ from rockbatch.common.showing import shown
 from rockbatch.common.units import LEAST, MOST, Bounds, of_percent
 from rockbatch.toml.meant import words_meant
 
-_SHORT = 100  # characters of what is expected beside a suggestion
+_SHORT = 100  # most characters of an expectation that is added to a suggestion
 
 Schema = dict[str, Any]
 """A JSON schema, draft 7."""
@@ -31,7 +31,10 @@ class KindError(ValueError):
         self.meant, self.whole = meant, whole
 
     def advice(self) -> str:
-        """Return what was probably meant, and what was expected if that is short."""
+        """Return "did you mean 0.5?", then "expected …" if that is short; without a meant value "expected …" alone.
+
+        A ``whole`` message is returned as it is.
+        """
         if not self.meant or self.whole:
             return str(self) if self.whole else f"expected {self}"
         return f"did you mean {self.meant}?" + (f" expected {self}" if len(str(self)) < _SHORT else "")
@@ -42,7 +45,7 @@ class Kind(Protocol):
 
     @property
     def words(self) -> str:
-        """The expected values in words, for messages and the reference."""
+        """Return the expected values in words, for messages and the reference."""
 
     def __call__(self, value: object) -> Any:
         """Return the value as the program uses it. Raises :class:`KindError` for one that is not of this kind."""
@@ -168,7 +171,7 @@ class Choice:
         raise KindError(words, " or ".join(map(shown, self._meant(value))))
 
     def _meant(self, value: object) -> list[object]:
-        """Return the options that a misspelt word, or a number in quotes, may stand for; none for a value that is not text."""
+        """Return the options that a misspelt word, or a number in quotes, may stand for; [] for none, and for other values."""
         if same := [option for option in self.options if not isinstance(option, str) and str(option) == value]:
             return same
         words = [option for option in self.options if isinstance(option, str)]
@@ -220,7 +223,7 @@ def choice(*options: str, called: Mapping[str, object] | None = None) -> Choice:
 
 
 def within(bounds: Bounds) -> Number:
-    """Return the kind of a number within ``bounds``; if these exclude 0, a message about the sign comes first."""
+    """Return the kind of a number within ``bounds``; if these exclude 0, the first message is about the sign."""
     return replace(positive, bounds=bounds) if bounds.low > 0 or bounds.above else Number(bounds=bounds)
 
 

@@ -72,14 +72,17 @@ class _Scan:
         return self.lines_above + 1
 
     def mark(self, key_path: KeyPath, line: int) -> None:
-        """Note the line of a place, and of the tables that a dotted key implies."""
+        """Keep the line of a place, and of the tables that a dotted key implies, unless one is kept already.
+
+        Raises :class:`TooDeepError` for a place more than 32 deep.
+        """
         if len(key_path) > _DEEPEST:
             raise TooDeepError(f"line {line}: tables or lists within one another, more than {_DEEPEST} deep")
         for depth in range(1, len(key_path) + 1):
             self.lines.setdefault(key_path[:depth], line)
 
     def document(self) -> None:
-        """Scan the whole text."""
+        """Scan the whole text, filling ``lines``. Raises ``ValueError`` if it is not TOML."""
         table: KeyPath = ()
         while self.take("blank") is not None and self.here < len(self.text):
             if self.peek() == "[":
@@ -126,7 +129,7 @@ class _Scan:
             self.here += 1
 
     def value(self, key_path: KeyPath) -> None:
-        """Scan a value, and note the places within it."""
+        """Scan a value, and keep the lines of the places within it."""
         self.take("space")
         if self.peek() in ("[", "{"):
             self.items(key_path, inline_table=self.peek() == "{")

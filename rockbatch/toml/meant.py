@@ -56,7 +56,7 @@ def known_as(name: str, keys: Iterable[str], also: Mapping[str, Also], table: st
 
 
 def _same(name: str, keys: Iterable[str], also: Mapping[str, Also]) -> str:
-    """Return the key of this name but for its unit, or of which ``also`` has the name; empty if there is none."""
+    """Return the key called ``name`` but for capitals and unit, or whose other name in ``also`` that is; "" if there is none."""
     keys = list(keys)
     stems = {_stem(key): key for key in reversed(keys)}
     for word in without_unit(name):

@@ -64,14 +64,13 @@ class TomlFile:
 
     @classmethod
     def read(cls, path: Path, sections: Sequence[Section] = ()) -> "TomlFile":
-        """Read and parse a file. Raises :class:`InputError` with the line at which it is no TOML."""
+        """Return a file, read and parsed. Raises :class:`InputError` if it cannot be read, with the line if it is no TOML."""
         text = cls.text_of(path, sections)
         return cls.parse(path, text, sections)
 
     @staticmethod
     def text_of(path: Path, sections: Sequence[Section] = ()) -> str:
-        """Return the text of a file of ``sections``. Raises :class:`InputError` where it cannot be read, is too large or no
-        UTF-8."""
+        """Return the text of a file of ``sections``. Raises :class:`InputError` if it is unreadable, too large or no UTF-8."""
         try:
             with io.BufferedReader(opened_input(path)) as opened:
                 content = opened.read(LARGEST + 1)
@@ -89,7 +88,7 @@ class TomlFile:
 
     @classmethod
     def parse(cls, path: Path, text: str, sections: Sequence[Section] = (), *, lined: bool = True) -> "TomlFile":
-        """Parse the text of a file, which need not be there any more. Raises :class:`InputError` as :meth:`read` does.
+        """Return the file of a text, which need not be on the disk. Raises :class:`InputError` with the line that is no TOML.
 
         A text that is not ``lined`` was not written by its user: messages do not give its lines.
         """
@@ -106,9 +105,9 @@ class TomlFile:
             raise BadSyntax(syntax_error(path, text, str(error))) from None
 
     def complain(self, key_path: KeyPath, message: str | Problem, label: str = "") -> None:
-        """Note a mistake about the value at ``key_path``; one that is missing counts where its table starts.
+        """Add a mistake about the value at ``key_path`` to the problems, once; a missing value has the line of its table.
 
-        ``label`` names the table. A ``message`` that is a problem keeps its kind.
+        ``label`` names the table. A ``message`` that is a problem keeps its kind. A full file takes no more.
         """
         if self.is_full:
             return
@@ -122,18 +121,18 @@ class TomlFile:
             self.problems.append(problem)
 
     def adopt(self, other: "TomlFile", key_path: KeyPath) -> None:
-        """Note the mistakes of another file, at the ``key_path`` that names it."""
+        """Add the mistakes of another file, in its order, to the problems, at the line of the ``key_path`` that names it."""
         line = self.lines.get(key_path, 0)
         in_order = sorted(other.problems, key=lambda problem: (problem[0], str(problem[1])))
         self.problems += [(line, problem) for _, problem in in_order][: MOST_REPORTED - len(self.problems)]
 
     @property
     def is_full(self) -> bool:
-        """Return whether :data:`MOST_REPORTED` mistakes are noted, so that reading may stop."""
+        """Return whether there are :data:`MOST_REPORTED` problems, so that reading may stop."""
         return len(self.problems) >= MOST_REPORTED
 
     def is_sound_since(self, before: int) -> bool:
-        """Return whether no mistake was noted after the first ``before``; False for a full file, which notes no more."""
+        """Return whether there are no problems after the first ``before``; False for a full file, which takes no more."""
         return len(self.problems) == before and not self.is_full
 
     def finish(self) -> None:
@@ -145,7 +144,10 @@ class TomlFile:
         refuse(in_order)
 
     def table(self, *key_path: str | int, required: str = "") -> "Table | None":
-        """Return the table ``[key_path]``, or None; note another value, and a missing table if ``required`` gives an example."""
+        """Return the table ``[key_path]``, or None.
+
+        A value that is no table becomes a problem, and so does a missing table if ``required`` gives an example of one.
+        """
         name = ".".join(map(str, key_path))
         value = self.value(key_path)
         if isinstance(value, dict):
@@ -161,7 +163,10 @@ class TomlFile:
         return self.value(key_path) is not None or key_path in self.misspelt
 
     def tables(self, *key_path: str | int, title: str) -> list["Table"]:
-        """Return the tables ``[[key_path]]``; the key ``title`` of each names it in messages."""
+        """Return the tables ``[[key_path]]``, [] if missing, or with a problem for another value.
+
+        The key ``title`` of each names it in messages.
+        """
         name = ".".join(part for part in key_path if isinstance(part, str))
         value = self.value(key_path)
         if value is None:
@@ -176,7 +181,7 @@ class TomlFile:
         ]
 
     def value(self, key_path: KeyPath) -> Any:
-        """Return the value at ``key_path``, or None."""
+        """Return the value at ``key_path``, whose parts are keys and list indices; None if there is none."""
         node: object = self.data
         for part in key_path:
             if isinstance(node, dict):
@@ -196,16 +201,16 @@ class Table:
     data: dict[str, Any]
 
     def complain(self, message: str | Problem, *key: str | int) -> None:
-        """Note a mistake about this table, or a key or list element of it."""
+        """Add a mistake about this table, or a key or list element of it, to the problems of the file."""
         self.file.complain((*self.key_path, *key), message, self.label)
 
     def complain_about(self, setting: Setting, message: str | Problem) -> None:
-        """Note a mistake about one value."""
+        """Add a mistake about one value to the problems of the file."""
         self.complain(message, *setting.key_path[len(self.key_path) :])
 
     @contextmanager
     def noting(self, *key: str | int) -> Iterator[None]:
-        """Note an ``InputError`` of the ``with`` block as mistakes about a key, instead of raising it."""
+        """Context manager: turn an ``InputError`` in the block into mistakes about a key, added to the file's problems."""
         try:
             yield
         except InputError as error:
@@ -214,16 +219,16 @@ class Table:
 
     @property
     def names(self) -> list[str]:
-        """The keys that are written, in the order of the file, and then those that are probably misspelt."""
+        """Return the keys that are written, in the order of the file, and then those that are probably misspelt."""
         return [*self.data, *(str(key_path[-1]) for key_path in self.file.misspelt if key_path[:-1] == self.key_path)]
 
     def has(self, name: str) -> bool:
-        """Return whether the key is written, if perhaps misspelt."""
+        """Return whether the key ``name`` is written, if perhaps misspelt."""
         return name in self.data or (*self.key_path, name) in self.file.misspelt
 
     @property
     def confirmed(self) -> frozenset[str]:
-        """Names of the keys that the table confirms."""
+        """Return the names in the key ``confirm``, whether the table has keys of these names or not; empty without it."""
         written = self.data.get("confirm", ())
         return frozenset(
             name for name in (written if isinstance(written, list) else [written]) if isinstance(name, str)
@@ -237,11 +242,11 @@ class Table:
         other: Iterable[str] = (),
         places: bool = False,
     ) -> KeyValues:
-        """Return the usable values by key, in the order of the file; note what is unusable, unknown or missing.
+        """Return the usable values by key, in the order of the file; what is unusable, unknown or missing becomes a problem.
 
-        A caller may go on checking with what is left: :meth:`TomlFile.finish` raises in the end.
-        ``unfit`` gives reasons why keys of other tables do not apply here; ``other`` keys are read elsewhere. The value of a key
-        that takes a list is a tuple, or with ``places`` a list of :class:`Setting`. ``confirm`` is left to :attr:`confirmed`.
+        A caller may go on checking with what is left: :meth:`TomlFile.finish` raises in the end. ``unfit`` gives reasons why keys
+        of other tables do not apply here; ``other`` keys are read elsewhere. The value of a key that takes a list is a tuple, or
+        with ``places`` a list of :class:`Setting`. ``confirm`` is left to :attr:`confirmed`.
         """
         unfit = unfit or {}
         usable: dict[str, list[Setting]] = {}
@@ -267,11 +272,11 @@ class Table:
         return read
 
     def requires(self, keys: Mapping[str, Key], name: str) -> bool:
-        """Return whether a key has to be written, given the values of the keys on which it depends."""
+        """Return whether a key has to be written, given the keys on which it depends; False if one of these is not written."""
         return keys[name].required and all(self.data.get(other) in values for other, values in keys[name].only.items())
 
     def _check_missing(self, keys: Mapping[str, Key]) -> None:
-        """Note required keys that are missing, and keys that contradict each other."""
+        """Add to the problems the required keys that are missing, and keys that contradict each other."""
         for name, key in keys.items():
             if self.requires(keys, name) and not self.has(name):
                 few = isinstance(key.kind, Choice) and not key.kind.listed_by
@@ -285,7 +290,7 @@ class Table:
                 self.complain(_problem(Contradiction, f"{named}{clash.message}"), clash.at or first)
 
     def _not_applying(self, keys: Mapping[str, Key], name: str) -> str:
-        """Return why a key does not apply beside the values of others; empty if it does, or they are not known."""
+        """Return why the key ``name`` does not apply beside the values of other keys; "" if it does, or these are not known."""
         for other, values in keys[name].only.items():
             instead = " or ".join(f"{other} = {shown(value)}" for value in values)
             if other not in self.data:
@@ -302,7 +307,7 @@ class Table:
         return ""
 
     def _note_doubts(self, keys: Mapping[str, Key], usable: dict[str, list[Setting]]) -> None:
-        """Note confirmed keys that the table lacks, and unusual values that are not confirmed."""
+        """Add problems of confirmed keys that the table lacks, and of unusual values; take ``confirm`` out of ``usable``."""
         if keys.get("confirm") is CONFIRM["confirm"]:
             present = [shown(name) for name in self.data if name in keys and name != "confirm"]
             for setting in usable.pop("confirm", ()):
@@ -316,7 +321,7 @@ class Table:
                     self.complain_about(setting, in_table(problem))
 
     def _usable(self, name: str, key: Key, value: object) -> list[Setting]:
-        """Return the usable values of a key with their places, both ends of a range or none; note the others."""
+        """Return the usable values of a key with their places, of a range both ends or none; others become problems."""
         whole = Setting(value, (*self.key_path, name))
         items = [whole]
         if isinstance(value, list):
@@ -350,7 +355,7 @@ class Table:
         return []
 
     def _converted(self, name: str, key: Key, setting: Setting) -> object:
-        """Return a value as its kind converts it; None if that refuses it, which is noted."""
+        """Return a value as its kind converts it; None if its kind refuses it, with the problem added."""
         try:
             return key.kind(setting.value)
         except KindError as wrong:
@@ -358,7 +363,7 @@ class Table:
             return None
 
     def _not_one(self, name: str, key: Key, whole: Setting) -> None:
-        """Note a list, or several tables, where the key takes a single value or table."""
+        """Add the problem of a list, or of several tables, where the key takes a single value or table."""
         if isinstance(key.kind, Other) and all(isinstance(item, dict) for item in whole.value):
             header = ".".join(part for part in whole.key_path if isinstance(part, str))
             self.complain(f"{name}: expected one table; write [{header}] on a line of its own, once", name)
@@ -366,20 +371,23 @@ class Table:
             self._wrong(name, key, whole, KindError("one value, not a list"))
 
     def _wrong(self, name: str, key: Key, setting: Setting, wrong: KindError) -> None:
-        """Note a value that its kind refuses, with an example unless the message has one."""
+        """Add the problem of a value that its kind refuses, with an example unless the message has one."""
         example = "" if wrong.meant or wrong.whole or options(key) else f"; write for example {name} = {key.example}"
         message = f"{name} = {shown(setting.value)}: {wrong.advice()}{example}"
         self.complain_about(setting, _problem(OutOfRange if wrong.whole else WrongType, message))
 
     def _unknown(self, name: str, keys: Mapping[str, Key], other: Iterable[str]) -> None:
-        """Note a key or table that is not known here, with what may be meant."""
+        """Add the problem of a key or table that is not known here, with the one that may be meant."""
         section = not self.key_path and isinstance(self.data[name], dict | list)
         complaint = "unknown section" if section else "unknown key"
         written = name if name.isidentifier() and len(name) <= _LONGEST else shown(name)
         self.complain(_problem(UnknownKey, f"{written}: {complaint}; {self._instead(name, keys, other)}"), name)
 
     def _instead(self, name: str, keys: Mapping[str, Key], other: Iterable[str]) -> str:
-        """Return what to write instead of an unknown key: another of this table first, then the table where it belongs."""
+        """Return what to write instead of an unknown key: another of this table, the table where it belongs, or all keys.
+
+        A key that is probably meant counts as misspelt from then on, so that it is not reported as missing.
+        """
         place = tuple(part for part in self.key_path if isinstance(part, str))
         own = next((section for section in self.file.sections if section.at == place), Section(place, "", keys))
         own = keys if isinstance(keys, Section) else own
@@ -410,7 +418,7 @@ def _problem(kind: type[InputError], message: str) -> Problem:
 
 
 def in_table(problem: Problem, table: str = "this table") -> Problem:
-    """Return a problem that may be confirmed with the name of the ``table`` to confirm it in; others as they are."""
+    """Return a problem whose sentence ends with the ``table`` in which to confirm it; one that cannot be confirmed as it is."""
     return _problem(Unusual, f"{problem} in {table}") if problem.confirm else problem
 
 
@@ -426,7 +434,7 @@ def _unreadable(path: Path, error: OSError, sections: Sequence[Section]) -> Inpu
 
 
 def _has_required(file: Path, sections: Sequence[Section]) -> bool:
-    """Return whether a file has a header of each table that is required: a file of rules is no study."""
+    """Return whether a file has a header of each table that is required, as no file of rules has; False if it cannot be read."""
     try:
         text = file.read_text(encoding="utf-8", errors="replace")
     except OSError:
@@ -436,7 +444,7 @@ def _has_required(file: Path, sections: Sequence[Section]) -> bool:
 
 
 def with_slashes(written: str) -> str:
-    """Return a path with slashes in place of backslashes, also of those that TOML took for the beginning of a character."""
+    r"""Return a path with slashes for backslashes, and for characters that TOML made of these, as a line break of "C:\new"."""
     return written.translate(_SLASHED)
 
 

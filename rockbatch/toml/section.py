@@ -139,7 +139,7 @@ class Section(Mapping[str, Key]):
 
     @property
     def header(self) -> str:
-        """Its header in the file: "[pier]", "[[motions.pulse]]"; empty for the top."""
+        """Return its header in the file: "[pier]", "[[motions.pulse]]"; "" for the top."""
         name = ".".join(self.at)
         return (f"[[{name}]]" if self.many else f"[{name}]") if name else ""
 
@@ -148,7 +148,10 @@ class Section(Mapping[str, Key]):
         return known_as(name, names, self.also, self.at[-1] if self.at else "")
 
     def advice(self, name: str) -> tuple[str, str]:
-        """Return the key to write instead of an unknown name, empty if none, and the advice; both empty if none is known."""
+        """Return the key to write in place of an unknown name, and the advice, each "" if there is none.
+
+        weight_kN gives ("mass_t", "write mass_t, the weight in kN over 9.81").
+        """
         advice = next(filter(None, map(self.instead.get, without_unit(name))), "")
         return ("", advice) if isinstance(advice, str) else (advice[0], f"write {advice[0]}, {advice[1]}")
 
@@ -162,7 +165,7 @@ class Section(Mapping[str, Key]):
 
 
 def joined(section: Section, *more: Section) -> Section:
-    """Return ``section`` with the keys of others, and all that they say of these."""
+    """Return ``section`` with the keys, homes, other names and clashes of all sections; its texts and pattern stay its own."""
     sections = (section, *more)
     return replace(
         section,
@@ -203,7 +206,7 @@ _GENERAL = {
 
 
 def home(sections: Iterable[Section], name: str, place: tuple[str, ...]) -> str:
-    """Return the headers of tables, but that at ``place``, with a key of this name; empty for none, or a general name."""
+    """Return table headers, but that at ``place``, with a key ``name``: "[pier] or [[case]]"; "" for none or a common name."""
     others = (section for section in sections if section.at and section.at != place)
     headers = dict.fromkeys(section.header for section in others if name in section and not section.free)
     return "" if name in _GENERAL else " or ".join(headers)

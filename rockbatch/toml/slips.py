@@ -45,9 +45,9 @@ def _earlier(lines: list[str]) -> tuple[int, str] | None:
 
 
 def meant_line(line: str) -> str:
-    """Return a line "key = value" as it was meant, by the first of the usual slips that makes it TOML.
+    """Return a mistyped line "key = value" as it was probably meant: 'at = "left"' for "at = left".
 
-    It is empty if none does, if nothing is wrong with the line, and if it could mean several things.
+    It is "" if the line is TOML already, is no "key = value", or would still not be TOML, or could mean several things.
     """
     if len(line) > _LONGEST_LINE:
         return ""
@@ -71,18 +71,18 @@ def _is_toml(text: str) -> bool:
 
 
 def _backslashes(value: str) -> str:
-    """Return a path with slashes, which every system reads; the backslashes of TOML mean other characters."""
+    """Return ``value`` with slashes for backslashes: every system reads these, and TOML takes backslashes for characters."""
     return value.replace("\\", "/")
 
 
 def _quotes(value: str) -> str:
-    """Return a text with the same quotes at both ends; one with quotes inside stays as it is."""
+    """Return a text with the same quotes at both ends; a value without quotes, or with quotes inside, as it is."""
     inside = value.strip("\"'“”‘’„")
     return f'"{_backslashes(inside)}"' if inside != value and not re.search("[\"'“”]", inside) else value
 
 
 def _word(value: str) -> str:
-    """Return a truth value in lower case, and any other single word or path in quotes."""
+    """Return a truth value, as "yes" or "Off", in TOML's words, another single word or path in quotes, and all else as it is."""
     truth = {"true": "true", "yes": "true", "on": "true", "false": "false", "no": "false", "off": "false"}
     if value.lower() in truth:
         return truth[value.lower()]
@@ -90,7 +90,7 @@ def _word(value: str) -> str:
 
 
 def _number(value: str) -> str:
-    """Return a number as TOML writes it: digits at both sides of the point, and no spaces or commas between thousands.
+    """Return a number as TOML writes it: digits around the point, no blanks or commas between thousands; others as they are.
 
     A single comma may be one of decimals or of a list, or of thousands, and stays.
     """
@@ -101,7 +101,7 @@ def _number(value: str) -> str:
 
 
 def _without_unit(key: str, value: str) -> str:
-    """Return a number without its unit, if that is the one in which the name of its key ends."""
+    """Return a number without the unit in which its key ends, "4.0" for "4.0 m" of width_m; all else as it is."""
     number, _, unit = value.rpartition(" ")
     same = unit and key.lower().endswith("_" + re.sub(r"[ /·*^]", "_", unit).replace("²", "2").lower())
     return _number(number.strip()) if same else value
@@ -114,7 +114,7 @@ def _written(number: str) -> str:
 
 
 def _values(value: str) -> str:
-    """Return several values as a list: in brackets, with a comma between each two.
+    """Return several values as a list: in brackets, with a comma between each two; a single value, or another, as it is.
 
     Without brackets, a comma and a space have to separate them: "1,5" may be a number, and "1 800" too.
     """

@@ -75,11 +75,11 @@ class Analysis(Shown):
 
     @property
     def tables(self) -> "dict[str, pd.DataFrame]":
-        """Return the tables of the analysis by name."""
+        """Return the tables of the analysis by name, without those that it does not have."""
         return {name: table for name in self.TABLES if (table := getattr(self, name)) is not None}
 
     def _facts(self) -> tuple[str, dict[str, str]]:
-        """See :class:`Shown`."""
+        """Return the title and, by name, the facts that :class:`Shown` prints: tables, files not used, files written."""
         tables = ", ".join(f"{name} ({count(len(table), 'row')})" for name, table in self.tables.items())
         files = several(len(self.files), "file")
         return f"{self.NAME} of {self.study.title!r}", {
@@ -89,7 +89,7 @@ class Analysis(Shown):
         }
 
     def _beneath(self) -> "pd.DataFrame | None":
-        """See :class:`Shown`."""
+        """Return the main table, of the analysis's own name; None without it."""
         return self.tables.get(self.NAME)
 
     def save(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
@@ -136,7 +136,7 @@ class AnalysisFolder:
         self._earlier = {} if fresh else _earlier_digests(self.path)
 
     def read_motions(self, study: Study) -> MotionSet:
-        """Read the ground motions of ``study``, announce them to the listener, and note them in ``info``."""
+        """Return the ground motions of ``study``, read, announced to the listener, and listed in ``info``."""
         self.suite = ground_motions(study)
         self.listener.motions(self.suite)
         labels = self.suite.labels
@@ -155,7 +155,7 @@ class AnalysisFolder:
         cases: Sequence[Case],
         row: RowOf,
     ) -> None:
-        """Carry out ``runs`` and write the ``row`` of each into ``file``, unless it holds them; ``cases`` cover their kernels."""
+        """Carry out ``runs`` and write the ``row`` of each into ``file``, unless it has them; compile kernels for ``cases``."""
         if self.has(file, digest):
             self.keep(file, digest)
             return
@@ -167,7 +167,7 @@ class AnalysisFolder:
             self.keep(file, digest)
 
     def has(self, file: str, digest: Mapping[str, str]) -> bool:
-        """Return whether ``file`` already holds the runs with ``digest``; raise ``InputError`` if it was edited."""
+        """Return whether ``file`` has the runs with ``digest``; False with ``fresh``. ``InputError`` if it has and was edited."""
         path, earlier = self.directory / file, self._earlier.get(file)
         if not (isinstance(earlier, dict) and earlier.get("runs") == digest and is_plain(path)):
             return False
@@ -181,7 +181,7 @@ class AnalysisFolder:
     def journal(
         self, file: str, columns: Sequence[str], digest: Mapping[str, str], beside: Sequence[str] = ()
     ) -> Iterator[Journal]:
-        """Open the journal of the runs in ``file``; report the finished runs in it, at the start and after Ctrl-C.
+        """Context manager: yield the journal of the runs in ``file``; announce its finished runs, at the start and after Ctrl-C.
 
         ``beside`` are names of further cells of its rows, as :class:`Journal` takes them.
         """
@@ -198,24 +198,27 @@ class AnalysisFolder:
                 raise
 
     def keep(self, file: str, digest: Mapping[str, str] | None = None) -> None:
-        """Note in NAME.json that ``file`` is finished, and the digests of its runs."""
+        """List ``file`` in NAME.json as finished, with the digest of its contents and the ``digest`` of its runs.
+
+        With None for that, the digest of its runs stays as it was.
+        """
         self.info["files"].append(file)
         noted = self.info["digests"].get(file, {}) if digest is None else {"runs": dict(digest)}
         self.info["digests"] = self.info["digests"] | {file: noted | {"sha256": sha256_of(self.directory / file)}}
         self._write_info()
 
     def keep_table(self, file: str, table: "pd.DataFrame") -> None:
-        """Write ``table`` as a CSV, formatted as by the journal, completely or not at all, and note it in NAME.json."""
+        """Write ``table`` as a CSV, formatted as by the journal, completely or not at all, and list it in NAME.json."""
         rows = ({str(name): value for name, value in row.items()} for row in table.to_dict("records"))
         write_whole(self.directory / file, csv_text(list(table.columns), rows))
         self.keep(file)
 
     def drop(self, file: str) -> None:
-        """Remove a table of an earlier analysis that this one does not have."""
+        """Remove a table of an earlier analysis that this one does not have; nothing happens if it is not there."""
         remove(self.directory / file)
 
     def tables(self, names: Sequence[str]) -> "dict[str, pd.DataFrame | None]":
-        """Read the tables NAME.csv of the analysis; None for those it does not have."""
+        """Return the tables NAME.csv by ``names``, read from the folder; None for those that the analysis does not have."""
         files = self.info["files"]
         return {name: read_table(self.directory / f"{name}.csv") if f"{name}.csv" in files else None for name in names}
 

@@ -45,7 +45,7 @@ def write_records(path: Path, motions: MotionSet, title: str, about: str) -> Non
 
 
 def page(motions: MotionSet, title: str, about: str) -> str:
-    """Return the page of motions as HTML: ranked records, files not used, findings, files left out; empty parts are omitted."""
+    """Return the page of motions as HTML: ranked records, then files not used, findings and files left out, if there are any."""
     records = ranked_records(motions)
     findings = [(motion.named, finding.text) for motion in motions for finding in motion.findings]
     remarks = [[tag("span", name, class_="named"), text] for name, text in findings]
@@ -95,7 +95,7 @@ def _use(record: RankedRecord) -> Markup:
 
 
 def _reasons(files: Sequence[Unusable | LeftOut], name: str) -> Markup:
-    """Return a table of files and reasons; empty without files."""
+    """Return a table of files, each with its source and the reason; empty without files."""
     rows = [
         [tag("span", file.name, class_="named"), tag("span", file.source, class_="path"), file.reason] for file in files
     ]

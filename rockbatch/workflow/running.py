@@ -127,7 +127,7 @@ def run(
 
 
 def _in_memory(study: Study, engine: Engine, listener: Listener) -> "pd.DataFrame":
-    """Carry out a study without a folder; return its table."""
+    """Carry out a study without a folder; return its table, with a row for each unusable file at the end."""
     motions = ground_motions(study)
     listener.motions(motions)
     runs, rows = Plan(study, motions), InMemory(columns(study))
@@ -184,10 +184,10 @@ def run_into(
 def merge(
     directory: Path, study: Study, shares: Iterable[Path], listener: Listener, command: Sequence[str]
 ) -> FinishedBatch:
-    """Join the journals in the folders ``shares`` and write the results into ``directory``.
+    """Join the journals in the folders ``shares``, write the results into ``directory`` and return them.
 
-    ``command`` as in :func:`run_into`. Raises ``InputError`` with everything wrong or missing in the shares; joined rows
-    stay in ``directory``, so that the rest can be carried out there.
+    ``command`` as in :func:`run_into`. Raises ``InputError`` with everything wrong or missing in the shares; joined rows stay in
+    ``directory``, so that the rest can be carried out there.
     """
     batch = prepare(directory, study, listener, command, later=(CHECKS, REPORT))
     with batch.journal() as journal:
@@ -239,7 +239,7 @@ def _verdicts(saved: Saved, study: Study) -> list[Verdict]:
 
 
 def _ranges(numbers: Sequence[int], most: int = 5) -> str:
-    """Return rising indices as ranges of numbers from 1, at most ``most`` of them: "1 to 12, 17"."""
+    """Return rising indices, one or more, as ranges from 1: "1 to 12, 17"; of more than ``most`` the first, then "…"."""
     starts = [i for i, number in enumerate(numbers) if i == 0 or number != numbers[i - 1] + 1]
     ends = [i - 1 for i in starts[1:]] + [len(numbers) - 1]
     ranges = []

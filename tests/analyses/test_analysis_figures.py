@@ -221,6 +221,7 @@ def spectrum(tmp_path_factory):
     return rb.spectrum(study(tmp_path_factory.mktemp("spectrum"), SPECTRUM))
 
 
+@pytest.mark.slow
 def test_a_spectrum_has_a_panel_for_each_case_and_a_curve_for_each_slenderness(spectrum, tmp_path):
     result = spectrum
     figure = spectra(result.spectrum_suite, result.spectrum, result.info)

@@ -70,6 +70,7 @@ def interval(low, high, form):
     return f"{low:{form}} – {'∞' if high is None or high != high else format(high, form)}"
 
 
+@pytest.mark.slow
 def test_a_release_test(tmp_path):
     out = tmp_path / "out"
     rb.release(write_study(tmp_path, RELEASE), out)
@@ -109,6 +110,7 @@ def test_a_sensitivity(tmp_path, capsys):
     agree(printed, rows[2:], texts_of(table, ends | answers | indices), 1)
 
 
+@pytest.mark.slow
 def test_a_fragility_and_its_rates(tmp_path, capsys):
     printed, page, out = made(tmp_path, capsys, FRAGILITY, "fragility")
     (curve,) = json.loads((out / "fragility.json").read_text(encoding="utf-8"))["curves"]
@@ -147,6 +149,7 @@ def test_a_fragility_and_its_rates(tmp_path, capsys):
     assert f"overturning, rigid: {risk['note']}" in printed
 
 
+@pytest.mark.slow
 def test_an_accuracy(tmp_path, capsys):
     printed, page, out = made(tmp_path, capsys, ACCURACY, "accuracy", "--runs", "1", "--seconds", "5")
     table = pd.read_csv(out / "accuracy.csv").astype({"substeps": float, "runs": float})

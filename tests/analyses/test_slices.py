@@ -60,6 +60,7 @@ def test_every_analysis_is_seen():
     assert {*ANALYSES} < {*rockbatch.__all__}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [ANALYSES[0], *(pytest.param(name, marks=pytest.mark.slow) for name in ANALYSES[1:])])
 def test_an_analysis_is_deleted_with_its_folder_and_its_name(copied, name):
     shutil.rmtree(copied / "rockbatch" / "analyses" / name)

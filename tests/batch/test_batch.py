@@ -225,6 +225,7 @@ class StopAfter(Stop):
         return self.cell
 
 
+@pytest.mark.slow
 def test_a_group_that_is_stopped_anywhere_returns_whole_runs(study):
     """Once it is set, it is looked at no more than twice for each run."""
     loaded, runs = plan_of(study)

@@ -98,6 +98,7 @@ def carried_out_by_dask(file, out):
     return said.getvalue(), (out / "peaks.csv").read_bytes()
 
 
+@pytest.mark.slow
 def test_the_command_line_carries_out_a_study_on_a_cluster(file, tmp_path, study, runs, in_this_process):
     said, found = carried_out_by_dask(file, tmp_path / "out")
     assert "on a dask cluster of 1 thread (this machine)" in said
@@ -110,6 +111,7 @@ def test_the_command_line_carries_out_a_study_on_processes_of_this_machine(file,
     assert carried_out_by_dask(file, tmp_path / "out")[1] == table(tmp_path, study, runs, Threads(2))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="no signal can be blocked here")
 def test_ctrl_c_while_a_cluster_starts_ends_this_process_and_not_its_workers(monkeypatch):
     """A terminal sends it to all of them. It was lost in that second, and the batch went on to its end."""

@@ -21,6 +21,12 @@ def study_of(folder, *, pier=PIER, cases=(PADS,), **tables):
     return write_study(folder, study_text(pier=pier, pulses=PULSES, cases=cases, **tables))
 
 
+JOINT = {
+    "name": "joint", "demand": "base_shear_over_capacity", "capacity": {"constant": 400.0, "per_N": 0.5}, "at_most": 1.0,
+    "reason": "friction and a key",
+}  # fmt: skip
+
+
 def polygon_share(n, m):
     """Return the share of the capacity at one moment by where a line of constant N leaves the closed polygon of the curve."""
     corners = [*map(tuple, CURVE), *((axial, -most) for axial, most in reversed(CURVE[1:-1]))]
@@ -31,14 +37,17 @@ def polygon_share(n, m):
     return abs(m) / most if most > 0.0 else np.inf
 
 
+@pytest.mark.usefixtures("pages")
 def test_the_share_of_the_foot_is_that_of_the_stored_histories_by_another_polygon(tmp_path):
     """Moment and axial force of each sample of histories.h5; between samples the run may use a little more."""
     output = {"interaction_m": [0.0, 7.0], "sections_m": [0.0, 7.0], "forces": True, "histories": "all"}
-    path = study_of(tmp_path, cases=[RIGID, PADS], output=output, check=[FOOT])
+    path = study_of(tmp_path, cases=[RIGID, PADS], output=output, check=[FOOT, JOINT])
     rb.run(path, out=tmp_path / "out")
     results = rb.open_results(tmp_path / "out")
-    checks = rb.check(results).set_index("case")
-    shares = []
+    checks = rb.check(results)
+    joint = checks[checks["check"] == "joint"].set_index("case")
+    checks = checks[checks["check"] == "foot"].set_index("case")
+    shares, of_joint = [], []
     for response in results.responses:
         if response.case == "pads":
             theta = np.interp(response.forces["t"], response.history["t"], response.history["theta"])
@@ -46,12 +55,22 @@ def test_the_share_of_the_foot_is_that_of_the_stored_histories_by_another_polygo
             moment = response.forces["base_moment"].to_numpy() * 600.0
             shares.append(max(map(polygon_share, normal + shear * np.abs(theta), moment)))
             shares[-1] = max(shares[-1], max(map(polygon_share, normal - shear * np.abs(theta), moment)))
+            of_joint.append((np.abs(shear) / (400.0 + 0.5 * normal)).max())
     found = checks.loc["pads"]
     assert found["value"] == pytest.approx(max(shares), rel=0.02)
     assert found["high"] > found["value"] > found["low"]
+    assert joint.loc["pads", "value"] == pytest.approx(max(of_joint), rel=0.02)
+    assert max(of_joint) <= joint.loc["pads", "high"]
     assert checks.loc["rigid", "verdict"] == "not decided"  # a landing on rigid ground is no force
     table, sections = read_interaction(tmp_path / "out" / INTERACTION, []), results.sections
     keys = ["record", "case", "height_m"]
+    base = table[table["height_m"].isna()].groupby(["record", "case"])
+    assert results.peaks.set_index(["record", "case"])["normal_force_kN"].to_dict() == pytest.approx(
+        base["axial_kN"].max().to_dict(), rel=2e-3
+    )
+    assert results.peaks.set_index(["record", "case"])["base_shear_kN"].to_dict() == pytest.approx(
+        base["shear_kN"].max().to_dict(), rel=2e-3
+    )
     for key, rows in table.groupby(keys, sort=False):
         own = sections[(sections[keys] == pd.Series(key, keys)).all(axis=1)].iloc[0]
         assert rows["axial_kN"].is_monotonic_increasing
@@ -60,6 +79,22 @@ def test_the_share_of_the_foot_is_that_of_the_stored_histories_by_another_polygo
         )
         assert rows["moment_kNm"].max() == pytest.approx(own["section_moment_kNm"], rel=1e-8)
     assert len(table.groupby(keys)) == 8
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    for words in ("section at 0 m", "foot</", "joint</", "V [kN]", "M [kN m]"):
+        assert words in page[page.index('id="capacities"') :], words
+
+
+def test_a_check_of_the_base_brings_its_forces_and_needs_them_in_results(tmp_path):
+    study = rb.load_study(study_of(tmp_path, check=[JOINT]))
+    assert study.output.has("interaction_base")
+    assert study.checks[0].capacity == ((-800.0, 0.0), (1e9, 400.0 + 0.5e9))
+    rb.run(study.with_(check=[]), out=tmp_path / "without", progress=False)
+    rules = tmp_path / "rules.toml"
+    rules.write_text(
+        '[[check]]\nname="j"\ndemand="base_shear_over_capacity"\ncapacity=900.0\nat_most=1.0\nreason="r"\n'
+    )
+    with pytest.raises(rb.InputError, match="write interaction_base = true under"):
+        rb.check(tmp_path / "without", rules)
 
 
 @pytest.mark.parametrize(
@@ -72,6 +107,22 @@ def test_the_share_of_the_foot_is_that_of_the_stored_histories_by_another_polygo
         (PIER, {"interaction_m": [0.0]}, FOOT | {"capacity": [[20e3, 0.0], [0.0, 6e3]]}, "does not go by ascending N"),
         (PIER, {"interaction_m": [0.0]}, FOOT | {"capacity": [[0.0, 6e3], [5.0]]}, r"capacity = \[5\.0\]: expected points"),
         (PIER, {"interaction_m": [0.0]}, FOOT | {"capacity": [[-9.0, 0.0], [-1.0, 6.0]]}, "that of the dead load is 5886 kN"),
+        (PIER, {}, JOINT | {"capacity": [[-9.0, 0.0], [99.0, 6.0]]}, "that of the dead load is 5886 kN"),
+        (PIER, {}, JOINT | {"capacity": {"constant": 4.0, "per_n": 1.0}}, "expected a line { constant = 500.0, per_N = 0.6 }"),
+        (PIER, {}, JOINT | {"capacity": {"per_N": -1.0}}, "expected 0 or a number above it"),
+        (PIER, {}, JOINT | {"capacity": [1e3, 2e3]}, r"capacity = \(1000\.0, 2000\.0\)"),
+        (
+            PIER,
+            {"forces": True},
+            {"name": "k", "demand": "normal_force_kN", "capacity": 4e7, "at_most": 0.9, "reason": "r"},
+            r"capacity = 4e\+07: normal_force_kN is a force, and the pier's weight",
+        ),
+        (
+            {"width_m": 3.0, "height_m": 14.0},
+            {"interaction_base": True},
+            JOINT,
+            "interaction_base: its forces are in kN; write mass_t under",
+        ),
     ],
 )  # fmt: skip
 def test_a_capacity_that_cannot_be_used_is_refused_with_its_line_and_a_remedy(tmp_path, pier, output, check, said):

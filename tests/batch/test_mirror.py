@@ -163,6 +163,7 @@ def test_shares_that_part_mirror_images_come_to_the_rows_of_one_run(study, tmp_p
         assert {sign for _, sign, _, _ in simulated} == {"+"}
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("lost", [0, 4])
 def test_a_journal_that_has_lost_one_of_two_mirror_images_gets_that_one_again(study, tmp_path, lost):
     loaded = load_study(study())
@@ -181,6 +182,7 @@ def test_a_journal_that_has_lost_one_of_two_mirror_images_gets_that_one_again(st
 # What is counted
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("pages")
 def test_statistics_checks_and_the_report_count_mirror_images_once(study, tmp_path, capsys):
     out = tmp_path / "both"

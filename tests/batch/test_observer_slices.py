@@ -35,8 +35,8 @@ KEYS = {
 GROUPS = ("FIRST", "QUANTITIES", "ERRORS", "FURTHER", "LAST")
 """Places of the columns that observers bring."""
 
-FAST = ("forces", "rocking", "sections")
-"""Those that are deleted in fast tests: one with columns, one without forces of its own, one with a table beside."""
+IN_CI = ("forces", "rocking", "sections")
+"""Those that are deleted in CI: one with columns, one without forces of its own, one with a table beside."""
 
 RUN = """
 import json, sys
@@ -103,7 +103,13 @@ def study_of(folder, names, name="study.toml"):
 
 def test_every_observer_is_deleted_below():
     assert sorted(KEYS) == sorted(OBSERVERS)
-    assert {name for name in OBSERVERS if brought(name)[0]} == {"forces", "shocks", "sections", "intensity"}
+    assert {name for name in OBSERVERS if brought(name)[0]} == {
+        "forces",
+        "shocks",
+        "sections",
+        "interaction",
+        "intensity",
+    }
     assert {name for name in OBSERVERS if brought(name)[1]} == {*OBSERVERS} - {
         "shocks",
         "half_cycles",
@@ -120,7 +126,8 @@ def test_every_observer_is_deleted_below():
     }
 
 
-@pytest.mark.parametrize("name", [n if n in FAST else pytest.param(n, marks=pytest.mark.slow) for n in OBSERVERS])
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [n if n in IN_CI else pytest.param(n, marks=pytest.mark.thorough) for n in OBSERVERS])
 def test_an_observer_is_deleted_with_its_folder_and_its_name(tmp_path, name):
     """Tables of a study that asks for all others are the same to the byte, and its key is unknown."""
     study, asking = (

@@ -99,6 +99,7 @@ def test_a_folder_called_like_an_output_is_noticed_before_the_first_run(tmp_path
     assert [path.name for path in out.iterdir()] == [name]
 
 
+@pytest.mark.slow
 def test_a_folder_called_like_an_unfinished_file_stops_nothing_and_stays(finished, capsys):
     study, out = finished
     (out / ".x.unfinished").mkdir()

@@ -247,6 +247,7 @@ shutil.copy("{disk}/out/peaks.csv", "{kept}")
     assert (kept / "peaks.csv").read_bytes() == undisturbed
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("pages")
 def test_in_a_finished_folder_nothing_is_left_to_run_and_the_rest_is_made_again(
     study, finished, undisturbed, capsys, monkeypatch
@@ -271,6 +272,7 @@ def test_in_a_finished_folder_nothing_is_left_to_run_and_the_rest_is_made_again(
     assert (out / "peaks.csv").read_bytes() == undisturbed
 
 
+@pytest.mark.slow
 def test_a_finished_study_that_is_run_again_does_nothing_again(study, tmp_path, capsys):
     """What is not there, or of another state of the study, is made again; a comment changes run.json too."""
     text = study_text(motions={"scale": [0.5, 1.0]}, cases=(RIGID,), output={"histories": "worst", "intensity": True})
@@ -313,6 +315,7 @@ def another_number(text):
     return text.replace("0.", "1.", 1)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("pages")
 def test_a_changed_table_is_reported_kept_and_replaced_only_on_request(study, tmp_path, finished, undisturbed, capsys):
     out = finished

@@ -23,6 +23,7 @@ def study_of(folder, *, pier=PIER, cases=(RIGID,), **tables):
     return write_study(folder, study_text(pier=pier, pulses=PULSES, cases=cases, **tables))
 
 
+@pytest.mark.slow
 def test_a_study_that_asks_has_the_sections_of_every_run_and_checks_of_them(tmp_path):
     text = {"output": {"sections": 3}, "check": CHECKS, "motions": {"polarity": ["+", "-"]}}
     path, out = study_of(tmp_path, cases=[RIGID, PADS], **text), tmp_path / "out"

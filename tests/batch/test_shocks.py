@@ -7,7 +7,8 @@ from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.motions import read_motions
-from rockbatch.results.shocks import MEANING, SHOCKS
+from rockbatch.observers.shocks import TABLE
+from rockbatch.observers.shocks.table import MEANING
 
 PIER = rb.Pier(alpha=0.2, p=1.0)
 SOFT = rb.YieldingBase(beta=40, eta=2.0, spring="epp", zeta=0.1)
@@ -51,6 +52,7 @@ def independent(response, motion):
     return rows
 
 
+@pytest.mark.slow
 def test_the_numbers_are_those_of_the_history_read_by_other_code():
     found = read_motions("motions/near_fault")
     motion = rb.sequence([found["CHAN15"], found["CHAN24"], found["CHAN15"]], pause=6.0, factors=[2.0, 2.0, 1.0])
@@ -84,8 +86,8 @@ def test_what_is_left_after_each_shock_is_what_a_run_of_the_shocks_so_far_ends_w
 
 def test_a_base_that_yields_settles_with_every_shock_and_never_rises():
     settled = of(SOFT, *[shock(amplitude=7.0)] * 4, pause=40.0).shocks["settlement_m"]
-    assert (settled.diff().dropna() >= -1e-12).all()
-    assert settled.iloc[0] > 0.0
+    assert len(settled) == 4
+    assert (settled.diff(1).fillna(settled.iloc[0]) > 1e-6).all()
 
 
 def test_an_elastic_base_has_no_residual_and_a_rigid_one_without_dampers_none_at_all():
@@ -93,6 +95,7 @@ def test_an_elastic_base_has_no_residual_and_a_rigid_one_without_dampers_none_at
     assert of(rb.RigidBase(), shock(), shock()).shocks[["theta_res_over_alpha", "settlement_m"]].isna().all(axis=None)
 
 
+@pytest.mark.slow
 def test_dampers_that_hold_a_tilt_hold_it_until_the_next_shock():
     base = rb.RigidBase(restraints=(rb.Damper("friction", f=0.6),))
     table = of(base, shock(amplitude=9.0), shock(amplitude=9.0), pause=40.0).shocks
@@ -131,13 +134,14 @@ def study(folder, name="study.toml", **more):
     return write_study(folder, text, name)
 
 
+@pytest.mark.slow
 def test_the_table_has_a_row_for_each_shock_of_each_run_that_was_simulated(tmp_path):
     path, out = study(tmp_path), tmp_path / "out"
     peaks = rb.run(path, out=out, jobs=1)
     results = rb.open_results(out)
     table = results.shocks
     rb.run(path, out=tmp_path / "two", jobs=2)
-    assert (out / SHOCKS).read_bytes() == (tmp_path / "two" / SHOCKS).read_bytes()
+    assert (out / TABLE).read_bytes() == (tmp_path / "two" / TABLE).read_bytes()
     assert table["shock_record"].tolist()[:2] == ["one-sine", "one-cosine"]
     assert list(table) == ["record", "case", "polarity", "scale", "beta", *MEANING]
     assert len(table) == 2 * 2 * 3  # shocks, scales, cases; the other polarity is the mirror image
@@ -161,10 +165,10 @@ def test_the_table_has_a_row_for_each_shock_of_each_run_that_was_simulated(tmp_p
 def test_the_table_goes_when_the_study_has_no_sequence_any_more(tmp_path):
     out = tmp_path / "out"
     rb.run(study(tmp_path, scale=1.0), out=out)
-    assert (out / SHOCKS).exists()
+    assert (out / TABLE).exists()
     text = study_text(pulses=[SINE], cases=[RIGID], output={"histories": "none"})
     rb.run(write_study(tmp_path, text), out=out, fresh=True)
-    assert not (out / SHOCKS).exists()
+    assert not (out / TABLE).exists()
     with pytest.raises(rb.InputError, match=r"shocks.csv: not there; add a \[\[motions.sequence\]\]"):
         _ = rb.open_results(out).shocks
 

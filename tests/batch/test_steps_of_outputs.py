@@ -21,6 +21,7 @@ def study(module):
     return module.STUDY | {"case": cases}
 
 
+@pytest.mark.slow
 def test_all_outputs_take_three_times_the_steps_of_the_peaks_at_most(module):
     assert module.of_folder(module.ALL).steps <= 3.0 * module.of_peaks().steps
 
@@ -29,6 +30,7 @@ def test_the_default_study_takes_half_more_than_its_peaks_at_most(module):
     assert module.of_folder({}).steps <= 1.5 * module.of_peaks().steps
 
 
+@pytest.mark.slow
 def test_every_output_beside_another_takes_no_steps_of_its_own(module, study):
     """Forces take the history of every step; what reads it too costs nothing, and what needs samples only neither."""
     forces = module.NONE | {"forces": True}

@@ -343,7 +343,7 @@ def test_a_sentence_that_holds_for_several_verdicts_is_said_once():
     assert [notes.about(one) for one in some] == [*[""] * 6, open_, "", "the pier has no damper"]
     assert notes.common() == [
         f"drift, uplift: {few}.",
-        "drift, uplift, soil: runs that do not end standing count so: overturned: infinite.",
+        "drift, uplift, soil: runs that do not end standing count as follows: overturned: infinite.",
     ]
 
 

@@ -10,6 +10,7 @@ from check_samples import PADS, PIER, case, runs
 
 from rockbatch.checks import Rule, judge
 from rockbatch.checks.answer import answer
+from rockbatch.checks.bounds import Bounds, _on_both_axes
 from rockbatch.checks.coverage import runs_of_cases
 from rockbatch.checks.responses import worst_of_cases
 from rockbatch.checks.verdicts import read_verdicts, write_verdicts
@@ -42,6 +43,7 @@ def judged(table, *rules, cases=None):
     return judge(rules, table, cases or [case(), across()])
 
 
+@pytest.mark.sweep(fast=15)
 @pytest.mark.parametrize("seed", range(20))
 @pytest.mark.parametrize("way", WAYS)
 def test_the_statistic_and_its_bounds_are_of_each_stations_combined_demand(way, seed):
@@ -195,5 +197,13 @@ def test_the_answer_counts_the_pier_once():
 
 def test_no_directed_demand_is_an_event_or_of_the_case_or_of_a_device():
     directed = [demand for demand in DEMANDS.values() if demand.directed]
-    assert len(directed) == 28
+    assert len(directed) == 29
     assert not any(demand.event or demand.per_case or demand.device for demand in directed)
+
+
+@pytest.mark.parametrize(("first", "second"), [(True, True), (True, False), (False, True), (False, False)])
+def test_a_demand_of_both_axes_is_estimated_if_both_are(first, second):
+    numbers = np.array([0.3]), np.array([0.2]), np.array([0.4])
+    found = _on_both_axes([Bounds(*numbers, first), Bounds(*(0.5 * each for each in numbers), second)], "100_30")
+    assert found.estimated == (first and second)
+    assert [each.item() for each in found[:3]] == pytest.approx([0.345, 0.23, 0.46])

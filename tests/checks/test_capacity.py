@@ -1,4 +1,4 @@
-"""The share of a section's capacity that a run uses: of moment and axial force at one moment, against a polygon by hand."""
+"""The share of a capacity that a run uses: of moment, or shear, and axial force at one moment, against a polygon by hand."""
 
 import math
 from dataclasses import replace
@@ -13,13 +13,15 @@ from check_samples import case, runs
 
 import rockbatch as rb
 from rockbatch.checks import Rule, judge
-from rockbatch.checks.capacity import problems, resistance, used
-from rockbatch.observers.interaction.observe import InteractionInSections, envelope, with_errors
+from rockbatch.checks.capacity import line, problems, resistance, used
+from rockbatch.observers.interaction.envelopes import FLATNESS, Envelope, envelope, thinned, with_errors
+from rockbatch.observers.interaction.observe import InteractionInSections, with_values_between
 from rockbatch.quantities.demands import OF_INTERACTION
 from rockbatch.simulation import Run
 
 CURVE = ((-2000.0, 0.0), (0.0, 30e3), (20e3, 60e3), (50e3, 0.0))
 DEMAND = "section_moment_over_capacity"
+SHEAR = "base_shear_over_capacity"
 
 
 def rule(curve=CURVE, at_most=1.0, **more):
@@ -29,11 +31,19 @@ def rule(curve=CURVE, at_most=1.0, **more):
 def corners(axial, moment, error=0.0, record="r0"):
     """Rows of interaction.csv of one run on pads."""
     rows = pd.DataFrame({"axial_kN": np.array(axial, dtype=float), "moment_kNm": np.array(moment, dtype=float)})
-    return rows.assign(record=record, case="pads", polarity="+", scale=1.0, height_m=12.0, interaction_error=error)
+    known = {"height_m": 12.0, "shear_kN": np.nan, "interaction_error": error}
+    return rows.assign(record=record, case="pads", polarity="+", scale=1.0, **known)
 
 
-def judged(rows, table=None, *, one=None, **more):
-    (verdict,) = judge([rule(**more)], runs([0.1]) if table is None else table, [one or case()], interaction=rows)
+def at_base(normal, shear, error=0.0):
+    """Rows of interaction.csv of the base in one run on pads."""
+    rows = corners(normal, shear, error).rename(columns={"moment_kNm": "shear_kN", "shear_kN": "moment_kNm"})
+    return rows.assign(height_m=np.nan)
+
+
+def judged(rows, table=None, *, one=None, checked=None, **more):
+    checks = [checked or rule(**more)]
+    (verdict,) = judge(checks, runs([0.1]) if table is None else table, [one or case()], interaction=rows)
     return verdict
 
 
@@ -78,7 +88,7 @@ def test_the_greatest_share_over_time_is_that_of_a_corner_of_the_envelope(seed):
     m = 2.0 * waves[2] * np.cos(23 * waves[3] * t)
     own = envelope(12.0, n, m)
     assert len(own.axial) < len(t)
-    rows = corners(own.axial, own.moment)
+    rows = corners(own.axial, own.effect)
     expected = max(by_hand(curve, *point) for point in zip(n.tolist(), np.abs(m).tolist(), strict=True))
     assert used(curve, rows)["over_capacity"].item() == pytest.approx(expected, rel=1e-9)
 
@@ -112,7 +122,9 @@ def test_a_capacity_that_an_error_puts_out_of_reach_is_not_decided():
     for n in (49.9e3, 50.1e3):
         found = judged(corners([n], [10.0], 0.01))
         assert (found.high, found.verdict) == (math.inf, "not decided")
-        assert "between 0 and any value" in found.remarks
+        assert found.is_lower_bound
+        assert 0.0 < found.value == found.low < 0.02
+        assert f"between {found.low:.4g} and any value" in found.remarks
     assert judged(corners([60e3], [10.0], 0.01)).verdict == "fail"
     assert judged(corners([20e3], [59.9e3], 0.01)).verdict == "not decided"
 
@@ -164,8 +176,12 @@ def test_a_curve_that_is_none_is_refused_with_its_point(curve, said):
 def test_a_capacity_is_for_its_demand_alone_and_its_demand_needs_it():
     with pytest.raises(rb.InputError, match="capacity is missing, points"):
         rule(None)
-    with pytest.raises(rb.InputError, match="capacity: is for section_moment_over_capacity; leave it out"):
+    with pytest.raises(
+        rb.InputError, match="a curve is for section_moment_over_capacity and base_shear_over_capacity; write"
+    ):
         Rule("a", "theta_max_over_alpha", 0.5, capacity=CURVE)
+    with pytest.raises(rb.InputError, match=r"capacity is missing, a line, or points .*capacity = \{ per_N = 0.6 \}"):
+        Rule("a", SHEAR, 1.0)
 
 
 @pytest.mark.parametrize(
@@ -186,6 +202,126 @@ def test_a_capacity_without_the_dead_load_is_refused(shift, at_m, said):
             refused()
     else:
         assert len(refused()) == 1
+
+
+def test_an_envelope_that_is_thinned_reaches_less_by_what_its_error_gains():
+    t = np.linspace(0.0, np.pi, 4000)
+    whole = envelope(12.0, 3.0 - 2.0 * np.cos(t), 7.0 * np.sin(t))._replace(error=0.01)
+    fewer = thinned(whole)
+    assert len(whole.axial) > 3000
+    assert 30 < len(fewer.axial) < 150
+    lost = 7.0 * np.sin(t) - np.interp(3.0 - 2.0 * np.cos(t), fewer.axial, fewer.effect)
+    assert lost.min() > -1e-9
+    assert fewer.error == pytest.approx(0.01 + FLATNESS)
+    assert (fewer.axial[0], fewer.axial[-1], fewer.effect.max()) == (1.0, 5.0, pytest.approx(7.0, rel=1e-6))
+    ways = np.linspace(0.0, np.pi, 500)
+    reach = [np.outer(np.cos(ways), of.axial / 5) + np.outer(np.sin(ways), of.effect / 7) for of in (whole, fewer)]
+    assert 0.0 <= (reach[0].max(axis=1) - reach[1].max(axis=1)).max() <= FLATNESS
+    assert thinned(Envelope(0.0, np.array([4.0]), np.array([2.0]))).error is None
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_envelope_of_points_is_that_of_all_pairs_of_them(seed):
+    """At each N of a point: the highest line between any two points, and nothing above it is left out."""
+    rng = np.random.default_rng(seed)
+    n, e = rng.normal(size=60), np.abs(rng.standard_cauchy(60))
+    if seed % 4 == 0:
+        n[:20] = n.min()  # many moments without any axial force
+    own = envelope(None, n, e)
+    highest = [
+        max(
+            e[i] + (e[j] - e[i]) * (x - n[i]) / (n[j] - n[i]) if n[i] != n[j] else max(e[i], e[j])
+            for i in range(60)
+            for j in range(60)
+            if min(n[i], n[j]) <= x <= max(n[i], n[j])
+        )
+        for x in n.tolist()
+    ]
+    assert np.interp(n, own.axial, own.effect) == pytest.approx(highest, rel=1e-9)
+    assert set(zip(own.axial.tolist(), own.effect.tolist(), strict=True)) <= set(
+        zip(n.tolist(), e.tolist(), strict=True)
+    )
+
+
+def test_values_between_rows_are_those_of_a_cubic_and_none_beside_an_event():
+    """Rows at 0.3 s twice: an event, beside which no four rows are even."""
+    t = np.array([0.0, 0.1, 0.2, 0.3, 0.3, 0.4, 0.5, 0.6, 0.7, 0.72])
+    times, values = with_values_between(t, t), with_values_between(t, 1.0 - 2.0 * t + 7.0 * t**3)
+    assert times.tolist() == pytest.approx([*t, 0.125, 0.15, 0.175, 0.425, 0.45, 0.475, 0.525, 0.55, 0.575])
+    assert values == pytest.approx(1.0 - 2.0 * times + 7.0 * times**3, rel=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_friction_and_a_key_are_held_against_shear_and_normal_force_of_one_moment(seed):
+    """V <= c + μ N at each of the moments of a random path, one by one."""
+    rng = np.random.default_rng(seed)
+    t, key, friction = np.linspace(0.0, 1.0, 300), float(rng.uniform(100.0, 900.0)), float(rng.uniform(0.2, 0.9))
+    normal = 2e4 * (1.0 + 0.9 * np.sin(7 * t + seed))
+    shear = 5e3 * np.cos(31 * t * rng.uniform(0.2, 1.0))
+    own = envelope(None, normal, shear)
+    found = judged(
+        at_base(own.axial, own.effect), checked=Rule("joint", SHEAR, 1.0, capacity=line(key, friction), reason="r")
+    )
+    assert found.value == pytest.approx(max(np.abs(shear) / (key + friction * normal)), rel=1e-9)
+    assert found.verdict == ("pass" if found.value <= 1.0 else "fail")
+    assert math.isnan(found.at_m)
+    assert found.words == f"maximum of {SHEAR}"
+
+
+def test_a_line_has_no_capacity_under_more_tension_than_it_bears():
+    curve = line(600.0, 0.6)
+    assert resistance(curve, np.array([-1001.0, -1000.0, -500.0, 0.0, 1e6])).tolist() == pytest.approx(
+        [math.nan, 0.0, 300.0, 600.0, 600600.0], rel=1e-12, nan_ok=True
+    )
+    assert resistance(line(600.0), np.array([-1e5, 1e5])).tolist() == [600.0, 600.0]
+
+
+def test_without_a_normal_force_friction_alone_holds_no_shear():
+    """The error of N is 100 kN, of which 0.6 is friction; the shear is 1000 kN."""
+    friction = Rule("joint", SHEAR, 1.0, capacity=line(0.0, 0.6), reason="r")
+    found = judged(at_base([0.0, 1e4], [1000.0, 100.0], 0.01), checked=friction)
+    assert (found.verdict, found.value, found.high) == ("fail", pytest.approx(990.0 / 60.0), math.inf)
+    assert judged(at_base([0.0, 1e4], [0.0, 100.0]), checked=friction).value == pytest.approx(100.0 / 6000.0)
+
+
+def test_a_number_is_a_capacity_of_which_the_limit_is_a_share():
+    table = runs([0.1]).assign(heel_gap_left_m=0.3, heel_gap_right_m=0.2, base_shear_m_s2=1.0, forces_error=0.0)
+    one = Rule("stroke", "heel_gap_m", 0.8, capacity=0.5, reason="r")
+    found = judge([one], table, [case()])[0]
+    assert (found.value, found.limit, found.ratio) == (0.3, 0.4, pytest.approx(0.75))
+    of_curve = judged(corners([0.0, 9e3], [15e3, 36e3]), checked=rule(72e3))
+    assert (of_curve.value, of_curve.limit, of_curve.unit) == (pytest.approx(0.5), 1.0, "")
+
+
+@pytest.mark.parametrize(
+    ("demand", "limits", "capacity", "said"),
+    [
+        (
+            "heel_gap_m",
+            {"at_most": 400.0},
+            500.0,
+            "at_most = 400: is a share of the capacity; write at_most = 0.8, or leave",
+        ),
+        ("heel_gap_m", {"at_most": 1.0}, -500.0, "capacity = -500: must be above 0"),
+        ("flight", {"at_most": 0.5}, 500.0, "capacity: flight has none that it uses a share of; leave it out"),
+        ("eta", {"at_least": 2.0}, 500.0, "capacity: eta has none that it uses a share of; leave it out"),
+        (SHEAR, {"at_most": 1.0}, ((0.0, 0.0), (9.0, 0.0)), "capacity is 0 at every N"),
+        (SHEAR, {"at_most": 1.0, "at_m": 0.0}, 500.0, "at_m: is for demands in a section"),
+    ],
+)
+def test_a_number_that_is_no_capacity_is_refused_with_a_remedy(demand, limits, capacity, said):
+    with pytest.raises(rb.InputError, match=said):
+        Rule("a", demand, capacity=capacity, reason="r", **limits)
+
+
+def test_of_what_is_not_known_no_number_is_written():
+    """The run has no row, so that its demand may be any."""
+    friction = Rule("joint", SHEAR, 1.0, capacity=line(0.0, 0.6), reason="r")
+    found = judged(at_base([20e3], [30e3]).assign(record="another"), checked=friction)
+    assert (found.verdict, found.low, found.high) == ("not decided", 0.0, math.inf)
+    assert all(map(math.isnan, (found.value, found.ratio, found.margin, found.governing)))
+    assert not found.is_lower_bound
+    assert (found.station, found.record) == ("r0", "r0")
 
 
 def test_columns_of_the_table_are_on_the_page():

@@ -21,7 +21,7 @@ def test_all_passing_exits_with_0_and_writes_the_table(passing, capsys):
     assert governs == ["governs:", "r1", "(+),", "0.4"]
     assert flight == ["no", "flight", "2", "none", "none", "✓", "pass"]
     assert "margin: maximum of theta_max_over_alpha at most 0.5 [code] clause 7" in printed.out
-    counting = "margin: runs that do not end standing count so: overturned: infinite; flight, failed: unknown."
+    counting = "margin: runs that do not end standing count as follows: overturned: infinite; flight, failed: unknown."
     assert counting in printed.out.replace("\n      ", " ")
     assert "2 pass" in printed.err
     table = pd.read_csv(passing / "checks.csv")

@@ -10,6 +10,7 @@ from rockbatch.checks.coverage import Stations, runs_of_cases, stations_of
 WORDS = {"overturned": "overturned", "flight": "ended by flight", "failed": "failed", "not run": "not run"}
 
 
+@pytest.mark.sweep(fast=2)
 @pytest.mark.parametrize("seed", range(8))
 def test_runs_of_every_case_are_counted_by_scale_and_ending(seed):
     """Some rows are lacking, and a case has the runs of both axes of its pier."""

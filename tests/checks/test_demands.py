@@ -68,7 +68,8 @@ BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
     "stop_deflection_mm": (20.0, 0.0), "deck_spring_force_kN": (0.2 * 3000 * 9.81, 0.0),
     "deck_spring_deflection_mm": (30.0, 0.0), "section_shear_kN": (3000.0, 0.0), "section_moment_kNm": (40000.0, 0.0),
     "section_axial_kN": (30000.0, 0.0),
-    "section_moment_over_capacity": (0.8, 0.0), "section_tension_kN": (200.0, 0.0), "deflection_max_m": (0.07, 0.0002),
+    "section_moment_over_capacity": (0.8, 0.0), "base_shear_over_capacity": (0.8, 0.0),
+    "section_tension_kN": (200.0, 0.0), "deflection_max_m": (0.07, 0.0002),
     "deflection_max_mm": (70.0, 0.2), **{name: (value, 0.0) for name, value in BED.items()},
     "edge_settlement_m": (0.025, 0.002), "edge_settlement_mm": (25.0, 2.0), "safety_factor": (3.0, 0.0),
 }  # fmt: skip

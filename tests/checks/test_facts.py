@@ -69,7 +69,8 @@ def results(tmp_path_factory):
     return rb.open_results(directory)
 
 
-@pytest.mark.parametrize("tables", [range(40), pytest.param(range(40, 300), marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("tables", [range(40), pytest.param(range(40, 300), marks=pytest.mark.thorough)])
 def test_words_of_notes_and_reasons_decide_nothing_in_random_tables(results, tables):
     """Verdicts of every table; of every 50th, too, the scorecard, its colours, the answer and the warnings of a run."""
     kinds = set()

@@ -35,6 +35,7 @@ def as_category(table):
     return table.astype(dict.fromkeys(("record", "case", "polarity", "status"), "category"))
 
 
+@pytest.mark.sweep(fast=2)
 @pytest.mark.parametrize("kept", [
     read, lambda folder: read(folder, keep_default_na=False), lambda folder: read(folder, dtype_backend="numpy_nullable"),
     lambda folder: read(folder, dtype=str), lambda folder: as_category(read(folder)), lambda folder: read(folder).astype(object),

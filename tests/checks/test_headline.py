@@ -14,6 +14,7 @@ def page_of(folder):
     return Page((folder / "report.html").read_text(encoding="utf-8")).text
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("pages")
 def test_a_missing_station_is_amber_until_the_study_leaves_it_out(tmp_path, capsys):
     for seed, name in enumerate(("RSN7_A_B000", "RSN8_A_C000", "RSN9_A_D000")):

@@ -181,6 +181,15 @@ def test_a_study_has_its_own_checks_and_those_of_the_file_that_it_names(tmp_path
     assert load_rules(study.path) == study.checks
 
 
+def test_a_suite_holds_for_the_file_that_it_names_unless_that_says_otherwise(tmp_path):
+    study = with_file(tmp_path, UPRIGHT)
+    text = study.read_text(encoding="utf-8")
+    study.write_text(text.replace("[suite]\n", '[suite]\ncount = "component"\n'), encoding="utf-8")
+    assert [rule.count for rule in load_rules(study)] == ["component"]
+    (tmp_path / "limits.toml").write_text('[suite]\ncount = "station"\n' + UPRIGHT, encoding="utf-8")
+    assert [rule.count for rule in load_rules(study)] == ["station"]
+
+
 def test_results_keep_the_checks_that_they_were_held_against(tmp_path):
     """Folders are moved, and files beside them change: the verdicts of a folder are those of its own run."""
     study = with_file(tmp_path, UPRIGHT)
@@ -190,6 +199,13 @@ def test_results_keep_the_checks_that_they_were_held_against(tmp_path):
     pd.testing.assert_frame_equal(rb.check(tmp_path / "out"), first)
     (tmp_path / "limits.toml").unlink()
     pd.testing.assert_frame_equal(rb.check(tmp_path / "out"), first)
+
+
+def test_a_missing_file_of_checks_is_not_found(tmp_path):
+    study = with_file(tmp_path, UPRIGHT)
+    (tmp_path / "limits.toml").unlink()
+    with pytest.raises(rb.NotFound, match=r'\[suite\]: checks = "limits.toml": .*no such file'):
+        rb.load_study(study)
 
 
 def test_results_of_others_open_no_file_that_they_name(tmp_path):

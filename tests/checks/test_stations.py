@@ -12,6 +12,7 @@ from studies import PADS, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.checks import Rule, judge, read_verdicts
+from rockbatch.checks.events import OfEvent
 from rockbatch.checks.rule_files import load_rules
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError, MissingColumns
@@ -347,3 +348,15 @@ def test_a_verdict_is_what_plain_python_makes_of_peaks_csv(tmp_path, stations, c
     records, value = by_hand(out / "peaks.csv", statistic, count)
     assert (found.records, found.value) == (records, pytest.approx(value, rel=1e-9))
     assert found.verdict == ("pass" if value <= 0.5 else "fail")
+
+
+@pytest.mark.parametrize(
+    ("records", "unknown", "remarks"),
+    [
+        (1, 0, []), (2, 0, ["2 of 4 stations are of one event, Kaikoura 2016"]),
+        (1, 1, ["of 1 of 4 stations the event is not known"]), (0, 4, []),
+        (3, 1, ["3 of 4 stations are of one event, Kaikoura 2016", "of 1 of 4 stations the event is not known"]),
+    ],
+)  # fmt: skip
+def test_two_records_of_an_event_and_some_of_unknown_ones_are_remarked_on(records, unknown, remarks):
+    assert OfEvent("Kaikoura 2016", records, 4, unknown).remarks == remarks

@@ -1,5 +1,6 @@
 """A suite below its target spectrum fails a check of its own, which comes first and decides; one that reaches it passes."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -178,6 +179,9 @@ def test_a_range_that_does_not_reach_the_periods_of_the_piers_does_not_meet_a_co
         if found.demand == "suite_shortest_period"
     ]
     assert (shortest.verdict, shortest.note) == (NOT_DECIDED, "no pier has a period of rocking")
+    assert wording.limit(shortest) == "not known"
+    assert wording.requirement(shortest) == "shortest period of the range at most an unknown limit"
+    assert (wording.number(math.nan), wording.number(math.inf), wording.number(-math.inf)) == ("", "∞", "-∞")
 
 
 def test_a_suite_that_a_code_would_not_accept_leaves_nothing_green(tmp_path, capsys):
@@ -219,6 +223,7 @@ def test_a_suite_below_its_target_comes_first_and_leaves_nothing_green():
     assert lines([*met, *of_cases]) == lines(of_cases)
 
 
+@pytest.mark.slow
 def test_the_command_and_the_page_say_it_first_whatever_the_rules(tmp_path, capsys):
     below, met = (suite(tmp_path / name, over) for name, over in (("below", 0.76), ("met", 0.9)))
     rules = tmp_path / "rules.toml"
@@ -282,6 +287,7 @@ def near_fault(tmp_path, **spectrum):
     )
 
 
+@pytest.mark.slow
 def test_records_that_need_too_large_a_factor_leave_no_suite_below_its_target(tmp_path):
     """Of five stations one needs a factor of 4.17; without it the mean of the others was 0.76 of the target."""
     study = near_fault(tmp_path, factors="both")
@@ -297,6 +303,7 @@ def test_records_that_need_too_large_a_factor_leave_no_suite_below_its_target(tm
     ]
 
 
+@pytest.mark.slow
 def test_a_run_of_a_suite_below_its_target_ends_with_1(tmp_path, capsys):
     near_fault(tmp_path, factors="each")
     assert main(["run", str(tmp_path / "study.toml"), "--out", str(tmp_path / "out")]) == 1
@@ -308,6 +315,7 @@ def test_a_run_of_a_suite_below_its_target_ends_with_1(tmp_path, capsys):
     assert found.value == pytest.approx(0.7467, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_pulses_are_in_no_mean_that_is_held_against_a_target(tmp_path, monkeypatch):
     monkeypatch.setitem(globals(), "NEAR_FAULT", NEAR_FAULT / "christchurch2016_nblc")
     records = near_fault(tmp_path, factors="each")
@@ -323,6 +331,7 @@ def test_pulses_are_in_no_mean_that_is_held_against_a_target(tmp_path, monkeypat
     np.testing.assert_array_equal(with_pulse["spectra"]["mean_sa_g"], info["spectra"]["mean_sa_g"])
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("pages")
 def test_a_target_beyond_its_code_and_components_apart_are_remarked_on(tmp_path, capsys):
     """Z R = 0.74 of NZS 1170.5, which caps it at 0.7, and a code's spectrum for each component of five pairs."""

@@ -40,6 +40,7 @@ def many(tmp_path, most=40):
     return folder(tmp_path / "out", table, [case(beta=beta) for beta in betas], MARGIN)
 
 
+@pytest.mark.slow
 def test_many_verdicts_are_summed_up_and_the_worst_printed(tmp_path, capsys):
     """Those up to half of α pass or, where one run flew, are left open; there are forty of them, and ten are told."""
     out = many(tmp_path)
@@ -150,6 +151,7 @@ def test_every_verdict_has_a_sign_and_a_word_that_the_terminal_can_show(passing,
     assert f"0.4 {expected[0][0]} 80 %" in terminal.buffer.getvalue().decode(encoding)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("pages")
 def test_the_verdicts_stand_in_the_report(tmp_path):
     study = rules_file(tmp_path / "pier.toml", STUDY)

@@ -154,7 +154,7 @@ def test_pier_at_rest_on_a_yielded_bed_leans_further_than_the_bed():
     assert lean(m, GRAVITY) == pytest.approx(1e-4 * rocking / (rocking - GRAVITY * foot.height), rel=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.sweep(slow=4)
 @pytest.mark.parametrize("finite", [False, True])
 @pytest.mark.parametrize(("safety", "zeta"), [(3.0, 0.05), (1.5, 0.05), (math.inf, 0.0), (2.0, 0.2)])
 def test_runs_come_to_what_an_independent_solver_does(finite, safety, zeta):

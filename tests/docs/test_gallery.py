@@ -29,6 +29,7 @@ def marks_of(name):
     return [pytest.mark.thorough] * (name in LONG) + [pytest.mark.slow] * (name in COMPILED)
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("path", [pytest.param(path, id=path.stem, marks=marks_of(path.stem)) for path in SCRIPTS])
 def test_each_script_draws_a_picture(path):
     figure = drawn(path)

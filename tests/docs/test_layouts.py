@@ -3,11 +3,13 @@
 import importlib.util
 from pathlib import Path
 
+import pytest
 from layouts import LAYOUTS
 
 SCRIPT = Path(__file__).parents[2] / "docs" / "layouts.py"
 
 
+@pytest.mark.slow
 def test_the_page_of_formats_is_what_comes_of_the_layouts():
     spec = importlib.util.spec_from_file_location("layouts_page", SCRIPT)
     assert spec is not None

@@ -63,6 +63,7 @@ def test_every_command_is_there(page, line, capsys):
         assert program == ""
 
 
+@pytest.mark.slow
 def test_the_tutorial_comes_to_a_verdict(tmp_path, monkeypatch, capsys):
     study = next(text for text in blocks(ROOT / "docs" / "pages" / "tutorial.md", "toml") if text.startswith("title"))
     shutil.copytree(ROOT / "motions" / "near_fault" / "imperialvalley1979_meloland", tmp_path / "records")
@@ -153,6 +154,7 @@ def test_the_search_of_the_site_finds_frequent_questions_by_their_words():
         assert word in headings
 
 
+@pytest.mark.slow
 def test_the_examples_on_the_page_about_records_come_to_what_they_say(tmp_path, monkeypatch):
     (tmp_path / "motions").symlink_to(ROOT / "motions")
     monkeypatch.chdir(tmp_path)
@@ -169,6 +171,13 @@ def test_the_examples_on_the_page_about_records_come_to_what_they_say(tmp_path, 
 def test_the_page_of_bounds_quotes_what_is_printed(tmp_path, capsys):
     (page,) = (text for text in blocks(ROOT / "docs" / "pages" / "questions" / "bounds.md", "text"))
     main(["run", str(ROOT / "configs" / "pier_with_bounds.toml"), "--out", str(tmp_path / "out")])
+    assert page in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_the_page_of_capacities_quotes_what_is_printed(tmp_path, capsys):
+    (page,) = blocks(ROOT / "docs" / "pages" / "questions" / "capacity.md", "text")
+    main(["run", str(ROOT / "configs" / "capacities.toml"), "--out", str(tmp_path / "out")])
     assert page in capsys.readouterr().out
 
 

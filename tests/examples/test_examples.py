@@ -26,6 +26,7 @@ def test_every_config_is_an_example_and_the_first_study_comes_first():
     assert NAMES[0] == FIRST
 
 
+@pytest.mark.sweep(fast=5)
 @pytest.mark.parametrize("name", NAMES)
 def test_a_copy_is_the_same_study_on_its_own_records(name, tmp_path):
     written = copy(name, tmp_path / "mine", "pier.toml")
@@ -47,6 +48,7 @@ def test_the_first_study_is_held_against_the_limits_beside_it(tmp_path):
     assert [rule.name for rule in load_study(written[0]).checks if rule not in rules] == ["uplift of the heel"]
 
 
+@pytest.mark.slow
 def test_no_copy_names_a_file_of_checks_that_is_not_there(tmp_path):
     for name in NAMES:
         text = copy(name, tmp_path / name, "pier.toml")[0].read_text(encoding="utf-8")
@@ -64,10 +66,36 @@ def test_the_first_study_has_the_stations_that_come_with_rockbatch(tmp_path):
 
 @pytest.mark.parametrize("taken", ["pier.toml", "checks.toml", "records"])
 def test_nothing_is_overwritten_and_nothing_half_written(taken, tmp_path):
-    (tmp_path / taken).mkdir()
+    (tmp_path / taken / "own.AT2").mkdir(parents=True)
+    (tmp_path / taken / "own.AT2" / "own.txt").touch()
     with pytest.raises(InputError, match=taken):
         copy(FIRST, tmp_path, "pier.toml")
     assert [path.name for path in tmp_path.iterdir()] == [taken]
+
+
+def test_a_copy_that_was_interrupted_is_completed_and_what_is_not_of_it_is_kept(tmp_path):
+    """Whichever files are there, and one that is not whole; a record of one's own among them is nobody's to replace."""
+    copy(FIRST, tmp_path / "whole", "pier.toml")
+    whole = {path.relative_to(tmp_path / "whole"): path.read_bytes() for path in files_in(tmp_path / "whole")}
+    for here in range(len(whole)):
+        for place, (path, content) in enumerate(whole.items()):
+            if place <= here:
+                (tmp_path / str(here) / path).parent.mkdir(parents=True, exist_ok=True)
+                (tmp_path / str(here) / path).write_bytes(content)
+        copy(FIRST, tmp_path / str(here), "pier.toml")
+        assert {
+            path.relative_to(tmp_path / str(here)): path.read_bytes() for path in files_in(tmp_path / str(here))
+        } == whole
+    (tmp_path / "0" / "records" / "own.AT2").write_text("mine")
+    with pytest.raises(InputError, match="records exists already"):
+        copy(FIRST, tmp_path / "0", "pier.toml")
+    (tmp_path / "1" / "checks.toml").write_text("# mine")
+    with pytest.raises(InputError, match=r"checks\.toml exists already"):
+        copy(FIRST, tmp_path / "1", "pier.toml")
+
+
+def files_in(folder):
+    return sorted(path for path in folder.rglob("*") if path.is_file())
 
 
 def test_what_is_no_example_is_answered_with_those_that_are():
@@ -77,6 +105,7 @@ def test_what_is_no_example_is_answered_with_those_that_are():
         copy("fig8", Path("mine"), "pier.toml")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("pages")
 def test_init_and_then_the_command_that_it_names_lead_to_a_report(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
@@ -123,6 +152,7 @@ def test_examples_are_listed_with_what_they_need(capsys):
     assert "near_fault" not in needs
 
 
+@pytest.mark.slow
 def test_a_wheel_has_them(tmp_path):
     """Built from this checkout, unpacked elsewhere, and used there."""
     subprocess.run(

@@ -72,6 +72,8 @@ def in_sections(table, demand, **cells):
     """What a check of a section says too, and rows of sections.csv for those of ``table``; nothing for other demands."""
     if DEMANDS[demand].needs == "interaction":
         return {"at_m": 7.5, "capacity": ((0.0, 0.0), (1e4, 5e4), (1e5, 0.0))}, None
+    if DEMANDS[demand].over_capacity:
+        return {"capacity": ((0.0, 0.0), (1e4, 5e3), (1e5, 0.0))}, None
     if DEMANDS[demand].needs != "sections":
         return {}, None
     values = SECTION | {"sections_error": math.nan} | cells
@@ -79,9 +81,17 @@ def in_sections(table, demand, **cells):
 
 
 def interaction_of(table):
-    """Rows of interaction.csv for those of ``table``: 4/5 of the capacity of :func:`in_sections`."""
-    cells = {"height_m": 7.5, "axial_kN": 1e4, "moment_kNm": 4e4, "interaction_error": math.nan}
-    return table[["record", "case", "polarity", "scale"]].assign(**cells)
+    """Rows of interaction.csv for those of ``table``: 4/5 of the capacities of :func:`in_sections`."""
+    of_section = {
+        "height_m": 7.5,
+        "axial_kN": 1e4,
+        "moment_kNm": 4e4,
+        "shear_kN": math.nan,
+        "interaction_error": math.nan,
+    }
+    of_base = of_section | {"height_m": math.nan, "moment_kNm": math.nan, "shear_kN": 4e3}
+    runs_of = table[["record", "case", "polarity", "scale"]]
+    return pd.concat([runs_of.assign(**cells) for cells in (of_section, of_base)])
 
 
 def folder(path: Path, peaks: pd.DataFrame, cases: list[dict[str, Any]], checks: str = "", **info: Any) -> Path:

@@ -15,6 +15,7 @@ import pandas as pd
 from rockbatch.outcome.response import Response
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.quantities.catalogue import FIXED, TRAILING, names
+from rockbatch.reporting import write_report
 
 COLUMNS = names((*FIXED, *TRAILING))
 FIG7 = [
@@ -183,3 +184,20 @@ def _rocking(pier: Pier, base: Base) -> pd.DataFrame:
             history[f"force_{side}"] = 0.5 * eta * pier.gravity * z
         history["v"] = (history["v_left"] + history["v_right"]) / 2
     return history
+
+
+def report(directory: Path, *responses, **results) -> str:
+    """Return the text of the page of made-up results, written into ``directory``."""
+    write_results(directory, **results)
+    return write_report(directory, responses).read_text(encoding="utf-8")
+
+
+def histories(**columns):
+    """Return responses on rigid ground and on four yielding bases, and what :func:`write_results` takes for these."""
+    pier = Pier(alpha=0.2, p=1.0)
+    entries = [("rigid", RigidBase())] + [("soil", YieldingBase(beta=50.0, eta=eta)) for eta in (5.0, 3.0, 2.5, 2.2)]
+    cases = [case_entry(n, {} if n == "rigid" else {"eta": base.eta}, pier, base) for n, base in entries]
+    responses = [
+        response("sine", name, base, **({} if name == "rigid" else {"eta": base.eta})) for name, base in entries
+    ]
+    return responses, {"records": [("sine", 1.0)], "cases": cases, "varied": ("eta",)}

@@ -346,6 +346,13 @@ def test_caltechs_undeclared_series_in_another_unit_than_their_peak_are_not_used
     assert [finding.gross for finding in in_mm.findings] == [True]
 
 
+@pytest.mark.parametrize("npts", [0, 1])
+def test_undeclared_series_of_fewer_than_two_points_are_refused_with_the_line(npts):
+    text = caltech_text(declared=False).replace(f"{NPTS:6d}  INSTRUMENT", f"{npts:6d}  INSTRUMENT", 1)
+    with pytest.raises(InputError, match=f"^line 16: found {npts} points; expected at least two$"):
+        read(text, "x.V2")
+
+
 @pytest.mark.parametrize(
     ("case", "name"), list(zip(CASES[-6:-1], ["x.dat", "x.191", "STATION", "x.txt", "x.V1"], strict=True))
 )

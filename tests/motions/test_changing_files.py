@@ -67,6 +67,7 @@ def test_a_file_that_is_gone_once_it_was_read_is_a_record(tmp_path, monkeypatch)
     assert len(read_motions(tmp_path).motions) == 1
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("change", [replaced, Path.unlink])
 def test_runs_use_what_was_read_whatever_becomes_of_the_files(tmp_path, monkeypatch, change):
     records = tmp_path / "records"

@@ -210,6 +210,8 @@ def test_links_that_lead_out_are_not_followed_and_it_is_said(tmp_path):
     write_at2(inside, "a.AT2", wiggle(50), title="nothing, 000")
     (inside / "b.AT2").symlink_to(outside)
     (inside / "c").symlink_to(outside.parent)
+    (inside / "below").mkdir()
+    (inside / "f").symlink_to(inside / "below")
     (inside / "d.AT2").symlink_to(inside / "d.AT2")
     os.mkfifo(inside / "e.AT2")
     found = read_motions(inside)
@@ -218,6 +220,7 @@ def test_links_that_lead_out_are_not_followed_and_it_is_said(tmp_path):
     assert "leads out" in reasons["b.AT2"]
     assert "leads out" in reasons["c"]
     assert reasons["d.AT2"] == reasons["e.AT2"] == "not a regular file"
+    assert reasons["f"] == "a link to a folder, not followed"
 
 
 def test_a_reader_that_fails_costs_one_file_and_its_exception_is_named(tmp_path, monkeypatch):

@@ -99,7 +99,7 @@ def test_counts_without_sensitivity_are_refused_with_the_remedy(tmp_path):
     [
         (channel_xml("HNN", end="2018-01-01"), "no epoch that covers 2019"),
         (channel_xml("HNN", unit="M/S"), "measures M/S, not an acceleration"),
-        (channel_xml("HNN", dip=-35.3), "inclined"),
+        (channel_xml("HNN", dip=-35.3), "inclined (dip -35.3°): neither horizontal nor vertical"),
         (channel_xml("HNN", value=0.0), "no sensitivity"),
         (channel_xml("HNE"), "counts without a sensitivity"),
     ],

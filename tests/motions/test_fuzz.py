@@ -166,7 +166,8 @@ def _change(folder: Path, ended: threading.Event, rng: np.random.Generator) -> N
                 path.symlink_to("/dev/zero")
 
 
-@pytest.mark.parametrize("count", [20, pytest.param(200, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [20, pytest.param(200, marks=pytest.mark.thorough)])
 def test_folders_that_change_while_they_are_read_end_in_motions_or_words(tmp_path, count):
     counts = read_changing_folders(tmp_path, count, seed=1)
     assert counts.good > counts.refused  # nine of ten are read before they change
@@ -227,6 +228,7 @@ def read_damaged_manifests(folder: Path, name: str, inputs: int, seed: int) -> C
     return Counts(read, refused, slowest)
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("name", MANIFESTS)
 def test_a_damaged_manifest_is_read_or_refused(tmp_path, name):
     counts = read_damaged_manifests(tmp_path, name, 40, seed=1)

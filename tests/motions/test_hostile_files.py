@@ -30,6 +30,7 @@ def sac_with(word: int, value: float) -> bytes:
     return bytes(data)
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("value", [-1e30, pytest.param(np.inf, marks=pytest.mark.slow), np.nan])
 def test_no_word_of_a_sac_header_keeps_its_reader_for_ever(tmp_path, value):
     """As other readers bring the event's longitude below 180° by subtracting 360° as often as that takes."""
@@ -274,6 +275,7 @@ def test_station_xml_is_not_followed_out_of_the_folder(tmp_path):
     assert names(read_motions(records)) == ["x"]
 
 
+@pytest.mark.slow
 def test_a_stray_xml_costs_no_record_whatever_it_is(tmp_path, monkeypatch):
     station_xml(tmp_path, channel_xml("HNN"))
     write_mseed(tmp_path / "x.mseed", trace("HNN"))

@@ -184,6 +184,7 @@ def suite():
     return [replace(motion, station=f"S{i // 2}") for i, motion in enumerate(pairs)]
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("rule", ["geomean", "rotd50", "rotd100"])
 def test_a_suite_is_fitted_by_the_spectra_of_its_pairs(rule):
     target = SpectrumTarget(TABLE, (0.3, 3.0), "each", rule)
@@ -296,6 +297,7 @@ def by_hand(rule, peaks, axis_deg=None, every_deg=None):
     return [{**of_pair, "rotd50": np.median(peaks), "rotd100": peaks.max()}[rule]]
 
 
+@pytest.mark.sweep(fast=2)
 @pytest.mark.parametrize("setting", SETTINGS, ids=str)
 def test_what_a_pair_is_does_not_depend_on_the_directions_that_are_run(tmp_path, setting):
     """Each rule against a solver of another kind that turns the recorded components, the factor of the suite being

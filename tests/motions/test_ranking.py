@@ -107,6 +107,7 @@ def test_terminal_csv_and_page_have_the_same_columns(tmp_path, capsys):
         assert f"{float(row['d5_95_s']):.1f}" in printed
 
 
+@pytest.mark.slow
 def test_the_terminal_shows_the_doubtful_and_the_strongest_of_many():
     many = MotionSet([motion(f"m{i:03d}", 0.001 * (i + 1), findings=ODD * (i % 4 == 0)) for i in range(200)])
     lines = overview(many).splitlines()

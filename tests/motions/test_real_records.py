@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from collections import Counter
 from functools import cache
 from itertools import combinations
 from pathlib import Path
@@ -114,6 +115,7 @@ def test_table_1_has_two_verticals_and_nothing_is_left_over():
 def test_the_suite_is_eleven_station_events_of_three_components():
     found = real_motions("suite")
     assert len(found.motions) == 22
+    assert sorted(Counter(motion.station for motion in found.motions).values()) == [2] * 11
     assert all(motion.vertical is not None for motion in found.motions)
     assert {unusable.name for unusable in found.unusable} <= {"meta"}
 

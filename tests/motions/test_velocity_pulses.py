@@ -94,6 +94,7 @@ def test_a_record_is_pulse_like_beyond_an_indicator_of_085(monkeypatch, indicato
     assert (period_of_pulse(v, 0.01) is not None) == is_pulse
 
 
+@pytest.mark.sweep(fast=2)
 @pytest.mark.parametrize("seed", range(6))
 def test_the_indicator_is_that_of_ten_wavelets_taken_away_one_by_one(seed):
     rng = np.random.default_rng(seed)
@@ -142,7 +143,7 @@ def test_a_motion_is_judged_as_it_was_recorded_and_a_still_one_has_no_pulse():
     assert pulse_period(Motion("still", 0.01, np.zeros(100))) is None
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @needs_records
 def test_near_field_records_are_classified_as_published():
     from rockbatch.motions import fema_p695

@@ -101,6 +101,7 @@ def study(folder, **motions):
 VERTICAL = {"spectrum": "EN 1998-1 vertical", "type": 1, "ag_g": 0.4, "period_range_s": [0.05, 0.5]}
 
 
+@pytest.mark.slow
 def test_a_study_scales_both_components_apart(tmp_path):
     target = {"pga_g": 0.4}
     made = study(tmp_path, target=target, vertical_target=VERTICAL, vertical_scale=0.5)

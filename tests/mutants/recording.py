@@ -1,4 +1,4 @@
-"""Which fast test runs which line of the product: recorded by pytest-cov, with how long each test takes.
+"""Which test of CI runs which line of the product: recorded by pytest-cov, with how long each test takes.
 
 This module is a plugin of pytest, too: it keeps the seconds of tests that pass, and ends one that takes longer than LIMIT.
 """
@@ -16,7 +16,8 @@ from pathlib import Path
 
 import pytest
 
-FAST = "not slow"
+OF_CI, FAST = "not thorough", "not slow"
+"""Marks of the tests that an error meets, and of those that it meets without the compiler."""
 PHYSICS = "tests/core", "tests/simulation", "tests/verification"
 """Tests that errors in the core meet: uncompiled, since all kernels would be compiled anew for each."""
 UNCOMPILED_LIMIT = "20"
@@ -81,7 +82,7 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 
 class Record:
-    """Fast tests by the lines that they run."""
+    """Tests by the lines that they run."""
 
     def __init__(self, top: Path, folder: Path, uncompiled: bool = False):
         """Open what was recorded of the project at ``top`` in ``folder``, or record it."""
@@ -95,7 +96,18 @@ class Record:
             tests = PHYSICS if uncompiled else ("tests",)
             environment = {"PYTHONPATH": str(Path(__file__).parent), SECONDS: str(seconds)}
             environment |= {"NUMBA_DISABLE_JIT": "1", LIMIT: UNCOMPILED_LIMIT} if uncompiled else {}
-            options = "-q", "--tb=no", "-m", FAST, "-n", "auto", "--dist", "loadfile", "-p", "recording"
+            options = (
+                "-q",
+                "--tb=no",
+                "-m",
+                FAST if uncompiled else OF_CI,
+                "-n",
+                "auto",
+                "--dist",
+                "loadfile",
+                "-p",
+                "recording",
+            )
             record = "--cov", f"--cov-config={config}", "--cov-context=test", "--cov-report="
             command = [sys.executable, "-m", "pytest", *options, *record, *tests]
             subprocess.run(command, cwd=top, env=os.environ | environment)

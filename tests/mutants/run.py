@@ -1,9 +1,9 @@
-"""Put small errors into the product, one at a time, and see whether its fast tests notice.
+"""Put small errors into the product, one at a time, and see whether the tests of CI notice.
 
     make mutants [SEED=1] [COUNT=200]
     python tests/mutants/run.py --seed 1 --count 200 [--only core] [--jobs 2]
 
-Places are drawn at random from all lines that compute (places.py). The fast tests run once, to record which of them runs which
+Places are drawn at random from all lines that compute (places.py). The tests of CI run once, to record which of them runs which
 line (recording.py); an error meets those that run its line, three minutes of them, or those that run anything of its module if
 it is in what runs when this is imported (judging.py). It is noticed where a test fails that passes without it, or computes far
 longer. Errors in the core meet tests without the compiler, of a few seconds each. What is finished is kept in build/mutants and

@@ -219,6 +219,7 @@ def test_a_study_in_which_the_pier_overturns_is_said_to_be_first_or_second(tmp_p
         assert worst[4] == ""
 
 
+@pytest.mark.slow
 def test_settlement_out_of_nothing_has_no_share_and_counts(tmp_path):
     settled = {(record, case): {"settlement_m": 0.0} for record, _ in FIG7 for case in "1234"}
     first, second = {"changes": settled}, {"changes": settled | {("SYL360", "2"): {"settlement_m": 0.01}}}

@@ -1,5 +1,6 @@
 """The section on devices: what each of them has to be made for, case by case."""
 
+import pytest
 from report_page import Page
 from studies import RIGID, SINE, study_text, write_study
 
@@ -19,6 +20,7 @@ def section_of(folder, *cases):
     return table, Page(devices.section(read(folder / "out")))
 
 
+@pytest.mark.slow
 def test_the_greatest_of_every_record_is_beside_its_case(tmp_path):
     table, page = section_of(tmp_path, RIGID, DAMPED)
     heads, bare, damped = page.tables[""]

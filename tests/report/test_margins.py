@@ -392,6 +392,7 @@ def test_cases_paired_by_inputs_differ_in_values_only(tmp_path):
     assert rows == {"case springs, zeta": ("0.05", "0.1")}
 
 
+@pytest.mark.sweep(fast=6, slow=12)
 @pytest.mark.parametrize("seed", [*range(6), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(6, 40))])
 def test_every_key_that_was_changed_at_random_differs_and_no_other(tmp_path, seed):
     rng = np.random.default_rng(seed)

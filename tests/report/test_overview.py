@@ -94,6 +94,7 @@ def test_a_strip_has_every_peak_at_its_place_and_says_its_ends(tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_a_hundred_cases_fit_the_first_screen_and_the_best_have_a_picture(
     hundred,
 ):
@@ -105,6 +106,7 @@ def test_a_hundred_cases_fit_the_first_screen_and_the_best_have_a_picture(
     assert "All 100 foundations, in the order of the study" in text
 
 
+@pytest.mark.slow
 def test_of_hundreds_of_records_the_worst_have_a_row_and_the_others_share_one(hundreds):
     text = hundreds.read_text(encoding="utf-8")
     shown = rows(text, "answer")

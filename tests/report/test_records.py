@@ -103,6 +103,7 @@ def test_hostile_names_are_words_on_the_page_of_records(tmp_path, width):
     assert browse(path, act, size=(width, 900)) == own | {"wrong": [], "requests": [], "wide": True}
 
 
+@pytest.mark.slow
 def test_a_page_of_many_records_stays_small():
     samples = np.random.default_rng(2).normal(size=20_000)
     text = page(MotionSet([rb.Motion(f"m{i}", 0.005, samples * (1 + i)) for i in range(4)]), "t", "a")

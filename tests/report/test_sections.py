@@ -129,6 +129,7 @@ def test_the_answer_says_how_far_the_worst_pier_rotates_and_how_high_its_heel_ri
     assert "No settlement: the ground is rigid." in told
 
 
+@pytest.mark.slow
 def test_the_answer_has_what_dampers_bear_and_that_they_hold_the_pier_at_a_tilt(tmp_path):
     """Rigid ground has no tilt of its own; friction may leave the pier at one."""
     pier, base = Pier(alpha=0.13, p=0.38, mass_t=2000.0), RigidBase(restraints=(Damper("friction", f=0.3),))

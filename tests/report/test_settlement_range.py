@@ -23,7 +23,9 @@ def test_settlement_is_a_range_in_the_report_on_the_terminal_and_in_checks(tmp_p
     page = Page((out / "report.html").read_text(encoding="utf-8"))
     cells = [cell for row in page.tables["peaks"] for cell in row]
     assert f"{1000 * low:.2f}\u00a0–\u00a0{1000 * high:.2f}" in cells
-    assert f"the worse of two spring laws counts: {high:.4g} by that of the case, {low:.4g} by the other" in page.text
+    assert (
+        f"the worse of two spring laws counts: {high:.4g} by the law of the case, {low:.4g} by the other" in page.text
+    )
 
 
 def test_the_page_says_by_which_law_a_settlement_is_if_the_other_was_not_asked_for(tmp_path):

@@ -8,9 +8,9 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.common.errors import InputError
+from rockbatch.observers.shocks import TABLE
 from rockbatch.observers.shocks import section as shocks
 from rockbatch.reporting.finished import read
-from rockbatch.results.shocks import SHOCKS
 
 STRONG = SINE | {"name": "strong", "amplitude_g": 2.0, "period_s": 2.0}  # overturns the pier
 
@@ -51,7 +51,7 @@ def test_a_pier_at_rest_and_one_that_falls_are_said(tmp_path):
 
 
 def test_a_table_that_was_damaged_is_an_error_in_words(out, tmp_path):
-    table = shutil.copytree(out, tmp_path / "out") / SHOCKS
+    table = shutil.copytree(out, tmp_path / "out") / TABLE
     table.write_text(table.read_text(encoding="utf-8").replace("shock_status", "state"), encoding="utf-8")
     with pytest.raises(InputError, match=r"shocks.csv: column shock_status is missing: .*start `rockbatch run` again"):
         rb.report(tmp_path / "out")

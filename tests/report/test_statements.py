@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from browser import HOSTILE
-from check_samples import PADS, PIER, RIGID, case, folder, runs, verdict
+from check_samples import PADS, PIER, RECORD, RIGID, case, folder, runs, verdict
 from report_page import Page
 from studies import RIGID as ROCK
 from studies import seven_pulses, study_text, write_study
@@ -234,6 +234,34 @@ def test_a_check_that_does_not_apply_is_not_counted_and_is_said_to_be_left_out(t
     assert decided == PASS
     assert text.startswith('Case "rigid" passes its only check.')
     assert 'Not covered: "sinks", which does not apply: a rigid base has no settlement_m;' in text
+    assert text.count('"sinks"') == 1  # no sentence on its value
+
+
+@pytest.mark.parametrize(
+    ("factors", "verticals", "directions", "expected"),
+    [
+        ((2.0, 0.5), (None, None), "++", "multiplied by factors of 0.5 to 2, without vertical components."),
+        ((1.0, 1.0), (0.3, None), "--", "reversed, with the vertical component in 1 of 2."),
+        ((1.0, 1.0), (0.3, 0.2), "+-", "in both directions, with the vertical component."),
+    ],
+)
+def test_the_suite_is_said_with_factors_directions_and_verticals(tmp_path, factors, verticals, directions, expected):
+    cells = [{"factor": factor, "pga_v_g": vertical} for factor, vertical in zip(factors, verticals, strict=True)]
+    records = [RECORD | {"record": f"r{i}", "station": f"r{i}"} | own for i, own in enumerate(cells)]
+    table = runs((0.1, 0.2), "rigid", polarity=list(directions))
+    _, text = alone(folder(tmp_path / "out", table, [RIGID], records=records), FREE)
+    assert f"It was run under 2 horizontal components of 2 stations, {expected}" in text
+
+
+def test_only_a_case_that_lacks_a_changed_key_is_said_to_lack_it(tmp_path):
+    """The bound changes a key of pads, which the rigid base does not have."""
+    bound = {"name": "soft", "case.beta": {"times": 0.5}}
+    check = [{"name": "turns", "demand": "theta_max_over_alpha", "at_most": 0.9, "reason": "agreed"}]
+    pads = {"name": "pads", "base": "elastic", "beta": 50.0, "zeta": 0.05}
+    text = study_text(pulses=seven_pulses(0.3)[:1], cases=[ROCK, pads], bound=[bound], check=check)
+    rb.run(write_study(tmp_path, text), out=tmp_path / "out")
+    lacking = 'It lacks case.beta, and ran without this change under "soft".'
+    assert [lacking in text for _, text in of(tmp_path / "out").values()] == [True, False]
 
 
 def test_cases_whose_labels_are_alike_have_statements_of_their_own(tmp_path):
@@ -339,6 +367,7 @@ def test_verdicts_on_a_case_that_was_not_run_are_refused(tmp_path):
         rb.statement(results)
 
 
+@pytest.mark.slow
 def test_page_and_sheet_have_the_statements_of_as_many_cases_as_are_read(tmp_path):
     names = [f"c{i}" for i in range(MOST_CASES + 1)]
     peaks = pd.concat([runs((0.1, 0.2), name) for name in names], ignore_index=True)

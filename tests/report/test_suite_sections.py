@@ -76,6 +76,7 @@ def test_of_too_many_foundations_the_best_are_drawn(tmp_path):
 # Intensity measures
 
 
+@pytest.mark.slow
 def test_intensity_measures_are_shown_by_case_with_the_best_of_each(asked):
     shown = page_of(asked, intensity)
     order = rb.open_results(asked).intensity_order

@@ -67,6 +67,7 @@ def report(tmp_path_factory):
     return out / "report.html"
 
 
+@pytest.mark.slow
 def test_no_picture_is_made_for_more_room_than_it_has(report):
     """Check without a browser that a picture drawn 440 px wide, with text of 11 px, is not shrunk among many others."""
     text = report.read_text(encoding="utf-8")

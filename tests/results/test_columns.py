@@ -297,6 +297,7 @@ def test_results_without_newer_columns_are_read_and_say_which_are_missing(tmp_pa
     assert rb.open_results(full).missing == ()
 
 
+@pytest.mark.sweep(fast=2)
 @pytest.mark.filterwarnings("ignore::rockbatch.common.errors.MissingColumns")
 @pytest.mark.parametrize("first", range(4))
 def test_a_report_without_newer_columns_is_made_and_says_so(tmp_path, first):

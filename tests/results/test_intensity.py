@@ -13,8 +13,8 @@ import rockbatch as rb
 from rockbatch.common.errors import InputError
 from rockbatch.motions import measures
 from rockbatch.motions.spectrum import spectral_acceleration
+from rockbatch.observers.intensity.order import order_of
 from rockbatch.results import suite_statistics
-from rockbatch.results.intensity import order_of
 from rockbatch.results.suite_statistics import distribution
 
 PULSES = tuple(

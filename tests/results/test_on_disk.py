@@ -118,6 +118,7 @@ def at_rest(name="still", case="rigid"):
 # Round trip
 
 
+@pytest.mark.slow
 def test_every_response_comes_back_equal_to_the_bit(results):
     """Another simulation with the substeps of the table gives the very same numbers: every fifth, of all kinds."""
     assert len(results.responses) == 2 * 2 * 2 * 4 == len(results.peaks)
@@ -227,6 +228,7 @@ def test_forces_of_an_earlier_version_have_no_base_moment(tmp_path, results):
 # The file, as others read it
 
 
+@pytest.mark.slow
 def test_every_number_has_a_unit_and_a_length_that_fits(results):
     """Units are those that pint reads; all columns of a run have as many rows as its time, or as it has impacts."""
     registry = pint.UnitRegistry()
@@ -340,6 +342,7 @@ def test_a_failed_run_is_never_the_worst_and_a_case_that_only_failed_has_none():
     assert worst_of([failed, row("ok", 0.1)], [failed, refused]) == [(1, 0)]
 
 
+@pytest.mark.slow
 def test_worst_is_what_a_study_keeps_that_does_not_say(tmp_path):
     text = STUDY.replace('histories = "all"\n', "").replace("ledger = true\n", "")
     text = text.replace('[motions]\npolarity = ["+", "-"]\n', "[motions]\nscale = 0.9\n")
@@ -411,7 +414,7 @@ def test_progress_advances_with_every_run_that_is_kept(tmp_path):
     saved, study, runs = carried_out(tmp_path, FEW)
     calls = []
     keep_histories(saved, study, runs, calls.append)
-    assert len(calls) == len(to_keep(study, runs, saved.peaks).numbers)
+    assert len(calls) == len(to_keep(study, runs, saved.peaks).numbers) == 3
 
 
 # Choosing one
@@ -592,6 +595,7 @@ def test_a_study_that_asks_for_no_histories_never_uses_hdf5(tmp_path, monkeypatc
     assert len(rb.open_results(tmp_path / "out").responses) == 0
 
 
+@pytest.mark.slow
 def test_histories_are_read_without_the_compiler(results):
     code = f"import sys, rockbatch as rb; rb.open_results({str(results.directory)!r}).responses[0]"
     code += "; print(*(name for name in ('numba', 'h5py') if name in sys.modules))"

@@ -246,10 +246,12 @@ def _counts(runs):
 def test_a_case_without_runs_is_named_by_its_own_values(results):
     known = own(results).named_case("pads", {"p": 1.0, "beta": 30}, ["p", "beta"])
     gone = own(results).named_case("gone", {"p": 1.0, "beta": 30}, ["p", "beta"])
-    assert "pads" in known
-    assert gone.startswith("gone, ")
-    assert "30" in gone
-    assert "9" in own(results).named_case("rock", {"p": 9.0}, ["p", "beta"])
+    other = own(results).named_case("rock", {"p": 9.0}, ["p", "beta"])
+    assert [name.replace("\u00a0", " ") for name in (known, gone, other)] == [
+        "pads: β = 30, p = 1 rad/s",
+        "gone, p = 1 rad/s, β = 30",
+        "rock, p = 9 rad/s",
+    ]
 
 
 def test_rigid_bases_beyond_the_first_have_dashes_of_their_own(results):

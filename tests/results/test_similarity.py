@@ -88,6 +88,7 @@ def test_numbers_of_every_column_are_in_its_unit(name):
         assert pd.isna(there[column]) if pd.isna(here[column]) else there[column] == value, column
 
 
+@pytest.mark.sweep(fast=2)
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if "footing" in n else n for n in BASES])
 def test_facts_of_the_statics_and_their_tables_are_in_the_units_that_end_their_names(name):
     """Tables have nine decimals."""

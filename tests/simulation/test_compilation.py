@@ -43,6 +43,7 @@ def test_runs_without_the_compiler_are_announced_before_the_first(monkeypatch):
     assert "`unset NUMBA_DISABLE_JIT`" in only
 
 
+@pytest.mark.slow
 def test_what_another_process_cannot_compile_is_left_without_a_word(capfd):
     waiting = deque(["no task"])
     compiling._compile_elsewhere(waiting)

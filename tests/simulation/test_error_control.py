@@ -580,7 +580,8 @@ QUICK = Pier(0.2, 2.0)
 
 
 def extent(first, second, tolerance=1e-4):
-    return agreement.agreement(trial(4, second), trial(2, first), tolerance, QUICK).name
+    tolerances = agreement.Tolerances(tolerance, tolerance, np.full(WINDOWS, tolerance))
+    return agreement.agreement(trial(4, second), trial(2, first), tolerances, QUICK).name
 
 
 @pytest.mark.parametrize(

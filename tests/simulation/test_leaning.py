@@ -149,6 +149,7 @@ def test_the_greatest_swing_about_a_line_is_found_between_rows_of_any_distance()
             assert found[0] == pytest.approx(peak, rel=2e-3)
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("requested", [False, True])
 def test_many_runs_are_classified_as_one_is(requested):
     """Piers that lean, swing, stand on strong pads or overturn, at two sampling intervals, side by side and each alone."""

@@ -45,6 +45,7 @@ def same(runs, outcomes, together, wait=True):
     )
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("room", [recording.ROWS_TOGETHER, 2000, 1], ids=["all", "a few", "one"])
 def test_histories_written_side_by_side_are_those_written_alone(runs, room, monkeypatch):
     """Whatever finds room together; pivots land and lift off in all of them, and the springs' velocities turn."""

@@ -475,6 +475,7 @@ def manifest(path):
     return [sorted(entry.values.items()) for entries in read.entries.values() for entry in entries]
 
 
+@pytest.mark.sweep(fast=50)
 @pytest.mark.parametrize(
     ("whole", "load", "meant", "written"),
     [

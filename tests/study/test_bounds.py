@@ -71,9 +71,10 @@ def test_more_runs_than_a_table_holds_are_refused_before_the_first(tmp_path, mon
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("betas", "shown", "most_info", "most_page"),
-    [(2, 30, 38_100, 860_000), pytest.param(12, 300, 215_000, 2_500_000, marks=pytest.mark.slow)],
+    [(2, 30, 38_100, 860_000), pytest.param(12, 300, 215_000, 2_500_000, marks=pytest.mark.thorough)],
 )
 @pytest.mark.usefixtures("pages")
 def test_the_greatest_number_of_cases_is_checked_to_the_end(

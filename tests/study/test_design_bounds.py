@@ -6,7 +6,10 @@ import pytest
 
 import rockbatch as rb
 from rockbatch.common.errors import InputError
+from rockbatch.study.bound_keys import PRESETS
 from rockbatch.study.design_bounds import DesignBound
+
+PRESET = "NTC 2018 viscous"
 
 PIER = {"width_m": 4.0, "height_m": 20.0, "mass_t": 800.0, "deck_mass_t": 500.0}
 PULSE = {"name": "sine", "shape": "sine", "amplitude_g": 0.4, "period_s": 0.8, "dt_s": 0.01, "duration_s": 3.0}
@@ -49,6 +52,56 @@ def test_a_case_under_a_bound_is_the_case_written_with_its_values(change, writte
     assert [(case.pier.alpha, case.pier.p, case.base) for case in of_bound] == [
         (pytest.approx(by_hand.pier.alpha), pytest.approx(by_hand.pier.p), by_hand.base)
     ]
+
+
+def coefficients(bound, of_study):
+    return {
+        case.name: [damper.nu for damper in case.base.restraints if damper.kind == "viscous"]
+        for case in under(bound, of_study)
+    }
+
+
+def test_a_preset_stands_for_bounds_of_whichever_unit_cases_have():
+    """Of a viscous damper in kN and one over M p, beside one of friction that stays; a rock without dampers runs unchanged."""
+    damper = {"kind": "viscous", "coefficient_kN_s_m": 500.0, "exponent": 1.0}
+    cases = [SPRINGS | {"damper": [damper]}, SPRINGS | {"name": "two", "damper": list(DAMPERS)}, ROCK]
+    of_study = study({"preset": PRESET}, cases=cases)
+    assert [bound.name for bound in of_study.bounds] == [f"{PRESET} low", f"{PRESET} high"]
+    assert {bound.source for bound in of_study.bounds} == {PRESETS[PRESET].source}
+    nominal = coefficients("", of_study)
+    for name, times in (("low", 0.85), ("high", 1.15)):
+        found = coefficients(f"{PRESET} {name}", of_study)
+        assert found == {case: [pytest.approx(times * nu) for nu in values] for case, values in nominal.items()}
+    assert [entry["lacking"] for entry in (bound.as_in_run_json() for bound in of_study.bounds)] == [
+        [{"case": "rock", "keys": ["case.damper.coefficient_kN_s_m", "case.damper.nu"]}]
+    ] * 2
+    one = study({"preset": PRESET}, {"name": "b", "case.zeta": 0.1}, cases=[SPRINGS | {"damper": [damper]}])
+    one = one.with_(bound=[PRESET])
+    assert [bound.as_in_run_json()["changes"] for bound in one.bounds] == [
+        ["case.damper.coefficient_kN_s_m × 0.85"],
+        ["case.damper.coefficient_kN_s_m × 1.15"],
+    ]
+
+
+@pytest.mark.parametrize(
+    ("bounds", "said"),
+    [
+        (({"preset": "EN 15129"},), 'preset = "EN 15129": expected one of "NTC 2018 viscous"'),
+        (({"preset": "NTC 2018 viscous", "name": "low"},), "a preset names its bounds; leave name out"),
+        (({"preset": "NTC 2018 viscous", "source": "test"},), "a preset has its source; leave source out"),
+        (({"preset": "NTC 2018 viscous", "case.zeta": 0.1},), '"case.zeta": a preset has its changes; write it in a'),
+        (({"preset": "NTC 2018 viscous"},) * 2, 'preset = "NTC 2018 viscous": given twice; write it once'),
+        (
+            ({"preset": "NTC 2018 viscous"},),
+            "no case has one of the keys that it changes: case.damper.coefficient_kN_s_m,",
+        ),
+        (({"case.zeta": 0.1},), 'name is missing; write for example name = "stiff ground"'),
+    ],
+)
+def test_a_preset_that_cannot_be_used_is_refused_with_a_remedy(bounds, said):
+    with pytest.raises(InputError) as refused:
+        study(*bounds)
+    assert said in str(refused.value)
 
 
 @pytest.mark.parametrize(

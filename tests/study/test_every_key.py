@@ -268,6 +268,7 @@ OF_DEVICE = {
 }  # fmt: skip
 
 
+@pytest.mark.sweep(fast=3)
 @pytest.mark.parametrize("kind", PIERS)
 def test_every_key_of_a_pier_is_used_or_refused_beside_every_other(kind):
     """A height beside parts was read, and ignored."""
@@ -286,6 +287,7 @@ def test_every_key_of_a_case_is_used_or_refused_beside_every_other(base):
     assert {key for key in base if key in OF_CASE} <= used
 
 
+@pytest.mark.sweep(fast=4)
 @pytest.mark.parametrize("base", [ROCK, PADS], ids=["rigid", "elastic"])
 @pytest.mark.parametrize("kind", DEVICES)
 def test_every_key_of_a_device_is_used_or_refused_beside_every_other(kind, base):
@@ -520,7 +522,7 @@ USES: dict[str, dict[str, Use]] = {
         ),
         **uses(study(output={}), ("output",), {
             "histories": "none", "ledger": True, "forces": True, "intensity": True, "half_cycles": True, "sections": 3,
-            "sections_m": [0.0, 10.0], "interaction_m": [0.0, 10.0],
+            "sections_m": [0.0, 10.0], "interaction_m": [0.0, 10.0], "interaction_base": True,
         }, whole_folder),
         **uses(study(output={"forces": True}), ("output",), {"least_normal_share": 0.9999}, whole_folder),
         **uses(study(output={"intensity": True}), ("output",), {"sa_periods_s": [0.7]}, whole_folder),
@@ -806,19 +808,28 @@ USES["[release]"] = {
 
 
 def _takes_long(header):
-    """Return whether a table is a case, which has the most keys, or one of an analysis, whose studies take longer."""
-    return (
-        header.strip("[]").partition(".")[0] in ("design", "fragility", "spectrum", "sensitivity", "release")
-        or header == "[[case]]"
-    )
+    """Return whether a table is one of an analysis, whose studies take longer."""
+    return header.strip("[]").partition(".")[0] in ("design", "fragility", "spectrum", "sensitivity", "release")
 
 
+@pytest.mark.sweep(fast=10)
 @pytest.mark.parametrize(
-    "header", [pytest.param(header, marks=pytest.mark.slow) if _takes_long(header) else header for header in USES]
+    "header",
+    [
+        pytest.param(header, marks=pytest.mark.slow) if _takes_long(header) else header
+        for header in USES
+        if header != "[[case]]"
+    ],
 )
 def test_another_value_of_every_key_tells(header, uncompiled):
     idle = {key: use.value for key, use in USES[header].items() if not outcome(use, key, uncompiled)}
     assert not idle
+
+
+@pytest.mark.sweep(slow=16)
+@pytest.mark.parametrize("key", USES["[[case]]"])
+def test_another_value_of_every_key_of_a_case_tells(key, uncompiled):
+    assert outcome(USES["[[case]]"][key], key, uncompiled)
 
 
 @pytest.mark.parametrize("histories", ["all", "none"])
@@ -830,8 +841,8 @@ def test_the_size_of_histories_is_refused_where_it_decides_nothing(histories):
 
 DRAWN_FROM = ("[sensitivity.choice", "[sensitivity.uniform", "[sensitivity.log_uniform")
 """Tables of inputs that a sensitivity draws; what each does to its answer is in tests/analyses/sensitivity."""
-NO_OTHER_VALUE = {("[[case]]", "flexural_impact")}
-"""Keys that take one value only, and say so in a remark."""
+NO_OTHER_VALUE = {("[[case]]", "flexural_impact"), ("[[bound]]", "preset")}
+"""Keys that take one value only; what a preset stands for is in test_design_bounds.py."""
 
 
 def test_another_value_of_a_key_with_one_is_refused():

@@ -171,6 +171,7 @@ def test_runs_of_motions_from_python_are_those_of_their_files(tmp_path):
         assert rb.open_results(tmp_path / "again").info["command"][-2:] == ["--motions", str(folder)]
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("way", ["tables", "changed"])
 @pytest.mark.usefixtures("pages")
 def test_a_study_that_no_file_holds_names_none_in_what_repeats_it(tmp_path, way):

@@ -117,7 +117,7 @@ NEEDED = {
     "[[pier.part]]": "mass_t height_m", "[[motions.pulse]]": "name shape amplitude_g period_s dt_s duration_s gamma nu",
     "[[motions.fema_p695]]": "station azimuth", "[[motions.sequence]]": "name records", CASE: "base", "[[case.damper]]": "kind",
     "[[case.stop]]": "gap_mm", "[[check]]": "name demand reason",
-    "[[bound]]": "name", "[[reference]]": "record case theta_max_over_alpha source",
+    "[[reference]]": "record case theta_max_over_alpha source",
 }  # fmt: skip
 SINGLE = {  # where every other key takes a list
     "[pier]": "gravity", "[[pier.part]]": "", CASE: "name base other_width_m", "[[case.damper]]": "kind at",

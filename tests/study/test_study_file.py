@@ -662,6 +662,7 @@ def test_the_devices_in_comments_of_a_first_study_can_be_put_in(name):
     assert beside == DeckSpring(0.2, 0.05, 0.6, "right", 31.5)
 
 
+@pytest.mark.slow
 def test_what_the_example_leaves_out_in_comments_can_be_put_in(tmp_path):
     """Each commented key, alone, is one that the study takes, or that excludes another one with a reason."""
     lines = (CONFIGS / "example.toml").read_text().splitlines()

@@ -28,6 +28,7 @@ def at_samples(run, case):
     return rows[["t", "theta", "v_left", "v_right"]].to_numpy()
 
 
+@pytest.mark.sweep(slow=4)
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_peaks_and_depths_on_elastic_and_yielding_springs_are_those_of_opensees(name):

@@ -164,6 +164,7 @@ def expected_of(pier, base, motion):
     return RUNS[key]
 
 
+@pytest.mark.sweep(fast=4, slow=12)
 @pytest.mark.parametrize(("pier", "base", "motion"), SPRINGS)
 def test_springs_agree_with_the_reference_in_peak_end_state_and_counts(pier, base, motion):
     """Plastic work 1e-7 relative: it is accumulated over all loadings."""
@@ -214,6 +215,7 @@ def test_a_real_record_agrees_with_the_reference(base):
     assert outcome.impacts == expected.impacts
 
 
+@pytest.mark.sweep(fast=4, slow=12)
 @pytest.mark.parametrize(("pier", "base", "motion"), SPRINGS)
 def test_energy_ledger_closes(pier, base, motion):
     """The core's stored energy against input − plastic − impact − damping + P–Δ + constraint, which the reference integrates.

@@ -83,6 +83,7 @@ def test_a_rigid_brace_is_none(base, devices):
     assert hard.damper_stroke == pytest.approx(without.damper_stroke, rel=0.02)
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize(("base", "devices"), crossed(BASES[1:], BRACED, "deck", wholly=True))
 def test_runs_agree_with_the_reference(base, devices):
     base = stopped(base, devices)

@@ -30,6 +30,7 @@ def moved(case, outcome, name):
     return max(abs(value - getattr(outcome, name)) for value in values)
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("number", [26, 79])
 def test_chaotic_peaks_on_the_rigid_base_have_no_error(benchmark, number):
     """Of the first a motion 10⁻⁸ stronger moves 3·10⁻⁵ α and one 10⁻⁸ weaker 0.13 α; the second took two trials that agreed."""
@@ -81,5 +82,16 @@ def test_of_a_pool_no_claim_is_broken_by_more_than_the_tolerance(benchmark, monk
     claiming = [row for row in rows if not math.isnan(row.claimed[0])]
     assert len(claiming) >= least
     assert [row.id for row in claiming if row.overturns] == []
+    for result in range(len(claims.RESULTS)):
+        assert [row.id for row in rows if row.beyond(result)] == []
+
+
+@pytest.mark.thorough
+def test_of_a_pool_on_footings_no_claim_is_broken(benchmark):
+    """Against 160 strips at half the step, and against endless ones: the first cases of those of verification.md."""
+    claims = benchmark("claims_on_footings")
+    rows = list(claims.survey(40, 5))
+    claiming = [row for row in rows if not math.isnan(row.claimed[0])]
+    assert len(claiming) >= 20
     for result in range(len(claims.RESULTS)):
         assert [row.id for row in rows if row.beyond(result)] == []

@@ -157,6 +157,7 @@ def test_epsilon_and_zeta_exclude_each_other_and_zeta_has_limits():
     assert problems(FIG5, ElasticBase(40.0, zeta=1.0)) == []
 
 
+@pytest.mark.slow
 def test_stocky_piers_on_critically_damped_supports_do_not_blow_up():
     """Rocking of α = 1.2 is damped beyond critical then: the steps respect its quicker exponential."""
     pier, base = Pier(alpha=1.2, p=1.0), ElasticBase(30.0, zeta=1.0)

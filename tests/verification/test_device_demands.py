@@ -51,6 +51,7 @@ class Sampled(TiedTwoSprings):
         self.leg._turning = sampled
 
 
+@pytest.mark.sweep(fast=2)
 @pytest.mark.parametrize(
     "device",
     [

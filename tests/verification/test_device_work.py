@@ -48,6 +48,7 @@ def test_a_damper_turns_between_rows_where_its_speed_changes_sign(brace):
     assert work.half_cycles[0] == 3.0  # from end to end; by rows no swing is as long
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("seed", range(4))
 def test_a_turn_at_an_end_but_for_rounding_is_at_that_end(seed):
     """As a block leaves or comes to rest: the zero of the rate is at an end, where its speed has the other sign by rounding."""
@@ -156,6 +157,7 @@ class Working(TiedTwoSprings):
         self.leg._turning = integrated
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize(
     "device",
     [
@@ -241,6 +243,7 @@ def _study(tmp_path, **output):
     return write_study(tmp_path, study_text(pulses=(SINE,), cases=[case], output=output, check=[check]))
 
 
+@pytest.mark.slow
 def test_a_study_asks_for_the_work_checks_it_and_shows_it(tmp_path):
     out = tmp_path / "out"
     row = rb.run(rb.load_study(_study(tmp_path, devices_work=True, least_stroke_mm=2.0)), out=out).iloc[0]

@@ -239,6 +239,7 @@ def test_the_spring_law_gives_rates_compliances_and_work(n):
     assert_units([work, laws.give(m, 0.4 * ONE, -0.3 * ONE)], [M, ONE])
 
 
+@pytest.mark.sweep(fast=32)
 @KINEMATICS
 @DAMPED
 @LAWS

@@ -35,10 +35,10 @@ from rockbatch.core.types import (
     Pull,
 )
 from rockbatch.motions.motion import Motion
-from rockbatch.observers.forces.peaks import at_rows
 from rockbatch.pier import modes_of
 from rockbatch.pier.bending import flexural_period
 from rockbatch.simulation import Run, run_fixed, written_run
+from rockbatch.simulation.base_forces import at_rows
 from rockbatch.simulation.coarser import of_last_mode
 from rockbatch.simulation.histories import of_modes
 from rockbatch.simulation.models import flexible_block
@@ -61,6 +61,7 @@ def compared(
     return expected[:, 2], expected[:, 3:], samples
 
 
+@pytest.mark.slow
 def test_a_pier_rocks_flies_and_lands_as_its_mass_points_do(uncompiled):
     """Both corners down, one, none: 10⁻⁸ of α in θ, through impacts and flights of more than a millisecond."""
     base = rb.RigidBase(shaft="elastic", flexural_damping=0.02, flexural_modes=2)
@@ -213,6 +214,24 @@ def test_a_standing_pier_is_an_oscillator_that_lifts_off_at_its_weights_moment(u
         if not lifts:
             assert outcome.deflection_max == pytest.approx(2.0 * part * least * share * end / frequency**2, rel=1e-8)
             assert outcome.top_drift_max == outcome.deflection_max  # the base stands, and the drift is read at the deck
+
+
+def test_a_mass_on_a_light_shaft_vibrates_at_its_frequency_over_sin_alpha_uplifted(uncompiled):
+    """ω √(1 + h²/b²): on one corner J − λ² = b² is left of h² + b². So stiff that its weight changes this by 10⁻⁴."""
+    for half, height in ((2.0, 20.0), (6.0, 15.0)):
+        pier = replace(rb.Pier.of_parts(2.0 * half, [rb.Part(1000.0, height, 1e-3, 0.0)]), flexural_period_s=0.02)
+        m, still = flexible_block(pier, rb.RigidBase(shaft="elastic", flexural_damping=0.0)), Ground(0.0, 0.0, 0.0, 0.0)
+        aside = 1e-4
+        calls = []
+        for side in (-1.0, 1.0):
+            states = [state_at(m, side, np.array([0.0, 0.0, u, 0.0, 0.0, 0.0]), np.zeros(6)) for u in (-aside, aside)]
+            calls += [("system", "rates", m, y, stance(side, side), still) for y in states]
+        back = [bends_of(found)[1][0] for found in uncompiled(values_of, calls)]
+        alone = (2.0 * math.pi / 0.02) ** 2
+        for near, far in (back[:2], back[2:]):
+            assert (near - far) / (2.0 * aside) == pytest.approx(
+                alone / math.sin(math.atan2(half, height)) ** 2, rel=1e-3
+            )
 
 
 @pytest.mark.slow

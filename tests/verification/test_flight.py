@@ -235,6 +235,7 @@ def test_the_mirror_image_flies_alike_to_the_bit(name, substeps):
 # A second solver
 
 
+@pytest.mark.slow
 def test_random_flights_are_those_of_the_independent_reference(outcomes, references):
     """Counts, times, heights and peaks of cases that stand, with the steps that a tolerance of 1e-6 α takes.
 

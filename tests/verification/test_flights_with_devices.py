@@ -31,6 +31,7 @@ FAST = (11, 12, 39)
 """Cases of the pool."""
 
 
+@pytest.mark.sweep(fast=1, slow=8)
 @pytest.mark.parametrize(
     "number", [*FAST, *(pytest.param(number, marks=pytest.mark.slow) for number in range(30) if number not in FAST)]
 )

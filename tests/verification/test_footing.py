@@ -92,6 +92,7 @@ def test_random_cases_come_to_what_another_solver_does(number):
     assert result.bed_force == pytest.approx(reference.force_max, rel=0.02)
 
 
+@pytest.mark.sweep(slow=3)
 @pytest.mark.slow
 @pytest.mark.parametrize("name", list(TABLE.index))
 def test_peaks_on_a_bed_are_those_of_opensees(name):
@@ -111,6 +112,7 @@ def remainder(base, amplitude, substeps):
     return np.abs(terms[:, -1]).max() / terms[:, 0].max()
 
 
+@pytest.mark.sweep(slow=3)
 @pytest.mark.slow
 @pytest.mark.parametrize("zeta", [0.0, 0.05])
 @pytest.mark.parametrize("safety", [1.5, 3.0, None])

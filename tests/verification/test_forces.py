@@ -282,6 +282,7 @@ def test_normal_force_is_that_of_the_centre_of_mass_by_differences_of_its_height
     assert close(response.forces["normal_force"].to_numpy()[rows], expected)
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("name", ["rigid", "elastic", "bouc-wen", "rigid, tied", "rigid, beyond", "bouc-wen, tied"])
 def test_base_shear_is_that_of_the_centre_of_mass_by_differences_of_its_place(name, responses):
     response = responses[name]
@@ -410,6 +411,7 @@ def test_an_impulse_changes_the_spin_by_its_moment(name, responses):
         assert moment == pytest.approx(PIER.inertia * (omega[after] - omega[before]), abs=1e-9)
 
 
+@pytest.mark.sweep(fast=2)
 @EVERY_BASE
 def test_gaps_are_the_pivots_above_where_they_left_their_supports(name, responses):
     base, response = BASES[name], responses[name]

@@ -46,6 +46,7 @@ def follow(pier: Pier, base: RigidBase, motion: Motion, substeps: int = 8) -> tu
     return rows[rows.kind == SAMPLE], rows[rows.kind > 0.0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("upwards", "offset"), [(1.4, None), pytest.param(2.4, 0.0, marks=pytest.mark.slow)], ids=["free", "tied"]
 )
@@ -61,6 +62,7 @@ def test_a_frame_flies_as_its_columns_and_its_deck_do(upwards, offset):
     np.testing.assert_allclose(samples.omega[: len(expected)], expected[:, 3], rtol=0.0, atol=1e-8)
 
 
+@pytest.mark.slow
 def test_impacts_of_a_frame_take_what_those_of_its_bodies_take():
     """Kinetic energies of all bodies before and behind every impact, that of the deck in flight too, over the whole mass."""
     motion, bodies = shaken(1.4), reference()
@@ -157,6 +159,7 @@ def test_friction_at_all_feet_holds_a_frame_until_its_lift_off(share, moves):
     assert (run_fixed(pier, base, motion, 4, 0.0).theta_max > 0.0) == moves
 
 
+@pytest.mark.sweep(slow=3)
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_random_frames_in_random_ground(seed):

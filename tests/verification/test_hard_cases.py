@@ -107,6 +107,7 @@ def until_the_end(pier, base, motion):
     return run_fixed(pier, base, motion, settled.substeps, 0.0, wait=False)
 
 
+@pytest.mark.sweep(slow=3)
 @pytest.mark.slow
 @pytest.mark.parametrize("alpha", [0.02, 0.05, 0.4, 0.8, 1.2])
 def test_slenderness_from_mast_to_slab_follows_the_reference(alpha):

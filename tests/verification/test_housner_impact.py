@@ -117,6 +117,7 @@ def test_a_landing_about_a_support_at_rest_is_that_of_an_impulse_without_restitu
     assert after.v_rate != pytest.approx(impulse.v_rate, rel=0.1)
 
 
+@pytest.mark.slow
 @KINEMATICS
 def test_a_landing_loses_energy_unless_the_whole_pier_falls_and_then_gains_little(kinematics):
     """It adds (1 − e)/(1 + e) · a²/I of the kinetic energy at most, and nothing where a slender pier (e > 1/3) turns towards the

@@ -228,7 +228,7 @@ def test_stiffness_and_strength_become_beta_and_eta_and_back():
         (lambda: rb.ElasticBase.from_stiffness(Pier(0.1, 1.0), 1e6), "mass_t is missing"),
         (lambda: rb.ElasticBase.from_stiffness(Pier(0.1, 1.0, mass_t=1e3), -1e6), r"stiffness_kN_m = -1e\+06: must be"),
         (lambda: Pier(0.1, 1.0, mass_t=0.0), "mass_t = 0: must be a number above 0"),
-        (lambda: Pier(0.1, 1.0, top_m=math.inf), r"top_m = inf: must be within 1e-15 and 1e\+15"),
+        (lambda: Pier(0.1, 1.0, top_m=math.inf), r"top_m = inf: must be 1e\+15 at most"),
         (lambda: Pier.of_parts(4.0, []), "there are none"),
         (lambda: Pier.of_parts(4.0, [(1.0, 10.0), (1.0, -1.0)]), "part_2_height_m = -1: must be 0 or"),
         (lambda: Pier.of_parts(4.0, [(1.0, 10.0)]), "they have no rotary inertia about their common centre"),

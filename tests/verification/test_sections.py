@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
-from rockbatch.observers.forces.peaks import at_rows
 from rockbatch.observers.sections.observe import ForcesInSections
 from rockbatch.outcome.changes import LEAST
 from rockbatch.outcome.outcome import Section
 from rockbatch.pier.sections import section_heights
 from rockbatch.simulation import recording
 from rockbatch.simulation import sections as of_sections
+from rockbatch.simulation.base_forces import at_rows
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.observing import observed
 from rockbatch.simulation.runs import Run, run_fixed

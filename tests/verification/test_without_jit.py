@@ -124,6 +124,7 @@ def test_a_run_without_the_compiler_gives_the_same_results(name, uncompiled):
     assert found["run"] == pytest.approx(plain["run"], rel=1e-9, abs=1e-12, nan_ok=True)
 
 
+@pytest.mark.slow
 def test_a_part_of_a_flight_that_takes_no_time_adds_no_height(interpreted):
     assert interpreted["height without time"] == 0.0
 

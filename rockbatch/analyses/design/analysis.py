@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rockbatch.analyses.design.search import middles
 from rockbatch.analyses.design.study import DesignSpec, read_design
 from rockbatch.analyses.design.tables import (
+    BESIDE,
     CHECKS,
     INTERVALS,
     RUNS,
-    SECTIONS,
     VALUES,
     intervals_table,
     refusals,
@@ -46,7 +46,6 @@ from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.results.columns import columns
 from rockbatch.results.labelled import as_dicts
 from rockbatch.results.run_json import describe, rocking_periods
-from rockbatch.results.sections import SECTIONS as OF_SECTIONS
 from rockbatch.study import Case, Motions, Study
 from rockbatch.workflow.analysis import Analysis, AnalysisFolder, run_analysis
 
@@ -71,19 +70,27 @@ class DesignSearch(Analysis):
         All verdicts, as rows of checks.csv.
     design_runs : DataFrame
         All runs, as rows of peaks.csv.
-    design_sections : DataFrame or None
-        If a check is about a section: the forces there, as rows of sections.csv.
+    design_sections, design_interaction : DataFrame or None
+        If a check is about a section: the forces there, as rows of sections.csv and of interaction.csv.
     spec : DesignSpec
         The settings in [design] of the study.
     """
 
     NAME: ClassVar[str] = "design"
-    TABLES: ClassVar[tuple[str, ...]] = ("design", "design_values", "design_checks", "design_sections", "design_runs")
+    TABLES: ClassVar[tuple[str, ...]] = (
+        "design",
+        "design_values",
+        "design_checks",
+        "design_sections",
+        "design_interaction",
+        "design_runs",
+    )
 
     design: "pd.DataFrame"
     design_values: "pd.DataFrame"
     design_checks: "pd.DataFrame"
     design_sections: "pd.DataFrame | None"
+    design_interaction: "pd.DataFrame | None"
     design_runs: "pd.DataFrame"
     spec: DesignSpec
 
@@ -184,8 +191,8 @@ def _write_tables(results: AnalysisFolder, spec: DesignSpec) -> dict[str, object
         results.keep_table(INTERVALS, intervals_table(trials.judged, spec, written.varied, written.designs))
         results.keep_table(VALUES, values_table(trials.judged, spec, written.varied))
         results.keep_table(CHECKS, as_table(trials.verdicts))
-        if waves.tables:
-            results.keep_table(SECTIONS, pd.DataFrame(waves.tables[OF_SECTIONS]))
+        for name, rows in waves.tables.items():
+            results.keep_table(BESIDE[name], pd.DataFrame(rows))
     results.keep(RUNS, digest)
     results.info["runs"] = waves.finished
     return {"spec": spec}
@@ -201,7 +208,7 @@ def _waves(results: AnalysisFolder, study: Study, motions: MotionSet, digest: di
     """Open the waves of runs: from finished ones of the folder, or into a journal, of which the table is written at the end."""
     of_sections = any(rule.at_m is not None for rule in study.checks)
     requested = observers_beside(study.output, motions.motions) if of_sections else ()
-    observers = [observer for observer in requested if observer.table == OF_SECTIONS]
+    observers = [observer for observer in requested if observer.table in BESIDE]
     names = [observer.table for observer in observers]
     engine, listener = results.engine, results.listener
     if results.has(RUNS, digest):
@@ -210,8 +217,7 @@ def _waves(results: AnalysisFolder, study: Study, motions: MotionSet, digest: di
         finished = InMemory(columns(study))
         finished.update(enumerate(rows))
         waves = Waves(study, finished, engine, listener, observers)
-        if names:
-            waves.tables[OF_SECTIONS] = as_dicts(read_table(results.directory / SECTIONS))
+        waves.tables |= {name: as_dicts(read_table(results.directory / BESIDE[name])) for name in names}
         listener.say(f"{count(len(rows), 'run')} are finished in {results.directory} (--fresh runs them again)")
         yield waves
         return

@@ -10,9 +10,13 @@ from rockbatch.analyses.design.trials import Design, Judged, Trial, worse
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.design import BOUND
+from rockbatch.results.interaction import INTERACTION
+from rockbatch.results.sections import SECTIONS
 
-RUNS, CHECKS, SECTIONS = "design_runs.csv", "design_checks.csv", "design_sections.csv"
+RUNS, CHECKS = "design_runs.csv", "design_checks.csv"
 VALUES, INTERVALS = "design_values.csv", "design.csv"
+BESIDE = {SECTIONS: "design_sections.csv", INTERACTION: "design_interaction.csv"}
+"""Files of the rows beside those of the runs, by the names that a batch has for them."""
 GOVERNING = ("check", "under_bound", "at_scale", "station", "record", "ratio")
 """Of the check that governs: its name, the bound and scale at which it does, the run, and demand over limit."""
 ENDS = ("below", "above")

@@ -19,8 +19,9 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.common.naming import chosen_by
 from rockbatch.motions import MotionSet
-from rockbatch.quantities.demands import OF_SECTIONS
+from rockbatch.quantities.demands import OF_INTERACTION, OF_SECTIONS
 from rockbatch.quantities.design import of_design
+from rockbatch.results.interaction import INTERACTION
 from rockbatch.results.run_json import describe_case
 from rockbatch.results.sections import SECTIONS
 from rockbatch.study import Case, Study
@@ -81,7 +82,7 @@ class Written:
 
     def _design(self, case: Case) -> Design:
         columns = of_design({name: case.columns[name] for name in self.varied if name in case.columns})
-        return Design(case.across_of or case.name, tuple(columns.items()))
+        return Design(case.name_along, tuple(columns.items()))
 
     def refusal(self, trial: Trial) -> str:
         """Return why the study is refused with the values of a trial; empty if it is not."""
@@ -108,7 +109,7 @@ class Written:
         except InputError as error:
             return str(error.messages[0]).removeprefix(f"{self.study.path}: ")
         columns: dict[str, float | str] = dict(zip(self.spec.paths, values, strict=True))
-        own = [each for each in study.cases if case in (each.name, each.across_of)]
+        own = [each for each in study.cases if each.name_along == case]
         by_design = grouped(own, self._design)
         names = (*self.varied, *self.spec.paths)
         return {
@@ -155,15 +156,15 @@ class Trials:
         about = (rule for rule in study.checks if not rule.case or name in chosen_by(tuple(rule.case), names))
         rules = [replace(rule, case=()) for rule in about]
         runs = peaks[peaks["case"].isin({str(case["case"]) for case in described})]
-        sections = self.waves.tables.get(SECTIONS)
         verdicts = judge(
             rules,
             runs,
             described,
             {motion.name: motion.of_station for motion in motions},
             study.count,
-            None if sections is None else _as_written(sections),
+            self._beside(SECTIONS, OF_SECTIONS),
             {motion.name: motion.origin.event or "" for motion in motions},
+            interaction=self._beside(INTERACTION, OF_INTERACTION),
         )
         self.verdicts += verdicts
         of_values = grouped(verdicts, lambda verdict: _values(verdict.columns, self.written.spec))
@@ -182,12 +183,14 @@ class Trials:
                     for name in verdict.omitted:
                         self.omitted.setdefault(name, {})[verdict.check] = None
 
-
-def _as_written(sections: Sequence[Mapping[str, Any]]) -> "pd.DataFrame":
-    """Return rows of sections.csv as a table, their numbers with the digits that they have in the file."""
-    table, numbers = pd.DataFrame(sections), list(OF_SECTIONS)
-    table[numbers] = table[numbers].astype("float64").map(rounded)
-    return table
+    def _beside(self, name: str, numbers: Iterable[str]) -> "pd.DataFrame | None":
+        """Return a table beside the runs, its ``numbers`` with the digits that they have in its file; None without it."""
+        rows = self.waves.tables.get(name)
+        if rows is None:
+            return None
+        table, columns = pd.DataFrame(rows), list(numbers)
+        table[columns] = table[columns].astype("float64").map(rounded)
+        return table
 
 
 def _values(columns: Mapping[str, Any], spec: DesignSpec) -> tuple[tuple[float, ...], Columns]:

@@ -250,7 +250,7 @@ def _shared_by(case: Case, spec: FragilitySpec) -> Hashable:
     """Return a key shared by cases with one curve: their name and values that are not the pier's; else one of its own."""
     if not spec.of_pier:
         return id(case)
-    return case.across_of or case.name, *((name, each) for name, each in case.columns.items() if name not in PIER_KEYS)
+    return case.name_along, *((name, each) for name, each in case.columns.items() if name not in PIER_KEYS)
 
 
 def _common(cases: Sequence[Case]) -> Case:

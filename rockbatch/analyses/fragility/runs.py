@@ -50,8 +50,7 @@ class ScaledRuns(Made):
             point = points[number]
             motion, intensity, case = point
             drawn = case_at(point)
-            on_axis = motions[motion].exchanged if drawn.across_of else motions[motion]
-            return StudyRun(on_axis, polarity, plans[case].scale(motion, intensity), drawn)
+            return StudyRun(drawn.motion(motions[motion]), polarity, plans[case].scale(motion, intensity), drawn)
 
         super().__init__(len(points), make)
 
@@ -100,12 +99,14 @@ def level_plans(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) ->
     scales_by_level = members(study.file(), spec.stripes, [motion.name for motion in motions])
     if not spec.of_pier:
         return [_level_plan(study, spec, motions, unscaled, scales_by_level)] * len(study.cases)
-    crosswise = any(case.across_of for case in study.cases)
-    across = intensities([motion.exchanged for motion in motions], spec, gravity) if crosswise else []
+    of_axes = {tuple(motions): unscaled}
     plans = []
     for case in study.cases:
+        on_axis = tuple(map(case.motion, motions))
+        if on_axis not in of_axes:
+            of_axes[on_axis] = intensities(on_axis, spec, gravity)
         over = over_uplift(spec.measure, case.pier)
-        relative = [x * over for x in (across if case.across_of else unscaled)]
+        relative = [x * over for x in of_axes[on_axis]]
         plans.append(_level_plan(study, spec, motions, relative, scales_by_level))
     return plans
 

@@ -46,7 +46,7 @@ def line_of(place: int, kind: str = "level") -> Look:
 
 
 def marks_of(place: int, is_open: bool = False) -> Look:
-    """Return the look of marks among several: no common factor, so 70 differ in colour or shape."""
+    """Return the look of marks among several: 70 differ in colour or shape, whose numbers have no common factor."""
     return Look("", place % COLOURS + 1, shape=SHAPES[place % len(SHAPES)], open=is_open)
 
 
@@ -141,14 +141,14 @@ class Axis:
     numbered: bool = True
 
     def fraction(self, values: float | Array) -> Array:
-        """Return places along the axis: 0 at ``low``, 1 at ``high``."""
+        """Return places along the axis: 0 at ``low``, 1 at ``high``, beyond outside; on a ``log`` axis NaN or −inf up to 0."""
         values = np.asarray(values, dtype=np.float64)
         if self.log:
             return np.log(values / self.low) / math.log(self.high / self.low)
         return (values - self.low) / (self.high - self.low)
 
     def ticks(self) -> dict[float, str]:
-        """Return the places of ticks and what is written there."""
+        """Return the places of ticks along the axis, each with its label."""
         if self.names is not None:
             return dict(self.names)
         places = self._powers() if self.log else self._steps()
@@ -173,7 +173,7 @@ class Axis:
 
     @property
     def plain(self) -> str:
-        """Return the label without the signs of subscripts."""
+        """Return the label without the signs of subscripts: "θmax/α" of "θ_max/α"."""
         return "".join(words for words, _ in subscripts(self.label))
 
 
@@ -185,7 +185,7 @@ def subscripts(label: str) -> Iterator[tuple[str, bool]]:
 
 
 def spanning(label: str, *arrays: Array, margin: float = 0.06, about: int = 5) -> Axis:
-    """Return an axis that holds every finite value, and zero, with a margin."""
+    """Return an axis that holds every finite value, and zero, with a margin; from −1 to 1 without a value other than 0."""
     finite = [array[np.isfinite(array)] for array in arrays]
     low = min((float(array.min()) for array in finite if len(array)), default=0.0)
     high = max((float(array.max()) for array in finite if len(array)), default=0.0)
@@ -195,21 +195,21 @@ def spanning(label: str, *arrays: Array, margin: float = 0.06, about: int = 5) -
 
 
 def log_spanning(label: str, *arrays: Array, margin: float = 0.15, about: int = 6) -> Axis:
-    """Return a logarithmic axis that holds every positive value with a margin."""
+    """Return a logarithmic axis that holds every positive finite value with a margin; about 0.1 to 1 without any."""
     values = np.concatenate([array[(array > 0) & np.isfinite(array)] for array in arrays])
     low, high = (float(values.min()), float(values.max())) if len(values) else (0.1, 1.0)
     return Axis(label, low / (1.0 + margin), high * (1.0 + margin), log=True, about=about)
 
 
 def decades(label: str, values: Iterable[float], about: int = 6) -> Axis:
-    """Return a logarithmic axis over whole powers of ten that holds the values, the highest below its end."""
+    """Return a logarithmic axis of whole decades that holds positive ``values``, the highest below its end; 1 to 10 for none."""
     powers = [math.log10(value) for value in values] or [0.0]
     low = math.floor(min(powers))
     return Axis(label, 10.0**low, 10.0 ** (math.floor(max(powers)) + 1), log=True, about=about)
 
 
 def written(ticks: Sequence[float]) -> list[str]:
-    """Format ticks with as many decimals as their step needs; as powers of ten if they are far apart."""
+    """Return labels of ticks with as many decimals as their step needs, or powers of ten if they are far apart; [] for none."""
     if len(ticks) > 1 and ticks[0] > 0 and ticks[1] / ticks[0] > 9:
         return [_power_of_ten(tick) for tick in ticks]
     step = min((b - a for a, b in pairwise(ticks)), default=sum(ticks)) or 1.0
@@ -286,9 +286,9 @@ class Figure:
 
 
 def thin(x: Array, y: Array, buckets: int) -> tuple[Array, Array]:
-    """Return fewer points of a history that draw the same: of each bucket, one for a pixel, the first, least, largest and last.
+    """Return fewer points of a history that draw the same: of each bucket, a pixel wide, the first, last, least and largest.
 
-    ``x``, shape (n,), is in order; ``y`` may have NaN.
+    ``x``, shape (n,), is in order; ``y`` may have NaN. Four points for a bucket, or fewer, come back as they are.
     """
     if len(x) <= 4 * buckets:
         return x, y

@@ -129,7 +129,11 @@ class ShownFigure(MatplotlibFigure):
 
 
 def drawn(figure: Figure, width_mm: float, ax: Axes | None = None) -> MatplotlibFigure:
-    """Draw a figure ``width_mm`` wide, or in the place of ``ax``: in it if there is one panel; return the whole figure."""
+    """Return the matplotlib figure in which ``figure`` is drawn, ``width_mm`` wide, or that of ``ax``.
+
+    One panel is drawn in ``ax``, several in its place. Raises ``InputError`` for an ``ax`` that is no Axes, or if there are
+    several panels and it is in no grid.
+    """
     _check_axes(ax)
     with mpl.rc_context(_STYLE):
         if ax is None:
@@ -157,8 +161,8 @@ def drawn(figure: Figure, width_mm: float, ax: Axes | None = None) -> Matplotlib
 def panel_in(figure: Figure, ax: Axes | None, name: str = "") -> Axes:
     """Draw one panel of a figure into ``ax``, or into a figure of one column of a paper; return the axes.
 
-    It is the panel with the caption ``name``, or the first one. The legend stands below the axes, where it covers nothing.
-    Raises ``InputError`` for another name, with those that there are.
+    It is the first panel, or the first with the caption ``name``. The legend stands below the axes, where it covers nothing.
+    Raises ``InputError`` for an unknown caption, with those of the figure.
     """
     _check_axes(ax)
     panels = [panel for panel in figure.panels if name in ("", panel.caption)]
@@ -246,7 +250,7 @@ def _legend_of(entries: Entries) -> Style:
 
 
 def _colour_bar(place: FigureBase, axes: Sequence[Axes], figure: Figure) -> None:
-    """Draw the scale of tones, if marks have any."""
+    """Draw the scale of tones of the first marks that have any; nothing without them."""
     for mark in (mark for panel in figure.panels for mark in panel.marks):
         if isinstance(mark, Points) and mark.shade:
             scale = mark.shade[0]
@@ -260,7 +264,7 @@ Arranged = tuple[list[list[Panel]], list[float], float]
 
 
 def _arranged(figure: Figure, width_mm: float, tallest: float) -> Arranged:
-    """Arrange panels in rows, stacked as they are or as many abreast as there is room for.
+    """Return panels in rows, stacked as they are or as many abreast as have room, with heights and distance of columns.
 
     Of panels that share their axes more stand abreast, and lower, if the rows would together be higher than ``tallest`` mm.
     """
@@ -283,7 +287,7 @@ def _arranged(figure: Figure, width_mm: float, tallest: float) -> Arranged:
 
 
 def _grid(panels: Sequence[Panel], columns: int, width_mm: float, least: float, across: float = 0.0) -> Arranged:
-    """Arrange panels in columns; they are at least ``least`` times as high as on the page."""
+    """Return the panels in rows of ``columns``, each at least ``least`` times as high as on the page, and at most 1.5 times."""
     size = min(max(width_mm / columns / (MM * max(panel.width for panel in panels)), least), 1.5)
     rows = [list(panels[i : i + columns]) for i in range(0, len(panels), columns)]
     heights = [max(_height(panel, width_mm / columns, size, across) for panel in row) for row in rows]
@@ -315,7 +319,7 @@ def _caption(panel: Panel, across: float) -> list[str]:
 
 
 def _panel(axes: Axes, panel: Panel, across: float, entries: Entries) -> None:
-    """Draw a panel, and note what stands for its marks in the legend."""
+    """Draw a panel, and add the artist of each labelled mark to the ``entries`` of the legend."""
     for mark in panel.marks:
         artist = _draw(mark, axes)
         if mark.label:
@@ -334,7 +338,8 @@ def _panel(axes: Axes, panel: Panel, across: float, entries: Entries) -> None:
 def _axis(axes: Axes, which: str, scale: Axis) -> None:
     axis = axes.xaxis if which == "x" else axes.yaxis
     if scale.log:
-        axis.set_major_locator(FixedLocator([scale.low, scale.high]))  # or it looks for ticks of a range not set yet
+        # without a fixed locator matplotlib looks for ticks in a range that is not set yet
+        axis.set_major_locator(FixedLocator([scale.low, scale.high]))
         getattr(axes, f"set_{which}scale")("log")
     getattr(axes, f"set_{which}lim")(scale.low, scale.high)
     ticks = scale.ticks()
@@ -367,7 +372,7 @@ def _area(look: Look) -> Style:
 
 @singledispatch
 def _draw(mark: Mark, axes: Axes) -> Artist:
-    """Draw a mark; return what stands for it in the legend."""
+    """Draw a mark; return the artist that stands for it in the legend. Raises ``TypeError`` for another object."""
     raise TypeError(f"{type(mark).__name__}: no mark of a figure")
 
 

@@ -161,7 +161,7 @@ def add_name_statement(component: Component, name: str, orientation: Orientation
 
 
 def _is_of_sensor(label: str, component: Component) -> bool:
-    """Return whether the digits of a file's name are of its station or location code (two digits beside a channel code)."""
+    """Return whether ``label`` is digits that end its station, its location code, or two digits beside a channel code."""
     if not label.isdigit():
         return False
     station = re.sub(r"[\W_]", "", component.sensor.station or component.origin.station)
@@ -187,7 +187,7 @@ def checked_reading(reading: Component | Unusable) -> Component | Unusable:
 
 
 def _not_recognised(file: RecordFile) -> str:
-    """Return the refusal of a file of no known format, with a remedy."""
+    """Return the message about a file of no known format, with a remedy."""
     suffix = file.path.suffix
     names = " or ".join(dict.fromkeys(form.name for form in FORMATS if suffix.lower() in form.suffixes))
     foreign = next((words for magic, words in _FOREIGN.items() if file.data.startswith(magic)), "")

@@ -17,7 +17,7 @@ from rockbatch.motions.record_file import ReadOptions
 
 _UNITS = (("g", "m/s2", "cm/s2", "mm/s2"), ("mg", "in/s2", "ft/s2"))  # the second if none of the first is plausible
 _TRIED: Mapping[str, str | float] = {"unit": "m/s2", "dt": 0.01}  # any unit and step show whether a file can be read
-_OTHER_UNIT = "cm/s2"  # read in it, components without a unit of their own differ
+_OTHER_UNIT = "cm/s2"  # a second unit: read in it, components without a unit of their own have other samples
 _MOST_LACKS = 3  # readings with more and more statements
 _WHERE = (
     "under [motions] in the study, for all files that state none (the others keep their own), or for this file in motions.toml, "
@@ -44,7 +44,7 @@ class _Trial:
 
 
 def with_advice(error: Unstated, read: Read, options: ReadOptions, gravity: float) -> Unstated:
-    """Return the refusal of a file with the statements that lead to a record when tried, or the reason why none does."""
+    """Return the error of a file with the statements that lead to a record when tried, or else with the reason why none does."""
     choices = error.choices or ({key: _TRIED[key] for key in error.keys if key in _TRIED},)
     trials = [_trial(choice, read, options) for choice in choices]
     advice, where = [], _WHERE
@@ -91,7 +91,7 @@ def _trial(statement: Statement, read: Read, options: ReadOptions) -> _Trial:
 
 
 def _contradictions(readings: Sequence[Component | Unusable]) -> Iterator[str]:
-    """Yield the reasons of unusable readings, and the gross findings on components."""
+    """Yield the reasons of unusable readings, and the texts of gross findings on components."""
     for reading in readings:
         if isinstance(reading, Unusable):
             yield reading.reason

@@ -26,12 +26,12 @@ _MOMENT = re.compile(
 
 
 def is_afad(head: bytes) -> bool:
-    """Return whether the first bytes are the header of such a file."""
+    """Return whether the first bytes are those of a text file of AFAD, by its title."""
     return head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(_TITLE)
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the components; raise ``InputError`` with the line if the file is incomplete, or if its unit is missing."""
+    """Return the components N-S, E-W and U-D; raise ``InputError`` if the file is incomplete, or does not state its unit."""
     lines = lines_of(text)
     heads = next((i for i in range(min(_MOST, len(lines))) if _labels(lines[i])), None)
     if heads is None:

@@ -67,12 +67,12 @@ def read_asdf(file: RecordFile) -> list[Component | Unusable]:
 
 
 def _own_member(group: "h5py.Group", name: str) -> object:
-    """Return a member stored in the group itself; ``None`` for links, which may lead into other files."""
+    """Return a member stored in the group itself; ``None`` if missing, and for links, which may lead into other files."""
     return group.get(name) if isinstance(group.get(name, getlink=True), h5py.HardLink) else None
 
 
 def _group(group: "h5py.Group", name: str) -> "h5py.Group | None":
-    """Return a group stored in another; ``None`` without one."""
+    """Return a group stored in another; ``None`` if there is none of this name, or it is a link or a data set."""
     member = _own_member(group, name)
     return member if isinstance(member, h5py.Group) else None
 

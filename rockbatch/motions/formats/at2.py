@@ -75,7 +75,10 @@ def _first_lines(head: bytes) -> list[str]:
 
 
 def read_component(file: RecordFile) -> list[Component | Unusable]:
-    """Return the component of an AT2 file, in m/s²; its g is the study's gravity."""
+    """Return the component of an AT2 file, alone in a list, in m/s²; its g is the study's gravity.
+
+    Raises ``InputError`` for an incomplete file, one of velocities or displacements, or without a unit that is known or stated.
+    """
     (recording,) = _parse(file.data.decode("latin-1"))
     unit = recording.unit or file.options.unit
     if unit is None:
@@ -89,7 +92,7 @@ def read_component(file: RecordFile) -> list[Component | Unusable]:
 
 
 def _parse(text: str) -> list[Recording]:
-    """Return the recording of an AT2 file, with unit "" if it states none; raise ``InputError`` with the line if unusable.
+    """Return the recording of an AT2 file in a list, unit "" if unstated; raise ``InputError`` with the line if unusable.
 
     PEER's records are corrected; other files do not say.
     """
@@ -175,7 +178,10 @@ def _component_of(fields: list[str]) -> int:
 
 
 def _values(text: str, start: int, npts: int) -> Samples:
-    """Return the ``npts`` numbers from the character ``start`` on, shape (npts,); raise ``InputError`` for more or fewer."""
+    """Return the ``npts`` finite numbers from the character ``start`` on, shape (npts,).
+
+    Raises ``InputError`` for more or fewer, for a word that is no number, and if the last one is cut short.
+    """
     try:
         values, last = _between_blanks(text, start)
     except ValueError:

@@ -18,7 +18,7 @@ from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.origin import origin_of
 
 _HEADER = 27  # lines
-_RATE = 21  # line of the header at which it begins
+_RATE = 21  # line of the header that begins with the sampling rate
 _WIDTH, _PER_LINE = 13, 10
 _TITLE = re.compile(r"^\* *VOL(?P<volume>[0-9])DS +FILE: *(?P<file>\S+)")
 _DURATION = r"DURATION *= *(?P<duration>[0-9.]{1,12})"
@@ -32,7 +32,7 @@ _TEXT = layout(
 
 
 def is_bhrc(head: bytes) -> bool:
-    """Return whether the first bytes are the header of such a file, of whatever volume."""
+    """Return whether the first bytes are the title of a BHRC file, "* VOL1DS FILE: …", of whatever volume."""
     return _TITLE.match(head[:100].decode("latin-1")) is not None
 
 
@@ -42,7 +42,10 @@ def parse(text: str) -> list[Recording]:
 
 
 def _channel(lines: list[str], start: int) -> tuple[Recording, int]:
-    """Return the channel whose title is ``lines[start]``, and the index of the line after it."""
+    """Return the channel whose title is ``lines[start]``, and the index of the line after it.
+
+    Raises ``InputError`` with the line for another title or volume, and for an incomplete channel.
+    """
     title = read_header(lines, start, [(0, _TITLE, "* VOL1DS FILE: …, after the last declared value")])
     if title["volume"] != "1":
         raise InputError(f"line {start + 1}: Volume {title['volume']}, whose layout is not known; take the .V1 file")

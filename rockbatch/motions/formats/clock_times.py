@@ -19,8 +19,9 @@ _DAY = 86400  # s
 def in_seconds(text: str) -> tuple[str, float | None]:
     """Return a text with times at the beginning of lines as seconds after the first, and the first [s since 1970, UTC].
 
-    The first is ``None`` if the times lack a date or a zone, or the date begins with its day or month, which may be either;
-    fewer than three times leave the text as it is, with ``None``. Seconds have a decimal comma if the numbers behind have.
+    The first is ``None`` if the times lack a date or a zone, or the date begins with its day or month, which may be either; fewer
+    than three times, or an impossible one, leave the text as it is, with ``None``. Seconds have a decimal comma if the numbers
+    behind have.
     """
     if ":" not in text or len(times := list(_CLOCK.finditer(text))) < _FEWEST:
         return text, None
@@ -70,7 +71,7 @@ def _nanoseconds(match: re.Match[str]) -> int:
 
 
 def _start(match: re.Match[str], first: datetime, nanoseconds: int) -> float | None:
-    """Return a time [s since 1970, UTC]; ``None`` without date or zone."""
+    """Return a time [s since 1970, UTC], with its ``nanoseconds``; ``None`` if it was written without date or zone."""
     zone = (match["zone"] or "").strip()
     if match["date"] is None or not zone:
         return None

@@ -36,10 +36,10 @@ _UNIT = r"[(\[]\s*+(?P<unit>[^()\[\]]*[^()\[\]\s])\s*+[)\]]"
 _NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>(?:.*?\S)??)\s*+{_UNIT}", re.IGNORECASE)
 _LABELLED = re.compile(rf"(?P<label>[^\s,;()\[\]](?:[^,;\t()\[\]]*[^\s,;()\[\]])?)\s*+{_UNIT}")
 _WORD = re.compile(rf"(?P<label>[^\s,;()\[\]]+)(?:\s*{_UNIT})?")  # a label of one word, perhaps with its unit
-_FIELD = re.compile(rf"(?P<label>[^()\[\]]*[^()\[\]\s])\s*(?:{_UNIT})?")  # one between commas or tabs
+_FIELD = re.compile(rf"(?P<label>[^()\[\]]*[^()\[\]\s])\s*(?:{_UNIT})?")  # a label between commas or tabs
 _VALUE = re.compile(
     r"[:=]|\d\.\d|(?<!\w)\.\d|^\*[A-Za-z&-]+ *,"
-)  # the last one is a keyword, as MIDAS and Abaqus write them
+)  # the last alternative is a keyword of MIDAS or Abaqus
 _KEYED = re.compile(r"[^()\[\],;\t]*[:=]|\*[A-Za-z&-]+ *,")  # "File type: accelerations (g)" is no label
 _COMPONENTS = re.compile(r"^(?:components?|channels?|columns)\s*[:=]\s*(?P<labels>\S.*)$", re.IGNORECASE)
 _STATED = re.compile(r"^units?\s*[:=]\s*(?P<unit>\S+)", re.IGNORECASE)
@@ -132,7 +132,7 @@ def spectrum_in(columns: Sequence[Column]) -> str:
 
 
 def seconds_in(unit: str) -> float | None:
-    """Return a unit of time in seconds; ``None`` for other units."""
+    """Return a unit of time in seconds, 0.001 for "ms"; ``None`` for other units."""
     return SECONDS.get(unit.strip().lower().rstrip("."))
 
 
@@ -169,7 +169,7 @@ def _with_unit_row(header: Sequence[str], width: int) -> list[Column] | None:
 
 
 def _fields(line: str) -> list[str]:
-    """Return the fields of a line between commas, semicolons or tabs if it has any, else between blanks."""
+    """Return the fields of a line between commas, semicolons or tabs if it has any of these, else its words."""
     fields = re.split(r"[,;\t]", line) if re.search(r"[,;\t]", line) else line.split()
     return [field.strip(' "') for field in fields]
 
@@ -180,13 +180,13 @@ def _is_unit(text: str) -> bool:
 
 
 def _is_of_motion(unit: str) -> bool:
-    """Return whether a unit is one of velocity or displacement: "cm/s", "mm"."""
+    """Return whether a unit is one of velocity or displacement: "cm/s", "mm"; False for "cm/s2"."""
     length, slash, time = re.sub(r"[() ]", "", unit.lower()).partition("/")
     return length_factor(length) is not None and (not slash or time in SECONDS)
 
 
 def without_index_name(header: Sequence[str]) -> list[str]:
-    """Return the header lines that name a first column as a row index, pandas' "", "index" or "No.", without that name."""
+    """Return the header lines that begin with the name of a row index, "", "index" or "No.", without that name."""
     return [_INDEX.sub("", line) for line in header if _INDEX.match(line)]
 
 
@@ -216,7 +216,7 @@ def columns_without_units(header: Sequence[str], width: int) -> list[Column] | N
 
 
 def _labels_of(line: str) -> list[list[Column]]:
-    """Return the possible columns of a line of labels: each word, and each field between commas, semicolons or tabs."""
+    """Return the ways to read a line of labels as columns: by words, if they cover it, and by commas, semicolons or tabs."""
     words = [_column(match) for match in _WORD.finditer(line)]
     fields = [match for field in re.split(r"[,;\t]", line) if (match := _FIELD.fullmatch(field.strip()))]
     by_words = [] if _WORD.sub("", line).strip(" \t,;") else [words]

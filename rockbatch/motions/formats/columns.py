@@ -127,14 +127,14 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
 
 
 def _unit_of(column: Column, of_all: str | None, options: ReadOptions) -> str:
-    """Return a column's unit: its own if known, else the study's, else its own or that ``of_all``; empty without any."""
+    """Return a column's unit, else that ``of_all``, else ""; the study's, if stated, in place of a unit of no acceleration."""
     if column.unit and not is_acceleration(column.unit) and options.unit:
         return options.unit
     return column.unit or of_all or ""
 
 
 def _missing_unit(i: int, column: Column, unit: str) -> str:
-    """Return the complaint about a column's missing or unknown unit."""
+    """Return the message about a column's missing or unknown unit."""
     return (
         f'{_column_name(i, column)}: the unit "{unit}" is not known'
         if unit
@@ -143,7 +143,10 @@ def _missing_unit(i: int, column: Column, unit: str) -> str:
 
 
 def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[list[Column], tuple[str, ...]]:
-    """Return the columns by header and study, and notes on them; raise ``InputError`` for a spectrum, or another count."""
+    """Return the columns by header and study, and notes on them.
+
+    Raises ``InputError`` for a spectrum, or a table without header for which the study states another number of columns.
+    """
     width = table.shape[1]
     columns = (
         _behind_an_index(without_index_name(header), table)
@@ -177,7 +180,7 @@ def _columns_named(header: Sequence[str], width: int) -> list[Column] | None:
 
 
 def _behind_an_index(header: Sequence[str], table: Samples) -> list[Column] | None:
-    """Return the columns of a table whose first one, without a name or called "index", has times or counts the rows.
+    """Return the columns of a table whose first one has no name or is called "index": a row number, or times that grow evenly.
 
     ``header`` names the others; ``None`` for other tables.
     """
@@ -199,7 +202,7 @@ def _counts_rows(column: Samples) -> bool:
 
 
 def _merged_column(header: Column, stated: str) -> Column | None:
-    """Return a column of the header, completed by the study's label for it; None if they contradict each other."""
+    """Return a header's column, completed by the study's label or left out by its "-"; None if they contradict each other."""
     if stated == "-":
         return Column(stated)
     study = Column(stated)
@@ -228,7 +231,10 @@ def _with_time(columns: list[Column], table: Samples) -> list[Column]:
 
 
 def _guessed_columns(header: list[str], table: Samples) -> tuple[list[Column], tuple[str, ...]]:
-    """Return columns without labels: a single one, or time and acceleration; raise ``InputError`` for more."""
+    """Return columns without labels, and notes: a single acceleration, or evenly growing times and acceleration.
+
+    Raises ``Unstated`` for another table, and ``InputError`` for two columns below a header about spectra.
+    """
     width = table.shape[1]
     if width == 1:
         return [Column("")], ()
@@ -252,7 +258,10 @@ def _guessed_columns(header: list[str], table: Samples) -> tuple[list[Column], t
 def _on_one_step(
     columns: list[Column], table: Samples, header: list[str], options: ReadOptions
 ) -> tuple[float, Samples, tuple[str, ...]]:
-    """Return the sampling interval [s], by the column of time or as stated, the table at even times, and notes."""
+    """Return the sampling interval [s], by the column of time or as stated, the table at even times, and notes.
+
+    Raises ``InputError`` for several columns of time, no step at all, or a header that states another step than the times have.
+    """
     times = [i for i, column in enumerate(columns) if column.is_time]
     if len(times) > 1:
         raise InputError(f"found {len(times)} columns of time; expected one")

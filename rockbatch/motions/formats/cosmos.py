@@ -145,7 +145,7 @@ def _header(lines: list[str], start: int) -> _Header:
 
 
 def _width_and_count(text: str, index: int) -> tuple[int, int]:
-    """Return width and numbers per line of a Fortran format such as 8F10.5 or 1PE15.6."""
+    """Return width and numbers per line of a Fortran format: (10, 8) of 8F10.5. Raises ``InputError`` for other texts."""
     match = _FORMAT.fullmatch(text)
     if match is None:
         raise InputError(f'line {index + 1}: found the format "({text[:20]})"; expected one such as (8F10.5)')
@@ -178,9 +178,8 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
     corrected = not header.what.lower().startswith(("raw", "uncorr"))
     description = ", ".join(filter(None, [location, place, "corrected" if corrected else "uncorrected"]))
     event = line_at(header.text, 1)
-    name = re.sub(
-        r"^[A-Z]{2}:", "", re.split(r" {2,}", fields["words"].strip())[-1]
-    )  # "USGS  AK:Anchorage;R B Atwood Bld"
+    # "USGS  AK:Anchorage;R B Atwood Bld"
+    name = re.sub(r"^[A-Z]{2}:", "", re.split(r" {2,}", fields["words"].strip())[-1])
     year, month, day, hour, minute = (header.integers[i] for i in (39, 41, 42, 43, 44))
     stated = [Stated("duration", series["seconds"])]
     for quantity, value in (("duration", length), ("peak", peak), ("time of the peak", time_of_peak)):
@@ -208,7 +207,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
 
 
 def _initial(header: _Header) -> Initial | None:
-    """Return the ground's state at the first sample, by real numbers 68 and 69; ``None`` if number 68 is unknown."""
+    """Return the ground's velocity [m/s] and displacement [m] at the first sample; ``None`` if real number 68 is unknown."""
     velocity, displacement = header.reals[67:69]
     if velocity == header.unknown:
         return None

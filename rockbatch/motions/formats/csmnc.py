@@ -35,13 +35,13 @@ _NUMBERS = re.compile(r"\s*[-+]?[0-9.][-+0-9.E\s]*", re.IGNORECASE)
 
 
 def is_csmnc(head: bytes) -> bool:
-    """Return whether the first bytes are the header of such a file."""
+    """Return whether the first bytes have the lines of a CSMNC header for quantity, count and component."""
     lines = lines_of(head.decode("latin-1"))[:_MOST]
     return all(search_lines(pattern, lines) for pattern in (_KIND, _COUNT, _COMPONENT))
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file; raise ``InputError`` with the line if it is incomplete."""
+    """Return the recording in a list; raise ``InputError`` with the line if it is incomplete, or of another quantity."""
     lines = lines_of(text)
     _, kind = line_with(_KIND, lines, _MOST, "UNCORRECTED ACCELERATION UNIT: CM/SEC/SEC")
     if not kind["what"].upper().startswith("ACC"):  # the Center's own description has "ACCCELERATION"

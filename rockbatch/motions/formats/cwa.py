@@ -22,7 +22,7 @@ _TAIPEI = 8 * 3600.0  # s ahead of UTC
 
 
 def is_cwa(head: bytes) -> bool:
-    """Return whether the first bytes are the header of a free-field file."""
+    """Return whether the first bytes are the header of a free-field file of CWA, with the keys #StationCode and #DataSequence."""
     return head.lstrip(b"\xef\xbb\xbf \r\n").startswith(b"#") and b"#StationCode:" in head and b"#DataSequence:" in head
 
 
@@ -67,7 +67,10 @@ def parse(text: str) -> list[Recording]:
 
 
 def _labels(sequence: str) -> list[str]:
-    """Return the directions of the columns after time, all with positive sign: "Time U(+); N(+); E(+)"."""
+    """Return the directions of the columns after time, all with positive sign: ["U", "N", "E"] of "Time U(+); N(+); E(+)".
+
+    Raises ``InputError`` for another text.
+    """
     time, _, remainder = sequence[:200].strip().partition(" ")
     matches = [_LABEL.fullmatch(part) for part in remainder.split(";")]
     if time.lower() != "time" or None in matches:

@@ -25,7 +25,7 @@ _FORMAT = re.compile(r"\((?P<per_line>[0-9]{1,2})f(?P<width>[0-9]{1,2})\.[0-9]{1
 
 
 def declares_series(lines: list[str], index: int) -> bool:
-    """Return whether ``lines[index]`` declares a series."""
+    """Return whether ``lines[index]`` declares a series, as "1887 POINTS OF ACC DATA EQUALLY SPACED AT .020 SEC" does."""
     return _SPACING.match(line_at(lines, index)) is not None
 
 
@@ -44,9 +44,10 @@ def declared_series(lines: list[str], start: int) -> tuple[float, dict[str, Seri
 
 
 def _block(lines: list[str], start: int, expected: tuple[str, ...]) -> tuple[str, float, Series, int]:
-    """Return the kind of the series declared by ``lines[start]``, its interval [s], the values with their unit, and its end.
+    """Return kind ("acc", "vel", "dis"), interval [s], values with unit of the series at ``lines[start]``, and the next index.
 
-    Raises ``InputError`` unless its kind is one of those ``expected``.
+    Raises ``InputError`` unless its kind is one of those ``expected``, its count is 1 or more, it states a unit, and its interval
+    is possible.
     """
     line = match_line(_SPACING, lines, start, "… points of accel data equally spaced at … sec. (units: …)")
     quantity = (line["what"] or "acc").lower()
@@ -66,9 +67,10 @@ def _block(lines: list[str], start: int, expected: tuple[str, ...]) -> tuple[str
 def equal_columns(
     lines: list[str], start: int, npts: int, columns: tuple[int, int] | None = None
 ) -> tuple[Samples, int]:
-    """Return ``npts`` numbers from ``lines[start]`` on, shape (npts,), and the index of the line after them.
+    """Return ``npts`` ≥ 1 numbers from ``lines[start]`` on, shape (npts,), and the index of the line after them.
 
-    ``columns`` are their width and number per line; by default eight, with the width from the first line: 8F9.6 or 8F10.3.
+    ``columns`` are their width and number per line; by default eight, with the width from the first line: 8F9.6 or 8F10.3. Every
+    line is full but the last. Raises ``InputError`` with the line for anything else.
     """
     width, per_line = columns or (len(line_at(lines, start).rstrip()) // min(_PER_LINE, npts), _PER_LINE)
     if per_line < 1 or width < 2:

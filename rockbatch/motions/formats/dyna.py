@@ -25,12 +25,12 @@ _MOMENT = re.compile(
 
 
 def is_dyna(head: bytes) -> bool:
-    """Return whether the first bytes are a DYNA header."""
+    """Return whether the first bytes are a DYNA header: they begin with "EVENT_NAME:", and have the key SAMPLING_INTERVAL_S."""
     return head.removeprefix(b"\xef\xbb\xbf").startswith(b"EVENT_NAME:") and b"SAMPLING_INTERVAL_S:" in head
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file; raise ``InputError`` with the missing keys, or the line that is wrong."""
+    """Return the recording in a list; raise ``InputError`` with the missing keys, or the line that is wrong."""
     lines = lines_of(text)
     header = _header(lines)
     if header.get("NETWORK") in _TURKISH:
@@ -65,7 +65,10 @@ def parse(text: str) -> list[Recording]:
 
 
 def _header(lines: list[str]) -> dict[str, str]:
-    """Return the values by keys of the lines before the first without a colon; raise ``InputError`` for other quantities."""
+    """Return the values by keys of the lines before the first without a colon.
+
+    Raises ``InputError`` for missing or repeated keys, and for other quantities than accelerations.
+    """
     end = next((i for i, line in enumerate(lines[:_MOST_KEYS]) if ":" not in line), len(lines))
     header = keys_of(lines[:end], "SAMPLING_INTERVAL_S", "NDATA", "UNITS", "STREAM", once=True)
     kind = header.get("DATA_TYPE", "ACCELERATION")

@@ -22,13 +22,13 @@ _TEXT = layout(
 
 
 def is_emod3d(head: bytes) -> bool:
-    """Return whether the first bytes are the header of such a file."""
+    """Return whether the first two lines are those of EMOD3D: station and direction, then count, interval and six numbers."""
     lines = head.decode("latin-1").splitlines()
     return len(lines) > 1 and all(pattern.search(lines[index][:200]) for index, pattern, _ in _TEXT)
 
 
 def read_emod3d(file: RecordFile) -> list[Component | Unusable]:
-    """Return the component; raise ``InputError`` if the file is incomplete, or if the user has not stated its unit."""
+    """Return the component in a list; raise ``InputError`` if the file is incomplete, or if the user has not stated its unit."""
     lines = lines_of(file.text)
     fields = read_header(lines, 0, _TEXT)
     npts, dt = count_and_step(fields, "npts", "dt")

@@ -226,10 +226,10 @@ def number_in(field: str, index: int) -> float:
 
 
 def is_cut_short(backwards: Iterable[str]) -> bool:
-    """Return whether the last number has fewer decimals than a hundred or more before it, which agree.
+    """Return whether the last number has fewer decimals than up to 1000 before it, which agree; False for fewer than 100.
 
-    A file cut within its last number has the right count, but a wrong value. The numbers come ``backwards``; only two are
-    read unless the last one is short.
+    A file cut within its last number has the right count, but a wrong value. The numbers come ``backwards``; only two are read
+    unless the last one is short.
     """
     tokens = islice(backwards, LOOKED_AT)
     last_tail, tail_before = next(tokens, ""), next(tokens, "")

@@ -60,7 +60,7 @@ def read_header(lines: Sequence[str], start: int, layout: Sequence[HeaderLine]) 
 
 
 def past_mark(lines: Sequence[str], start: int, after: str) -> int:
-    """Return the index after the mark "/&" at ``lines[start]``; raise ``InputError`` unless it is there, ``after`` its data."""
+    """Return the index after the mark "/&" at ``lines[start]``; raise ``InputError`` if it is not there ``after`` these data."""
     if not line_at(lines, start).startswith("/&"):
         raise _mismatch(lines, start, f'"/&" after {after}; fetch it again')
     return start + 1
@@ -104,7 +104,7 @@ def require(header: Mapping[str, str], *keys: str) -> None:
 
 
 def number_of(header: Mapping[str, str], key: str) -> float:
-    """Return the number under ``key`` of a header; raise ``InputError`` without one."""
+    """Return the number under ``key`` of a header; raise ``InputError`` if the key is missing or its value is no number."""
     if key not in header:
         raise InputError(f"the header lacks {key}")
     try:
@@ -114,7 +114,10 @@ def number_of(header: Mapping[str, str], key: str) -> float:
 
 
 def count_and_step(header: Mapping[str, str], count: str, step: str) -> tuple[int, float]:
-    """Return the number of samples and the sampling interval [s] under two keys; raise ``InputError`` for impossible ones."""
+    """Return the number of samples and the sampling interval [s] under two keys.
+
+    Raises ``InputError`` unless the number is whole, 2 or more, and the interval above 0 and below 10 s.
+    """
     npts, dt = number_of(header, count), number_of(header, step)
     if npts != int(npts) or npts < 2 or not 0 < dt < 10:
         raise InputError(f"the header says {npts:g} values every {dt:g} s; expected a whole number and an interval")

@@ -35,12 +35,12 @@ _PLACES = {"1": "borehole", "2": "surface"}
 
 
 def is_knet(head: bytes) -> bool:
-    """Return whether the first bytes are those of a K-NET or KiK-net ASCII file."""
+    """Return whether the first bytes are "Origin Time", with which ASCII files of K-NET and KiK-net begin."""
     return head.startswith(b"Origin Time")
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file; raise ``InputError`` with the line if it is incomplete."""
+    """Return the recording in a list; raise ``InputError`` with the line if it is incomplete."""
     lines = lines_of(text)
     quake, start = moment_of(read_header(lines, 0, _EVENT)), moment_of(header := read_header(lines, 0, _TEXT))
     day = "" if quake is None else datetime.fromtimestamp(quake - _JAPAN, UTC).strftime("%Y-%m-%d %H:%M")

@@ -148,14 +148,18 @@ def _events(traces: "list[obspy.Trace]") -> "list[list[obspy.Trace]]":
 
 
 def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -> Component:
-    """Return one channel as a component, its sensitivity by StationXML or by the study; raise ``InputError`` without one."""
+    """Return one channel as a component, its sensitivity by StationXML or by the study.
+
+    Raises ``InputError`` without a sensitivity, for another quantity, an inclined channel, a channel of text and the recorder's
+    clock.
+    """
     stats = trace.stats
     if not np.issubdtype(trace.data.dtype, np.number):
         raise InputError(f"{trace.id} holds text, not samples")
     if is_clock(stats.channel):
         raise InputError(f"{trace.id} is the recorder's clock, no ground motion")
     start = stats.starttime.timestamp
-    entry = None if "sensitivity" in file.options.instead else _entry(file, trace)
+    entry = None if "sensitivity" in file.options.instead else _epoch_with_sensitivity(file, trace)
     covering = (epoch for epoch in file.inventories.epochs_of(trace.id) if epoch.start <= start < epoch.end)
     statements = _directions(trace.id, entry or next(covering, None))
     if entry is not None:
@@ -215,10 +219,10 @@ def _directions(channel_id: str, entry: stationxml.Channel | None) -> tuple[Stat
     return tuple(statements)
 
 
-def _entry(file: RecordFile, trace: "obspy.Trace") -> stationxml.Channel | None:
-    """Return the epoch of StationXML with a channel's sensitivity; ``None`` without one.
+def _epoch_with_sensitivity(file: RecordFile, trace: "obspy.Trace") -> stationxml.Channel | None:
+    """Return the epoch of StationXML that has a channel's sensitivity at the time of the trace; ``None`` without one.
 
-    Raises ``InputError`` if two contradict each other; then ``None`` if the study states the sensitivity.
+    If epochs contradict each other, ``None`` if the study states the sensitivity; else ``Unstated`` is raised.
     """
     epochs = file.inventories.epochs_of(trace.id)
     start, end = trace.stats.starttime.timestamp, trace.stats.endtime.timestamp
@@ -236,7 +240,7 @@ def _entry(file: RecordFile, trace: "obspy.Trace") -> stationxml.Channel | None:
 
 
 def _without_sensitivity(file: RecordFile, trace: "obspy.Trace") -> Unstated:
-    """Return the refusal of counts that no StationXML covers, with the files of StationXML that were not read."""
+    """Return the error for counts whose sensitivity no StationXML has, with the files of StationXML that were not read."""
     stats, epochs = trace.stats, file.inventories.epochs_of(trace.id)
     refused = ", ".join(file.inventories.refused[:_MOST_NAMED])
     unread = f" (not read: {refused})" if refused else ""

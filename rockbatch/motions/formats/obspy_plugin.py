@@ -40,7 +40,7 @@ def first_bytes(filename: FileLike) -> bytes:
 
 
 def name_and_bytes(filename: FileLike) -> tuple[str, bytes]:
-    """Return the name for messages, and contents, of a path or file-like object."""
+    """Return the name for messages, and contents, of a path or file-like object. Raises ``OSError`` if it cannot be read."""
     if isinstance(filename, str | os.PathLike):
         return str(filename), Path(filename).read_bytes()
     return str(getattr(filename, "name", "data")), filename.read()

@@ -19,12 +19,12 @@ _NEEDED = ("Number of Data", "Time Increment (s)", "Orientation")
 
 
 def is_resorce(head: bytes) -> bool:
-    """Return whether the first bytes are the header of such a file."""
+    """Return whether the first bytes are a RESORCE header: "Event Date & Time", and keys of count, interval and orientation."""
     return head.startswith(b"Event Date & Time") and all(f"\n{key}".encode() in head for key in _NEEDED)
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file; raise ``InputError`` with the line or the missing key if it is incomplete."""
+    """Return the recording in a list; raise ``InputError`` with the line or the missing key if it is incomplete."""
     lines = lines_of(text)
     index, unit = line_with(_UNIT, lines, 20, "Acceleration time series in m/s/s")
     header = keys_of(lines[:index], *_NEEDED)

@@ -60,7 +60,7 @@ def is_sac(head: bytes) -> bool:
 
 
 def _byte_order(data: bytes) -> str | None:
-    """Return the byte order, "<" or ">", in which the header's version is 6 or 7; None without one."""
+    """Return the byte order, "<" or ">", in which the header's version is 6 or 7; None if none, or if the data are short."""
     whole = len(data) >= _VERSION_AT + 4
     return next(
         (order for order in "<>" if whole and np.frombuffer(data, f"{order}i4", 1, _VERSION_AT)[0] in (6, 7)), None
@@ -68,10 +68,10 @@ def _byte_order(data: bytes) -> str | None:
 
 
 def read_sac(file: RecordFile) -> list[Component | Unusable]:
-    """Return the component of a SAC file in the study's unit: data / sensitivity × unit; raise ``Unstated`` without.
+    """Return the component in a list, in the study's unit: data / sensitivity × unit; raise ``Unstated`` if it states neither.
 
-    SAC's entry for the kind of data (IDEP) is no statement of the unit: files in g that claim nm/s² are common. Velocities
-    and displacements are refused by it, and by the channel of a seismometer, unless a manifest states the file's unit.
+    SAC's entry for the kind of data (IDEP) is no statement of the unit: files in g that claim nm/s² are common. Velocities and
+    displacements are refused by it, and by the channel of a seismometer, unless a manifest states the file's unit.
     """
     options = file.options
     numbers, names, samples = _parsed(file.data)
@@ -173,8 +173,8 @@ def _start(numbers: dict[str, float]) -> tuple[float, str]:
 def _directions(channel: str, numbers: dict[str, float]) -> tuple[Statement, ...]:
     """Return the statements of direction: the channel, and CMPAZ (from north) with CMPINC (from upward vertical) [degrees].
 
-    If both angles are 0°, the component is upward, or its program did not set them. Inclined components have no statement
-    by angles.
+    If both angles are 0°, the component is upward, or its program did not set them, so the statement is a default. Inclined
+    components have no statement by angles.
     """
     code = orientation_of(channel)
     by_code = (Statement(Kind.CODE, f"channel {shown(channel)}", code),) if code else ()

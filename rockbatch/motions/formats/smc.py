@@ -43,7 +43,7 @@ def is_smc(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file; raise ``InputError`` with the line if it is incomplete."""
+    """Return the recording in a list; raise ``InputError`` with the line if it is incomplete, or of another quantity."""
     lines = lines_of(text)
     title = read_header(lines, 0, _TEXT[:1])
     if title["kind"] not in _KINDS:
@@ -110,7 +110,10 @@ def _real(lines: list[str], n: int) -> str:
 
 
 def _label(vertical: int, azimuth: int, unknown: int, text: str) -> str:
-    """Return the direction by the angle from the vertical and the azimuth [degrees], else the text's; "Up" and "Down" so."""
+    """Return the direction by angles from the vertical and north [degrees]: "Up", "Down" or "90"; else that of the ``text``.
+
+    Raises ``InputError`` for an inclined component.
+    """
     if vertical in _VERTICAL:
         return _VERTICAL[vertical]
     if vertical not in (90, unknown):

@@ -60,7 +60,7 @@ class _Quantity:
 
 
 def _peaks(sampled: Sampled, stated: Stated) -> list[float]:
-    """Return the peaks of the samples with and without their offset."""
+    """Return the largest absolute sample as it is, and less the mean of the samples, in their unit."""
     return [_largest(sampled.as_read - offset) for offset in (0.0, sampled.as_read.mean())]
 
 
@@ -76,18 +76,18 @@ def _times_of_peak(sampled: Sampled, stated: Stated) -> list[float]:
 
 
 def _durations(sampled: Sampled, stated: Stated) -> list[float]:
-    """Return the duration and the time of the end [s]."""
+    """Return the number of samples times the interval [s], and that plus the time of the first sample."""
     duration = sampled.dt * len(sampled.values)
     return [duration, stated.begins + duration]
 
 
 def _ranges(sampled: Sampled, stated: Stated) -> list[float]:
-    """Return the range from the least to the largest sample."""
+    """Return the range from the least to the largest sample, alone in a list."""
     return [float(np.ptp(sampled.as_read))]
 
 
 def _steps(sampled: Sampled, stated: Stated) -> list[float]:
-    """Return the sampling interval."""
+    """Return the sampling interval [s], alone in a list."""
     return [sampled.dt]
 
 
@@ -110,14 +110,17 @@ QUANTITIES = {  # peaks in five digits, of 1.0000; times to a sample, durations 
 def contradictions(statements: Sequence[Stated], sampled: Sampled, gravity: float) -> list[Finding]:
     """Return findings on statements that the samples contradict; notes on small differences have an empty ``what``.
 
-    Raises ``InputError`` for another count of samples.
+    Raises ``Truncated`` for another count of samples.
     """
     findings = [_contradiction(stated, sampled, gravity) for stated in statements]
     return [finding for finding in findings if finding is not None]
 
 
 def _contradiction(stated: Stated, sampled: Sampled, gravity: float) -> Finding | None:
-    """Return the finding on a statement that the samples contradict; None within its tolerances."""
+    """Return the finding on a statement that the samples contradict; None within its tolerances, and if it is no number.
+
+    Raises ``Truncated`` for another count of samples.
+    """
     printed = stated.text.strip()
     number = _PRINTED.fullmatch(printed)
     if number is None:

@@ -113,7 +113,7 @@ def _counted(
 
 
 def _count_and_step(numbers: Sequence[float]) -> tuple[float, str] | None:
-    """Return the count in one to three numbers, with a step before or after it, and both as a header line; None if none.
+    """Return the count in one to three numbers, with a step before or after it, and both as a header line; else None.
 
     A third number, such as RspMatch's count of leading zeros, is ignored.
     """
@@ -127,9 +127,9 @@ def _count_and_step(numbers: Sequence[float]) -> tuple[float, str] | None:
 
 
 def _pairs(rows: Sequence[float], remainder: Sequence[float], width: int) -> Samples | None:
-    """Return numbers as pairs of time and value, shape (npts, 2), if they are such; else ``None``.
+    """Return numbers as pairs of time and value, shape (npts, 2); ``None`` unless at least five whose times grow evenly.
 
-    Programs for structures write several pairs on a line; they differ from other tables by times that grow evenly.
+    Programs for structures write several pairs on a line; they differ from other tables by these times.
     """
     numbers = np.array([*rows, *remainder]) if remainder else np.array(rows)
     if width % 2 or len(numbers) % 2 or len(numbers) < 2 * _FEWEST_PAIRS:
@@ -155,7 +155,7 @@ def _table_error(lines: list[str], reason: str) -> InputError:
 
 
 def _separators(text: str, lines: list[str]) -> tuple[str, str]:
-    """Return the separator of columns besides blanks, and the decimal comma or "".
+    """Return the separator of columns besides blanks, and the decimal comma or "": (";", "") for numbers without commas.
 
     Raises ``InputError`` for numbers with both points and commas, and for commas of unclear meaning.
     """
@@ -182,12 +182,12 @@ def _separators(text: str, lines: list[str]) -> tuple[str, str]:
 
 
 def _in_numbers(sign: str, text: str, lines: list[str]) -> bool:
-    """Return whether a character occurs in a line of numbers only."""
+    """Return whether the character ``sign`` occurs in a line of numbers only."""
     return sign in text and any(sign in line and _NUMERIC.fullmatch(line) for line in lines)
 
 
 def _even_rows(lines: Sequence[str], width: int, between: str, decimal: str) -> "array[float]":
-    """Return the numbers of the first ``lines``, up to the first that is unlike ``width`` plainly written numbers.
+    """Return the numbers of the ``lines`` before the first piece of :data:`_PIECE` with a line unlike ``width`` plain numbers.
 
     They equal those of :func:`_numbers`, but are faster. In pieces, since all words at once would take thirty times the size of
     the text.
@@ -210,7 +210,7 @@ def _even_rows(lines: Sequence[str], width: int, between: str, decimal: str) -> 
 
 
 def _numbers(line: str, between: str, decimal: str) -> list[float] | None:
-    """Return the numbers of a line, also touching ones and with D exponents; ``None`` if it has anything else."""
+    """Return the numbers of a line, also touching ones and with D exponents; [] for a blank line, ``None`` for other texts."""
     if "_" in line:  # Python would read 1_0 as ten
         return None
     if '"' in line:

@@ -78,7 +78,7 @@ def from_pairs(pairs: Samples, channel: str) -> tuple[float, Samples, tuple[str,
 
 
 def _since_first(t: Samples) -> Samples:
-    """Return times after the first, without the digits that floats lose of seconds since 1970."""
+    """Return times after the first without the digits that floats lose of seconds since 1970; exact times as they are."""
     decimals = math.floor(-math.log10(float(np.spacing(np.abs(t).max()))))
     return t if decimals > _MOST_DIGITS else np.round(t - t[0], decimals)
 
@@ -117,7 +117,7 @@ def _resolution(t: Samples) -> float:
 
 
 def _interpolated(places: Samples, counts: Samples, values: Samples) -> Samples:
-    """Return ``values`` at ``counts``, interpolated linearly at ``places``, shape (places, channels)."""
+    """Return ``values``, which are given at ``counts``, interpolated linearly at ``places``, shape (places, channels)."""
     return np.column_stack([np.interp(places, counts, channel) for channel in values.T])
 
 

@@ -35,7 +35,7 @@ _MOST_CHANNELS = 6
 _MOST_MORE = 2  # lines beyond the declared ones
 _TITLE = b"ARCHIVO ESTANDAR DE ACELERACION"
 _DATA = re.compile(r"^\s*DATOS DE ACELERACION")
-_BEHIND = 10  # lines after that one, within which the first sample stands
+_BEHIND = 10  # most lines from that line to the first sample
 _FORMAT = re.compile(r"\(?(?P<per_line>[0-9]{1,2})[FEDG](?P<width>[0-9]{1,2})\.[0-9]{1,2}\)?", re.IGNORECASE)
 _CLOCK = re.compile(r"(\d{1,2}):(\d{1,2}):(\d{1,2}(?:[.,]\d{1,6})?)", re.ASCII)
 _DAY = 86400.0  # s
@@ -54,7 +54,7 @@ _OPTIONAL = (_DECIMATION, _RATE, _PEAK, _PEAK_SAMPLE, _DATE, _QUAKE, _BEGAN, _NA
 
 
 def is_unam(head: bytes) -> bool:
-    """Return whether the first bytes are the header of such a file."""
+    """Return whether the first bytes have the title of a file of UNAM, "ARCHIVO ESTANDAR DE ACELERACION"."""
     return _TITLE in head[:1000]
 
 
@@ -131,7 +131,7 @@ def _value_of_each(header: dict[str, str], key: str, count: int) -> list[str]:
 
 
 def _texts_of(text: str, count: int) -> list[str]:
-    """Return the values of an optional key for all channels, between slashes; "" for each if there is another number."""
+    """Return the values of an optional key for all channels, between slashes; "" for each if there is another number of them."""
     texts = [part.strip() for part in text.strip("/ ").split("/")]
     return texts if len(texts) == count else [""] * count
 
@@ -150,7 +150,7 @@ def _common_value(header: dict[str, str], key: str, count: int) -> str:
 
 
 def _first_sample_line(lines: list[str], start: int, labels: list[str]) -> int:
-    """Return the index of the first sample's line, after rulers and the directions ``labels``; raise ``InputError`` without."""
+    """Return the index of the first sample's line, after rulers and ``labels``; raise ``InputError`` if it is not found."""
     named = False
     for i in range(start + 1, min(start + _BEHIND, len(lines))):
         words = [word.partition(";")[0] for word in lines[i].split()]
@@ -164,7 +164,10 @@ def _first_sample_line(lines: list[str], start: int, labels: list[str]) -> int:
 
 
 def _values(lines: list[str], first: int, npts: int, channels: int, layout: str) -> tuple[Samples, int]:
-    """Return the samples, shape (npts, channels), and the number of further lines, two at most."""
+    """Return the samples, shape (npts, channels), and the number of further lines, two at most.
+
+    Raises ``InputError`` for fewer samples or more lines, another format than ``layout`` says, and lines that do not fit it.
+    """
     form = _FORMAT.fullmatch(layout.replace(" ", ""))
     if form is None or int(form["per_line"]) != channels or int(form["width"]) < 2:
         raise InputError(f'the header says FORMATO DATOS : "{layout[:20]}"; expected one such as {channels}F10.4')

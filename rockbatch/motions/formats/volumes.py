@@ -76,7 +76,7 @@ _STATED = {  # statements about the samples in the text, which some files of CSM
 
 
 def _is_dialect(name: str, head: bytes) -> bool:
-    """Return whether the first bytes are a header in the dialect ``name``: "CSMIP", "RENADIC" or "USC"."""
+    """Return whether the first bytes are a header in the dialect ``name``, "CSMIP", "RENADIC" or "USC", and in no other."""
     lines = head.decode("latin-1").splitlines()
     volume = _volume(lines, 0)
     if volume is None:
@@ -114,7 +114,10 @@ def parse_pairs(text: str) -> list[Recording]:
 
 
 def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | None], int]:
-    """Return the channel whose title is ``lines[first]`` with the first time of its pairs [s], and the index after it."""
+    """Return the channel whose title is ``lines[first]`` with the first time of its pairs [s], and the index after it.
+
+    Raises ``InputError`` with the line for another title, for spectra (Volume III), and for an incomplete channel.
+    """
     volume = _volume(lines, first)
     if volume is None:
         raise InputError(
@@ -189,7 +192,7 @@ class _Samples(NamedTuple):
 
 
 def _samples(lines: list[str], first: int, volume: int, fields: dict[str, str]) -> tuple[_Samples, float | None, int]:
-    """Return the samples, the first time of pairs [s] or None, and the index of the line after them."""
+    """Return the samples, the time of the first pair [s] (None if they are no pairs), and the index of the line after them."""
     start = first + _DATA[volume]
     declared = declares_series(lines, start)
     if volume == 1 and not declared and fields["npts"] and fields["unit"]:
@@ -220,11 +223,16 @@ def _pairs(lines: list[str], first: int, fields: dict[str, str]) -> tuple[_Sampl
 
 
 def _undeclared(lines: list[str], start: int, fields: dict[str, str]) -> tuple[float, dict[str, Series], int]:
-    """Return interval [s], series by kind and end of undeclared samples of Volume II, in the unit of the stated peak."""
-    unit, series, end = _unit_of_peak(fields), {}, start
+    """Return interval [s], series by kind and end of undeclared samples of Volume II, in the unit of the stated peak.
+
+    Raises ``InputError`` for fewer than two points, or with the line of an incomplete series.
+    """
+    unit, npts, series, end = _unit_of_peak(fields), int(fields["npts"]), {}, start
+    if npts < 2:
+        raise InputError(f"line {start - _DATA[2] + 16}: found {npts} points; expected at least two")
     for kind, per in (("acc", "/SEC/SEC"), ("vel", "/SEC"), ("dis", "")):
         if kind == "acc" or line_at(lines, end)[:1].isspace():
-            values, end = equal_columns(lines, end, int(fields["npts"]))
+            values, end = equal_columns(lines, end, npts)
             series[kind] = (values, unit.replace("/SEC/SEC", per))
     return number_in(fields["dt"], start), series, end
 

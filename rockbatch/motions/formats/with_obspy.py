@@ -118,7 +118,7 @@ CHECKS: dict[str, Callable[[bytes], bytes]] = {"MSEED": check_mseed, "KINEMETRIC
 
 @contextmanager
 def _collecting_unraisable() -> Iterator[list[str]]:
-    """Yield a list of the errors that ObsPy's callbacks from C cannot raise; Python would print them on the terminal."""
+    """Context manager: yield a list of errors that ObsPy's callbacks from C cannot raise, and Python would print."""
     errors: list[str] = []
     hook = sys.unraisablehook
     sys.unraisablehook = lambda unraised: errors.append(f"{type(unraised.exc_value).__name__}: {unraised.exc_value}")
@@ -136,7 +136,7 @@ def _is_harmless(warning: warnings.WarningMessage, name: str) -> bool:
 
 
 def read_stream(data: bytes, name: str) -> "obspy.Stream":
-    """Return ``data`` in the format ``name`` as read by ObsPy; raise ``InputError`` for damage or any complaint of ObsPy."""
+    """Return ``data`` in the format ``name`` as read by ObsPy; raise ``InputError`` for damage, or if ObsPy warns of anything."""
     data = CHECKS[name](data)
     with warnings.catch_warnings(record=True) as caught, _collecting_unraisable() as unraised:
         warnings.simplefilter("always")

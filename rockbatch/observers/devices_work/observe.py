@@ -38,7 +38,7 @@ class DeviceWork:
 
 
 def greatest_of(pier: Pier, base: Base, work: Work) -> DeviceWork:
-    """Return the greatest ``work`` of any damper, and strain of any tendon; None for either if there is none."""
+    """Return the greatest ``work`` of any damper, and strain of any tendon that can yield; None for either without one."""
     dampers = np.array([isinstance(device, Damper) for device in base.restraints for _ in places(pier, device)])
     strains = work.strain[np.isfinite(work.strain)]
     strain = float(strains.max()) if len(strains) else None
@@ -90,6 +90,6 @@ class WorkOfDevices(Observer):
 
 
 def requested(output: Output) -> WorkOfDevices | None:
-    """Return the observer that a study asks for, if any."""
+    """Return the observer if [output] of a study asks for it, else None."""
     settings = output.of(DevicesWork)
     return WorkOfDevices(0.001 * settings.least_stroke_mm) if settings.devices_work else None

@@ -10,7 +10,7 @@ from rockbatch.quantities.quantity import Quantity, ReportFormat, Run
 
 
 def _of_work(field: str, per: Callable[[Pier], float | None] = lambda pier: 1.0) -> Callable[[Run], float | None]:
-    """Return the number of a ``field`` of ``DeviceWork``, times ``per`` of the pier if that is known."""
+    """Return a function of a run: ``field`` of its ``DeviceWork`` times ``per`` of the pier; None if one of the two is None."""
 
     def value(run: Run) -> float | None:
         work = getattr(run.outcome.observed.get("devices_work"), field, None)

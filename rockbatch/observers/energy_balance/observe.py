@@ -71,5 +71,5 @@ def energies(run: Run, rows: np.recarray) -> Samples:
 
 
 def requested(output: Output) -> EnergyBalance | None:
-    """Return the observer that a study asks for, if any."""
+    """Return the observer if [output] of a study asks for it, else None."""
     return EnergyBalance() if output.of(Ledger).ledger else None

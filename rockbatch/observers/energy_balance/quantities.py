@@ -5,7 +5,7 @@ from rockbatch.quantities.quantity import Quantity, ReportFormat, Run
 
 
 def _energy(term: str, form: str) -> Quantity:
-    """Return a term of the energy ledger."""
+    """Return the quantity of a term of the energy balance at the end of a run; of the remainder the greatest on the way."""
 
     def value(run: Run) -> float | None:
         energies = run.outcome.observed.get("energy_balance")

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from rockbatch.common.lazy import pd
 from rockbatch.observers.forces.peaks import (
     PeakForces,
-    at_rows,
     forces_table,
     impacts_table,
     peak_forces,
@@ -15,6 +14,7 @@ from rockbatch.observers.forces.peaks import (
 )
 from rockbatch.observers.forces.study import Forces
 from rockbatch.outcome.outcome import Outcome
+from rockbatch.simulation.base_forces import at_rows
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
@@ -38,7 +38,7 @@ class PeaksOfForces(Observer):
         return peak_forces(recording.run, recording.rows, self.least_normal)
 
     def beyond(self, run: Run, fine: Peaks, fewer: Peaks) -> Peaks:
-        """Return ``fine`` with the change from ``fewer`` modes as its error."""
+        """Return ``fine`` with the change by one mode ``fewer`` as its error, NaN if the last mode is damped too strongly."""
         return with_modes_error(run, fine[0], fewer[0], CHANCE), fine[1]
 
     def add(self, run: Run, outcome: Outcome, fine: Peaks | None, coarse: Peaks | None) -> Outcome:
@@ -60,6 +60,6 @@ class PeaksOfForces(Observer):
 
 
 def requested(output: Output) -> PeaksOfForces | None:
-    """Return the observer that a study asks for, if any."""
+    """Return the observer if [output] of a study asks for it, else None."""
     settings = output.of(Forces)
     return PeaksOfForces(settings.least_normal_share) if settings.forces else None

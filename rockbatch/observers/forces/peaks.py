@@ -9,19 +9,17 @@ import numpy as np
 
 from rockbatch.common.lazy import pd
 from rockbatch.core import types
-from rockbatch.core.devices.laws import FRICTION
-from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
-from rockbatch.core.observe.peaks import NEVER, NOTED, Extremes, Limits, Noted, RecordedRun, forces_of_run
+from rockbatch.core.observe.forces import FORCES, Forces
+from rockbatch.core.observe.peaks import NEVER, Noted
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.changes import LEAST, Sized, greatest_change
 from rockbatch.outcome.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.pier import Pier, RigidBase, YieldingBase, landing_force
+from rockbatch.simulation.base_forces import at_rows, observed
 from rockbatch.simulation.coarser import of_last_mode
 from rockbatch.simulation.histories import LANDINGS
-from rockbatch.simulation.models import acceleration_at, block, elements, ground_of, model, per_mode
-from rockbatch.simulation.restraints import apart, recorded
+from rockbatch.simulation.models import acceleration_at, block
 from rockbatch.simulation.runs import Run
-from rockbatch.simulation.starting import start_of
 
 _UPLIFTS = (types.SEPARATION_LEFT, types.SEPARATION_RIGHT, types.LIFT_OFF)
 
@@ -115,64 +113,13 @@ class Impacts(NamedTuple):
     vertical: Samples
 
 
-def at_rows(run: Run, rows: np.recarray) -> np.recarray:
-    """Return the forces (core.observe.forces.Forces) at ``rows`` that include both sides of every event."""
-    forces = np.recarray(len(rows), FORCES)
-    _observe(run, rows, 0.0, forces, np.zeros(0))
-    return forces
-
-
-def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarray, extremes: Samples) -> np.record:
-    """Fill ``forces`` at the rows, or ``extremes`` over ``rows`` at every step; return the record Noted.
-
-    An empty array is not filled. The friction demand is taken where N > ``least_normal`` M g.
-    """
-    noted = np.zeros(1, NOTED).view(np.recarray)
-    noted.slides = noted.pulls = NEVER
-    if len(rows) == 0:
-        return noted[0]
-    pier, base = run.pier, run.base
-    most = math.inf if base.friction is None else float(base.friction)
-    limits = Limits(most, least_normal * float(pier.gravity), start_of(pier, base).unstressed)
-    body = float(pier.deck) if base.on_springs else Body(_outline(pier, base), _friction_hold(pier, base))
-    plain, pulls = apart(base, rows)
-    devices = recorded(pier, base, rows) if base.restraints else None
-    recording = RecordedRun(plain, pulls, devices, ground_of(run.motion), float(run.motion.dt))
-    forces_of_run(model(pier, base), body, recording, Extremes(limits, extremes, noted), forces)
-    return noted[0]
-
-
-def _friction_hold(pier: Pier, base: RigidBase) -> Hold:
-    """Return the resistance of friction dampers to a pier that begins to turn about its left or right pivot."""
-    numbers = []
-    for side in (-1.0, 1.0):
-        rubs = [
-            (law.strength, pier.half_width - side * law.offset) for law in elements(pier, base) if law.kind == FRICTION
-        ]
-        numbers.append(sum(math.copysign(strength, d) for strength, d in rubs if d != 0.0))
-        numbers.append(sum(strength * abs(d) for strength, d in rubs) / pier.inertia_about_pivot)
-    return Hold(*map(float, numbers))
-
-
-def _outline(pier: Pier, base: RigidBase) -> Outline:
-    """Return the outline of a pier.
-
-    The deck of a frame rests on corners of its columns, twice as far from their pivots as their centres of mass are.
-    """
-    size, width = float(pier.size), 2.0 * float(pier.half_width)
-    if pier.deck_over_columns is not None:
-        return Outline(size, width, width / math.sin(pier.alpha) / size, 0.0)
-    bent = per_mode(base.modes(pier).at(pier.deck)) if base.bends else None
-    return Outline(size, width, 1.0, float(pier.deck - pier.height), bent)
-
-
 def _events(rows: np.recarray, kinds: Sequence[float]) -> np.ndarray:
-    """Return the indices of the rows after events of these ``kinds``."""
+    """Return the indices of the rows after events of these ``kinds``, ascending; empty without such events."""
     return np.flatnonzero(np.isin(rows.kind, kinds))
 
 
 def impacts(rows: np.recarray, forces: np.recarray) -> Impacts:
-    """Return the impacts in ``rows``: speeds before them, and changes of momentum as impulses."""
+    """Return the impacts in ``rows``, with landing speeds from the rows before them, and changes of momentum as impulses."""
     landed = _events(rows, LANDINGS)
     before, kind = landed - 1, rows.kind[landed]
     speed_left, speed_right = np.abs(forces.speed_left[before]), np.abs(forces.speed_right[before])
@@ -211,7 +158,7 @@ def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakF
     standing = np.flatnonzero(np.abs(rows.theta) <= pier.alpha)
     rows = rows[: standing[-1] + 1].view(np.recarray)
     extremes = np.zeros(len(Forces._fields))
-    noted = Noted(*_observe(run, rows, least_normal, np.recarray(0, FORCES), extremes).tolist())
+    noted = Noted(*observed(run, rows, least_normal, np.recarray(0, FORCES), extremes).tolist())
     most = Forces(*extremes.tolist())
     events = rows[(rows.kind > 0.0) | (rows.kind == types.BEFORE_EVENT)].view(np.recarray)
     landings = impacts(events, at_rows(run, events))
@@ -260,7 +207,7 @@ def _per_bounce(run: Run, events: np.recarray, after: np.ndarray) -> Samples | f
     """Return the factor from J_h/J_v of each impact in total to that of a single bounce; 1 except when coming to rest.
 
     Rest sums up ever lower bounces, each of which leaves the share e of the velocity: for one, J_h is (1 − e) and J_v (1 + e)
-    of the impulses of an immediate stop (THEORY.md, Forces).
+    of the impulses of an immediate stop (THEORY.md, Forces). 1 for all on springs.
     """
     if run.base.on_springs:
         return 1.0
@@ -343,8 +290,9 @@ def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier, chance: float) 
 def with_modes_error(run: Run, fine: PeakForces, fewer: PeakForces, chance: float) -> PeakForces:
     """Return ``fine`` with ``chance`` times the greatest relative change from ``fewer``, by one mode fewer, as its error.
 
-    The friction demand of impacts is left out: each further mode takes about half of a landing's horizontal impulse, so that it
-    tends to 0, and is too great.
+    NaN if the last mode has more than :data:`rockbatch.simulation.coarser.MOST_DAMPING`. The friction demand of impacts is
+    left out: each further mode takes about half of a landing's horizontal impulse, so that this demand falls to 0 with more
+    modes, and is too great with any number of them.
     """
     of_modes = {name: sized for name, sized in OF_FORCES.items() if name != OF_IMPACTS}
     return replace(fine, error=of_last_mode(run, greatest_change(of_modes, fine, fewer, run.pier)[1], chance))

@@ -17,7 +17,7 @@ _SLIDES = (Limit(ceiling=Ceiling(always(MOST_FRICTION), "is more than any interf
 
 
 def _of_forces(field: str, factor: Callable[[Pier], float | None] | None = None) -> Callable[[Run], float | None]:
-    """Return the number of a field of ``PeakForces``, times a factor of the pier if that is known."""
+    """Return a function of a run: ``field`` of its ``PeakForces`` times ``factor`` of the pier; None if one of them is None."""
 
     def value(run: Run) -> float | None:
         force = getattr(run.outcome.observed.get("forces"), field, None)
@@ -55,14 +55,14 @@ def _in_kilonewtons(
     behind: str = "",
     **entered: bool,
 ) -> Quantity:
-    """Return the same as the quantity before, for piers whose mass is known."""
+    """Return the quantity of a ``field`` in kN, kN m or kN s, for piers whose mass is known, described as "the same in kN, …"."""
     words = f"the same in {in_print(unit)}, if mass_t is given"
     more: dict[str, Any] = {"sometimes": True, "weighed": True, "limits": (limit,) if limit.words else (), **entered}
     return _force(name, words, field, unit, f"{head} [{in_print(unit)}]", ".0f", per=per, behind=behind, **more)
 
 
 _TIMES_MASS = {"m/s^2": "kN", "m/s": "kN*s", "m^2/s^2": "kN*m"}
-"""Units of quantities over the mass [t], and of these."""
+"""Units of quantities over the mass, and of the same quantities times the mass [t]."""
 
 
 def _over_mass(

@@ -43,11 +43,11 @@ _OF_FORCES = {
     "friction": "is compared only with the friction demand; write forces = true under [output], which computes it",
     "contact_stiffness_kN_m": "is of the force of a landing; write forces = true under [output], which computes it",
 }
-"""Keys of a [[case]] that only forces use, and what is missing without them."""
+"""Keys of a [[case]] that only forces use, each with its problem without forces."""
 
 
 def complain(file: TomlFile, settings: Forces, piers: Iterable[Pier]) -> None:
-    """Note keys that only forces use in a study without, which cost a second run with every step."""
+    """Add a problem to ``file`` for each key of a [[case]] that only forces use, unless the study has forces."""
     if settings.forces:
         return
     for table in file.tables("case", title="name"):

@@ -45,5 +45,5 @@ class CyclesOfRocking(Observer):
 
 
 def requested(output: Output) -> CyclesOfRocking | None:
-    """Return the observer that a study asks for, if any."""
+    """Return the observer if [output] of a study asks for it, else None."""
     return CyclesOfRocking() if output.of(Cycles).half_cycles else None

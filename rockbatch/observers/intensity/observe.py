@@ -13,9 +13,10 @@ from rockbatch.motions import Motion, measures
 from rockbatch.motions.pairs import pairing_obstacle, station_spectra
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.observers.intensity import TABLE
+from rockbatch.observers.intensity.order import Array
 from rockbatch.observers.intensity.study import Measures
+from rockbatch.observers.intensity.table import MEANING
 from rockbatch.results import beside_peaks
-from rockbatch.results.intensity import MEANING, Array
 from rockbatch.study import Study
 
 
@@ -63,7 +64,7 @@ def _column(period: float, rule: str = "") -> str:
 
 
 def requested_table(study: Study) -> str:
-    """Return the table beside peaks.csv that a study asks for; empty if it does not."""
+    """Return the name of the table beside peaks.csv if a study asks for it; else ""."""
     return TABLE if study.output.of(Measures).intensity else ""
 
 

@@ -2,13 +2,14 @@
 
 import math
 
-from rockbatch.common.files import read_table
 from rockbatch.common.lazy import pd
+from rockbatch.observers.intensity import TABLE
+from rockbatch.observers.intensity.order import LEAST_RUNS, orders
+from rockbatch.observers.intensity.table import MEANING, read
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.table import Head, table
 from rockbatch.reporting.templates import render
-from rockbatch.results.intensity import INTENSITY, LEAST_RUNS, MEANING, orders
 
 SYMBOLS = {
     "pga_over_g_tan_alpha": "PGA/(g tan α)",
@@ -21,13 +22,12 @@ SYMBOLS = {
 
 def section(finished: Finished) -> Markup:
     """Return tables of rank correlations and dispersions of each measure; empty without intensity.csv."""
-    path = finished.directory / INTENSITY
-    measures = read_table(path) if path.exists() else None
+    measures = read(finished.directory) if (finished.directory / TABLE).exists() else None
     if measures is None or measures.empty:
         return Markup("")
     ranks, dispersions = _tables(finished, orders(measures, finished.info["varied"]))
     return render(
-        "observers/intensity/section.html", ranks=ranks, dispersions=dispersions, file=INTENSITY, least=LEAST_RUNS
+        "observers/intensity/section.html", ranks=ranks, dispersions=dispersions, file=TABLE, least=LEAST_RUNS
     )
 
 

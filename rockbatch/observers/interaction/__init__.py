@@ -1,3 +1,8 @@
-"""Axial force and moment of sections at the same moment: interaction.csv."""
+"""Axial force and moment of sections, and normal force and shear of the base, at the same moment: interaction.csv."""
+
+from rockbatch.common.observers import ReportPart
+
+REPORT = ReportPart("Capacities", "capacities", behind="checks")
+"""Demands and the capacities that depend on the axial force of the same moment."""
 
 TABLE = "interaction.csv"

@@ -1,18 +1,17 @@
-"""Axial force and moment of the same moment in sections, read from every step of a run."""
+"""Axial force and moment in sections, and normal force and shear of the base, of the same moment: read from every step."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from rockbatch.motions.motion import Samples
+from rockbatch.observers.interaction.envelopes import Envelope, envelope, thinned, with_errors
 from rockbatch.observers.interaction.study import Interaction
-from rockbatch.outcome.changes import LEAST
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier.sections import section_heights
 from rockbatch.quantities.demands import OF_INTERACTION
 from rockbatch.results.interaction import INTERACTION
+from rockbatch.simulation.base_forces import at_rows
 from rockbatch.simulation.coarser import of_last_mode
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.observing import Observer
@@ -21,65 +20,39 @@ from rockbatch.simulation.runs import Run
 from rockbatch.simulation.sections import forces_in_sections
 from rockbatch.study import Output
 
-DIRECTIONS = np.linspace(0.0, np.pi, 61)
-"""Directions in the plane of N and |M| in which two envelopes are compared [rad]."""
+SHARES = np.array([0.25, 0.5, 0.75])
+"""Shares of a step at which forces of the base are interpolated."""
 
 
-class Envelope(NamedTuple):
-    """Corners of the least concave envelope of |M| over N in a section: forces and moments over the mass, shape (k,) each.
+def _at_base(recording: Recording) -> Envelope:
+    """Return the envelope of shear over normal force of the base, until the pier leans beyond α for good."""
+    run, rows = recording.run, recording.rows
+    standing = np.flatnonzero(np.abs(rows.theta) <= run.pier.alpha)
+    rows = rows[: standing[-1] + 1].view(np.recarray)
+    forces = at_rows(run, rows)
+    return envelope(None, *(with_values_between(rows.t, values) for values in (forces.normal, forces.shear)))
 
-    ``error`` is relative to the greatest |N| and |M|; None with a fixed step.
+
+def with_values_between(t: Samples, values: Samples) -> Samples:
+    """Return ``values`` at the times ``t`` [s] of rows, and behind them those at the :data:`SHARES` of steps.
+
+    They are cubic through the four rows around a step. Steps beside an event have none.
     """
-
-    height: float
-    axial: Samples  # N/M, positive in compression, ascending [m/s²]
-    moment: Samples  # |moment|/M [m²/s²]
-    error: float | None = None
-
-
-def envelope(height: float, axial: Samples, moment: Samples) -> Envelope:
-    """Return the envelope of forces at many moments.
-
-    A ratio of moment to a concave capacity, over time, is greatest at one of its corners (THEORY.md, Forces in sections).
-    """
-    corners: list[tuple[float, float]] = []
-    for point in sorted(zip(axial.tolist(), np.abs(moment).tolist(), strict=True)):
-        while corners and (
-            corners[-1][0] == point[0] or (len(corners) > 1 and not _turns_right(corners[-2], corners[-1], point))
-        ):
-            corners.pop()
-        corners.append(point)
-    n, m = np.array(corners).T
-    return Envelope(height, n, m)
-
-
-def _turns_right(first: tuple[float, float], second: tuple[float, float], third: tuple[float, float]) -> bool:
-    """Return whether a path through three points, by ascending N, turns to the right at the second."""
-    (n, m), (n2, m2), (n3, m3) = first, second, third
-    return (n2 - n) * (m3 - m) < (m2 - m) * (n3 - n)
-
-
-def with_errors(fine: Sequence[Envelope], coarse: Sequence[Envelope], chance: float) -> list[Envelope]:
-    """Return ``fine`` with ``chance`` times the greatest change of their reach in any direction added to their errors."""
-    changed = []
-    for own, other in zip(fine, coarse, strict=True):
-        sizes = max(float(np.abs(own.axial).max()), LEAST), max(float(own.moment.max()), LEAST)
-        change = float(np.abs(_reach(own, sizes) - _reach(other, sizes)).max())
-        changed.append(own._replace(error=(own.error or 0.0) + chance * max(change, LEAST)))
-    return changed
-
-
-def _reach(of: Envelope, sizes: tuple[float, float]) -> Samples:
-    """Return how far an envelope reaches in each of :data:`DIRECTIONS`, with N and |M| over their ``sizes``."""
-    n, m = of.axial / sizes[0], of.moment / sizes[1]
-    return np.asarray((np.outer(np.cos(DIRECTIONS), n) + np.outer(np.sin(DIRECTIONS), m)).max(axis=1))
+    steps = np.diff(t)
+    even = (steps[1:-1] > 0.0) & np.isclose(steps[:-2], steps[1:-1]) & np.isclose(steps[2:], steps[1:-1])
+    around = np.flatnonzero(even)[:, None] + np.arange(4)
+    s = SHARES[:, None]
+    weights = -s * (s - 1) * (s - 2) / 6, (s * s - 1) * (s - 2) / 2, -s * (s + 1) * (s - 2) / 2, s * (s * s - 1) / 6
+    return np.concatenate([values, (values[around] @ np.hstack(weights).T).ravel()])
 
 
 @dataclass(frozen=True)
 class InteractionInSections(Observer):
-    """Axial forces and moments in sections of the shaft at some ``heights`` [m], of every run that did not fail."""
+    """Axial forces and moments in sections of the shaft at some ``heights`` [m], and normal forces and shears of the ``base``, of
+    every run that did not fail."""
 
     heights: tuple[float, ...]
+    base: bool = False
 
     table = INTERACTION
 
@@ -88,29 +61,34 @@ class InteractionInSections(Observer):
         return outcome.status != "failed"
 
     def read(self, recording: Recording, outcome: Outcome) -> list[Envelope]:
-        """Return the envelope in each section."""
-        heights = section_heights(recording.run.pier, self.heights)
+        """Return the envelope in each section, and that of the base behind them."""
+        heights = section_heights(recording.run.pier, self.heights) if self.heights else ()
         forces = forces_in_sections(recording.run, recording.rows, heights)
-        return [envelope(height, its.axial, its.moment) for height, its in zip(heights, forces, strict=True)]
+        found = [envelope(height, its.axial, its.moment) for height, its in zip(heights, forces, strict=True)]
+        return [*found, _at_base(recording)] if self.base else found
 
     def beyond(self, run: Run, fine: list[Envelope], fewer: list[Envelope]) -> list[Envelope]:
         """Return ``fine`` with the change from ``fewer`` modes as errors."""
         return with_errors(fine, fewer, of_last_mode(run, 1.0, CHANCE))
 
     def add(self, run: Run, outcome: Outcome, fine: list[Envelope] | None, coarse: list[Envelope] | None) -> Outcome:
-        """Return ``outcome`` with a row of the table for each corner of ``fine``, if any, with errors by ``coarse``."""
+        """Return ``outcome`` with a row of the table for each corner of ``fine``, with errors by ``coarse``.
+
+        No rows without ``fine`` or a mass.
+        """
         if fine is None or run.pier.mass_t is None:
             return outcome.with_table(self.table, [])
         rows = []
-        for own in fine if coarse is None else with_errors(fine, coarse, CHANCE):
-            for n, m in zip(
-                (run.pier.mass_t * own.axial).tolist(), (run.pier.mass_t * own.moment).tolist(), strict=True
-            ):
-                rows.append(dict(zip(OF_INTERACTION, (own.height, n, m, own.error), strict=True)))
+        for own in map(thinned, fine if coarse is None else with_errors(fine, coarse, CHANCE)):
+            forces = run.pier.mass_t * np.array([own.axial, own.effect])
+            for n, e in forces.T.tolist():
+                moment, shear = (e, None) if own.height is not None else (None, e)
+                rows.append(dict(zip(OF_INTERACTION, (own.height, n, moment, shear, own.error), strict=True)))
         return outcome.with_table(self.table, rows)
 
 
 def requested(output: Output) -> InteractionInSections | None:
-    """Return the observer that a study asks for, if any."""
-    heights = output.of(Interaction).interaction_m
-    return InteractionInSections(heights) if heights else None
+    """Return the observer if [output] of a study asks for it, else None."""
+    settings = output.of(Interaction)
+    chosen = InteractionInSections(settings.interaction_m, settings.interaction_base)
+    return chosen if chosen.heights or chosen.base else None

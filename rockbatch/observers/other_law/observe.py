@@ -18,7 +18,7 @@ class OtherLaw(Observer):
         return replace(run, base=run.base.by_other_law()) if run.base.ratchets and outcome.was_run else None
 
     def compare(self, outcome: Outcome, other: Outcome) -> Outcome:
-        """Return ``outcome`` with the settlement of the ``other``, and a note if that failed."""
+        """Return ``outcome`` with the settlement of the ``other`` [m], None if that did not stand, and a note if it failed."""
         failed = f"by the other spring law: {other.reason}" if other.status == "failed" else ""
         return outcome.noted(failed).with_observed("other_law", other.settlement)
 
@@ -28,5 +28,5 @@ class OtherLaw(Observer):
 
 
 def requested(output: Output) -> OtherLaw | None:
-    """Return the observer that a study asks for, if any."""
+    """Return the observer if [output] of a study asks for it, else None."""
     return OtherLaw() if output.of(BothLaws).both_laws else None

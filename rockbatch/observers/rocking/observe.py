@@ -41,13 +41,13 @@ class Rocking(Observer):
         return outcome.theta_max_error is not None
 
     def read(self, recording: Recording, outcome: Outcome) -> Apart:
-        """Return rocking and lean."""
+        """Return the greatest rocking about the lean, and lean and rocking at the peak [rad]."""
         base = recording.run.base
         assert isinstance(base, ElasticBase)
         return apart(recording.run.pier, base, recording.rows)
 
     def add(self, run: Run, outcome: Outcome, fine: Apart | None, coarse: Apart | None) -> Outcome:
-        """Return ``outcome`` with Parts: of ``fine``, or all of θ_max as rocking if the pier could not lean; else as it is."""
+        """Return ``outcome`` with Parts: of ``fine``, or all of θ_max as rocking if the pier could not lean; else unchanged."""
         if fine is not None:
             lean = None if outcome.status == "flight" else fine.lean
             parts = Parts(fine.rocking, lean)
@@ -67,5 +67,5 @@ def _may_lean(run: Run, outcome: Outcome) -> bool:
 
 
 def requested(output: Output) -> Rocking | None:
-    """Return the observer that a study asks for, if any."""
+    """Return the observer if [output] of a study asks for it, else None."""
     return Rocking() if output.of(Separation).rocking else None

@@ -10,7 +10,7 @@ ROCKING, LEAN = "theta_rocking_over_alpha", "theta_lean_over_alpha"
 
 
 def _part(field: str) -> Callable[[Run], float | None]:
-    """Return the number of a ``field`` of ``Parts``."""
+    """Return a function of a run: ``field`` of its ``Parts``, None if they were not computed."""
     return lambda run: getattr(run.outcome.observed.get("rocking"), field, None)
 
 
@@ -40,7 +40,7 @@ FIRST = (
 
 
 def _error(part: str, behind: str, bases: tuple[str, ...] = ALL) -> Quantity:
-    """Return the error of a ``part``, whose column it stands ``behind`` in the report."""
+    """Return the quantity of the error of a ``part``, "rocking" or "lean", ``behind`` whose column it stands in the report."""
     words = (
         "estimated error of rocking, and of lean, over α: the change when the step was halved; empty with a fixed step"
     )

@@ -38,7 +38,7 @@ _OVER_HEIGHT = {
 
 
 def _envelope(runs: "pd.DataFrame", column: str, foundation: Series) -> Polyline:
-    """Return the worst of a column of sections.csv over the runs of a foundation, at each height."""
+    """Return the line of a column of sections.csv over height: the greatest of a foundation's runs, or least of the least N."""
     of_heights = runs.groupby("height_m")[column]
     values = of_heights.min() if "least" in column else of_heights.max()
     look = Look("level", dash=foundation.index % DASHES) if foundation.rigid else line_of(foundation.index)

@@ -44,6 +44,6 @@ class ForcesInSections(Observer):
 
 
 def requested(output: Output) -> ForcesInSections | None:
-    """Return the observer that a study asks for, if any."""
+    """Return the observer if [output] of a study asks for it, else None."""
     sections = output.of(Sections).requested
     return None if sections is None else ForcesInSections(sections)

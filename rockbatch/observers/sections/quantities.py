@@ -8,7 +8,7 @@ from rockbatch.quantities.demands import Demand, Estimated, Evaluate, largest, m
 
 
 def _axial(sign: float) -> Evaluate:
-    """Return the greatest axial force in a section [kN], compression with ``sign`` 1, tension with −1; 0 if it has none."""
+    """Return the evaluation of the greatest compression (``sign`` 1) or tension (−1) in a section [kN]; 0 if it has none."""
     columns = ("section_axial_least_kN", "section_axial_greatest_kN")
 
     def evaluate(runs: Rows, case: Case) -> Estimated:

@@ -20,7 +20,7 @@ MOST_GROUPS = 4
 
 
 def section(finished: Finished) -> Markup:
-    """Report forces in sections of the shaft; empty if the study asks for none."""
+    """Return the report's section of forces in sections of the shaft; empty if the study asks for none."""
     path = finished.directory / SECTIONS
     rows = read_sections(path, finished.info["varied"]) if path.exists() else pd.DataFrame()
     if rows.empty:

@@ -19,7 +19,7 @@ class Sections:
 
     @property
     def requested(self) -> int | tuple[float, ...] | None:
-        """Their number or their heights [m]; None without any."""
+        """Number of the sections, or their heights [m]; None if none are requested."""
         return self.sections or self.sections_m or None
 
 
@@ -49,7 +49,7 @@ OUTPUT = Section(
 
 
 def complain(file: TomlFile, settings: Sections, piers: Iterable[Pier]) -> None:
-    """Note sections that some pier does not have or whose masses are not known."""
+    """Add a problem to ``file`` for each reason that some pier lacks the sections, or its masses are not known."""
     if settings.requested is None:
         return
     for problem in misfits(piers, settings.requested):
@@ -57,7 +57,7 @@ def complain(file: TomlFile, settings: Sections, piers: Iterable[Pier]) -> None:
 
 
 def heights(settings: Sections, piers: Iterable[Pier]) -> set[float]:
-    """Return the heights [m] of all sections of all ``piers``; none without any, or of a pier that lacks some, which is noted."""
+    """Return the heights [m] of all sections of all ``piers``; a pier that lacks some, a problem by ``complain``, adds none."""
     return heights_in_all(piers, settings.requested) if settings.requested else set()
 
 

@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rockbatch.motions import Motion
+from rockbatch.observers.shocks import TABLE
+from rockbatch.observers.shocks.effects import OfShocks, of_shocks, with_error
+from rockbatch.observers.shocks.table import shock_rows
 from rockbatch.outcome.outcome import Outcome, ShockOutcome
-from rockbatch.results.shocks import SHOCKS, shock_rows
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
-from rockbatch.simulation.shocks import OfShocks, of_shocks, with_error
 from rockbatch.study import Output
 
 
@@ -17,7 +18,7 @@ from rockbatch.study import Output
 class EffectsOfShocks(Observer):
     """What each shock of a sequence does, until a pause after the last."""
 
-    table = SHOCKS
+    table = TABLE
     every_step = False
 
     def observes(self, motions: Sequence[Motion]) -> bool:
@@ -38,11 +39,14 @@ class EffectsOfShocks(Observer):
         return max(quiet_s, last.until - last.end)
 
     def read(self, recording: Recording, outcome: Outcome) -> OfShocks:
-        """Return the effects of each shock, and their peaks."""
+        """Return the effects of each shock, without errors, and the peaks from which errors follow."""
         return of_shocks(recording.run, outcome, recording.rows)
 
     def add(self, run: Run, outcome: Outcome, fine: OfShocks | None, coarse: OfShocks | None) -> Outcome:
-        """Return ``outcome`` with a row of the table for each shock: "failed" or "not read" without ``fine``."""
+        """Return ``outcome`` with a row of the table for each shock; without ``fine`` they have a status only.
+
+        "failed", or "not read" for a run too long to be held in memory.
+        """
         not_read = "failed" if outcome.status == "failed" else "not read"  # too long to be held in memory
         outcomes = [ShockOutcome(not_read)] * len(run.motion.shocks)
         if fine is not None:
@@ -51,5 +55,5 @@ class EffectsOfShocks(Observer):
 
 
 def requested(output: Output) -> EffectsOfShocks:
-    """Return the observer, which every study has that has a sequence."""
+    """Return the observer for any study; it reads only runs under a sequence of shocks."""
     return EffectsOfShocks()

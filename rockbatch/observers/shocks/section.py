@@ -1,25 +1,26 @@
-"""Sequences shock by shock: peaks, and what is left of each when the next begins."""
+"""Sequences shock by shock: peaks, and the residuals when the next shock begins."""
 
 import math
 from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
+from rockbatch.observers.shocks import TABLE
+from rockbatch.observers.shocks.table import MEANING, read
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.table import THETA, THETA_FORMAT, Head, alarm, sub, table
 from rockbatch.reporting.templates import render
 from rockbatch.results.labelled import as_dicts
-from rockbatch.results.shocks import MEANING, SHOCKS, read_shocks
 
 AT_REST = 0.001
 """Range of θ/α in a pause beyond which the pier is said to move still when the next shock begins."""
 
 
 def section(finished: Finished) -> Markup:
-    """Report the response to each shock; empty if no motion is a sequence."""
-    path = finished.directory / SHOCKS
-    rows = as_dicts(read_shocks(path, finished.info["varied"])) if path.exists() else []
+    """Return the report's section of the response to each shock; empty if no motion is a sequence."""
+    directory = finished.directory
+    rows = as_dicts(read(directory, finished.info["varied"])) if (directory / TABLE).exists() else []
     if not rows:
         return Markup("")
     moving = [row["moving_over_alpha"] for row in rows if row["moving_over_alpha"] == row["moving_over_alpha"]]
@@ -35,7 +36,7 @@ def section(finished: Finished) -> Markup:
         runs=len(runs),
         cut_short=len(whole) - len(whole_runs),
         all_runs=len(whole),
-        file=SHOCKS,
+        file=TABLE,
         pauses=len(moving),
         still=sum(m > AT_REST for m in moving),
         most=max(moving, default=None),

@@ -8,6 +8,7 @@ from rockbatch.quantities.cases import (
     asks_tension,
     bends,
     devices,
+    is_across,
     is_frame,
     lands_by_impulse,
     number_of_modes,
@@ -32,13 +33,13 @@ def lines(finished: Finished, cases: Collection[Case]) -> list[str]:
 
 
 def _plane(cases: Collection[Case]) -> str:
-    if any(case.get("across_of") for case in cases):
+    if any(is_across(case) for case in cases):
         return "Two planar models of each pier, one for each axis; rolling on a corner and twisting are not modelled."
     return "Each pier moves in one vertical plane; rolling on a corner and twisting are not modelled."
 
 
 def _body(cases: Collection[Case]) -> str:
-    """Return what bends: nothing, the shaft in its lowest modes, or nothing of a frame with a level deck."""
+    """Return sentences on what bends: the shaft in its lowest modes, or nothing; each with its cases unless it is true of all."""
     parts = []
     if any(map(is_frame, cases)):
         parts.append("The columns of the frame are rigid and alike, and its deck stays level and on them.")
@@ -53,7 +54,7 @@ def _body(cases: Collection[Case]) -> str:
 
 
 def _ground(cases: Collection[Case]) -> str:
-    """Return on what the piers stand; each kind of base has its sentence."""
+    """Return a sentence for each kind of base on which piers stand, with its cases unless all have it."""
     kinds: list[tuple[Callable[[Case], bool], str]] = [
         (
             lands_by_impulse,
@@ -67,7 +68,7 @@ def _ground(cases: Collection[Case]) -> str:
 
 
 def _landings(cases: Collection[Case]) -> str:
-    """Return how energy is lost in landings, by the base and its numbers."""
+    """Return sentences on how landings lose energy, for each kind of base with its numbers, and its cases unless all."""
     parts = []
     if impulsive := [case for case in cases if lands_by_impulse(case)]:
         given = {case["parameters"].get("restitution") for case in impulsive if not bends(case)}
@@ -89,7 +90,7 @@ def _landings(cases: Collection[Case]) -> str:
 
 
 def _flight(cases: Collection[Case]) -> str:
-    """Return what happens when both pivots leave the ground."""
+    """Return a sentence for each way in which a flight of both pivots goes on or ends, with its cases unless all."""
     flying: dict[str, list[Case]] = {}
     for case in cases:
         flying.setdefault(case["parameters"].get("flight", "guided"), []).append(case)
@@ -109,7 +110,7 @@ def _sliding(cases: Collection[Case]) -> str:
 
 
 def _damping(cases: Collection[Case]) -> str:
-    """Return which damping there is beside that of landings."""
+    """Return a sentence on damping other than by landings: that of dashpots beside the supports, or none."""
     damped = [case for case in cases if case["parameters"].get("zeta")]
     if not damped:
         return "Nothing but landings, yielding and devices takes energy."
@@ -130,7 +131,7 @@ def _devices(cases: Collection[Case]) -> str:
 
 
 def _motions(finished: Finished) -> str:
-    """Return how the ground moves: its components, and alike under both pivots."""
+    """Return a sentence on the components of the ground motion, which is alike under both pivots."""
     records = finished.info["records"]
     vertical = sum(record["pga_v_g"] is not None for record in records)
     components = "horizontally and vertically" if vertical == len(records) else "horizontally"

@@ -6,14 +6,14 @@ from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.reporting.sections.worst import of_cases
 
 LEGEND = (
-    "Greatest values of each case over its records. Energies of dampers, stops and deck springs in J/kg are those of all of them "
-    "together; all else, and the work of a damper, is that of the device that has most of it. ≥: some runs of the case did "
-    "not go through, and theirs may be greater."
+    "Greatest values of each case over its records. Energies of dampers, stops and deck springs in J/kg are totals; other "
+    "columns, and the work of a damper, are of the device that has most of it. ≥: some runs of the case stopped early; the true "
+    "value may be larger."
 )
 
 
 def section(finished: Finished) -> Markup:
-    """Report the demands on devices, if there are any."""
+    """Return the table of demands on devices, a row for each case; empty without devices."""
     runs = finished.runs
     shown = [
         column

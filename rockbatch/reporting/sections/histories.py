@@ -29,7 +29,7 @@ MOTION = ("record", "polarity", "scale", "pier")
 
 
 class Picture(NamedTuple):
-    """The drawings of one motion, and what its caption depends on."""
+    """The drawings of one motion, and facts for its caption."""
 
     title: str
     cut: Axis | None
@@ -45,7 +45,7 @@ class Picture(NamedTuple):
 
 
 def section(finished: Finished) -> Markup:
-    """Draw the stored histories; empty if there are none."""
+    """Return a picture of the stored histories of each motion; empty if no history is stored."""
     if not len(finished.responses):
         return Markup("")
     words = list(map(str, finished.info["command"]))
@@ -113,7 +113,7 @@ def _rows_of(finished: Finished, responses: Sequence[Response]) -> list[Row]:
 
 
 def _motions(finished: Finished, rows: Sequence[Row]) -> list[list[int]]:
-    """Return the indices into ``rows`` of each motion's runs, worst motion first.
+    """Return the indices into ``rows`` of each motion's runs, worst motion first; no motion is begun after 40 histories.
 
     Of more than :data:`MOST_HISTORIES` only motions that are the worst for some case.
     """

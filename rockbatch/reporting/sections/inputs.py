@@ -29,7 +29,7 @@ OF_PIER = {
     "flexural_period_s": "flexural period [s]",
     "shaft_share": "share of the shaft in the mass",
 }
-"""Heads of what run.json states of a pier, where a key of the study has another meaning or none."""
+"""Heads of values of a pier in run.json whose names mean something else in a study, or nothing."""
 OF_FOUNDATION = {
     "omega_v": "ω_v [rad/s]",
     "delta_s_m": "static deflection [m]",
@@ -89,19 +89,19 @@ def _symbol(key: str) -> str:
 
 
 def _form(rows: Sequence[Mapping[str, object]], key: str) -> str:
-    """Return the format of the numbers of a column; a column of texts alone has none."""
+    """Return the format of a column: six digits if a value is a float, else :data:`WHOLE`."""
     return DIGITS if any(isinstance(row.get(key), float) for row in rows) else WHOLE
 
 
 def _single(value: object) -> bool:
-    """Return whether a value is a number or a text, or a list of these."""
+    """Return whether a value is a number or a text, or a list of at least one of these."""
     if isinstance(value, list):
         return bool(value) and all(map(_single, value))
     return isinstance(value, int | float | str)
 
 
 def _written(value: object) -> object:
-    """Return a value as a cell: a list as the values that are run, tables not at all."""
+    """Return a value as a cell: a list as its values with commas, true and false in lower case; None for TOML tables."""
     if not _single(value):
         return None
     if isinstance(value, list):
@@ -110,13 +110,13 @@ def _written(value: object) -> object:
 
 
 def _parts(finished: Finished) -> list[Row]:
-    """Return the tables [[pier.part]] of the study; empty if it has none."""
+    """Return each [[pier.part]] of the study as its keys and values; [] if it has none."""
     parts = finished.pier_as_given.get("part")
     return [part for part in parts if isinstance(part, dict)] if isinstance(parts, list) else []
 
 
 def _piers(finished: Finished) -> list[Row]:
-    """Return the distinct piers with what the program computed of them, each with its cases if there are several."""
+    """Return each distinct pier as run.json has it, under ``case`` with the names of its cases if piers differ."""
     cases_of: dict[tuple[object, ...], list[Case]] = {}
     for case in finished.info["cases"]:
         cases_of.setdefault(tuple(case["pier"].items()), []).append(case)
@@ -128,7 +128,7 @@ def _piers(finished: Finished) -> list[Row]:
 
 
 def _foundation(finished: Finished, case: Case) -> Row:
-    """Return name, base and every parameter of a foundation, its devices apart."""
+    """Return the label, base and every parameter of a foundation but its devices."""
     parameters = {key: value for key, value in case["parameters"].items() if key != "restraints"}
     return {"case": _name(finished, case), "base": case["base"]} | parameters
 

@@ -85,7 +85,7 @@ def section(finished: Finished) -> Markup:
 
 
 def spectra(finished: Finished, caption: str, fitted: tuple[float, float] | None = None) -> Markup:
-    """Draw the response spectra; empty if run.json has none or they do not match its records, as in very large suites."""
+    """Return the figure of response spectra; empty if run.json has none that match its records, as in very large suites."""
     records, shown = finished.info["records"], finished.info.get("spectra")
     if not shown or len(shown["sa_g"]) != len(records) or not drawable(shown):
         return Markup("")
@@ -103,7 +103,7 @@ def _processing(record: Item) -> object:
 
 
 def unusable(finished: Finished) -> Markup:
-    """List files and runs without a result, then files and records left out on purpose, with reasons; empty without any."""
+    """Return tables of files and runs without a result, and of files left out on purpose, with reasons; empty without any."""
     rows = [[entry["name"], "", entry["source"], entry["reason"]] for entry in finished.info["unusable"]]
     failed = finished.runs[finished.runs["status"] == "failed"]
     most = max(MOST_ROWS - len(rows), 0)

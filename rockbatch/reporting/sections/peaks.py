@@ -148,7 +148,7 @@ def _settlement(run: Row) -> object:
 
 
 def on_scale(name: str, value: float | None) -> float | None:
-    """Convert a value of column ``name`` to the unit of the page; None for NaN and None."""
+    """Convert a value of column ``name`` to the unit of the page, unchanged for an unknown column; None for NaN and None."""
     column = COLUMNS.get(name)
     factor = column.page.factor if column and column.page else 1
     return None if value is None or value != value else factor * float(value)

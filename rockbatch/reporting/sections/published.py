@@ -13,7 +13,7 @@ from rockbatch.results.suite_statistics import NO_PEAK
 
 
 def section(finished: Finished) -> Markup:
-    """Compare runs with the study's references, matched by record pattern, case and columns; empty without references."""
+    """Return a table of the study's references beside the runs that match record pattern, case and columns; empty without any."""
     runs, references = finished.runs, finished.info["references"]
     if not references:
         return Markup("")

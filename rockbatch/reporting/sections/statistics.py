@@ -118,7 +118,10 @@ def _heads(sides: Sequence[str], form: str) -> list[Head]:
 
 
 def _cell(s: Statistics | None, name: str, form: str) -> object:
-    """Return the cell of statistic ``name``; None without statistics, "∞" in bold if infinite."""
+    """Return the cell of statistic ``name``; None without statistics, "∞" in bold if infinite, "—" for a mean of no value.
+
+    A mean of fewer records than have an outcome has their number behind it; counts of records without a peak are in bold.
+    """
     if s is None:
         return None
     value = getattr(s, name)

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from rockbatch.checks.coverage import stations_of
 from rockbatch.pier.figures import devices, sketches
 from rockbatch.pier.restraints import KINDS
-from rockbatch.quantities.cases import Case, top
+from rockbatch.quantities.cases import Case, is_across, top
 from rockbatch.quantities.design import BOUND
 from rockbatch.quantities.quantity import FOOTING
 from rockbatch.reporting.finished import Finished
@@ -40,7 +40,7 @@ DEVICES = tuple(f"{kind}_" for kind in KINDS)
 
 
 def section(finished: Finished, level: str = "h3") -> Markup:
-    """Describe piers, foundations and records; ``level`` is the tag of its subheadings."""
+    """Return piers, foundations and records in words; ``level`` is the tag of its subheadings."""
     cases, records = finished.info["cases"], finished.info["records"]
     factors = [float(record.get("factor", 1.0)) for record in records]
     ends = dict.fromkeys(f"{factor:.4g}" for factor in (min(factors, default=1.0), max(factors, default=1.0)))
@@ -54,11 +54,11 @@ def section(finished: Finished, level: str = "h3") -> Markup:
     along: dict[tuple[float, ...], Case] = {}
     across: dict[tuple[float, ...], Case] = {}
     for case in cases:
-        piers = across if case.get("across_of") else along
+        piers = across if is_across(case) else along
         drift_at = top(case)
         key = *(case["pier"][key] for key in ("alpha", "p", "mu", "gravity")), drift_at
         piers.setdefault(key, case["pier"] | {"top_m": drift_at})
-    names_across = {case["case"] for case in cases if case.get("across_of")}
+    names_across = {case["case"] for case in cases if is_across(case)}
     return render(
         "reporting/sections/studied.html",
         finished=finished,
@@ -81,7 +81,11 @@ def section(finished: Finished, level: str = "h3") -> Markup:
 
 
 def in_a_line(finished: Finished) -> str:
-    """Return the line below the title: "20 m high, 4 m wide · 11 stations, 22 components (…) · 44 runs, all end standing"."""
+    """Return the line below the title: "20 m high, 4 m wide · 11 stations, 22 components (…) · 44 runs, all end standing".
+
+    In brackets are the words on vertical components. α and p stand for sizes that are not given; "41 end standing" if not all
+    do.
+    """
     highest = {case["pier"].get("highest_m") for case in finished.info["cases"]}
     of_parts = {"height_m": highest.pop()} if "part" in finished.pier_as_given and len(highest) == 1 else {}
     given = finished.pier_as_given | of_parts | _foot(finished.info["cases"])
@@ -94,7 +98,7 @@ def in_a_line(finished: Finished) -> str:
     stations, records = stations_of(finished.info), finished.info["records"]
     of_all = "" if len(stations.used) == stations.total or not stations.known else f" of {stations.total}"
     suite = f"{len(stations.used)}{of_all} {'station' if stations.total == 1 else 'stations'}"
-    axes = 1 + any(case.get("across_of") for case in finished.info["cases"])
+    axes = 1 + any(is_across(case) for case in finished.info["cases"])
     motions = f"{counted(axes * len(records), 'component')} ({_vertical(finished)})"
     runs, stood = len(finished.runs), int((finished.runs["status"] == "ok").sum())
     ended = "all end standing" if stood == runs and not finished.not_run else f"{stood:,} end standing"
@@ -110,7 +114,7 @@ def _foot(cases: Sequence[Case]) -> dict[str, float]:
 
 
 def drawings(finished: Finished) -> list[Markup]:
-    """Draw each distinct pier with its devices, captioned with its cases if there are several."""
+    """Return a sketch of each distinct pier with its devices, up to four, captioned with its cases if piers differ."""
     has_deck = "deck_mass_t" in finished.pier_as_given
     shown: dict[tuple[object, ...], tuple[Row, list[str]]] = {}
     for case in finished.info["cases"]:
@@ -140,7 +144,7 @@ def _numbers_of(pier: Row) -> list[str]:
 
 
 def _vertical(finished: Finished) -> str:
-    """Return which motions have a vertical component, in words."""
+    """Return which motions have a vertical component: "with the vertical component", "3 with …", "horizontal component only"."""
     records = finished.info["records"]
     if finished.runs["with_vertical"].nunique() > 1:
         return "with and without the vertical component"
@@ -189,13 +193,13 @@ def _foundations(finished: Finished) -> Markup:
 
 
 def _devices(case: Case) -> list[str]:
-    """Return the devices of a case in words."""
+    """Return the devices of a case in words, one text each; [] without devices or for impossible values."""
     pier = pier_of(case)
     return [device_in_words(pier, device) for device in restraints_of(case)] if pier else []
 
 
 def _further(cases: Sequence[Case], shown: Collection[str]) -> dict[str, str]:
-    """Return the parameters not ``shown`` in which cases differ, with their heads: no two rows are alike that are not."""
+    """Return the heads of parameters, by key, that are not ``shown`` and differ between cases, so that rows can be told apart."""
     parameters = [case["parameters"] for case in cases]
     keys = dict.fromkeys(key for of_case in parameters for key in of_case if key not in shown)
     differing = [key for key in keys if len({str(of_case.get(key)) for of_case in parameters}) > 1]

@@ -25,7 +25,7 @@ MET = {PASS: "met", FAIL: "not met", NOT_DECIDED: "not decided"}
 
 
 def section(finished: Finished) -> Markup:
-    """Compare the suite with its horizontal and vertical target spectra; empty if the study has none."""
+    """Return the comparison of the suite with its horizontal and vertical target spectra; empty if the study has none."""
     records = finished.info["records"]
     targets = (finished.info.get(name) for name in ("target", "vertical_target"))
     horizontal, vertical = (target if target is not None and records and _sound(target) else None for target in targets)
@@ -54,7 +54,7 @@ def _of_target(finished: Finished, entry: str) -> list[Verdict]:
 
 
 def _below(finished: Finished, entry: str) -> str:
-    """Return words on the scales at which the suite's mean is below a target: "required, at scale 0.5"; empty if at none."""
+    """Return "required" if the suite's mean is below a target at scale 1 alone, else "required, at scale 0.5, 1"; "" if not."""
     failing = [verdict for verdict in _of_target(finished, entry) if verdict.verdict == FAIL]
     scales = [verdict.scale for verdict in failing if verdict.demand == MEAN_OVER_TARGET]
     if scales in ([], [1.0]):
@@ -100,7 +100,7 @@ def _mean_over(target: Target) -> MeanOverTarget:
 
 
 def _horizontal(finished: Finished, target: Target, records: Sequence[Item]) -> Markup:
-    """Compare the horizontal components with their target, and describe pulses and distances."""
+    """Return the comparison of the horizontal components with their target, and what is known of pulses and distances."""
     pulses = [record for record in records if record.get("pulse_period_s") is not None]
     distances = [record["distance_km"] for record in records if record.get("distance_km") is not None]
     caption = "their mean, and the target; shaded: the range over which they are fitted."

@@ -241,7 +241,7 @@ def _requirements(verdicts: Sequence[Verdict]) -> Markup:
 
 
 def _every(finished: Finished, verdicts: Sequence[Verdict], notes: wording.Notes) -> Markup:
-    """Return a table with a row for each verdict: its numbers, governing run and remarks."""
+    """Return a table with a row for each of the first :data:`MOST_ROWS` verdicts: its numbers, governing run and remarks."""
     bounds = "bounds due to errors, the other spring law and runs without an outcome"
     heads = [
         Head("check"),

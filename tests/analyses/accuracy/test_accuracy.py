@@ -63,6 +63,7 @@ def order(table, method, column):
     return -np.polyfit(np.log2(errors.index.astype(float)), np.log2(errors.to_numpy(float)), 1)[0]
 
 
+@pytest.mark.slow
 def test_located_events_keep_the_fourth_order_and_unlocated_ones_lose_three(measured):
     """Classical Runge–Kutta is of order 4; an event half a step late leaves an error of the order of the step.
 
@@ -98,6 +99,7 @@ def test_a_fixed_number_of_substeps_is_its_own_setting(measured):
     assert row["error_max"] == pytest.approx(max(expected), abs=1e-15)
 
 
+@pytest.mark.slow
 def test_runs_that_end_otherwise_are_counted_and_have_no_error(measured):
     study, references, _ = measured
     over = [replace(one, outcome=replace(one.outcome, status="overturned")) for one in references[:2]]
@@ -133,6 +135,7 @@ def test_a_reference_has_the_outcome_of_the_step_before_and_its_peak_too(measure
         assert expected is None or (len(steps), found.change <= 2e-13) == (len(script), True)
 
 
+@pytest.mark.slow
 def test_steps_that_are_too_long_to_be_run_have_neither_error_nor_time(measured):
     study, _, _ = measured
     run = Plan(study, ground_motions(study))[1]

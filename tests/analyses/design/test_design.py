@@ -110,6 +110,7 @@ def test_the_prestress_of_a_tendon_ends_where_the_pads_bear_no_more():
     assert refused["low"] - passing["high"] <= 100.0
 
 
+@pytest.mark.slow
 def test_the_islands_of_sizes_that_stand_are_those_of_single_runs():
     """A pier that overturns may stand if it is smaller: one scan finds the island, a coarser one does not, and says so."""
     fine = rb.design(study({"between": [1.5, 3.3], "points": 25, "width": 0.02}, check=[STANDS]))
@@ -200,6 +201,7 @@ OF_SPRINGS = {"vary": "case.stiffness_kN_m", "between": [1e6, 2e6], "find": "lea
 SECTIONS = {"sections_m": [10.0]}
 
 
+@pytest.mark.slow
 def test_checks_of_sections_are_judged_by_the_forces_of_each_value(tmp_path):
     of_study = study(OF_SPRINGS, cases=[SPRINGS], check=[MOMENT, STIFF], pier=TALL, output=SECTIONS)
     found = rb.design(of_study)
@@ -212,6 +214,32 @@ def test_checks_of_sections_are_judged_by_the_forces_of_each_value(tmp_path):
         rb.run(written, tmp_path / str(stiffness))
         (judged,) = rb.check(tmp_path / str(stiffness)).query("check == 'moment'")["value"]
         assert value == judged
+
+
+SHARE = {
+    "name": "share",
+    "demand": "section_moment_over_capacity",
+    "at_m": 10.0,
+    "capacity": [[-1e5, 0.0], [0.0, 1e5], [1e5, 0.0]],
+    "at_most": 0.9,
+    "reason": "r",
+}
+
+
+def test_shares_of_a_capacity_are_judged_by_the_forces_of_each_value(tmp_path):
+    """Of the same moment, as a study written with the value has them; read again from a finished folder."""
+    of_study = study(OF_SPRINGS, cases=[SPRINGS], check=[SHARE, STIFF], pier=TALL, output={"interaction_m": [10.0]})
+    found = rb.design(of_study, tmp_path / "found")
+    own = found.design_checks.query("check == 'share'").set_index("case.stiffness_kN_m")["value"]
+    assert own.nunique() == len(own) == 5  # two of the scan, and three bisections
+    for stiffness, value in own.items():
+        written = of_study.with_(case={"soft": {"stiffness_kN_m": stiffness}})
+        rb.run(written, tmp_path / str(stiffness))
+        (judged,) = rb.check(tmp_path / str(stiffness)).query("check == 'share'")["value"]
+        assert value == float(f"{judged:.10g}")  # as design_checks.csv has it
+    again = rb.design(of_study, tmp_path / "found")
+    pd.testing.assert_frame_equal(again.design_checks, found.design_checks, check_exact=True)
+    assert set(again.design_interaction["height_m"]) == {10.0}
 
 
 def test_a_check_of_one_case_is_not_one_of_another():
@@ -314,6 +342,7 @@ def test_a_study_that_is_refused_with_every_value_is_refused_with_the_reason():
 # Two keys
 
 
+@pytest.mark.slow
 def test_of_two_keys_the_first_is_searched_at_each_value_of_the_second():
     design = {"vary": ["pier.p", "pier.alpha"], "between": [[1.0, 2.2], [0.19, 0.23]], "points": [4, 3]}
     found = rb.design(study(design))
@@ -374,6 +403,7 @@ def test_the_map_fills_what_fails_and_marks_what_passes_by_the_check_that_govern
 # Folders
 
 
+@pytest.mark.slow
 def test_an_interrupted_search_runs_only_what_is_missing(tmp_path, monkeypatch):
     path = write_study(tmp_path, study_text(pier=PIER, pulses=[PULSE], cases=[RIGID], check=[ROTATION], design=SIZE))
     real, simulated, out = rockbatch.batch.threads.outcomes_of, [], tmp_path / "out"

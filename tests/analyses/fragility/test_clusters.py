@@ -83,7 +83,7 @@ def test_below_five_stations_there_is_no_interval_and_below_three_no_curve():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rho", [0.0, 0.8])
+@pytest.mark.parametrize("rho", [pytest.param(0.0, marks=pytest.mark.thorough), 0.8])
 def test_intervals_by_station_hold_the_truth_as_often_as_they_say(rho):
     """120 suites of seven pairs by brackets, stripes and a cloud: 95 % less three deviations of 2 %."""
     rng, levels = np.random.default_rng(7), np.exp(0.4 * np.linspace(-2, 2, 7))

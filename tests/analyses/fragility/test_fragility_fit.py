@@ -110,7 +110,7 @@ def test_the_band_leaves_one_half_where_the_interval_of_the_median_ends():
     assert found.probability(np.array([found.median])) == pytest.approx(0.5)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_intervals_hold_the_truth_about_as_often_as_they_say():
     """Suites of 30 records, by IDA up to a level that a sixth of them survives: 95 % within 5 % is 2.3 deviations of 100."""
     rng = np.random.default_rng(4)
@@ -124,7 +124,7 @@ def test_intervals_hold_the_truth_about_as_often_as_they_say():
     assert held / 100 == pytest.approx([0.95, 0.95], abs=0.05)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_same_records_at_every_level_do_not_count_as_many_suites():
     """100 suites of 30 records at 12 levels: as fresh ones they would hold the median about 60 times in 100, not 95."""
     rng = np.random.default_rng(5)

@@ -120,6 +120,7 @@ def test_intensities_over_uplift_are_those_of_the_spectrum_of_a_pier():
     assert over_uplift("p PGV/(g tan alpha)", pier) == pytest.approx(1.5 / (9.81 * math.tan(0.2)))
 
 
+@pytest.mark.slow
 def test_piers_of_a_list_share_a_curve_over_what_lifts_them_off(tmp_path):
     """Three sizes: each record counts once for each, and its station once in all."""
     levels = [1.0, 1.5, 2.0, 3.0, 4.0]

@@ -142,7 +142,7 @@ def test_the_interval_of_a_rate_is_that_of_its_profile_likelihood():
     assert fitted.rate(x, rates)[1:] == pytest.approx(ends, rel=3e-4)
 
 
-@pytest.mark.slow
+@pytest.mark.sweep(slow=1)
 @pytest.mark.parametrize("added", [pytest.param(0.0, marks=pytest.mark.thorough), 0.4])
 @pytest.mark.parametrize("through", [
     lambda capacities: by_bisection(capacities, 0.7),

@@ -37,6 +37,7 @@ def stripes(*own):
 # Limits on factors
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("method", [{"method": "stripes"}, COARSE])
 def test_records_are_not_run_with_factors_beyond_the_limits(tmp_path, method):
     limits = {"least_scale": 0.8, "most_scale": 1.6} | method
@@ -53,6 +54,7 @@ def test_records_are_not_run_with_factors_beyond_the_limits(tmp_path, method):
     assert "factors 0.8 to 1.6 are allowed, which leaves 0 of 7 records at 0.2" in found.info["scales"]["said"]
 
 
+@pytest.mark.slow
 def test_a_record_that_is_stopped_by_its_factor_is_censored_there(tmp_path):
     """Capacities up to the greatest level that the factor allows; above it nothing is known of the record."""
     found = rb.fragility(study(tmp_path, LEVELS | COARSE | {"most_scale": 1.6}))

@@ -95,6 +95,7 @@ def made_stripes(n, rng):
     return Capacities(low, high, np.ones(len(low)), of_record), np.vstack(scores)
 
 
+@pytest.mark.slow
 def test_the_contribution_is_that_of_made_up_capacities():
     """β² = 0.3² + 0.2² − 2·0.6·0.2·0.1 + 0.1²: the second part is that of the inputs, in the mean over suites of 40 records."""
     rng, correlation = np.random.default_rng(1), np.array([[1.0, 0.6], [0.6, 1.0]])
@@ -199,6 +200,7 @@ def test_few_runs_do_not_tell_what_inputs_contribute():
     assert contribution(*made_capacities(20, np.random.default_rng(1)), np.eye(2)).dispersion > 0.0
 
 
+@pytest.mark.slow
 def test_overturning_in_proportion_to_a_lognormal_slenderness_is_lognormal(tmp_path):
     """Slender block under a half-sine, e = 0.9, ω_p/p = 5: it overturns from 3.289147 α g on (test_overturning).
 
@@ -252,6 +254,7 @@ class Interrupted(Threads):
         raise KeyboardInterrupt
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("pages")
 def test_runs_have_the_drawn_values_and_a_search_that_was_interrupted_the_same(tmp_path):
     uncertain = {
@@ -306,6 +309,7 @@ def test_a_cloud_draws_once_for_each_run_also_of_the_same_intensity(tmp_path):
     assert curve["drawn"]["inputs"].keys() == {"alpha"}
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("method", ["stripes", "ida", "cloud"])
 def test_without_scatter_everything_is_as_without_the_table(tmp_path, method):
     levels = {} if method == "cloud" else {"levels_g": [0.3, 0.5]}
@@ -361,6 +365,7 @@ def test_nothing_is_lognormal_about_zero(tmp_path):
         read_fragility(load_study(path))
 
 
+@pytest.mark.slow
 def test_what_is_drawn_is_not_added_a_second_time(tmp_path):
     """A dispersion says which drawn inputs it leaves out: all of them."""
     uncertain, modelling = {"lognormal": {"alpha": 0.1, "eta": 0.1}}, {"name": "supports", "value": 0.2}

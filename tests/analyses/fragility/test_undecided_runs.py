@@ -105,8 +105,10 @@ def test_runs_put_out_what_their_limits_need_and_no_more(tmp_path):
     of_runs = {name: demand for name, demand in DEMANDS.items() if not demand.per_case and not demand.in_section}
     assert {demand.needs for demand in of_runs.values()} >= {"forces", "rocking", "devices_work"}
     for name, demand in of_runs.items():
-        asked = output(replace(spec, limits=(rotation, Rule("other", name, at_most=0.01))), of_study)
+        capacity = ((0.0, 100.0), (1e5, 6e4)) if demand.over_capacity else None
+        asked = output(replace(spec, limits=(rotation, Rule("other", name, at_most=0.01, capacity=capacity))), of_study)
         assert asked.has("both_laws") == bool(demand.other_law)
+        assert asked.has("interaction_base") == demand.over_capacity
         for need in ("forces", "rocking", "devices_work"):
             assert asked.has(need) == (demand.needs == need), name
         assert asked.histories == "none"

@@ -102,6 +102,7 @@ def made_up(tmp_path, **settings):
     return curve, spec, seen
 
 
+@pytest.mark.slow
 def test_a_finer_hunt_lowers_the_first_exceedances_and_leaves_the_shares(tmp_path):
     """All of the islands are wider than 0.25 %, and a few are met by 5 %: the median of first exceedances falls to 0.9 of it."""
     by_step = {step: made_up(tmp_path, hunt_step=step, tolerance=1e-3)[0] for step in (0.05, 0.0025)}
@@ -151,6 +152,7 @@ def study(tmp_path, name, settings, cases=(RIGID,)):
     return write_study(folder, text)
 
 
+@pytest.mark.slow
 def test_windows_are_run_on_springs_only_where_the_study_asks_for_them(tmp_path):
     cases = (RIGID, PADS | {"beta": 60, "eta": 3.0, "epsilon": 0.1, "flight": "guided"})
     plain, asked = (

@@ -163,6 +163,7 @@ def test_scatter_of_the_restitution_is_distinguished_from_errors_of_reading():
     assert row["scatter"] == pytest.approx(0.02, rel=0.2)
 
 
+@pytest.mark.sweep(fast=1)
 @pytest.mark.parametrize("clock", ["release", "first impact"])
 def test_the_tables_of_exact_values_are_the_closed_form(clock):
     """Whatever time the first impact has on the clock of the laboratory."""
@@ -256,6 +257,7 @@ def tomllike(**release):
     return {"title": "Test", "pier": pier, "motions": {"still_s": 5.0}, "case": case, "release": release}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", [
     pytest.param({"name": "pads", "base": "elastic", "beta": 60, "zeta": 0.3}, marks=pytest.mark.slow),
     {"name": "soil", "base": "yielding", "beta": 60, "eta": 4, "zeta": 0.3},
@@ -271,6 +273,7 @@ def test_damping_of_springs_is_found_again(case):
     assert row["value"] == pytest.approx(0.1, abs=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [1.03, pytest.param(0.97, marks=pytest.mark.slow)])
 def test_times_of_another_pier_are_distinguished_from_losses(factor):
     """All times longer by 3 %, as of a pier that is larger by 6 %, with errors of reading of 1 ms and 0.2 mrad."""

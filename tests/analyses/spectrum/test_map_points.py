@@ -99,6 +99,7 @@ def part(shape):
     return Shown(PARTS[shape])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("shape", "number"),
     [

@@ -72,7 +72,7 @@ def test_other_piers_part_from_the_curve_as_alpha_squared():
     np.testing.assert_allclose((stocky - slender) / (middle - slender), 4.0, atol=0.15)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_near_fault_records_share_the_curves_as_the_page_says():
     """docs/pages/questions/size.md: α = 0.2 over 0.05 where both stand, in the median, in 95 % of the points, and at most."""
     runs = rb.spectrum(Path(__file__).parents[3] / "configs" / "self_similar.toml").spectrum
@@ -177,6 +177,7 @@ def test_still_ground_is_refused():
         rb.spectrum(rb.Study.from_toml(STUDY), motions=[still], jobs=1)
 
 
+@pytest.mark.slow
 def test_peaks_are_drawn_where_their_intensity_and_frequency_are(tmp_path):
     """A panel for each base; each run where intensity.csv puts it: PGA/(g tan α) over the ratio of its two groups."""
     text = study_text(

@@ -81,6 +81,7 @@ def test_a_half_sine_overturns_a_slender_block_at_the_closed_form():
         assert height == sampled(amplitude)
 
 
+@pytest.mark.slow
 def test_the_map_of_a_rigid_base_does_not_depend_on_the_size_of_the_pier():
     """Dimensionless: α, ω_p/p and a_p/(g tan α) say all; the same runs but for rounding."""
     small, large = (found(replace(ONE, frequencies=2), Pier(0.15, p), RigidBase()) for p in (4.0, 0.5))
@@ -233,6 +234,7 @@ STUDY = study_text(
 )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("pages")
 def test_the_command_writes_regions_and_goes_on_after_a_kill(tmp_path, monkeypatch, capsys):
     """Ctrl-C in the third wave; undisturbed and interrupted tables have the same bytes."""
@@ -287,6 +289,7 @@ def test_a_pulse_needs_the_parameters_of_its_shape_and_no_others(tmp_path, capsy
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("pages")
 def test_spectra_that_are_finished_are_not_run_again_when_a_map_was_interrupted(tmp_path, monkeypatch, capsys):
     text = STUDY + "\n[spectrum]\nalpha = 0.1\np = [1, 2]\npoints = 2\n"

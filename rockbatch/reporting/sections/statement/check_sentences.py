@@ -99,10 +99,13 @@ def _quantity(verdict: Verdict) -> str:
 
 
 def _is(verdict: Verdict, *, at_worst: bool) -> str:
-    """Return the value of a verdict with its verb and its bounds, and that of the design if it is the worst of several."""
+    """Return the value with its verb: "is 0.3 m (between 0.2 m and 0.4 m)", "has no value", "is beyond any limit".
+
+    With ``at_worst`` it says so, and the bound of the design.
+    """
     bound = f", {_bound(verdict)}" if at_worst else ""
     if math.isnan(verdict.value):
-        return f"has no value{bound}"
+        return f"{'is not known' if math.isinf(verdict.high) else 'has no value'}{bound}"
     if math.isinf(verdict.value):
         return f"is beyond any limit{bound}"
     low, value, high = (_number(number, verdict) for number in (verdict.low, verdict.value, verdict.high))

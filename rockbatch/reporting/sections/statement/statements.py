@@ -18,7 +18,7 @@ from rockbatch.checks.scorecard import scorecard
 from rockbatch.checks.suite_target import UNRECORDED
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import distinct, grouped
-from rockbatch.quantities.cases import Case, of_pier
+from rockbatch.quantities.cases import Case, is_across, name_along
 from rockbatch.quantities.design import of_design, under
 from rockbatch.quantities.rows import with_case
 from rockbatch.reporting.finished import Finished
@@ -53,7 +53,7 @@ class Statement(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The paragraph."""
+        """The sentences in one paragraph."""
         return " ".join(self.sentences)
 
 
@@ -131,7 +131,7 @@ def _designs(finished: Finished, stations: Stations) -> Iterator[_Design]:
 
     runs = grouped(finished.suites, key_of_row)
     verdicts = grouped((verdict for verdict in finished.verdicts if verdict.case), key_of_row)
-    cases = grouped(finished.info["cases"], lambda case: key_of(str(of_pier(case)[0]), case["columns"], math.nan))
+    cases = grouped(finished.info["cases"], lambda case: key_of(name_along(case), case["columns"], math.nan))
     card = scorecard(finished.verdicts, key_of_row, finished.suites, finished.worst_at_scales)
     kinds = {row.name: row.verdict for row in card.rows}
     free = without_limits(verdicts, finished.worst_at_scales)
@@ -161,7 +161,7 @@ def _names(finished: Finished, designs: Mapping[str, Sequence[CaseRuns]]) -> lis
 
 
 def _result(design: _Design, stations: Stations) -> str:
-    """Return whether the design passes, by which checks it does not, or why it is not decided."""
+    """Return the first sentence: that the design passes, fails which checks, is not decided and why, or is not checked."""
     subject = f"Case {quoted(design.name)}"
     failing, open_, met = (design.having(kind) for kind in (FAIL, NOT_DECIDED, PASS))
     total = len(design.checks) - len(design.having(DOES_NOT_APPLY))
@@ -186,7 +186,7 @@ def _share(names: Sequence[str], total: int) -> str:
 
 
 def _reasons(design: _Design, stations: Stations) -> Iterator[str]:
-    """Yield why a design that meets every limit is not decided."""
+    """Yield why a design that meets every limit is not decided: responses without a limit, its suite, or unusable records."""
     if design.free:
         words = dict.fromkeys(RESPONSES[its.demand].words for its in design.free)
         yield f"no check limits its {', '.join(words)}"
@@ -198,14 +198,14 @@ def _reasons(design: _Design, stations: Stations) -> Iterator[str]:
 
 
 def _suite(finished: Finished, design: _Design) -> str:
-    """Return the motions under which the design was run."""
+    """Return the sentence on the motions under which the design was run: their number, factors, directions and verticals."""
     records = finished.info["records"]
     recorded = [record for record in records if record["source"] not in UNRECORDED]
     parts = []
     if recorded:
         stations = {record.get("station") or record["record"] for record in recorded}
         n, plural = len(recorded), "s" * (len(recorded) > 1)
-        both = any(case.get("across_of") for case in design.cases)
+        both = any(is_across(case) for case in design.cases)
         components = f"{n} pair{plural} of horizontal components" if both else f"{n} horizontal component{plural}"
         parts.append(f"{components} of {counted(len(stations), 'station')}{_events(recorded)}")
     if made := len(records) - len(recorded):
@@ -230,7 +230,10 @@ def _events(records: Sequence[Item]) -> str:
 
 
 def _conforming(info: Item, verdicts: Sequence[Verdict]) -> str:
-    """Return whether the suite meets the conditions of its target spectra at the scale of the verdicts on it."""
+    """Return sentences on the conditions of target spectra: "The suite meets all 3 conditions of …", or which it does not meet.
+
+    Without ``verdicts`` on it, that it was only compared with a target, or has none.
+    """
     if not verdicts:
         target = info.get("target")
         return (

@@ -57,7 +57,10 @@ def _peak(rows: np.recarray, start: float, end: float) -> tuple[float, float]:
 
 
 def _effects(run: Run, outcome: Outcome, rows: np.recarray, peaks: list[tuple[float, float]]) -> list[ShockOutcome]:
-    """Return the effects of each shock, without errors, from the ``rows`` and the ``peaks`` in them, of which one is changed."""
+    """Return the effects of each shock, without errors, from the ``rows`` and ``peaks`` of a run with an ``outcome``.
+
+    ``peaks`` are changed in place: the shock of the run's greatest rotation gets that, found over all steps.
+    """
     shocks = run.motion.shocks
     of_run = max(i for i, shock in enumerate(shocks) if shock.start <= outcome.t_max + _AT_ONCE)
     peaks[of_run] = outcome.theta_max, outcome.t_max  # the run's peak over all steps, not only rows

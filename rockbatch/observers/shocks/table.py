@@ -1,16 +1,15 @@
-"""shocks.csv: what each shock of a sequence does to a pier, a row for each shock of each run."""
+"""shocks.csv: effects of each shock of a sequence on a pier, a row for each shock of each run."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
-from rockbatch.outcome.outcome import ShockOutcome
+from rockbatch.observers.shocks import TABLE
+from rockbatch.outcome.outcome import Outcome, ShockOutcome
 from rockbatch.pier import Pier
-from rockbatch.results.beside_peaks import read_beside
-
-SHOCKS = "shocks.csv"
+from rockbatch.results.beside_peaks import present, read_beside
 
 MEANING = {
     "shock": "its place in the sequence, from 1",
@@ -28,11 +27,11 @@ MEANING = {
 }
 """Columns behind those that name the run."""
 
-TEXTS = ("shock_record", "shock_status")
+_TEXTS = ("shock_record", "shock_status")
 
 
 def shock_rows(motion: Motion, pier: Pier, outcomes: Sequence[ShockOutcome]) -> list[dict[str, Any]]:
-    """Return a row for each shock of ``motion`` as it was run."""
+    """Return a row for each shock of ``motion``, which has the scale of the run, by the columns of :data:`MEANING`."""
     rows = []
     for place, (shock, outcome) in enumerate(zip(motion.shocks, outcomes, strict=True), 1):
         first, last = round(shock.start / motion.dt), round(shock.end / motion.dt)
@@ -45,11 +44,15 @@ def shock_rows(motion: Motion, pier: Pier, outcomes: Sequence[ShockOutcome]) -> 
     return rows
 
 
-def as_table(rows: Iterable[Mapping[str, Any]]) -> "pd.DataFrame":
-    """Return rows as a DataFrame."""
-    return pd.DataFrame(list(rows), columns=list(MEANING))
+def of_run(motion: Motion, outcome: Outcome) -> "pd.DataFrame | None":
+    """Return the rows of a run, in the columns of :data:`MEANING`; None unless its motion is a sequence."""
+    return pd.DataFrame(list(outcome.tables.get(TABLE, ())), columns=list(MEANING)) if motion.shocks else None
 
 
-def read_shocks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
-    """Return the table of a study that varies these keys; ``InputError`` if it is not as it was written."""
-    return read_beside(path, varied, MEANING, TEXTS)
+OF_RESPONSE = ("shocks", of_run)
+"""Field of :class:`rockbatch.Response`, and the function from the motion and outcome of a run to its table."""
+
+
+def read(directory: Path, varied: Sequence[str]) -> "pd.DataFrame":
+    """Return the table of a study that varies these keys; ``InputError`` without it, or if it is not as it was written."""
+    return read_beside(present(directory / TABLE, "a [[motions.sequence]]"), varied, MEANING, _TEXTS)

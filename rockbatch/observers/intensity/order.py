@@ -1,4 +1,4 @@
-"""Intensity measures of each run's motion, scaled for a rocking pier, and how well they order the peaks."""
+"""How well each intensity measure orders the peaks: rank correlations, and lines through logarithms."""
 
 import math
 from collections.abc import Sequence
@@ -8,19 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.lazy import pd
+from rockbatch.observers.intensity.table import MEANING
 from rockbatch.results.suite_statistics import NO_PEAK
-
-INTENSITY = "intensity.csv"
-
-MEANING = {
-    "pga_over_g_tan_alpha": "PGA over g tan α, the ground acceleration that lifts the pier off rigid ground",
-    "p_pgv_over_g_tan_alpha": "p PGV over g tan α",
-    "bracketed_s": "bracketed duration: from the first to the last time that the acceleration exceeds g tan α [s]",
-    "uniform_s": "uniform duration: all the time that the acceleration exceeds g tan α [s]",
-    "cav_m_s": "cumulative absolute velocity, ∫|a| dt [m/s]",
-}
-"""Measures by column. In addition, ``sa_Ts_g`` is the 5 % damped spectral acceleration [g] at T seconds, and
-``sa_Ts_rotd100_g`` and the like are of the station's pair of horizontal components, empty without a pair."""
 
 LEAST_RUNS = 3
 """Fewest runs with values for a rank correlation or a regression line."""
@@ -64,7 +53,7 @@ def order_of(measure: Array, theta: Array, status: Sequence[str]) -> Order:
 
 
 def _spearman(x: Array, y: Array) -> float:
-    """Return Spearman's rank correlation, equal values sharing their mean rank; NaN for few or equal values."""
+    """Return Spearman's rank correlation, equal values sharing their mean rank; NaN for fewer than three, or if all are equal."""
     if len(x) < LEAST_RUNS:
         return math.nan
     of_x, of_y = _ranks(x), _ranks(y)
@@ -74,13 +63,13 @@ def _spearman(x: Array, y: Array) -> float:
 
 
 def _ranks(values: Array) -> Array:
-    """Return ranks from 1, equal values sharing their mean rank."""
+    """Return ranks from 1, equal values sharing their mean rank: 1, 2.5, 2.5, 4."""
     _, places, counts = np.unique(values, return_inverse=True, return_counts=True)
     return np.asarray((np.cumsum(counts) - 0.5 * (counts - 1))[places], dtype=np.float64)
 
 
 def _line(x: Array, y: Array) -> tuple[float, float]:
-    """Return the slope of the least-squares line and the standard deviation about it (n − 2); NaN for few or equal x."""
+    """Return slope of the least-squares line and standard deviation about it (n − 2); NaN for fewer than three, or equal x."""
     if len(x) < LEAST_RUNS or np.ptp(x) == 0:
         return math.nan, math.nan
     slope, intercept = np.polyfit(x, y, 1)

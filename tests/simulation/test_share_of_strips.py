@@ -1,0 +1,148 @@
+"""What the strips of a bed leave of errors: by half as many at the same step, and how it ends the halving of steps."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from core_samples import pulse
+
+from rockbatch.core.clock import WINDOWS
+from rockbatch.outcome.outcome import BedDemands, Outcome
+from rockbatch.pier import FootingBase, Pier
+from rockbatch.simulation import chaos, error_control, run_to_tolerance
+from rockbatch.simulation.coarser import share_of_strips, tolerances_beside, with_strips_error
+from rockbatch.simulation.runs import Trial
+
+PIER, BASE, SINE = Pier(0.2, 2.0), FootingBase(30.0, 3.0), pulse("sine", 0.5, dt=0.01, end=3.0)
+
+
+def trial(theta_max, *windows, steps=4, work=1.0, pressure=2.0, status="ok", **more):
+    """A run on a bed; the greatest rotations in the parts of the run are the peak and then ``windows``."""
+    bed = BedDemands(0.2, 20.0, 1.0, pressure, 1.0, 4.0, 0, work)
+    extremes = np.full(WINDOWS, np.nan)
+    extremes[: 1 + len(windows)] = [theta_max, *windows]
+    outcome = Outcome(
+        status, "", theta_max=theta_max, theta_max_in_motion=theta_max, impacts=0, separations=1, t_max=1.0, t_flight=None,
+        t_end=9.0, substeps=steps, bed=bed, **more,
+    )  # fmt: skip
+    return Trial(outcome, extremes)
+
+
+def test_the_share_is_three_times_the_change_by_half_as_many_strips():
+    """An error of order 1 is all of the change by half as many, one of order 2 a third of it."""
+    own = trial(0.02, 0.01, theta_res=0.001, settlement=0.05)
+    share = share_of_strips(own, trial(0.0206, 0.01, theta_res=0.0018, settlement=0.053, pressure=1.8), 4.0)
+    assert share.peak == pytest.approx(3.0 * 0.0006)
+    assert share.residual == pytest.approx(3.0 * 0.0008)
+    assert share.settlement == pytest.approx(3.0 * 0.003)
+    assert share.pressure == pytest.approx(3.0 * 0.2)
+    np.testing.assert_allclose(share.extremes[:3], [3.0 * 0.0006, 0.0, 0.0], atol=1e-15)
+
+
+def test_the_peaks_share_is_no_less_than_that_of_any_extreme_until_the_later_peak():
+    """Two peaks may agree by chance. The second run has its peak one window later, and later extremes change nothing."""
+    own = trial(0.01, 0.02, 0.0195, 0.012)
+    share = share_of_strips(own, trial(0.013, 0.0199, 0.02, 0.002), 5.0)
+    assert share.peak == pytest.approx(3.0 * 0.003)
+    assert share_of_strips(own, trial(0.0101, 0.02, 0.0195, 0.002), 5.0).peak == pytest.approx(3.0 * 0.0001)
+    assert share_of_strips(own, trial(0.01, 0.0199, 0.02, 0.012), 5.0).peak == pytest.approx(3.0 * 0.0005)
+
+
+def test_strips_that_agree_by_chance_claim_a_share_all_the_same():
+    own = trial(0.02, 0.01, theta_res=0.0, settlement=0.05)
+    share = share_of_strips(own, own, 5.0)
+    assert (share.peak, share.settlement) == (pytest.approx(3.0 * 2e-7), pytest.approx(3.0 * 5.0 * 2e-7))
+
+
+def test_the_residuals_share_is_no_less_than_that_of_any_extreme_where_ground_yields():
+    own, fewer = trial(0.02, 0.010, theta_res=0.001), trial(0.02, 0.014, theta_res=0.001)
+    assert share_of_strips(own, fewer, 5.0).residual == pytest.approx(3.0 * 0.004)
+    own, fewer = trial(0.02, 0.010, theta_res=0.0, work=0.0), trial(0.02, 0.014, theta_res=0.0, work=0.0)
+    assert share_of_strips(own, fewer, 5.0).residual == 0.0
+
+
+def test_the_settlements_share_is_no_less_than_that_of_an_edge_until_the_peak():
+    own, fewer = trial(0.01, 0.02, 0.01, settlement=0.05), trial(0.013, 0.02, 0.04, settlement=0.0501)
+    fewer.extremes[2] = 0.015
+    assert share_of_strips(own, fewer, 5.0).settlement == pytest.approx(3.0 * 5.0 * 0.003)
+    own, fewer = trial(0.01, 0.02, work=0.0, settlement=0.0), trial(0.013, 0.02, work=0.0, settlement=0.0)
+    assert share_of_strips(own, fewer, 5.0).settlement == 0.0
+
+
+def test_nothing_is_known_of_strips_that_come_to_another_end():
+    own, fallen = trial(0.02, theta_max_error=1e-5, theta_res_error=1e-6), trial(1.5, status="overturned")
+    assert share_of_strips(own, fallen, 5.0) is None
+    assert share_of_strips(fallen, fallen, 5.0) is None
+    found = with_strips_error(own.outcome, own, fallen, 5.0)
+    assert (found.theta_max_error, found.theta_res_error, found.bed.pressure_error) == (None, None, None)
+    assert found.note == "half as many strips come to another end: overturned; no error is claimed"
+    assert with_strips_error(fallen.outcome, own, own, 5.0) is fallen.outcome
+
+
+def test_errors_of_results_are_those_of_steps_and_strips_together():
+    own = trial(0.02, theta_res=0.001, settlement=0.05)
+    fewer = trial(0.0206, theta_res=0.0018, settlement=0.053, pressure=1.8)
+    kept = own.outcome.changed(theta_max=0.0201, theta_max_error=1e-4, theta_res_error=2e-5, settlement_error=3e-4)
+    found = with_strips_error(kept, own, fewer, 4.0)
+    assert found.theta_max_error == pytest.approx(3.0 * (1e-4 + 0.0006))
+    assert found.theta_res_error == pytest.approx(3.0 * (2e-5 + 0.0008))
+    assert found.settlement_error == pytest.approx(3.0 * (3e-4 + 0.003))
+    assert found.bed.strips_error == pytest.approx(3.0 * 0.0006)
+    assert found.bed.pressure_error == pytest.approx(3.0 * 0.2)
+    assert with_strips_error(replace(kept, theta_max_error=None), own, fewer, 4.0).theta_max_error is None
+
+
+def test_steps_may_add_a_tenth_of_what_strips_leave_and_no_less_than_the_tolerance():
+    share = share_of_strips(trial(0.02, 0.01, theta_res=0.0), trial(0.022, 0.014, theta_res=0.008), 5.0)
+    wide, own = tolerances_beside(1e-5, share), tolerances_beside(1e-5, None)
+    assert (wide.peak, wide.residual) == (pytest.approx(0.3 * 0.002), pytest.approx(0.3 * 0.008))
+    np.testing.assert_allclose(wide.extremes[:3], [0.3 * 0.002, 0.3 * 0.004, 1e-5])
+    assert (own.peak, own.residual, *own.extremes) == (1e-5,) * (WINDOWS + 2)
+    assert tolerances_beside(1e-3, share)[:2] == (1e-3, pytest.approx(0.3 * 0.008))
+
+
+def halved(monkeypatch, peaks, fewer, **more):
+    """Let a run on a footing come to ``peaks`` by halved steps, on half the strips to ``fewer``; return outcome and what ran."""
+    asked, times = [], []
+
+    def run(runs, substeps, quiet_s, stop):
+        trials = []
+        for one, steps in zip(runs, substeps, strict=True):
+            asked.append((one.base.strips, steps))
+            times.append(steps)
+            level = (steps // times[0]).bit_length() - 1
+            values = peaks if one.base.strips == BASE.strips else fewer
+            trials.append(trial(values[min(level, len(values) - 1)], steps=steps, theta_res=0.0, **more))
+        return trials
+
+    monkeypatch.setattr(error_control, "try_all", run)
+    monkeypatch.setattr(chaos, "try_all", run)
+    outcome = run_to_tolerance(PIER, BASE, SINE, 1e-4)
+    first = times[0]
+    return outcome, [(strips, steps // first) for strips, steps in asked]
+
+
+def test_steps_are_halved_until_they_are_below_what_the_strips_leave(monkeypatch):
+    """A change of 10⁻³ by the step is within a tenth of 0.03 by the strips, and far above the tolerance of 2·10⁻⁵."""
+    outcome, asked = halved(monkeypatch, (0.1, 0.101, 0.10101), (0.11,))
+    assert asked[:3] == [(40, 1), (20, 1), (40, 2)]
+    assert outcome.theta_max == 0.101
+    assert outcome.theta_max_error == pytest.approx(3.0 * (0.001 + 0.01))
+    outcome, asked = halved(monkeypatch, (0.1, 0.101, 0.10101), (0.1001, 0.1011))
+    assert asked[:5] == [(40, 1), (20, 1), (40, 2), (20, 2), (40, 4)]
+    assert outcome.theta_max == 0.10101
+    assert outcome.theta_max_error == pytest.approx(3.0 * (0.00001 + 0.0001))
+
+
+def test_other_strips_that_fall_leave_the_tolerance_of_steps_as_it_is(monkeypatch):
+    def ends(runs, substeps, quiet_s, stop):
+        return [
+            trial(0.1, steps=steps, theta_res=0.0) if run.base.strips == BASE.strips
+            else trial(1.5, steps=steps, status="overturned")
+            for run, steps in zip(runs, substeps, strict=True)
+        ]  # fmt: skip
+
+    monkeypatch.setattr(error_control, "try_all", ends)
+    outcome = run_to_tolerance(PIER, BASE, SINE, 1e-4)
+    assert (outcome.status, outcome.theta_max_error) == ("ok", None)
+    assert "half as many strips come to another end: overturned" in outcome.note
