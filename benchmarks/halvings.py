@@ -90,14 +90,16 @@ def spent(runs: Sequence[Run]) -> Spent:
         reasons.extend(asked[i] for i in doubtful)
         look(some, outcomes, doubtful, *rest)
 
-    error_control.try_all, chaos.try_all = trying, under_changes
-    error_control.magnifies, error_control.residuals_wander = magnifying, wandering
-    error_control.look_for_chaos = looking
+    control: Any = error_control
+    changes: Any = chaos
+    control.try_all, changes.try_all = trying, under_changes
+    control.magnifies, control.residuals_wander = magnifying, wandering
+    control.look_for_chaos = looking
     try:
         run_all_to_tolerance(runs, TOLERANCE, QUIET_S, Stop())
     finally:
-        error_control.try_all = chaos.try_all = try_all
-        error_control.magnifies, error_control.residuals_wander, error_control.look_for_chaos = magnifies, wanders, look
+        control.try_all = changes.try_all = try_all
+        control.magnifies, control.residuals_wander, control.look_for_chaos = magnifies, wanders, look
     return found
 
 

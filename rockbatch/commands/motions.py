@@ -127,9 +127,10 @@ def overview(suite: MotionSet) -> str:
 
 
 def _scorecard(records: Sequence[RankedRecord], room: int) -> list[str]:
-    """Return the doubtful records, their doubts in a second line, and the strongest others.
+    """Return the first doubtful records, their doubts in a second line, and the strongest others; doubtful ones come first.
 
-    The records take at most ``room`` lines; heads and the number of further records come on top.
+    ``records`` take at most ``room`` lines, a quarter of which or more go to doubtful ones; heads and the number of further
+    records are not counted in it.
     """
     doubtful = [record for record in records if record.doubtful]
     sound = records[len(doubtful) :]
@@ -196,7 +197,7 @@ def _write(path: Path, suite: MotionSet) -> None:
 
 
 def _table(rows: Sequence[Mapping[str, object]]) -> str:
-    """Return the rows as text, without columns that are empty in all of them."""
+    """Return the columns of :data:`_SHOWN` as a table in text, without those that are None in all rows; the record stays."""
     used = {key: shown for key, shown in _SHOWN.items() if key == "record" or any(row[key] is not None for row in rows)}
     cells = [[_cell(row[key], form) for key, (_, form) in used.items()] for row in rows]
     flush_left = [place for place, key in enumerate(used) if key in TEXTS]

@@ -149,7 +149,10 @@ def reduced(response: Response, look: Look, pixels: int = 900, most_devices: int
 
 
 def _moving(t: Array, theta: Array) -> tuple[float, float]:
-    """Return the times [s] at which the pier first leaves 0 and last leaves its final rotation; the ends if it never moves."""
+    """Return the times [s] at which θ/α, shape (n,), is first beyond a threshold from 0, and last from its final value.
+
+    The threshold is ``MOVES`` of the greatest |θ/α|, and of 1 at most; both ends of the history if it is never exceeded.
+    """
     least = MOVES * min(float(np.nanmax(np.abs(theta))), 1.0)
     left, away = np.abs(theta) > least, np.abs(theta - theta[-1]) > least
     if not left.any() or not away.any():

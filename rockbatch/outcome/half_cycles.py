@@ -57,7 +57,8 @@ def half_cycles(path: Path, landed: Rows | None) -> HalfCycles:
     """Return the half cycles of a run, whose ``path`` has a row before and after every event.
 
     ``landed``, shape (k,), are the rows after impacts, each next to the row before it; None on springs, where the pier lands
-    before it is upright, and half cycles begin at θ = 0 instead.
+    before it is upright, and half cycles begin at θ = 0 instead. Amplitudes are |θ|. A run that never lands is one half cycle,
+    of amplitude NaN if θ never turns.
     """
     if landed is None:
         before, after, t, omega = _through_upright(path)

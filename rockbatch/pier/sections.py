@@ -60,9 +60,10 @@ def distribution_problems(pier: Pier) -> list[str]:
 
 
 def section_heights(pier: Pier, sections: int | Sequence[float], key: str = "sections_m") -> tuple[float, ...]:
-    """Return the heights [m] of ``sections``, ascending: those given by the ``key``, or that number from foot to top of the pier.
+    """Return the heights [m] of ``sections``, ascending, each once: the given ones, or that number at equal distances.
 
-    Raises ``InputError`` for heights outside the pier, and for a pier whose sections are not known.
+    ``key`` names them in messages. Raises ``InputError`` for fewer than two, for heights outside the pier, and for a pier whose
+    sections are not known.
     """
     refuse(problems(pier))
     top = pier.highest

@@ -82,7 +82,10 @@ def markers() -> Markup:
 
 
 def drawn(figure: Figure) -> Markup:
-    """Draw a figure with its legend: panels side by side as room permits, or one picture if stacked or a single panel."""
+    """Draw a figure with its legend: panels side by side as room permits, each with its caption.
+
+    One picture if they are stacked, or a single panel has no caption.
+    """
     if figure.stacked or (len(figure.panels) == 1 and not figure.panels[0].caption):
         picture = _picture(figure.rows, figure.description, " alone")
         return join(picture, key_of(figure))

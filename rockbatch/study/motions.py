@@ -342,7 +342,7 @@ def read_motions_table(file: TomlFile, replaced_by: Path | MotionSet | None = No
 
 
 def _read_motions(table: Table) -> KeyValues:
-    """Return the fields of a ``MotionSpec`` that [motions] gives, and "path" as it is written."""
+    """Return the fields of a ``MotionSpec`` that [motions] gives, "path" as it is written, and "offset" also if not given."""
     read = table.read(MOTIONS, other=("fema_p695", "pulse", "sequence"))
     if "columns" in read:
         with table.noting("columns"):

@@ -89,7 +89,7 @@ class Analysis(Shown):
         }
 
     def _beneath(self) -> "pd.DataFrame | None":
-        """Return the main table, of the analysis's own name; None without it."""
+        """Return the table that notebooks show below the facts: that of the analysis's own name; None without it."""
         return self.tables.get(self.NAME)
 
     def save(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:

@@ -10,6 +10,7 @@ from rockbatch.core.clock import WINDOWS
 from rockbatch.outcome.outcome import BedDemands, Outcome
 from rockbatch.pier import FootingBase, Pier
 from rockbatch.simulation import chaos, error_control, run_to_tolerance
+from rockbatch.simulation.agreement import Agreement, Tolerances, agreement
 from rockbatch.simulation.coarser import share_of_strips, tolerances_beside, with_strips_error
 from rockbatch.simulation.runs import Trial
 
@@ -140,3 +141,11 @@ def test_other_strips_that_fall_leave_the_tolerance_of_steps_as_it_is(monkeypatc
     outcome = run_to_tolerance(PIER, BASE, SINE, 1e-4)
     assert (outcome.status, outcome.theta_max_error) == ("ok", None)
     assert "half as many strips come to another end: overturned" in outcome.note
+
+
+def test_each_result_agrees_within_its_own_tolerance():
+    coarse, fine = trial(0.02, 0.010, theta_res=0.0), trial(0.02, 0.015, theta_res=0.0, theta_res_error=1e-4)
+    wide = Tolerances(1e-5, 1e-3, np.full(WINDOWS, 1e-2))
+    assert agreement(fine, coarse, wide, PIER) == Agreement.THROUGHOUT
+    assert agreement(fine, coarse, wide._replace(peak=1e-3, residual=1e-5), PIER) == Agreement.NONE
+    assert agreement(fine, coarse, wide._replace(peak=1e-2, extremes=np.full(WINDOWS, 1e-5)), PIER) == Agreement.RESULTS

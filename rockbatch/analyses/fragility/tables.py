@@ -69,7 +69,10 @@ def _probabilities(curve: Curve, x: Values) -> dict[str, Values]:
 
 
 def _of_windows(windows: Windows | None, spec: FragilitySpec) -> dict[str, npt.NDArray[Any]]:
-    """Return the columns of the windows of a curve, each with a value for every level; NaN where there are none."""
+    """Return window_share, window_n, window_undecided and window_p, each with a value for every level.
+
+    All are NaN without windows, and window_p without a fitted curve.
+    """
     nothing = np.full(len(spec.levels), np.nan)
     if windows is None:
         return dict.fromkeys(("window_share", "window_n", "window_undecided", "window_p"), nothing)

@@ -27,7 +27,10 @@ Rows = Sequence[Entry]
 
 
 def answer(info: Info, swings: "pd.DataFrame", sobol: "pd.DataFrame") -> Markup:
-    """Return sentences on the most important inputs of each case, and doubts about their order."""
+    """Return a sentence on the most important inputs of each case, with doubts about their order, and remarks on runs.
+
+    Above :data:`MOST_CASES` cases, one sentence says in how many of them an input comes first.
+    """
     keys = ["case", *info["varied"]]
     merged = swings.merge(sobol, on=[*keys, "parameter"]).groupby(keys, sort=False, dropna=False)
     parts = (as_dicts(part.sort_values("total", ascending=False, kind="stable")) for _, part in merged)

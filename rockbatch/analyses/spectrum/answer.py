@@ -31,7 +31,7 @@ def answer(sentences: Sequence[str], remarks: Sequence[str]) -> Markup:
 
 
 def _marked(words: str) -> Markup:
-    """Return words with the subscripts of their symbols, and no others, as names may have underscores, too."""
+    """Return words with subscripts of θ_max, a_g, ω_p and the like, and no others, as names may have underscores, too."""
     return Markup(re.sub(r"\b([θωa])_(max|g|p)\b", lambda match: sub(match[1], match[2]), escape(words)))
 
 

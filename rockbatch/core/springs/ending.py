@@ -168,7 +168,10 @@ def _read_base(lanes, i, m, now):
 
 @kernel
 def _foresee(lanes, i, m):
-    """Set the Drift of the base, should its supports continue as between the first two readings, or the last two."""
+    """Set the greatest Drift of the base within half the patience, at the rates between the first two readings and the last two.
+
+    Twice as far ahead if the springs ratchet.
+    """
     waiting = lanes.waiting
     ahead = 0.5 * waiting.patience[i] * lanes.clock.dt[i] * (FORESEEN if m.creep > 0.0 else 1.0)
     last_left, last_right = ahead * waiting.last_drift_left[i], ahead * waiting.last_drift_right[i]

@@ -128,8 +128,8 @@ def _returned(m, theta):
 def growth(m, seconds):
     """Return the factor by which impacts may raise the energy within ``seconds``: 1 unless by Housner's e.
 
-    A landing by it adds at most (1 − e)/(1 + e) · b²/(I0/M + h²) of the kinetic energy (THEORY.md, eq. 11b). Their number is
-    that of both pivots at the frequency of the vertical vibration.
+    Each such landing adds at most (1 − e)/(1 + e) · b²/(I0/M + h²) of the kinetic energy (THEORY.md, eq. 11b), and a share
+    ``GAINED`` of them does: both pivots land once in each period of the vertical vibration.
     """
     if m.impact != HOUSNER:
         return 1.0

@@ -68,7 +68,10 @@ class InteractionInSections(Observer):
         return [*found, _at_base(recording)] if self.base else found
 
     def beyond(self, run: Run, fine: list[Envelope], fewer: list[Envelope]) -> list[Envelope]:
-        """Return ``fine`` with the change from ``fewer`` modes as errors."""
+        """Return ``fine`` with ``CHANCE`` times the relative change by one mode ``fewer`` added to its errors.
+
+        NaN if the last mode is damped too strongly for its change to tell.
+        """
         return with_errors(fine, fewer, of_last_mode(run, 1.0, CHANCE))
 
     def add(self, run: Run, outcome: Outcome, fine: list[Envelope] | None, coarse: list[Envelope] | None) -> Outcome:

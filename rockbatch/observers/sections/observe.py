@@ -32,7 +32,10 @@ class ForcesInSections(Observer):
         return sections_of(recording.run, recording.rows, section_heights(recording.run.pier, self.sections))
 
     def beyond(self, run: Run, fine: list[Section], fewer: list[Section]) -> list[Section]:
-        """Return ``fine`` with the change from ``fewer`` modes as errors."""
+        """Return ``fine`` with ``CHANCE`` times the relative change by one mode ``fewer`` added to its errors.
+
+        NaN if the last mode is damped too strongly for its change to tell.
+        """
         return with_errors(fine, fewer, run.pier, of_last_mode(run, 1.0, CHANCE))
 
     def add(self, run: Run, outcome: Outcome, fine: list[Section] | None, coarse: list[Section] | None) -> Outcome:

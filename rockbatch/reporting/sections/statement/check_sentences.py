@@ -99,9 +99,10 @@ def _quantity(verdict: Verdict) -> str:
 
 
 def _is(verdict: Verdict, *, at_worst: bool) -> str:
-    """Return the value with its verb: "is 0.3 m (between 0.2 m and 0.4 m)", "has no value", "is beyond any limit".
+    """Return the value with its verb: "is 0.3 m (between 0.2 m and 0.4 m)", "is at least 0.3 m", "is beyond any limit".
 
-    With ``at_worst`` it says so, and the bound of the design.
+    "has no value" if it is NaN. With ``at_worst`` the words "at worst" precede a number, and the bound of the design
+    follows whatever is said.
     """
     bound = f", {_bound(verdict)}" if at_worst else ""
     if math.isnan(verdict.value):
