@@ -69,6 +69,11 @@ def with_fewer_strips(run: Run) -> Run | None:
     return Run(run.pier, replace(run.base, strips=run.base.strips // 2), run.motion)
 
 
+def coarser(run: Run) -> Run | None:
+    """Return the run of a coarser model, of one mode fewer or half as many strips; None if there is none."""
+    return with_fewer_modes(run) or with_fewer_strips(run)
+
+
 class StripsShare(NamedTuple):
     """Share of the number of strips in errors of a run."""
 
@@ -140,12 +145,13 @@ MOST_DAMPING = 0.1
 """Damping ratio of the last mode beyond which its forces at a blow say nothing of those of further modes."""
 
 
-def of_last_mode(run: Run, change: float, chance: float) -> float:
-    """Return the part of a force's error that the modes have, by the relative ``change`` with one fewer; NaN if it says nothing.
+def of_model(run: Run, change: float, chance: float) -> float:
+    """Return the part of a force's error by modes or strips, from the relative ``change`` with fewer; NaN if that says nothing.
 
     A blow stops the base at once, which the damping force 2 ζ_i ω_i u̇_i of every mode meets: where ζ_i grows with ω_i, the sum
     has no limit.
     """
     base = run.base
-    assert isinstance(base, WithShaft)
-    return chance * change if base.damping_ratios(run.pier)[-1] <= MOST_DAMPING else math.nan
+    if isinstance(base, WithShaft) and base.bends and base.damping_ratios(run.pier)[-1] > MOST_DAMPING:
+        return math.nan
+    return chance * change

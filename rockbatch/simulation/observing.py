@@ -7,7 +7,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.motions.motion import Motion
 from rockbatch.outcome.outcome import Outcome
-from rockbatch.simulation.coarser import with_fewer_modes
+from rockbatch.simulation.coarser import coarser
 from rockbatch.simulation.recording import Recording, recorded, recorded_side_by_side
 from rockbatch.simulation.runs import Run, Stop, steps_of
 
@@ -69,7 +69,7 @@ class Observer:
         """Return the results of a history, of the type that :meth:`add` takes."""
 
     def beyond(self, run: Run, fine: Any, fewer: Any) -> Any:
-        """Return the results ``fine`` with what one mode ``fewer`` of the shaft changes as a part of their errors.
+        """Return the results ``fine`` with what a coarser model changes as a part of their errors: one mode or half the strips.
 
         Unchanged unless a class overrides it.
         """
@@ -118,12 +118,12 @@ def observed(
         if chosen and outcomes[i].substeps % 2 == 0:
             claiming[i] = chosen
     coarse = _read_all(runs, halved, claiming, quiet_s, wait, stop, longer=False)
-    bending = [with_fewer_modes(run) for run in runs] if claiming else []
-    of_modes = {i: chosen for i, chosen in claiming.items() if bending[i] is not None}
+    models = [coarser(run) for run in runs] if claiming else []
+    of_models = {i: chosen for i, chosen in claiming.items() if models[i] is not None}
     fewer = _read_all(
-        [own or run for own, run in zip(bending, runs, strict=True)] if of_modes else runs,
+        [own or run for own, run in zip(models, runs, strict=True)] if of_models else runs,
         outcomes,
-        of_modes,
+        of_models,
         quiet_s,
         wait,
         stop,

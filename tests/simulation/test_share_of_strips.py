@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from core_samples import pulse
 
+import rockbatch as rb
 from rockbatch.core.clock import WINDOWS
 from rockbatch.outcome.outcome import BedDemands, Outcome
 from rockbatch.pier import FootingBase, Pier
@@ -149,3 +150,19 @@ def test_each_result_agrees_within_its_own_tolerance():
     assert agreement(fine, coarse, wide, PIER) == Agreement.THROUGHOUT
     assert agreement(fine, coarse, wide._replace(peak=1e-3, residual=1e-5), PIER) == Agreement.NONE
     assert agreement(fine, coarse, wide._replace(peak=1e-2, extremes=np.full(WINDOWS, 1e-5)), PIER) == Agreement.RESULTS
+
+
+def test_errors_of_forces_have_four_times_what_half_as_many_strips_change():
+    """Of forces at the base and in sections."""
+    motion = pulse("sine", 0.35, dt=0.01, end=3.0)
+    own = rb.simulate(PIER, BASE, motion, forces=True, sections=3)
+    few, substeps = replace(BASE, strips=20), int(own.row.substeps)
+    fewer = rb.simulate(PIER, few, motion, forces=True, sections=3, substeps=substeps)
+    assert own.row.status == fewer.row.status == "ok"
+    changes = [abs(1.0 - fewer.row[name] / own.row[name]) for name in ("base_shear_m_s2", "base_moment_m2_s2")]
+    assert max(changes) > 1e-4
+    assert own.row.forces_error >= 4.0 * max(changes)
+    shear = "section_shear_m_s2"
+    changed = abs(1.0 - fewer.sections[shear] / own.sections[shear])[:2]  # the last is at the top
+    assert changed.max() > 1e-4
+    assert (own.sections.sections_error[:2] >= 4.0 * changed).all()

@@ -39,7 +39,7 @@ from rockbatch.pier import modes_of
 from rockbatch.pier.bending import flexural_period
 from rockbatch.simulation import Run, run_fixed, written_run
 from rockbatch.simulation.base_forces import at_rows
-from rockbatch.simulation.coarser import of_last_mode
+from rockbatch.simulation.coarser import of_model
 from rockbatch.simulation.histories import of_modes
 from rockbatch.simulation.models import flexible_block
 
@@ -420,7 +420,7 @@ def test_the_damping_force_of_a_last_mode_beyond_a_tenth_of_critical_bounds_noth
         ("stiffness", 0.02, False),
     ):
         base = rb.RigidBase(shaft="elastic", flexural_damping=damping, flexural_damping_kind=kind)
-        found = of_last_mode(Run(pier, base, still), 0.03, 4.0)
+        found = of_model(Run(pier, base, still), 0.03, 4.0)
         assert found == 0.12 if known else math.isnan(found)
 
 

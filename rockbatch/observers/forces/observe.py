@@ -10,7 +10,7 @@ from rockbatch.observers.forces.peaks import (
     impacts_table,
     peak_forces,
     with_error,
-    with_modes_error,
+    with_model_error,
 )
 from rockbatch.observers.forces.study import Forces
 from rockbatch.outcome.outcome import Outcome
@@ -38,8 +38,8 @@ class PeaksOfForces(Observer):
         return peak_forces(recording.run, recording.rows, self.least_normal)
 
     def beyond(self, run: Run, fine: Peaks, fewer: Peaks) -> Peaks:
-        """Return ``fine`` with the change by one mode ``fewer`` as its error, NaN if the last mode is damped too strongly."""
-        return with_modes_error(run, fine[0], fewer[0], CHANCE), fine[1]
+        """Return ``fine`` with the change by ``fewer`` modes or strips as its error; NaN if the last mode is damped strongly."""
+        return with_model_error(run, fine[0], fewer[0], CHANCE), fine[1]
 
     def add(self, run: Run, outcome: Outcome, fine: Peaks | None, coarse: Peaks | None) -> Outcome:
         """Return ``outcome`` with the demands and note of ``fine``, and their error by ``coarse``; unchanged without ``fine``."""

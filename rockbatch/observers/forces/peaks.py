@@ -16,7 +16,7 @@ from rockbatch.outcome.changes import LEAST, Sized, greatest_change
 from rockbatch.outcome.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.pier import Pier, RigidBase, YieldingBase, landing_force
 from rockbatch.simulation.base_forces import at_rows, observed
-from rockbatch.simulation.coarser import of_last_mode
+from rockbatch.simulation.coarser import of_model
 from rockbatch.simulation.histories import LANDINGS
 from rockbatch.simulation.models import acceleration_at, block
 from rockbatch.simulation.runs import Run
@@ -287,12 +287,12 @@ def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier, chance: float) 
     return replace(fine, error=(fine.error or 0.0) + chance * max(most, LEAST)), note
 
 
-def with_modes_error(run: Run, fine: PeakForces, fewer: PeakForces, chance: float) -> PeakForces:
-    """Return ``fine`` with ``chance`` times the greatest relative change from ``fewer``, by one mode fewer, as its error.
+def with_model_error(run: Run, fine: PeakForces, fewer: PeakForces, chance: float) -> PeakForces:
+    """Return ``fine`` with ``chance`` times the greatest relative change from ``fewer`` modes or strips as its error.
 
     NaN if the last mode has more than :data:`rockbatch.simulation.coarser.MOST_DAMPING`. The friction demand of impacts is
     left out: each further mode takes about half of a landing's horizontal impulse, so that this demand falls to 0 with more
     modes, and is too great with any number of them.
     """
     of_modes = {name: sized for name, sized in OF_FORCES.items() if name != OF_IMPACTS}
-    return replace(fine, error=of_last_mode(run, greatest_change(of_modes, fine, fewer, run.pier)[1], chance))
+    return replace(fine, error=of_model(run, greatest_change(of_modes, fine, fewer, run.pier)[1], chance))

@@ -12,7 +12,7 @@ from rockbatch.pier.sections import section_heights
 from rockbatch.quantities.demands import OF_INTERACTION
 from rockbatch.results.interaction import INTERACTION
 from rockbatch.simulation.base_forces import at_rows
-from rockbatch.simulation.coarser import of_last_mode
+from rockbatch.simulation.coarser import of_model
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
@@ -68,11 +68,11 @@ class InteractionInSections(Observer):
         return [*found, _at_base(recording)] if self.base else found
 
     def beyond(self, run: Run, fine: list[Envelope], fewer: list[Envelope]) -> list[Envelope]:
-        """Return ``fine`` with ``CHANCE`` times the relative change by one mode ``fewer`` added to its errors.
+        """Return ``fine`` with ``CHANCE`` times the relative change by ``fewer`` modes or strips added to its errors.
 
         NaN if the last mode is damped too strongly for its change to tell.
         """
-        return with_errors(fine, fewer, of_last_mode(run, 1.0, CHANCE))
+        return with_errors(fine, fewer, of_model(run, 1.0, CHANCE))
 
     def add(self, run: Run, outcome: Outcome, fine: list[Envelope] | None, coarse: list[Envelope] | None) -> Outcome:
         """Return ``outcome`` with a row of the table for each corner of ``fine``, with errors by ``coarse``.

@@ -6,7 +6,7 @@ from rockbatch.observers.sections.study import Sections
 from rockbatch.outcome.outcome import Outcome, Section
 from rockbatch.pier.sections import section_heights
 from rockbatch.results.sections import SECTIONS, section_rows
-from rockbatch.simulation.coarser import of_last_mode
+from rockbatch.simulation.coarser import of_model
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
@@ -32,11 +32,11 @@ class ForcesInSections(Observer):
         return sections_of(recording.run, recording.rows, section_heights(recording.run.pier, self.sections))
 
     def beyond(self, run: Run, fine: list[Section], fewer: list[Section]) -> list[Section]:
-        """Return ``fine`` with ``CHANCE`` times the relative change by one mode ``fewer`` added to its errors.
+        """Return ``fine`` with ``CHANCE`` times the relative change by ``fewer`` modes or strips added to its errors.
 
         NaN if the last mode is damped too strongly for its change to tell.
         """
-        return with_errors(fine, fewer, run.pier, of_last_mode(run, 1.0, CHANCE))
+        return with_errors(fine, fewer, run.pier, of_model(run, 1.0, CHANCE))
 
     def add(self, run: Run, outcome: Outcome, fine: list[Section] | None, coarse: list[Section] | None) -> Outcome:
         """Return ``outcome`` with a row of the table for each section of ``fine``, if any, with errors by ``coarse``."""
