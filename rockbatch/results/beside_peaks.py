@@ -72,7 +72,8 @@ def read_beside(
     wrong += [f"column {name} has texts" for name in numbers if not pd.api.types.is_numeric_dtype(table[name])]
     if wrong:
         raise InputError(f"{path}: {wrong[0]}: the file was changed; start `rockbatch run` again")
-    return table
+    # As in peaks.csv, with which it is merged: the nominal design has an empty bound
+    return table.fillna({name: "" for name in TEXTS if name in table})
 
 
 def write_semicolons(directory: Path) -> Path:

@@ -3,7 +3,9 @@
 import pandas as pd
 import pytest
 from check_samples import case, runs, verdict
+from studies import seven_pulses, study_text, write_study
 
+import rockbatch as rb
 from rockbatch.checks import Rule, judge, read_verdicts, write_verdicts
 from rockbatch.checks.answer import answer
 from rockbatch.checks.coverage import runs_of_cases
@@ -13,6 +15,7 @@ from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
 
 LIMIT = Rule("rotation", "theta_max_over_alpha", at_most=0.5)
 BOUNDS = ("", "stiff", "soft")
+SPRINGS = {"base": "elastic", "beta": 50.0}
 
 
 def of_designs(**designs):
@@ -109,3 +112,32 @@ def test_bounds_and_cases_that_lack_their_keys_are_said_in_words():
         "rock lacks case.beta, and ran without this change under stiff.",
     ]
     assert bounds_in_words({}) == []
+
+
+def test_forces_in_sections_are_judged_under_every_bound_and_nominally(tmp_path):
+    """From the tables on disk, in which the nominal design has an empty bound; one of two cases lacks the key that varies."""
+    pier = {"width_m": 4.0, "height_m": 15.0, "mass_t": 900.0}
+    checks = [
+        {"name": "V", "demand": "section_shear_kN", "at_most": 1e5},
+        {
+            "name": "M",
+            "demand": "section_moment_over_capacity",
+            "at_most": 1.0,
+            "capacity": [[-1e5, 0], [0, 1e6], [1e6, 0]],
+        },
+    ]
+    text = study_text(
+        pier=pier,
+        pulses=seven_pulses(0.3)[:2],
+        cases=[SPRINGS | {"name": "a", "zeta": [0.05, 0.1]}, SPRINGS | {"name": "b"}],
+        bound=[{"name": "soft", "case.beta": {"times": 0.7}}],
+        check=[check | {"at_m": 5.0, "reason": "made up", "confirm": ["at_most", "capacity"]} for check in checks],
+        output={"sections_m": [5.0], "interaction_m": [5.0]},
+    )
+    rb.run(write_study(tmp_path, text), out=tmp_path / "out")
+    verdicts = rb.check(tmp_path / "out")
+    assert len(verdicts) == 3 * 2 * 2
+    assert {(row.bound, row.verdict) for row in verdicts.fillna({"bound": ""}).itertuples()} == {
+        ("", PASS),
+        ("soft", PASS),
+    }
