@@ -77,6 +77,12 @@ def test_radiation_adds_its_dashpot_and_reports_both_damping_ratios(study):
     assert 0.0 < ratios[0]["zeta_rocking"] < ratios[1]["zeta_rocking"] < ratios[1]["zeta"]
 
 
+def test_no_embedment_may_be_written_as_what_it_is(study):
+    keys = {"length_m": 12.0, "shear_modulus_MPa": 60.0, "poisson": 0.4, "safety_factor": 3.0}
+    without, written = (study(**keys, **more).cases[0].base for more in ({}, {"embedment_m": 0.0}))
+    assert written == without
+
+
 def test_slenderness_of_a_case_is_that_of_its_foot_and_devices_stay_at_the_pivots(study):
     case = study(width_m=11.0, length_m=12.0, stiffness_MN_m3=60.0).cases[0]
     assert case.pier.alpha == pytest.approx(math.atan(5.5 / TALL.height))

@@ -10,7 +10,7 @@ from rockbatch.pier import FootingBase, Pier
 from rockbatch.pier.footing_base import POISSON, STRIPS
 from rockbatch.pier.restraints import DeckSpring, Restraint
 from rockbatch.pier.soil import Formula
-from rockbatch.toml.kinds import Kind, Whole, boolean, choice, positive, within
+from rockbatch.toml.kinds import Kind, Whole, boolean, choice, not_negative, positive, within
 from rockbatch.toml.section import Key
 
 ON_FOOTING = {"base": ("footing",)}
@@ -62,7 +62,7 @@ FOOTING_KEYS = {
     "safety_factor": _key(positive, "3.0", "FS: bearing capacity over the weight of pier and deck, above 1."),
     "shear_modulus_MPa": _key(positive, "60.0", "Shear modulus G of the soil, at the strain that is expected."),
     "poisson": _key(within(POISSON), "0.45", "Poisson's ratio ν of the soil."),
-    "embedment_m": _key(positive, "2.0", "Depth of the foot's underside below the surface, with walls in contact."),
+    "embedment_m": _key(not_negative, "2.0", "Depth of the foot's underside below the surface, with walls in contact."),
     "formula": _key(
         choice(*get_args(Formula)),
         '"gazetas"',

@@ -35,11 +35,11 @@ def _panel(verdict: Verdict, rows: "pd.DataFrame", series: Sequence[Series]) -> 
         name = series[place].label
         marks.append(Polyline(of.axial, of.effect, look=line_of(series[place].index), label=name, title=name))
     x, y = (_axis(label, marks, along) for label, along in (("N [kN]", "x"), (words, "y")))
-    return Panel(x, y, marks, verdict.check, wide_words(verdict), 330.0, 220.0)
+    return Panel(x, y, marks, verdict.check, _place(verdict), 330.0, 220.0)
 
 
-def wide_words(verdict: Verdict) -> str:
-    """Return where the demand of a check is read: "section at 12 m", or "base"."""
+def _place(verdict: Verdict) -> str:
+    """Return where a check reads its demand: "section at 12 m", or "base"."""
     return "base" if np.isnan(verdict.at_m) else f"section at {verdict.at_m:g} m"
 
 
