@@ -7,13 +7,14 @@ from importlib import import_module
 
 import pandas as pd
 import pytest
+from check_samples import case, folder, runs
 from report_page import Page
 from report_samples import FIG7, FOUNDATIONS, case_entry, write_results
 from studies import study_text, write_study
 
 import rockbatch.reporting.sections
 from rockbatch.observers.forces import section as forces
-from rockbatch.pier import Damper, Pier, RigidBase
+from rockbatch.pier import Damper, FootingBase, Pier, RigidBase
 from rockbatch.reporting import compared, write_analyses
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.finished_analysis import Contents, FinishedAnalysis
@@ -176,6 +177,16 @@ def test_the_error_of_the_answer_is_a_plain_number_that_no_run_exceeds(tmp_path,
     peaks.to_csv(tmp_path / "peaks.csv", index=False)
     told = Page(section_of(tmp_path, answer)).text
     assert f"Error of rotations: at most {said} α (0.0001 α allowed)." in told
+
+
+def test_on_a_footing_the_answer_says_that_strips_leave_more_than_the_steps(tmp_path):
+    """A claimed error above the tolerance is no run that has not converged."""
+    foot = case("foot", FootingBase(30.0, 3.0))
+    results = folder(tmp_path / "out", runs((0.1, 0.2), "foot", theta_max_error=7e-4), [foot])
+    assert (
+        "0.0007 α (0.0001 α allowed, besides what the strips of a footing leave)."
+        in Page(section_of(results, answer)).text
+    )
 
 
 def test_the_answer_says_which_peaks_have_errors_and_which_runs_remarks(tmp_path):

@@ -13,7 +13,7 @@ from rockbatch.checks.responses import LOST, RESPONSES, Worst, heights_of, in_wo
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.quantities.quantity import SETTLING
+from rockbatch.quantities.quantity import FOOTING, SETTLING
 from rockbatch.quantities.rows import NOT_RUN
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted
@@ -210,7 +210,10 @@ def _error(finished: Finished) -> str:
         error = error.quantize(Decimal(1).scaleb(error.adjusted()), ROUND_UP)
         allowed = Decimal(repr(float(numerics["tolerance"])))
         unknown = f"; unknown in {counted(lacking, 'run')}" if lacking else ""
-        return f"Error of rotations: at most {error:f} α ({allowed:f} α allowed){unknown}."
+        strips = ", besides what the strips of a footing leave" * any(
+            case["base"] in FOOTING for case in finished.info["cases"]
+        )
+        return f"Error of rotations: at most {error:f} α ({allowed:f} α allowed{strips}){unknown}."
     if numerics.get("substeps"):
         steps = counted(numerics["substeps"], "step")
         return f"Every sampling interval was integrated in {steps}; the error was not estimated."

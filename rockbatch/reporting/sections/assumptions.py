@@ -28,7 +28,7 @@ def section(finished: Finished) -> Markup:
 def lines(finished: Finished, cases: Collection[Case]) -> list[str]:
     """Return the assumptions of some cases of a study as sentences, in a fixed order."""
     system = (_plane(cases), _body(cases), _ground(cases), _landings(cases), _flight(cases), _sliding(cases))
-    rest = (_damping(cases), _devices(cases), _motions(finished), _numerics(finished.info["numerics"]))
+    rest = (_damping(cases), _devices(cases), _motions(finished), _numerics(finished.info["numerics"], cases))
     return [line for line in (*system, *rest) if line]
 
 
@@ -142,11 +142,12 @@ def _motions(finished: Finished) -> str:
     )
 
 
-def _numerics(numerics: Any) -> str:
+def _numerics(numerics: Any, cases: Collection[Case]) -> str:
     kept = f"Runs go on for at least {number(float(numerics['quiet_s']))} s beyond the record, until nothing can exceed the peak"
     if numerics["tolerance"]:
         largest = number(float(numerics["tolerance"]))
-        return f"{kept}; the step is halved until the estimated error of θ/α is at most {largest}."
+        strips = ", on a footing, or a tenth of what its strips leave" * any(case["base"] in FOOTING for case in cases)
+        return f"{kept}; the step is halved until the estimated error of θ/α is at most {largest}{strips}."
     return f"{kept}; the step is fixed, and its error was not estimated."
 
 
