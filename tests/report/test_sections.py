@@ -187,6 +187,8 @@ def test_on_a_footing_the_answer_says_that_strips_leave_more_than_the_steps(tmp_
         "0.0007 α (0.0001 α allowed, besides what the strips of a footing leave)."
         in Page(section_of(results, answer)).text
     )
+    said = "is at most 0.0001, on a footing, or a tenth of what its strips leave."
+    assert said in Page(page(read(results, ()))).text
 
 
 def test_the_answer_says_which_peaks_have_errors_and_which_runs_remarks(tmp_path):
