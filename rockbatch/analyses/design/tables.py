@@ -18,7 +18,7 @@ VALUES, INTERVALS = "design_values.csv", "design.csv"
 BESIDE = {SECTIONS: "design_sections.csv", INTERACTION: "design_interaction.csv"}
 """Files of the rows beside those of the runs, by the names that a batch has for them."""
 GOVERNING = ("check", "under_bound", "at_scale", "station", "record", "ratio")
-"""Of the check that governs: its name, the bound and scale at which it does, the run, and demand over limit."""
+"""Columns of the check that governs: its name, the bound and scale at which it does, the run, and demand over limit."""
 ENDS = ("below", "above")
 _OF_INTERVAL = ("verdict", "low", "high", "values", "widest_step")
 _OF_END = ("", "_verdict", *(f"_{name}" for name in GOVERNING), "_reason")

@@ -35,7 +35,7 @@ DRAWS = 1000
 """Sets of parameters from their joint distribution, from which all intervals come."""
 
 SEED = 2017
-"""Of the draws, so that the same runs give the same intervals."""
+"""Seed of the draws, so that the same runs give the same intervals."""
 
 PROPOSALS = 10_000
 """Points from which the draws of a logistic part are chosen."""
@@ -50,7 +50,7 @@ LEAST_RECORDS = 4
 """Demands above the floor that a line needs."""
 
 _WIDEST = 12.0
-"""Of ln x about the data, in which medians are sought; beyond it one is 0 or infinite."""
+"""Greatest distance of ln x from the mean of the data at which medians are sought; beyond it a median is 0 or infinite."""
 
 
 @dataclass(frozen=True)

@@ -157,7 +157,7 @@ def output(spec: FragilitySpec, of_study: Output) -> Output:
 
 
 def intensities(motions: Sequence[Motion], spec: FragilitySpec, gravity: float) -> list[float]:
-    """Return the intensity measure of every motion as it comes, in the unit of the levels but not over a pier's uplift.
+    """Return the intensity measure of every motion as it comes, in g, m/s or the unit of an own measure.
 
     Raises ``InputError`` with every motion whose measure is not above 0.
     """
