@@ -80,7 +80,7 @@ def one_pass(traits, lanes, count, substep, settings):
 
 @inlined
 def _resists(m, side, held, ground):
-    """Return the acceleration [rad/s²] by which a block at rest resists uplift about its pivot on ``side``."""
+    """Return the acceleration [rad/s²] by which a block at rest resists uplift about its pivot on ``side``, ``held`` included."""
     return m.quickness * ((m.gravity + ground.vertical) * m.half_width + side * ground.horizontal * m.height) + held
 
 
