@@ -36,7 +36,7 @@ def statements_beside(files: Sequence[SourceFile]) -> tuple[dict[Path, tuple[str
 
 def _parts(match: Mapping[str, str] | re.Match[str]) -> tuple[str, str]:
     """Return the kind of a file ("DT", "NUM", "SOR" or "EQF") and the number of its record."""
-    kind = match["kind"].upper()
+    kind = match["kind"].upper().replace("_", "")
     return "DT" if kind.startswith("DT") else kind[:3], match["number"]
 
 
