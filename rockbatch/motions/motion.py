@@ -455,7 +455,8 @@ class Motion(Shown):
                     vars(times)[name] = _frozen(samples * by)
         if self.initial is not None:
             vars(times)["initial"] = self.initial.times(along)
-        if not math.isfinite(times.pga + (times.pga_vertical or 0.0)):
+        across = 0.0 if times.across is None else float(np.abs(times.across).max())
+        if not math.isfinite(times.pga + (times.pga_vertical or 0.0) + across):
             times.__post_init__()
         return times
 
