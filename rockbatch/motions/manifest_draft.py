@@ -133,4 +133,7 @@ def _remark(name: str, unusable: Unusable) -> str:
 
 def _toml_value(value: str | float) -> str:
     """Return a value as TOML writes it, a text in quotes, with characters that TOML or a terminal would not take escaped."""
-    return json.dumps(legible(value), ensure_ascii=False) if isinstance(value, str) else f"{value:g}"
+    if isinstance(value, str):
+        return json.dumps(legible(value), ensure_ascii=False)
+    short = f"{value:g}"
+    return short if float(short) == value else repr(value)
