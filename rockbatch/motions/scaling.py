@@ -111,10 +111,17 @@ def at_target(
 
 
 def scale_as_listed(motion_set: MotionSet) -> MotionSet:
-    """Return all motions scaled by their factors in PEER's lists, with a note; those without a listed factor are unusable."""
+    """Return all motions scaled by their factors in PEER's lists, with a note; those without a listed factor are unusable.
+
+    A sequence has the factor that all its records share, if there is one.
+    """
     lacking = [motion for motion in motion_set if motion.listed.scale is None]
-    reason = 'has no scale factor: scale = "list" takes those of PEER\'s _SearchResults.csv in its folder'
-    unusable = [Unusable(m.name, m.files, f"{m.label} {reason}", station=m.of_station) for m in lacking]
+    none = 'has no scale factor: scale = "list" takes those of PEER\'s _SearchResults.csv in its folder'
+    several = 'has no scale factor that all its records share: scale them by its factors, and leave out scale = "list"'
+    unusable = [
+        Unusable(m.name, m.files, f"{m.label} {several if len(m.shocks) > 1 else none}", station=m.of_station)
+        for m in lacking
+    ]
     scaled = []
     for motion in motion_set:
         if (factor := motion.listed.scale) is not None:

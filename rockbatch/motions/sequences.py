@@ -19,6 +19,7 @@ from rockbatch.common.showing import shown
 from rockbatch.common.units import GRAVITY, Usual
 from rockbatch.motions import measures
 from rockbatch.motions.limits import MOST_SAMPLES, MOST_STEPS
+from rockbatch.motions.listed import NOT_LISTED, Listed
 from rockbatch.motions.motion import Initial, LeftOut, Motion, Samples, Shock, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.origin import UNKNOWN_ORIGIN
@@ -307,7 +308,14 @@ def _with_common_origin(parts: Sequence[Motion], whole: Motion) -> Motion:
         magnitude=_common(part.magnitude for part in parts),
         distance_km=_common(part.distance_km for part in parts),
         processed=_common(part.processed for part in parts),
+        listed=_listed_of_all([part.listed for part in parts]),
     )
+
+
+def _listed_of_all(lists: Sequence[Listed]) -> Listed:
+    """Return the facts of lists on which all agree; None for others, and for D5–95, which is that of one record."""
+    shared = {name: _common(getattr(listed, name) for listed in lists) for name in vars(NOT_LISTED)}
+    return Listed(**shared | {"d5_95_s": None})
 
 
 def _in_turn(sources: Iterable[str]) -> str:
