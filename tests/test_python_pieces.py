@@ -164,6 +164,8 @@ def test_steps_of_records_are_taken():
 
 @pytest.mark.parametrize("component", ["horizontal", "vertical", "across"])
 def test_a_factor_with_which_any_component_overflows_is_refused(component):
-    large = {name: np.array([0.0, 1e200 if name == component else 1.0]) for name in ("horizontal", "vertical", "across")}
+    large = {
+        name: np.array([0.0, 1e200 if name == component else 1.0]) for name in ("horizontal", "vertical", "across")
+    }
     with pytest.raises(rb.InputError, match=f"{component} sample 1 .* is inf"):
         rb.Motion("mine", 0.01, **large).times(1e150)

@@ -78,7 +78,7 @@ def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component
 
 
 def all_components(gravity: float = GRAVITY) -> list[Component]:
-    """Return both stored components of all 50 stations, in m/s²."""
+    """Return both stored components of all 50 stations, 100 in all, in m/s²."""
     return [_recorded(station, direction, gravity) for station in stations() for direction in (0, 1)]
 
 

@@ -160,9 +160,10 @@ _PROCESSING = re.compile(
 def split_stem(stem: str) -> tuple[str, Orientation | None]:
     """Return the station's part of a file's stem and the orientation at its end, before times and words such as "corrected".
 
-    "RSN1063_NORTHR_RRS228" gives "RSN1063_NORTHR_RRS" and 228°, "ABBAR--V" gives "ABBAR" and vertical; a stem without a
-    direction gives itself and ``None``. Numbers count as azimuths only with three digits, unless they are dates, times,
-    stations or files counted from 001. Names with a horizontal direction and a vertical channel's code have no orientation.
+    "RSN1063_NORTHR_RRS228" gives "RSN1063_NORTHR_RRS" and 228°, "ABBAR--V" gives "ABBAR" and vertical, "UP" gives "" and
+    vertical; a stem without a direction gives itself and ``None``. Numbers count as azimuths only with three digits, unless they
+    are dates, times, stations or files counted from 001. Names with a horizontal direction and a vertical channel's code have no
+    orientation.
     """
     whole = orientation_of(stem) if stem.isalnum() and not _is_number("", stem, stem) else None
     if whole and (whole.vertical or whole.azimuth is not None):
@@ -186,14 +187,17 @@ def split_stem(stem: str) -> tuple[str, Orientation | None]:
 
 
 def _in_name(label: str) -> Orientation | None:
-    """Return the orientation of a label at the end of a name; ``None`` for words that also name places."""
+    """Return the orientation of a label at the end of a name; ``None`` for others, and words that name places, too (Nord)."""
     key = _key(label)
     pair = "-" not in label or (len(key) > 1 and (key in _AZIMUTHS or key in _VERTICAL | _UP | _DOWN))
     return orientation_of(label) if pair and key not in _ELSEWHERE_IN_NAMES else None
 
 
 def direction_of_suffix(suffix: str) -> Orientation | None:
-    """Return the orientation of a file's suffix such as K-NET's .EW and .UD2, or .090; ``None`` for other suffixes."""
+    """Return the orientation of a file's suffix such as K-NET's .EW and .UD2; ``None`` for other suffixes.
+
+    Of numbers only .000, .090, .180, .270 and .360 count.
+    """
     label = suffix.lstrip(".")
     if label.isdigit() and label not in ("000", "090", "180", "270", "360"):
         return None
@@ -202,7 +206,7 @@ def direction_of_suffix(suffix: str) -> Orientation | None:
 
 
 def _channels(stem: str) -> list[Orientation]:
-    """Return the orientations of all channel codes in a name: one, vertical, of "CCM.BHZ.00.D"."""
+    """Return the orientations of all channel codes in a name, in order: [vertical] for "CCM.BHZ.00.D"; [] without a code."""
     parts = [part for part in re.split(r"[-_. ]+", stem) if _CHANNEL_IN_NAME.fullmatch(part.upper())]
     return [orientation for part in parts if (orientation := orientation_of(part))]
 

@@ -65,7 +65,7 @@ class Origin:
 
     @property
     def short_station(self) -> str:
-        """Return the station in 20 characters at most, without the event's place; a long name without "fire station" and such."""
+        """Return the station in 20 characters at most, without the event's place; of a long name the end, without "School"."""
         place = self.event.partition(" ")[0]
         station = self.station.removesuffix(f" {place}") if place else self.station
         if len(station) > _STATION:
@@ -82,7 +82,7 @@ UNKNOWN_ORIGIN = Origin()
 
 
 def origin_of(event: str = "", station: str = "", date: str = "") -> Origin:
-    """Return the origin by a header's words for ``event`` and ``station``; ``date`` is its text with the event's date."""
+    """Return the origin by a header's words for ``event`` and ``station``, 80 characters of each, and its text with the date."""
     return Origin(_event(event[:_LONGEST], date[:_LONGEST]), _without_capitals(station[:_LONGEST]))
 
 

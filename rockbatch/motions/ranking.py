@@ -109,7 +109,7 @@ class RankedRecord:
 def ranked_records(motions: MotionSet) -> list[RankedRecord]:
     """Return the records of a set: held back, not read, doubtful, other used ones, copies; the strongest first in each group.
 
-    Files that are no records are left out.
+    Of the files left out, only copies are in it.
     """
     records = [*_unused_records(motions.unusable), *map(_used_record, motions.stations().values())]
     records += [
@@ -150,7 +150,7 @@ def _unused_records(unusable: Iterable[Unusable]) -> Iterator[RankedRecord]:
 
 
 def use_of(file: Unusable | LeftOut) -> Use:
-    """Return the ``Use`` of a file without a motion: held back if its user can state or confirm what it lacks, else not used.
+    """Return the ``Use`` of a file not used: held back if the user can state or confirm what it lacks, else "not used".
 
     A file that was left out is a copy, or left out.
     """

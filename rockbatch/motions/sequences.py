@@ -44,7 +44,8 @@ _SAME = 1e-6  # relative: steps that differ by less are the same
 class ShockSequence:
     """A sequence by the names of its records; its fields are the keys of :data:`SEQUENCE`.
 
-    One value of ``factors`` or ``polarity`` is for all records; none means 1 or "+".
+    One value of ``factors`` or ``polarity`` is for all records; none means 1 or "+". Raises ``InputError`` for another number of
+    them than that of the records.
     """
 
     name: str
@@ -120,7 +121,7 @@ SEQUENCE = Section(
 
 
 def read_sequences(file: TomlFile, *at: str) -> tuple[ShockSequence, ...]:
-    """Return the sequences in the tables ``[[at]]`` of a study or manifest; mistakes are added to the file's problems."""
+    """Return the sound sequences in the tables ``[[at]]`` of a study or manifest; mistakes are added to the file's problems."""
     sequences: list[ShockSequence] = []
     for table in file.tables(*at, title="name"):
         read = table.read(SEQUENCE)
@@ -150,8 +151,8 @@ def sequence(
     name : str
         Of the sequence.
     pause : float
-        Time from the last sample of a shock to the first of the next [s], rounded to a whole number of samples. In it the ground
-        is brought to the initial velocity of the next record, mostly 0, by an acceleration (Δv/P) (1 − cos(2πt/P)).
+        Time from the last sample of a shock to the first of the next [s], rounded to whole samples, at least two. In it the
+        ground is brought to the initial velocity of the next record, mostly 0, by an acceleration (Δv/P) (1 − cos(2πt/P)).
     factors : sequence of float, optional
         On all components of each shock.
     polarity : sequence of str, optional
@@ -162,7 +163,7 @@ def sequence(
     Motion
         With the times of its ``shocks``. Its sampling interval is the least of theirs; records with a longer one are interpolated
         linearly, which changes nothing for a multiple. If some shocks have a vertical component, the others get zeros, with a
-        note. A sequence of one has the record's samples.
+        note; it has a component ``across`` if all have. A sequence of one has the record's samples.
 
     Raises ``InputError`` for no motions, lists of other lengths, and more than 0.005 g needed to bring the ground to rest.
 
@@ -269,7 +270,7 @@ def _resampled(motion: Motion, dt: float, notes: list[str]) -> Motion:
 def _concatenated(
     series: Sequence[Samples], initial: Sequence[Initial], dt: float, gap: int, name: str, part: str, notes: list[str]
 ) -> Samples:
-    """Return accelerations one after the other, ``gap`` steps apart, each preceded by its ``initial`` velocity.
+    """Return accelerations one after the other, ``gap`` steps apart, in which the ground reaches the next ``initial`` velocity.
 
     ``part`` names the component in ``notes`` and errors. Raises ``InputError`` if the pauses need too much acceleration.
     """
@@ -295,7 +296,7 @@ def _concatenated(
 
 
 def _with_common_origin(parts: Sequence[Motion], whole: Motion) -> Motion:
-    """Return ``whole`` with the sources and findings of all ``parts``, and facts that all share, such as magnitude, else None."""
+    """Return ``whole`` with the sources and findings of all ``parts``, and facts that all share, such as magnitude; else None."""
     return replace(
         whole,
         source=_in_turn(part.source for part in parts),
@@ -319,12 +320,12 @@ def _listed_of_all(lists: Sequence[Listed]) -> Listed:
 
 
 def _in_turn(sources: Iterable[str]) -> str:
-    """Return different sources joined by "then"; empty ones are skipped."""
+    """Return the sources once each, joined by ", then "; empty ones are skipped."""
     return ", then ".join(dict.fromkeys(filter(None, sources)))
 
 
 def _common(values: Iterable[T]) -> T | None:
-    """Return the value that all ``values`` share; None if they differ."""
+    """Return the value that all ``values`` share; None if they differ, or there is none."""
     different = set(values)
     return different.pop() if len(different) == 1 else None
 

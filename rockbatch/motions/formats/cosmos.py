@@ -207,7 +207,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
 
 
 def _initial(header: _Header) -> Initial | None:
-    """Return the ground's velocity [m/s] and displacement [m] at the first sample; ``None`` if real number 68 is unknown."""
+    """Return the ground's state at the first sample; ``None`` without its velocity (real 68), 0 m without displacement (69)."""
     velocity, displacement = header.reals[67:69]
     if velocity == header.unknown:
         return None
