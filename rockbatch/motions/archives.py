@@ -143,7 +143,7 @@ def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
 
 
 def is_member(path: Path) -> bool:
-    """Return whether a path leads to a file in an archive, also a refused one; False if the archive cannot be read."""
+    """Return whether a path leads to one of the :func:`members` of an archive, even a refused one; False if it is unreadable."""
     archive = archive_of(path)
     try:
         return archive is not None and path in _paths_in(archive, state_of(archive.stat()))

@@ -47,11 +47,11 @@ def _judge_set(station: Sequence[Component]) -> list[Component]:
         contradictions.setdefault(i, text)
         contradictions.setdefault(j, text)
     if contradictions:
-        return [_hold_back(c, contradictions.get(i, ""), components, contradictions) for i, c in enumerate(components)]
+        return [_held_back(c, contradictions.get(i, ""), components, contradictions) for i, c in enumerate(components)]
     return [_with_remark(component) for component in components]
 
 
-def _hold_back(
+def _held_back(
     component: Component, contradiction: str, components: Sequence[Component], contradictions: dict[int, str]
 ) -> Component:
     """Return a component of a set held back: with its own ``contradiction`` and no direction, else with the first of the set."""
@@ -67,7 +67,7 @@ def _by_user(component: Component) -> bool:
 
 
 def _strong_statement(component: Component, *kinds: Kind) -> Statement | None:
-    """Return a component's first statement of these kinds that is not weak; ``None`` without one."""
+    """Return a component's first statement of one of ``kinds`` that is not weak; ``None`` without any."""
     return next((s for s in component.statements if s.kind in kinds and not s.weak), None)
 
 

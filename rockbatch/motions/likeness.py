@@ -298,7 +298,7 @@ class _Table:
         self.start = np.array([c.start for c in components], dtype=float)
         self.end = self.start + [c.duration for c in components]
         self.dated = np.array([c.dated for c in components], dtype=bool)
-        self.growth = np.array([_growth(component) for component in components]).reshape(-1, len(_SHARES))
+        self.growth = np.array([_growth_times(component) for component in components]).reshape(-1, len(_SHARES))
         self.bands = np.array([np.searchsorted(_BANDS, 0.5 / c.dt, "right") - 1 for c in components], dtype=np.int64)
         self.amplitude = np.full((len(components), len(_BANDS) - 1), math.nan, dtype=np.float32)
         self.energy = np.full((len(components), len(_BANDS)), math.nan, dtype=np.float32)
@@ -306,7 +306,7 @@ class _Table:
         self.whole_file = np.isin(self.file, self.file[vertical]) & np.isin(self.file, self.file[~vertical])
 
     def _differ(self, column: Indices, i: int, j: Indices) -> Truths:
-        """Return whether codes of components ``j`` differ from that of ``i``; False where either is unknown, -1."""
+        """Return whether the codes ``column[j]`` differ from ``column[i]``, shape of ``j``; False where either is unknown, -1."""
         return (column[i] != column[j]) & (column[i] >= 0) & (column[j] >= 0)
 
     def _pointing_alike(self, i: int, j: Indices) -> Truths:
@@ -404,7 +404,7 @@ def _kind_of_direction(component: Component) -> tuple[str, ...]:
     return ("label", orientation.label.upper()) if orientation.label else ()
 
 
-def _growth(component: Component) -> Samples:
+def _growth_times(component: Component) -> Samples:
     """Return the times [s] between neighbouring ``_SHARES`` of ∫a² dt, then their sum, shape (5,)."""
     energy = np.cumsum(np.square(component.acceleration))
     times = np.searchsorted(energy, np.multiply(_SHARES, energy[-1])) * component.dt

@@ -465,12 +465,11 @@ class Motion(Shown):
 class Unusable:
     """A file or component that cannot be used, with the reason; it stays in the tables as a row.
 
-    ``label`` is that of the one component that is meant, as the file has it; empty where it is the whole file.
-    ``lacks`` has the keys of a manifest that would state what the file does not say; ``number`` is that of the component
-    in its file, from 1, or 0. A ``companion`` is what lies beside records, such as spectra or notes: beside any ("") or
-    those of a station. ``station`` is what it would count as, by its header or its file's name; empty if that is not known.
-    ``kind`` is the class of error by which it is refused, such as ``NoUnit``. ``motion`` is what was read, with its findings, if
-    these have to be confirmed before it is used.
+    ``label`` and ``number``, from 1, are the component's in its file; "" and 0 for the whole file. ``lacks`` has the keys of a
+    manifest that would state what the file does not say. ``companion`` is the station beside whose records such files lie
+    (spectra, notes), "" for any station, None for other files. ``station`` is the name under which it would count, by its header
+    or its file's name, "" if unknown. ``kind`` is the class of error by which it is refused, such as ``NoUnit``. ``motion`` is
+    the motion read, with its findings, if these have to be confirmed before it is used.
     """
 
     name: str

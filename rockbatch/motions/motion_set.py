@@ -143,7 +143,7 @@ class MotionSet(Shown):
         raise InputError(f'there is no motion "{which}"; {hint}')
 
     def table(self) -> "pd.DataFrame":
-        """Return what is known of each motion, a row for each; ``rockbatch motions --csv`` has these columns, and more.
+        """Return a table of the motions, a row for each; ``rockbatch motions --csv`` has these columns, and more.
 
         Returns
         -------

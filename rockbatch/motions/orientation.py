@@ -174,19 +174,19 @@ def split_stem(stem: str) -> tuple[str, Orientation | None]:
             match = end.fullmatch(site)
             if match is None or _is_number(match["site"], match["label"], site):
                 continue
-            if orientation := _in_name(match["label"]):
+            if orientation := _name_orientation(match["label"]):
                 return (stem, None) if _contradicted(orientation, stem) else (match["site"] + behind, orientation)
         processing = _PROCESSING.fullmatch(site)
         if processing is None:
             break
         site, behind = processing["site"], site[len(processing["site"]) :] + behind
-    for orientation in reversed(_channels(stem)):
+    for orientation in reversed(_channel_orientations(stem)):
         if not _contradicted(orientation, stem):
             return re.sub(rf"(^|[-_. ]+){re.escape(orientation.label)}(?=[-_. ])", "", stem, count=1), orientation
     return stem, None
 
 
-def _in_name(label: str) -> Orientation | None:
+def _name_orientation(label: str) -> Orientation | None:
     """Return the orientation of a label at the end of a name; ``None`` for others, and words that name places, too (Nord)."""
     key = _key(label)
     pair = "-" not in label or (len(key) > 1 and (key in _AZIMUTHS or key in _VERTICAL | _UP | _DOWN))
@@ -201,11 +201,11 @@ def direction_of_suffix(suffix: str) -> Orientation | None:
     label = suffix.lstrip(".")
     if label.isdigit() and label not in ("000", "090", "180", "270", "360"):
         return None
-    orientation = _in_name(label)
+    orientation = _name_orientation(label)
     return orientation if orientation and (orientation.vertical or orientation.azimuth is not None) else None
 
 
-def _channels(stem: str) -> list[Orientation]:
+def _channel_orientations(stem: str) -> list[Orientation]:
     """Return the orientations of all channel codes in a name, in order: [vertical] for "CCM.BHZ.00.D"; [] without a code."""
     parts = [part for part in re.split(r"[-_. ]+", stem) if _CHANNEL_IN_NAME.fullmatch(part.upper())]
     return [orientation for part in parts if (orientation := orientation_of(part))]
@@ -213,7 +213,7 @@ def _channels(stem: str) -> list[Orientation]:
 
 def _contradicted(orientation: Orientation, stem: str) -> bool:
     """Return whether ``stem`` has a vertical channel's code and ``orientation`` is not vertical, but horizontal or unknown."""
-    return not orientation.vertical and any(channel.vertical for channel in _channels(stem))
+    return not orientation.vertical and any(channel.vertical for channel in _channel_orientations(stem))
 
 
 def _is_number(site: str, label: str, stem: str) -> bool:
@@ -315,5 +315,5 @@ def not_acceleration(channel: str) -> str:
 
 
 def is_clock(label: str) -> bool:
-    """Return whether a channel's label is that of the recorder's clock, such as "INTC", or SEED's "LCQ"; digits do not matter."""
+    """Return whether a channel's label means the recorder's clock, such as "INTC", or SEED's "LCQ"; its digits do not matter."""
     return _CLOCKS.fullmatch(re.sub(r"[^A-Z]", "", label.upper())) is not None

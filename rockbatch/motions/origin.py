@@ -28,7 +28,7 @@ _KINDS = re.compile(
     r"|station|sta|building|bldg|bld|site)\.?)+$",
     re.IGNORECASE,
 )
-"""Words at the end of a station's name that say what stands there."""
+"""Words for buildings at the end of a station's name."""
 _EVENT, _STATION = 34, 20  # characters that fit beside numbers
 _PART = 6  # characters of a part of a station's name that can stand for it
 _CODE = 5  # letters that a word in capitals may have and be a code

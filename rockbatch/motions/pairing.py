@@ -53,7 +53,7 @@ def to_motions(
     unusable: list[Unusable] = []
     sound: list[Component] = []
     for c in components:
-        if (kind := _why_held(c)) is None:
+        if (kind := _holding_error(c)) is None:
             sound.append(c)
         else:
             question, label = _direction_question(c), c.orientation.label
@@ -123,7 +123,7 @@ def _confirmed_motions(
     return MotionSet(motions, unusable)
 
 
-def _why_held(component: Component) -> type[InputError] | None:
+def _holding_error(component: Component) -> type[InputError] | None:
     """Return the kind of error for which a component is held back; ``None`` for a known direction without contradiction."""
     if component.contradiction:
         return Contradiction

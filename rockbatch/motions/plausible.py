@@ -264,7 +264,7 @@ def unlike_vertical(candidate: Candidate) -> Finding | None:
 
 
 def _changes(copy: Copy, dt: float) -> str:
-    """Return by what a copy differs from its original: " times 0.667, 0.05 s later"; empty for an exact one."""
+    """Return in words how a copy differs from its original: " times 0.667, 0.05 s later"; "" for an equal copy."""
     times = "" if abs(copy.factor - 1.0) <= _SAME_SHAPE else f" times {copy.factor:.3g}"
     return times + (f", {abs(copy.delay) * dt:g} s {'later' if copy.delay > 0 else 'earlier'}" if copy.delay else "")
 
@@ -303,7 +303,7 @@ def lack_of_processing(candidate: Candidate) -> Finding | None:
 
 
 def findings_of_readers(candidate: Candidate) -> Finding | None:
-    """Return what readers found on both components as one finding, gross if any part is; None if they found nothing."""
+    """Return the readers' findings on both components as one, named as the first and gross if any is; None without findings."""
     both = (*candidate.component.findings, *candidate.motion.findings)
     if not both:
         return None

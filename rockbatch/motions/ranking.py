@@ -115,10 +115,10 @@ def ranked_records(motions: MotionSet) -> list[RankedRecord]:
     records += [
         RankedRecord(Use.COPY, file.name, file.source, reasons=[file.reason]) for file in motions.left_out if file.of
     ]
-    return sorted(records, key=_order)
+    return sorted(records, key=_sort_key)
 
 
-def _order(record: RankedRecord) -> tuple[int, float]:
+def _sort_key(record: RankedRecord) -> tuple[int, float]:
     """Return the sort key of a record: its group, as :func:`ranked_records` lists them, and the negative PGA [m/s²]."""
     groups = (Use.HELD_BACK, Use.NOT_READ, None, Use.USED, Use.COPY)
     odd = record.use is Use.USED and record.doubtful

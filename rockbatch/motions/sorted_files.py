@@ -23,7 +23,11 @@ def statements_beside(files: Sequence[SourceFile]) -> tuple[dict[Path, tuple[str
 
     A step or count file without its record beside it, or with anything but a number in it, is in neither.
     """
-    named = {(file.path.parent, *_parts(match)): file for file in files if (match := _NAMED.fullmatch(file.path.stem))}
+    named = {
+        (file.path.parent, *_kind_and_number(match)): file
+        for file in files
+        if (match := _NAMED.fullmatch(file.path.stem))
+    }
     stated: dict[Path, tuple[str, ...]] = {}
     companions: dict[Path, str] = {}
     for (folder, kind, number), file in named.items():
@@ -34,7 +38,7 @@ def statements_beside(files: Sequence[SourceFile]) -> tuple[dict[Path, tuple[str
     return stated, companions
 
 
-def _parts(match: Mapping[str, str] | re.Match[str]) -> tuple[str, str]:
+def _kind_and_number(match: Mapping[str, str] | re.Match[str]) -> tuple[str, str]:
     """Return the kind of a file, "DT", "NUM", "SOR" (SortedEQFile) or "EQF" (EQFile), and the number of its record."""
     kind = match["kind"].upper().replace("_", "")
     return "DT" if kind.startswith("DT") else kind[:3], match["number"]

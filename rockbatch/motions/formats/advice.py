@@ -84,13 +84,13 @@ def _trial(statement: Statement, read: Read, options: ReadOptions) -> _Trial:
         except InputError as refusal:
             return _Trial(stated, (), "; ".join(refusal.messages))
         else:
-            reasons = [*_contradictions(readings)]
+            reasons = [*_objections(readings)]
             components = [reading for reading in readings if isinstance(reading, Component)]
             return _Trial(stated, () if reasons else components, "; ".join(reasons))
     return _Trial(stated, (), "it lacks more than can be stated")
 
 
-def _contradictions(readings: Sequence[Component | Unusable]) -> Iterator[str]:
+def _objections(readings: Sequence[Component | Unusable]) -> Iterator[str]:
     """Yield the reasons of unusable readings, and the texts of gross findings on components."""
     for reading in readings:
         if isinstance(reading, Unusable):
