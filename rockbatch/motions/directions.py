@@ -36,7 +36,7 @@ def judge_directions(readings: Sequence[Reading]) -> list[Reading]:
 
 
 def _judge_set(station: Sequence[Component]) -> list[Component]:
-    """Return the components of a set with their decided directions, or all held back if any statements contradict."""
+    """Return the components of a set with their decided directions, or all held back if statements or directions contradict."""
     components = _copies_as_their_originals(_with_names(station))
     # copied headers are void whatever they say; only then can the remaining statements speak for or against angles of 0°
     for i, statement, reason in [*_copied_headers(components), *_void_defaults(components)]:

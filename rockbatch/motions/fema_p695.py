@@ -131,7 +131,7 @@ def _open(set_name: str) -> "h5py.File":
 
 @cache
 def _stations(set_name: str) -> tuple[Station, ...]:
-    """Return the stations of one set, from its tables."""
+    """Return the stations of one of ``SETS``, from its tables, in their order."""
     with _open(set_name) as store:
         rows = store["groundmotions/table"][:]
         events = {int(row["index"]): row for row in store["records/table"][:]}

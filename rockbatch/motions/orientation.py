@@ -64,7 +64,8 @@ _NOISE = re.compile(
 def orientation_of(label: str) -> Orientation | None:
     """Return the orientation of a label such as "UP", "DWN", "S62W", "21", "N-S", "HNZ"; ``None`` for other texts.
 
-    One or two digits behind a word are no azimuth: "COMP 3" is the third component, not 3°.
+    "X", "L" and "H1" are horizontal without azimuth. One or two digits behind a word are no azimuth: "COMP 3" is the third
+    component, not 3°.
     """
     label = label.strip()
     key = _key(label)
@@ -217,7 +218,7 @@ def _contradicted(orientation: Orientation, stem: str) -> bool:
 
 
 def _is_number(site: str, label: str, stem: str) -> bool:
-    """Return whether the end ``label`` of a name is no direction: part of a date or time, or the number of a station or file."""
+    """Return whether digits ``label`` at a name's end are of a date, a station or a file; True too if the name ends in a time."""
     if _AT_MOMENT.search(stem):
         return True
     if not label.isdigit():

@@ -170,7 +170,7 @@ def _stand(text: str, is_name: bool) -> Stand:
 
 
 def _folded(text: str) -> str:
-    """Return a text in lower case, without accents, with blanks for signs between words."""
+    """Return a text in lower case without accents, with single blanks for runs of blanks, "_", ":", "/" and quotation marks."""
     text = text.casefold().replace("ı", "i").replace("ß", "ss").replace("ø", "o")
     plain = "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))
     plain = unicodedata.normalize("NFC", plain)
@@ -179,7 +179,7 @@ def _folded(text: str) -> str:
 
 @lru_cache(maxsize=64)
 def _pattern(*kinds: str) -> re.Pattern[str]:
-    """Return a pattern that matches the words of these kinds in ``_PLACES``."""
+    """Return a pattern that matches the words of these kinds in ``_PLACES``, and their plurals, in a folded text."""
     words = {
         word.strip().casefold() for kind in kinds for listed in _PLACES[kind].values() for word in listed.split(",")
     }

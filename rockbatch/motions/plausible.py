@@ -161,7 +161,7 @@ def alternating(samples: Samples) -> float:
 
 
 def flat_top(candidate: Candidate) -> Finding | None:
-    """Return a finding on a flat top of four samples or more, or several of five in all, at the peak: clipped; else None."""
+    """Return a gross finding on a flat top of four samples or more at the peak, or several of five in all: clipped; else None."""
     for name, samples in (("", candidate.component.acceleration), ("vertical: ", candidate.motion.vertical)):
         tops = [] if samples is None else flat_tops(samples)
         if max(tops, default=0) >= _LONG_TOP or (len(tops) > 1 and sum(tops) > _LONG_TOP):

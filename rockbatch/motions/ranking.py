@@ -93,7 +93,10 @@ class RankedRecord:
 
     @cached_property
     def values(self) -> dict[str, Cell]:
-        """Return :data:`COLUMNS` for the stronger component, with the other's PGA [g] and doubts about both; None if unknown."""
+        """Return :data:`COLUMNS` for the stronger component, with the other's PGA [g] and doubts about both; None if unknown.
+
+        The pulse period is of the first component that has a pulse.
+        """
         known: dict[str, Cell] = dict.fromkeys(COLUMNS)
         known["record"] = self.name
         if self.motions:

@@ -117,7 +117,7 @@ def _directions(components: Iterable[Component]) -> set[tuple[bool, float | None
 
 
 def _may_join(station: Sequence[Component], group: Sequence[Component]) -> bool:
-    """Return whether two groups of one name may be one recording: not both are complete, and they overlap in time."""
+    """Return whether two groups of one name may be one recording: not both are complete, and some components overlap."""
     if _is_whole(station) and _is_whole(group):
         return False
     return any(overlap(member, component) for member in station for component in group)

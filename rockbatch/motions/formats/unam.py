@@ -166,7 +166,7 @@ def _first_sample_line(lines: list[str], start: int, labels: list[str]) -> int:
 def _values(lines: list[str], first: int, npts: int, channels: int, layout: str) -> tuple[Samples, int]:
     """Return the samples, shape (npts, channels), and the number of further lines, two at most.
 
-    Raises ``InputError`` for fewer samples or more lines, another format than ``layout`` says, and lines that do not fit it.
+    Raises ``InputError`` for fewer samples or more lines, a ``layout`` that is no format of the channels, and lines unlike it.
     """
     form = _FORMAT.fullmatch(layout.replace(" ", ""))
     if form is None or int(form["per_line"]) != channels or int(form["width"]) < 2:
