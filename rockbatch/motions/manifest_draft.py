@@ -139,4 +139,4 @@ def _toml_value(value: str | float) -> str:
     if isinstance(value, str):
         return json.dumps(legible(value), ensure_ascii=False)
     short = f"{value:g}"
-    return short if float(short) == value else repr(value)
+    return short if float(short) == value else repr(float(value))
