@@ -89,6 +89,6 @@ def of_table(table: "pd.DataFrame") -> list[Level]:
 
 
 def chosen(levels: Sequence[Level]) -> Level | None:
-    """Return the level at the study's own setting; None if it was not measured."""
+    """Return the level at the study's own setting; None if it lacks an error or a time, or was not measured."""
     of_study = next((level for level in levels if level.method == "study"), None)
     return of_study if of_study is not None and of_study.error_max is not None and of_study.seconds_per_run else None

@@ -124,7 +124,7 @@ def _of_check(path: str, place: int, check: str, rows: Sequence[Entry], top: flo
 
 
 def _in_words(row: Entry) -> str:
-    """Return a verdict in words, for a tooltip."""
+    """Return a verdict in words, for a tooltip: "drift 101 % under soft ground, fail"."""
     bound = f" under {row['bound']}" if row.get("bound") and row["bound"] == row["bound"] else ""
     return f"{row['check']} {percent(row['ratio'])}{bound}, {row['verdict']}".replace("\u00a0", " ")
 
@@ -137,7 +137,7 @@ def maps(info: Entry, values: Sequence[Entry]) -> Figure:
 
 
 def _map(info: Entry, label: str, values: Sequence[Entry], checks: Mapping[str, int]) -> Panel:
-    """Return the map of a design: cells about the values that were run, filled where a check fails."""
+    """Return the map of a design: points where all checks pass, filled cells about all other values that were run."""
     up, across = info["vary"]
     cells: dict[tuple[str, str], list[tuple[float, float, float, float]]] = {}
     points: dict[str, list[Entry]] = {}
@@ -175,7 +175,7 @@ def _map(info: Entry, label: str, values: Sequence[Entry], checks: Mapping[str, 
 
 
 def _outlines(boxes: Sequence[tuple[float, float, float, float]]) -> tuple[np.ndarray, np.ndarray]:
-    """Return boxes as outlines with gaps between them."""
+    """Return x and y of the outlines of boxes (left, right, low, high), with NaN after each."""
     x = [value for left, right, *_ in boxes for value in (left, right, right, left, np.nan)]
     y = [value for *_, low, high in boxes for value in (low, low, high, high, np.nan)]
     return np.array(x), np.array(y)

@@ -31,7 +31,7 @@ def answer(sentences: Sequence[str], remarks: Sequence[str]) -> Markup:
 
 
 def _marked(words: str) -> Markup:
-    """Return words with subscripts of θ_max, a_g, ω_p and the like, and no others, as names may have underscores, too."""
+    """Return escaped words, with subscripts for θ, ω and a before _max, _g and _p; other underscores, as in names, stay."""
     return Markup(re.sub(r"\b([θωa])_(max|g|p)\b", lambda match: sub(match[1], match[2]), escape(words)))
 
 
@@ -108,7 +108,7 @@ def _order(axis: str) -> str:
 
 
 def _largest(fallen: "pd.DataFrame", axis: str, alpha: float) -> str:
-    """Return the size of the largest of the ``fallen`` piers with this slenderness."""
+    """Return the size of the largest of the ``fallen`` piers with this slenderness; "none" if none has it."""
     rows = as_dicts(fallen[fallen["alpha"] == alpha])
     if not rows:
         return "none"

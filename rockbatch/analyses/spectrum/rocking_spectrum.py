@@ -74,7 +74,7 @@ def _self_similar(polarity: str, spectrum: SpectrumSpec, motions: Sequence[Motio
 
 
 def _frequency(motion: Motion) -> float:
-    """Return ω_g = PGA/PGV [rad/s] of a motion."""
+    """Return ω_g = PGA/PGV [rad/s] of a motion; raises ``InputError`` if the ground does not move."""
     pgv = measures.pgv(motion.horizontal, motion.dt, motion.initial)
     if not (motion.pga > 0.0 and pgv > 0.0):
         raise InputError(f"{motion.name}: PGA/PGV has no value, for the ground does not move; leave the record out")
@@ -87,7 +87,7 @@ def columns(spectrum: SpectrumSpec) -> list[str]:
 
 
 def groups(varied: Sequence[str]) -> list[str]:
-    """Return the columns that identify a point of a spectrum; the scale is none of a self-similar one, but follows."""
+    """Return the columns that identify a point of a spectrum; of a self-similar one without the scale, which each record has."""
     return [name for name in (*GROUP, *varied) if name != "scale" or SELF_SIMILAR not in varied]
 
 
