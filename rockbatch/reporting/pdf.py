@@ -77,6 +77,6 @@ def compiled(source: str, pictures: Mapping[str, bytes]) -> bytes:
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(picture)
         document = Path(folder, "page.typ")
-        document.write_text(source, encoding="utf-8")
+        document.write_bytes(source.encode())
         pdf: bytes = typst.compile(document, pdf_standards="ua-1", ignore_system_fonts=True)
     return pdf

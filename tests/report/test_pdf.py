@@ -175,3 +175,58 @@ def test_an_element_that_is_not_set_yet_is_refused_by_name():
     for html, name in (("<blockquote>said</blockquote>", "blockquote"), ("<p>some <del>text</del></p>", "del")):
         with pytest.raises(ValueError, match=f"<{name}>"):
             blocks(parsed(html), Setting({}))
+
+
+def test_text_before_between_and_after_blocks_is_set_in_its_order():
+    html = "before<ul><li>item<p>within</p>later</li></ul>between<div>part</div><strong>a</strong>fter<br></br>end"
+    set_ = re.sub(r"#\w+|[\[\]()\\\n]", " ", blocks(parsed(html), Setting({})))
+    assert set_.split() == ["before", "item", "within", "later", "between", "part", "a", "fter", "end"]
+
+
+def test_a_span_in_a_cell_keeps_what_its_class_says():
+    """Verdict and colour, the share of a limit, the unit below its head, and a subscript."""
+    cell = (
+        '<td class="fail"><span class="top"><strong>1.2</strong><span class="fail">122 %</span></span>'
+        '<span class="bar" style="--share:61%"></span><small>governs</small></td>'
+    )
+    head = '<th class="n" scope="col">θ<sub>max</sub> <span class="unit">[m]</span></th>'
+    table = f'<table class="card"><thead><tr>{head}</tr></thead><tbody><tr>{cell}</tr></tbody></table>'
+    set_ = blocks(parsed(table), Setting({}))
+    alarm = '"#b3261e"'
+    for wanted in (
+        f"fill: rgb({alarm}).lighten(89%)",
+        "#bar(61%)",
+        "#sub[max]",
+        "align: right + bottom",
+        "align: left + top",
+    ):
+        assert wanted in set_
+    assert f"#text(rgb({alarm}))[122 \\%]" in set_
+    assert r"  \ \[m\]" in set_
+
+
+def test_strips_of_two_columns_share_the_width_and_have_their_heads_above():
+    strip = '<svg class="plot strip"></svg><span class="ends"></span>'
+    row = f'<div class="row"><span class="of">r1</span>{strip}{strip}</div>'
+    heads = '<span class="of"></span><span class="column">left</span><span class="column">right</span>'
+    setting = Setting({})
+    set_ = blocks(parsed(f'<div class="dots" style="--n:2">{heads}{row}</div>'), setting)
+    cells = re.findall(r"(?<=, )\[(.*?)\](?=, \[|\))", set_.replace("\n", ""))
+    assert [cell for cell in cells if cell in ("left", "right", "")][:5] == ["", "left", "", "right", ""]
+    widths = [float(re.search(r' width="([\d.]+)"', picture.decode())[1]) for picture in setting.pictures.values()]
+    assert len(widths) == 2
+    assert sum(widths) < 0.6 * typeset.ACROSS
+
+
+def test_histories_keep_the_room_for_the_labels_of_their_axis():
+    setting = Setting({})
+    blocks(parsed('<div class="timed" style="--h:100px"><svg class="plot"><text x="-34">a</text></svg></div>'), setting)
+    (picture,) = setting.pictures.values()
+    assert b'<svg x="48" width="638" height="100" overflow="visible">' in picture
+
+
+def test_long_names_and_digests_may_be_broken_in_a_cell():
+    cell = "a" * 40 + " records/RSN821_ERZINCAN"
+    set_ = blocks(parsed(f"<table><tbody><tr><td>{cell}</td></tr></tbody></table>"), Setting({}))
+    assert "[" + "a" * 24 + "\u200ba" in set_
+    assert "/\u200bRSN821" in set_
