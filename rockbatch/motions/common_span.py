@@ -86,7 +86,7 @@ def on_common_samples(first: Component, second: Component, names: tuple[str, str
 def _offset(first: Component, second: Component, name: str) -> tuple[float, list[str]]:
     """Return the delay of the second component [s]; 0 if a start time is unknown.
 
-    If it is whole finer steps but for a tenth of one at most, it is rounded to these, with a note if by more than 1 µs.
+    A delay within a tenth of the finer step of whole steps is rounded to them, with a note if by more than 1 µs.
     """
     if first.start is None or second.start is None:
         return 0.0, []

@@ -406,7 +406,7 @@ class Motion(Shown):
         return replace(self, horizontal=self.across, across=self.horizontal, azimuth=azimuth, initial=None)
 
     def scaled(self, factor: float) -> "Motion":
-        """Return the motion with all components, and its initial state, ``factor`` times as large; ``factor`` itself stays."""
+        """Return the motion with all components, and its initial state, ``factor`` times as large; its field ``factor`` stays."""
         return self.times(factor)
 
     @checked
