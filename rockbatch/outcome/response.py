@@ -170,7 +170,7 @@ class Response(Shown):
 
     @classmethod
     def unread(cls, read: Callable[[], "Response"], **known: Any) -> Self:
-        """Return a response of ``known`` fields that calls ``read`` once a history is needed, and takes all of its result's."""
+        """Return a response of ``known`` fields; ``read`` is called for the whole one when a history is first needed."""
         response = object.__new__(cls)
         response.__dict__.update(known, _read=read)
         return response
@@ -354,7 +354,7 @@ class Response(Shown):
         """Draw force against deformation of one device or support into ``ax``, as :meth:`plot_rotation` does; return the axes.
 
         ``of`` is "damper 1", "left" and so on; by default the first device, or the left support without any. Raises
-        ``InputError`` for an unknown name, and lists the names.
+        ``InputError`` for an unknown name, and lists the names, or if there are neither devices nor supports that give.
         """
         from rockbatch.common.figures.paper import panel_in
         from rockbatch.outcome.figures import loops

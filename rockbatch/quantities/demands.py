@@ -113,7 +113,10 @@ class Demand:
     over_capacity: bool = False
 
     def applies_to(self, case: Case) -> bool:
-        """Return whether the demand applies to a case, by its base, its dampers or its shaft."""
+        """Return whether the demand applies to a case by one of ``bases``.
+
+        "held" stands for dampers that hold a tilt, "bending" for a shaft that bends, the others for the base of this name.
+        """
         held = "held" in self.bases and holds_a_tilt(case)
         return case["base"] in self.bases or held or ("bending" in self.bases and bends(case))
 

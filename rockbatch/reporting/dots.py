@@ -189,7 +189,8 @@ def _rigid(series: Series) -> Look:
 def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
     """Return the signs of runs without a peak, by status, with the letters of their foundations.
 
-    The number of runs stands in place of more than :data:`MOST_LETTERS` letters, and if foundations have no marks of their own.
+    Rigid ones are named in full. The number of runs stands in place of a list longer than :data:`MOST_LETTERS` characters, and
+    if foundations have no marks of their own.
     """
     shown: list[Markup] = []
     statuses = set(runs["status"])

@@ -256,7 +256,7 @@ def _picture(rows: Sequence[Sequence[Panel]], description: str, more: str = "") 
 
 
 def svg(width: float, height: float, *content: object, description: str, class_: str = "plot") -> Markup:
-    """Return an SVG element of this size [px]; screen readers read its ``description``."""
+    """Return an SVG element that shows ``width`` × ``height`` px, scaled to its place; screen readers read ``description``."""
     return tag("svg", *content, class_=class_, role="img", aria_label=description, viewBox=f"0 0 {width:g} {height:g}")
 
 

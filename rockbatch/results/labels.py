@@ -243,8 +243,8 @@ def _differing(names: Iterable[str], values: Sequence[Mapping[str, object]]) -> 
 def _constants(cases: Sequence[Case], given: Collection[str]) -> dict[str, object]:
     """Return the parameters and varied values of a foundation that are equal on every pier, except keys of the pier and None.
 
-    Equivalents of ``given`` keys are left out: if the stiffness is given, β depends on the pier. So is β of a footing unless
-    it is given itself.
+    Of β and the stiffness, and of η and the yield force, the one with units is kept if it is in ``given``, since the other then
+    depends on the pier; else the one without. β of a footing is left out unless it is given.
     """
     first, *further = [case["parameters"] | case["columns"] for case in cases]
     omitted = {free if unit in given else unit for free, unit in SAME.items()}.union(PIER_KEYS)

@@ -94,9 +94,10 @@ def width() -> int | None:
 
 
 def filled(text: str, first: int = 0, rest: int = 2) -> str:
-    """Return prose wrapped to the terminal's width, 100 at most, the first line indented by ``first`` columns, more by ``rest``.
+    """Return prose wrapped to the terminal's width, 100 columns at most.
 
-    If stdout cannot show a character, all beyond ASCII become "?".
+    The first line is indented by ``first`` columns, the others by ``rest``. If stdout cannot show a character, all beyond ASCII
+    become "?".
     """
     lines = _in_lines(text, min(WIDTH, width() or WIDTH), " " * first, " " * rest)
     return shown(lines, lines.encode("ascii", "replace").decode())

@@ -72,7 +72,7 @@ def section(finished: Finished) -> Markup:
 def of_rows(rows: Sequence[Mapping[str, object]], name: str, words: Mapping[str, str]) -> Markup:
     """Return a table of constants with a column for each key that has a number or text in any row.
 
-    It is headed by its entry in ``words``, or its symbol and unit.
+    A column is headed by the entry of its key in ``words``, or by symbol and unit.
     """
     keys = [
         key for key in dict.fromkeys(key for row in rows for key in row) if any(_single(row.get(key)) for row in rows)
