@@ -302,8 +302,8 @@ def only_writer(folder: Path) -> Iterator[None]:
 def legible(text: str, keep: str = "") -> str:
     """Return ``text`` with control and invisible characters, and bytes of a file's name that are no text, written as ``\\x1b``.
 
-    It can be printed, stays on its line, goes into UTF-8, and no other text looks like it. ``keep`` are characters that stay:
-    line breaks of a text of several.
+    It can be printed, stays on its line and goes into UTF-8. ``keep`` are characters that stay, such as line breaks of a text of
+    several lines.
     """
 
     def escaped(match: re.Match[str]) -> str:
@@ -363,7 +363,7 @@ def _cells(column: Sequence[object]) -> Sequence[str]:
 
 
 def _cell(value: object) -> str:
-    """Return a value as a cell: numbers with ten digits, "" for None and NaN, texts escaped."""
+    """Return a value as a cell: floats with ten digits, "" for None and NaN, texts legible and :func:`csv_safe`, else its str."""
     if value is None or value != value:
         return ""
     if isinstance(value, float):

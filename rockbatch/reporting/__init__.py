@@ -243,7 +243,10 @@ def statement(directory: str | os.PathLike[str], case: str | None = None) -> str
 
 
 def _contents(folders: Sequence[Path], pairs: Mapping[str, str] | None) -> Finished | Pair:
-    """Read the results of one folder, or of two without their histories, which a comparison does not show."""
+    """Read the results of one folder, or of two without their histories, which a comparison does not show.
+
+    Raises ``InputError`` for ``pairs`` with one folder.
+    """
     if len(folders) == 1:
         if pairs:
             raise InputError("cases are paired between two folders; give the second one, too")

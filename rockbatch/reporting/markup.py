@@ -72,7 +72,10 @@ def number(value: object, form: str = ".4g") -> str:
 
 
 def _without_exponent(written: str) -> str:
-    """Return a formatted number in decimals, grouped by thousands from 10,000; as a power of ten below 10⁻⁶ and above 10⁹."""
+    """Return a formatted number in decimals, grouped by thousands from 10,000.
+
+    One that is written with an exponent keeps it, as a power of ten, if it is below 10⁻⁶ or 10¹⁰ and above.
+    """
     mantissa, _, exponent = written.partition("e")
     power = int(exponent or 0)
     if not -_FEWEST <= power <= _MOST:
