@@ -241,7 +241,7 @@ def _announce(results: AnalysisFolder, spec: DesignSpec, scan: list[Trial], case
 
 
 def _bisected(trials: Trials, spec: DesignSpec) -> Iterator[Trial]:
-    """Yield the trials between neighbours with different verdicts that are further apart than the width."""
+    """Yield the trials in the middle between neighbours with different verdicts that are further apart than the width."""
     lines = grouped(trials.judged, lambda trial: (trial.design, trial.values[1:]))
     for (design, others), of_line in lines.items():
         verdicts = {trial.values[0]: trials.judged[trial].verdict for trial in of_line}

@@ -51,13 +51,13 @@ def with_labels(info: Entry, table: "pd.DataFrame") -> list[dict[str, Any]]:
 
 
 def by_design(info: Entry, rows: Sequence[Entry]) -> dict[str, list[Entry]]:
-    """Return the rows of a table by the words for their design, in the order of the study."""
+    """Return the rows of a table by the words for their design, in the order of the study; [] for a design without rows."""
     keys = ["case", *info["varied"]]
     by_name = grouped(rows, lambda row: named(row, keys))
     names = [
         named({"case": design["case"], **design["columns"]}, ["case", *design["columns"]]) for design in info["designs"]
     ]
-    return {name: by_name[name] for name in names}
+    return {name: by_name.get(name, []) for name in names}
 
 
 def plain(value: float) -> str:
@@ -68,8 +68,8 @@ def plain(value: float) -> str:
 def governs(row: Entry, end: str = "", short: bool = False) -> str:
     """Return what governs at a value, or at an ``end`` of an interval: "drift under soft ground at 101 %, in LGP000".
 
-    Without a check it is the reason of a refusal, or empty. A ratio that is 0 or infinite is left out, and so is the record if
-    ``short``.
+    Without a check it is the reason, or empty. A ratio that is 0 or infinite and a scale of 1 are left out, and so is the record
+    if ``short``.
     """
     prefix = f"{end}_" if end else ""
     check, reason = row[f"{prefix}check"], row[f"{prefix}reason"]

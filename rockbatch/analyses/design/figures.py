@@ -64,13 +64,12 @@ def axis_of(varied: Entry) -> Axis:
 
 
 def ratios(info: Entry, intervals: Sequence[Entry], checks: Sequence[Entry]) -> Figure:
-    """Return demand over limit of every check, the worst of its bounds, against the value: a panel for each design."""
+    """Return a figure of demand over limit of every check, the worst of its bounds, against the value: a panel each design."""
     judged = by_design(info, [row for row in checks if row["ratio"] == row["ratio"]])
     finite = [row["ratio"] for rows in judged.values() for row in rows if np.isfinite(row["ratio"])]
     top = min(1.08 * max(finite, default=1.0), HIGHEST)
     panels = [
-        _ratios(info, label, rows, judged.get(label, []), max(top, 1.2))
-        for label, rows in by_design(info, intervals).items()
+        _ratios(info, label, rows, judged[label], max(top, 1.2)) for label, rows in by_design(info, intervals).items()
     ]
     return Figure(panels, "Demand over limit of every check against the value")
 
@@ -130,7 +129,7 @@ def _in_words(row: Entry) -> str:
 
 
 def maps(info: Entry, values: Sequence[Entry]) -> Figure:
-    """Return what passes over two keys: a panel for each design, with the check that governs as colour."""
+    """Return a figure of what passes over two keys: a panel for each design, with the check that governs as colour."""
     checks = {name: place for place, name in enumerate(info["checks"])}
     panels = [_map(info, label, rows, checks) for label, rows in by_design(info, values).items()]
     return Figure(panels, "Passing values, and the check that governs")

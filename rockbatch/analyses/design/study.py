@@ -73,7 +73,7 @@ class DesignSpec:
 
 
 def rounded(value: float) -> float:
-    """Return a value with :data:`DIGITS` significant digits."""
+    """Return a value with :data:`DIGITS`, 10, significant digits."""
     return float(f"{value:.{DIGITS}g}")
 
 

@@ -27,12 +27,12 @@ Judgements = Mapping[Trial, Judged]
 
 
 def value_columns(spec: DesignSpec, varied: Sequence[str]) -> list[str]:
-    """Return the columns of design_values.csv."""
+    """Return the columns of design_values.csv; ``varied`` without the bound."""
     return ["case", *_of_designs(varied), *spec.paths, "verdict", *GOVERNING, "reason"]
 
 
 def interval_columns(spec: DesignSpec, varied: Sequence[str]) -> list[str]:
-    """Return the columns of design.csv."""
+    """Return the columns of design.csv; ``varied`` without the bound."""
     ends = [f"{end}{name}" for end in ENDS for name in _OF_END]
     return ["case", *_of_designs(varied), *spec.paths[1:], *_OF_INTERVAL, *ends]
 

@@ -134,7 +134,7 @@ class Trials:
         self.omitted: dict[str, dict[str, None]] = {}
 
     def execute(self, requested: Iterable[Trial]) -> None:
-        """Run and judge trials that are not yet."""
+        """Run and judge those trials that are not judged yet; one with which the study is refused is not run."""
         trials = [trial for trial in dict.fromkeys(requested) if trial not in self.judged]
         for trial in trials:
             if reason := self.written.refusal(trial):

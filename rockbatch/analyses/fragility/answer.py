@@ -255,7 +255,7 @@ def _intensity(info: Info, value: float) -> str:
 
 
 def _rate(curve: Curve) -> float:
-    """Return the annual rate of a curve, or its greatest bound; 0 without either."""
+    """Return the annual rate of a curve; of bounds the lower one, or the upper if that is 0; 0 without any that is finite."""
     risk = curve["risk"]
     rate = (risk["rate_least"] or risk["rate_most"]) if risk["bound"] else risk["rate_per_year"]
     return float(rate or 0.0)

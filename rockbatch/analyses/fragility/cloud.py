@@ -296,7 +296,7 @@ def _without_both(x: Values, happened: npt.NDArray[np.bool_]) -> NoCurve:
 def fit_event(
     x: Values, happened: npt.NDArray[np.bool_], confidence: float = 0.95, station: Numbers | None = None
 ) -> Cloud | NoCurve:
-    """Return the curve of an event such as overturning, logistic alone, or ``NoCurve``, as if all records have it, or none."""
+    """Return the curve of an event such as overturning, logistic alone, or ``NoCurve``: all records have it, or none, or few."""
     log_x, station = np.log(x), _alone(x) if station is None else station
     if not len(x):
         return NoCurve("no record counts")

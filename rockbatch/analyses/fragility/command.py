@@ -65,7 +65,10 @@ def added(spec: FragilitySpec) -> str:
 
 
 def risk_lines(info: Entry) -> str:
-    """Return annual rates and probabilities with their intervals, a line for each limit and case that has one, and remarks."""
+    """Return annual rates and probabilities with their intervals, a line for each limit and case that has one, and remarks.
+
+    If none has a rate, it is a sentence that says so.
+    """
     curves = [curve for curve in info["curves"] if curve["risk"]]
     if not curves:
         return "No annual rates: no curve could be fitted"

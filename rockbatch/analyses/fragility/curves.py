@@ -173,8 +173,8 @@ class Curve:
     def shares(self) -> tuple[Values, Values, Values]:
         """Return the levels at which runs count, and the least and greatest shares of records beyond the limit, shape (n,) each.
 
-        Undecided ones are within it for the least, beyond it for the greatest. With capacities a record is beyond it from its
-        first exceedance on; of a cloud each run is a level, with 0 or 1.
+        Undecided ones are within it for the least, beyond it for the greatest. With capacities a record is beyond it from the
+        upper end of its bracket on for the least, above the lower end for the greatest; of a cloud each run is a level.
         """
         counting = [stripe for stripe in self.stripes if stripe.records]
         levels = np.array([stripe.level for stripe in counting])
@@ -252,7 +252,10 @@ class Member(NamedTuple):
 
 
 def _shared_by(case: Case, spec: FragilitySpec) -> Hashable:
-    """Return a key shared by cases with one curve: their name and values that are not the pier's; else one of its own."""
+    """Return a key shared by cases with one curve: their name and values that are not the pier's, over what lifts a pier off.
+
+    With another measure each case has its own.
+    """
     if not spec.of_pier:
         return id(case)
     return case.name_along, *((name, each) for name, each in case.columns.items() if name not in PIER_KEYS)

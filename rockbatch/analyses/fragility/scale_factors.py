@@ -59,8 +59,10 @@ def described_scales(plans: Sequence[LevelPlan], spec: FragilitySpec, names: Seq
 
 
 def in_words(plans: Sequence[LevelPlan], spec: FragilitySpec) -> str:
-    """Return the range of scale factors in words, with the levels that lose records to the limits on factors, and how many
-    they keep, and levels that given factors miss by more than FAR, a tenth.
+    """Return the range of scale factors in words, or that records are taken as recorded if all are 1.
+
+    With it are the levels that lose records to the limits on factors, and how many they keep, and the levels that given factors
+    miss by more than FAR, a tenth.
     """
     plan = plans[0]
     factors = [each.factor(m, x) for each in plans for m, used in enumerate(each.used) for x in used]

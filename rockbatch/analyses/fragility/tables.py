@@ -150,7 +150,7 @@ def described(
 
 
 def drawn(spec: FragilitySpec) -> str:
-    """Return the drawn inputs and the number of draws in words; empty without any."""
+    """Return in words how often inputs are drawn, and which; empty without any."""
     often = {"ida": "once for each record", "cloud": "once for each run"}.get(
         spec.method, "once for each record and level"
     )

@@ -50,7 +50,7 @@ class Input:
 
     @property
     def at(self) -> tuple[str, str]:
-        """Return its table and key under [fragility.uncertain], as ("dispersion", "zeta")."""
+        """Return its table and key under [fragility.uncertain], as ("lognormal", "zeta")."""
         return self.spread, self.name
 
     @property
@@ -60,7 +60,7 @@ class Input:
         return f"{self.name} {self.spread} {size}"
 
     def value(self, score: float, own: float) -> float:
-        """Return the value at a normal ``score``; ``own`` is that of the case."""
+        """Return the value at a normal ``score``: lognormal about ``own``, that of the case, or uniform between the ends."""
         if self.spread == "lognormal":
             return own * math.exp(self.size * score)
         low, high = self.size

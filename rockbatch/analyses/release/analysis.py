@@ -251,7 +251,11 @@ class _Test:
         return self.fit(Passages(self.measured.t, nothing) if kind == 0 else Passages(nothing, self.measured.amplitude))
 
     def _remark(self, fit: Fit, apart: Mapping[str, Fit | None]) -> str:
-        """Return a remark on the fit: its differences from the test, and a probable cause if it is poor."""
+        """Return a remark on the fit: its differences from the test, and before these what to check if it seems wrong.
+
+        It does if it is at an end of the values, if all times are stretched, if times and amplitudes contradict each other, or if
+        the differences are large.
+        """
         pier = self.case.pier
         first, start = float(self.model(fit.value).t.max()) / len(self.measured.t), abs(pier.initial_rotation_rad)
         differences = []

@@ -153,8 +153,8 @@ def _of_file(table: Table, name: str) -> dict[str, tuple[float, ...]]:
 def _check_measured(table: Table, spec: ReleaseSpec, study: Study) -> None:
     """Complain about values that no free rocking gives, and about cases that leave nothing to fit.
 
-    These are values fewer than FEWEST, 3, impacts more than MOST, 500, times that do not rise, and a first amplitude not below
-    the initial rotation, or none of that; and bases without what is to be fitted.
+    They may be fewer than FEWEST, 3, values or more than MOST, 500, impacts, times that do not rise, and a first amplitude not
+    below the initial rotation, or no such rotation; and bases without what is to be fitted.
     """
     times, amplitudes = _numbered(spec.impact_s), _numbered(spec.amplitude_rad)
     key = "measured" if spec.measured else "impact_s"

@@ -42,7 +42,7 @@ class Input:
 
     @property
     def at(self) -> tuple[str, ...]:
-        """Return its place under [sensitivity]."""
+        """Return its place under [sensitivity]: ("uniform", "damper", "f")."""
         return self.spread, *self.name.split(".")
 
 

@@ -109,7 +109,10 @@ class Search:
             self._regions[column] = regions(sorted(self._ends[column].items()), self.tolerance)
 
     def _suggested(self, number: int, frequencies: Sequence[float]) -> list[Point]:
-        """Return the middles of all regions of a neighbour that has other regions: what is narrow there may be here too."""
+        """Return points of each column at the middles of the regions of a neighbour with other outcomes, if not run yet.
+
+        What is narrow there may be here, too.
+        """
         suggested: dict[Point, None] = {}
         for left, right in pairwise(frequencies):
             neighbours = self._regions[number, left], self._regions[number, right]

@@ -167,7 +167,10 @@ SECTIONS = (SPECTRUM, MAP)
 
 
 def read_spectrum(study: Study) -> tuple[SpectrumSpec | None, tuple[MapSpec, ...]]:
-    """Return the spectrum and the maps of a study file; ``InputError`` with every mistake in [spectrum], or if there is none."""
+    """Return the spectrum of a study file, None if [spectrum] has maps alone, and the maps.
+
+    Raises ``InputError`` with every mistake in [spectrum], or if there is none.
+    """
     file = study.file()
     table = file.table(
         "spectrum", required="[spectrum] with alpha = [0.10, 0.15] and two_pi_over_p_s = [2, 16], or a [[spectrum.map]]"

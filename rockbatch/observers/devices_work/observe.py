@@ -63,7 +63,7 @@ def with_work(outcome: Outcome, fine: DeviceWork, coarse: DeviceWork | None, pie
     """Return ``outcome`` with the ``fine`` work of its devices.
 
     Its ``devices_error`` becomes at least ``chance`` times the greatest relative change from ``coarse``, by twice the step, of
-    the fields in OF_WORK; unchanged without ``coarse``, or if it is None.
+    the fields in OF_WORK; it stays without ``coarse``, or if it is None.
     """
     worked = outcome.with_observed("devices_work", fine)
     if coarse is None or outcome.devices_error is None:

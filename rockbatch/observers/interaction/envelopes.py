@@ -31,7 +31,7 @@ class Envelope(NamedTuple):
 
     @property
     def sizes(self) -> tuple[float, float]:
-        """Return the greatest |N| and E, either LEAST if it is 0."""
+        """Return the greatest |N| and E, either LEAST at least."""
         return max(float(np.abs(self.axial).max()), LEAST), max(float(self.effect.max()), LEAST)
 
 
