@@ -94,10 +94,6 @@ def _interpreted_weighted(k1, k2, k3, k4):
     return type(k1)(*(a + 2.0 * (b + c) + d for a, b, c, d in zip(k1, k2, k3, k4, strict=True)))
 
 
-def _interpreted_take_unless(kept, to, part, i, kind):
-    _interpreted_put(to, i, _interpreted_get(to if kept else part, i, kind))
-
-
 def _addresses(builder, part, pointer, lane, names):
     base = builder.bitcast(pointer, ir.IntType(8).as_pointer())
     for name in names:
@@ -143,21 +139,6 @@ def _put(typing_context, part, i, value):
         return context.get_dummy_value()
 
     return types.void(part, i, value), generate
-
-
-@intrinsic
-def _take_unless(typing_context, kept, to, part, i, kind):
-    """Copy the fields of ``kind``, a named tuple or its class, of lane ``i`` from ``part`` to ``to``; nothing if ``kept``."""
-
-    def generate(context, builder, signature, arguments):
-        fields = kind.instance_class._fields
-        places = _addresses(builder, to, arguments[1], arguments[3], fields)
-        others = _addresses(builder, part, arguments[2], arguments[3], fields)
-        for place, other in zip(places, others, strict=True):
-            builder.store(builder.select(arguments[0], builder.load(place), builder.load(other)), place)
-        return context.get_dummy_value()
-
-    return types.void(types.boolean, to, part, i, kind), generate
 
 
 @intrinsic
@@ -237,7 +218,6 @@ _COMPILES = not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
 get = _get if _COMPILES else _interpreted_get
 taken = _taken if _COMPILES else _interpreted_taken
 with_pull = _with_pull if _COMPILES else _interpreted_with_pull
-take_unless = _take_unless if _COMPILES else _interpreted_take_unless
 with_rates = _with_rates if _COMPILES else _interpreted_with_rates
 with_z = _with_z if _COMPILES else _interpreted_with_z
 put = _put if _COMPILES else _interpreted_put

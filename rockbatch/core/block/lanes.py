@@ -10,7 +10,7 @@ from rockbatch.core.block.equations import clearances, constrained, on_side
 from rockbatch.core.block.events import resistance
 from rockbatch.core.block.model import NUMBERS, Block, BlockTraits, Numbers, Rocking, Stance, Tilt
 from rockbatch.core.clock import COMMON, TIMING, include_height
-from rockbatch.core.devices.laws import FRICTION, PASSED
+from rockbatch.core.devices.laws import PASSED
 from rockbatch.core.kernel import inlined
 from rockbatch.core.system import System
 from rockbatch.core.table import get, lanes_of, put, taken
@@ -150,7 +150,7 @@ def note_devices(traits, lanes, i, devices):
 
 def system_of(m):
     """Return the System of the pier ``m`` (Block)."""
-    return System(BlockTraits(), Line, LANE, Rocking._fields + Stance._fields, (*PASSED, FRICTION))
+    return System(BlockTraits(), Line, LANE, Rocking._fields + Stance._fields, PASSED)
 
 
 def line_of(m, theta, omega, *timing):

@@ -42,8 +42,8 @@ class Verdict(NamedTuple):
 
     level: float  # v of the pier at rest [m]
     ended: float  # 1 if the next step continues from the rates at the end of the last one
-    clear: float  # positive if certainly no device has an event in the sub-step, nor asks for shorter steps
-    more: float  # positive if the Use of a device may have an extreme inside the sub-step
+    doubts: float  # devices that may have an event in the sub-step or ask for shorter steps; 1 more if it is not smooth
+    extremes: float  # devices whose Use may have an extreme inside the sub-step
     smooth: (
         float  # negative if the next sub-step is left to scalar code, since it most likely needs several parts again
     )

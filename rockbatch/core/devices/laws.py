@@ -19,8 +19,8 @@ MAXWELL = 4.0  # a viscous damper in series with a spring, its brace
 CONTACT = 5.0  # a stop
 SPRING = 6.0
 
-PASSED = (VISCOUS, HYSTERETIC, TENDON, SPRING)
-"""Kinds that the vector pass takes on springs. On them friction sticks in most sub-steps, which scalar code has to take."""
+PASSED = (VISCOUS, HYSTERETIC, TENDON, SPRING, FRICTION)
+"""Kinds that the vector pass takes; sub-steps in which friction sticks are left to scalar code."""
 
 DAMPERS = {"friction": FRICTION, "viscous": VISCOUS, "hysteretic": HYSTERETIC}
 """Kinds of dampers without a brace by their names in studies."""

@@ -44,7 +44,7 @@ from rockbatch.core.system import (
     share,
     stage,
 )
-from rockbatch.core.table import along, get, put, take_unless, taken, with_pull
+from rockbatch.core.table import along, get, put, taken, with_pull
 from rockbatch.core.types import Pull
 
 
@@ -182,7 +182,8 @@ def _evaluate_end(traits, lanes, shared, count, steps):
         k, power = _rates_under_devices(traits, lanes, shared, i, steps, 1.0)
         put(shared.rates, i, k)
         put(shared.works_rates, i, power)
-        shared.verdict.clear[i], shared.verdict.more[i] = shared.verdict.smooth[i], -1.0
+        shared.verdict.doubts[i] = 0.0 if shared.verdict.smooth[i] > 0.0 else 1.0
+        shared.verdict.extremes[i] = 0.0
 
 
 class Course(NamedTuple):
@@ -370,8 +371,9 @@ def _law(respond, clear, most, state_at_end=None):
                 use, more = _travelled(line, i, c)
                 force, stronger = most(of, mode, c, use, get(line.use, i, Use))
                 put(line.use_end, i, Use(force, use.stroke, use.speed, use.lost, use.yielded, use.times))
-                shared.verdict.clear[i] = min(clear(of, mode, c), shared.verdict.clear[i])
-                shared.verdict.more[i] = max(max(more, stronger), shared.verdict.more[i])
+                # Counts, since the compiler makes of min and max in place a masked store, which takes twenty times as long
+                shared.verdict.doubts[i] += 0.0 if clear(of, mode, c) > 0.0 else 1.0
+                shared.verdict.extremes[i] += 1.0 if max(more, stronger) > 0.0 else 0.0
 
     return take
 
@@ -440,25 +442,45 @@ def _use_inside(traits, lanes, equipment, i):
         put(each[j].use_end, i, taken(devices.use[j], Use))
 
 
+@inlined_once
+def _stay(traits, lanes, equipment, i):
+    """Set the numbers of lane ``i`` at the end of a sub-step that does not stand to those at its start."""
+    each, shared, now = equipment.lanes, equipment.shared[0], in_pass(traits, lanes, i)[1]
+    for j in range(len(each)):
+        line = each[j]
+        put(line.end, i, get(line.now, i, Progress))
+        put(line.rates, i, get(line.start_rates, i, Progress))
+        put(line.gap, i, get(line.start_gap, i, Gap))
+        put(line.use_end, i, get(line.use, i, Use))
+    put(shared.rates, i, get(lanes.rates, i, now))
+    put(shared.works_end, i, get(shared.works, i, Works))
+    put(shared.works_rates, i, get(shared.works_start, i, Works))
+    put(shared.pull, i, get(shared.start_pull, i, Pull))
+
+
 @inlined
 def settle(traits, lanes, equipment, runs, count):
-    """Advance the devices in lanes whose sub-step stands or is calm; lanes from ``runs`` to ``count`` are padding."""
+    """Advance the devices to the ends of the sub-steps that stand; lanes from ``runs`` to ``count`` are padding.
+
+    All lanes are copied: a selection in the loop would make masked stores.
+    """
     each, shared, kinds = equipment.lanes, equipment.shared[0], lanes.step_status.kind
-    for i in range(runs):
-        if kinds[i] < EVENTFUL and shared.verdict.more[i] > 0.0:
-            _use_inside(traits, lanes, equipment, i)
+    for i in range(count):
+        if kinds[i] >= EVENTFUL:
+            _stay(traits, lanes, equipment, i)
+        elif i < runs:
+            shared.verdict.ended[i] = 1.0
+            if shared.verdict.extremes[i] > 0.0:
+                _use_inside(traits, lanes, equipment, i)
     for j in range(len(each)):
         line = each[j]
         for i in range(count):
-            repeats = kinds[i] >= EVENTFUL
-            take_unless(repeats, line.now, line.end, i, Progress)
-            take_unless(repeats, line.start_rates, line.rates, i, Progress)
-            take_unless(repeats, line.start_gap, line.gap, i, Gap)
-            take_unless(repeats, line.use, line.use_end, i, Use)
+            put(line.now, i, get(line.end, i, Progress))
+            put(line.start_rates, i, get(line.rates, i, Progress))
+            put(line.start_gap, i, get(line.gap, i, Gap))
+            put(line.use, i, get(line.use_end, i, Use))
     for i in range(count):
-        repeats, now = kinds[i] >= EVENTFUL, in_pass(traits, lanes, i)[1]
-        take_unless(repeats, lanes.rates, shared.rates, i, now)
-        take_unless(repeats, shared.works, shared.works_end, i, Works)
-        take_unless(repeats, shared.works_start, shared.works_rates, i, Works)
-        take_unless(repeats, shared.start_pull, shared.pull, i, Pull)
-        shared.verdict.ended[i] = shared.verdict.ended[i] if repeats else 1.0
+        put(lanes.rates, i, get(shared.rates, i, in_pass(traits, lanes, i)[1]))
+        put(shared.works, i, get(shared.works_end, i, Works))
+        put(shared.works_start, i, get(shared.works_rates, i, Works))
+        put(shared.start_pull, i, get(shared.pull, i, Pull))

@@ -253,5 +253,5 @@ def _rigid_pass_with_devices(shaft, traits, lanes, equipment, count, substep, se
         (left, right), (sign_left, sign_right) = pivots(m, end), _signs(m, contact)
         keeps = m.rest + min(sign_left * left.velocity, sign_right * right.velocity)
         lanes.reversals.keeps[i] = 0.0
-        _judged(traits, lanes, i, substep, settings, min(keeps, shared.verdict.clear[i]))
+        _judged(traits, lanes, i, substep, settings, min(keeps, 0.5 - shared.verdict.doubts[i]))
     settle(traits, lanes, equipment, count, whole)
