@@ -253,8 +253,8 @@ class _Test:
     def _remark(self, fit: Fit, apart: Mapping[str, Fit | None]) -> str:
         """Return a remark on the fit: its differences from the test, and before these what to check if it seems wrong.
 
-        It does if it is at an end of the values, if all times are stretched, if times and amplitudes contradict each other, or if
-        the differences are large.
+        That is by the first that holds: it is at an end of the values, all times are stretched, times and amplitudes contradict
+        each other, or the differences are above POOR_TIMES or POOR_AMPLITUDES.
         """
         pier = self.case.pier
         first, start = float(self.model(fit.value).t.max()) / len(self.measured.t), abs(pier.initial_rotation_rad)

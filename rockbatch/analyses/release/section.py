@@ -44,7 +44,7 @@ def _answer(fit: Entry, keys: Sequence[str]) -> Markup:
 
 
 def _impacts(impacts: "pd.DataFrame", keys: list[str]) -> list[Markup]:
-    """Return a folded table of the impacts of each case."""
+    """Return for each case a folded table of its impacts."""
     tables = []
     for names, of_case in impacts.groupby(keys, sort=False, dropna=False):
         title = f"Impacts of {named(dict(zip(keys, names, strict=True)), keys)}, measured and computed"
