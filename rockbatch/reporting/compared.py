@@ -182,7 +182,7 @@ def suites(pair: Pair) -> Markup:
 
 
 def only_in_one(pair: Pair) -> Markup:
-    """Return a table of the cases with unmatched runs; empty without any."""
+    """Return a table of the cases with unmatched runs, with their number and up to six records each; empty without any."""
     rows: list[list[object]] = []
     for name, study, runs in zip(SIDES, pair.studies, pair.only, strict=True):
         for _, group in runs.groupby(["series", "pier", "scale", "polarity", "with_vertical"], sort=False):
