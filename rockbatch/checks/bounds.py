@@ -172,8 +172,8 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
     """Return the demand of a rule in the runs of a case, with its bounds, chaotic runs and omissions.
 
     Bounds are value ∓ error; from the value up to infinite where the error is; from 0 up to infinite where the value is NaN; a
-    factor of :data:`SCATTER` for chaotic runs. Runs cut short count by the rule's ``ways``. An event is 0 or 1, and at most 1
-    where it may have followed.
+    factor of :data:`SCATTER` for chaotic runs. Runs cut short count by the rule's ``ways``. An event is 0 or 1; its upper
+    bound is 1 where it may have followed.
     """
     demand = DEMANDS[rule.demand]
     value, error = demand.evaluate(runs, case)
@@ -224,10 +224,10 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
 
 
 def _chaotic(demand: Demand, runs: Rows, error: Values) -> npt.NDArray[np.bool_]:
-    """Return True for each chaotic run without an ``error``, and, but for a residual, without one of its peak either, shape (n,).
+    """Return True for each chaotic run without an ``error`` of the demand and, but for a residual, of its peak, shape (n,).
 
-    An earlier version did not write the column: a run that ended well, and claims no error beside others that do, counts as
-    such.
+    An earlier version did not write the column ``chaotic``: then a run that ended well without an error of its peak counts as
+    chaotic, if other runs have one.
     """
     of_peak, ended_well = runs.numbers("theta_max_error"), np.isin(runs.texts("status"), ("ok", "flight"))
     withheld = np.isnan(of_peak) & ended_well & bool(np.isfinite(of_peak).any())

@@ -168,7 +168,10 @@ def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst
 
 
 def in_words(worst: Worst) -> str:
-    """Return the value of a response with its units: "1.49 m (1486 mm)"; a settlement by two spring laws as a range."""
+    """Return the value of a response with its units: a drift "1.49 m (1486 mm) at 30 m", a rotation in α, degrees and rad.
+
+    A settlement by two spring laws is a range in mm; other lengths are in mm, tilts in mrad and degrees.
+    """
     value, pier = worst.value, worst.case["pier"]
     if worst.demand == "theta_max_over_alpha":
         theta = value * float(pier["alpha"])

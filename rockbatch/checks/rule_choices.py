@@ -62,7 +62,7 @@ def fitted(rule: Rule, available: Available) -> Fitted:
     at = [] if rule.at_m is None else [height for height in heights if is_height(height, rule.at_m)]
     if DEMANDS[rule.demand].needs == OF_BASE:
         at = [math.nan]
-    problems = [*_unmet(rule, matches, available), *_no_section(rule, at, heights)]
+    problems = [*_unavailable(rule, matches, available), *_no_section(rule, at, heights)]
     piers = [case for case in available.piers if str(case["case"]) in cases]
     if available.piers:
         problems += _without_dead_load(rule, piers) if rule.curve else _implausible(rule, piers)
@@ -79,7 +79,7 @@ def is_height(height: float, other: float) -> bool:
     return math.isclose(height, other, rel_tol=1e-6, abs_tol=1e-9)
 
 
-def _unmet(rule: Rule, matches: Mapping[str, Collection[str]], available: Available) -> Iterator[Problem]:
+def _unavailable(rule: Rule, matches: Mapping[str, Collection[str]], available: Available) -> Iterator[Problem]:
     """Yield a problem for each case, scale and column of the rule, and the other law, that is not ``available``.
 
     ``matches`` has the names of cases by the rule's patterns.

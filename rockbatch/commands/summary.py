@@ -10,7 +10,7 @@ from rockbatch.checks.suite_target import NAMES
 from rockbatch.common.lazy import pd
 from rockbatch.outcome.outcome import LEANS, Failure
 from rockbatch.pier.bending import flexural_period
-from rockbatch.pier.laws import steady
+from rockbatch.pier.laws import without_ratcheting
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.quantities.rows import with_case
@@ -104,9 +104,8 @@ def failed_later(runs: "pd.DataFrame") -> str:
     n, advice = int(failed.sum()), ""
     if ratchet:
         share = "in all of them" if ratchet == n else f"in {ratchet:,}"
-        advice = (
-            f"; {share} the springs ratchet on free vibration: take spring = {steady('or')}, or zeta of 0.2 or more"
-        )
+        laws = without_ratcheting("or")
+        advice = f"; {share} the springs ratchet on free vibration: take spring = {laws}, or zeta of 0.2 or more"
     return f"{n:,} failed only after the motion: {IN_MOTION} has the peak until then, a lower bound{advice}"
 
 

@@ -29,7 +29,7 @@ def with_fewer_modes(run: Run) -> Run | None:
 def with_modes_error(outcome: Outcome, other: Outcome, chance: float) -> Outcome:
     """Return ``outcome`` with ``chance`` times the change from the ``other`` one, by a mode fewer, in its errors.
 
-    Only of a run that ended well; without errors, and with a note, if the other ended otherwise. Modes converge at no known
+    Unchanged unless the run ended well; without errors, and with a note, if the other ended otherwise. Modes converge at no known
     order.
     """
     if outcome.status != "ok":
