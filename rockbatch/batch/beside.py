@@ -24,7 +24,7 @@ Rows = list[Row]
 
 
 def packed(run: StudyRun, table: str) -> str:
-    """Return the rows of a finished run in ``table`` as one cell without commas; "" without rows or with too many."""
+    """Return the rows of a finished run in ``table`` as one cell without commas; "" without that table or with too many rows."""
     rows = None if run.outcome is None else run.outcome.tables.get(table)
     if rows is None:
         return ""

@@ -142,13 +142,16 @@ def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", fit: Fitted) -> R
 
 
 def _has_columns(runs: "pd.DataFrame", columns: Collection[str]) -> bool:
-    """Return whether results have a column of these of a key of [output]; True also if no pier has the devices they are of."""
+    """Return whether results have one of the ``columns`` of a key of [output]; True also if all are of devices no pier has."""
     devices = {"", *(COLUMNS[name].device for name in runs if name in COLUMNS)}  # other devices have no columns here
     return any(name in runs for name in columns) or not any(COLUMNS[name].device in devices for name in columns)
 
 
 def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str, events: Mapping[str, str]) -> Verdict:
-    """Return the verdict of a rule on a pier at one scale, on one or both ``axes``."""
+    """Return the verdict of a rule on a pier at one scale, on one or both ``axes``.
+
+    If the demand is absent on one axis, the other decides alone; if on both, the verdict is "does not apply" with the reason.
+    """
     absent = [_absent(rule, axis) for axis in axes]
     applying = [axis for axis, reason in zip(axes, absent, strict=True) if not reason]
     none = _not_applying(rule, axes, scale, count, rule.on_both_axes if len(applying) > 1 else "")
@@ -163,7 +166,7 @@ def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str, events:
 
 
 def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, combined: str) -> Verdict:
-    """Return the verdict of a rule without its numbers, as if it did not apply; ``combined`` says how both axes are."""
+    """Return a verdict "does not apply" of a rule, its numbers NaN; ``combined`` says how demands on two axes combine."""
     demand, case = DEMANDS[rule.demand], axes[0].case
     height = demand.height(case) if demand.height else rule.at_m
     statistic, suites = "", []
@@ -202,7 +205,10 @@ def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, co
 
 
 def _ended_early(rule: Rule, suites: Iterable[Rows]) -> str:
-    """Return how many runs did not go through, and how each counts: "1 overturned (infinite), 2 not run (unknown)"; or ""."""
+    """Return how many runs did not go through, and how each counts: "1 overturned (infinite), 2 not run (unknown)"; or "".
+
+    How they count is left out for a demand that is not of every run, such as an event.
+    """
     numbers: Counter[str] = Counter()
     for runs in suites:
         numbers.update(np.where(runs.missing, NOT_RUN, runs.texts("status")).tolist())
@@ -251,9 +257,9 @@ def _absent(rule: Rule, axis: Axis) -> str:
 
 
 def _with_numbers(verdict: Verdict, value: float, low: float, high: float) -> Verdict:
-    """Return the verdict with a value, its bounds, ratio to the limit, and margin, negative beyond the limit.
+    """Return the verdict with a value, its bounds, its ratio (above 1 beyond the limit) and its margin (below 0 beyond it).
 
-    NaN for a value of NaN. The ratio to a limit of 0 is infinite, and 0 for a value of 0.
+    Ratio and margin of a value of NaN are NaN. A ratio over 0 is infinite, but 0/0 is 0.
     """
     limit = verdict.limit
     numerator, denominator, margin = value, limit, limit - value
@@ -308,7 +314,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
 
 
 def _on_each(demand: OfSuite, axes: Sequence[Axis]) -> str:
-    """Return the demands of the governing run on two axes: "0.2 along the axis, 0.3 across the axis"; "" on one axis."""
+    """Return the demands of the governing run on two axes: "0.2 along the axis, 0.3 across the axis"; "" on one or without it."""
     run = demand.governing
     if len(axes) == 1 or run is None:
         return ""
@@ -372,7 +378,10 @@ def _between(low: float, high: float) -> str:
 
 
 def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> str:
-    """Return the unmet condition on the records: "5 stations count, EN 1998-1 asks for 7"; "" if all are met."""
+    """Return the first unmet condition on the records: "5 stations count, EN 1998-1 asks for 7"; "" if all are met.
+
+    These are the least number, which the rule's ``least`` replaces, stations for a code, and ``per_event``.
+    """
     statistic = STATISTICS[rule.statistic or "max"]
     least, authority = statistic.least, statistic.code or (f"the {statistic.words}" if statistic.least > 1 else "")
     if rule.least is not None:

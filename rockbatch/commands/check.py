@@ -55,11 +55,14 @@ def report(arguments: argparse.Namespace) -> int:
         out=arguments.out,
         whole=arguments.all,
         sheet=arguments.sheet,
+        paper=arguments.paper,
         pairs=dict(arguments.pair),
     )
     if made.answer and str(arguments.out) != "-":
         show(filled(_plain(made.answer)))
     say(str(made.path))
+    if made.pdf and made.pdf != made.path:
+        say(str(made.pdf))
     return 0
 
 

@@ -87,7 +87,7 @@ class RigidBase(WithShaft):
         warnings.warn(message, Superseded, stacklevel=4)
 
     def parameters(self, pier: Pier) -> dict[str, object]:
-        """Return this base under ``pier`` by the keys of run.json; ``restitution`` is None for Housner's value."""
+        """Return this base under ``pier`` by the keys of run.json; ``restitution`` is None for Housner's, but a frame's."""
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
         values: dict[str, object] = {"restitution": of_frame if self.restitution is None else self.restitution}
         values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
@@ -280,7 +280,10 @@ class YieldingBase(ElasticBase):
     @classmethod
     @checked
     def from_stiffness(cls, pier: Pier, stiffness_kN_m: float, yield_kN: float | None = None, **rest: Any) -> Self:
-        """Return a base as :meth:`ElasticBase.from_stiffness`, with the yield force F_y of one support [kN], or with ``eta``."""
+        """Return a base as :meth:`ElasticBase.from_stiffness`, with the yield force F_y of one support [kN], or with ``eta``.
+
+        If both are given, F_y counts.
+        """
         if yield_kN is not None:
             rest["eta"] = eta_of(pier, yield_kN)
             refuse(unlikely_supports(pier, rest.get("confirm", ()), yield_kN=yield_kN))

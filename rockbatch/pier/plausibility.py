@@ -19,9 +19,9 @@ def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Prob
 
 
 def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Problem]:
-    """Return a problem for each device that is impossible under ``pier``: at a frame's deck, off the base, or more friction.
+    """Return the problems of devices impossible under ``pier``: at a frame's deck, or farther from the axis than its width.
 
-    Friction is solved at two places at most. [] if all are possible.
+    Without these, the problem of friction at more than two places, which is not solved; [] if all are possible.
     """
     wrong = []
     at_deck = any(isinstance(device, DeckSpring) or device.at == "deck" for device in restraints)

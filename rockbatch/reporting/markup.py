@@ -36,11 +36,14 @@ def join(*children: object, between: str = "") -> Markup:
 
 
 def tag(name: str, *children: object, **attributes: object) -> Markup:
-    """Return an HTML element; ``class_`` becomes ``class``, ``aria_label`` ``aria-label``; None and False omit an attribute."""
+    """Return an HTML element; ``class_`` becomes ``class``, ``aria_label`` ``aria-label``.
+
+    None and False omit an attribute, True leaves it empty: the element is well-formed XML, too.
+    """
     written = []
     for key, value in attributes.items():
         if value is not None and value is not False:
-            written.append(_attribute(key) if value is True else f'{_attribute(key)}="{escape(str(value))}"')
+            written.append(f'{_attribute(key)}="{"" if value is True else escape(str(value))}"')
     return Markup(f"<{name}{''.join(written)}>{''.join(map(escape, children))}</{name}>")
 
 

@@ -34,7 +34,8 @@ rotation FALLS α, from which a pier may overturn."""
 def magnifies(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, until: int) -> bool:
     """Return True if a run that claims the error of its peak magnifies errors of steps; ``until`` is the motion's last window.
 
-    A chaotic peak does, as it magnifies changes of the motion (THEORY.md, The error that a row reports).
+    Without that error its peak within the motion is looked at; False if neither has an error. A chaotic peak magnifies them, as
+    it does changes of the motion (THEORY.md, The error that a row reports).
     """
     greatest, change = windows(fine, coarse)
     peak, claimed = outcome.theta_max, outcome.theta_max_error

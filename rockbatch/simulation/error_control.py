@@ -46,7 +46,7 @@ ERRORS = (
 
 
 def run_to_tolerance(pier: Pier, base: Base, motion: Motion, tolerance: float, quiet_s: float = 2.0) -> Outcome:
-    """Run with step halving; see :func:`run_all_to_tolerance`."""
+    """Return the converged outcome of one run, as :func:`run_all_to_tolerance` of several."""
     outcome = run_all_to_tolerance([Run(pier, base, motion)], tolerance, quiet_s, Stop())[0]
     assert outcome is not None
     return outcome
@@ -60,7 +60,9 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
     if they do not, more halvings are needed (:data:`PAIRS`). The first step respects the springs' frequency, because two coarse
     runs that agree prove nothing otherwise. A run that has not converged after :data:`HALVINGS`, or would take more than
     :data:`rockbatch.simulation.runs.MOST_STEPS` steps, keeps its best values and fails with the reason; counts that have not
-    converged are a note. ``None`` for runs that were stopped.
+    converged are a note. Results that may be chaotic are repeated under a tiny change of the motion, and claim no error if it
+    moves them beyond the tolerance. With fewer strips of a bed, or modes of a shaft, runs are repeated for their share in the
+    errors. ``None`` for runs that were stopped.
     """
     outcomes: list[Outcome | None] = [None] * len(runs)
     first = [first_substeps(run.pier, run.base, run.motion.dt) for run in runs]
@@ -152,7 +154,10 @@ def _least_error(base: Base) -> float:
 
 
 def _with_errors(run: Run, fine: Outcome, coarse: Outcome) -> Outcome:
-    """Return ``fine`` with its differences from ``coarse`` as errors; without, if it overturned, failed or ended otherwise."""
+    """Return ``fine`` with its differences from ``coarse`` as errors, at least rounding, of devices :data:`CHANCE` times these.
+
+    Unchanged if it overturned or failed, or if the statuses differ.
+    """
     if fine.status != coarse.status or fine.status in (
         "overturned",
         "failed",
@@ -230,7 +235,10 @@ def _with_notes(fine: Trial, coarse: Trial, extent: Agreement, tolerances: Sampl
 
 
 def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: str) -> Outcome:
-    """Return the finest of a run's ``levels`` as a failed outcome: it keeps its values, and claims no errors."""
+    """Return the finest of a run's ``levels`` as a failed outcome, which keeps its values and claims no errors.
+
+    One that failed by itself is returned as it is.
+    """
     finest = levels[-1].outcome
     if finest.status == "failed":
         return finest

@@ -365,8 +365,8 @@ def _braced(pier: Pier, damper: Damper, element: Element) -> Element:
 def _linear_part(pier: Pier, base: Base, element: Element, coefficient: float, exponent: float) -> tuple[float, float]:
     """Return the speed [m/s] below which a viscous damper is linear, and the slope [1/s] of its force there.
 
-    For a < 1 the damping rate is unbounded at low speed, and would stop small motions faster than any step resolves. 0 and 0
-    for a > 1.
+    For a < 1 the damping rate is unbounded at low speed, and would stop small motions faster than any step resolves. Infinite and
+    the coefficient for a = 1; 0 and 0 for a > 1 and without a coefficient.
     """
     if exponent > 1.0 or coefficient == 0.0:
         return 0.0, 0.0
@@ -377,7 +377,7 @@ def _linear_part(pier: Pier, base: Base, element: Element, coefficient: float, e
 
 
 def _fastest(pier: Pier, base: Base) -> float:
-    """Return the greatest rate [1/s] on springs, without devices; on rigid ground :data:`STEEP` p, the bound for dampers."""
+    """Return the greatest frequency or decay rate [1/s] on springs, without devices; on rigid ground the bound STEEP p."""
     if not base.on_springs:
         return STEEP * pier.p
     return _fastest_on_springs(springs(pier, base)) if base.bends else fastest(pier, base)

@@ -96,8 +96,9 @@ BOUNDS = Section(
 
 
 def read_bounds(file: TomlFile) -> list[DesignBound]:
-    """Return every [[bound]] of a study; its mistakes become problems of ``file``, and a mistaken change is left out of it.
+    """Return every [[bound]] of a study, for a preset each of its bounds; mistakes become problems of ``file``.
 
+    A mistaken change is left out of its bound, a table with an unknown preset wholly.
     Whether the pier or any case gives the keys that it changes is checked by :func:`placed`.
     """
     bounds: list[DesignBound] = []

@@ -86,7 +86,7 @@ _OF_RECORDS = (
 
 
 def _without_records(spec: MotionSpec, both_axes: bool) -> list[str]:
-    """Return a message for each key that only recorded motions use, in a study without these; [] if it has records."""
+    """Return a message for each key that only files use, or only recorded motions, in a study without these; [] with files."""
     if spec.paths or spec.override is not None:
         return []
     usual = {field.name: field.default for field in fields(spec)} | {"offset": Offset(), "select": Selection()}

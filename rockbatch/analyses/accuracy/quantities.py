@@ -26,5 +26,5 @@ QUANTITIES = (
 
 
 def rows(levels: Sequence[Level]) -> list[Entry]:
-    """Return the fields of each level, with its time per run [ms]."""
+    """Return the fields of each level, and ``milliseconds``, its time per run as text."""
     return [vars(level) | {"milliseconds": level.milliseconds} for level in levels]

@@ -6,7 +6,7 @@ from rockbatch.reporting.table import Head
 
 
 def interval(fit: Entry) -> str:
-    """Return the interval of a fitted value with its confidence."""
+    """Return the interval of a fitted value with its confidence: "0.9061 to 0.918 (95%)"."""
     return f"{number(fit['low'], '.4g')} to {number(fit['high'], '.4g')} ({float(fit['confidence']):.0%})"
 
 

@@ -23,7 +23,7 @@ METHOD = "The value that makes the measured times and amplitudes likeliest, and 
 def section(
     analysis: FinishedAnalysis, fits: "pd.DataFrame", impacts: "pd.DataFrame", history: "pd.DataFrame"
 ) -> Markup:
-    """Say what was fitted in each case, and draw it."""
+    """Return the report's section of a release test: what was fitted in each case, the figure and the tables."""
     varied = analysis.info["varied"]
     keys, rows = ["case", *varied], as_dicts(fits)
     heads = [Head("case", value=lambda fit: named(fit, keys)), *quantities.FIT]

@@ -36,7 +36,7 @@ SAMPLES = 400
 
 
 def ending(status: str, impacts: int, base: Base) -> End:
-    """Return the region to which a run belongs, and the way there.
+    """Return the region to which a run belongs, and the way there; a status such as "failed" is UNDECIDED.
 
     Rigid blocks that overturn after another number of impacts do so by another way, with a boundary between the two, on which
     they would stay at the unstable equilibrium: near it there may be a window of safe amplitudes, however narrow. On springs
