@@ -198,7 +198,7 @@ def _first(names: Sequence[str], most: int) -> str:
 
 
 def studies(pair: Pair) -> Markup:
-    """Return both studies, one after the other: greatest responses, inputs and statics."""
+    """Return the number of pairs of runs, then both studies, one after the other: greatest responses, inputs and statics."""
     parts: list[object] = [
         tag("p", f"{counted(len(pair.runs[0]), 'pair')} of runs of paired cases under the same ground motion.")
     ]
