@@ -303,7 +303,7 @@ class Pier(InNotebook):
         )
 
     def _facts(self) -> tuple[str, dict[str, str]]:
-        """See :class:`InNotebook`."""
+        """Return "Pier" and its entries in run.json to five digits, which a notebook shows."""
         return "Pier", {name: f"{value:.5g}" for name, value in described(self).items()}
 
     @property
@@ -372,7 +372,8 @@ class Pier(InNotebook):
     def shaft_share(self) -> float:
         """Return the share of the mass in the shaft or the columns, without the deck on top.
 
-        Among parts, the deck is the point masses at or above the highest upper end of those with a length.
+        Among parts, the deck is the point masses at or above the highest upper end of those with a length; if none has a length,
+        it is the highest mass.
         """
         if self.parts is None:
             return share_of_shaft(self.alpha, self.mu, self.deck_over_columns)
@@ -383,7 +384,7 @@ class Pier(InNotebook):
 
     @property
     def least_beta(self) -> float:
-        """Return β = ω_v/p below which the pier topples on its springs under its own weight (g h < ω_v² b²)."""
+        """Return β = ω_v/p below which the pier topples on its springs under its own weight (g h > ω_v² b²)."""
         return math.sqrt((1 + self.mu) * math.cos(self.alpha) / self.mu) / math.sin(self.alpha)
 
 

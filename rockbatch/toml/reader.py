@@ -209,13 +209,13 @@ class Table:
         self.complain(message, *setting.key_path[len(self.key_path) :])
 
     @contextmanager
-    def noting(self, *key: str | int) -> Iterator[None]:
-        """Context manager: turn an ``InputError`` in the block into mistakes about a key, added to the file's problems."""
+    def noting(self, *key: str | int, before: str = "") -> Iterator[None]:
+        """Context manager: turn an ``InputError`` in the block into mistakes about a key; messages begin with ``before``."""
         try:
             yield
         except InputError as error:
             for problem in error.problems:
-                self.complain(problem, *key)
+                self.complain(Problem("", None, f"{before}{problem}", kind=problem.kind, named=False), *key)
 
     @property
     def names(self) -> list[str]:

@@ -106,7 +106,7 @@ def _signs(m, contact):
 
 @inlined
 def _stepped(traits, lanes, i, substep):
-    """Integrate lane ``i`` over the sub-step, on the present branches of its springs."""
+    """Integrate lane ``i`` over the sub-step into ``end``, on the present branches of its springs, and see if they keep them."""
     m, h = model_in(traits, lanes, i), lanes.clock.step[i]
     y, contact, ground = state_in(traits.shaft, lanes.now, i), _free(lanes, i), ground_at(lanes, i, substep * h)
     k = rates(m, y, contact, ground)
@@ -228,7 +228,7 @@ def one_pass(traits, lanes, count, substep, settings):
 
 @system.in_pass.of(SpringTraits)
 def in_pass(traits, lanes, i):
-    """Return model, state and contact of lane ``i`` without a grazing contact."""
+    """Return model, state and contact of lane ``i``; a grazing contact is left out."""
     return model_in(traits, lanes, i), state_in(traits.shaft, lanes.now, i), _free(lanes, i)
 
 
@@ -243,5 +243,5 @@ def pass_with_devices(traits, lanes, equipment, count, substep, settings):
         (left, right), (sign_left, sign_right) = pivots(m, end), _signs(m, contact)
         keeps = m.rest + min(sign_left * left.velocity, sign_right * right.velocity)
         lanes.reversals.keeps[i] = 0.0
-        _judged(traits, lanes, i, substep, settings, min(keeps, shared.verdict.clear[i]))
+        _judged(traits, lanes, i, substep, settings, min(keeps, 0.5 - shared.verdict.doubts[i]))
     settle(traits, lanes, equipment, count, whole)
