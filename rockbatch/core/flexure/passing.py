@@ -18,7 +18,7 @@ from rockbatch.core.kernel import inlined
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import inner_points
 from rockbatch.core.system import rates
-from rockbatch.core.table import along, get, put, take_unless
+from rockbatch.core.table import along, get, put, selected
 from rockbatch.core.types import Instant
 
 
@@ -92,7 +92,7 @@ def _judged(traits, lanes, i, substep, settings):
     calm = max(max(inside, -no_greater_inside(m, y, end, h, displaced)), eventful) <= 0.0
     peak_at_end(lanes, i, tilt_end if calm else 0.0, substep)
     put(lanes.displaced, i, displacements_at_end(m, end, calm, displaced))
-    take_unless(not calm, lanes.now, lanes.end, i, Flexing)
+    put(lanes.now, i, selected(calm, end, y))
     lanes.step_status.kind[i] = max(eventful, CALM if calm else STANDS)
 
 

@@ -18,7 +18,7 @@ from rockbatch.core.springs.model import Contact, SpringTraits, State, model_in,
 from rockbatch.core.springs.recovery import lag, top
 from rockbatch.core.springs.reversal import corrected, once, pivot_accelerations, pivots, reversal
 from rockbatch.core.system import rates
-from rockbatch.core.table import ZERO, get, put, take_unless
+from rockbatch.core.table import ZERO, get, put, selected
 from rockbatch.core.types import Instant
 
 
@@ -195,7 +195,7 @@ def _judged(traits, lanes, i, substep, settings, sure):
     lowest.left[i] = min(low_left, left_end.position if min(contact.left, stays) > 0.0 else math.inf)
     lowest.right[i] = min(low_right, right_end.position if min(contact.right, stays) > 0.0 else math.inf)
     take_in_end(m.shaft, lanes, i, end, calm)
-    take_unless(not calm, lanes.now, lanes.end, i, y)
+    put(lanes.now, i, selected(calm, end, y))
     step_status.kind[i] = max(eventful, CALM if calm else STANDS)
 
 
