@@ -32,12 +32,13 @@ def test_the_pass_steps_over_no_event_of_a_shaft_that_bends(base, uncompiled):
     parts = [uncompiled(judged, base, seed, 12, h) for seed, h in enumerate(STEPS)]
     found = type(parts[0])(*map(np.concatenate, zip(*parts, strict=True)))
     assert not found.event[found.kind < EVENTFUL].any()
+    assert (found.kind[found.watched] == EVENTFUL).all()
     for claim in (found.ends, found.taken, found.displaced, found.peak):
         assert claim.all()
     assert (found.kind == CALM).sum() > 200
     assert (found.kind == STANDS).sum() > 20
     assert found.event.sum() > 15
-    assert ((found.kind >= EVENTFUL) & ~found.event).mean() < 0.27
+    assert ((found.kind >= EVENTFUL) & ~found.event & ~found.watched).mean() < 0.27
 
 
 def test_the_moment_that_lifts_a_pier_and_its_rate_are_those_of_scalar_code(uncompiled):
