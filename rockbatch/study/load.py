@@ -372,7 +372,6 @@ def _problems_of_rule(
     available = Available(
         cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
-        other_law=True,  # a check that uses the other law requests its runs
         output=[
             *DEMANDS[rule.demand].brings,
             *(key for key in BROUGHT if output.has(key) or not _adds_columns(key, cases)),
