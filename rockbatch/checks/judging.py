@@ -84,15 +84,19 @@ def judge(
     at_heights = {
         needs: rows for needs, rows in (("sections", sections), ("interaction", interaction)) if rows is not None
     }
+    none_read = bool((runs["status"] == "failed").all())  # tables are empty then, and no choice of theirs is wrong
     available = Available(
         cases=list(dict.fromkeys(str(case["case"]) for case in cases if not is_across(case))),
         scales=scales,
         output=[
             *(key for key, columns in BROUGHT.items() if _has_columns(runs, columns)),
             *(end.needs for end in _OTHER_ENDS if end.column in runs or not any(map(end.has_range, cases))),
-            *([] if interaction is None or interaction["height_m"].notna().all() else [OF_BASE]),
+            *([OF_BASE] if interaction is not None and (none_read or interaction["height_m"].isna().any()) else []),
         ],
-        sections={needs: set(rows["height_m"].dropna()) for needs, rows in at_heights.items()},
+        sections={
+            needs: {rule.at_m or 0.0 for rule in rules} if none_read else set(rows["height_m"].dropna())
+            for needs, rows in at_heights.items()
+        },
         piers=cases if doubted else (),
     )
     fits = [fitted(rule, available) for rule in rules]
