@@ -123,7 +123,11 @@ def tolerances_beside(tolerance: float, share: StripsShare | None) -> Tolerances
 
 
 def with_strips_error(outcome: Outcome, own: Trial, fewer: Trial, half_width: float) -> Outcome:
-    """Return ``outcome`` with errors by steps and strips, of trials on its ``own`` strips and ``fewer`` at the same step."""
+    """Return ``outcome`` with errors by steps and strips, of trials on its ``own`` strips and ``fewer`` at the same step.
+
+    One that did not end standing has that of its peak within the motion only.
+    """
+    outcome = _with_strips_in_motion(outcome, own.outcome, fewer.outcome)
     if outcome.status != "ok" or outcome.bed is None:
         return outcome
     share = share_of_strips(own, fewer, half_width)
@@ -139,6 +143,15 @@ def with_strips_error(outcome: Outcome, own: Trial, fewer: Trial, half_width: fl
         error = getattr(outcome, name)
         more[name] = None if error is None else UNEVEN * error + of_strips
     return outcome.changed(**more)
+
+
+def _with_strips_in_motion(outcome: Outcome, own: Outcome, fewer: Outcome) -> Outcome:
+    """Return ``outcome`` with the share of the strips in the error of its peak within the motion, if that has one."""
+    if outcome.change_in_motion is None:
+        return outcome
+    least = EXTREMES * LEAST * own.theta_max_in_motion
+    of_strips = max(UNEVEN * _change(own, fewer, "theta_max_in_motion"), least)
+    return outcome.changed(change_in_motion=UNEVEN * outcome.change_in_motion + of_strips)
 
 
 MOST_DAMPING = 0.1
