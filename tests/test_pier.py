@@ -322,6 +322,10 @@ def test_what_is_impossible_of_devices_under_a_pier_is_said_once(devices, said):
         ),
         (lambda: ElasticBase.from_stiffness(TALL, 1e9), ["stiffness_kN_m = 1e+09: the pier's weight presses"]),
         (lambda: YieldingBase.from_stiffness(TALL, 2e6, 4e6), ["yield_kN = 4e+06: 302 times what the support carries"]),
+        (
+            lambda: YieldingBase.from_stiffness(TALL, 2e6, 4e4, eta=2.5),
+            ["yield_kN = 40000: eta is given, too, which fixes the same"],
+        ),
     ],
 )
 def test_what_cannot_be_or_is_odd_is_said_where_it_is_made(made, said):

@@ -63,8 +63,8 @@ def given_rules(rules: str | os.PathLike[str] | Iterable[Rule]) -> tuple[Rule, .
 def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
     """Return the rules of the [[check]] tables of a file, and of a file that its [suite] names.
 
-    Other tables of a study file are ignored. Raises ``InputError`` with every mistake and its line, and for a file without
-    checks.
+    Other tables of a study file are ignored; in a file without [pier] they are mistakes. Raises ``InputError`` with every mistake
+    and its line, and for a file without checks.
     """
     file = _opened(Path(path))
     if "pier" not in file.data:
@@ -120,7 +120,7 @@ def _rules(
     unmet: Callable[[Rule], Iterable[Problem]] | None,
     names: set[str],
 ) -> tuple[list[Rule], KeyValues]:
-    """Return the rules of the sound [[check]] tables, and the values of [suite], or else the ``usual`` ones.
+    """Return the rules of the sound [[check]] tables, and the ``usual`` values with those of [suite] in their place.
 
     ``section`` has the keys of [suite]. Mistakes become problems of ``file``, such as a name that is among ``names``, to which
     those of the tables are added.

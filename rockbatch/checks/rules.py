@@ -148,18 +148,18 @@ class Rule:
 
     @property
     def limit(self) -> float:
-        """The value of at_most or at_least, times a capacity that is no curve; NaN without one."""
+        """The value of at_most or at_least, times :attr:`number_of_capacity`, if any; NaN if neither limit is given."""
         limit = float(next((limit for limit in (self.at_most, self.at_least) if limit is not None), math.nan))
         return limit * (self.number_of_capacity or 1.0)
 
     @property
     def number_of_capacity(self) -> float | None:
-        """The capacity of which ``at_most`` is a share; None without one, and for a curve."""
+        """The capacity of which ``at_most`` is a share; None without one, for a curve, and for a demand over a capacity."""
         return self.capacity if isinstance(self.capacity, float) and not DEMANDS[self.demand].over_capacity else None
 
     @property
     def curve(self) -> Curve | None:
-        """The curve of a capacity that depends on the axial force; None without one."""
+        """The capacity of a demand over a capacity, as a curve of the axial force (level for a number); None for others."""
         if not DEMANDS[self.demand].over_capacity or self.capacity is None:
             return None
         return capacity.line(self.capacity) if isinstance(self.capacity, float) else self.capacity
@@ -190,7 +190,7 @@ class Rule:
 
     @property
     def words(self) -> str:
-        """What is compared with the limit: "mean of theta_max_over_alpha"; "no record overturns"; "eta" of a case."""
+        """Words for what is compared with the limit: "mean of theta_max_over_alpha"; "no record overturns"; "eta"."""
         return self.words_at(self.at_m)
 
     def words_at(self, height: float | None) -> str:
@@ -210,7 +210,7 @@ class Rule:
 
     @property
     def counting(self) -> str:
-        """Ways of counting runs cut short: "overturned: infinite; flight, failed: unknown"; "" unless it is of every run."""
+        """Ways of counting runs cut short: "overturned: infinite; flight, failed: unknown"; "" for a demand not of every run."""
         if not DEMANDS[self.demand].per_run:
             return ""
         by_way = grouped(self.ways, self.ways.__getitem__)
@@ -266,7 +266,7 @@ _DEMAND = Choice(tuple(DEMANDS), called=_CALLED["demand"], listed_by="rockbatch 
 
 
 def _part_of_capacity(value: object) -> capacity.Capacity:
-    """Return a number as it is, a point [N, M] as a curve of one point, a line as one of two; :class:`KindError` for others."""
+    """Return a number above 0 as it is, [N, M] as a tuple of one point, a line as one of two; :class:`KindError` for others."""
     if isinstance(value, dict):
         if not value or not value.keys() <= {"constant", "per_N"}:
             raise KindError("a line { constant = 500.0, per_N = 0.6 }")
@@ -457,7 +457,7 @@ def _wrong_limit(rule: Rule) -> Iterator[tuple[str, str]]:
 
 
 def _wrong_threshold(rule: Rule) -> Iterator[tuple[str, str]]:
-    """Yield the problem of ``above`` missing beside "count", but for events and properties, or given with another statistic."""
+    """Yield a problem if ``above`` is missing for a "count" of runs by a quantity, or given with another statistic."""
     demand = DEMANDS[rule.demand]
     if rule.above is not None and rule.statistic != "count":
         yield "above", 'above: is for statistic = "count"; leave it out'

@@ -10,7 +10,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.observers import parts
 from rockbatch.outcome.outcome import LEANS, Failure
 from rockbatch.pier.bending import flexural_period
-from rockbatch.pier.laws import steady
+from rockbatch.pier.laws import without_ratcheting
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.quantities.rows import with_case
@@ -27,7 +27,7 @@ def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str
     """Return θ_max/α as text: a block for each pier, a line for each record, a column for each case.
 
     Of more than :data:`MOST_RUNS` runs, only the ten largest values are listed. ``records`` maps the names of records, in order,
-    to labels. A status other than "ok" precedes its value.
+    to labels. A status other than "ok", or "lean" for a peak that is mostly lean, precedes its value.
     """
     runs = with_case(table)
     if len(runs) > MOST_RUNS:
@@ -59,7 +59,11 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
 
 
 def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
-    """Return a sentence each of observers, and on rotations too large, leans, and sliding; [] for none."""
+    """Return a sentence each on runs of ``table`` that an observer warns of, that rotate too far for linearised kinematics,
+    lean, or slide; [] for none.
+
+    ``varied`` are the keys by which an observer names a run.
+    """
 
     def counted(runs: npt.NDArray[np.bool_], singular: str, plural: str) -> str:
         """Return the words for the number of these runs, in singular or plural; "" for none."""
@@ -100,9 +104,8 @@ def failed_later(runs: "pd.DataFrame") -> str:
     n, advice = int(failed.sum()), ""
     if ratchet:
         share = "in all of them" if ratchet == n else f"in {ratchet:,}"
-        advice = (
-            f"; {share} the springs ratchet on free vibration: take spring = {steady('or')}, or zeta of 0.2 or more"
-        )
+        laws = without_ratcheting("or")
+        advice = f"; {share} the springs ratchet on free vibration: take spring = {laws}, or zeta of 0.2 or more"
     return f"{n:,} failed only after the motion: {IN_MOTION} has the peak until then, a lower bound{advice}"
 
 
@@ -123,7 +126,10 @@ def flexible(study: Study) -> list[str]:
 
 
 def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
-    """Return a table of θ_max/α as text: a line for each value of columns ``rows``, a column for each case."""
+    """Return a table of θ_max/α as text: a line for each set of values of columns ``rows``, a column for each case.
+
+    A case includes the values of ``case_keys``; a cell without a run is empty.
+    """
     cells: dict[str, dict[str, str]] = {}
     for run in runs.to_dict("records"):
         line = " ".join(f"{run[name]:g}" if name == "scale" else str(run[name]) for name in rows)

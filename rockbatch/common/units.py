@@ -52,7 +52,11 @@ class Bounds:
         )
 
     def message(self, value: float) -> str:
-        """Return the message about a value that is out of bounds, to follow "name = value: "."""
+        """Return the message about a value that is out of bounds, to follow "name = value: ".
+
+        "must be a number above 0" if the value is not and has to be; else ``why``, or "must be within 0 and 1", with the value to
+        write if it is probably in percent.
+        """
         if value <= 0.0 <= self.low and 0.0 not in self:
             return f"must be a number above 0{self.unit}"
         if value > self.high == MOST:

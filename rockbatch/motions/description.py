@@ -106,7 +106,7 @@ def spectra(
 
 
 def _four_digits(values: npt.NDArray[np.float64]) -> list[float | None]:
-    """Return values rounded to four significant digits, None for NaN."""
+    """Return values rounded to four significant digits, None for NaN, in a list."""
     return [None if math.isnan(value) else float(f"{value:.4g}") for value in values]
 
 

@@ -16,7 +16,7 @@ def _check_unit(value: str) -> None:
 
 
 def _check_file_name(value: str) -> None:
-    """Raise :class:`KindError` for a text that no file can be called."""
+    """Raise :class:`KindError` for a file name with a NUL, or of more than 1000 characters."""
     if "\x00" in value or len(value) > _LONGEST_NAME:
         raise KindError("the name of a file")
 

@@ -203,7 +203,10 @@ class Quantity:
         return ", ".join(filter(None, (base, run)))
 
     def requested_by(self, study: Any) -> bool:
-        """Return whether a :class:`rockbatch.study.Study` has a column of this quantity."""
+        """Return whether the peaks.csv of a :class:`rockbatch.study.Study` has a column of this quantity.
+
+        ``requested`` alone decides if given; otherwise [output] must have what it ``needs``, and a case its ``device``.
+        """
         if self.requested:
             return self.requested(study)
         if self.needs and not study.output.has(self.needs):
@@ -217,7 +220,10 @@ class Quantity:
         return [self._demand(limit) for limit in self.limits]
 
     def _demand(self, limit: Limit) -> Demand:
-        """Return the demand of a limit; unless the limit has its own evaluation, the largest magnitude of its columns."""
+        """Return the demand of a limit: its own evaluation, else the largest magnitude of its columns, by default the quantity's.
+
+        Quantities with [output] forces are evaluated by :func:`largest_force`.
+        """
         columns = limit.columns or (self.name,)
         evaluate = limit.evaluate
         if evaluate is None and self.needs == "forces":

@@ -182,7 +182,7 @@ def suites(pair: Pair) -> Markup:
 
 
 def only_in_one(pair: Pair) -> Markup:
-    """Return a table of the cases with unmatched runs; empty without any."""
+    """Return a table of the cases with unmatched runs, with their number and up to six records each; empty without any."""
     rows: list[list[object]] = []
     for name, study, runs in zip(SIDES, pair.studies, pair.only, strict=True):
         for _, group in runs.groupby(["series", "pier", "scale", "polarity", "with_vertical"], sort=False):
@@ -198,7 +198,7 @@ def _first(names: Sequence[str], most: int) -> str:
 
 
 def studies(pair: Pair) -> Markup:
-    """Return both studies, one after the other: greatest responses, inputs and statics."""
+    """Return the number of pairs of runs, then both studies, one after the other: greatest responses, inputs and statics."""
     parts: list[object] = [
         tag("p", f"{counted(len(pair.runs[0]), 'pair')} of runs of paired cases under the same ground motion.")
     ]

@@ -133,7 +133,7 @@ def sections(contents: Contents) -> list[Section]:
 
 
 def analyses(contents: Contents) -> list[Section]:
-    """Draw the sections of the analyses whose results a folder has."""
+    """Draw the sections of all analyses; those of which a folder has no results have no content."""
     return [Section(part.heading, part.anchor, part.content(contents)) for part in _of_analyses()]
 
 

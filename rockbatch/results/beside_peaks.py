@@ -37,7 +37,7 @@ class SimulatedRun(NamedTuple):
 
 
 def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[SimulatedRun]:
-    """Yield the simulated runs of ``peaks``, without mirror images."""
+    """Yield the simulated runs of ``peaks`` in its order, without mirror images and unusable files."""
     records = {motion.name: motion for motion in motions}
     cases = {case_key(case.name, case.columns, study.varied): case for case in study.cases}
     columns_kept = [*NAMING, *study.varied, "status", "theta_max_over_alpha"]
@@ -65,9 +65,12 @@ def present(path: Path, key: str) -> Path:
 def read_beside(
     path: Path, varied: Sequence[str], columns: Iterable[str], texts: Collection[str] = ()
 ) -> "pd.DataFrame":
-    """Read a table beside peaks.csv; raise ``InputError`` if a column is missing or, except for ``texts``, not numeric.
+    """Read a table beside peaks.csv, with "" for empty texts.
 
     A table without rows, of a study whose runs have none, has heads for its runs only, and gets the ``columns``.
+
+    Raises ``InputError`` if a column that names the run or one of ``columns`` is missing, or if one of these that is not in
+    ``texts`` is not numeric.
     """
     table = read_table(path)
     if table.empty and list(table) == list(NAMING):
@@ -104,7 +107,7 @@ def write_semicolons(directory: Path) -> Path:
 
 
 def _with_comma(cell: str) -> str:
-    """Return a cell with a decimal comma if it is a number, infinity as :data:`LARGEST`; words and empty cells unchanged."""
+    """Return a cell with a decimal comma if it is a number, +infinity as :data:`LARGEST`; words and empty cells unchanged."""
     try:
         return LARGEST if float(cell) == math.inf else cell.replace(".", ",")
     except ValueError:

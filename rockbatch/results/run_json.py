@@ -221,7 +221,10 @@ def _is_pulse(motion: Motion, study: Study) -> bool:
 
 
 def rocking_periods(cases: Sequence[Case], target: SpectrumTarget) -> dict[str, list[float]]:
-    """Return the shortest and longest free-rocking period at 0.1 α [s] as ``rocking_s``; {} without a code or any period."""
+    """Return {"rocking_s": [shortest, longest]}, the free-rocking periods [s] at 0.1 α of all cases, to five digits.
+
+    {} if the target follows no code, or no case has a period.
+    """
     kinds = [(case.pier, case.base) for case in cases] if target.code else []
     distinct = [kind for i, kind in enumerate(kinds) if kind not in kinds[:i]]
     periods = [period for kind in distinct for period in _period_at(*kind)]
@@ -238,7 +241,7 @@ def _period_at(pier: Pier, base: Base) -> list[float]:
 
 
 def _vertical_target(study: Study, motions: MotionSet, gravity: float) -> Row:
-    """Return the entry of the vertical target spectrum; empty without one."""
+    """Return {"vertical_target": …}, the entry of the vertical target spectrum; {} without one."""
     target = study.motions.vertical_target
     if not isinstance(target, SpectrumTarget):
         return {}

@@ -426,7 +426,10 @@ def _device_kinds(cases: Sequence[Case]) -> set[str]:
 
 
 def _references(file: TomlFile, cases: Sequence[Case], varied: Iterable[str]) -> tuple[Reference, ...]:
-    """Return the references that have all required keys; values of ``varied`` keys that no such case has become problems."""
+    """Return the references that have all required keys, with their values of ``varied`` keys alone.
+
+    A value that no case of the reference's name has becomes a problem.
+    """
     named = [table.data.get("name", table.data.get("base")) for table in file.tables("case", title="name")]
     names = choice(*dict.fromkeys(name for name in named if isinstance(name, str)))
     of_parts = {name: Key(not_negative, "0.0") for name in varied if name not in (*REFERENCE, BOUND)}

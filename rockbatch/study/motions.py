@@ -342,7 +342,10 @@ def read_motions_table(file: TomlFile, replaced_by: Path | MotionSet | None = No
 
 
 def _read_motions(table: Table) -> KeyValues:
-    """Return the fields of a ``MotionSpec`` that [motions] gives, "path" as it is written, and "offset" also if not given."""
+    """Return the fields of a ``MotionSpec`` that [motions] gives, "path" as it is written, and "offset" also if not given.
+
+    axis_deg or every_deg become "azimuths", scale = "list" becomes "scale_as_listed".
+    """
     read = table.read(MOTIONS, other=("fema_p695", "pulse", "sequence"))
     if "columns" in read:
         with table.noting("columns"):
@@ -430,7 +433,7 @@ def _read_pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
 
 
 def _check_pulse(table: Table, spec: PulseSpec) -> None:
-    """Add impossible values of a pulse to the table, at the key of their problem, or else unusual ones that are not confirmed."""
+    """Add a problem to the table for each impossible value of a pulse, or else for unusual ones that are not confirmed."""
     try:
         spec.motion(GRAVITY)
     except InputError as error:

@@ -51,7 +51,7 @@ class Output:
         return next((chosen for chosen in self.settings if isinstance(chosen, kind)), kind())
 
     def has(self, key: str) -> bool:
-        """Return whether an optional output is asked for, by its ``key``; False for an unknown one."""
+        """Return whether an optional output is asked for: the value of its ``key`` is true, or not empty; False if unknown."""
         return bool(self.keys.get(key))
 
     def also(self, keys: Collection[str]) -> "Output":

@@ -460,7 +460,7 @@ def _pier_of_parts(values: KeyValues, parts: int, common: KeyValues) -> Pier:
 
 
 def _check_one_size(table: Table) -> None:
-    """Add to ``table`` that the size is missing or given in several ways, and α and μ beside sides from which they follow."""
+    """Add to ``table`` that the size, one of two sides or α is missing, the size given in several ways, α or μ beside sides."""
     parts = table.has("part")
     written = [name for name in table.names if name in ("p", "size_m", "width_m", "height_m")]
     sides = [name for name in written if name in ("width_m", "height_m")]

@@ -235,7 +235,7 @@ _UNMEASURED = ("kind", "at", "side", "height_m", "confirm")
 
 
 def _measured_keys(section: Section, damper: str = "") -> tuple[str, ...]:
-    """Return the keys of a device that have numbers; of those of dampers, the keys of this kind of ``damper``."""
+    """Return the keys of a device that have numbers; for the section of dampers, those of the kind ``damper``."""
     measured = ((name, key) for name, key in section.items() if name not in _UNMEASURED)
     return tuple(name for name, key in measured if damper in key.only.get("kind", (damper,)))
 

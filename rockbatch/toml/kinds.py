@@ -56,7 +56,7 @@ class Kind(Protocol):
 
 @dataclass(frozen=True)
 class Number:
-    """A finite number within ``low`` and ``high``; an integer will do, a boolean will not.
+    """A finite number within ``low`` and ``high``, 0 or of a size from 1e-15 to 1e15; an integer will do, a boolean will not.
 
     ``text`` is what a message expects; ``above`` and ``below`` exclude these ends. ``bounds`` are those of the quantity, whose
     message explains itself; ``but`` is the one number that is excluded; ``endless`` accepts positive infinity, which leaves a
@@ -125,7 +125,10 @@ class Whole:
 
 @dataclass(frozen=True)
 class Text:
-    """Text that is not empty; ``check`` may raise :class:`KindError` for some of it, which a schema cannot express."""
+    """Text that is neither blank nor has control or invisible characters, but tabs and line breaks.
+
+    ``check`` may raise :class:`KindError` for further texts, which a schema cannot express.
+    """
 
     words: str = "text in quotes"
     check: Callable[[str], None] | None = None
@@ -223,7 +226,7 @@ def choice(*options: str, called: Mapping[str, object] | None = None) -> Choice:
 
 
 def within(bounds: Bounds) -> Number:
-    """Return the kind of a number within ``bounds``; if these exclude 0, the first message is about the sign."""
+    """Return the kind of a number within ``bounds``; if these are above 0, a number that is not gets "a number above 0"."""
     return replace(positive, bounds=bounds) if bounds.low > 0 or bounds.above else Number(bounds=bounds)
 
 

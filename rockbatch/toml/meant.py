@@ -23,12 +23,12 @@ def names(listed: Mapping[Any, str]) -> dict[str, Any]:
 
 
 def plain(name: str) -> str:
-    """Return the letters and digits of a name, in lower case."""
+    """Return the letters and digits of a name's first 100 characters, in lower case."""
     return "".join(filter(str.isalnum, name[:_LONGEST].lower()))
 
 
 def without_unit(name: str) -> Iterator[str]:
-    """Yield the plain name, then with fewer and fewer words: "height_kN_m" gives "heightknm", "heightkn", "height"."""
+    """Yield the plain name, then without its last word, its last two, and so on: "heightknm", "heightkn", "height"."""
     words = name[:_LONGEST].replace("-", "_").split("_")
     return (plain("_".join(words[:n])) for n in range(len(words), 0, -1))
 
@@ -50,13 +50,16 @@ def known_as(name: str, keys: Iterable[str], also: Mapping[str, Also], table: st
     if same := next((key for key in keys if plain(key) == plain(name)), ""):
         return same
     first, _, rest = name.partition("_")
-    if rest and table and plain(first) == plain(table) and (meant := _same(rest, keys, also)):
+    if rest and table and plain(first) == plain(table) and (meant := _same_key(rest, keys, also)):
         return meant
-    return closest(name, keys, _VERY_ALIKE) or _same(name, keys, also) or closest(name, keys, _ALIKE) or ""
+    return closest(name, keys, _VERY_ALIKE) or _same_key(name, keys, also) or closest(name, keys, _ALIKE) or ""
 
 
-def _same(name: str, keys: Iterable[str], also: Mapping[str, Also]) -> str:
-    """Return the key called ``name`` but for capitals and unit, or whose other name in ``also`` that is; "" if there is none."""
+def _same_key(name: str, keys: Iterable[str], also: Mapping[str, Also]) -> str:
+    """Return the key that ``name`` is but for capitals, signs and last words such as a unit, or that ``also`` gives for it.
+
+    "" if that is none of ``keys``.
+    """
     keys = list(keys)
     stems = {_stem(key): key for key in reversed(keys)}
     for word in without_unit(name):

@@ -165,7 +165,10 @@ class Section(Mapping[str, Key]):
 
 
 def joined(section: Section, *more: Section) -> Section:
-    """Return ``section`` with the keys, homes, other names and clashes of all sections; its texts and pattern stay its own."""
+    """Return ``section`` with the keys, homes, names in ``also`` and clashes of all sections; the rest stays its own.
+
+    Of a key or name in several sections the last counts.
+    """
     sections = (section, *more)
     return replace(
         section,
@@ -206,7 +209,10 @@ _GENERAL = {
 
 
 def home(sections: Iterable[Section], name: str, place: tuple[str, ...]) -> str:
-    """Return table headers, but that at ``place``, with a key ``name``: "[pier] or [[case]]"; "" for none or a common name."""
+    """Return the headers of tables but that at ``place`` that list a key ``name``: "[pier] or [[case]]"; "" for none.
+
+    "" also for names that mean something else in other tables, such as "file".
+    """
     others = (section for section in sections if section.at and section.at != place)
     headers = dict.fromkeys(section.header for section in others if name in section and not section.free)
     return "" if name in _GENERAL else " or ".join(headers)

@@ -10,6 +10,7 @@ from rockbatch.core.table import LANES
 from rockbatch.motions import Motion
 from rockbatch.pier import Damper, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import Run, Stop, run_all_fixed, runs
+from rockbatch.simulation.runs import written_runs
 
 VISCOUS, SLIDING = Damper("viscous", nu=0.2), Damper("friction", f=0.05)
 RESTRAINTS = {
@@ -59,22 +60,44 @@ def test_a_run_with_devices_is_the_same_to_the_bit_alone_and_in_any_company(base
     assert [shuffled[list(order).index(i)] for i in range(len(found))] == alone
 
 
+@pytest.fixture
+def without_a_pass(monkeypatch):
+    """Leaves all devices to scalar code; returns whether each batch from then on would have had a pass."""
+
+    def leave_all():
+        made, had = runs.equipment_of, []
+
+        def event_by_event(*given):
+            equipment = made(*given)
+            had.append(equipment is not None and equipment.passes)
+            return None if equipment is None else equipment._replace(passes=False)
+
+        monkeypatch.setattr(runs, "equipment_of", event_by_event)
+        return had
+
+    return leave_all
+
+
 @EVERY_BASE
-def test_the_pass_with_devices_gives_what_is_found_event_by_event(base, monkeypatch):
+def test_the_pass_with_devices_gives_what_is_found_event_by_event(base, without_a_pass):
     """Peaks, impacts, residuals, and forces, strokes, speeds and energies of devices, to the bit."""
     found = crowd(base)
-    passed, made = outcomes_of(found), runs.equipment_of
-    without = []
-
-    def event_by_event(*given):
-        equipment = made(*given)
-        without.append(equipment is not None and equipment.passes)
-        return None if equipment is None else equipment._replace(passes=False)
-
-    monkeypatch.setattr(runs, "equipment_of", event_by_event)
+    passed, had = outcomes_of(found), without_a_pass()
     assert outcomes_of(found) == passed
-    # Both tendons go in one call; runs without devices, with braces, and with friction on springs have no such pass
-    assert without.count(True) == len(RESTRAINTS) - (4 if base.on_springs else 3)
+    # Both tendons go in one call; runs without devices and with braces have no such pass
+    assert had.count(True) == len(RESTRAINTS) - 3
+
+
+@EVERY_BASE
+def test_histories_by_the_pass_are_those_found_event_by_event(base, without_a_pass):
+    """At each sample: the state of the pier, and states and energies of the devices, work of ground and P–Δ, to the bit."""
+    crowds = [crowd(base, (name,))[:5] for name in RESTRAINTS if name != "none"]
+    passed = [written_runs(found, 4, 1.0, 2000) for found in crowds]
+    without_a_pass()
+    for found, by_pass in zip(crowds, passed, strict=True):
+        for (_, rows), (_, rows_by_pass) in zip(written_runs(found, 4, 1.0, 2000), by_pass, strict=True):
+            assert rows.tobytes() == rows_by_pass.tobytes()
+            assert rows.input.any()
 
 
 def share_repeated(base, name, monkeypatch):
@@ -94,6 +117,5 @@ def test_the_pass_takes_most_sub_steps_with_devices(base, most, name, monkeypatc
 
 
 def test_without_a_pass_all_sub_steps_are_repeated(monkeypatch):
-    """Braced dampers have none, nor has friction on springs."""
+    """Braced dampers have none."""
     assert share_repeated(BASES["rigid"], "braced", monkeypatch) == pytest.approx(1.0, abs=0.01)
-    assert share_repeated(BASES["epp"], "friction", monkeypatch) == pytest.approx(1.0, abs=0.01)

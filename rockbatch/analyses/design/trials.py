@@ -90,7 +90,7 @@ class Written:
         return cases if isinstance(cases, str) else ""
 
     def cases(self, trial: Trial) -> list[Case]:
-        """Return the cases of a trial, nominal and under each bound, on every axis, with its values as columns."""
+        """Return the cases of a trial, nominal and under each bound, on every axis, with its values as columns; [] if refused."""
         cases = self._of(trial)
         return [] if isinstance(cases, str) else cases[trial.design]
 
@@ -134,7 +134,7 @@ class Trials:
         self.omitted: dict[str, dict[str, None]] = {}
 
     def execute(self, requested: Iterable[Trial]) -> None:
-        """Run and judge trials that are not yet."""
+        """Run and judge those trials that are not judged yet; one with which the study is refused is not run."""
         trials = [trial for trial in dict.fromkeys(requested) if trial not in self.judged]
         for trial in trials:
             if reason := self.written.refusal(trial):
@@ -200,7 +200,10 @@ def _values(columns: Mapping[str, Any], spec: DesignSpec) -> tuple[tuple[float, 
 
 
 def _judged(verdicts: Sequence[Verdict]) -> Judged:
-    """Return the worst of the verdicts of all checks on a trial; not decided if none applies."""
+    """Return the worst of the verdicts of all checks on a trial, governed by the greatest ratio among those that have it.
+
+    A ratio of NaN is the least. If no check applies it is not decided, without a check that governs.
+    """
     applying = [verdict for verdict in verdicts if verdict.verdict != DOES_NOT_APPLY]
     if not applying:
         return Judged(NOT_DECIDED, None, "no check applies")
@@ -210,5 +213,5 @@ def _judged(verdicts: Sequence[Verdict]) -> Judged:
 
 
 def worse(first: Judged, second: Judged) -> Judged:
-    """Return which of two is the worse."""
+    """Return the one with the worse verdict, the first if both have the same."""
     return max(first, second, key=lambda judged: WORSE.index(judged.verdict))

@@ -172,7 +172,7 @@ class _Test:
         self.model = cache(self._model)  # fits to times, to amplitudes and to both begin with the same values
 
     def base(self, value: float) -> Base:
-        """Return the base with this value of the parameter."""
+        """Return the base with this value of the parameter; on springs without the other loss (``epsilon`` 0, no ``zeta``)."""
         changes: dict[str, Any] = {self.parameter: value}
         if self.parameter != "restitution":
             changes = {"epsilon": 0.0, "zeta": None} | changes
@@ -191,11 +191,14 @@ class _Test:
         return Passages(t - t[0] if self.spec.clock == "first impact" else t, amplitude)
 
     def fit(self, measured: Passages) -> Fit:
-        """Return the fit to some of the measured values."""
+        """Return the fit to ``measured`` values, all of the test or only those of a kind."""
         return fitted(measured, self.model, GRIDS[self.parameter], self.spec.confidence, self._shifted)
 
     def laid_over(self, value: float) -> "tuple[pd.DataFrame, pd.DataFrame]":
-        """Return the table of impacts, measured and computed, and the computed history."""
+        """Return the table of impacts, measured and computed with a value, and the computed history until past the last impact.
+
+        Times count from the first impact if those measured do.
+        """
         pier, computed = self.case.pier, self.model(value)
         table = pd.DataFrame({"impact": np.arange(1, len(computed.t) + 1)})
         for name, unit, measured, modelled in (
@@ -248,7 +251,11 @@ class _Test:
         return self.fit(Passages(self.measured.t, nothing) if kind == 0 else Passages(nothing, self.measured.amplitude))
 
     def _remark(self, fit: Fit, apart: Mapping[str, Fit | None]) -> str:
-        """Return a remark on the fit: its differences from the test, and a probable cause if it is poor."""
+        """Return a remark on the fit: its differences from the test, and before these what to check if it seems wrong.
+
+        That is by the first that holds: it is at an end of the values, all times are stretched, times and amplitudes contradict
+        each other, or the differences are above POOR_TIMES or POOR_AMPLITUDES.
+        """
         pier = self.case.pier
         first, start = float(self.model(fit.value).t.max()) / len(self.measured.t), abs(pier.initial_rotation_rad)
         differences = []

@@ -23,7 +23,7 @@ METHOD = "The value that makes the measured times and amplitudes likeliest, and 
 def section(
     analysis: FinishedAnalysis, fits: "pd.DataFrame", impacts: "pd.DataFrame", history: "pd.DataFrame"
 ) -> Markup:
-    """Say what was fitted in each case, and draw it."""
+    """Return the report's section of a release test: what was fitted in each case, the figure and the tables."""
     varied = analysis.info["varied"]
     keys, rows = ["case", *varied], as_dicts(fits)
     heads = [Head("case", value=lambda fit: named(fit, keys)), *quantities.FIT]
@@ -44,7 +44,7 @@ def _answer(fit: Entry, keys: Sequence[str]) -> Markup:
 
 
 def _impacts(impacts: "pd.DataFrame", keys: list[str]) -> list[Markup]:
-    """Return a folded table of the impacts of each case."""
+    """Return for each case a folded table of its impacts."""
     tables = []
     for names, of_case in impacts.groupby(keys, sort=False, dropna=False):
         title = f"Impacts of {named(dict(zip(keys, names, strict=True)), keys)}, measured and computed"

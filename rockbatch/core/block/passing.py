@@ -80,7 +80,7 @@ def one_pass(traits, lanes, count, substep, settings):
 
 @inlined
 def _resists(m, side, held, ground):
-    """Return the acceleration [rad/s²] by which a block at rest resists uplift about its pivot on ``side``."""
+    """Return the acceleration [rad/s²] by which a block at rest resists uplift about its pivot on ``side``, ``held`` included."""
     return m.quickness * ((m.gravity + ground.vertical) * m.half_width + side * ground.horizontal * m.height) + held
 
 
@@ -103,7 +103,7 @@ def _judged(traits, lanes, shared, i, substep, settings):
     lowest, highest = min(early, late), max(early, late)
     stays = min(min(lowest, tilt_end), min(tilt, FLAT - max(highest, max(tilt, tilt_end))))
     presses = min(normal_end, normal) - NEAR_FLIGHT * m.gravity
-    moves = min(min(stays, presses), min(shared.verdict.clear[i], 1.0 - lanes.step_status.watched[i]))
+    moves = min(min(stays, presses), min(0.5 - shared.verdict.doubts[i], 1.0 - lanes.step_status.watched[i]))
     left, right = bounds.held_left[i], bounds.held_right[i]
     holds = min(_resists(m, LEFT, left, ground), _resists(m, LEFT, left, ground_end))
     holds = min(holds, min(_resists(m, RIGHT, right, ground), _resists(m, RIGHT, right, ground_end)))

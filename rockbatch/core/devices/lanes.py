@@ -42,8 +42,8 @@ class Verdict(NamedTuple):
 
     level: float  # v of the pier at rest [m]
     ended: float  # 1 if the next step continues from the rates at the end of the last one
-    clear: float  # positive if certainly no device has an event in the sub-step, nor asks for shorter steps
-    more: float  # positive if the Use of a device may have an extreme inside the sub-step
+    doubts: float  # devices that may have an event in the sub-step or ask for shorter steps; 1 more if it is not smooth
+    extremes: float  # devices whose Use may have an extreme inside the sub-step
     smooth: (
         float  # negative if the next sub-step is left to scalar code, since it most likely needs several parts again
     )
@@ -104,7 +104,10 @@ class Equipment(NamedTuple):
 
 
 def signature(elements):
-    """Return what the devices of two runs must have in common for their lanes to go through one pass."""
+    """Return a tuple that the devices of two runs must have in common for their lanes to go through one pass.
+
+    It has, for each device, its kind and whether it is at the deck, is linear, and is hysteretic on a brace.
+    """
     return tuple((of.kind, of.height != 0.0, of.linear_below == np.inf, of.give > 0.0) for of in elements)
 
 
@@ -184,7 +187,7 @@ def _devices_in(equipment, lanes, i):
 
 @hook
 def fetch(equipment, devices, i):
-    """Copy the numbers of lane ``i`` that the pass advances to the ``devices`` of its run."""
+    """Copy the numbers of lane ``i`` that the pass advances to the ``devices`` of its run; nothing if it takes none."""
 
 
 @fetch.of(type(None))
@@ -220,7 +223,8 @@ def _copy_to_run(devices, each, shared, i):
 def stow(equipment, devices, i, smooth, event):
     """Copy the ``devices`` of a run to its lane ``i`` after scalar code, which ended with an ``event`` or not.
 
-    The pass takes the next sub-step if that may be ``smooth``, and friction does not hold the pier.
+    The pass takes the next sub-step if that may be ``smooth``, and friction does not hold the pier; nothing is copied for devices
+    that no pass takes.
     """
 
 

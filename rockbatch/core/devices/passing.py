@@ -44,7 +44,7 @@ from rockbatch.core.system import (
     share,
     stage,
 )
-from rockbatch.core.table import along, get, put, take_unless, taken, with_pull
+from rockbatch.core.table import along, get, put, taken, with_pull
 from rockbatch.core.types import Pull
 
 
@@ -69,7 +69,7 @@ def _start(traits, lanes, equipment, i, steps):
 
 @inlined
 def _stage_pier(traits, lanes, shared, i, y):
-    """Set the staged state of the pier to ``y``, with its attitude, and its pull to that of no device."""
+    """Set the staged state of the pier to ``y``, with its attitude, and its pull to zero."""
     m, _, contact = in_pass(traits, lanes, i)
     put(shared.stage, i, y)
     put(shared.attitude, i, attitude_in_pass(m, y, contact, shared.verdict.level[i]))
@@ -105,7 +105,7 @@ def _unchanged(state):
 
 @inlined
 def _snapped(z):
-    """Return ``z`` of a hysteretic damper at the end of a step: ±1 if it counts as plastic."""
+    """Return ``z`` of a hysteretic damper at the end of a step: ±1 if within PLASTIC of it."""
     return (1.0 if z > 0.0 else -1.0) if abs(z) > 1.0 - PLASTIC else z
 
 
@@ -134,7 +134,10 @@ def _pulled(shared, i, here, force):
 
 @inlined
 def _rates_under_devices(traits, lanes, shared, i, steps, part):
-    """Return the rates of the pier under its devices in its stage, ``part`` of a step after its start, and the Works' powers."""
+    """Return the rates of the pier in its stage, under the pull of its devices, and the powers of the Works.
+
+    The stage is ``part`` of a step after its start.
+    """
     m, now, contact = in_pass(traits, lanes, i)
     y, h = get(shared.stage, i, now), lanes.clock.step[i]
     ground = later(ground_at(lanes, i, steps * h), part * h)
@@ -174,12 +177,13 @@ def _to_end(traits, lanes, shared, count, steps):
 
 @inlined
 def _evaluate_end(traits, lanes, shared, count, steps):
-    """Set the rates at the end of the step, and the numbers by which devices are judged."""
+    """Set the rates at the end of the step, and the numbers by which devices are judged to their first values."""
     for i in range(count):
         k, power = _rates_under_devices(traits, lanes, shared, i, steps, 1.0)
         put(shared.rates, i, k)
         put(shared.works_rates, i, power)
-        shared.verdict.clear[i], shared.verdict.more[i] = shared.verdict.smooth[i], -1.0
+        shared.verdict.doubts[i] = 0.0 if shared.verdict.smooth[i] > 0.0 else 1.0
+        shared.verdict.extremes[i] = 0.0
 
 
 class Course(NamedTuple):
@@ -201,7 +205,7 @@ class Course(NamedTuple):
 
 @inlined
 def _keeps_direction(goes, c):
-    """Return a number that is positive if the speed of a device certainly keeps its direction, or is rounding throughout."""
+    """Return a number that is positive if the speed of a device certainly keeps its direction, or is never more than rounding."""
     early, late = inner_points(c.start.speed, c.lift, c.end.speed, c.lift_end, c.h)
     fastest, keenest = max(abs(c.start.speed), abs(c.end.speed)), max(abs(c.lift), abs(c.lift_end))
     still = min(c.speed - fastest, c.acceleration - keenest) >= 0.0  # at the pivot about which a block rocks
@@ -240,14 +244,14 @@ def _keeps_way(of, mode, c):
 
 @inlined
 def _keeps_steep(of, mode, c):
-    """Return a number that is positive if a viscous damper keeps its direction, and its step is short enough (``pull``)."""
+    """Return a number that is positive if a viscous damper keeps its direction, and its step is short enough by GROWTH."""
     near = GROWTH * max(abs(c.start.speed), of.linear_below) / (c.steepest * c.dt)
     return -1.0 if of.exponent < 1.0 and near < 1.0 else _keeps_direction(mode.goes, c)
 
 
 @inlined
 def _keeps_branch(of, mode, c):
-    """Return a number that is positive if a hysteretic damper keeps its direction, and its step is short enough (``pull``)."""
+    """Return a number that is positive if a hysteretic damper keeps its direction, and its step is short enough by TRAVEL."""
     way = (abs(c.start.speed) + c.steepest * c.h) * c.dt * of.stiffness
     return -1.0 if mode.goes * c.state < 1.0 and TRAVEL / way < 1.0 else _keeps_direction(mode.goes, c)
 
@@ -318,7 +322,7 @@ def _travelled(line, i, c):
 
 @inlined
 def _look_ahead(traits, lanes, shared, count, steps):
-    """Set the rates at the start of the sub-step under the ground motion at its end; later steps are as short as they need."""
+    """Set ``ahead`` to the rates at the start of the sub-step under the ground motion at its end."""
     for i in range(count):
         m, y, contact = in_pass(traits, lanes, i)
         h = lanes.clock.step[i]
@@ -367,8 +371,9 @@ def _law(respond, clear, most, state_at_end=None):
                 use, more = _travelled(line, i, c)
                 force, stronger = most(of, mode, c, use, get(line.use, i, Use))
                 put(line.use_end, i, Use(force, use.stroke, use.speed, use.lost, use.yielded, use.times))
-                shared.verdict.clear[i] = min(clear(of, mode, c), shared.verdict.clear[i])
-                shared.verdict.more[i] = max(max(more, stronger), shared.verdict.more[i])
+                # Counts, since the compiler makes of min and max in place a masked store, which takes twenty times as long
+                shared.verdict.doubts[i] += 0.0 if clear(of, mode, c) > 0.0 else 1.0
+                shared.verdict.extremes[i] += 1.0 if max(more, stronger) > 0.0 else 0.0
 
     return take
 
@@ -437,25 +442,45 @@ def _use_inside(traits, lanes, equipment, i):
         put(each[j].use_end, i, taken(devices.use[j], Use))
 
 
+@inlined_once
+def _stay(traits, lanes, equipment, i):
+    """Set the numbers of lane ``i`` at the end of a sub-step that does not stand to those at its start."""
+    each, shared, now = equipment.lanes, equipment.shared[0], in_pass(traits, lanes, i)[1]
+    for j in range(len(each)):
+        line = each[j]
+        put(line.end, i, get(line.now, i, Progress))
+        put(line.rates, i, get(line.start_rates, i, Progress))
+        put(line.gap, i, get(line.start_gap, i, Gap))
+        put(line.use_end, i, get(line.use, i, Use))
+    put(shared.rates, i, get(lanes.rates, i, now))
+    put(shared.works_end, i, get(shared.works, i, Works))
+    put(shared.works_rates, i, get(shared.works_start, i, Works))
+    put(shared.pull, i, get(shared.start_pull, i, Pull))
+
+
 @inlined
 def settle(traits, lanes, equipment, runs, count):
-    """Advance the devices in lanes whose sub-step stands; lanes from ``runs`` to ``count`` are padding."""
+    """Advance the devices to the ends of the sub-steps that stand; lanes from ``runs`` to ``count`` are padding.
+
+    All lanes are copied: a selection in the loop would make masked stores.
+    """
     each, shared, kinds = equipment.lanes, equipment.shared[0], lanes.step_status.kind
-    for i in range(runs):
-        if kinds[i] < EVENTFUL and shared.verdict.more[i] > 0.0:
-            _use_inside(traits, lanes, equipment, i)
+    for i in range(count):
+        if kinds[i] >= EVENTFUL:
+            _stay(traits, lanes, equipment, i)
+        elif i < runs:
+            shared.verdict.ended[i] = 1.0
+            if shared.verdict.extremes[i] > 0.0:
+                _use_inside(traits, lanes, equipment, i)
     for j in range(len(each)):
         line = each[j]
         for i in range(count):
-            repeats = kinds[i] >= EVENTFUL
-            take_unless(repeats, line.now, line.end, i, Progress)
-            take_unless(repeats, line.start_rates, line.rates, i, Progress)
-            take_unless(repeats, line.start_gap, line.gap, i, Gap)
-            take_unless(repeats, line.use, line.use_end, i, Use)
+            put(line.now, i, get(line.end, i, Progress))
+            put(line.start_rates, i, get(line.rates, i, Progress))
+            put(line.start_gap, i, get(line.gap, i, Gap))
+            put(line.use, i, get(line.use_end, i, Use))
     for i in range(count):
-        repeats, now = kinds[i] >= EVENTFUL, in_pass(traits, lanes, i)[1]
-        take_unless(repeats, lanes.rates, shared.rates, i, now)
-        take_unless(repeats, shared.works, shared.works_end, i, Works)
-        take_unless(repeats, shared.works_start, shared.works_rates, i, Works)
-        take_unless(repeats, shared.start_pull, shared.pull, i, Pull)
-        shared.verdict.ended[i] = shared.verdict.ended[i] if repeats else 1.0
+        put(lanes.rates, i, get(shared.rates, i, in_pass(traits, lanes, i)[1]))
+        put(shared.works, i, get(shared.works_end, i, Works))
+        put(shared.works_start, i, get(shared.works_rates, i, Works))
+        put(shared.start_pull, i, get(shared.pull, i, Pull))

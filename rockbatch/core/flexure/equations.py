@@ -83,7 +83,7 @@ def _accelerations(m, y, contact, ground):
 
 @inlined
 def flexing(v, theta, v_rate, omega, u, u_rate):
-    """Return the state with the coordinates ``u`` of the modes and their rates."""
+    """Return the Flexing with the coordinates ``u`` of the modes and their rates."""
     return Flexing(
         v,
         theta,
@@ -142,7 +142,10 @@ def ground_power(m, y, contact, ground):
 
 @inlined
 def bent_across(shape, y, k):
-    """Return the horizontal acceleration [m/s²] by bending of a point that the modes move by ``shape``; ``k`` are the rates."""
+    """Return the horizontal acceleration [m/s²] of a point by the motion of its modes, which move it by ``shape``.
+
+    It is relative to the turning base, Coriolis's included; ``k`` are the rates of state ``y``.
+    """
     sine, cosine = sine_and_cosine(y.theta)
     return dot(shape, deflection_rates(k)) * cosine - 2.0 * dot(shape, deflection_rates(y)) * y.omega * sine
 

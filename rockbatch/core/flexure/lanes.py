@@ -85,7 +85,7 @@ def pier_in(traits, lanes, i):
 
 @system.begin.of(FlexibleTraits)
 def begin(traits, lanes, i, run):
-    """Put the model and the start of ``run`` into lane ``i``."""
+    """Put the model of ``run`` into lane ``i``, and its start: at rest, or leaning on a pivot, bent by its weight."""
     put(lanes.model, i, taken(run, Numbers))
     contact = Stance(1.0, 1.0, 0.0, 0.0) if run.theta == 0.0 else on_side(RIGHT if run.theta > 0.0 else LEFT)
     m = _model(traits, lanes, i)
@@ -110,7 +110,7 @@ def take_in_part(traits, lanes, i, m, part, after):
 
 @system.finish.of(FlexibleTraits)
 def finish(traits, lanes, i, t, result):
-    """Write the greatest displacements."""
+    """Write the greatest displacements of the top of lane ``i`` into its ``result``."""
     result.deflection_max, result.drift_max = lanes.displaced.deflection[i], lanes.displaced.drift[i]
 
 

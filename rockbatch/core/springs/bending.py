@@ -32,7 +32,7 @@ from rockbatch.core.types import LEFT
 
 @inlined
 def bent_state(y, u, u_rate):
-    """Return the state ``y`` of a straight shaft with the coordinates ``u`` of its modes, and their rates; or such rates."""
+    """Return the state ``y`` of a straight shaft with the coordinates ``u`` of its modes and their rates; likewise its rates."""
     return BentState(
         y.v,
         y.theta,
@@ -136,7 +136,7 @@ def _on_bending_pier(shaft, m, y, lever, ground):
 
 @inlined
 def kinetic_of_modes(m, y, lever):
-    """Return the kinetic energy [J/kg] less that of a straight shaft; ``lever`` is H [m]."""
+    """Return the kinetic energy [J/kg] less that of a straight shaft with the same base; ``lever`` is H [m]."""
     u, u_rate = deflections(y), deflection_rates(y)
     to_right, up = velocity_of_centre(m, y, lever)
     by_centre = lever * y.omega * (to_right - lever * y.omega) + y.v_rate * (up - y.v_rate)
@@ -224,7 +224,7 @@ def _bent_at_start(shaft, m, y):
 
 @optional_hook
 def begin_shaft(shaft, lanes, i, run):
-    """Put the modes of the shaft of a ``run`` into lane ``i``."""
+    """Put the modes of the shaft of a ``run`` into lane ``i``; nothing if it is rigid."""
 
 
 @begin_shaft.of(Shaft)
@@ -234,7 +234,7 @@ def _begin_shaft(shaft, lanes, i, run):
 
 @optional_hook
 def begin_displacements(shaft, lanes, i):
-    """Set the greatest displacements of lane ``i`` to those at its start."""
+    """Set the greatest displacements of lane ``i`` to those at its start; nothing if its shaft is rigid."""
 
 
 @begin_displacements.of(Shaft)
@@ -244,7 +244,7 @@ def _begin_displacements(shaft, lanes, i):
 
 @optional_hook
 def include_bending(shaft, lanes, i, part):
-    """Raise the greatest displacements of lane ``i`` to those of a Part."""
+    """Raise the greatest displacements of lane ``i`` to those of a Part; nothing if its shaft is rigid."""
 
 
 @include_bending.of(Shaft)
@@ -254,7 +254,7 @@ def _include_bending(shaft, lanes, i, part):
 
 @optional_hook
 def write_displacements(shaft, lanes, i, result):
-    """Write the greatest displacements of lane ``i`` into its ``result``."""
+    """Write the greatest displacements of lane ``i`` into its ``result``; nothing if its shaft is rigid."""
 
 
 @write_displacements.of(Shaft)

@@ -168,7 +168,7 @@ def begin(traits, lanes, i, run):
 
 @inlined
 def _include_extremes(lanes, i, m, part):
-    """Include a Part in the height of flight and the lowest positions."""
+    """Include a Part in the height of flight, and in the lowest positions of pivots in contact."""
     (y, contact, supports), end, h = part
     if system.airborne(m, contact):
         include_height(lanes, i, clearances(m, y, supports), clearances(m, end, supports), h)
@@ -208,7 +208,7 @@ def take_in_step(traits, lanes, i, substep, history):
 
 @kernel
 def _change_branches(lanes, i, m, now, substep, history):
-    """Change the branches of the springs of lane ``i`` whose velocities reversed in its sub-step."""
+    """Change the branches of the springs of lane ``i`` whose velocities reversed in its sub-step, and write their rows."""
     before, at, reversals = now.contact, get(lanes.reversals, i, BranchChange), lanes.reversals
     left, right = before.left_yields, before.right_yields
     left_after = 1.0 - left if reversals.left[i] >= 0.0 else left

@@ -100,7 +100,7 @@ def shaft_numbers(shaft: Shaft) -> tuple[float, ...]:
 
 @hook
 def shaft_in(shaft, lanes, i):
-    """Return the Shaft of lane ``i``, like ``shaft`` of the traits; None of a rigid one."""
+    """Return the Shaft of lane ``i``, of the type of ``shaft`` in the traits; None for a rigid one."""
 
 
 @shaft_in.of(type(None))

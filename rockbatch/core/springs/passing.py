@@ -106,7 +106,7 @@ def _signs(m, contact):
 
 @inlined
 def _stepped(traits, lanes, i, substep):
-    """Integrate lane ``i`` over the sub-step, on the present branches of its springs."""
+    """Integrate lane ``i`` over the sub-step into ``end``, on the present branches of its springs, and see if they keep them."""
     m, h = model_in(traits, lanes, i), lanes.clock.step[i]
     y, contact, ground = get(lanes.now, i, State), _free(lanes, i), ground_at(lanes, i, substep * h)
     k = rates(m, y, contact, ground)
@@ -205,7 +205,7 @@ def one_pass(traits, lanes, count, substep, settings):
 
 @hook
 def pass_of(shaft, traits, lanes, count, substep, settings):
-    """Integrate lanes as :func:`one_pass`; those with a ``shaft`` that bends event by event."""
+    """Integrate lanes as :func:`one_pass`; with a ``shaft`` that bends all are EVENTFUL."""
 
 
 @pass_of.of(type(None))
@@ -227,7 +227,7 @@ def _rigid_pass(shaft, traits, lanes, count, substep, settings):
 
 @system.in_pass.of(SpringTraits)
 def in_pass(traits, lanes, i):
-    """Return model, state and contact of lane ``i`` without a grazing contact."""
+    """Return model, state and contact of lane ``i``; a grazing contact is left out."""
     return model_in(traits, lanes, i), get(lanes.now, i, State), _free(lanes, i)
 
 
@@ -239,7 +239,7 @@ def pass_with_devices(traits, lanes, equipment, count, substep, settings):
 
 @hook
 def pass_with_devices_of(shaft, traits, lanes, equipment, count, substep, settings):
-    """Integrate lanes as :func:`pass_with_devices`; those with a ``shaft`` that bends event by event."""
+    """Integrate lanes as :func:`pass_with_devices`; with a ``shaft`` that bends all are EVENTFUL."""
 
 
 @pass_with_devices_of.of(type(None))
@@ -253,5 +253,5 @@ def _rigid_pass_with_devices(shaft, traits, lanes, equipment, count, substep, se
         (left, right), (sign_left, sign_right) = pivots(m, end), _signs(m, contact)
         keeps = m.rest + min(sign_left * left.velocity, sign_right * right.velocity)
         lanes.reversals.keeps[i] = 0.0
-        _judged(traits, lanes, i, substep, settings, min(keeps, shared.verdict.clear[i]))
+        _judged(traits, lanes, i, substep, settings, min(keeps, 0.5 - shared.verdict.doubts[i]))
     settle(traits, lanes, equipment, count, whole)

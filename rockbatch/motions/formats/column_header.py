@@ -94,7 +94,7 @@ class Column:
 
     @property
     def may_be_time(self) -> bool:
-        """Return whether its label is T without a unit: time, or the transverse component."""
+        """Return whether its label is T or Ts without a unit: time, or the transverse component."""
         return self.unit is None and self.label.lower() in ("t", "ts")
 
     @property
@@ -287,7 +287,8 @@ class StatedStep:
 def stated_step(header: Sequence[str]) -> StatedStep | None:
     """Return the interval in a line such as ``dt = 0.01 s``, ``Sampling rate: 200 Hz`` or ``NPTS= 4000, DT= .0050 SEC``.
 
-    ``None`` without one. Raises ``InputError`` for two different ones, and for numbers that are no intervals.
+    ``None`` without one. Intervals of other data ("original dt = 0.005") do not count. Raises ``InputError`` for two that
+    differ by over 1 %, and for numbers that are no intervals.
     """
     matches = (match for line in header for match in _STEP.finditer(line))
     steps = [_step(match) for match in matches if not _OF_OTHER_DATA.search(match.string[: match.start()])]
@@ -301,7 +302,7 @@ def stated_step(header: Sequence[str]) -> StatedStep | None:
 
 
 def _step(match: re.Match[str]) -> StatedStep:
-    """Return the interval that a match states, as such or as a rate; raise ``InputError`` for an impossible number."""
+    """Return the interval that a match states, in s without a unit, or by a rate; raise ``InputError`` for impossible numbers."""
     words = match[0].strip()
     unit = (match["behind"] or match["before"] or match["suffix"] or "").lower()
     try:

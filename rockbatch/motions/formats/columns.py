@@ -47,7 +47,7 @@ def is_columns(head: bytes) -> bool:
 
 
 def holds_table(head: bytes) -> bool:
-    """Return whether the complete lines of the first bytes are a table of three rows or more, with or without a header."""
+    """Return whether the first bytes, less their last line, are a table of three rows or more, with or without a header."""
     try:
         return len(read_table(text_of(head.rpartition(b"\n")[0]))[1]) > 2
     except InputError:
@@ -55,7 +55,7 @@ def holds_table(head: bytes) -> bool:
 
 
 def is_bbp(head: bytes) -> bool:
-    """Return whether the first bytes are comments that name time and three accelerations, each with its unit."""
+    """Return whether the first bytes have comments that name exactly time and three accelerations, each with its unit."""
     lines = [line.lstrip("# \t") for line in head.decode("latin-1").splitlines() if line.startswith("#")]
     columns = columns_with_units(lines, 4) or []
     return (
@@ -145,7 +145,8 @@ def _missing_unit(i: int, column: Column, unit: str) -> str:
 def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[list[Column], tuple[str, ...]]:
     """Return the columns by header and study, and notes on them.
 
-    Raises ``InputError`` for a spectrum, or a table without header for which the study states another number of columns.
+    Raises ``InputError`` for a spectrum, for a table without header for which the study states another number of columns, and
+    as :func:`_guessed_columns` if neither names them.
     """
     width = table.shape[1]
     columns = (
@@ -221,7 +222,7 @@ def _merged_column(header: Column, stated: str) -> Column | None:
 
 
 def _with_time(columns: list[Column], table: Samples) -> list[Column]:
-    """Return columns with a label T without unit decided: a time grows, the transverse component does not."""
+    """Return columns in which a label T without unit is time if more than 90 % of its steps are upward, else transverse."""
     if any(column.is_time for column in columns):
         return columns
     return [
@@ -283,7 +284,7 @@ def _on_one_step(
 
 
 def _check_step(stated: StatedStep, dt: float, usual: float) -> None:
-    """Raise ``InputError`` if the header's interval is neither ``dt`` of the samples nor their ``usual`` step [s]."""
+    """Raise ``Contradiction`` if the header's interval is over 1 % off both ``dt`` and the ``usual`` step of the times [s]."""
     if all(abs(stated.dt - step) > SAME_STEP * step for step in (dt, usual)):
         raise Contradiction(
             f'the header says "{stated.words}", {stated.dt:g} s, but time grows by {usual:g} s; correct the one that is '

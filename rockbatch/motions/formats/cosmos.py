@@ -116,7 +116,7 @@ def _with_series(recording: Recording, series: re.Match[str], values: Samples) -
 
 
 def _header(lines: list[str], start: int) -> _Header:
-    """Return the header that begins at ``lines[start]``; raise ``InputError`` with the line if it is incomplete."""
+    """Return the header that begins at ``lines[start]``; raise ``InputError`` with the line if it is incomplete or of spectra."""
     title = match_line(_TITLE, lines, start, "Corrected acceleration    (Format v01.20 with 13 text lines)")
     if "spectr" in title["what"].lower():
         raise NoRecord(f"line {start + 1}: spectra; expected accelerations: take the V2 file of this record")
@@ -207,7 +207,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
 
 
 def _initial(header: _Header) -> Initial | None:
-    """Return the ground's velocity [m/s] and displacement [m] at the first sample; ``None`` if real number 68 is unknown."""
+    """Return the ground's state at the first sample; ``None`` without its velocity (real 68), 0 m without displacement (69)."""
     velocity, displacement = header.reals[67:69]
     if velocity == header.unknown:
         return None

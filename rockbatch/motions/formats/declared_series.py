@@ -32,8 +32,8 @@ def declares_series(lines: list[str], index: int) -> bool:
 def declared_series(lines: list[str], start: int) -> tuple[float, dict[str, Series], int]:
     """Return the interval [s], the series by kind ("acc", "vel", "dis"), and the index of the line after them.
 
-    ``lines[start]`` declares the accelerations; the others are optional. Raises ``InputError`` with the line of an
-    incomplete series.
+    ``lines[start]`` declares the accelerations; velocities and displacements may follow. Raises ``InputError`` with the line of
+    an incomplete series.
     """
     _, dt, accelerations, end = _block(lines, start, ("acc",))
     series = {"acc": accelerations}

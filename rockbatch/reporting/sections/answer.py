@@ -201,7 +201,10 @@ def _standing(finished: Finished) -> str:
 
 
 def _error(finished: Finished) -> str:
-    """Return a sentence on the largest error of rotations, or that none was estimated; "" if no run ended standing."""
+    """Return a sentence on the largest error of rotations, or that it was not estimated, if the step is fixed.
+
+    "" if the step was adapted, and no run that ended standing has an error.
+    """
     numerics = finished.info["numerics"]
     errors = finished.runs.loc[finished.runs["status"] == "ok", "theta_max_error"]
     largest, lacking = errors.max(), int(errors.isna().sum())

@@ -44,7 +44,10 @@ def section(finished: Finished) -> Markup:
 
 
 def outcome(run: Row | None, worst: float = math.nan) -> object:
-    """Return θ_max/α of a run, bold if it equals ``worst``; its status and lower bound if it did not stand; "" for None."""
+    """Return θ_max/α of a run, bold if it equals ``worst``, with marks of a flight or a lean; "" for None.
+
+    Of a run that did not stand: its status, with the time of a flight, or the lower bound of one that failed after its motion.
+    """
     if run is None:
         return ""
     status, theta, flight = run["status"], float(run["theta_max_over_alpha"]), run["flight_s"]
@@ -71,7 +74,7 @@ def at_least(run: Row) -> Markup:
 
 
 def _every_run(finished: Finished) -> Markup:
-    """Return the rows of ``peaks.csv``, worst first, with distinct remarks numbered below the table."""
+    """Return the simulated rows of ``peaks.csv``, worst first, with distinct remarks numbered below the table."""
     runs, varied = finished.runs, finished.info["varied"]
     # Shown only if they vary
     also = {"polarity": finished.both_directions, "scale": finished.many_scales}
@@ -106,12 +109,12 @@ def _every_run(finished: Finished) -> Markup:
 
 
 def _rounded_up(error: float) -> float | None:
-    """Round an error up to the digits of the peaks in the table; None for NaN."""
+    """Return an error rounded up to a multiple of :data:`LAST_DIGIT`; None for NaN."""
     return math.ceil(error / LAST_DIGIT) * LAST_DIGIT if error == error else None
 
 
 def _remarks(texts: "Sequence[str]") -> Markup:
-    """Return the numbered list of remarks, folded if long; empty without any."""
+    """Return the numbered list of the first :data:`MOST_REMARKS` remarks, folded if there are more than six; empty for none."""
     if not texts:
         return Markup("")
     listed = tag("ol", *(tag("li", words) for words in texts[:MOST_REMARKS]), class_="remarks")
@@ -123,7 +126,7 @@ def _remarks(texts: "Sequence[str]") -> Markup:
 def every_run(
     finished: Finished, heads: "Sequence[Head]", cells: "Callable[[Row], Sequence[object]]", name: str
 ) -> Markup:
-    """Return a table with a row for each run, worst first; ``cells`` returns a run's cells after its record."""
+    """Return a table of the worst :data:`MOST_ROWS` runs, worst first; ``cells`` returns a run's cells after its record."""
     runs = worst_first(finished.runs, MOST_ROWS)
     rows = ([finished.shown(run["record"]), *cells(run)] for run in as_dicts(runs))
     return table(heads, rows, sortable=True, name=name, worst_of=len(finished.runs))

@@ -54,7 +54,10 @@ def _of_target(finished: Finished, entry: str) -> list[Verdict]:
 
 
 def _below(finished: Finished, entry: str) -> str:
-    """Return "required" if the suite's mean is below a target at scale 1 alone, else "required, at scale 0.5, 1"; "" if not."""
+    """Return "required" if scale 1 is the only one at which the suite's mean is below a required target, "" if none is.
+
+    Otherwise the scales: "required, at scale 0.5, 1".
+    """
     failing = [verdict for verdict in _of_target(finished, entry) if verdict.verdict == FAIL]
     scales = [verdict.scale for verdict in failing if verdict.demand == MEAN_OVER_TARGET]
     if scales in ([], [1.0]):

@@ -394,6 +394,14 @@ def test_the_figure_has_the_worst_ratio_of_each_check_over_strips_that_pass():
     assert [mark.label for mark in above] == ["rotation", "stands"]
 
 
+def test_a_design_without_a_check_has_a_panel_with_the_limit_alone():
+    design = {"between": [1.0, 1.2], "points": 2, "width": 0.1}
+    found = rb.design(study(design, cases=[RIGID, PADS], check=[ROTATION | {"case": RIGID["name"]}]))
+    panels = figure_of(found.info, found.design, found.design_values, found.design_checks).panels
+    lines = {panel.caption: [mark.label for mark in panel.marks if isinstance(mark, Polyline)] for panel in panels}
+    assert lines == {RIGID["name"]: ["rotation"], PADS["name"]: []}
+
+
 def test_the_map_fills_what_fails_and_marks_what_passes_by_the_check_that_governs():
     design = {
         "vary": ["pier.p", "case.restitution"],
