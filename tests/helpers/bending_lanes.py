@@ -73,7 +73,7 @@ def _start(rng, m, lanes, i, run):
     if supports is not None:
         put(lanes.supports, i, supports)
         lanes.lowest.left[i] = lanes.lowest.right[i] = -1.0
-    put(lanes.ground, i, Ground(*map(float, rng.normal((0.0, 0.0, 5.0, 0.0), (0.7, 10.0, 2.0, 10.0)))))
+    put(lanes.ground, i, Ground(*map(float, rng.normal((0.0, 0.0, 5.0, 0.0), (0.7, 2e3, 2.0, 2e3)))))
     put(lanes.displaced, i, Displacements(*map(float, rng.choice((0.0, 0.01, 0.5), 2))))
     lanes.peak.theta[i], lanes.step_status.watched[i] = rng.choice((abs(y.theta), 3e-4, 0.1)), 0.0
 
