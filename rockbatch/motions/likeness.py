@@ -82,7 +82,7 @@ def pairs_of_one_recording(components: Sequence[Component]) -> Recordings:
         for j in table.same_by_headers(i):
             if j in pairs.get(i, ()) or likeness_of(components[i], components[j]) >= _ALIKE:
                 join(i, j)
-            elif not table.may_be_parts(i, j):
+            elif table.way[i] >= 0 and not table.may_be_parts(i, j):  # unknown directions may be two
                 denied.append((i, j))
     for i, j in table.similar_pairs():
         first, second = components[i], components[j]
