@@ -8,7 +8,7 @@ from bending_piers import DT, TOWER, pier_of
 import rockbatch as rb
 from rockbatch.core.block.equations import constrained, on_side
 from rockbatch.core.block.model import Stance
-from rockbatch.core.clock import CALM, EVENTFUL, ground_at, read_ground, start_clock
+from rockbatch.core.clock import CALM, EVENTFUL, STANDS, ground_at, read_ground, start_clock
 from rockbatch.core.flexure.displacements import Displacements, displacements_within
 from rockbatch.core.flexure.model import Flexing
 from rockbatch.core.roots import largest_within
@@ -17,7 +17,7 @@ from rockbatch.core.search import first_event, marks_for
 from rockbatch.core.springs.laws import CODES
 from rockbatch.core.springs.model import BentState, Contact, Supports
 from rockbatch.core.springs.reversal import pivots
-from rockbatch.core.system import begin, longest_step, one_pass, pier_in, rates
+from rockbatch.core.system import begin, longest_step, one_pass, pier_in, rates, take_in_step
 from rockbatch.core.table import LANES, get, put, record, table
 from rockbatch.core.types import NO_EVENT, Ground, Instant, Part
 from rockbatch.simulation.models import line_of, model, system_of
@@ -37,9 +37,11 @@ class Judged(NamedTuple):
     watched: np.ndarray  # whether the sub-step before ended with an event function at zero
     event: np.ndarray  # whether the search finds an event
     ends: np.ndarray  # whether the state at the end is that of a scalar step without events
-    taken: np.ndarray  # whether the lane is where it should be: at the end if calm, else where it was
-    displaced: np.ndarray  # whether a calm sub-step has the greatest displacements of scalar code, another those before
-    peak: np.ndarray  # and the peak
+    taken: (
+        np.ndarray
+    )  # whether the lane is where it should be: at the end, if it stands once it is taken in, else where it was
+    displaced: np.ndarray  # whether one that stands has the greatest displacements of scalar code, another those before
+    peak: np.ndarray  # and one that is calm the peak
 
 
 def _on_rock(rng, m):
@@ -108,15 +110,20 @@ def _compared(m, lanes, i, start, before, h, marks):
     instant = Instant(now.y, rates(pier, now.y, now.contact, ground), now.contact, now.supports, ground)
     _, which, end, _ = first_event(pier, None, marks, instant, longest_step(pier, instant, h), False, True)
     kind, kinds = lanes.step_status.kind[i], type(now.y)
-    if kind == CALM:
+    taken = get(lanes.now, i, kinds) == (end if kind == CALM else now.y)
+    if kind == STANDS:
+        take_in_step(system_of(m).traits, lanes, i, SUBSTEP, None)
+        taken = taken and get(lanes.now, i, kinds) == end
+    if kind < EVENTFUL:
         displaced = displacements_within(getattr(pier, "shaft", pier), Part(now, end, h), displaced)
+    if kind == CALM:
         peak = largest_within(now.y.theta, now.y.omega, end.theta, end.omega, h, peak)[1]
     return (
         kind,
         lanes.step_status.watched[i] > 0.0,
         which != NO_EVENT,
         kind >= EVENTFUL or get(lanes.end, i, kinds) == end,
-        get(lanes.now, i, kinds) == (end if kind == CALM else now.y),
+        taken,
         get(lanes.displaced, i, Displacements) == displaced,
         float(lanes.peak.theta[i]) == peak,
     )
