@@ -147,6 +147,10 @@ def length_factor(unit: str) -> float | None:
     return _LENGTH_IN_M.get(unit.strip().lower().partition("/")[0])
 
 
+ACCELERATIONS = f"one of {', '.join(['g', 'g/10', 'mg', *_ACCELERATION_IN_M_S2])}"
+"""Units of acceleration, as messages list them."""
+
+
 def acceleration_factor(unit: str, gravity: float = GRAVITY) -> float:
     """Return the factor that turns an acceleration in ``unit`` into m/s².
 
@@ -161,6 +165,5 @@ def acceleration_factor(unit: str, gravity: float = GRAVITY) -> float:
     if key in _ACCELERATION_IN_G:
         return gravity * _ACCELERATION_IN_G[key]
     if key not in _ACCELERATION_IN_M_S2:
-        units = ", ".join(["g", "g/10", "mg", *_ACCELERATION_IN_M_S2])
-        raise ValueError(f'unknown acceleration unit "{unit}"; write one of {units}')
+        raise ValueError(f'unknown acceleration unit "{unit}"; write {ACCELERATIONS}')
     return _ACCELERATION_IN_M_S2[key]
