@@ -76,7 +76,7 @@ class Written:
 
     @cached_property
     def designs(self) -> list[Design]:
-        """Return the designs of the cases that have the varied keys."""
+        """Return the designs of the cases that have the varied keys, each once, without cases across the axis."""
         cases = [case for case in along_the_axis(self.study.cases) if case.name in self.spec.cases]
         return list(dict.fromkeys(self._design(case) for case in cases))
 
