@@ -79,7 +79,8 @@ def judge(
     Raises
     ------
     InputError
-        If a rule asks for a case, scale or column that the results do not have, or has a doubted limit that decides nothing.
+        If there is no run, or a rule asks for a case, scale or column that the results do not have, or has a doubted limit that
+        decides nothing.
     """
     runs = with_case(peaks)
     if runs.empty:
@@ -282,7 +283,10 @@ def _with_numbers(verdict: Verdict, value: float, low: float, high: float) -> Ve
 
 
 def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[str, str]) -> Verdict:
-    """Return the verdict on a statistic of a suite, on one or both axes; ``none`` is the verdict without its numbers."""
+    """Return the verdict on a statistic of a suite; demands on two axes combine run by run: ``both_axes``, else the greater.
+
+    Without a run that counts it is not decided, its numbers NaN. ``none`` is the verdict "does not apply", which gives the rest.
+    """
     suite = axes[0].suite
     counted_as, unknown = counts_as(suite, none.count)
     demand = of_suite(rule, axes, counted_as)

@@ -52,7 +52,10 @@ class Fitted(NamedTuple):
 
 
 def fitted(rule: Rule, available: Available) -> Fitted:
-    """Return a rule fitted to a study: what it chooses of what is ``available``, and a problem for each choice that is not."""
+    """Return a rule fitted to a study: what it chooses of what is ``available``, and a problem for each choice that is not.
+
+    If piers are available, so is a problem of a limit or capacity that decides nothing on them.
+    """
     matches = {pattern: chosen(pattern, available.cases) for pattern in rule.case}
     cases = frozenset(chain.from_iterable(matches.values()) if rule.case else available.cases)
     scales = [scale for scale in available.scales if not rule.scale or _is_among(scale, rule.scale)]

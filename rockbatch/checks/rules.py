@@ -194,7 +194,7 @@ class Rule:
         return self.words_at(self.at_m)
 
     def words_at(self, height: float | None) -> str:
-        """Return :attr:`words` with the height at which the demand is read [m], without one for None."""
+        """Return :attr:`words` with the height at which the demand is read [m]; without it for None, a ban and a property."""
         demand = DEMANDS[self.demand]
         if demand.per_case:
             return self.demand

@@ -110,7 +110,7 @@ def failed_later(runs: "pd.DataFrame") -> str:
 
 
 def flexible(study: Study) -> list[str]:
-    """Return a warning for each case whose given flexural period is too long for a rigid pier; [] for none."""
+    """Return a warning for each case whose flexural period, given or by rigidities, is too long for a rigid pier."""
     flexible_cases = [case for case in study.cases if flexural_period(case.pier) is not None]
     if not flexible_cases:
         return []

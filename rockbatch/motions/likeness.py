@@ -103,9 +103,9 @@ def _pairs_of_sets(
 ) -> Iterator[tuple[int, int]]:
     """Yield further pairs from two sets that are of one recording as wholes, each component with its counterpart.
 
-    Two sets with a pair already must correlate; others must be coherent wherever both have energy: that distinguishes a copy
-    that was cut, rotated and filtered from a neighbour in an array, and a correlation does not. Sets with a ``scaled`` pair
-    stay two.
+    Two sets with a pair already must correlate or be coherent; others must be coherent wherever both have energy: that
+    distinguishes a copy that was cut, rotated and filtered from a neighbour in an array, and a correlation does not. Sets with
+    none but a ``scaled`` pair stay two.
     """
     sets = list(sets_of(components))
     set_of = {i: number for number, members in enumerate(sets) for i in members}

@@ -215,7 +215,7 @@ def _keeps_direction(goes, c):
 
 @inlined
 def _keeps_mode(of, mode, c):
-    """Return a number that is positive if a tendon certainly remains taut or slack, and does not yield."""
+    """Return a number that is positive if a tendon certainly keeps its mode, taut or slack; −1 for a yielding one."""
     pull, pull_end = tension(of, c.start.elongation, c.state), tension(of, c.end.elongation, c.state)
     early, late = inner_points(pull, of.stiffness * c.start.speed, pull_end, of.stiffness * c.end.speed, c.h)
     least, most = min(min(early, late), min(pull, pull_end)), max(max(early, late), max(pull, pull_end))

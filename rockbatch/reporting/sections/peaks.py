@@ -74,7 +74,7 @@ def at_least(run: Row) -> Markup:
 
 
 def _every_run(finished: Finished) -> Markup:
-    """Return the simulated rows of ``peaks.csv``, worst first, with distinct remarks numbered below the table."""
+    """Return the worst :data:`MOST_ROWS` simulated rows of ``peaks.csv``, worst first, with remarks numbered below the table."""
     runs, varied = finished.runs, finished.info["varied"]
     # Shown only if they vary
     also = {"polarity": finished.both_directions, "scale": finished.many_scales}
