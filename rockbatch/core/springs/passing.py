@@ -231,6 +231,12 @@ def in_pass(traits, lanes, i):
     return model_in(traits, lanes, i), get(lanes.now, i, State), _free(lanes, i)
 
 
+@system.gives_way.of(SpringTraits)
+def gives_way(traits):
+    """Return True."""
+    return True
+
+
 @system.pass_with_devices.of(SpringTraits)
 def pass_with_devices(traits, lanes, equipment, count, substep, settings):
     """Integrate the first ``count`` lanes over a sub-step."""
