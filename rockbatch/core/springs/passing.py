@@ -232,6 +232,12 @@ def in_pass(traits, lanes, i):
     return model_in(traits, lanes, i), state_in(traits.shaft, lanes.now, i), _free(lanes, i)
 
 
+@system.gives_way.of(SpringTraits)
+def gives_way(traits):
+    """Return True."""
+    return True
+
+
 @system.pass_with_devices.of(SpringTraits)
 def pass_with_devices(traits, lanes, equipment, count, substep, settings):
     """Integrate the first ``count`` lanes over a sub-step; one in which a spring's velocity reverses is eventful."""
