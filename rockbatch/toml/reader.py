@@ -460,7 +460,8 @@ def _unreadable(path: Path, error: OSError, sections: Sequence[Section]) -> Inpu
     if path.is_dir():
         inside = [file for file in sorted(path.glob("*.toml")) if _has_required(file, sections)][:3]
         hint = f"did you mean {' or '.join(map(str, inside))}?" if inside else "give a study file, such as pier.toml"
-        return NotFound(f"{path}: a folder; {hint}")
+        what = "a folder of results" if (path / "run.json").is_file() else "a folder"
+        return NotFound(f"{path}: {what}; {hint}")
     return NotFound(f"{path}: cannot be read: {error.strerror or error}")
 
 
