@@ -166,10 +166,12 @@ def test_a_table_without_rows_is_read_and_decides_nothing_where_all_runs_failed(
     failed = ran.assign(status="failed", theta_max_over_alpha=np.nan, theta_max_error=np.nan)
     judged = judge(rules, failed, [case()], interaction=empty)
     assert [verdict.verdict for verdict in judged] == ["not decided", "not decided"]
-    with pytest.raises(
-        rb.InputError, match=r"(?s)there are no forces in sections.*there is no column of interaction_base"
-    ):
-        judge(rules, ran, [case()], interaction=empty)
+    mixed = runs([0.1, 0.2], status=["ok", "failed"])
+    for table in (ran, mixed):
+        with pytest.raises(
+            rb.InputError, match=r"(?s)there are no forces in sections.*there is no column of interaction_base"
+        ):
+            judge(rules, table, [case()], interaction=empty)
 
 
 def test_a_mistake_in_an_output_that_a_check_brings_has_the_line_of_the_check(tmp_path):
