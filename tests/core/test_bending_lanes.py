@@ -111,10 +111,11 @@ def test_a_run_that_bends_is_the_same_to_the_bit_in_any_company(base):
 
 
 @pytest.mark.thorough
+@pytest.mark.parametrize("damper", [Damper("viscous", nu=0.1), Damper("friction", f=0.05)], ids=["viscous", "friction"])
 @pytest.mark.parametrize("base", [BASES["elastic"], BASES["bouc-wen"]], ids=["elastic", "bouc-wen"])
-def test_a_pass_with_devices_of_a_shaft_that_bends_gives_what_events_give(base, monkeypatch):
-    """To the bit; a damper as weak as rounding leaves the run what it is without one."""
-    tied = [replace(run, base=replace(run.base, restraints=(Damper("viscous", nu=0.1),))) for run in crowd(base)]
+def test_a_pass_with_devices_of_a_shaft_that_bends_gives_what_events_give(base, damper, monkeypatch):
+    """To the bit, with friction that sticks, too."""
+    tied = [replace(run, base=replace(run.base, restraints=(damper,))) for run in crowd(base)]
     passed, made = outcomes_of(tied), runs.equipment_of
     monkeypatch.setattr(runs, "equipment_of", lambda *given: made(*given)._replace(passes=False))
     assert outcomes_of(tied) == passed
