@@ -3,6 +3,7 @@
 import inspect
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import get_args
 
 import numpy as np
@@ -30,11 +31,30 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
+from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.devices import doubt as pier_doubt
 from rockbatch.pier.frequencies import fastest
 from rockbatch.pier.plausibility import wrong_restraints
+from rockbatch.pier.sizes import unlikely_deck, unlikely_heights, unlikely_inertia
 from rockbatch.simulation import run_fixed
 from rockbatch.simulation.models import CODES, springs
+
+
+@pytest.mark.parametrize(
+    ("least", "greatest", "problems_of"),
+    [
+        (0.25, 2.5, lambda share: unlikely_heights(20.0, (), top_m=20.0 * share)),
+        (0.005, 100.0, lambda share: unlikely_deck(1000.0, 1000.0 * share, ())),
+        (0.01, 5.0, lambda share: unlikely_inertia(100.0, 100.0 * (20.0 * share) ** 2, 20.0, ())),
+        (0.03, 1e3, lambda t_m3: unlikely_mass(SimpleNamespace(half_width=2.0, height=10.0, mass_t=320.0 * t_m3), ())),
+    ],
+)
+def test_the_proportions_of_a_pier_are_doubted_beyond_these_bounds(least, greatest, problems_of):
+    """The height of the top over the pier's, the mass of a deck over that below it, its radius of gyration over its height, and
+    the density of a square block [t/m³]."""
+    assert not problems_of(1.001 * least)
+    assert not problems_of(0.999 * greatest)
+    assert len(problems_of(0.999 * least)) == len(problems_of(1.001 * greatest)) == 1
 
 
 @pytest.mark.parametrize(("p", "size"), [(1.0, 7.36), (0.35, 60.1)])

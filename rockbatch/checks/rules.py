@@ -234,7 +234,7 @@ _CALLED = {
             ("heel_uplift_m", "heel_uplift_mm"): "uplift heeluplift",
             ("theta_max_rad", "theta_max_over_alpha"): "rotation maxrotation peakrotation thetamax theta",
             ("theta_res_rad", "theta_res_over_alpha"): "residualrotation residual thetares",
-            ("top_drift_m", "top_drift_mm"): "displacement topdisplacement",
+            ("top_drift_m", "top_drift_mm"): "displacement topdisplacement drift topdrift deckdisplacement",
             "friction_demand": "sliding slip",
             "overturned": "overturning overturn collapse toppling",
         }
@@ -400,6 +400,7 @@ CHECK = Section(
     ),
     instead=names(
         {
+            'write statistic = "median" or "p84"': "percentile quantile fractile",
             "the unit stands in the name of the demand, as in heel_uplift_mm; leave it out": "unit units",
             "both polarities of a study are mirror images, of which each run counts once; leave it out": "polarity "
             "polarities sign",

@@ -25,7 +25,7 @@ from rockbatch.quantities.demands import AT_HEIGHTS
 from rockbatch.quantities.design import BOUND
 from rockbatch.study.both_axes import along_the_axis, with_other_axes
 from rockbatch.study.bound_keys import BOUNDS, read_bounds
-from rockbatch.study.case_keys import BASE_KEYS, CASE
+from rockbatch.study.case_keys import BASE_KEYS, CASE, WHICH_DEVICE
 from rockbatch.study.cases import read_cases
 from rockbatch.study.design_bounds import DesignBound, placed
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
@@ -55,6 +55,12 @@ TOP = Section(
             "numerics": "analysis solver settings options integration numerical",
             "output": "results",
             "check": "limit limits criteria acceptance rule rules verification",
+        }
+    ),
+    instead=names(
+        {
+            "write [[case.tendon]]": "cable cables strand",
+            WHICH_DEVICE: "device devices restraint restraints",
         }
     ),
 )
@@ -91,9 +97,9 @@ NUMERICS = Section(
     instead=names(
         {
             "the step follows from tolerance; leave it out, or write substeps, the number of steps per sample": (
-                "dt timestep step deltat"
+                "dt timestep step deltat dtmax maxstep"
             ),
-            "there is one method; leave it out": "integrator method solver scheme",
+            "there is one method; leave it out": "integrator method solver scheme maxiter iterations gamma newmark",
             "write --jobs behind rockbatch run; leave it out": "jobs threads cores workers",
         }
     ),

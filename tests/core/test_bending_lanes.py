@@ -70,6 +70,15 @@ def test_the_moment_that_lifts_a_pier_and_its_rate_are_those_of_scalar_code(unco
             )
 
 
+def test_a_held_shaft_hangs_where_its_stiffness_bears_the_weight_in_every_mode(uncompiled):
+    m, weight = flexible_block(PIER, BASES["rock"]), 1.7
+    (u,) = uncompiled(values_of, [("flexure.ending", "hanging", m, weight)])
+    (pushes,) = uncompiled(
+        values_of, [("flexure.equations", "straightening", m, Flexing(0.0, 0.1, 0.0, 0.0, *u, 0.0, 0.0, 0.0, 0.0))]
+    )
+    np.testing.assert_allclose(pushes, -weight * np.array(m.share), rtol=1e-12)
+
+
 def later_by(ground, t):
     """Return the Ground ``t`` [s] later."""
     return ground._replace(

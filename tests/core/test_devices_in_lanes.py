@@ -116,6 +116,12 @@ def test_the_pass_takes_most_sub_steps_with_devices(base, most, name, monkeypatc
     assert 0.0 < share_repeated(BASES[base], name, monkeypatch) < most
 
 
+def test_on_rigid_ground_the_pass_takes_most_sub_steps_with_friction(monkeypatch):
+    """On springs friction sticks in most of them, and the pass takes the others."""
+    assert 0.0 < share_repeated(BASES["rigid"], "friction", monkeypatch) < 0.3
+    assert 0.3 < share_repeated(BASES["epp"], "friction", monkeypatch) < 0.9
+
+
 def test_without_a_pass_all_sub_steps_are_repeated(monkeypatch):
     """Braced dampers have none."""
     assert share_repeated(BASES["rigid"], "braced", monkeypatch) == pytest.approx(1.0, abs=0.01)

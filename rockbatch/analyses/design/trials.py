@@ -76,7 +76,9 @@ class Written:
     @cached_property
     def designs(self) -> list[Design]:
         """Return the designs of the cases that have the varied keys, each once, also with cases along and across the axis."""
-        return list(dict.fromkeys(self._design(case) for case in self.study.cases if case.name_along in self.spec.cases))
+        return list(
+            dict.fromkeys(self._design(case) for case in self.study.cases if case.name_along in self.spec.cases)
+        )
 
     def _design(self, case: Case) -> Design:
         columns = of_design({name: case.columns[name] for name in self.varied if name in case.columns})
