@@ -39,6 +39,7 @@ DEVICES = {
 def section(finished: Finished) -> Markup:
     """Return the first screen: the answer, runs without a result, scorecard or greatest responses, and the peaks by record.
 
+    Supports that cannot carry the pier alone come before these, notes before the peaks.
     The piers stand beside the scorecard; on paper, with the other inputs.
     """
     weak = weak_supports(finished.info["cases"])
@@ -64,7 +65,7 @@ def responses_beside_checks(finished: Finished) -> Markup:
 def responses(finished: Finished) -> Markup:
     """Return a table of each case's greatest responses over the runs that end standing, with their records as tooltips.
 
-    Cases with the fewest other runs come first, then those with the smallest rotation.
+    Cases with the fewest other runs come first, then those with the smallest rotation. Empty without runs.
     """
     if finished.runs.empty:
         return Markup("")

@@ -81,7 +81,10 @@ def of_rows(rows: Sequence[Mapping[str, object]], name: str, words: Mapping[str,
 
 
 def _symbol(key: str) -> str:
-    """Return symbol and unit of a key, "p [rad/s]"; of a key without a symbol its words and unit: "toe level [m]"."""
+    """Return symbol and unit of a key, "p [rad/s]".
+
+    Of a key without a symbol it is its words, and the unit at its end if any: "toe level [m]" of "toe_level_m".
+    """
     if symbol(key) != key:
         return symbol(key)
     unit = _UNIT.search(key)

@@ -111,7 +111,7 @@ def _foot(cases: Sequence[Case]) -> dict[str, float]:
 
 
 def _numbers_of(pier: Row) -> list[str]:
-    """Return the constants of [pier] as given: "height 20 m"; varied keys are left out."""
+    """Return the constants of [pier] as given, "height 20 m", then masses and heights of parts; varied keys are left out."""
     parts = pier.get("part", ())
     words = GIVEN | ({"mass_t": ("shaft", "t")} if "deck_mass_t" in pier else {})
     numbers = []
