@@ -36,6 +36,8 @@ HEIGHT = 190.0
 """Height of the highest pier [px]."""
 SIDE, ABOVE, BELOW = 30.0, 14.0, 48.0
 """Least room around a pier [px]."""
+CAPTION = 176.0
+"""Least width of a sketch with a caption [px]."""
 LETTER = 6.5
 """Width of a letter of a label [px]."""
 APART = 13.0
@@ -192,7 +194,8 @@ def _sketch(pier: _Shape, scale: float, springs: bool) -> Figure:
     if kinds := dict.fromkeys(kind for kind, _ in pier.devices):
         words += f", with {' and '.join(kinds)}"
     ends = [mark.x + mark.side * (7.0 + LETTER * len(mark.text)) for mark in marks if isinstance(mark, Words)]
-    x = Axis("", min([-side - SIDE, *ends]), max([side + SIDE, *ends]), names={})
+    least = max(side + SIDE, 0.5 * CAPTION * bool(pier.caption))
+    x = Axis("", min([-least, *ends]), max([least, *ends]), names={})
     y = Axis("", -BELOW, high, names={})
     panel = Panel(x, y, marks, pier.caption, width=x.high - x.low, height=y.high - y.low, framed=False)
     return Figure([panel], words)

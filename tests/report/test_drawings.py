@@ -3,12 +3,15 @@
 import math
 import re
 
+import pytest
+from browser import browse, needs_chromium
 from check_samples import verdict
-from report_samples import FIG7, report, three_piers, write_results
+from report_samples import FIG7, FOUNDATIONS, report, three_piers, write_results
 
 import rockbatch as rb
 from rockbatch.checks import write_verdicts
 from rockbatch.quantities.demands import OF_SECTIONS
+from rockbatch.reporting import write_report
 from rockbatch.reporting.drawings import MOST_LINES, MOST_NAMES, drawings
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.sheet import sheet_of
@@ -47,6 +50,20 @@ def test_the_piers_stand_beside_the_scorecard_and_on_paper_among_the_inputs(tmp_
     assert [name for name, text in sections.items() if 'class="piers"' in text] == ["answer"]
     parts = {section.anchor: section.content for section in sheet_of(read(tmp_path)).sections}
     assert [name for name, text in parts.items() if 'class="piers"' in text] == ["inputs"]
+
+
+@needs_chromium
+@pytest.mark.parametrize(("width", "abreast"), [(1280, True), (480, False)])
+def test_the_scorecard_stands_beside_the_pier_but_alone_on_a_narrow_screen(tmp_path, width, abreast):
+    write_results(tmp_path)
+    write_verdicts(tmp_path, [verdict(name, "pass") for name, _ in FOUNDATIONS])
+    act = """
+    const [card, piers] = [...document.querySelectorAll(".beside > *")].map((node) => node.getBoundingClientRect());
+    found.abreast = piers.left >= card.right && piers.top < card.bottom;
+    found.share = card.width / document.querySelector(".beside").getBoundingClientRect().width;
+    """
+    found = browse(write_report(tmp_path, []), act, size=(width, 900))
+    assert (found["abreast"], found["share"] > 0.99, found["wide"]) == (abreast, not abreast, True)
 
 
 def test_cases_of_one_pier_share_a_drawing_without_a_caption(tmp_path):

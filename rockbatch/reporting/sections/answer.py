@@ -45,12 +45,12 @@ def section(finished: Finished) -> Markup:
     weak = weak_supports(finished.info["cases"])
     checked = any(verdict.case for verdict in finished.verdicts)
     card = verdicts.scorecard(finished) if checked else responses(finished)
+    notes = tag("p", *_notes(finished, checked), class_="legend")
     return join(
         tag("div", alarm(weak)) if weak else "",
         tag("div", verdicts.answer(finished), class_="lead"),
         paragraphs(*_without_a_result(finished)),
-        card if for_paper() else tag("div", tag("div", card), drawings(finished), class_="beside"),
-        tag("p", *_notes(finished, checked), class_="legend"),
+        join(card, notes) if for_paper() else tag("div", tag("div", card), drawings(finished), notes, class_="beside"),
         by_record(finished),
     )
 
