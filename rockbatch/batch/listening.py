@@ -116,7 +116,7 @@ Progress = bool | Callable[[int, int], object] | Listener | None
 def listener_of(progress: Progress) -> Listener:
     """Return the listener for ``progress``: a bar (True), none (False), one that calls a function, or a listener itself.
 
-    None means a bar if stderr is a terminal, else no bar.
+    None means a bar if stderr is a terminal, else no bar. ``InputError`` for anything else.
     """
     if progress is None:
         return Bars(SHORT) if sys.stderr is not None and sys.stderr.isatty() else Listener()

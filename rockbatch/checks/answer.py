@@ -96,7 +96,7 @@ def _is_low(below: Sequence[Verdict]) -> bool:
 
 
 def _lines_on_suite(verdicts: Sequence[Verdict]) -> list[Line]:
-    """Return one line that the suite fails, with three sentences on the failing ``verdicts`` at most, "and 2 more."; or []."""
+    """Return one line that the suite fails, with up to three sentences on the failing ``verdicts``, "and 2 more."; or []."""
     sentences: dict[str, None] = {}  # most conditions are the same at every scale
     for verdict in verdicts:
         parts = filter(None, (wording.against(verdict), verdict.note))
@@ -120,7 +120,8 @@ def _line_under_failing_suite(line: Line | None, below: Sequence[Verdict]) -> Li
 def missing_stations(stations: Stations) -> Line | None:
     """Return the line on stations without a usable motion, or with unusable files beside usable ones; None if there are none.
 
-    Its details are up to three reasons, and the key that leaves these stations out.
+    A single reason follows the text; of several, up to three are details, and how many more. The last detail is the key that
+    leaves these stations out.
     """
     if not stations.unusable:
         return None
@@ -148,15 +149,15 @@ def _reason_of_file(file: File) -> str:
 
 
 def _wholly_or_in_part(stations: Mapping[str, Sequence[File]], used: Collection[str]) -> list[str]:
-    """Return the names of ``stations`` that are not ``used``, then for each that is the number of its files: "2 files of A"."""
+    """Return the names of ``stations`` that are not ``used``, then for each used one the number of its files: "2 files of A"."""
     parts = [f"{len(files)} file{'s' * (len(files) > 1)} of {name}" for name, files in stations.items() if name in used]
     return [name for name in stations if name not in used] + parts
 
 
 def without_limits(cases: Mapping[str, Sequence[Verdict]], worst: Sequence[Worst]) -> dict[str, list[Worst]]:
-    """Return the governing responses that no check bounds, by the names of cases with such responses.
+    """Return the governing responses that no check bounds, by the name of their case; cases without any are left out.
 
-    ``worst`` are those of every case at each scale, as a case of verdicts is of one.
+    ``cases`` have the verdicts of each case at one scale, ``worst`` the worst responses of every case at each scale.
     """
     by_case = grouped(
         worst, lambda response: (*_key(name_along(response.case), response.case["columns"]), response.scale)
@@ -320,7 +321,7 @@ class _Cases:
         return " under every bound" if any(under(verdict.columns) for verdict in self._of(self.every)) else ""
 
     def _failing_bounds(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence each for up to three failing cases that pass nominally, with the bounds that fail; () for none."""
+        """Return a sentence each for up to three cases that fail under bounds but not nominally, with the bounds; () for none."""
         sentences = []
         for name in names:
             failing = dict.fromkeys(verdict.columns.get(BOUND, "") for verdict in self._of([name], FAIL))

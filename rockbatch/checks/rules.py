@@ -194,7 +194,7 @@ class Rule:
         return self.words_at(self.at_m)
 
     def words_at(self, height: float | None) -> str:
-        """Return :attr:`words` with the height at which the demand is read [m], without one for None."""
+        """Return :attr:`words` with the height at which the demand is read [m]; without it for None, a ban and a property."""
         demand = DEMANDS[self.demand]
         if demand.per_case:
             return self.demand
@@ -498,9 +498,9 @@ def _wrong_for_demand(rule: Rule) -> Iterator[tuple[str, str]]:
             "both_axes",
             f"both_axes: {rule.demand} does not add up over the axes, and the greater counts; leave it out",
         )
-    if rule.other_law and demand.other_law is None:
-        with_other_law = " and ".join(name for name, candidate in DEMANDS.items() if candidate.other_law)
-        yield "other_law", f"other_law: is for {with_other_law}; leave it out"
+    if rule.other_law and demand.other_end is None:
+        ranges = " and ".join(name for name, candidate in DEMANDS.items() if candidate.other_end)
+        yield "other_law", f"other_law: is for {ranges}; leave it out"
 
 
 def _wrong_capacity(rule: Rule) -> Iterator[tuple[str, str]]:

@@ -68,7 +68,7 @@ class Row(NamedTuple):
 
     @property
     def in_words(self) -> str:
-        """The verdict on the case in words: "fails 2 checks", "passes 5 checks", "2 checks not decided", "not checked"."""
+        """The verdict on the case in words: "fails 2 checks", "2 checks not decided", "no limit on drift", "not checked"."""
         if self.verdict == DOES_NOT_APPLY:
             return "not checked" if not self.count(PASS) else "no run ends standing"
         if self.unlimited:

@@ -21,7 +21,7 @@ MOST = 30
 
 
 def name_of(verdict: Verdict) -> str:
-    """Return the name of the check, for a condition of a code on the suite followed by it: "suite to target (stations)"."""
+    """Return the name of the check; of a condition on the suite, but for its mean, with that: "suite to target (stations)"."""
     if verdict.case or verdict.demand == MEAN_OVER_TARGET:
         return verdict.check
     return f"{verdict.check} ({verdict.words})"

@@ -206,7 +206,7 @@ def _key_meant(unknown: Sequence[str]) -> str:
 
 
 def _other_word(word: str, options: Sequence[str]) -> str | None:
-    """Return the option of which ``word`` is another name by :data:`_OPTIONS_MEANT`, if the command has it; else None."""
+    """Return the option for which ``word`` is another name by :data:`_OPTIONS_MEANT`, if the command has it; else None."""
     meant = (name for name, words in _OPTIONS_MEANT.items() if word in words.split())
     return next((name for name in meant if name in options), None)
 

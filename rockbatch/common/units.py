@@ -16,13 +16,14 @@ LEAST, MOST = 1e-15, 1e15
 
 
 class ColumnUnits(dict[str, str]):
-    """Units of the columns of a table, for its ``attrs``: tables that are made of it share them.
+    """Units of the columns of a table, for its ``attrs``.
 
-    pandas copies ``attrs`` deeply for every column that is taken, which was a quarter of the time of a small run.
+    pandas copies ``attrs`` deeply for every column that is taken, which was a quarter of the time of a small run: texts need
+    no copies.
     """
 
     def __deepcopy__(self, _: object) -> "ColumnUnits":
-        return self
+        return ColumnUnits(self)
 
 
 def of_percent(value: float, low: float, high: float) -> float | None:
@@ -275,6 +276,10 @@ def length_factor(unit: str) -> float | None:
     return _LENGTH_IN_M.get(unit.strip().lower().partition("/")[0])
 
 
+ACCELERATIONS = f"one of {', '.join(['g', 'g/10', 'mg', *_ACCELERATION_IN_M_S2])}"
+"""Units of acceleration, as messages list them."""
+
+
 def acceleration_factor(unit: str, gravity: float = GRAVITY) -> float:
     """Return the factor that turns an acceleration in ``unit`` into m/s².
 
@@ -289,6 +294,5 @@ def acceleration_factor(unit: str, gravity: float = GRAVITY) -> float:
     if key in _ACCELERATION_IN_G:
         return gravity * _ACCELERATION_IN_G[key]
     if key not in _ACCELERATION_IN_M_S2:
-        units = ", ".join(["g", "g/10", "mg", *_ACCELERATION_IN_M_S2])
-        raise ValueError(f'unknown acceleration unit "{unit}"; write one of {units}')
+        raise ValueError(f'unknown acceleration unit "{unit}"; write {ACCELERATIONS}')
     return _ACCELERATION_IN_M_S2[key]

@@ -7,8 +7,8 @@ from rockbatch.pier.places import offsets, symmetric
 from rockbatch.pier.restraints import DeckSpring, Restraint, Tendon
 
 
-def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Problem]:
-    """Return the problem of tendons under a pier on springs without equal ones on the other side; [] if they are symmetric."""
+def lopsided_tendons(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Problem]:
+    """Return the problem of tendons of a pier on springs that have no equal ones on its other side; [] if all have."""
     if symmetric(pier, tuple(device for device in restraints if isinstance(device, Tendon))):
         return []
     text = (

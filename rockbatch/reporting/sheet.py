@@ -93,7 +93,7 @@ class Sheet:
         return render("reporting/sheet.html", **values)
 
     def pdf(self, paper: str = "A4") -> bytes:
-        """Return the sheet as PDF; raises ``InputError`` if Typst is not installed, ``KeyError`` if it is no paper of it."""
+        """Return the sheet as PDF on ``paper``, "A4" or "Letter", ``KeyError`` for another; ``InputError`` without Typst."""
         setting = Setting({})
         sections = (
             f"\n= {place} {words(section.heading)}\n{blocks(parsed(section.content), setting)}"
@@ -114,7 +114,7 @@ _STYLE = """
 
 
 def sheet_of(finished: Finished) -> Sheet:
-    """Return the calculation sheet of one folder."""
+    """Return the calculation sheet of one folder: its sections with content, drawn for paper, with their folds open."""
     with on_paper():
         sections = [
             *(Section(part.heading, part.anchor, part.content(finished)) for part in BEFORE),

@@ -53,7 +53,10 @@ def string(text: str) -> str:
 
 
 def words(text: str) -> str:
-    """Return a text as Typst's markup, every sign of which stands for itself."""
+    """Return a text as Typst's markup, with a backslash before each ASCII sign, so that it stands for itself.
+
+    θ with one or two dots above becomes an equation, since the text's font draws the dots into the letter.
+    """
     text = re.sub(r"([!-/:-@\[-`{-~])", r"\\\1", text)
     return _DOTTED.sub(_dotted, text)
 
@@ -64,7 +67,7 @@ def _dotted(letter: re.Match[str]) -> str:
 
 
 def blocks(parent: Element, setting: Setting) -> str:
-    """Return the markup of an element's content: blocks, and text between them as paragraphs.
+    """Return the markup of an element's content: blocks, and text between them as paragraphs, without hidden ones.
 
     Raises ``ValueError`` for an element that is not set yet.
     """
@@ -136,7 +139,7 @@ def _key(element: Element, setting: Setting) -> str:
 
 
 def _panels(element: Element, setting: Setting) -> str:
-    """Return panels side by side, as many as the width takes."""
+    """Return panels side by side, as many as the text's width takes if they shrink to 82 % of theirs, one at least."""
     widest = _length(element, "--w", "width")
     widest = widest or max((_length(panel, "width") for panel in element), default=0.0) or ACROSS
     side = max(int(ACROSS / (_SHRUNK * widest)), 1)
@@ -144,8 +147,8 @@ def _panels(element: Element, setting: Setting) -> str:
     return f"\n#grid(columns: (1fr,) * {side}, column-gutter: 8pt, row-gutter: 8pt, align: bottom, {cells})\n"
 
 
-def _histories(element: Element, setting: Setting) -> str:
-    """Return the histories of the first motion, which the sheet shows."""
+def _chosen(element: Element, setting: Setting) -> str:
+    """Return the first figure, of which the page shows one at a time: histories of the worst motion, the pier of a case."""
     return blocks(next(element.iter("figure"), element), setting)
 
 
@@ -172,7 +175,7 @@ def _dots(element: Element, setting: Setting) -> str:
 
 
 def _with_signs(element: Element, setting: Setting) -> str:
-    """Return text with pictures in its line."""
+    """Return an element's text with its pictures in the line, each in a box."""
     written = words(element.text or "")
     for child in element:
         if child.tag == "svg":
@@ -202,12 +205,16 @@ def _of_heads(row: Element) -> bool:
 
 
 def _is_prose(table: Element) -> bool:
-    """Return whether columns share the width by the length of their texts: of tables of text, and of Markdown's."""
+    """Return whether columns share the width by the length of their texts: True but for a table that readers can sort."""
     return "sortable" not in _classes(table)
 
 
 def _widths(cells: Sequence[Sequence[str]], prose: bool) -> Iterator[str]:
-    """Yield the width of each column by the texts below its head: a long text counts more than many short ones."""
+    """Yield the width of each column by the texts below its head: "auto" for short ones, else a share such as "7fr".
+
+    Short are texts of up to ``_NARROW`` characters, or ``WRAPPED`` without ``prose``. The share is the fourth root of the sum of
+    squared lengths, so that a long text counts more than many short ones.
+    """
     for column in zip(*cells, strict=True):
         lengths = list(map(len, column))
         yield (
@@ -285,7 +292,8 @@ _BY_CLASS = {
     "key": _key,
     "panels": _panels,
     "piers": _panels,
-    "histories": _histories,
+    "histories": _chosen,
+    "player": _chosen,
     "timed": _timed,
     "dots": _dots,
 }
@@ -361,7 +369,7 @@ def _style(element: Element) -> dict[str, str]:
 
 
 def _length(element: Element, *names: str) -> float:
-    """Return the first of these lengths [px] that an element's own style declares; 0 without any."""
+    """Return the first of these lengths [px] that an element's own style declares; 0 for none, or if it is infinite or NaN."""
     style = _style(element)
     found = (float(style[name].removesuffix("px")) for name in names if style.get(name, "").endswith("px"))
     value = next(found, 0.0)

@@ -121,7 +121,7 @@ def _on_beds(
 def _with_modes_errors(
     runs: Sequence[Run], outcomes: Sequence[Outcome | None], quiet_s: float, stop: Stop
 ) -> list[Outcome | None]:
-    """Return ``outcomes`` with the share of the modes of shafts in their errors, by runs with one fewer."""
+    """Return ``outcomes`` with the share of the modes of shafts in their errors, by runs with one fewer; None if stopped."""
     found = list(outcomes)
     fewer = list[tuple[int, Run, int]]()
     for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True)):
@@ -182,8 +182,8 @@ def _with_peak_in_motion(
 ) -> Outcome:
     """Return the ``outcome`` of ``fine`` with the error of the peak within the motion, which ends in the window ``until``.
 
-    It is :data:`CHANCE` times the greatest change of any extreme until then from ``coarse``, of twice the step; None if that
-    exceeds the ``tolerance`` [rad].
+    It is :data:`CHANCE` times the greatest change of any extreme until then from ``coarse``, of twice the step; unchanged if that
+    exceeds the ``tolerance`` [rad], or if the pier lay on its side by then.
     """
     peaks = abs(fine.outcome.theta_max_in_motion - coarse.outcome.theta_max_in_motion)
     change = CHANCE * max(peaks, float(windows(fine, coarse)[1][:until].max(initial=0.0)))

@@ -96,7 +96,10 @@ def histories(
 
 
 def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str, str, int, int]]:
-    """Return time, kind and pivot of every event, and the indices of the rows before and after it, in order of time."""
+    """Return time, kind and pivot of every event, and the indices of the rows before and after it, in order of time.
+
+    Both are the same row for an event without a jump; for the first flight it is the last row until then.
+    """
     kinds = rows.kind
     events = []
     for row in np.flatnonzero(kinds > 0):

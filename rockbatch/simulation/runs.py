@@ -28,7 +28,7 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
-from rockbatch.pier.laws import steady
+from rockbatch.pier.laws import without_ratcheting
 from rockbatch.simulation.beds import of_bed
 from rockbatch.simulation.compilation import kernel_of
 from rockbatch.simulation.models import (
@@ -72,7 +72,7 @@ _REASONS = {
     Failure.UNDECIDED: "left alone after the record, the pier stays where it may yet overturn",
     Failure.RATCHETS: (
         "left alone after the record, the pier leans further and further: yielding springs ratchet on free vibration; "
-        f"spring = {steady('and')} do so least"
+        f"spring = {without_ratcheting('and')} do so least"
     ),
 }
 
@@ -269,7 +269,10 @@ def try_all(
 
 
 def _with_static_rotation(run: Run, result: Result, equipment: Equipment, number: int, outcome: Outcome) -> Outcome:
-    """Return ``outcome`` of the run ``number`` with its static residual rotation under devices; unchanged without residuals."""
+    """Return ``outcome`` of the run ``number`` with its static residual rotation under devices; unchanged without residuals.
+
+    A note says so if devices change it by more than :data:`NOTED_TILT` α.
+    """
     pier, base = run.pier, run.base
     if outcome.status != "ok" or not base.has_residual:
         return outcome

@@ -296,7 +296,7 @@ _SIZED = {
 
 
 def with_errors(fine: Sequence[Section], coarse: Sequence[Section], pier: Pier, chance: float) -> list[Section]:
-    """Return ``fine`` with ``chance`` times the greatest relative change from ``coarse`` added to its errors."""
+    """Return ``fine`` with ``chance`` times the greatest relative change from ``coarse``, LEAST at least, added to its errors."""
     pairs = zip(fine, coarse, strict=True)
     changes = [max(greatest_change(_SIZED, section, other, pier)[1], LEAST) for section, other in pairs]
     return [

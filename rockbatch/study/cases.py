@@ -235,9 +235,9 @@ def _read_case(table: Table) -> _WrittenCase:
 
 
 def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: Base) -> None:
-    """Add a problem of pier and base to the table, at its key; one of a β or η that follows from K or F_y at that key.
+    """Add a problem of pier and base to the table, at its key; of β or η at K or F_y if these are given.
 
-    The latter says what K or F_y would have to be.
+    It then says what K or F_y would have to be.
     """
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(problem.key, "")
     mass = pier.mass_t

@@ -113,9 +113,9 @@ def varied(case: Case, values: KeyValues) -> Case:
 
 
 def values_of(case: Case) -> KeyValues:
-    """Return α, p and μ, all fields of the base and the parameters of its devices, by key, to twelve digits.
+    """Return α, p and μ, all fields of the base and, to twelve digits, the parameters of its devices, by key.
 
-    Without ε where it does not apply and ζ if not given; stiffness and strength in kN are there if the mass is known.
+    Without ε where it does not apply and ζ if not given; with stiffness and strength in kN if the mass is known.
     """
     pier = {name: getattr(case.pier, name) for name in OF_PIER}
     base = {field.name: getattr(case.base, field.name) for field in fields(case.base)}

@@ -273,7 +273,8 @@ class Table:
         return read
 
     def requires(self, keys: Mapping[str, Key], name: str) -> bool:
-        """Return whether a key has to be written, given the keys on which it depends; False if one of these is not written."""
+        """Return whether a key has to be written, given the keys on which it depends; False if one of these is not
+        written, or has a value for which the key is not meant."""
         return keys[name].required and all(self.data.get(other) in values for other, values in keys[name].only.items())
 
     def _check_missing(self, keys: Mapping[str, Key]) -> None:

@@ -50,7 +50,9 @@ def syntax_error(path: Path, text: str, error: str, sections: "Iterable[Section]
 
 
 def _earlier(lines: list[str]) -> tuple[int, str] | None:
-    """Return number and meaning of the first line with a slip that is the only one of its text; None if there is none.
+    """Return the number of the first line that alone, written as :func:`meant_line` has it, makes the text TOML, and that line.
+
+    None if none does, of the first 2,000 lines and ten lines with a meaning.
 
     The parser notices a text without its closing quotes, or a list without its bracket, only lines later.
     """
@@ -64,7 +66,8 @@ def _earlier(lines: list[str]) -> tuple[int, str] | None:
 def meant_line(line: str) -> str:
     """Return a mistyped line "key = value" as it was probably meant: 'at = "left"' for "at = left".
 
-    It is "" if the line is TOML already, is no "key = value", or would still not be TOML, or could mean several things.
+    It is "" if the line is TOML already, is over 300 characters long, is no "key = value", or would still not be TOML, or could
+    mean several things.
     """
     if len(line) > _LONGEST_LINE:
         return ""
@@ -151,7 +154,7 @@ def _in_its_unit(key: str, value: str) -> str:
 
 
 def _written(number: str) -> str:
-    """Return a number with a digit at each side of its point, and no sign or zeros before it that TOML refuses."""
+    """Return a number with a digit at each side of its point, and no zeros before it, which TOML refuses."""
     number = re.sub(r"(?<!\d)\.", "0.", re.sub(r"\.(?!\d)", ".0", number))
     return re.sub(r"^([-+]?)0+(?=\d)", r"\1", number)
 

@@ -230,3 +230,26 @@ def test_long_names_and_digests_may_be_broken_in_a_cell():
     set_ = blocks(parsed(f"<table><tbody><tr><td>{cell}</td></tr></tbody></table>"), Setting({}))
     assert "[" + "a" * 24 + "\u200ba" in set_
     assert "/\u200bRSN821" in set_
+
+
+def test_words_of_folds_code_and_pictures_of_histories_are_kept():
+    """The summary of a fold, code to its last letter, a break between lines, and the first motion's histories alone."""
+    setting = Setting({})
+    two = "".join(f'<figure><figcaption>{name}</figcaption><svg viewBox="0 0 9 9"></svg></figure>' for name in "ab")
+    fold = "<details><summary>All files</summary><p>a <code>peaks.csv</code><br></br>b</p></details>"
+    html = f'{fold}<div class="histories">{two}</div>'
+    set_ = blocks(parsed(html), setting)
+    assert "#strong[All files]" in set_
+    assert '#raw("peaks.csv") \\ b' in set_
+    assert "[a]" in set_
+    assert "[b]" not in set_
+    assert len(setting.pictures) == 1
+
+
+def test_marks_of_verdicts_have_the_colours_of_the_style_sheet():
+    for name, colour in {"pass": "#1a6b3a", "fail": "#b3261e", "undecided": "#8a5a00"}.items():
+        table = (
+            f'<table class="card"><tbody><tr><td class="{name}"><span class="{name}">x</span></td></tr></tbody></table>'
+        )
+        set_ = blocks(parsed(table), Setting({}))
+        assert set_.count(f'rgb("{colour}")') == 3

@@ -68,7 +68,7 @@ def reference(run: StudyRun, quiet_s: float, seconds: float = math.inf) -> Refer
     """Return a run with its outcome, by halving the step until that changes θ_max/α by CONVERGED, 1e-12, or less.
 
     At most HALVINGS, 10, are made, and those for which ``seconds`` last; None if the last one changed θ_max/α by more than
-    ACCEPTED, 1e-9, or the status.
+    ACCEPTED, 1e-9, or the status, if that is "failed", or if none was made. Of a run that overturns the status alone counts.
     """
     (simulation,) = simulations([run])
     pier, base, motion = simulation.pier, simulation.base, simulation.motion

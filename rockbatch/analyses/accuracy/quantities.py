@@ -22,7 +22,7 @@ QUANTITIES = (
         value=lambda level: level["status_differs"] or None,
     ),
 )
-"""Of :func:`rows`."""
+"""Heads of a table of :func:`rows`."""
 
 
 def rows(levels: Sequence[Level]) -> list[Entry]:

@@ -18,7 +18,7 @@ from rockbatch.terminal.streams import say, show
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Fit fragility curves, and print them; return 1 if a record is unusable or a run of a curve failed, else 0."""
+    """Fit fragility curves, and print them; return 1 if a record is unusable or a run at a level failed, else 0."""
     result = fragility(study, **analysis_arguments(arguments))
     show(table(result.info, result.spec))
     show(result.info["scales"]["said"])

@@ -288,7 +288,7 @@ def _measure(table: Table, read: dict[str, Any], im: Any) -> str | None:
     """Return the key of the levels of the measure, "levels_g"; None, with a complaint, without a valid measure.
 
     An own measure, ``im`` before a file, is put into ``read``; its key is that of its unit, if the table has it, or else the
-    first that the table has.
+    first that the table has, or "levels".
     """
     power, name = read.pop("measure_power", 1.0), read.pop("measure_file", None)
     if im is not None or name is not None:

@@ -9,7 +9,7 @@ import numpy as np
 from rockbatch.motions.motion import Samples
 
 EXACT = 1e-7
-"""Of the greatest value: least misfit of a value, so that a fit to exact ones has a logarithm."""
+"""Least misfit of a value over the greatest of its kind, so that the misfit to exact ones has a logarithm."""
 
 NEAR = 1e-4
 """Change of the parameter by which slopes are taken."""

@@ -28,7 +28,7 @@ FIT = (
     Head("scatter", ".2g", "standard deviation from impact to impact, beside errors of reading", value="scatter"),
     Head("of Housner's", ".3f", "over the value that keeps the angular momentum", value="over_housner"),
 )
-"""Of a row of release.csv."""
+"""Heads of a table of release.csv."""
 
 IMPACTS = (
     Head("impact", "d", value="impact"),
@@ -42,4 +42,4 @@ IMPACTS = (
         for origin in ("measured", "computed")
     ),
 )
-"""Of a row of release_impacts.csv."""
+"""Heads of a table of release_impacts.csv."""

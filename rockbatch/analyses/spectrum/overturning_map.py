@@ -77,7 +77,7 @@ class Maps:
         return Search(ends, amplitudes, self.spec.tolerance, self.spec.width).find(len(self.cases), frequencies)
 
     def _unit(self, number: int, frequency: float) -> Motion:
-        """Return the pulse with an amplitude of g tan α."""
+        """Return the pulse of the map at ω_p/p = ``frequency`` of a case, with an amplitude of g tan α."""
         if (number, frequency) not in self._units:
             spec, pier = self.spec, self.cases[number].pier
             period = 2 * math.pi / (frequency * pier.p)

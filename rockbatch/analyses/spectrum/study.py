@@ -27,7 +27,7 @@ AXES = ("two_pi_over_p_s", "p", "size_m", SELF_SIMILAR)
 """Quantities over which a spectrum may run: 2π/p [s], p [rad/s], R0 [m], or ω_g/p."""
 
 LEAST_TOLERANCE = 1e-9
-"""Of a boundary, along either axis; halves of intervals that are shorter would soon be no numbers between their ends."""
+"""Least tolerance of a boundary, along either axis: shorter intervals would soon have no number between their ends."""
 
 
 @dataclass(frozen=True)
