@@ -56,7 +56,7 @@ def _is_error(name: str) -> bool:
 TOPICS: dict[str, tuple[str, tuple[str, ...]]] = {
     "studies": (
         "Studies and results",
-        ("load_study", "Study", "run", "open_results", "report", "statement", "check", "Rule"),
+        ("load_study", "Study", "run", "Dask", "open_results", "report", "statement", "check", "Rule"),
     ),
     "piers": (
         "Piers and bases",

@@ -1,5 +1,6 @@
 """rockbatch: peak rotations of stepping bridge piers under a folder of ground motions."""
 
+from importlib import import_module
 from typing import Any
 
 from rockbatch.common.lazy import loading
@@ -7,6 +8,7 @@ from rockbatch.common.version import __version__ as __version__
 
 _NAMES = {
     "workflow.running": "run",
+    "batch.dask": "Dask",
     "batch.single": "simulate",
     "checks": "Rule",
     "results.checking": "check",
@@ -35,12 +37,14 @@ def _homes() -> dict[str, str]:
 
 
 def __getattr__(name: str) -> Any:
-    """Return a public name, loaded when it is first used: the compiler costs 0.4 s, and a report needs none.
+    """Return a public name, or the package of motions, loaded when first used: the compiler costs 0.4 s, and a report needs none.
 
     Raises ``AttributeError`` for another name.
     """
     if name == "__all__":
         return sorted(_homes())
+    if name == "motions":
+        return import_module("rockbatch.motions")
     return loading(__name__, {} if name.startswith("_") else _homes())(name)
 
 

@@ -1,11 +1,13 @@
 """The public names, for type checkers and editors."""
 
+from rockbatch import motions as motions
 from rockbatch.analyses.accuracy.analysis import accuracy as accuracy
 from rockbatch.analyses.design.analysis import design as design
 from rockbatch.analyses.fragility.analysis import fragility as fragility
 from rockbatch.analyses.release.analysis import release as release
 from rockbatch.analyses.sensitivity.analysis import sensitivity as sensitivity
 from rockbatch.analyses.spectrum.analysis import spectrum as spectrum
+from rockbatch.batch.dask import Dask as Dask
 from rockbatch.batch.single import simulate as simulate
 from rockbatch.checks import Rule as Rule
 from rockbatch.common.errors import BadSyntax as BadSyntax

@@ -107,6 +107,7 @@ WITHOUT = [  # nothing of it can be known, and what is said
     ("run pier.toml --shard 5-4", "5-4: must be such as 2/4"),
     ("run pier.toml --quiet", "unrecognized arguments: --quiet; see"),
     ("run pier.toml --gpu", "unrecognized arguments: --gpu; see"),
+    ("run pier.toml --title Pier", "unrecognized arguments: --title Pier; see"),
     ("run pier.toml -f", "unrecognized arguments: -f; see"),
     ("run pier.toml other.toml", "other.toml; one study at a time"),
     ("run out", "out: a folder of results; give a study file"),

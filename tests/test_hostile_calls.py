@@ -56,6 +56,7 @@ CALLS = {  # what is called, and arguments that it takes
     "read_motions": (rb.read_motions, {"paths": "nowhere"}),
     "sequence": (rb.sequence, {"motions": [SHAKE, SHAKE]}),
     "pair_spectrum": (rb.pair_spectrum, {"first": SHAKE, "second": SHAKE}),
+    "Dask": (rb.Dask, {}),
     "HazardCurve": (rb.HazardCurve, {"levels": [0.1, 0.2], "rates": [0.1, 0.01]}),
     "Rule": (rb.Rule, {"name": "a", "demand": "theta_max_over_alpha", "at_most": 0.5}),
     "check": (rb.check, {"results": "nowhere"}),

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Self
 from rockbatch.batch.digests import program
 from rockbatch.batch.groups import Group, groups, outcomes_of
 from rockbatch.batch.threads import cores, finished
-from rockbatch.common.errors import InputError, starting_threads
+from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError, OutOfRange, Problem, starting_threads
 from rockbatch.motions import Motion
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun
@@ -47,8 +48,9 @@ GLANCE_S = 1.0
 """Time [s] between glances at scheduler and workers."""
 
 
+@checked
 class Dask:
-    """The workers of a dask scheduler; see :class:`rockbatch.batch.threads.Engine`.
+    """The workers of a dask scheduler, which take the place of ``jobs`` in ``rb.run`` and the analyses.
 
     Workers may come, go and die: the scheduler passes their tasks and records to others. A group at which several workers
     die in turn ends the batch with an ``InputError``.
@@ -59,9 +61,24 @@ class Dask:
         Address of the scheduler, such as "tcp://10.0.0.1:8786"; by default a scheduler in this process.
     workers : int, optional
         Number of processes on this machine, without an ``address``; all processors by default.
+
+    Raises
+    ------
+    InputError
+        Of fewer than one worker; of a missing package or scheduler when the first run is carried out.
+
+    Examples
+    --------
+    >>> engine = rb.Dask("tcp://10.0.0.1:8786")
+    >>> engine.address
+    'tcp://10.0.0.1:8786'
+
+    ``rb.run("pier4.toml", jobs=engine)`` then carries out the runs on its workers.
     """
 
     def __init__(self, address: str | None = None, workers: int | None = None) -> None:
+        if workers is not None and workers < 1:
+            raise OutOfRange(Problem("workers", workers, "must be 1 or above"))
         self.address = address
         self.workers = workers or cores()
         self._client: Client | None = None

@@ -1,6 +1,7 @@
 """What the pages tell a reader to write is taken by the program as it is now."""
 
 import doctest
+import functools
 import re
 import shutil
 import tomllib
@@ -12,6 +13,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from jsonschema import Draft7Validator
+from studies import study_text, write_study
 
 import rockbatch as rb
 from rockbatch.commands.cli import COMMANDS, main
@@ -182,6 +184,36 @@ def test_the_page_of_two_designs_quotes_what_is_printed(tmp_path, capsys):
     capsys.readouterr()
     assert main(["report", str(tmp_path / "with"), str(tmp_path / "without")]) == 0
     assert capsys.readouterr().out == page
+
+
+@pytest.mark.slow
+def test_the_lines_about_a_cluster_give_the_table_of_threads(tmp_path, monkeypatch):
+    pytest.importorskip("distributed")
+    monkeypatch.chdir(tmp_path)
+    write_study(tmp_path, study_text(), "pier.toml")
+    (lines,) = (text for text in blocks(ROOT / "docs" / "pages" / "faq.md", "python") if "rb.Dask" in text)
+    names = {"__name__": "__main__"}
+    exec(lines.replace('"tcp://10.0.0.1:8786"', "workers=1"), names)
+    rb.run("pier.toml", "threads")
+    assert (tmp_path / "reports" / "pier" / "peaks.csv").read_bytes() == (
+        tmp_path / "threads" / "peaks.csv"
+    ).read_bytes()
+    with pytest.raises(rb.OutOfRange, match="workers = 0: must be 1 or above"):
+        rb.Dask(workers=0)
+
+
+def test_the_names_that_stand_for_those_of_other_programs_are_there(tmp_path):
+    table = (
+        (ROOT / "docs" / "pages" / "glossary.md").read_text(encoding="utf-8").partition("## Names of other programs")[2]
+    )
+    ours = " ".join(row.split(" | ")[1] for row in table.splitlines() if row.startswith("| "))
+    roots = {"rb": rb, "motion": rb.pulse("sine", name="sine", amplitude=2.0, period=1.0, dt=0.01, duration=2.0)}
+    named = re.findall(r"\b(rb|motion)((?:\.[A-Za-z]\w*)+)", ours)
+    assert len(named) >= 8
+    for root, names in named:
+        functools.reduce(getattr, names[1:].split("."), roots[root])
+    keys = {key for section in STUDY for key in section} | {"motions", "damper"}
+    assert {word for word in re.findall(r"`([a-z]+_[A-Za-z_]+)`", ours) if not word.startswith("rotd")} <= keys
 
 
 RECIPES = (ROOT / "docs" / "pages" / "extending.md").read_text(encoding="utf-8")
