@@ -538,7 +538,7 @@ def test_no_mistake_leads_to_the_option_that_discards_results(command, word, cap
         ("-v", "rockbatch: unrecognized arguments: -v; did you mean --version?"),
         ("run pier.toml -o", "rockbatch: unrecognized arguments: -o; did you mean --out?"),
         ("run pier.toml --threads 4", "rockbatch: unrecognized arguments: --threads 4; did you mean --jobs?"),
-        ("motions . --output=a.csv", "rockbatch: unrecognized arguments: --output=a.csv; see `rockbatch --help`"),
+        ("motions . --output=a.csv", "rockbatch: unrecognized arguments: --output=a.csv; did you mean --csv?"),
         ("run", "rockbatch run: the following arguments are required: STUDY.toml; see `rockbatch run --help`"),
         ("run pier", "rockbatch: pier: no such file; did you mean pier.toml?"),
         ("run .", "rockbatch: .: a folder; did you mean pier.toml?"),

@@ -9,7 +9,7 @@ import pytest
 import rockbatch as rb
 from rockbatch.common.figures.description import Area, Points, Polyline, Rule, Words
 from rockbatch.pier import Place
-from rockbatch.pier.figures import ASIDE, MOST_PIERS, SPRING, Sheet, sketches, statics
+from rockbatch.pier.figures import APART, ASIDE, MOST_PIERS, SPRING, Sheet, sketches, statics
 
 PIER = {"alpha": math.atan(0.2), "half_width_m": 4.0, "height_m": 20.0}
 
@@ -122,6 +122,67 @@ def test_the_slenderness_is_an_arc_about_the_toe_from_the_edge_to_the_radius():
     assert np.ptp(np.hypot(arc.x - toe, arc.y)) < 1e-9
     turned = np.arctan2(toe - arc.x, arc.y)
     assert (turned.min(), turned.max()) == pytest.approx((0.0, PIER["alpha"]))
+
+
+@pytest.mark.parametrize(
+    ("heights", "written"),
+    [
+        ((), ["drift 36 m"]),
+        ((0.0, 9.0), ["section 0 m", "section 9 m", "drift 36 m"]),
+        ((0.0, 36.0), ["section 0 m", "drift and section 36 m"]),
+        (tuple(range(0, 37, 6)), ["section 0 m", "drift and section 36 m"]),
+    ],
+)
+def test_heights_that_are_read_are_marked_at_the_left_and_a_few_of_them_written(heights, written):
+    (figure,) = sketches([PIER | {"highest_m": 40.0, "top_m": 36.0, "sections_m": heights}], {"rigid"})
+    (shaft,) = marks(figure, "band", Area)
+    b, scale = shaft.x.max(), shaft.y.max() / 40.0
+    across = [mark for mark in marks(figure, "edge") if np.ptp(mark.y) == 0 and mark.x.tolist() == [-b - 8.0, b]]
+    assert [mark.y[0] / scale for mark in across] == pytest.approx(sorted(heights))
+    labels = sorted((mark for mark in marks(figure, "", Words) if mark.side == -1), key=lambda mark: mark.y)
+    assert [mark.text for mark in labels] == written
+    at_drift = (*across, *(mark for mark in marks(figure, "edge") if mark.x.tolist() == [-b - 8.0, -b]))
+    assert 36.0 * scale in [pytest.approx(mark.y[0]) for mark in at_drift]
+    assert "drift read at 36 m" in figure.description
+    assert (", sections at 0" in figure.description) == bool(heights)
+
+
+def test_labels_of_heights_do_not_overlap_and_point_at_their_heights():
+    (figure,) = sketches([PIER | {"sections_m": (10.0, 10.5, 11.0, 39.9)}], {"rigid"})
+    (shaft,) = marks(figure, "band", Area)
+    places = sorted(mark.y for mark in marks(figure, "", Words) if mark.side == -1)
+    assert len(places) == 5
+    assert np.diff(places).min() >= APART
+    leaders = [mark for mark in marks(figure, "edge") if mark.x.tolist() == [shaft.x.min() - 8.0, shaft.x.min() - 14.0]]
+    assert sorted(mark.y[1] for mark in leaders) == places
+    scale = shaft.y.max() / 40.0
+    assert sorted(mark.y[0] / scale for mark in leaders) == pytest.approx([10.0, 10.5, 11.0, 39.9, 40.0])
+    (panel,) = figure.panels
+    assert max(places) < panel.y.high + 10.0
+
+
+def test_a_pier_without_labels_shows_its_devices_alone():
+    devices = (("tendon", Place(0.0)), ("deck spring", Place(0.0, 38.0, 1.0)))
+    plain = {"labels": False, "deck_m": 38.0, "devices": devices, "sections_m": (3.0,)}
+    labelled, bare = sketches([PIER | plain | {"labels": True}, PIER | plain], {"rigid"})
+    assert marks(bare, "", Words) == []
+    assert marks(bare, "edge", Words) == []
+    assert [mark.title for mark in marks(bare, "tendon")] == ["tendon", "deck spring"]
+    wide, narrow = labelled.panels[0], bare.panels[0]
+    assert (narrow.height, narrow.width < wide.width) == (wide.height, True)  # the ground is level beside it
+
+
+def test_labels_fit_beside_a_pier():
+    (figure,) = sketches([PIER | {"sections_m": (40.0,), "deck_m": 40.0}], {"rigid"})
+    (panel,) = figure.panels
+    for mark in (mark for mark in panel.marks if isinstance(mark, Words) and mark.side):
+        end = mark.x + mark.side * (7.0 + 6.2 * len(mark.text))
+        assert panel.x.low <= end <= panel.x.high
+
+
+@pytest.mark.parametrize("wrong", [{"sections_m": (-1.0,)}, {"sections_m": (99.0,)}, {"top_m": -3.0}, {"top_m": 1e5}])
+def test_a_pier_with_heights_that_cannot_be_is_not_drawn(wrong):
+    assert sketches([PIER | wrong], {"rigid"}) == []
 
 
 def test_no_more_piers_are_drawn_than_can_be_taken_in():

@@ -120,7 +120,8 @@ def _line_under_failing_suite(line: Line | None, below: Sequence[Verdict]) -> Li
 def missing_stations(stations: Stations) -> Line | None:
     """Return the line on stations without a usable motion, or with unusable files beside usable ones; None if there are none.
 
-    Its details are up to three reasons, and the key that leaves these stations out.
+    A single reason follows the text; of several, up to three are details, and how many more. The last detail is the key that
+    leaves these stations out.
     """
     if not stations.unusable:
         return None

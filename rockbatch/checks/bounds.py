@@ -11,10 +11,9 @@ import numpy.typing as npt
 from rockbatch.checks.omissions import omissions, open_landings, unconverged
 from rockbatch.checks.rules import Rule
 from rockbatch.quantities.arrays import Rows, Texts
-from rockbatch.quantities.cases import Case, creeps
+from rockbatch.quantities.cases import Case
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.demands import Demand
-from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.statistics import STATISTICS, Values
 
 SCATTER = 2.0
@@ -43,9 +42,10 @@ class Axis(NamedTuple):
 class Demanded(NamedTuple):
     """The demand of a rule in the n runs of a case.
 
-    ``bounds`` of every run, and whether it is ``counting`` at all; the ``own`` demand by the spring law of the case, and
-    ``by_other`` that by the other law, NaN if that did not go through and None if it was not run; ``chaotic`` runs; and what
-    the demand leaves out in runs that count (``omitted``), by the names of :data:`rockbatch.checks.omissions.OMISSIONS`.
+    ``bounds`` of every run, and whether it is ``counting`` at all; the ``own`` demand by the model of the case, and
+    ``by_other`` that by the other one of a range, NaN if that did not go through and None if it was not run; ``chaotic`` runs;
+    and what the demand leaves out in runs that count (``omitted``), by the names of
+    :data:`rockbatch.checks.omissions.OMISSIONS`.
     """
 
     bounds: Bounds
@@ -192,8 +192,8 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
     low = np.where(wild, value / SCATTER, np.maximum(value - margin, 0.0))
     high = np.where(wild, value * SCATTER, value + margin)
     by_other = None
-    if demand.other_law and OTHER_LAW in runs and creeps(case):  # the worse law counts
-        by_other = demand.other_law(runs, case)
+    if (end := demand.other_end) and end.column in runs and end.has_range(case):  # the worse end counts
+        by_other = end.evaluate(runs, case)
         high = np.where(np.isnan(by_other) & rule.other_law, np.inf, np.fmax(high, by_other))
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
     if rule.ways["overturned"] == "infinite":

@@ -21,10 +21,9 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import Case, creeps, has_device, is_across, of_pier
+from rockbatch.quantities.cases import Case, has_device, is_across, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.quantities.demands import OF_BASE
-from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.rows import NOT_RUN, complete, counts_as, rows_of_cases, simulated, with_case
 from rockbatch.quantities.statistics import STATISTICS
 
@@ -32,6 +31,7 @@ MOST_NAMES = 5
 
 
 NOT_WEIGHED = "the study does not state the pier's mass"
+_OTHER_ENDS = [demand.other_end for demand in DEMANDS.values() if demand.other_end]
 PLANAR = "each axis of the pier is a planar model of its own"
 
 
@@ -79,7 +79,8 @@ def judge(
     Raises
     ------
     InputError
-        If a rule asks for a case, scale or column that the results do not have, or has a doubted limit that decides nothing.
+        If there is no run, or a rule asks for a case, scale or column that the results do not have, or has a doubted limit that
+        decides nothing.
     """
     runs = with_case(peaks)
     if runs.empty:
@@ -89,15 +90,19 @@ def judge(
     at_heights = {
         needs: rows for needs, rows in (("sections", sections), ("interaction", interaction)) if rows is not None
     }
+    none_read = bool((runs["status"] == "failed").all())  # tables are empty then, and no choice of theirs is wrong
     available = Available(
         cases=list(dict.fromkeys(str(case["case"]) for case in cases if not is_across(case))),
         scales=scales,
-        other_law=OTHER_LAW in runs or not any(map(creeps, cases)),
         output=[
             *(key for key, columns in BROUGHT.items() if _has_columns(runs, columns)),
-            *([] if interaction is None or interaction["height_m"].notna().all() else [OF_BASE]),
+            *(end.needs for end in _OTHER_ENDS if end.column in runs or not any(map(end.has_range, cases))),
+            *([OF_BASE] if interaction is not None and (none_read or interaction["height_m"].isna().any()) else []),
         ],
-        sections={needs: set(rows["height_m"].dropna()) for needs, rows in at_heights.items()},
+        sections={
+            needs: {rule.at_m or 0.0 for rule in rules} if none_read else set(rows["height_m"].dropna())
+            for needs, rows in at_heights.items()
+        },
         piers=cases if doubted else (),
     )
     fits = [fitted(rule, available) for rule in rules]
@@ -278,7 +283,10 @@ def _with_numbers(verdict: Verdict, value: float, low: float, high: float) -> Ve
 
 
 def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[str, str]) -> Verdict:
-    """Return the verdict on a statistic of a suite, on one or both axes; ``none`` is the verdict without its numbers."""
+    """Return the verdict on a statistic of a suite; demands on two axes combine run by run: ``both_axes``, else the greater.
+
+    Without a run that counts it is not decided, its numbers NaN. ``none`` is the verdict "does not apply", which gives the rest.
+    """
     suite = axes[0].suite
     counted_as, unknown = counts_as(suite, none.count)
     demand = of_suite(rule, axes, counted_as)
@@ -290,7 +298,9 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
     left_out = {name for its in demand.axes for name in its.omitted if verdict != PASS or OMISSIONS[name].decides}
     omitted = [name for name in OMISSIONS if name in left_out]
     open_by = math.isinf(demand.high) and not all(OMISSIONS[name].decides for name in omitted)
-    laws = [_remarks_on_laws(its, axis.suite, demand.governing) for its, axis in zip(demand.axes, axes, strict=True)]
+    ends = [
+        _remarks_on_ends(rule, its, axis.suite, demand.governing) for its, axis in zip(demand.axes, axes, strict=True)
+    ]
     remarks = [
         few or ("" if verdict != NOT_DECIDED or open_by else _between(demand.low, demand.high)),
         *(OMISSIONS[name].remark for name in omitted),
@@ -300,7 +310,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
         unknown,
         *(of_event.remarks if of_event else ()),
         "" if none.count == "component" else _remark_on_directions(lacking(counting, counted_as)),
-        *dict.fromkeys(remark for of_axis in laws for remark in of_axis),
+        *dict.fromkeys(remark for of_axis in ends for remark in of_axis),
         "" if demand.records.estimated or DEMANDS[rule.demand].event else "no error estimate",
         *dict.fromkeys(_remark_on_chaos(int(its.chaotic.sum())) for its in demand.axes),
     ]
@@ -335,20 +345,21 @@ def _remark_if_far(rule: Rule, value: float) -> str:
     return f"{value:.4g} is below {1 / FAR:g} of the limit: check its unit, or write confirm = [{shown(key)}]"
 
 
-def _remarks_on_laws(demanded: Demanded, suite: Rows, deciding: int | None) -> list[str]:
-    """Return remarks that the worse of two spring laws counts, with both demands of run ``deciding``; [] if one law was run.
+def _remarks_on_ends(rule: Rule, demanded: Demanded, suite: Rows, deciding: int | None) -> list[str]:
+    """Return remarks that the worse end of a range counts, with both ends of run ``deciding``; [] if one model was run.
 
-    A second remark has the number of runs that went through by the law of the case alone.
+    A second remark has the number of runs that went through by the model of the case alone.
     """
-    by_other = demanded.by_other
-    if by_other is None:
+    by_other, end = demanded.by_other, DEMANDS[rule.demand].other_end
+    if by_other is None or end is None:
         return []
-    remarks = ["the worse of two spring laws counts"]
+    remarks = [f"the worse of two {end.models} counts"]
     if deciding is not None and np.isfinite(by_other[deciding]):
-        remarks[0] += f": {demanded.own[deciding]:.4g} by the law of the case, {by_other[deciding]:.4g} by the other"
+        own, other = demanded.own[deciding], by_other[deciding]
+        remarks[0] += f": {own:.4g} by the {end.model} of the case, {other:.4g} by the other"
     missing = int((np.isnan(by_other) & (suite.texts("status") == "ok")).sum())
     runs = "1 run" if missing == 1 else f"{missing} runs"
-    return [*remarks, f"{runs} did not go through by the other law"] if missing else remarks
+    return [*remarks, f"{runs} did not go through by the other {end.model}"] if missing else remarks
 
 
 def _remark_on_chaos(runs: int) -> str:

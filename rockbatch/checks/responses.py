@@ -13,7 +13,6 @@ from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, bends
 from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.quantity import SETTLING
 from rockbatch.quantities.rows import rows_of_cases
 
@@ -170,7 +169,7 @@ def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst
 def in_words(worst: Worst) -> str:
     """Return the value of a response with its units: a drift "1.49 m (1486 mm) at 30 m", a rotation in α, degrees and rad.
 
-    A settlement by two spring laws is a range in mm; other lengths are in mm, tilts in mrad and degrees.
+    One that two models give is a range in mm; other lengths are in mm, tilts in mrad and degrees.
     """
     value, pier = worst.value, worst.case["pier"]
     if worst.demand == "theta_max_over_alpha":
@@ -180,9 +179,10 @@ def in_words(worst: Worst) -> str:
         return f"{1000 * value:.3g} mrad ({math.degrees(value):.2g}°)"
     if worst.demand == "top_drift_m":
         return f"{value:.3g} m ({_millimetres(value)} mm){at(worst.height)}"
-    if worst.demand == "settlement_m" and not math.isnan(worst.run.get(OTHER_LAW, math.nan)):
-        low, high = sorted((value, float(worst.run[OTHER_LAW])))
-        return f"{_millimetres(low)} to {_millimetres(high)} mm, by the law of the springs"
+    end = DEMANDS[worst.demand].other_end
+    if end and not math.isnan(other := float(worst.run.get(end.column, math.nan))):
+        low, high = sorted((value, other))
+        return f"{_millimetres(low)} to {_millimetres(high)} mm, by both {end.models}"
     return f"{_millimetres(value)} mm" if DEMANDS[worst.demand].unit == "m" else f"{value:.3g}"
 
 

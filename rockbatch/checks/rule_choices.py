@@ -30,14 +30,12 @@ class Available(NamedTuple):
     """Choices that a study offers to rules.
 
     ``cases`` are names, ``output`` the keys of [output] whose columns it has, ``sections`` the heights [m] of sections of any
-    pier by the ``needs`` of demands; ``other_law`` is True if it has the settlement by the other spring law. ``piers`` are the
-    cases with which limits are compared, as in run.json, with ``case``, ``base``, ``pier`` and ``parameters`` at least; none
-    if limits are not compared.
+    pier by the ``needs`` of demands. ``piers`` are the cases with which limits are compared, as in run.json, with ``case``,
+    ``base``, ``pier`` and ``parameters`` at least; none if limits are not compared.
     """
 
     cases: Collection[str]
     scales: Collection[float]
-    other_law: bool
     output: Collection[str]
     sections: Mapping[str, Collection[float]] = {}
     piers: Sequence[Case] = ()
@@ -54,7 +52,10 @@ class Fitted(NamedTuple):
 
 
 def fitted(rule: Rule, available: Available) -> Fitted:
-    """Return a rule fitted to a study: what it chooses of what is ``available``, and a problem for each choice that is not."""
+    """Return a rule fitted to a study: what it chooses of what is ``available``, and a problem for each choice that is not.
+
+    If piers are available, so is a problem of a limit or capacity that decides nothing on them.
+    """
     matches = {pattern: chosen(pattern, available.cases) for pattern in rule.case}
     cases = frozenset(chain.from_iterable(matches.values()) if rule.case else available.cases)
     scales = [scale for scale in available.scales if not rule.scale or _is_among(scale, rule.scale)]
@@ -94,13 +95,13 @@ def _unavailable(rule: Rule, matches: Mapping[str, Collection[str]], available: 
         if not _is_among(scale, scales):
             text = f"the motions are scaled by {', '.join(f'{factor:g}' for factor in scales)} only"
             yield Problem("scale", scale, text, kind=UnknownKey)
-    if rule.other_law and not available.other_law:
+    needs, end = DEMANDS[rule.demand].needs, DEMANDS[rule.demand].other_end
+    if rule.other_law and end and end.needs not in available.output:
         text = (
-            "there is no settlement by the other law; write both_laws = true under [output] of the study and run it, or leave "
-            "other_law out"
+            f"there is no {rule.demand} by the other {end.model}; write {end.needs} = true under [output] of the study and run "
+            f"it, or leave other_law out"
         )
         yield Problem("other_law", None, text, kind=MissingKey)
-    needs = DEMANDS[rule.demand].needs
     if needs and needs not in AT_HEIGHTS and needs not in available.output:
         text = f"there is no column of {needs}; write {needs} = true under [output] of the study and run it"
         yield Problem("demand", rule.demand, text, kind=MissingKey)

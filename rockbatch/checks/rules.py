@@ -194,7 +194,7 @@ class Rule:
         return self.words_at(self.at_m)
 
     def words_at(self, height: float | None) -> str:
-        """Return :attr:`words` with the height at which the demand is read [m], without one for None."""
+        """Return :attr:`words` with the height at which the demand is read [m]; without it for None, a ban and a property."""
         demand = DEMANDS[self.demand]
         if demand.per_case:
             return self.demand
@@ -234,7 +234,7 @@ _CALLED = {
             ("heel_uplift_m", "heel_uplift_mm"): "uplift heeluplift",
             ("theta_max_rad", "theta_max_over_alpha"): "rotation maxrotation peakrotation thetamax theta",
             ("theta_res_rad", "theta_res_over_alpha"): "residualrotation residual thetares",
-            ("top_drift_m", "top_drift_mm"): "displacement topdisplacement",
+            ("top_drift_m", "top_drift_mm"): "displacement topdisplacement drift topdrift deckdisplacement",
             "friction_demand": "sliding slip",
             "overturned": "overturning overturn collapse toppling",
         }
@@ -400,6 +400,7 @@ CHECK = Section(
     ),
     instead=names(
         {
+            'write statistic = "median" or "p84"': "percentile quantile fractile",
             "the unit stands in the name of the demand, as in heel_uplift_mm; leave it out": "unit units",
             "both polarities of a study are mirror images, of which each run counts once; leave it out": "polarity "
             "polarities sign",
@@ -497,9 +498,9 @@ def _wrong_for_demand(rule: Rule) -> Iterator[tuple[str, str]]:
             "both_axes",
             f"both_axes: {rule.demand} does not add up over the axes, and the greater counts; leave it out",
         )
-    if rule.other_law and demand.other_law is None:
-        with_other_law = " and ".join(name for name, candidate in DEMANDS.items() if candidate.other_law)
-        yield "other_law", f"other_law: is for {with_other_law}; leave it out"
+    if rule.other_law and demand.other_end is None:
+        ranges = " and ".join(name for name, candidate in DEMANDS.items() if candidate.other_end)
+        yield "other_law", f"other_law: is for {ranges}; leave it out"
 
 
 def _wrong_capacity(rule: Rule) -> Iterator[tuple[str, str]]:

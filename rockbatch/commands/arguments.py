@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.commands.example_studies import FIRST
 from rockbatch.common.analyses import Door, doors
-from rockbatch.common.argument_values import address, case_pair, flag, place, shard, value, whole
+from rockbatch.common.argument_values import address, case_pair, file, flag, number, place, shard, value, whole, word
 
 if TYPE_CHECKING:
     from rockbatch.study import Study
@@ -83,9 +83,10 @@ _STUDY: Arguments = {
 _ENGINE: Arguments = {
     "--jobs": value(whole, "N", "threads, or processes (default: all processors)"),
     "--fresh": flag("start over instead of continuing from finished runs in the folder"),
-    "--engine": value(
-        str, None, "threads of this process (default), or a dask.distributed cluster", choices=("threads", "dask")
-    ),
+    "--engine": {
+        **word("threads", "dask"),
+        "help": "threads of this process (default), or a dask.distributed cluster",
+    },
     "--scheduler": value(
         address, "ADDRESS", "address of a running dask scheduler (default: processes of this machine)"
     ),
@@ -96,7 +97,7 @@ DISCARDING = ("--fresh",)
 """Options that discard finished results: never suggested for a misspelt option."""
 
 _CSV = {
-    "--csv": value(str, None, "also write peaks_semicolon.csv, for Excel with decimal commas", choices=("semicolon",))
+    "--csv": {**word("semicolon"), "help": "also write peaks_semicolon.csv, for Excel with decimal commas"},
 }
 _RUN: Arguments = {
     "--shard": value(
@@ -114,16 +115,16 @@ _RUN: Arguments = {
 _MOTIONS: Arguments = {
     "path": value(Path, "PATH", "files or folders (recursive)", nargs="+"),
     "--all": flag("list every recording, its processing, and every file that is not used"),
-    "--csv": value(Path, "FILE", "also write the table to FILE; - is stdout"),
-    "--html": value(Path, "FILE", "write a page with the measures, trace and spectrum of each record; - is stdout"),
+    "--csv": value(file, "FILE", "also write the table to FILE; - is stdout"),
+    "--html": value(file, "FILE", "write a page with the measures, trace and spectrum of each record; - is stdout"),
     "--write-manifest": flag("draft PATH/motions.toml from the records found"),
     "--strict": flag("fail if any file cannot be used"),
     "--unit": {"help": 'acceleration unit of files that do not state theirs, such as "cm/s2"'},
-    "--dt": {"type": float, "help": "sampling interval [s] of text columns without a time column"},
+    "--dt": {"type": number, "help": "sampling interval [s] of text columns without a time column"},
     "--columns": {"help": 'names of text columns, such as "time,000,090,up"'},
-    "--role": {"choices": ("horizontal",), "help": "role of components whose direction is not stated"},
-    "--layout": {"choices": ("columns", "wrapped"), "help": "wrapped: one series continued from line to line"},
-    "--sensitivity": {"type": float, "help": "counts per acceleration unit"},
+    "--role": {**word("horizontal"), "help": "role of components whose direction is not stated"},
+    "--layout": {**word("columns", "wrapped"), "help": "wrapped: one series continued from line to line"},
+    "--sensitivity": {"type": number, "help": "counts per acceleration unit"},
 }
 
 
@@ -179,9 +180,9 @@ COMMANDS = {
         "commands.statics.main",
         {
             "file": value(Path, "STUDY.toml", "the study file; its records are not read and may be missing"),
-            "--csv": value(Path, "FILE", "also write the sheet to FILE, a row for each case; - is stdout"),
+            "--csv": value(file, "FILE", "also write the sheet to FILE, a row for each case; - is stdout"),
             "--curves": value(
-                Path, "FILE", "write the moment-rotation curves to FILE, a row for each rotation; - is stdout"
+                file, "FILE", "write the moment-rotation curves to FILE, a row for each rotation; - is stdout"
             ),
         },
     ),
@@ -226,7 +227,7 @@ COMMANDS = {
             "directory": _FOLDER,
             "other": value(Path, "OTHER", "a second folder, to compare with the first", nargs="?"),
             "--out": value(
-                Path, "FILE", "file to write (default: DIR/report.html, or DIR/compare-OTHER.html); - is stdout"
+                file, "FILE", "file to write (default: DIR/report.html, or DIR/compare-OTHER.html); - is stdout"
             ),
             "--pair": value(
                 case_pair,
@@ -241,9 +242,12 @@ COMMANDS = {
                 "write the calculation sheet instead, for paper: DIR/sheet.html and, where typst is installed, DIR/sheet.pdf; "
                 "or FILE alone, a PDF if its name ends in .pdf"
             ),
-            "--paper": value(
-                str, "A4|Letter", "size of the PDF's pages (default: A4)", choices=("A4", "Letter"), default="A4"
-            ),
+            "--paper": {
+                **word("A4", "Letter"),
+                "metavar": "A4|Letter",
+                "help": "size of the PDF's pages (default: A4)",
+                "default": "A4",
+            },
         },
     ),
     "statement": Command(

@@ -25,9 +25,9 @@ _COMMANDS_MEANT = {
     "init": "new create start",
     "run": "simulate compute solve",
     "motions": "records",
-    "check": "verify",
+    "check": "verify validate verdicts",
     "design": "optimise optimize size find",
-    "report": "plot show view html compare diff sheet",
+    "report": "plot show view html compare diff sheet pdf",
     "accuracy": "error errors convergence",
     "merge": "join combine",
     "fragility": "ida curves",
@@ -42,9 +42,17 @@ _OPTIONS_MEANT = {
     "--dry-run": "-n --dry --dryrun --estimate",
     "--motions": "--records --ground-motions --input --path",
     "--all": "-a --full --verbose",
-    "--rules": "--checks --limits",
+    "--rules": "--checks --check --limits",
+    "--csv": "-o --out --output --table",
+    "--sheet": "--pdf",
+    "--write-manifest": "--manifest --write",
+    "--clear": "--clean --delete --empty",
+    "--list": "--demands",
 }
 """Other words for each option, tried before similar spellings."""
+
+_ALIKE = 0.75
+"""Least similarity, with their dashes, of an option to one that it may stand for."""
 
 _NUMBER_OR_TRUTH = re.compile(r"true|false|[-+]?[0-9]+(\.[0-9]+)?(e[-+]?[0-9]+)?", re.ASCII)
 
@@ -120,10 +128,22 @@ def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Se
     The message suggests a command that may be meant.
     """
     word, *rest = arguments or [""]
-    if word in COMMANDS or not word or word.startswith("-"):
+    if word in COMMANDS or not word:
         return arguments
-    if word.lower() in ("help", "version"):
-        return [*rest[:1], "--help"] if word.lower() == "help" else ["--version"]
+    if word.startswith("-"):
+        command = next((each for each in rest if each in COMMANDS), "")
+        if command and word not in ("-h", "--help", "--version"):
+            others = " ".join(each for each in arguments if each != command)
+            root.error(f"options stand behind the command; did you mean {command} {others}?")
+        return arguments
+    if word.lower() == "version":
+        return ["--version"]
+    if word.lower() == "help":
+        return [*_with_command(rest[:1], root), "--help"] if rest else ["--help"]
+    if word in ("rockbatch", "python") and (command := next((each for each in rest if each in COMMANDS), "")):
+        root.error(f"what stands before the command is left out; did you mean {' '.join(rest[rest.index(command) :])}?")
+    if word.endswith(".toml"):
+        root.error(f"there is no command {word}; did you mean run {word}?")
     synonyms = (name for name, words in _COMMANDS_MEANT.items() if word.lower() in words.split())
     meant = next(synonyms, None) or closest(word, COMMANDS)
     root.error(f"there is no command {word}" + (f"; did you mean {meant}?" if meant else ""))
@@ -138,15 +158,31 @@ def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
     options = [name for name in COMMANDS[command].arguments if name.startswith("-")] if command else ["--version"]
     if not options:
         return f"; `rockbatch {command}` takes none"
+    if mended := _with_dashes(unknown[0], options):
+        return f"; did you mean {mended}?"
     words = [word.partition("=")[0] for word in unknown if word.startswith("-")]
     of_study = command is not None and "study" in COMMANDS[command].arguments
+    if not words and unknown[0].endswith(".toml"):
+        return f"; did you mean --rules {unknown[0]}?" if "--rules" in options else "; one study at a time"
     if of_study and not words:
         return f"; did you mean --out {unknown[0]} for the results, or --motions {unknown[0]} for the records?"
     other = [name for word in words if (name := _other_word(word, options))]
+    if not other and (homes := [name for name, each in COMMANDS.items() if words and words[0] in each.arguments]):
+        return f"; {words[0]} is an option of {' and '.join(f'`rockbatch {name}`' for name in homes[:2])}"
     if of_study and not other and (key := _key_meant(unknown)):
         return key
     known = ", ".join(other or [name for word in words if (name := _similar(word, options))])
     return f"; did you mean {known}?" if known else ""
+
+
+def _with_dashes(word: str, options: Sequence[str]) -> str:
+    """Return an option that is written as "out=DIR", "/out", "—out" or "-j4" as it has to be; "" for another word."""
+    joined = re.fullmatch(r"(-[a-z])([0-9]+)", word)
+    if joined and (name := _other_word(joined[1], options)):
+        return f"{name} {joined[2]}"
+    match = re.fullmatch(r"(?:—|–|−|/|-)?-?([a-z][a-z-]*)(=.*)?", word)
+    name = f"--{match[1]}" if match else ""
+    return f"{name}{match[2] or ''}" if match and name in options and not word.startswith("--") else ""
 
 
 def _key_meant(unknown: Sequence[str]) -> str:
@@ -155,11 +191,12 @@ def _key_meant(unknown: Sequence[str]) -> str:
     "" if the first of the ``unknown`` is no such key. A value that is neither a number nor a truth value becomes an example.
     """
     from rockbatch.study.load import SECTIONS
+    from rockbatch.toml.kinds import text
 
     option, _, given = unknown[0].partition("=")
     name, value = option.lstrip("-").replace("-", "_"), given or "".join(unknown[1:2])
     home = next((section for section in SECTIONS if name in section), None)
-    if home is None:
+    if home is None or not option.startswith("--") or home[name].kind is text:
         return ""
     if not _NUMBER_OR_TRUTH.fullmatch(value):
         value = home[name].example
@@ -169,7 +206,7 @@ def _key_meant(unknown: Sequence[str]) -> str:
 
 
 def _other_word(word: str, options: Sequence[str]) -> str | None:
-    """Return the option of which ``word`` is another name by :data:`_OPTIONS_MEANT`, if the command has it; else None."""
+    """Return the option for which ``word`` is another name by :data:`_OPTIONS_MEANT`, if the command has it; else None."""
     meant = (name for name, words in _OPTIONS_MEANT.items() if word in words.split())
     return next((name for name in meant if name in options), None)
 
@@ -178,7 +215,7 @@ def _similar(word: str, options: Sequence[str]) -> str | None:
     """Return the most similar of the options that discard no results; None if none is, or ``word`` is another name for one."""
     if any(word in words.split() for words in _OPTIONS_MEANT.values()):
         return None
-    return closest(word, [name for name in options if name not in DISCARDING])
+    return closest(word, [name for name in options if name not in DISCARDING], _ALIKE)
 
 
 def _exit_code(parsed: argparse.Namespace) -> int:

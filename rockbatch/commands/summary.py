@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.batch.listening import count
 from rockbatch.checks.suite_target import NAMES
 from rockbatch.common.lazy import pd
+from rockbatch.common.observers import parts
 from rockbatch.outcome.outcome import LEANS, Failure
 from rockbatch.pier.bending import flexural_period
 from rockbatch.pier.laws import without_ratcheting
@@ -59,21 +59,21 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
 
 
 def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
-    """Return a sentence each on runs of ``table`` whose settlement depends on the spring law, that rotate too far for linearised
-    kinematics, lean, or slide; [] for none.
+    """Return a sentence each on runs of ``table`` that an observer warns of, that rotate too far for linearised kinematics,
+    lean, or slide; [] for none.
 
-    ``varied`` are the keys by which the run with the widest range of settlement is named.
+    ``varied`` are the keys by which an observer names a run.
     """
 
-    def warning(runs: npt.NDArray[np.bool_], singular: str, plural: str) -> str:
+    def counted(runs: npt.NDArray[np.bool_], singular: str, plural: str) -> str:
         """Return the words for the number of these runs, in singular or plural; "" for none."""
         n = int(runs.sum())
         return "" if n == 0 else singular if n == 1 else plural.format(n)
 
     runs = Rows(table)
-    rotate = warning(runs.facts("beyond_linearised"), "1 run rotates", "{} runs rotate")
-    lean = warning(runs.texts("theta_max_is") == LEANS, "of 1 run, marked lean, is", "of {} runs, marked lean, is")
-    slide = warning(runs.facts("slides"), "1 run demands", "{} runs demand")
+    rotate = counted(runs.facts("beyond_linearised"), "1 run rotates", "{} runs rotate")
+    lean = counted(runs.texts("theta_max_is") == LEANS, "of 1 run, marked lean, is", "of {} runs, marked lean, is")
+    slide = counted(runs.facts("slides"), "1 run demands", "{} runs demand")
     beyond = 'too far for linearised kinematics; see the column note, and run kinematics = "finite"'
     leans = (
         "mostly the lean of a yielded base; the column note gives the rocking about it, and rocking = true under [output] "
@@ -81,7 +81,7 @@ def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
     )
     slides = "more friction than the interface has: the pier would slide, which is not modelled; see the column note"
     sentences = [
-        _other_law(table, varied),
+        *(warning(table, varied) for warning in parts("summary.warning")),
         rotate and f"{rotate} {beyond}",
         lean and f"theta_max/alpha {lean} {leans}",
         slide and f"{slide} {slides}",
@@ -110,7 +110,7 @@ def failed_later(runs: "pd.DataFrame") -> str:
 
 
 def flexible(study: Study) -> list[str]:
-    """Return a warning for each case whose given flexural period is too long for a rigid pier; [] for none."""
+    """Return a warning for each case whose flexural period, given or by rigidities, is too long for a rigid pier."""
     flexible_cases = [case for case in study.cases if flexural_period(case.pier) is not None]
     if not flexible_cases:
         return []
@@ -123,26 +123,6 @@ def flexible(study: Study) -> list[str]:
             name = f"{case.name} {named(case.columns, case.columns.values())}".rstrip()
             warnings.append(f"{name}: {flexure(sheet)}".replace("α", "alpha"))
     return warnings
-
-
-def _other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
-    """Return a warning if settlements by the two spring laws differ by over 10 % and 1 mm in a run; else ""."""
-    if "settlement_other_law_m" not in table:
-        return ""
-    of_case, by_other = table["settlement_m"], table["settlement_other_law_m"]
-    gap = (of_case - by_other).abs()
-    differ = gap > (0.1 * of_case.abs()).clip(lower=1e-3)
-    if not differ.any():
-        return ""
-    worst = table.iloc[int(np.nanargmax(gap.to_numpy()))]
-    keys = ["scale", *varied] if table["scale"].nunique() > 1 else varied
-    run = f"{worst['record']}, {worst['case']} {named(keys, [worst[name] for name in keys])}".rstrip()
-    mm = [1000 * worst[name] for name in ("settlement_m", "settlement_other_law_m")]
-    law = "Bouc–Wen" if mm[0] > mm[1] else "elastic–perfectly plastic"
-    return (
-        f"the settlement is a range, not one value, in {count(int(differ.sum()), 'run')}, depending on the law of the "
-        f"springs; the widest in {run}: {min(mm):z.1f} to {max(mm):z.1f} mm, the larger by the {law} law; checks take the worse"
-    )
 
 
 def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:

@@ -407,7 +407,7 @@ def _write_now(context, count, kind, steps):
 
 @entry
 def _march(traits, runs, ground, settings, equipment, marks, history, stop, memory, results):
-    """Integrate all ``runs`` to their ends; those that ``stop`` ends keep their status in ``results``."""
+    """Integrate all ``runs`` to their ends; those that ``stop`` interrupts keep the status RUNNING in ``results``."""
     lanes, cells = memory[0][0], memory[1]
     context = Context(traits, lanes, equipment, marks, settings, ground, history, results)
     waiting, count = ZERO, ZERO

@@ -166,6 +166,12 @@ def note_devices(traits, lanes, i, devices):
 
 
 @optional_hook
+def gives_way(traits):
+    """Return True if the ground gives way under a pivot: friction there that holds without a force may need one later."""
+    return False
+
+
+@optional_hook
 def in_pass(traits, lanes, i):
     """Return the model of lane ``i``, its state, and its contact as far as a pass handles it; by default all of it.
 

@@ -94,6 +94,10 @@ def _interpreted_weighted(k1, k2, k3, k4):
     return type(k1)(*(a + 2.0 * (b + c) + d for a, b, c, d in zip(k1, k2, k3, k4, strict=True)))
 
 
+def _interpreted_selected(first, a, b):
+    return a if first else b
+
+
 def _addresses(builder, part, pointer, lane, names):
     base = builder.bitcast(pointer, ir.IntType(8).as_pointer())
     for name in names:
@@ -214,12 +218,25 @@ def _weighted(typing_context, k1, k2, k3, k4):
     return k1(k1, k2, k3, k4), generate
 
 
+@intrinsic
+def _selected(typing_context, first, a, b):
+    """Return the named tuple ``a`` if ``first`` is True, else ``b``, of one kind, without a branch."""
+
+    def generate(context, builder, signature, arguments):
+        is_first, *both = arguments
+        pairs = [[builder.extract_value(each, j) for each in both] for j in range(len(a))]
+        return context.make_tuple(builder, a, [builder.select(is_first, *pair) for pair in pairs])
+
+    return a(types.boolean, a, b), generate
+
+
 _COMPILES = not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
 get = _get if _COMPILES else _interpreted_get
 taken = _taken if _COMPILES else _interpreted_taken
 with_pull = _with_pull if _COMPILES else _interpreted_with_pull
 with_rates = _with_rates if _COMPILES else _interpreted_with_rates
 with_z = _with_z if _COMPILES else _interpreted_with_z
+selected = _selected if _COMPILES else _interpreted_selected
 put = _put if _COMPILES else _interpreted_put
 along = _along if _COMPILES else _interpreted_along
 weighted = _weighted if _COMPILES else _interpreted_weighted

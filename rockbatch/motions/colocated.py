@@ -67,7 +67,7 @@ def _sign_between(a: Component, b: Component) -> float:
 def _gain_ratio(a: Component, b: Component, sign: float) -> float | None:
     """Return the amplitude of ``b`` over that of ``a``, negative if the signs of their motions differ from ``sign``.
 
-    ``None`` for a correlation below 0.98, fewer than 100 common samples, and a positive ratio of 0.8 to 1.25.
+    ``None`` for a correlation below 0.98, fewer than 100 common samples, a component at rest, and a ratio from 0.8 to 1.25.
     """
     if too_unlike(a, b):
         return None

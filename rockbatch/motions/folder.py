@@ -147,7 +147,10 @@ def read_motions(
 
 
 def _with_stations(readings: Sequence[Reading], paired: MotionSet) -> list[Unusable | LeftOut]:
-    """Return the unusable and left-out readings, with the station of a record of their file, else of their name and folder."""
+    """Return the unusable and left-out readings, with the station of a motion from their file, else of one with their site.
+
+    It is in their folder; without either they keep their station.
+    """
     sources = [(source, m.of_station) for m in paired.motions for source in m.files.split(", ")]
     sources += [(source, file.station) for file in paired.unusable for source in file.source.split(", ")]
     station_of_file = {file_of(source): station for source, station in sources}
@@ -375,7 +378,10 @@ def _readings_of_entries(file: SourceFile, settings: _ReadSettings) -> list[Read
 
 
 def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Sequence[Component | Unusable]:
-    """Return the components of one file, usable or not, by the reader of its format. Raises ``InputError`` if it has none."""
+    """Return the components of one file, usable or not, by the reader of its format.
+
+    Raises ``InputError`` for a file that no reader knows or that its reader refuses.
+    """
     path = archives.bare(file.path)
     data = archives.content(file.path, HEAD)
     if format_of(path.suffix, data) is not None:  # else its first bytes suffice for the refusal
@@ -392,7 +398,10 @@ def _with_place(component: Component, path: Path, name: tuple[str, Orientation |
 
 
 def _with_list(component: Component, path: Path, settings: _ReadSettings) -> Component:
-    """Return a component with the facts of PEER's list in its folder; as it is if no list has it."""
+    """Return a component with the facts of PEER's list in its folder; magnitude and distance are the list's.
+
+    It is returned as it is if no list has it.
+    """
     listed = of_file(settings.lists, path, component.site)
     if listed is NOT_LISTED:
         return component

@@ -82,7 +82,7 @@ def pairs_of_one_recording(components: Sequence[Component]) -> Recordings:
         for j in table.same_by_headers(i):
             if j in pairs.get(i, ()) or likeness_of(components[i], components[j]) >= _ALIKE:
                 join(i, j)
-            elif not table.may_be_parts(i, j):
+            elif table.way[i] >= 0 and not table.may_be_parts(i, j):  # unknown directions may be two
                 denied.append((i, j))
     for i, j in table.similar_pairs():
         first, second = components[i], components[j]
@@ -103,9 +103,9 @@ def _pairs_of_sets(
 ) -> Iterator[tuple[int, int]]:
     """Yield further pairs from two sets that are of one recording as wholes, each component with its counterpart.
 
-    Two sets with a pair already must correlate; others must be coherent wherever both have energy: that distinguishes a copy
-    that was cut, rotated and filtered from a neighbour in an array, and a correlation does not. Sets with a ``scaled`` pair
-    stay two.
+    Two sets with a pair already must correlate or be coherent; others must be coherent wherever both have energy: that
+    distinguishes a copy that was cut, rotated and filtered from a neighbour in an array, and a correlation does not. Sets with
+    none but a ``scaled`` pair stay two.
     """
     sets = list(sets_of(components))
     set_of = {i: number for number, members in enumerate(sets) for i in members}

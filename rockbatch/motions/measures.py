@@ -94,6 +94,11 @@ def believable_pgd(motion: Motion) -> float | None:
     return None if motion.initial is None and runs_away(moved) else float(np.abs(moved).max())
 
 
+def duration_of_shaking(motion: Motion) -> float | None:
+    """Return the significant duration D5–95 [s] of a motion; ``None`` for a sequence, whose pauses are no shaking."""
+    return None if len(motion.records) > 1 else significant_duration(motion.horizontal, motion.dt)
+
+
 def arias_intensity(acceleration: Samples, dt: float, gravity: float = GRAVITY) -> float:
     """Return the Arias intensity π/(2g) ∫a² dt [m/s] (Arias 1970)."""
     return math.pi / (2.0 * gravity) * float(_energy(acceleration, dt)[-1])

@@ -339,9 +339,14 @@ class Motion(Shown):
         return hash((self.name, self.dt, self.npts))
 
     @property
+    def records(self) -> tuple[str, ...]:
+        """Return the names of the records of which it is a sequence; its own name if it is not one."""
+        return tuple(shock.name for shock in self.shocks) or (self.name,)
+
+    @property
     def label(self) -> str:
         """Return its name in words, "Imperial Valley 1979, Meloland, 270", else its file; the name of a pulse or a sequence."""
-        by_name = self.source in ("", "pulse") or len(self.shocks) > 1
+        by_name = self.source in ("", "pulse") or len(self.records) > 1
         return self.origin.label or (self.name if by_name else self.source)
 
     @property

@@ -30,7 +30,7 @@ _COLUMNS: dict[str, tuple[type, Callable[[Motion], Cell]]] = {
     "pgv_h_m_s": (float, lambda m: measures.pgv(m.horizontal, m.dt, m.initial)),
     "pgd_h_m": (float, measures.believable_pgd),
     "arias_m_s": (float, lambda m: measures.arias_intensity(m.horizontal, m.dt)),
-    "d5_95_s": (float, lambda m: None if len(m.shocks) > 1 else measures.significant_duration(m.horizontal, m.dt)),
+    "d5_95_s": (float, measures.duration_of_shaking),
     "azimuth_deg": (float, lambda m: m.azimuth),
     "magnitude": (float, lambda m: m.magnitude),
     "distance_km": (float, lambda m: m.distance_km),

@@ -222,7 +222,10 @@ def unequal_horizontals(candidate: Candidate) -> Finding | None:
 
 
 def copied_horizontal(candidate: Candidate) -> Finding | None:
-    """Return a finding on a horizontal that is a copy of the station's other one, perhaps scaled and shifted; else None."""
+    """Return a finding on a horizontal that is a copy of the station's other one, perhaps scaled and shifted; else None.
+
+    None for a station with one or three horizontals, too, and for different sampling intervals.
+    """
     this, others = candidate.component, [c for c, _ in candidate.peaks if c is not candidate.component]
     if len(candidate.peaks) != 2 or not others or not same_step(this.dt, others[0].dt):
         return None

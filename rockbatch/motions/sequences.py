@@ -165,7 +165,8 @@ def sequence(
         linearly, which changes nothing for a multiple. If some shocks have a vertical component, the others get zeros, with a
         note; it has a component ``across`` if all have. A sequence of one has the record's samples.
 
-    Raises ``InputError`` for no motions, lists of other lengths, and more than 0.005 g needed to bring the ground to rest.
+    Raises ``InputError`` for no motions, sequences among them, lists of other lengths, values other than above, sampling
+    intervals too far apart, too many samples, and more than 0.005 g needed to bring the ground to rest.
 
     Examples
     --------
@@ -296,7 +297,10 @@ def _concatenated(
 
 
 def _with_common_origin(parts: Sequence[Motion], whole: Motion) -> Motion:
-    """Return ``whole`` with the sources and findings of all ``parts``, and facts that all share, such as magnitude; else None."""
+    """Return ``whole`` with the sources and findings of all ``parts``, and facts that all share, such as magnitude; else None.
+
+    Its station is theirs joined by " + ".
+    """
     return replace(
         whole,
         source=_in_turn(part.source for part in parts),
@@ -380,8 +384,8 @@ def _sequence_or_refusal(
 ) -> Motion | Unusable | LeftOut:
     """Return a sequence of the motions ``by_name``; unusable if a record of it is, or if they cannot be joined.
 
-    ``reasons`` has those of unusable records by name. For unknown names raises ``InputError`` in a study, where ``source`` is "";
-    in a manifest the sequence is unusable, or left out if all are unknown.
+    ``reasons`` has those of unusable and left-out records by name. For unknown names raises ``InputError`` in a study,
+    where ``source`` is ""; in a manifest the sequence is unusable, or left out if all are unknown.
     """
     missing = [name for name in entry.records if name not in by_name]
     reasons_of_parts = [f"its record {name} cannot be used: {reasons[name]}" for name in missing if name in reasons]

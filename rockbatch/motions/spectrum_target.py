@@ -230,7 +230,7 @@ class SpectrumTarget:
         """Return the value at 0 s of a station's spectrum [m/s²]: by the rule of its pair, else the PGA of its first motion."""
         if self.pairs == "apart" or pairing_obstacle(station):
             return station[0].pga
-        return pair_measures(*pair_of(station))[self.pairs]
+        return pair_measures(*pair_of(station)[:2])[self.pairs]
 
     def _is_alone(self, station: Sequence[Motion]) -> bool:
         """Return whether a station lacks the second component that the rule needs."""
@@ -246,7 +246,7 @@ class SpectrumTarget:
 
 
 def _stations(motions: Sequence[Motion], among: Sequence[int] | None = None) -> list[list[int]]:
-    """Return the indices of motions, all or ``among`` some, grouped by station and earthquake."""
+    """Return the indices of motions, all or ``among`` some, grouped by station, which has another name in each earthquake."""
     places = range(len(motions)) if among is None else among
     return list(grouped(places, lambda i: motions[i].of_station).values())
 

@@ -6,7 +6,7 @@ Impossible combinations of a pier and a base are checked in :mod:`rockbatch.pier
 import math
 import warnings
 from collections.abc import Sequence
-from dataclasses import InitVar, dataclass, field, replace
+from dataclasses import InitVar, dataclass, field
 from typing import Any, ClassVar, Literal, Self
 
 from rockbatch.common.arguments import checked
@@ -265,10 +265,6 @@ class YieldingBase(ElasticBase):
     def ratchets(self) -> bool:
         """Return True if these springs settle cyclically under vibration (ratcheting)."""
         return self.law.creep is not None
-
-    def by_other_law(self) -> Self:
-        """Return the base with elastic–perfectly plastic springs for Bouc–Wen ones; itself if its law does not ratchet."""
-        return self if self.law.creep is None else replace(self, spring=self.law.creep.other)
 
     def parameters(self, pier: Pier) -> dict[str, object]:
         """Return these springs under ``pier`` by the keys of run.json."""

@@ -34,8 +34,14 @@ SHARES = {"weight": "weight and supports", "tendons": "tendons", "stops": "stops
 
 HEIGHT = 190.0
 """Height of the highest pier [px]."""
-LEFT, RIGHT, ABOVE, BELOW = 30.0, 110.0, 14.0, 48.0
-"""Room around a pier for its labels [px]."""
+SIDE, ABOVE, BELOW = 30.0, 14.0, 48.0
+"""Least room around a pier [px]."""
+LETTER = 6.5
+"""Width of a letter of a label [px]."""
+APART = 13.0
+"""Least distance between labels of heights [px]."""
+MOST_SECTIONS = 5
+"""Most sections whose heights are written; of more only the lowest and the highest."""
 SPRING = 20.0
 """Height of a support's spring [px]: not to scale, it has none."""
 ASIDE = 9.0
@@ -109,15 +115,21 @@ def devices(pier: Pier, restraints: Sequence[Restraint]) -> tuple[tuple[str, Pla
 
 
 class _Shape(NamedTuple):
-    """Dimensions [m] of a pier that is drawn: heights of its centre of mass, highest point, and deck (0 for none)."""
+    """Dimensions [m] of a pier that is drawn: heights of its centre of mass, highest point, and deck (0 for none).
 
-    name: str
+    ``drift`` and ``sections`` are the heights at which drift and forces are read; without ``labels`` only devices are shown.
+    """
+
+    caption: str
     alpha: float
     half_width: float
     height: float
     top: float
     deck: float
+    drift: float
+    sections: Sequence[float]
     devices: Sequence[tuple[str, Place]]
+    labels: bool
 
     @classmethod
     def of(cls, pier: Mapping[str, Any]) -> "_Shape":
@@ -125,7 +137,10 @@ class _Shape(NamedTuple):
         deck = float(pier.get("deck_m") or 0.0)
         top = max(float(pier.get("highest_m") or 2.0 * pier["height_m"]), deck)
         lengths = pier["alpha"], pier["half_width_m"], pier["height_m"]
-        return cls(pier.get("name", ""), *lengths, top, deck, pier.get("devices", ()))
+        read = float(pier.get("top_m") or top), sorted(set(pier.get("sections_m", ())))
+        return cls(
+            pier.get("caption", ""), *lengths, top, deck, *read, pier.get("devices", ()), pier.get("labels", True)
+        )
 
     @property
     def possible(self) -> bool:
@@ -135,6 +150,8 @@ class _Shape(NamedTuple):
             and 0.0 < self.height < 1e6
             and 0.0 < 2.0 * self.half_width < 100.0 * self.height
             and 0.0 < self.top < 1e6
+            and 0.0 < self.drift < 10.0 * self.top
+            and all(0.0 <= height <= 1.01 * self.top for height in self.sections)
         )
 
 
@@ -142,46 +159,70 @@ def sketches(piers: Sequence[Mapping[str, Any]], bases: Collection[str]) -> list
     """Return sketches of the first four possible piers, at one scale; ``piers`` as in run.json, ``bases`` the kinds of bases.
 
     All stand on springs if any base is not "rigid". A pier with impossible values is left out, since run.json may come from
-    anybody; [] if none is left.
+    anybody; [] if none is left. One whose ``labels`` are False shows its devices alone, beside a labelled one of its shape.
     """
     shapes = [shape for shape in map(_Shape.of, piers) if shape.possible][:MOST_PIERS]
     if not shapes:
         return []
-    scale = HEIGHT / max(shape.top for shape in shapes)
+    scale = HEIGHT / max(max(shape.top, shape.drift) for shape in shapes)
     return [_sketch(shape, scale, any(base != "rigid" for base in bases)) for shape in shapes]
 
 
 def _sketch(pier: _Shape, scale: float, springs: bool) -> Figure:
     """Return the sketch of a pier on ``springs`` or rigid ground, in pixels from the middle of its base, ``scale`` [px/m]."""
     b, h, top = (scale * length for length in (pier.half_width, pier.height, pier.top))
-    side, high = max(b, 30.0), max(top, h) + ABOVE
-    arc = 0.45 * math.hypot(b, h)
-    turn = np.linspace(0.0, pier.alpha, 9)
+    side, high = max(b, 30.0), max(top, h, scale * pier.drift * pier.labels) + ABOVE
     marks: list[Mark] = [
         Area(np.array([-b, -b, b, b]), np.array([0.0, top, top, 0.0]), look=Look("band")),
         _stroke("rigid", (-b, 0.0), (-b, top), (b, top), (b, 0.0), (-b, 0.0)),
-        Polyline(np.array([b, 0.0]), np.array([0.0, h]), look=Look("rigid", dash=1)),
-        _stroke("edge", (b, 0.0), (b, 1.15 * arc)),
-        Polyline(b - arc * np.sin(turn), arc * np.cos(turn), look=Look("edge")),
-        Words(b, arc, "α"),
-        Words(-b, 0.5 * h, "R₀", -1),
         Points(np.zeros(1), np.array([h]), look=Look("peak", shape="dot")),
-        *_length((b + 26.0, 0.0), (b + 26.0, h), f"h = {pier.height:.3g} m"),
         *(mark for x in (-b, b) for mark in _support(x, springs)),
         *_deck(pier, b, scale),
         *(mark for kind, place in pier.devices for mark in _device(kind, place, scale, top)),
-        *_length((-b, -32.0), (b, -32.0), f"2b = {2.0 * pier.half_width:.3g} m"),
     ]
+    if pier.labels:
+        marks += [*_dimensions(pier, b, h), *_heights(pier, b, scale)]
     support = "two springs" if springs else "rigid ground"
     words = (
         f"The pier to scale on {support}: {2.0 * pier.half_width:.3g} m between its pivots, centre of mass "
-        f"{pier.height:.3g} m above them, slenderness {pier.alpha:.3g} rad"
+        f"{pier.height:.3g} m above them, slenderness {pier.alpha:.3g} rad, drift read at {pier.drift:.3g} m"
     )
+    if pier.sections:
+        words += f", sections at {', '.join(f'{height:.3g}' for height in pier.sections)} m"
     if kinds := dict.fromkeys(kind for kind, _ in pier.devices):
         words += f", with {' and '.join(kinds)}"
-    x, y = Axis("", -LEFT - side, side + RIGHT, names={}), Axis("", -BELOW, high, names={})
-    panel = Panel(x, y, marks, pier.name, width=x.high - x.low, height=y.high - y.low, framed=False)
+    ends = [mark.x + mark.side * (7.0 + LETTER * len(mark.text)) for mark in marks if isinstance(mark, Words)]
+    x = Axis("", min([-side - SIDE, *ends]), max([side + SIDE, *ends]), names={})
+    y = Axis("", -BELOW, high, names={})
+    panel = Panel(x, y, marks, pier.caption, width=x.high - x.low, height=y.high - y.low, framed=False)
     return Figure([panel], words)
+
+
+def _dimensions(pier: _Shape, b: float, h: float) -> Iterator[Mark]:
+    """Yield the width between the pivots, the height of the centre of mass, and α between it and the edge, with their names."""
+    arc = 0.45 * math.hypot(b, h)
+    turn = np.linspace(0.0, pier.alpha, 9)
+    yield Polyline(np.array([b, 0.0]), np.array([0.0, h]), look=Look("rigid", dash=1))
+    yield _stroke("edge", (b, 0.0), (b, 1.15 * arc))
+    yield Polyline(b - arc * np.sin(turn), arc * np.cos(turn), look=Look("edge"))
+    yield Words(b, arc, "α")
+    yield from _length((b + 26.0, 0.0), (b + 26.0, h), f"h = {pier.height:.3g} m")
+    yield from _length((-b, -32.0), (b, -32.0), f"2b = {2.0 * pier.half_width:.3g} m")
+
+
+def _heights(pier: _Shape, b: float, scale: float) -> Iterator[Mark]:
+    """Yield the heights at which drift and forces are read, left of the pier, with labels that do not overlap."""
+    all_named = len(pier.sections) <= MOST_SECTIONS
+    named = {height: "section" for height in (pier.sections if all_named else pier.sections[:: len(pier.sections) - 1])}
+    named[pier.drift] = "drift and section" if pier.drift in pier.sections else "drift"
+    lowest = -math.inf
+    for height in sorted({*named, *pier.sections}):
+        y = scale * height
+        yield _stroke("edge", (-b - 8.0, y), (b, y) if height in pier.sections else (-b, y))
+        if height in named:
+            lowest = max(y, lowest + APART)
+            yield _stroke("edge", (-b - 8.0, y), (-b - 14.0, lowest))
+            yield Words(-b - 10.0, lowest, f"{named[height]} {height:.3g} m", -1)
 
 
 def _stroke(kind: str, *points: tuple[float, float], title: str = "", colour: int = 0) -> Polyline:
@@ -194,7 +235,8 @@ def _deck(pier: _Shape, b: float, scale: float) -> Iterator[Mark]:
     if pier.deck:
         y, half = scale * pier.deck, max(b, 24.0) + 6.0
         yield _box(0.0, y, half, 3.0, Look("deck"))
-        yield Words(half, y, f"deck, {pier.deck:.3g} m")
+        if pier.labels:
+            yield Words(half, y, f"deck, {pier.deck:.3g} m")
 
 
 def _box(x: float, y: float, half_width: float, half_height: float, look: Look) -> Area:

@@ -333,7 +333,10 @@ def kinds_of(values: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def restraint_of(values: Mapping[str, Any]) -> Restraint:
-    """Return the device with the fields of run.json or a history; None stands for the default."""
+    """Return the device with the fields of run.json or a history, of the kind :func:`what_of` them.
+
+    Other names are left out; None stands for the default.
+    """
     kind = KINDS[what_of(values)]
     names = {attribute.name for attribute in fields(kind)}
     return kind(**{name: value for name, value in values.items() if name in names and value is not None})

@@ -99,15 +99,15 @@ def _settlement(runs: Rows, case: Case) -> Estimated:
     return Estimated(runs.numbers("settlement_m"), runs.numbers("settlement_error_m"))
 
 
-_BY_OTHER_LAW = {name: values for found in parts("quantities.BY_OTHER_LAW") for name, values in found.items()}
+_OTHER_ENDS = {name: end for ends in parts("quantities.OTHER_ENDS") for name, end in ends.items()}
 _SETTLEMENTS = (
-    Limit(ceiling=WIDER, evaluate=_settlement, other_law=_BY_OTHER_LAW.get("settlement_m")),
+    Limit(ceiling=WIDER, evaluate=_settlement, other_end=_OTHER_ENDS.get("settlement_m")),
     Limit(
         "toe_settlement_m",
         ceiling=WIDER,
         words="settlement of the support that settles more",
         evaluate=toe_settlement,
-        other_law=_BY_OTHER_LAW.get("toe_settlement_m"),
+        other_end=_OTHER_ENDS.get("toe_settlement_m"),
     ),
 )
 _TILTS = (

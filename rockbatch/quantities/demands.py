@@ -42,6 +42,21 @@ class Ceiling(NamedTuple):
     beyond: str
 
 
+class OtherEnd(NamedTuple):
+    """The other end of a demand's range: its values in the same runs by another model, which an observer brings.
+
+    ``column`` of peaks.csv has them, with the key ``needs`` of [output], and ``evaluate`` returns the demand by them, shape (n,),
+    for a case that ``has_range``. ``model`` and ``models`` are the words for one model, and for both.
+    """
+
+    column: str
+    needs: str
+    evaluate: Callable[[Rows, Case], Values]
+    has_range: Callable[[Case], bool]
+    model: str
+    models: str
+
+
 @dataclass(frozen=True)
 class Demand:
     """A quantity that a check limits; less is better, except for properties of the case.
@@ -62,8 +77,8 @@ class Demand:
         True if it is the same for all records.
     residual : bool
         True if it is what remains after a motion.
-    other_law : function or None
-        Values by the other spring law, shape (n,); the worse counts.
+    other_end : OtherEnd or None
+        The other end of its range, where two models give one; the worse counts.
     ceiling : Ceiling or None
         Value beyond which a limit decides nothing.
     verb : str
@@ -98,7 +113,7 @@ class Demand:
     event: bool = False
     per_case: bool = False
     residual: bool = False
-    other_law: Callable[[Rows, Case], Values] | None = None
+    other_end: OtherEnd | None = None
     ceiling: Ceiling | None = None
     verb: str = ""
     needs: str = ""
@@ -127,11 +142,11 @@ class Demand:
 
     @property
     def brings(self) -> set[str]:
-        """Keys of [output] that a check of it switches on: "both_laws" if it has values by the other law, else OF_BASE if needed.
+        """Keys of [output] that a check of it switches on: that of the other end of its range, if any, else OF_BASE if needed.
 
         Other keys that it ``needs`` have to be in the study.
         """
-        return {"both_laws"} if self.other_law else {self.needs} & {OF_BASE}
+        return {self.other_end.needs} if self.other_end else {self.needs} & {OF_BASE}
 
     @property
     def words(self) -> str:

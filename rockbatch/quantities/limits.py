@@ -7,9 +7,6 @@ from rockbatch.quantities.quantity import Limit
 IN_MOTION, IN_MOTION_ERROR = "theta_max_in_motion_over_alpha", "theta_max_in_motion_error"
 """Columns of the peak until a motion ends, which a run that failed later has reached, and of its error."""
 
-OTHER_LAW = "settlement_other_law_m"
-"""Column of the settlement by the other spring law, which an observer brings."""
-
 OVERTURNS = "is past the edge of overturning"
 WIDER = Ceiling(width, "is more than the pier is wide")
 _IN_MM = Limit(unit="mm", times=THOUSAND, ceiling=Ceiling(product(THOUSAND, width), WIDER.beyond))

@@ -5,10 +5,8 @@ from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, Protocol
 
 from rockbatch.pier import Pier
-from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import ONE, Case, Lever
-from rockbatch.quantities.demands import Ceiling, Demand, Evaluate, largest, largest_force
-from rockbatch.quantities.statistics import Values
+from rockbatch.quantities.cases import ONE, Lever
+from rockbatch.quantities.demands import Ceiling, Demand, Evaluate, OtherEnd, largest, largest_force
 
 ALL = ("rigid", "elastic", "yielding", "footing")
 SPRINGS = ("elastic", "yielding", "footing")
@@ -107,7 +105,7 @@ class Limit(NamedTuple):
     columns: tuple[str, ...] = ()
     evaluate: Evaluate | None = None
     reached: Evaluate | None = None
-    other_law: Callable[[Rows, Case], Values] | None = None
+    other_end: OtherEnd | None = None
     height: Lever | None = None
 
 
@@ -241,7 +239,7 @@ class Quantity:
             limit.unit or in_print(self.unit),
             self.bases,
             residual=self.stood,
-            other_law=limit.other_law,
+            other_end=limit.other_end,
             ceiling=limit.ceiling,
             needs=self.needs,
             weighed=self.weighed,

@@ -149,7 +149,7 @@ def _max(values: Values) -> float:
 def _asce7_16(values: Values) -> float:
     """Return the mean by ASCE 7-16; infinite values are unacceptable responses, of which two or more give infinity.
 
-    With one, 120 % of the median of all values is returned, or the mean of the others if that is greater.
+    One alone gives 120 % of the median of all values, or the mean of the others if that is greater; infinity without others.
     """
     acceptable = values[np.isfinite(values)]
     if len(acceptable) == len(values):

@@ -2,14 +2,14 @@
 
 import difflib
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, standing, worst_of_all
 from rockbatch.quantities.catalogue import COLUMNS
 from rockbatch.reporting.differing import differences
+from rockbatch.reporting.drawings import drawings
 from rockbatch.reporting.finished import Finished, worst_first
-from rockbatch.reporting.labels import counted, head, symbol
+from rockbatch.reporting.labels import counted, first_of, head, symbol
 from rockbatch.reporting.margins import headline, margins
 from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.reporting.overview import drawn_by_record
@@ -26,7 +26,10 @@ INDEPENDENT = ("theta_max_over_alpha", "settlement_m", "base_tilt_rad", "ductili
 
 
 def answer(pair: Pair) -> Markup:
-    """Return which study passes and by how much, then margins by check, and rotations over the runs that both have."""
+    """Return which study passes and by how much, then margins by check, and the worst responses and rotations of both.
+
+    Responses are over the runs that end standing in both, the change of the rotation over pairs of runs.
+    """
     lead = tag("div", tag("strong", headline(pair)), class_="lead")
     in_common = zip(pair.studies, pair.runs, strict=True)
     studies = [replace(study, runs=study.runs.loc[runs.index]) for study, runs in in_common]
@@ -139,7 +142,7 @@ def figures(pair: Pair) -> Markup:
 
 
 def pairs(pair: Pair) -> Markup:
-    """Return a table with a row for each pair of runs, worst first; empty without pairs."""
+    """Return a table with a row for each of the worst :data:`MOST_ROWS` pairs of runs, worst first; empty without pairs."""
     a, b = pair.runs
     if a.empty:
         return Markup("")
@@ -187,14 +190,10 @@ def only_in_one(pair: Pair) -> Markup:
     for name, study, runs in zip(SIDES, pair.studies, pair.only, strict=True):
         for _, group in runs.groupby(["series", "pier", "scale", "polarity", "with_vertical"], sort=False):
             rows.append(
-                [name, study.case_of(group.iloc[0]), len(group), _first(list(dict.fromkeys(group["record"])), 6)]
+                [name, study.case_of(group.iloc[0]), len(group), first_of(list(dict.fromkeys(group["record"])), 6)]
             )
     heads = [Head("study"), Head("case"), Head("runs"), Head("records")]
     return table(heads, rows, name="Only in one") if rows else Markup("")
-
-
-def _first(names: Sequence[str], most: int) -> str:
-    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
 
 
 def studies(pair: Pair) -> Markup:
@@ -204,7 +203,7 @@ def studies(pair: Pair) -> Markup:
     ]
     for name, study in zip(SIDES, pair.studies, strict=True):
         title = tag("h3", f"{name}: {study.study['title'] or ''} ", tag("code", study.directory))
-        parts += [title, responses(study), studied.section(study, level="h4")]
+        parts += [title, responses(study), drawings(study), studied.section(study, level="h4")]
         parts += [tag("h4", "Statics"), statics.section(study)]
     return join(*parts)
 

@@ -189,15 +189,15 @@ def _of_motions(a: Finished, b: Finished) -> list[Difference]:
     Of these one for files that could not be used, and one for files left out; [] if all agree.
     """
     only = [[name for name in x.records if name not in y.records] for x, y in ((a, b), (b, a))]
-    rows = [Difference("motions in one only", *map(_listed, only))] if any(only) else []
+    rows = [Difference("motions in one only", *(_listed(names, "motion") for names in only))] if any(only) else []
     other = [name for name in a.records if name in b.records and _differ(a.records[name], b.records[name])]
     if other:
         sides = ([f"{name} ({x.records[name]['pga_g']:.4g} g)" for name in other] for x in (a, b))
-        rows.append(Difference("different motions under the same name", *map(_listed, sides)))
+        rows.append(Difference("different motions under the same name", *(_listed(names, "motion") for names in sides)))
     for key, words in (("unusable", "files that could not be used"), ("left_out", "files left out")):
         names = [[str(file["name"]) for file in x.info.get(key, ())] for x in (a, b)]
         if names[0] != names[1]:
-            rows.append(Difference(words, *map(_listed, names)))
+            rows.append(Difference(words, *(_listed(side, "file") for side in names)))
     return rows
 
 
@@ -209,8 +209,8 @@ def _differ(first: Mapping[str, Any], second: Mapping[str, Any]) -> bool:
     return any(as_in_peaks(first[key]) != as_in_peaks(second[key]) for key in keys)
 
 
-def _listed(names: Sequence[str]) -> str:
+def _listed(names: Sequence[str], noun: str) -> str:
     """Return names separated by commas, "–" for none; of more than six their number before the first: "9 files: a, …"."""
     if len(names) <= MOST_VALUES:
         return ", ".join(names) or "–"
-    return f"{counted(len(names), 'file')}: {', '.join(names[:MOST_VALUES])}, …"
+    return f"{counted(len(names), noun)}: {', '.join(names[:MOST_VALUES])}, …"

@@ -173,7 +173,10 @@ def _mark(run: Run, x: float, marks: Marks) -> Markup:
 
 @cache
 def _template(series: Series | None, place: int | None) -> Markup:
-    """Return a mark's HTML with placeholders {x} for its position [%] and {said} for its tooltip: thousands are alike."""
+    """Return a mark's HTML with placeholders {x} for its position [%] and {said} for its tooltip; a dot without a ``series``.
+
+    ``place`` is the number of the series. The result is cached, as thousands of marks are alike.
+    """
     if series is None:
         return marker(DOT, "{x}%", MIDDLE, "{said}")
     if series.rigid:

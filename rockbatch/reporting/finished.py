@@ -1,11 +1,14 @@
 """Finished results as the report uses them: every run with its pier, foundation and ground motion."""
 
+import math
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from rockbatch.checks import Verdict, read_verdicts
 from rockbatch.checks.coverage import CaseRuns, runs_of_cases
@@ -14,6 +17,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.outcome.response import Response
 from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.cases import Case
 from rockbatch.quantities.rows import NOT_RUN, counts_as, simulated
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.labels import counted
@@ -21,6 +25,7 @@ from rockbatch.reporting.markup import Markup, join, number, tag
 from rockbatch.results.labelled import Labelled, Row, by_pga, foundation_key, groups_of, labelled, pier_key
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.reading import Saved
+from rockbatch.results.sections import SECTIONS, read_sections
 
 if TYPE_CHECKING:
     from pandas.core.groupby import DataFrameGroupBy
@@ -83,6 +88,22 @@ class Finished(Contents, Labelled):
     def suites(self) -> list[CaseRuns]:
         """Return each case at each scale with its number of planned runs, and of those that do not end standing."""
         return runs_of_cases(self.runs, self.info["cases"], len(self.info["records"]))
+
+    @cached_property
+    def sections(self) -> "pd.DataFrame":
+        """Return the rows of sections.csv; empty if the study asks for none."""
+        path = self.directory / SECTIONS
+        return read_sections(path, self.info["varied"]) if path.exists() else pd.DataFrame()
+
+    def section_heights(self, case: Case) -> tuple[float, ...]:
+        """Return the heights [m] of a case's sections, of sections.csv and of its checks, ascending."""
+        name, rows = case["case"], self.sections
+        heights = {one.at_m for one in self.verdicts if one.case == name and not math.isnan(one.at_m)}
+        if len(rows):
+            own = {"case": name} | case["columns"]
+            alike = [rows[key] == value for key, value in own.items() if key in rows]
+            heights |= set(rows.loc[np.logical_and.reduce(alike), "height_m"])
+        return tuple(sorted(heights))
 
     @cached_property
     def not_run(self) -> int:

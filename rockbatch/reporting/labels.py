@@ -1,6 +1,7 @@
 """Counts, headings and heads of columns on the page."""
 
 import re
+from collections.abc import Sequence
 
 from rockbatch.quantities.quantity import Quantity
 from rockbatch.reporting.markup import Markup, escape, tag
@@ -29,3 +30,8 @@ def head(column: Quantity) -> Head:
     assert column.page is not None
     factor = f" × {column.page.factor}" if column.page.factor != 1 else ""
     return Head(heading(column.page.head), column.page.form, f"{column.name}{factor}: {column.meaning}")
+
+
+def first_of(names: Sequence[str], most: int) -> str:
+    """Return the first ``most`` names and how many are left out: "a, b and 3 more"."""
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")

@@ -47,7 +47,11 @@ def by_record(finished: Finished) -> Markup:
 def drawn_by_record(
     finished: Finished, columns: "Sequence[tuple[str, pd.DataFrame]]", limits: Sequence[Sequence[dots.Limit]] = ()
 ) -> Markup:
-    """Return the figure of runs in rows by record; ``columns`` are (caption, runs), ``limits`` those of each column."""
+    """Return the figure of runs in rows by record; ``columns`` are (caption, runs), ``limits`` those of each column.
+
+    Of more than :data:`MOST_ROWS` records the least bad ones share a row, and have a folded one each unless there are very many
+    runs.
+    """
     runs = pd.concat([of_column for _, of_column in columns]) if len(columns) > 1 else columns[0][1]
     names = groups_worst_first(runs, "record")
     single = names if len(names) <= MOST_ROWS else names[: MOST_ROWS - 1]

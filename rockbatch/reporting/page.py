@@ -146,7 +146,7 @@ def page(contents: Contents, whole: bool = False) -> str:
 
 
 def comparison(pair: Pair, whole: bool = False) -> str:
-    """Return the page that compares two studies as HTML."""
+    """Return the page that compares two studies as HTML; with ``whole`` folded sections are unfolded and printed."""
     a, b = (study.study["title"] or study.directory.name for study in pair.studies)
     versions = " and ".join(dict.fromkeys(study.info["rockbatch"] for study in pair.studies))
     shown = [Section(part.heading, part.anchor, part.content(pair), part.folded) for part in PARTS_OF_TWO]

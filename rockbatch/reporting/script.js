@@ -377,3 +377,114 @@ for (const pictures of document.querySelectorAll(".histories")) {
   }
   if (choice.firstChild) pictures.before(choice);
 }
+
+// The worst run of each case: the pier follows the curves of its history, in one clock with the ground
+for (const player of document.querySelectorAll(".player")) {
+  const figures = [...player.children], histories = [...document.querySelectorAll(".histories > figure")];
+  const still = matchMedia("(prefers-reduced-motion: reduce)");
+  const node = (name, attributes = {}, ...children) => {
+    const element = document.createElement(name);
+    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+    element.append(...children);
+    return element;
+  };
+  const numbers = (text) => text.split(" ").map(Number);
+  // The curves of a run: copies of those that are drawn, and their values by time
+  const strip = (panel, curve) => {
+    const copy = panel.cloneNode(true), group = copy.querySelector("g.axes");
+    [...group.querySelectorAll("path")].forEach((path, place) => { if (place !== curve) path.remove(); });
+    copy.querySelectorAll(".cursor, .at, .v1, .event, .flown").forEach((other) => other.remove());
+    copy.setAttribute("viewBox", panel.dataset.views?.split("|")[0] ?? panel.getAttribute("viewBox"));
+    for (const [key, value] of [["y", "0"], ["height", "100%"]]) copy.setAttribute(key, value);
+    const clock = group.appendChild(made("line", { class: "clock" }));
+    const outer = made("svg", { class: "plot", "aria-hidden": "true" });
+    outer.append(copy);
+    const [left, top, width, height] = numbers(group.dataset.box);
+    const [t0, t1] = numbers(group.dataset.x), [y0, y1] = numbers(group.dataset.y);
+    const points = pointsOf(group.querySelector("path")).map(([x, y]) => [t0 + (x - left) / width * (t1 - t0), y1 - (y - top) / height * (y1 - y0)]);
+    return {
+      outer,
+      at: (t) => {
+        const x = left + (t - t0) / (t1 - t0) * width;
+        for (const [key, value] of [["x1", x], ["x2", x], ["y1", top], ["y2", top + height]]) clock.setAttribute(key, value);
+        let low = 0, high = points.length - 1;
+        while (high - low > 1) { const middle = (low + high) >> 1; if (points[middle][0] <= t) low = middle; else high = middle; }
+        const [[ta, a], [tb, b]] = [points[low], points[high]];
+        return t >= tb || tb === ta ? b : t <= ta ? a : a + (t - ta) / (tb - ta) * (b - a);
+      },
+    };
+  };
+  const ready = figures.map(() => null);
+  const runOf = (place) => (ready[place] ??= (() => {
+    const figure = figures[place], { picture, curve, turn, half, push, times } = figure.dataset;
+    const panels = histories[Number(picture)].querySelectorAll("svg.readings > svg");
+    const rotation = strip(panels[0], Number(curve)), ground = strip(panels[panels.length - 1], 0);
+    const strips = node("div", { class: "strips scripted" }, "θ/α", rotation.outer, "ground acceleration [g]", ground.outer);
+    figure.querySelector(".stage").append(strips);
+    const moves = figure.querySelector(".moves"), arrow = figure.querySelector(".push"), foot = arrow.getAttribute("d").match(/^M0 [\d.]+/)[0];
+    const [from, to, peak] = numbers(times);
+    return {
+      from, to, now: peak,
+      show(t) {
+        this.now = Math.max(from, Math.min(to, t));
+        const theta = rotation.at(this.now), g = ground.at(this.now), long = g * Number(push), head = 4 * Math.sign(long);
+        moves.setAttribute("transform", `rotate(${theta * Number(turn)} ${Math.sign(theta) * Number(half)} 0)`);
+        arrow.setAttribute("d", `${foot}h${long}` + (Math.abs(long) > 4 ? `m${-head} -3l${head} 3l${-head} 3` : ""));
+        return `t = ${this.now.toFixed(2)} s, θ/α = ${theta.toFixed(4)}, ground ${g.toFixed(3)} g`;
+      },
+    };
+  })());
+  let place = 0, speed = 1, before = null;
+  const slider = node("input", { type: "range", step: "0.01", "aria-label": "Time [s]" });
+  const says = node("output", { "aria-live": "off" });
+  const show = (t) => {
+    const words = runOf(place).show(t);
+    slider.value = runOf(place).now;
+    slider.setAttribute("aria-valuetext", words);
+    says.textContent = words;
+  };
+  const play = node("button", { type: "button" }, "Play");
+  const pause = () => { before = null; play.textContent = "Play"; };
+  const frame = (time) => {
+    if (before === null) return;
+    const run = runOf(place);
+    show(run.now + speed * (time - before) / 1000);
+    before = time;
+    if (run.now >= run.to) pause(); else requestAnimationFrame(frame);
+  };
+  play.addEventListener("click", () => {
+    if (before !== null) { pause(); return; }
+    const run = runOf(place);
+    if (run.now >= run.to) show(run.from);
+    play.textContent = "Pause";
+    before = performance.now();
+    requestAnimationFrame(frame);
+  });
+  const step = (words, by) => {
+    const button = node("button", { type: "button", "aria-label": words }, by < 0 ? "◂ Step" : "Step ▸");
+    button.addEventListener("click", () => { pause(); show(runOf(place).now + by); });
+    return button;
+  };
+  const speeds = node("select", {}, ...[0.1, 0.25, 0.5, 1, 2, 5].map((value) => new Option(`× ${value}`, value, value === 1, value === 1)));
+  speeds.addEventListener("change", () => { speed = Number(speeds.value); });
+  slider.addEventListener("input", () => { pause(); show(Number(slider.value)); });
+  const choose = (chosen) => {
+    pause();
+    place = chosen;
+    figures.forEach((figure, i) => figure.classList.toggle("chosen", i === place));
+    const run = runOf(place);
+    for (const [key, value] of [["min", run.from], ["max", run.to]]) slider.setAttribute(key, value);
+    show(run.now);
+  };
+  const cases = node("select", {}, ...figures.map((figure) => new Option(figure.querySelector("strong").textContent)));
+  cases.addEventListener("change", () => choose(cases.selectedIndex));
+  const calm = node("span", { class: "muted" }, "Reduced motion is asked for: step, or move the slider.");
+  const settle = () => { pause(); play.hidden = still.matches; calm.hidden = !still.matches; };
+  still.addEventListener("change", settle);
+  const bar = node("div", { class: "buttons scripted", role: "group", "aria-label": "Play the worst run of a case" });
+  if (figures.length > 1) bar.append(node("label", {}, "Case ", cases));
+  bar.append(play, calm, step("A step of 0.02 s back", -0.02), step("A step of 0.02 s on", 0.02), node("label", {}, "Speed ", speeds), says, slider);
+  player.before(bar);
+  settle();
+  choose(0);
+}

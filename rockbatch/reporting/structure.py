@@ -103,6 +103,12 @@ def device_in_words(pier: Pier, restraint: Restraint) -> str:
     return ", ".join([f"{words} {_place(restraint)}", *numbers])
 
 
+def devices_in_words(case: Case) -> list[str]:
+    """Return the devices of a case in words, one text each; [] without devices or for impossible values."""
+    pier = pier_of(case)
+    return [device_in_words(pier, device) for device in restraints_of(case)] if pier else []
+
+
 def _parameter(symbol: str, unit: str, value: float, power: float) -> str:
     """Return "C = 900 kN (s/m)^0.3" without line breaks; ``power`` is the exponent in the unit."""
     return f"{symbol} = {plain(value, 4)} {unit_with_exponent(unit, power)}".strip().replace(" ", "\u00a0")

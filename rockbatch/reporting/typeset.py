@@ -147,8 +147,8 @@ def _panels(element: Element, setting: Setting) -> str:
     return f"\n#grid(columns: (1fr,) * {side}, column-gutter: 8pt, row-gutter: 8pt, align: bottom, {cells})\n"
 
 
-def _histories(element: Element, setting: Setting) -> str:
-    """Return the histories of the first motion, which the sheet shows; all content if it has no figure."""
+def _chosen(element: Element, setting: Setting) -> str:
+    """Return the first figure, of which the page shows one at a time: histories of the worst motion, the pier of a case."""
     return blocks(next(element.iter("figure"), element), setting)
 
 
@@ -292,7 +292,8 @@ _BY_CLASS = {
     "key": _key,
     "panels": _panels,
     "piers": _panels,
-    "histories": _histories,
+    "histories": _chosen,
+    "player": _chosen,
     "timed": _timed,
     "dots": _dots,
 }

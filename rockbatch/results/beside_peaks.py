@@ -67,15 +67,20 @@ def read_beside(
 ) -> "pd.DataFrame":
     """Read a table beside peaks.csv, with "" for empty texts.
 
+    A table without rows, of a study whose runs have none, has heads for its runs only, and gets the ``columns``.
+
     Raises ``InputError`` if a column that names the run or one of ``columns`` is missing, or if one of these that is not in
     ``texts`` is not numeric.
     """
     table = read_table(path)
+    if table.empty and list(table) == list(NAMING):
+        return table.reindex(columns=[*NAMING, *varied, *columns])
     wrong = [f"column {name} is missing" for name in (*NAMING, *varied, *columns) if name not in table]
     numbers = [name for name in columns if name in table and name not in texts]
     wrong += [f"column {name} has texts" for name in numbers if not pd.api.types.is_numeric_dtype(table[name])]
     if wrong:
-        raise InputError(f"{path}: {wrong[0]}: the file was changed; start `rockbatch run` again")
+        why = "the file was changed, or written by an earlier version"
+        raise InputError(f"{path}: {wrong[0]}: {why}; start `rockbatch run` again")
     # As in peaks.csv, with which it is merged: the nominal design has an empty bound
     return table.fillna({name: "" for name in TEXTS if name in table})
 

@@ -211,7 +211,7 @@ class Responses(Sequence[Response]):
     def runs(self) -> "pd.DataFrame":
         """Table of the runs: record, case, polarity, scale, status and varied keys, NaN if a key does not apply.
 
-        No history is read for it.
+        No history is read for it; it has no rows if there is no file.
         """
         rows = []
         if self.path.exists() or self.path.is_symlink():

@@ -101,7 +101,7 @@ class Series:
 
     @property
     def keyed(self) -> str:
-        """Return the label for a legend after the tick, "a – pads: β = 40"; alone if rigid, or if it begins with the tick."""
+        """Return the label for a legend after the tick, "a – pads: β = 40"; alone if rigid, or if its case is the tick."""
         return self.label if self.rigid or self.label.split(":")[0] == self.tick else f"{self.tick} – {self.label}"
 
 
@@ -181,7 +181,8 @@ def named(
 ) -> dict[Key, Series]:
     """Return a series for each foundation, labelled by its case and the values that distinguish it from others of its kind.
 
-    The case is left out if all share it and values distinguish them. ``cases`` maps each foundation to its entries in run.json,
+    The case is left out if all share it and values distinguish them. A tick is a letter, or the name of the case if all names are
+    short and different. ``cases`` maps each foundation to its entries in run.json,
     one for each pier; ``given`` maps case names to the keys that the study gives.
     """
     constants = {key: _constants(of_foundation, given.get(str(key[0]), ())) for key, of_foundation in cases.items()}

@@ -15,6 +15,7 @@ import numpy as np
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import EditedTable, InputError, MissingColumns, NotFound, Problem, refuse
 from rockbatch.common.files import CHANGED, csv_plain, legible, opened, opened_text, read_text, sha256_of
+from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
 from rockbatch.common.version import __version__
 from rockbatch.quantities.catalogue import COUNTS, FACTS, FIXED, TEXTS, TRAILING, UNBOUNDED, names
@@ -112,7 +113,10 @@ def read_saved(directory: Path) -> Saved:
 def _instead_of(directory: Path) -> str:
     """Return advice for a folder without runs: the page of its analyses if it has one, else to give a folder that has runs."""
     path = directory / ANALYSES_PAGE
-    return f"its analyses are in {path}" if path.exists() else "give a folder that it has written"
+    if path.exists():
+        return f"its analyses are in {path}"
+    beside = closest(directory.name, (each.parent.name for each in directory.parent.glob(f"*/{INFO}")))
+    return f"did you mean {directory.parent / beside}?" if beside else "give a folder that it has written"
 
 
 def _other_version(directory: Path) -> list[str]:

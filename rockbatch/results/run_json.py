@@ -216,8 +216,7 @@ def is_of(directory: Path, sha256: str, records: Sequence[str] | None = None) ->
 
 def _is_pulse(motion: Motion, study: Study) -> bool:
     """Return whether a motion is a pulse of the study, or a sequence of pulses: targets do not scale these."""
-    names = [shock.name for shock in motion.shocks] or [motion.name]
-    return {pulse.name for pulse in study.motions.pulses}.issuperset(names)
+    return {pulse.name for pulse in study.motions.pulses}.issuperset(motion.records)
 
 
 def rocking_periods(cases: Sequence[Case], target: SpectrumTarget) -> dict[str, list[float]]:

@@ -94,6 +94,7 @@ OUTPUT = joined(
         instead=names(
             {
                 "write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file",
+                "`rockbatch report` draws them, and makes a PDF with --sheet; leave it out": "plot plots figures pdf png",
                 "estimates of design practice are an example now, configs/code_estimates.py; leave it out": "estimate estimates",
             }
         ),

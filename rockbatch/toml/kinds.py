@@ -175,8 +175,13 @@ class Choice:
 
     def _meant(self, value: object) -> list[object]:
         """Return the options that a misspelt word, or a number in quotes, may stand for; [] for none, and for other values."""
-        if same := [option for option in self.options if not isinstance(option, str) and str(option) == value]:
+        last = str(value).strip().split(" ")[-1]
+        if same := [option for option in self.options if not isinstance(option, str) and _is_spelt(option, last)]:
             return same
+        if letter := [option for option in self.options if len(str(option)) == 1 and option == last]:
+            return list(letter)
+        if isinstance(value, int):
+            value = str(value)
         words = [option for option in self.options if isinstance(option, str)]
         return words_meant(value, words, self.called) if isinstance(value, str) else []
 
@@ -200,6 +205,12 @@ class Other:
 
     def schema(self) -> Schema:
         return dict(self.form)
+
+
+def _is_spelt(option: object, word: str) -> bool:
+    """Return whether a ``word`` says the truth value or number ``option``: "yes", "1" or "true" for True."""
+    spelt = {True: ("true", "yes", "on", "1"), False: ("false", "no", "off", "0")}
+    return word.lower() in spelt[option] if isinstance(option, bool) else word == str(option)
 
 
 _NUMBER = re.compile(r"[-+]?\d+(\.\d+)?([eE][-+]?\d+)?")

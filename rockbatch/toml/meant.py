@@ -4,11 +4,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from rockbatch.common.grouping import closest
+from rockbatch.common.units import unit_of
 
 _LONGEST = 100  # characters of a name that are looked at
-
-_UNITS = frozenset(("m", "mm", "km", "m2", "s", "t", "kN", "g", "deg", "rad", "years"))
-"""Words at the ends of keys that are units."""
 
 _ALIKE, _VERY_ALIKE = 0.75, 0.85
 """Least similarities of a misspelt name: of one with its unit left out, and of one that is looked for first."""
@@ -35,10 +33,8 @@ def without_unit(name: str) -> Iterator[str]:
 
 def _stem(key: str) -> str:
     """Return the plain key without its unit: "stiffness_kN_m" gives "stiffness"."""
-    words = key.split("_")
-    while len(words) > 1 and words[-1] in _UNITS:
-        words.pop()
-    return plain("_".join(words))
+    stem = key.removesuffix("_years")
+    return plain(stem.removesuffix(f"_{unit_of(stem)}"))
 
 
 def known_as(name: str, keys: Iterable[str], also: Mapping[str, Also], table: str = "") -> str:
@@ -78,7 +74,7 @@ def words_meant(word: str, options: Iterable[str], called: Mapping[str, object])
     options = list(options)
     if same := [option for option in options if plain(word) and plain(option) == plain(word)]:
         return list[object](same)
-    meant = called.get(plain(word))
+    meant = called.get(word, called.get(plain(word)))
     if meant is not None:
         return list(meant) if isinstance(meant, tuple) else [meant]
     nearest = closest(word, options, _ALIKE)

@@ -8,9 +8,9 @@ from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
 from rockbatch.common.errors import Problem
-from rockbatch.common.units import Usual
+from rockbatch.common.units import Usual, unit_of
 from rockbatch.toml.kinds import Choice, Kind, text
-from rockbatch.toml.meant import Also, known_as, without_unit
+from rockbatch.toml.meant import Also, known_as, plain
 
 
 @dataclass(frozen=True)
@@ -148,12 +148,13 @@ class Section(Mapping[str, Key]):
         return known_as(name, names, self.also, self.at[-1] if self.at else "")
 
     def advice(self, name: str) -> tuple[str, str]:
-        """Return the key to write in place of an unknown name, and the advice, each "" if there is none.
+        """Return the key to write in place of an unknown name, and what to say of it, each "" if there is none.
 
-        weight_kN gives ("mass_t", "write mass_t, the weight in kN over 9.81").
+        weight_kN gives ("mass_t", "the weight in kN over 9.81"). Without a key the words are the whole advice.
         """
-        advice = next(filter(None, map(self.instead.get, without_unit(name))), "")
-        return ("", advice) if isinstance(advice, str) else (advice[0], f"write {advice[0]}, {advice[1]}")
+        names = dict.fromkeys((plain(name), plain(name.removesuffix(f"_{unit_of(name)}"))))
+        advice = next(filter(None, map(self.instead.get, names)), "")
+        return ("", advice) if isinstance(advice, str) else (advice[0], advice[1])
 
     def default(self, name: str) -> object:
         """Return the value of a key that is not written; None if there is none, or it follows from others."""

@@ -109,7 +109,7 @@ def share_repeated(base, name, monkeypatch):
     return sum(records.repeated.sum() for records in marched) / steps
 
 
-@pytest.mark.parametrize("name", ["viscous", "tendon", "hysteretic", "several"])
+@pytest.mark.parametrize("name", ["viscous", "tendon", "friction", "hysteretic", "several"])
 @pytest.mark.parametrize(("base", "most"), [("epp", 0.05), ("rigid", 0.2)])
 def test_the_pass_takes_most_sub_steps_with_devices(base, most, name, monkeypatch):
     """The noise throws blocks on rigid ground into the air now and then, where all sub-steps are repeated."""

@@ -37,7 +37,7 @@ STUDY = study_text(
     sensitivity={"samples": 4, "uniform": {"alpha": [0.18, 0.22]}, "choice": {"spring": ["bouc-wen", "epp"]}},
 )  # fmt: skip
 PICTURES = {
-    "answer", "distribution", "fragility", "spectrum", "sensitivity", "histories", "studied", "statics", "records",
+    "answer", "distribution", "fragility", "spectrum", "sensitivity", "histories", "statics", "records",
     "error_and_time",
 }  # fmt: skip
 """Sections of the report that have one."""

@@ -27,12 +27,12 @@ Judgements = Mapping[Trial, Judged]
 
 
 def value_columns(spec: DesignSpec, varied: Sequence[str]) -> list[str]:
-    """Return the columns of design_values.csv; ``varied`` without the bound."""
+    """Return the columns of design_values.csv: case, ``varied`` but for the bound, the keys of ``spec``, verdict and why."""
     return ["case", *_of_designs(varied), *spec.paths, "verdict", *GOVERNING, "reason"]
 
 
 def interval_columns(spec: DesignSpec, varied: Sequence[str]) -> list[str]:
-    """Return the columns of design.csv; ``varied`` without the bound."""
+    """Return the columns of design.csv: case, ``varied`` but for the bound, later keys of ``spec``, the interval and its ends."""
     ends = [f"{end}{name}" for end in ENDS for name in _OF_END]
     return ["case", *_of_designs(varied), *spec.paths[1:], *_OF_INTERVAL, *ends]
 
@@ -42,7 +42,10 @@ def _of_designs(varied: Sequence[str]) -> list[str]:
 
 
 def values_table(judged: Judgements, spec: DesignSpec, varied: Sequence[str]) -> "pd.DataFrame":
-    """Return a row for each value of each design, with the verdict and the check that governs it, by case, then by value."""
+    """Return a row for each value of each design, with the verdict and the check that governs it.
+
+    Rows are sorted by case, then by the value of the second key, if any, then of the first.
+    """
     rows = [
         {"case": trial.design.case, **dict(trial.design.columns), **dict(zip(spec.paths, trial.values, strict=True))}
         | {"verdict": found.verdict, **_governing(found), "reason": found.reason}

@@ -25,7 +25,6 @@ from rockbatch.results.interaction import INTERACTION
 from rockbatch.results.run_json import describe_case
 from rockbatch.results.sections import SECTIONS
 from rockbatch.study import Case, Study
-from rockbatch.study.both_axes import along_the_axis
 from rockbatch.study.bound_keys import key_at
 from rockbatch.study.design_bounds import Change
 
@@ -76,9 +75,10 @@ class Written:
 
     @cached_property
     def designs(self) -> list[Design]:
-        """Return the designs of the cases that have the varied keys."""
-        cases = [case for case in along_the_axis(self.study.cases) if case.name in self.spec.cases]
-        return list(dict.fromkeys(self._design(case) for case in cases))
+        """Return the designs of the cases that have the varied keys, each once, also with cases along and across the axis."""
+        return list(
+            dict.fromkeys(self._design(case) for case in self.study.cases if case.name_along in self.spec.cases)
+        )
 
     def _design(self, case: Case) -> Design:
         columns = of_design({name: case.columns[name] for name in self.varied if name in case.columns})
@@ -152,7 +152,7 @@ class Trials:
         """Judge the trials of a case by the checks that are about it."""
         study, motions = self.waves.study, self.motions.motions
         described = [describe_case(case) for of_trial in cases.values() for case in of_trial]
-        names = frozenset(case.name for case in along_the_axis(self.written.study.cases))
+        names = frozenset(case.name_along for case in self.written.study.cases)
         about = (rule for rule in study.checks if not rule.case or name in chosen_by(tuple(rule.case), names))
         rules = [replace(rule, case=()) for rule in about]
         runs = peaks[peaks["case"].isin({str(case["case"]) for case in described})]

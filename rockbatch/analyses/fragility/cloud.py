@@ -241,8 +241,9 @@ def _alone(x: Values) -> Numbers:
 def fit(runs: Demands, limit: float, floor: float, confidence: float = 0.95) -> Cloud | NoCurve:
     """Return the curve of a limit above 0, or ``NoCurve`` with the reason; demands up to ``floor`` are censored.
 
-    There is none with fewer than STATIONS_OF_CURVE, 3, stations or LEAST_RECORDS, 4, demands above the floor, if demand or
-    overturning does not grow with the intensity, or if all runs or none exceed the limit and the median lies outside them.
+    There is none with fewer than STATIONS_OF_CURVE, 3, stations or LEAST_RECORDS, 4, demands above the floor, if all are of one
+    intensity or on one line, if demand or overturning does not grow with the intensity, or if all runs or none exceed the limit
+    and the median lies outside them.
 
     σ has n − 2 in its denominator, and its draws are those of a χ² variable, so that without censored demands the intervals of
     the line are Student's. The logistic part is penalised as Firth (1993, Biometrika 80(1):27–38) proposes, which
@@ -296,7 +297,11 @@ def _without_both(x: Values, happened: npt.NDArray[np.bool_]) -> NoCurve:
 def fit_event(
     x: Values, happened: npt.NDArray[np.bool_], confidence: float = 0.95, station: Numbers | None = None
 ) -> Cloud | NoCurve:
-    """Return the curve of an event such as overturning, logistic alone, or ``NoCurve``: all records have it, or none, or few."""
+    """Return the curve of an event such as overturning, logistic alone, or ``NoCurve`` with the reason.
+
+    There is none if all records have the event or none has, with fewer than STATIONS_OF_CURVE, 3, stations, for one intensity,
+    and if the share does not grow with it.
+    """
     log_x, station = np.log(x), _alone(x) if station is None else station
     if not len(x):
         return NoCurve("no record counts")
@@ -311,7 +316,9 @@ def fit_event(
 
 
 def _share(log_x: Values, happened: npt.NDArray[np.bool_], station: Numbers) -> Logistic | NoCurve | None:
-    """Return the logistic share that overturns; None if no record did, ``NoCurve`` if all did or the share does not grow."""
+    """Return the logistic share that overturns; None if no record did, ``NoCurve`` if all did, their intensities
+    are the same, or the share does not grow.
+    """
     if not happened.any():
         return None
     if happened.all():

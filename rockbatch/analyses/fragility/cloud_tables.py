@@ -80,7 +80,7 @@ def described_cloud(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
 
 
 def note_on_cloud(curve: Curve, spec: FragilitySpec) -> list[str]:
-    """Return remarks on a curve of a cloud: under FEW, 3, records beyond the limit, none overturning, some with small demands."""
+    """Return remarks on a curve of a cloud: fewer than FEW, 3, records beyond the limit, none overturns, some count as small."""
     notes = []
     beyond = sum(run.state == EXCEEDED for run in curve.cloud)
     if beyond < FEW:

@@ -144,7 +144,7 @@ def _interval(name: str) -> Callable[[Curve], Markup]:
 
 
 def _rate(written: Callable[[float], str]) -> Callable[[Curve], str]:
-    """Return a function from a curve to its rate as ``written``, or its bound: "at least 2.1e-04"."""
+    """Return a function from a curve to its rate as ``written``, or its bounds: "at least 2.1e-04", "between … and …"."""
 
     def rate(curve: Curve) -> str:
         risk = curve["risk"]

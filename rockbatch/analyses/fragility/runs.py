@@ -159,7 +159,7 @@ def output(spec: FragilitySpec, of_study: Output) -> Output:
 def intensities(motions: Sequence[Motion], spec: FragilitySpec, gravity: float) -> list[float]:
     """Return the intensity measure of every motion as it comes, in g, m/s or the unit of an own measure.
 
-    Raises ``InputError`` with every motion whose measure is not above 0.
+    Raises ``InputError`` with every motion whose measure is not above 0, or of which an own measure has no value.
     """
     measures = as_they_come([*motions], spec, gravity)
     still = [motion for motion, value in zip(motions, measures, strict=True) if not value > 0]
@@ -191,7 +191,7 @@ class RecordRuns:
         self._last: tuple[dict[Point, int], Rows]
 
     def execute(self, requested: Iterable[Point]) -> None:
-        """Execute one wave of runs, each once; keep their statuses, and their rows until the next wave."""
+        """Execute one wave of runs, each point in it once; keep their statuses, and their rows until the next wave."""
         points = sorted({*requested})  # what shares a motion stands together
         polarity = self.study.motions.simulated
         runs = ScaledRuns(points, self.motions, self.plans, lambda point: self.drawn(point).case, polarity)

@@ -241,8 +241,9 @@ def _check_inputs(table: Table, uncertain: Uncertain, study: Study) -> None:
 
 
 def _unfit(parameter: Input, own: float, case: Case) -> str:
-    """Return why a distribution does not fit the value ``own`` of a case, a lognormal one 0, or a uniform one a value outside
-    its ends; empty if it does.
+    """Return why a distribution does not fit a case: it is lognormal and the value ``own`` 0, or uniform and ``own`` outside it.
+
+    Empty if it fits.
     """
     if parameter.spread == "uniform":
         return outside(parameter.name, parameter.size, own, case)

@@ -124,7 +124,7 @@ def _listed(words: Iterable[str]) -> str:
 
 
 def _axis(axis: str) -> tuple[str, str]:
-    """Return symbol and unit of the size: "2π/p", " s"."""
+    """Return symbol and unit of ``axis``, a column: "2π/p" and "\u00a0s" of "two_pi_over_p_s"; "" for a column without unit."""
     words, _, unit = ACROSS.get(axis, symbol(axis)).partition(",")[0].partition(" [")
     return words, f"\u00a0{unit.rstrip(']')}" if unit else ""
 

@@ -148,7 +148,7 @@ class Axis:
         return (values - self.low) / (self.high - self.low)
 
     def ticks(self) -> dict[float, str]:
-        """Return the places of ticks along the axis, each with its label."""
+        """Return the values with ticks, and their labels: ``names`` if given, else round ones, on a log axis :meth:`_powers`."""
         if self.names is not None:
             return dict(self.names)
         places = self._powers() if self.log else self._steps()

@@ -318,7 +318,8 @@ def _landing(m, y, contact, pivot):
 
     The impulse at the pivot has a horizontal part, as its key takes over from that of the pivot last in contact. The angular
     momentum about it is conserved, and its velocity multiplied by −ε (THEORY.md, Flight on the rigid base), or by 0 if the
-    rebound would be below NEGLIGIBLE.
+    rebound would be below NEGLIGIBLE; after a rebound the block is in flight. If both land, velocities are multiplied by −ε, or
+    the block rests if that rebound is negligible.
     """
     left, right, left_velocity, right_velocity = clearances(m, y, contact.top)
     arm_left, arm_right = arms(m, y.theta, pivot)

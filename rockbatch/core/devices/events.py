@@ -166,14 +166,11 @@ def _write_functions(devices, j, motion, rounding, functions):
 def _sticking_functions(m, devices, now, place, h, functions):
     """Write the reserve of strength of up to two sticking friction dampers, and its slope by a finite difference."""
     x, kx, near = devices.x if place == START else devices.end, devices.rates[place], NEARBY * h
-    one = two = one_later = two_later = 0.0
-    for ahead in (0.0, near):  # a loop, since two calls would be much machine code
-        for i in range(len(x)):
-            devices.stage[i] = x[i] + ahead * kx[i]
-        one, two, there = one_later, two_later, later(now.ground, ahead)
-        soon = Moment(along(now.y, now.k, ahead), now.contact, now.supports)
-        _, one_later, two_later = under_devices(m, devices, soon, devices.stage, there)
-    j, forces, forces_later = NO_EVENT, (one, two), (one_later, two_later)
+    for i in range(len(x)):
+        devices.stage[i] = x[i] + near * kx[i]
+    soon = Moment(along(now.y, now.k, near), now.contact, now.supports)
+    _, one_later, two_later = under_devices(m, devices, soon, devices.stage, later(now.ground, near))
+    j, forces, forces_later = NO_EVENT, devices.held[place], (one_later, two_later)
     for number in range(2):
         j = sticking(devices, j)
         if j == NO_EVENT:

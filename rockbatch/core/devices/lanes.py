@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rockbatch.core.devices.elongation import GAP, Attitude, Gap, put_gap
-from rockbatch.core.devices.laws import ELEMENT, USE, Element, Use
+from rockbatch.core.devices.laws import ELEMENT, FRICTION, USE, Element, Use
 from rockbatch.core.devices.pull import END, Devices, bounds_steps
 from rockbatch.core.kernel import hook, kernel
 from rockbatch.core.table import LANES, get, lanes_of, move, put, taken
@@ -37,12 +37,20 @@ class Works(NamedTuple):
     p_delta: float
 
 
+class Grip(NamedTuple):
+    """Forces [m/s²] of the first two friction dampers that stick at one moment, 0 without any."""
+
+    first: float
+    second: float
+
+
 class Verdict(NamedTuple):
     """Numbers of a lane beside its devices."""
 
     level: float  # v of the pier at rest [m]
     ended: float  # 1 if the next step continues from the rates at the end of the last one
     doubts: float  # devices that may have an event in the sub-step or ask for shorter steps; 1 more if it is not smooth
+    holds: float  # 1 if friction that sticks has a force at the end
     extremes: float  # devices whose Use may have an extreme inside the sub-step
     smooth: (
         float  # negative if the next sub-step is left to scalar code, since it most likely needs several parts again
@@ -93,10 +101,13 @@ class Equipment(NamedTuple):
     end: np.ndarray
     rates: np.ndarray
     gaps: np.recarray
+    held: np.ndarray
     use: np.recarray
     ended: np.ndarray
     bound_steps: bool  # some may ask for a shorter step
     passes: bool  # the vector pass takes all of them; else runs are computed event by event throughout
+    rubs: np.ndarray  # numbers of one or two friction dampers, of one twice; none of more, which stick in scalar code
+    grips: np.recarray  # of lanes of Grip, shape (5,): at the start of a step, in its stages, and at its end
     lanes: np.recarray  # of DEVICE_LANE, shape (devices,)
     shared: np.recarray  # numbers of a lane beside its devices, and the pier's stages, shape (1,)
     cells: np.ndarray  # of ``lanes`` and ``shared``, a column for each lane
@@ -109,6 +120,12 @@ def signature(elements):
     It has, for each device, its kind and whether it is at the deck, is linear, and is hysteretic on a brace.
     """
     return tuple((of.kind, of.height != 0.0, of.linear_below == np.inf, of.give > 0.0) for of in elements)
+
+
+def _rubbing(elements):
+    """Return the numbers of one or two friction dampers, of one twice; none of more."""
+    numbers = [j for j, of in enumerate(elements) if of.kind == FRICTION]
+    return np.array(numbers[:1] + numbers[-1:] if len(numbers) in (1, 2) else [], np.int64)
 
 
 def equipment_of(system, starts):
@@ -145,10 +162,13 @@ def equipment_of(system, starts):
         np.zeros((runs, size)),
         np.zeros((runs, 6, size)),
         np.zeros((runs, 6, n), GAP).view(np.recarray),
+        np.zeros((runs, 6, 2)),
         np.zeros((runs, n), USE).view(np.recarray),
         np.zeros((runs, 3)),
         any(map(bounds_steps, all_elements)),
         all(of.kind in system.passed and of.give == 0.0 for of in all_elements),
+        _rubbing(starts[0][0]),
+        np.zeros(5, lanes_of({"grip": Grip})["grip"]).view(np.recarray),
         lanes.view(np.recarray),
         others.view(np.recarray),
         lanes.view("f8").reshape(-1, LANES),
@@ -179,6 +199,7 @@ def _devices_in(equipment, lanes, i):
         equipment.end[run],
         equipment.rates[run],
         equipment.gaps[run],
+        equipment.held[run],
         equipment.use[run],
         equipment.bound_steps,
         equipment.ended[run],
@@ -199,6 +220,7 @@ def _fetch_nothing(equipment, devices, i):
 def _fetch(equipment, devices, i):
     if equipment.passes:
         _copy_to_run(devices, equipment.lanes, equipment.shared[0], i)
+        devices.held[END, 0], devices.held[END, 1] = equipment.grips[0].first[i], equipment.grips[0].second[i]
 
 
 @kernel
@@ -223,8 +245,8 @@ def _copy_to_run(devices, each, shared, i):
 def stow(equipment, devices, i, smooth, event):
     """Copy the ``devices`` of a run to its lane ``i`` after scalar code, which ended with an ``event`` or not.
 
-    The pass takes the next sub-step if that may be ``smooth``, and friction does not hold the pier; nothing is copied for devices
-    that no pass takes.
+    The pass takes the next sub-step if that may be ``smooth``, and at most two friction dampers can hold the pier; nothing is
+    copied for devices that no pass takes.
     """
 
 
@@ -236,8 +258,10 @@ def _stow_nothing(equipment, devices, i, smooth, event):
 @stow.of(Equipment)
 def _stow(equipment, devices, i, smooth, event):
     if equipment.passes:
-        equipment.shared[0].verdict.smooth[i] = 1.0 if smooth and (event or devices.ended[0] != 0.0) else -1.0
+        goes_on = event or devices.ended[0] != 0.0 or len(equipment.rubs) == 2
+        equipment.shared[0].verdict.smooth[i] = 1.0 if smooth and goes_on else -1.0
         _copy_to_lane(devices, equipment.lanes, equipment.shared[0], i)
+        put(equipment.grips[0], i, Grip(0.0, 0.0))
 
 
 @kernel

@@ -20,7 +20,7 @@ CONTACT = 5.0  # a stop
 SPRING = 6.0
 
 PASSED = (VISCOUS, HYSTERETIC, TENDON, SPRING, FRICTION)
-"""Kinds that the vector pass takes; sub-steps in which friction sticks are left to scalar code."""
+"""Kinds that the vector pass takes."""
 
 DAMPERS = {"friction": FRICTION, "viscous": VISCOUS, "hysteretic": HYSTERETIC}
 """Kinds of dampers without a brace by their names in studies."""

@@ -11,11 +11,12 @@ import numpy as np
 
 from rockbatch.core.clock import EVENTFUL, ground_at
 from rockbatch.core.devices.elongation import Attitude, Gap, across, attitude_in_pass, gap, lifted, put_gap
-from rockbatch.core.devices.lanes import Mode, Progress, Works, devices_in, fetch
+from rockbatch.core.devices.lanes import Grip, Mode, Progress, Works, devices_in, fetch
 from rockbatch.core.devices.laws import (
     FRICTION,
     HYSTERETIC,
     SPRING,
+    STICKS,
     TAUT,
     TENDON,
     VISCOUS,
@@ -29,13 +30,23 @@ from rockbatch.core.devices.laws import (
     tension,
     viscous,
 )
-from rockbatch.core.devices.pull import END, GROWTH, PLASTIC, START, TRAVEL, device_rates
+from rockbatch.core.devices.pull import (
+    END,
+    GROWTH,
+    PLASTIC,
+    START,
+    TRAVEL,
+    device_rates,
+    forces_that_hold,
+    pushed,
+)
 from rockbatch.core.devices.use import take_in
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import inlined, inlined_once, kernel
 from rockbatch.core.roots import NO_ACCELERATION, excess, inner_points
 from rockbatch.core.system import (
     end_step,
+    gives_way,
     in_pass,
     lanes_in_pass,
     pier_in,
@@ -44,7 +55,7 @@ from rockbatch.core.system import (
     share,
     stage,
 )
-from rockbatch.core.table import along, get, put, taken, with_pull
+from rockbatch.core.table import ZERO, along, get, put, taken, with_pull
 from rockbatch.core.types import Pull
 
 
@@ -58,6 +69,7 @@ def _start(traits, lanes, equipment, i, steps):
     under, _, _ = device_rates(m, devices, now, devices.x, ground, START)
     put(lanes.rates, i, rates(under, now.y, now.contact, ground))
     put(shared.start_pull, i, under.pull)
+    put(equipment.grips[0], i, Grip(devices.held[START, 0], devices.held[START, 1]))
     n, moving = len(each), devices.rates[START]
     for j in range(n):
         put(each[j].start_rates, i, Progress(moving[j], moving[n + j]))
@@ -183,7 +195,7 @@ def _evaluate_end(traits, lanes, shared, count, steps):
         put(shared.rates, i, k)
         put(shared.works_rates, i, power)
         shared.verdict.doubts[i] = 0.0 if shared.verdict.smooth[i] > 0.0 else 1.0
-        shared.verdict.extremes[i] = 0.0
+        shared.verdict.extremes[i] = shared.verdict.holds[i] = 0.0
 
 
 class Course(NamedTuple):
@@ -215,7 +227,7 @@ def _keeps_direction(goes, c):
 
 @inlined
 def _keeps_mode(of, mode, c):
-    """Return a number that is positive if a tendon certainly remains taut or slack, and does not yield."""
+    """Return a number that is positive if a tendon certainly keeps its mode, taut or slack; −1 for a yielding one."""
     pull, pull_end = tension(of, c.start.elongation, c.state), tension(of, c.end.elongation, c.state)
     early, late = inner_points(pull, of.stiffness * c.start.speed, pull_end, of.stiffness * c.end.speed, c.h)
     least, most = min(min(early, late), min(pull, pull_end)), max(max(early, late), max(pull, pull_end))
@@ -238,8 +250,8 @@ def _keeps_mode_of(of, mode, c):
 
 @inlined
 def _keeps_way(of, mode, c):
-    """Return a number that is positive if a friction damper keeps its direction."""
-    return _keeps_direction(mode.goes, c)
+    """Return a number that is positive if a friction damper keeps its direction; for one that sticks ``_judge_grip`` decides."""
+    return 1.0 if mode.goes == STICKS else _keeps_direction(mode.goes, c)
 
 
 @inlined
@@ -330,6 +342,9 @@ def _look_ahead(traits, lanes, shared, count, steps):
         put(shared.ahead, i, rates(with_pull(m, get(shared.start_pull, i, Pull)), y, contact, ground))
 
 
+RANGES = 2.0
+"""Ranges of a sticking force in a step by which its reserve of strength surely exceeds the overshoot of the search's cubic."""
+
 STAGE, END_OF_STEP, VERDICT = map(np.int64, range(3))
 """What is done with a device in all lanes: a stage inside the step, its end, or whether the step stands."""
 
@@ -403,6 +418,75 @@ def _take_all(what, part, traits, lanes, each, shared, count):
 
 
 @inlined
+def _holds(traits, equipment, runs):
+    """Return True if friction that sticks in a lane may have a force; at the pivot on rigid ground it has none."""
+    holds, start = False, equipment.grips[0]
+    for j in equipment.rubs:
+        for i in range(runs):
+            has_force = gives_way(traits) or start.first[i] != 0.0 or start.second[i] != 0.0
+            holds = holds or (has_force and equipment.lanes[j].mode.goes[i] == STICKS)
+    return holds
+
+
+@inlined
+def _chosen(first, a, b):
+    """Return the Gap ``a`` if ``first``, else ``b``; fields are selected."""
+    return Gap(
+        a.elongation if first else b.elongation,
+        a.speed if first else b.speed,
+        a.by_v if first else b.by_v,
+        a.by_theta if first else b.by_theta,
+        a.bend if first else b.bend,
+        a.arm if first else b.arm,
+    )
+
+
+@kernel
+def _hold(traits, lanes, equipment, count, steps, part, number):
+    """Add the forces of friction that sticks to the pull in stage ``number``, ``part`` of a step after its start."""
+    shared, grip = equipment.shared[0], equipment.grips[number]
+    a, b = equipment.lanes[equipment.rubs[0]], equipment.lanes[equipment.rubs[1]]
+    for i in range(count):
+        m, now, contact = in_pass(traits, lanes, i)
+        y, pull, at = get(shared.stage, i, now), get(shared.pull, i, Pull), get(shared.attitude, i, Attitude)
+        h = lanes.clock.step[i]
+        ground = later(ground_at(lanes, i, steps * h), part * h)
+        sticks, other_sticks = a.mode.goes[i] == STICKS, b.mode.goes[i] == STICKS
+        here, there = _gap_in(traits, lanes, a, shared, i), _gap_in(traits, lanes, b, shared, i)
+        first, second = _chosen(sticks, here, there), _chosen(other_sticks, there, here)
+        strength, other_strength = a.element.strength[i], b.element.strength[i]
+        strengths = strength if sticks else other_strength, other_strength if other_sticks else strength
+        k, _ = rates_and_power(with_pull(m, pull), y, contact, ground, at)
+        k_first, _ = rates_and_power(with_pull(m, pushed(pull, first)), y, contact, ground, at)
+        k_second, _ = rates_and_power(with_pull(m, pushed(pull, second)), y, contact, ground, at)
+        one, two = forces_that_hold(first, second, k, k_first, k_second, strengths)
+        holds = sticks or other_sticks
+        put(grip, i, Grip(one if holds else 0.0, two if holds else 0.0))
+        shared.pull.force[i] = pull.force + (one * first.by_v + two * second.by_v if holds else 0.0)
+        shared.pull.moment[i] = pull.moment + (one * first.arm + two * second.arm if holds else 0.0)
+
+
+@kernel
+def _judge_grip(equipment, shared, count):
+    """Count lanes in which friction that sticks may slip: its least reserve of strength does not exceed twice its range."""
+    a, b = equipment.lanes[equipment.rubs[0]], equipment.lanes[equipment.rubs[1]]
+    for i in range(count):
+        sticks, other_sticks = a.mode.goes[i] == STICKS, b.mode.goes[i] == STICKS
+        strength, other_strength = a.element.strength[i], b.element.strength[i]
+        first, second = strength if sticks else other_strength, other_strength if other_sticks else strength
+        start, end = get(equipment.grips[0], i, Grip), get(equipment.grips[4], i, Grip)
+        low, high, low_other, high_other = abs(start.first), abs(start.first), abs(start.second), abs(start.second)
+        for number in range(1, 5):
+            grip = get(equipment.grips[number], i, Grip)
+            low, high = min(low, abs(grip.first)), max(high, abs(grip.first))
+            low_other, high_other = min(low_other, abs(grip.second)), max(high_other, abs(grip.second))
+        surely = min(first - high - RANGES * (high - low), second - high_other - RANGES * (high_other - low_other))
+        doubt = 1.0 if sticks or other_sticks else 0.0
+        shared.verdict.doubts[i] += 0.0 if surely > 0.0 else doubt
+        shared.verdict.holds[i] = 0.0 if end.first == 0.0 and end.second == 0.0 else 1.0
+
+
+@inlined
 def integrate(traits, lanes, equipment, runs, substep):
     """Integrate the first ``runs`` lanes over a sub-step, and judge their devices; return the number of lanes with padding.
 
@@ -412,17 +496,27 @@ def integrate(traits, lanes, equipment, runs, substep):
     for i in range(runs):
         if shared.verdict.ended[i] == 0.0 and shared.verdict.smooth[i] > 0.0:
             _start(traits, lanes, equipment, i, steps)
+        else:
+            put(equipment.grips[0], i, Grip(0.0, 0.0))
     _leave_start(traits, lanes, each, shared, count)
+    holds = _holds(traits, equipment, runs)
     for number in range(3):
-        _take_all(STAGE, 1.0 if number == 2 else 0.5, traits, lanes, each, shared, count)
+        part = 1.0 if number == 2 else 0.5
+        _take_all(STAGE, part, traits, lanes, each, shared, count)
+        if holds:
+            _hold(traits, lanes, equipment, count, steps, part, ZERO + 1 + number)
         if number < 2:
             _to_next_stage(traits, lanes, shared, count, steps, 0.5, 0.5 if number == 0 else 1.0)
     _to_end(traits, lanes, shared, count, steps)
     _take_all(END_OF_STEP, 1.0, traits, lanes, each, shared, count)
+    if holds:
+        _hold(traits, lanes, equipment, count, steps, 1.0, ZERO + 4)
     _evaluate_end(traits, lanes, shared, count, steps)
     if equipment.bound_steps:
         _look_ahead(traits, lanes, shared, count, steps)
     _take_all(VERDICT, 1.0, traits, lanes, each, shared, count)
+    if holds:
+        _judge_grip(equipment, shared, count)
     return count
 
 
@@ -469,7 +563,7 @@ def settle(traits, lanes, equipment, runs, count):
         if kinds[i] >= EVENTFUL:
             _stay(traits, lanes, equipment, i)
         elif i < runs:
-            shared.verdict.ended[i] = 1.0
+            shared.verdict.ended[i] = 1.0 - shared.verdict.holds[i]
             if shared.verdict.extremes[i] > 0.0:
                 _use_inside(traits, lanes, equipment, i)
     for j in range(len(each)):

@@ -71,6 +71,7 @@ class Devices(NamedTuple):
     end: np.ndarray
     rates: np.ndarray  # shape (6, len(x)): of the four stages, at the end, and of a state looked at beside them
     gaps: np.recarray  # of Gap, shape (6, devices), likewise but for stages inside a step
+    held: np.ndarray  # shape (6, 2): forces [m/s²] of the first two sticking friction dampers, by row
     use: np.recarray  # of Use
     bound_steps: bool  # some may ask for a shorter step
     ended: np.ndarray  # 1 if the next step goes on from the end of the last one; force [m/s²] and moment [m²/s²] there
@@ -93,39 +94,34 @@ def sticking(devices, after):
     return NO_EVENT
 
 
-@kernel
-def _sticking_forces(m, first, second, now, ground, strengths):
+@inlined
+def pushed(pull, place):
+    """Return the Pull on a pier with a unit force more at a place with the Gap ``place``."""
+    return Pull(pull.force + place.by_v, pull.moment + place.arm)
+
+
+@inlined
+def forces_that_hold(first, second, k, k_first, k_second, strengths):
     """Return the friction forces per mass [m/s²] at two places, with the Gaps given, that stop their motion.
 
-    ``m`` is the pier under all other forces; accelerations are linear in the friction forces. A force is 0 where it moves
-    nothing, as at a pivot on the ground, and the second is 0 if both places are the same. Two places that can only move
-    together share the force by their ``strengths``.
+    ``k`` are the pier's rates under all other forces, ``k_first`` and ``k_second`` those with a unit force more at either place:
+    accelerations are linear in the friction forces. A force is 0 where it moves nothing, as at a pivot on the ground, and the
+    second is 0 if both places are the same. Two places that can only move together share the force by their ``strengths``.
     """
-    free, free_other, own, other_by_own, by_other, own_other = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for unit in range(3):  # no force, a unit force at the first place, and at the second
-        arm = first.arm if unit == 1 else (second.arm if unit == 2 else 0.0)
-        down = first.by_v if unit == 1 else (second.by_v if unit == 2 else 0.0)
-        under = with_pull(m, Pull(m.pull.force + down, m.pull.moment + arm))
-        k = rates(under, now.y, now.contact, ground)
-        here, there = lifted(first, k), lifted(second, k)
-        if unit == 0:
-            free, free_other = here, there
-        elif unit == 1:
-            own, other_by_own = here - free, there - free_other
-        else:
-            by_other, own_other = here - free, there - free_other
-    if abs(own) <= STAYS:
-        return 0.0, (0.0 if abs(own_other) <= STAYS else -free_other / own_other)
-    if abs(own_other) <= STAYS or first.by_theta == second.by_theta:
-        return -free / own, 0.0
+    free, free_other = lifted(first, k), lifted(second, k)
+    own, other_by_own = lifted(first, k_first) - free, lifted(second, k_first) - free_other
+    by_other, own_other = lifted(first, k_second) - free, lifted(second, k_second) - free_other
+    fixed, other_fixed = abs(own) <= STAYS, abs(own_other) <= STAYS
+    alone = other_fixed or first.by_theta == second.by_theta
     determinant = own * own_other - by_other * other_by_own
-    if abs(determinant) <= LINKED * own * own_other:
-        with_first = math.copysign(strengths[1], by_other * own)
-        share = -free / (own * strengths[0] + by_other * with_first)
-        return share * strengths[0], share * with_first
-    return (by_other * free_other - own_other * free) / determinant, (
-        other_by_own * free - own * free_other
-    ) / determinant
+    linked = abs(determinant) <= LINKED * own * own_other
+    with_first = math.copysign(strengths[1], by_other * own)
+    share = -free / (own * strengths[0] + by_other * with_first)
+    one = share * strengths[0] if linked else (by_other * free_other - own_other * free) / determinant
+    two = share * with_first if linked else (other_by_own * free - own * free_other) / determinant
+    one, two = -free / own if alone else one, 0.0 if alone else two
+    two_alone = 0.0 if other_fixed else -free_other / own_other
+    return 0.0 if fixed else one, two_alone if fixed else two
 
 
 @kernel
@@ -135,8 +131,11 @@ def _with_friction(m, devices, at, now, ground):
     second = sticking(devices, first)
     other = second if second != NO_EVENT else first
     here, there = gap_of(m, elements[first], at, now.y), gap_of(m, elements[other], at, now.y)
-    strengths = elements[first].strength, elements[other].strength
-    one, two = _sticking_forces(m, here, there, now, ground, strengths)
+    strengths, pull = (elements[first].strength, elements[other].strength), m.pull
+    k = rates(m, now.y, now.contact, ground)
+    k_first = rates(with_pull(m, pushed(pull, here)), now.y, now.contact, ground)
+    k_second = k_first if second == NO_EVENT else rates(with_pull(m, pushed(pull, there)), now.y, now.contact, ground)
+    one, two = forces_that_hold(here, there, k, k_first, k_second, strengths)
     down = one * here.by_v + two * there.by_v
     return with_pull(m, Pull(m.pull.force + down, m.pull.moment + one * here.arm + two * there.arm)), one, two
 
@@ -145,7 +144,8 @@ def _with_friction(m, devices, at, now, ground):
 def device_rates(m, devices, now, x, ground, place):
     """Return the pier ``m`` under all devices, and the forces [m/s²] of the first two sticking friction dampers.
 
-    Write the rates of the devices' states ``x`` to their row ``place``, and the gaps, except for stages inside a step.
+    Write the rates of the devices' states ``x`` and those forces to their row ``place``, and the gaps, except for stages inside
+    a step.
     """
     y, n, k, at = now.y, len(devices.elements), devices.rates[place], attitude(m, now.y, now.contact, devices.level[0])
     total, moment, one, two, holds = 0.0, 0.0, 0.0, 0.0, False
@@ -162,6 +162,7 @@ def device_rates(m, devices, now, x, ground, place):
     under = with_pull(m, Pull(total, moment))
     if holds:
         under, one, two = _with_friction(under, devices, at, now, ground)
+    devices.held[place, 0], devices.held[place, 1] = one, two
     if place == END:
         continues = 1.0 if one == 0.0 and two == 0.0 else 0.0
         devices.ended[0], devices.ended[1], devices.ended[2] = continues, total, moment
@@ -178,7 +179,8 @@ def goes_on(devices):
 
 @kernel
 def pulled_at_end(m, devices):
-    """Return the pier under its devices at the end of the last step; copy rates and gaps there to the start of the next."""
+    """Return the pier under its devices at the end of the last step; copy rates, forces and gaps to the next one's start."""
+    devices.held[START, 0], devices.held[START, 1] = devices.held[END, 0], devices.held[END, 1]
     for i in range(len(devices.x)):
         devices.rates[START, i] = devices.rates[END, i]
     for j in range(len(devices.elements)):

@@ -184,7 +184,10 @@ def touching(contact, side, yields):
 
 @kernel
 def holding(contact, side, yields):
-    """Return ``contact`` with the pivot on ``side`` grazing its support; the other one then is in contact if it grazed."""
+    """Return ``contact`` with the pivot on ``side`` grazing its support: free, and ``held``.
+
+    The other pivot, if it grazed, is now on its spring, on the inelastic branch if ``yields`` is 1.
+    """
     if contact.held == -side:
         contact = touching(contact, -side, yields)
     free = without(contact, side)

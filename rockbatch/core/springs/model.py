@@ -182,6 +182,21 @@ class BentState(NamedTuple):
     u_4_rate: float
 
 
+@hook
+def state_in(shaft, part, i):
+    """Return the state in lane ``i`` of a part of the table."""
+
+
+@state_in.of(type(None))
+def _straight_state_in(shaft, part, i):
+    return get(part, i, State)
+
+
+@state_in.of(Shaft)
+def _bent_state_in(shaft, part, i):
+    return get(part, i, BentState)
+
+
 class Contact(NamedTuple):
     """Contacts, constant between events: factors of 0 or 1 in one right-hand side."""
 

@@ -139,8 +139,8 @@ def seconds_in(unit: str) -> float | None:
 def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None:
     """Return the columns if the header states label and unit of all ``width``; else ``None``.
 
-    ``Column 2: North-south acceleration (cm/s/s)``, or in one line ``time(sec) N-S(cm/s/s) …``, or in two, the labels and
-    their units.
+    ``Column 2: North-south acceleration (cm/s/s)``, or in one line ``time(sec) N-S(cm/s/s) …``, the last one counts, or in
+    two, the labels and their units, of which some may be "" or "-".
     """
     numbered = {int(m["at"]): _column(m) for line in header if (m := _NUMBERED.match(line))}
     if sorted(numbered) == list(range(1, width + 1)):
@@ -155,7 +155,10 @@ def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None
 
 
 def _with_unit_row(header: Sequence[str], width: int) -> list[Column] | None:
-    """Return the columns by two neighbouring lines of labels and units, in either order; ``None`` without such lines."""
+    """Return the columns by two neighbouring lines of labels and units, in either order; ``None`` without such lines.
+
+    One unit at least is of acceleration; "" and "-" become None.
+    """
     for pair in pairwise(header):
         for labels, units in (pair, pair[::-1]):
             of_columns = [unit.strip(" ()[]") for unit in _fields(units)]
@@ -193,8 +196,8 @@ def without_index_name(header: Sequence[str]) -> list[str]:
 def columns_without_units(header: Sequence[str], width: int) -> list[Column] | None:
     """Return the columns if the header states the labels of all ``width``, with or without units, ``t, NS, UD``; else None.
 
-    The first is time, or period or frequency of a spectrum, or all are directions or time: other lines of as many words
-    are text, as are lines with a value.
+    A line "channels: NS EW UD" counts first, else the last line whose first label is time, or period or frequency of a spectrum,
+    or whose labels are all directions or time, or a single Sa: other lines of as many words are text, as are lines with a value.
     """
     if named := next((match for line in header if (match := _COMPONENTS.match(line))), None):
         labels = [Column(_short_label(word)) for word in re.split(r"[\s,;]+", named["labels"].strip())]
@@ -237,7 +240,7 @@ def line_about_spectra(header: Sequence[str]) -> str:
 
 
 def stated_unit(header: Sequence[str]) -> str | None:
-    """Return the unit in a line ``unit: cm/s2``, else in one such as ``acceleration in units of cm/s/s``; ``None`` without.
+    """Return the unit in a line ``unit: cm/s2``, else a known one as in ``acceleration in units of cm/s/s``; ``None`` without.
 
     Raises ``NoRecord`` where a record file of MIDAS says that it holds no accelerations.
     """

@@ -183,7 +183,8 @@ def _columns_named(header: Sequence[str], width: int) -> list[Column] | None:
 def _behind_an_index(header: Sequence[str], table: Samples) -> list[Column] | None:
     """Return the columns of a table whose first one has no name or is called "index": a row number, or times that grow evenly.
 
-    ``header`` names the others; ``None`` for other tables.
+    The first is then "-" or "time", and ``header`` names the others; ``None`` for other tables, and if the first grows evenly
+    but another column is time.
     """
     if _counts_rows(table[:, 0]):
         return _columns_beside_index(header, table)
@@ -192,7 +193,10 @@ def _behind_an_index(header: Sequence[str], table: Samples) -> list[Column] | No
 
 
 def _columns_beside_index(header: Sequence[str], table: Samples) -> list[Column] | None:
-    """Return the columns of a table whose first one counts its rows, if the header names all others; else ``None``."""
+    """Return the columns of a table whose first one counts its rows, from 0 or 1, if the header names all others; else ``None``.
+
+    The first is returned, too, as a column "-".
+    """
     named = _columns_named(header, table.shape[1] - 1) if _counts_rows(table[:, 0]) else None
     return None if named is None else [Column("-"), *named]
 
@@ -222,7 +226,10 @@ def _merged_column(header: Column, stated: str) -> Column | None:
 
 
 def _with_time(columns: list[Column], table: Samples) -> list[Column]:
-    """Return columns in which a label T without unit is time if more than 90 % of its steps are upward, else transverse."""
+    """Return columns in which a label T without unit is time if more than 90 % of its steps are upward, else transverse.
+
+    They are unchanged if another one is time.
+    """
     if any(column.is_time for column in columns):
         return columns
     return [
@@ -261,7 +268,8 @@ def _on_one_step(
 ) -> tuple[float, Samples, tuple[str, ...]]:
     """Return the sampling interval [s], by the column of time or as stated, the table at even times, and notes.
 
-    Raises ``InputError`` for several columns of time, no step at all, or a header that states another step than the times have.
+    Raises ``InputError`` for several columns of time, an unknown unit of time, uneven times that cannot be interpolated, no step
+    at all, or a header that states another step than the times have, unless a manifest states ``dt``.
     """
     times = [i for i, column in enumerate(columns) if column.is_time]
     if len(times) > 1:

@@ -25,7 +25,10 @@ _FORMAT = re.compile(r"\((?P<per_line>[0-9]{1,2})f(?P<width>[0-9]{1,2})\.[0-9]{1
 
 
 def declares_series(lines: list[str], index: int) -> bool:
-    """Return whether ``lines[index]`` declares a series, as "1887 POINTS OF ACC DATA EQUALLY SPACED AT .020 SEC" does."""
+    """Return whether ``lines[index]`` declares a series, as "1887 POINTS OF ACC DATA EQUALLY SPACED AT .020 SEC" does.
+
+    False after the last line.
+    """
     return _SPACING.match(line_at(lines, index)) is not None
 
 

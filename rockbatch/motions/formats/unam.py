@@ -137,7 +137,7 @@ def _texts_of(text: str, count: int) -> list[str]:
 
 
 def _time_of_sample(number: str, dt: float) -> str:
-    """Return the time [s] of a sample counted from 1, as text; "" for a text that is no number."""
+    """Return the time [s] of a sample counted from 1, as text, "1.000000"; "" for a text that is no whole number below 10⁹."""
     return f"{(int(number) - 1) * dt:.6f}" if number.isdecimal() and 0 < len(number) < 10 else ""
 
 

@@ -13,7 +13,7 @@ from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import Head, alarm, table
 from rockbatch.reporting.templates import render
 from rockbatch.results.labelled import groups_of
-from rockbatch.results.sections import SECTIONS, columns_in, read_sections
+from rockbatch.results.sections import SECTIONS, columns_in
 
 MOST_GROUPS = 4
 """Most piers and scales whose envelopes are drawn."""
@@ -21,8 +21,7 @@ MOST_GROUPS = 4
 
 def section(finished: Finished) -> Markup:
     """Return the report's section of forces in sections of the shaft; empty if the study asks for none."""
-    path = finished.directory / SECTIONS
-    rows = read_sections(path, finished.info["varied"]) if path.exists() else pd.DataFrame()
+    rows = finished.sections
     if rows.empty:
         return Markup("")
     runs = finished.runs.merge(rows, on=[name for name in rows if name not in OF_SECTIONS])

@@ -15,12 +15,13 @@ from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.quantity import FOOTING, SETTLING
 from rockbatch.quantities.rows import NOT_RUN
+from rockbatch.reporting.drawings import drawings
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, join, number, paragraphs, tag
 from rockbatch.reporting.overview import by_record
 from rockbatch.reporting.sections import verdicts
-from rockbatch.reporting.table import Head, alarm, table
+from rockbatch.reporting.table import Head, alarm, for_paper, table
 from rockbatch.results.labelled import Row, as_dicts
 from rockbatch.results.suite_statistics import reasons_of_failure
 
@@ -36,7 +37,11 @@ DEVICES = {
 
 
 def section(finished: Finished) -> Markup:
-    """Return the first screen: the answer, runs without a result, scorecard or greatest responses, and the peaks by record."""
+    """Return the first screen: the answer, runs without a result, scorecard or greatest responses, and the peaks by record.
+
+    Supports that cannot carry the pier alone come before these, notes before the peaks.
+    The piers stand beside the scorecard; on paper, with the other inputs.
+    """
     weak = weak_supports(finished.info["cases"])
     checked = any(verdict.case for verdict in finished.verdicts)
     card = verdicts.scorecard(finished) if checked else responses(finished)
@@ -44,7 +49,7 @@ def section(finished: Finished) -> Markup:
         tag("div", alarm(weak)) if weak else "",
         tag("div", verdicts.answer(finished), class_="lead"),
         paragraphs(*_without_a_result(finished)),
-        card,
+        card if for_paper() else tag("div", tag("div", card), drawings(finished), class_="beside"),
         tag("p", *_notes(finished, checked), class_="legend"),
         by_record(finished),
     )
@@ -60,7 +65,7 @@ def responses_beside_checks(finished: Finished) -> Markup:
 def responses(finished: Finished) -> Markup:
     """Return a table of each case's greatest responses over the runs that end standing, with their records as tooltips.
 
-    Cases with the fewest other runs come first, then those with the smallest rotation.
+    Cases with the fewest other runs come first, then those with the smallest rotation. Empty without runs.
     """
     if finished.runs.empty:
         return Markup("")

@@ -1,7 +1,7 @@
 """Histories: a picture for each motion with its cases, hysteresis loops below."""
 
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import accumulate
 from typing import NamedTuple
@@ -10,8 +10,11 @@ from rockbatch.common.figures.description import COLOURS, DASHES, Axis, Figure, 
 from rockbatch.common.grouping import grouped
 from rockbatch.outcome.figures import PEAK, Drawn, reduced, together
 from rockbatch.outcome.response import Response
+from rockbatch.pier import Pier
 from rockbatch.reporting.finished import Finished, worst_first
 from rockbatch.reporting.markup import Markup
+from rockbatch.reporting.player import Played, player
+from rockbatch.reporting.structure import pier_of
 from rockbatch.reporting.svg import drawn, key_of, timed
 from rockbatch.reporting.templates import render
 from rockbatch.results.histories_file import Responses
@@ -21,6 +24,8 @@ from rockbatch.results.run_json import FROM_PYTHON
 
 MOST_HISTORIES = 40
 """Number of histories at which no further picture is begun."""
+MOST_PLAYED = 40
+"""Most cases whose worst run can be played."""
 MOST_TOGETHER = 7
 """Most foundations in one picture, beside rigid ground: as many as there are colours."""
 
@@ -51,15 +56,18 @@ def section(finished: Finished) -> Markup:
     words = list(map(str, finished.info["command"]))
     from_command = not any(word.endswith(FROM_PYTHON) for word in words)
     command = shlex.join([*words, "--history", "RECORD"]) if from_command else ""
-    return render("reporting/sections/histories.html", pictures=_pictures(finished), command=command)
+    pictures, played = _pictures(finished)
+    return render("reporting/sections/histories.html", pictures=pictures, player=player(played), command=command)
 
 
-def _pictures(finished: Finished) -> list[Picture]:
-    """Draw a picture for each motion, worst first; of many motions, for the worst ones."""
+def _pictures(finished: Finished) -> tuple[list[Picture], list[Played]]:
+    """Draw a picture for each motion, worst first, of many for the worst ones; return the worst drawn run of each case, too."""
     responses = finished.responses
     rows = _rows_of(finished, responses)
-    pictures = []
-    for numbers in _motions(finished, rows):
+    rank = _ranks(finished, rows)
+    pictures: list[Picture] = []
+    played: list[tuple[Row, Played]] = []
+    for numbers in _motions(rows, rank):
         shown = _shown(finished, [rows[number] | {"number": number} for number in numbers])
         places = [row["number"] for row in shown]
         chosen = (
@@ -67,7 +75,20 @@ def _pictures(finished: Finished) -> list[Picture]:
         )
         runs = [_drawn(finished.series[row["series"]], response) for row, response in zip(shown, chosen, strict=True)]
         pictures.append(_picture(_title(finished, shown[0]), runs, len(numbers) - len(shown)))
-    return pictures
+        for curve, (row, run) in enumerate(zip(shown, runs, strict=True)):
+            pier = pier_of(finished.cases[row["series"], row["pier"]])
+            if pier:
+                played.append((row, _played(finished, row, run, pier, pictures, curve)))
+    worst = sorted(played, key=lambda own: rank.get(_key(own[0]), len(rank)))
+    of_case = grouped(worst, lambda own: _key(own[0])[-2:])
+    return pictures, [own[0][1] for own in of_case.values()][:MOST_PLAYED]
+
+
+def _played(finished: Finished, row: Row, run: Drawn, pier: Pier, pictures: Sequence[Picture], curve: int) -> Played:
+    """Return a run that can be played: it is drawn as this ``curve`` of the last of ``pictures``."""
+    case = ", ".join(filter(None, (finished.series[row["series"]].label, finished.piers[row["pier"]])))
+    shown = pictures[-1].cut or pictures[-1].whole
+    return Played(case, pictures[-1].title, run, pier, len(pictures) - 1, curve, (shown.low, shown.high))
 
 
 def _picture(title: str, runs: Sequence[Drawn], left_out: int) -> Picture:
@@ -115,14 +136,18 @@ def _rows_of(finished: Finished, responses: Sequence[Response]) -> list[Row]:
     return rows
 
 
-def _motions(finished: Finished, rows: Sequence[Row]) -> list[list[int]]:
+def _ranks(finished: Finished, rows: Sequence[Row]) -> dict[tuple[object, ...], int]:
+    """Return the rank of each run, by its key, among all runs under the motions of ``rows``: 0 for the worst."""
+    runs = finished.runs[finished.runs["record"].isin({row["record"] for row in rows})]
+    ordered = map(_key, as_dicts(worst_first(runs, len(runs))[[*MOTION, "series"]]))
+    return {key: place for place, key in enumerate(dict.fromkeys(ordered))}
+
+
+def _motions(rows: Sequence[Row], rank: Mapping[tuple[object, ...], int]) -> list[list[int]]:
     """Return the indices into ``rows`` of each motion's runs, worst motion first; no motion is begun after 40 histories.
 
     Of more than :data:`MOST_HISTORIES` only motions that are the worst for some case.
     """
-    runs = finished.runs[finished.runs["record"].isin({row["record"] for row in rows})]
-    ordered = map(_key, as_dicts(worst_first(runs, len(runs))[[*MOTION, "series"]]))
-    rank = {key: place for place, key in enumerate(dict.fromkeys(ordered))}
     numbers = sorted(range(len(rows)), key=lambda number: rank.get(_key(rows[number]), len(rank)))
     motions = [*grouped(numbers, lambda number: _key(rows[number])[:-1]).values()]
     if len(rows) > MOST_HISTORIES:

@@ -8,10 +8,10 @@ from rockbatch.pier import Damper, Pier, Restraint
 from rockbatch.pier.restraints import FIELDS
 from rockbatch.quantities.cases import Case
 from rockbatch.quantities.quantity import ENDINGS
+from rockbatch.reporting.drawings import drawings
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import heading, symbol
 from rockbatch.reporting.markup import Markup, join, tag
-from rockbatch.reporting.sections.studied import drawings
 from rockbatch.reporting.structure import device_in_words, pier_of, restraints_of
 from rockbatch.reporting.table import WHOLE, Head, table
 from rockbatch.results.labelled import Row
@@ -56,8 +56,6 @@ _UNIT = re.compile("_(" + "|".join(unit for unit in ("mm", "m2", "kN_m", "MPa", 
 
 def section(finished: Finished) -> Markup:
     """Return the drawings of the piers and a table each of piers, parts, foundations and devices."""
-    drawn = drawings(finished)
-    sketches = tag("div", *drawn, class_="piers") if drawn else ""
     tables: tuple[tuple[str, list[Row], Mapping[str, str]], ...] = (
         ("Pier as given", [finished.pier_as_given], {}),
         ("Parts of the pier", _parts(finished), {}),
@@ -66,7 +64,7 @@ def section(finished: Finished) -> Markup:
         ("Devices", list(_devices(finished)), OF_DEVICE),
     )
     shown = [join(tag("h3", name), of_rows(rows, name, heads)) for name, rows, heads in tables if any(rows)]
-    return join(sketches, *shown)
+    return join(drawings(finished), *shown)
 
 
 def of_rows(rows: Sequence[Mapping[str, object]], name: str, words: Mapping[str, str]) -> Markup:
@@ -83,7 +81,10 @@ def of_rows(rows: Sequence[Mapping[str, object]], name: str, words: Mapping[str,
 
 
 def _symbol(key: str) -> str:
-    """Return symbol and unit of a key, "p [rad/s]"; of a key without a symbol its words and unit: "toe level [m]"."""
+    """Return symbol and unit of a key, "p [rad/s]".
+
+    Of a key without a symbol it is its words, and the unit at its end if any: "toe level [m]" of "toe_level_m".
+    """
     if symbol(key) != key:
         return symbol(key)
     unit = _UNIT.search(key)

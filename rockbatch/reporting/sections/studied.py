@@ -4,7 +4,6 @@ import math
 from collections.abc import Collection, Sequence
 
 from rockbatch.checks.coverage import stations_of
-from rockbatch.pier.figures import devices, sketches
 from rockbatch.pier.restraints import KINDS
 from rockbatch.quantities.cases import Case, is_across, top
 from rockbatch.quantities.design import BOUND
@@ -12,8 +11,7 @@ from rockbatch.quantities.quantity import FOOTING
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted, symbol
 from rockbatch.reporting.markup import Markup, join
-from rockbatch.reporting.structure import device_in_words, pier_of, restraints_of
-from rockbatch.reporting.svg import sketch
+from rockbatch.reporting.structure import devices_in_words
 from rockbatch.reporting.table import Head, sub, table
 from rockbatch.reporting.templates import render
 from rockbatch.results.labelled import Row
@@ -71,7 +69,6 @@ def section(finished: Finished, level: str = "h3") -> Markup:
         across=list(across.values()),
         foundations_along=sum(key[0] not in names_across for key in finished.places),
         given=_numbers_of(finished.pier_as_given),
-        drawn=drawings(finished),
         vertical=_vertical(finished),
         scales=sorted(finished.runs["scale"].unique().astype(float)) if len(finished.runs) else [],
         scaled="as recorded" if as_recorded else f"scaled to the target by {' to '.join(ends)}",
@@ -113,24 +110,8 @@ def _foot(cases: Sequence[Case]) -> dict[str, float]:
     return {} if width is None else {"width_m": width}
 
 
-def drawings(finished: Finished) -> list[Markup]:
-    """Return a sketch of each distinct pier with its devices, up to four, captioned with its cases if piers differ."""
-    has_deck = "deck_mass_t" in finished.pier_as_given
-    shown: dict[tuple[object, ...], tuple[Row, list[str]]] = {}
-    for case in finished.info["cases"]:
-        pier = pier_of(case)
-        places = devices(pier, restraints_of(case)) if pier else ()
-        deck = {"deck_m": pier.deck} if has_deck and pier else {}
-        key = case["pier"]["alpha"], case["pier"]["p"], case["pier"].get("highest_m"), places
-        names = shown.setdefault(key, (case["pier"] | deck | {"devices": places}, []))[1]
-        if case["case"] not in names:
-            names.append(str(case["case"]))
-    piers = [pier | {"name": ", ".join(names) if len(shown) > 1 else ""} for pier, names in shown.values()]
-    return [sketch(figure) for figure in sketches(piers, {case["base"] for case in finished.info["cases"]})]
-
-
 def _numbers_of(pier: Row) -> list[str]:
-    """Return the constants of [pier] as given: "height 20 m"; varied keys are left out."""
+    """Return the constants of [pier] as given, "height 20 m", then masses and heights of parts; varied keys are left out."""
     parts = pier.get("part", ())
     words = GIVEN | ({"mass_t": ("shaft", "t")} if "deck_mass_t" in pier else {})
     numbers = []
@@ -188,14 +169,8 @@ def _foundations(finished: Finished) -> Markup:
         own = [case["columns"].get(key) for key in varied]
         name = ", ".join(filter(None, (case["case"], case["columns"].get(BOUND))))
         cells = [name, *own, case["base"], *(values.get(key) for key in names), *millimetres]
-        rows.append([*cells, *(values.get(key) for key in further), "; ".join(_devices(case))])
+        rows.append([*cells, *(values.get(key) for key in further), "; ".join(devices_in_words(case))])
     return table([*heads, *map(Head, further.values()), Head("devices")], rows, name="Foundations")
-
-
-def _devices(case: Case) -> list[str]:
-    """Return the devices of a case in words, one text each; [] without devices or for impossible values."""
-    pier = pier_of(case)
-    return [device_in_words(pier, device) for device in restraints_of(case)] if pier else []
 
 
 def _further(cases: Sequence[Case], shown: Collection[str]) -> dict[str, str]:

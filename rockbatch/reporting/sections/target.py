@@ -25,7 +25,10 @@ MET = {PASS: "met", FAIL: "not met", NOT_DECIDED: "not decided"}
 
 
 def section(finished: Finished) -> Markup:
-    """Return the comparison of the suite with its horizontal and vertical target spectra; empty if the study has none."""
+    """Return the comparison of the suite with its horizontal and vertical target spectra.
+
+    Empty if the study has none, or no record, or if the values in run.json are unsound.
+    """
     records = finished.info["records"]
     targets = (finished.info.get(name) for name in ("target", "vertical_target"))
     horizontal, vertical = (target if target is not None and records and _sound(target) else None for target in targets)

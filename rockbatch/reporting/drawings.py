@@ -1,0 +1,87 @@
+"""The piers to scale, with the heights at which results are read and the constants of their devices."""
+
+from collections.abc import Collection, Sequence
+from typing import NamedTuple
+
+from rockbatch.common.grouping import grouped
+from rockbatch.pier.figures import devices, sketches
+from rockbatch.quantities.cases import Case, top
+from rockbatch.reporting.finished import Finished
+from rockbatch.reporting.labels import first_of
+from rockbatch.reporting.markup import Markup, join, tag
+from rockbatch.reporting.structure import devices_in_words, pier_of, restraints_of
+from rockbatch.reporting.svg import sketch
+from rockbatch.results.labelled import Row, pier_key
+
+MOST_NAMES, MOST_LINES = 4, 6
+"""Most names of cases, and lines on devices, of a drawing."""
+
+
+class Alike(NamedTuple):
+    """Cases of one drawing: those of one pier with devices at the same places."""
+
+    row: Row
+    """The pier as in run.json, with its deck, heights and devices."""
+    cases: list[Case]
+
+    @property
+    def shape(self) -> tuple[object, ...]:
+        """Return what the drawing of the pier without devices depends on."""
+        return *(self.row.get(key) for key in ("alpha", "p", "highest_m", "top_m")), *self.row["sections_m"]
+
+
+def drawings(finished: Finished) -> Markup:
+    """Return a sketch of each distinct pier with its devices, up to four, captioned with the constants of the devices.
+
+    Of several with the same pier only the first has dimensions and the devices that all of them have. Empty if no pier can be
+    drawn.
+    """
+    rows = [_alike(finished, case) for case in finished.info["cases"]]
+    alike = [
+        Alike(of_drawing[0].row, [case for one in of_drawing for case in one.cases])
+        for of_drawing in grouped(rows, lambda one: (one.shape, one.row["devices"])).values()
+    ]
+    piers = []
+    for of_pier in grouped(alike, lambda one: one.shape).values():
+        common = set.intersection(*(set(devices_in_words(case)) for one in of_pier for case in one.cases))
+        for place, one in enumerate(of_pier):
+            title = _title(finished, one, len(of_pier) > 1) if len(alike) > 1 else ""
+            lines = _lines(finished, one.cases, common if place else ())
+            caption = join(tag("strong", title) if title else "", *(tag("small", line) for line in lines))
+            piers.append(one.row | {"labels": place == 0, "caption": caption})
+    drawn = [sketch(figure) for figure in sketches(piers, {case["base"] for case in finished.info["cases"]})]
+    return tag("div", *drawn, class_="piers") if drawn else Markup("")
+
+
+def _alike(finished: Finished, case: Case) -> Alike:
+    """Return a case with the pier that is drawn for it."""
+    pier = pier_of(case)
+    row = case["pier"] | {"top_m": top(case), "sections_m": finished.section_heights(case)}
+    if pier and "deck_mass_t" in finished.pier_as_given:
+        row["deck_m"] = pier.deck
+    return Alike(row | {"devices": devices(pier, restraints_of(case)) if pier else ()}, [case])
+
+
+def _title(finished: Finished, one: Alike, several: bool) -> str:
+    """Return the varied values of the pier, or the names of the cases; both if ``several`` drawings are of this pier."""
+    case = one.cases[0]
+    place = finished.pier_places.get(pier_key(case["columns"], finished.info["varied"]))
+    pier = "" if place is None else finished.piers[place]
+    names = first_of(list(dict.fromkeys(str(case["case"]) for case in one.cases)), MOST_NAMES)
+    return ", ".join(filter(None, (pier, names))) if several or not pier else pier
+
+
+def _lines(finished: Finished, cases: Sequence[Case], known: Collection[str]) -> list[str]:
+    """Return the devices of cases that share a drawing, but ``known`` ones; one that some cases lack follows their names."""
+    having: dict[str, list[str]] = {}
+    for case in cases:
+        for words in dict.fromkeys(devices_in_words(case)):
+            if words not in known:
+                name = finished.named_case(case["case"], case["columns"], finished.info["varied"])
+                having.setdefault(words, []).append(name)
+    lines = [
+        words if len(names) == len(cases) else f"{first_of(names, MOST_NAMES)}: {words}"
+        for words, names in having.items()
+    ]
+    left_out = len(lines) - MOST_LINES
+    return lines[:MOST_LINES] + [f"{left_out} more in the table of foundations"] * (left_out > 0)
