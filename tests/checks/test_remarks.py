@@ -103,3 +103,9 @@ def test_the_terminal_says_so_first(tmp_path, capsys):
     printed = re.sub(r"\s+", " ", capsys.readouterr().out)
     weak, answer = printed.index("pads: one support cannot"), printed.index("No limits were set")
     assert weak < answer < printed.index("pads: without zeta nothing damps")
+
+
+def test_a_rotation_is_in_shares_of_alpha_degrees_and_radians():
+    """Half of 0.2 rad is 0.1 rad, 5.73°."""
+    worst = worst_of_all(worst_of_cases(runs([0.5]), [case()], at_each_scale=True))
+    assert in_words(worst["theta_max_over_alpha"]) == "0.5 α = 5.73° (0.1 rad)"

@@ -104,3 +104,10 @@ def test_columns_by_which_rows_are_chosen_are_marked_and_long_tables_are_folded(
     assert 'data-filter="">case</th>' in shown
     assert f"<summary>Every run: {MOST_OPEN + 1} rows</summary>" in shown
     assert "<details>" not in table([Head("name"), Head("case")], rows[:-1])
+
+
+def test_only_a_table_that_is_to_be_sorted_is_marked_so():
+    rows = [["a", 1.0], ["b", 2.0]]
+    plain, sorted_by_reader = (table([Head("name"), Head("value")], rows, sortable=way) for way in (False, True))
+    assert 'class="sortable"' in sorted_by_reader
+    assert "sortable" not in plain

@@ -351,6 +351,16 @@ def test_what_is_no_table_of_peaks_is_refused(tmp_path, content):
         read_saved(tmp_path)
 
 
+def test_a_table_that_is_no_text_is_refused_by_its_name_first(tmp_path):
+    write_results(tmp_path)
+    path = tmp_path / "peaks.csv"
+    lines = path.read_bytes().splitlines(keepends=True)
+    path.write_bytes(b"".join(lines + 500 * lines[1:2]) + b"\xff\xfe\n")  # beyond what is read at once
+    with pytest.raises(InputError) as caught:
+        read_saved(tmp_path)
+    assert caught.value.messages[-1].startswith(f"{path}: not a table ('utf-8' codec can't decode")
+
+
 def test_a_table_without_a_varied_key_is_refused(tmp_path):
     write_results(tmp_path)
     info = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))

@@ -15,7 +15,7 @@ from rockbatch.motions.scaling import at_target
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.pier import unlikely_devices
-from rockbatch.study import load_study
+from rockbatch.study import load_study, target_keys
 
 PULSE = (
     '[[motions.pulse]]\nname = "sine"\nshape = "sine"\namplitude_g = 0.2\nperiod_s = 1.0\ndt_s = 0.01\nduration_s = 2\n'
@@ -366,3 +366,18 @@ def test_a_limit_below_zero_is_refused_until_it_is_confirmed(tmp_path):
         "at_most = -0.5: heel_uplift_m is counted without its sign, so that nothing passes; check the sign" in problem
     )
     assert problems_of(written(tmp_path, check=at_the_key(check, "at_most = -0.5", "at_most"))) == ()
+
+
+@pytest.mark.parametrize(
+    ("keys", "name", "least", "most"),
+    [
+        (target_keys.ASCE_KEYS, "sds_g", 0.005, 5.0),
+        (target_keys.ASCE_KEYS, "sd1_g", 0.002, 5.0),
+        (target_keys.ASCE_KEYS, "tl_s", 0.005, 50.0),
+        (target_keys.AASHTO_KEYS, "as_g", 0.005, 2.0),
+    ],
+)
+def test_values_of_design_spectra_are_doubted_beyond_these_bounds(keys, name, least, most):
+    doubts = keys[name].usual.doubts
+    assert doubts(name, 1.01 * least) == doubts(name, 0.99 * most) == []
+    assert len(doubts(name, 0.99 * least)) == len(doubts(name, 1.01 * most)) == 1

@@ -803,3 +803,18 @@ def test_dampers_on_one_side_have_no_mirror_image(tmp_path):
     study_of(tmp_path, PIER, both, damper)
     with pytest.raises(InputError, match="keep one polarity"):
         study_of(tmp_path, PIER, both, damper + 'at = "left"\n')
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        ("[{ pga_g = 0.4 }, { pga_g = 0.5 }]", "target: expected one table; write [motions.target], once"),
+        ("[{ pga_g = 0.4 }, 3]", "target = [{ pga_g = 0.4 }, 3]: expected one value, not a list"),
+    ],
+)
+def test_a_list_in_place_of_a_table_is_called_tables_only_if_it_has_no_others(tmp_path, value, words):
+    path = tmp_path / "study.toml"
+    path.write_text(f"[pier]\nalpha = 0.2\np = 1.0\n[motions]\ntarget = {value}\n", encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        load_study(path)
+    assert any(words in message for message in caught.value.messages)

@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import brentq, minimize, minimize_scalar
 from scipy.stats import binom, norm, t
 
-from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, NoCurve, fit
+from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, NoCurve, _intervals, fit
 
 LEVELS = np.array([0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9, 1.0])
 RECORDS = np.full(8, 40.0)
@@ -201,3 +201,16 @@ def test_a_share_that_hardly_grows_has_a_median_up_to_a_thousand_times_the_level
         )
     else:
         assert "does not grow" in found.reason
+
+
+@pytest.mark.parametrize(
+    ("crossing", "bounded"), [((0.2, 0.8), (False, True)), ((-0.8, -0.2), (True, False)), ((-0.4, 0.4), (False, False))]
+)
+def test_a_region_that_crosses_no_slope_bounds_the_median_on_one_side_at_most(crossing, bounded):
+    """θ = exp(−a/b): near b = 0 it is 0 with a > 0, and infinite with a < 0; β = 1/b is infinite."""
+    left, right = crossing
+    (low, high), (least, most) = _intervals(np.array([(left, -1.0), (right, -1.0), (right, 2.0), (left, 2.0)]))
+    assert (low > 0.0, high < math.inf) == bounded
+    assert (least, most) == (0.5, math.inf)
+    assert not bounded[0] or low == pytest.approx(math.exp(-right / 2.0))
+    assert not bounded[1] or high == pytest.approx(math.exp(-left / 2.0))
