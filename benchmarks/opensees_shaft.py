@@ -12,7 +12,8 @@ Rows: case, and the greatest θ [rad] of the first two half cycles, with their t
 after an impact is the impact and higher modes; tests/verification/test_elastic_shaft.py holds rockbatch against them.
 With --forces the columns alone have 1 % of critical damping in their first mode, in proportion to their stiffness, two piers are
 added, and rows have the greatest base shear and moment at mid-height of the elements, without the damping force. With --springs
-they have both, with that damping, on springs of 3·10⁶ kN/m under the corners, whose dashpots act while a corner presses.
+they have both, with that damping, on springs of 3·10⁶ kN/m beside dashpots, on which the corners' contacts stand: a dashpot that
+holds on to a corner until its spring is unstressed pulls the foot down as it leaves.
 """
 
 import math
@@ -77,17 +78,25 @@ def build(case: Case, bending: float, ground: Ground | None) -> list[float]:
         ops.fix(100, 1, 1, 1)
         return masses
     ops.fix(100, 1, 0, 0)
-    ops.uniaxialMaterial("ENT", 2, ground.stiffness)
-    ops.uniaxialMaterial("Elastic", 3, 1e-9 * ground.stiffness)  # without it the first tangent is singular
+    ops.uniaxialMaterial("ENT", 2, CONTACT)
+    ops.uniaxialMaterial("Elastic", 3, 1e-9 * CONTACT)  # without it the first tangent is singular
     ops.uniaxialMaterial("Parallel", 1, 2, 3)
+    ops.uniaxialMaterial("Elastic", 4, ground.stiffness)
     for j, x in enumerate((-B, B)):
         ops.node(1 + j, x, 0.0)
         ops.node(11 + j, x, 0.0)
         ops.fix(11 + j, 1, 1, 1)
         ops.element("elasticBeamColumn", 400 + j, 100, 1 + j, 100.0 * axial, 1.0, 1e4 * bending, 1)
-        ops.element("zeroLength", 21 + j, 11 + j, 1 + j, "-mat", 1, "-dir", 2, "-doRayleigh", 1)
+        below = 11 + j
+        if ground.stiffness < CONTACT:
+            below = 31 + j
+            ops.node(below, x, 0.0)
+            ops.fix(below, 1, 0, 1)
+            ops.element("zeroLength", 41 + j, 11 + j, below, "-mat", 4, "-dir", 2, "-doRayleigh", 1)
+        ops.element("zeroLength", 21 + j, below, 1 + j, "-mat", 1, "-dir", 2, "-doRayleigh", 1)
     by_stiffness = 2.0 * ground.damping / math.sqrt(2.0 * ground.stiffness / (case.shaft + case.top))
-    ops.region(1, "-ele", 21, 22, "-rayleigh", 0.0, by_stiffness, 0.0, 0.0)
+    damped = (41, 42) if ground.stiffness < CONTACT else (21, 22)
+    ops.region(1, "-ele", *damped, "-rayleigh", 0.0, by_stiffness, 0.0, 0.0)
     return masses
 
 

@@ -3,6 +3,7 @@
 import inspect
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import get_args
 
 import numpy as np
@@ -11,6 +12,7 @@ from core_samples import FIG5
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions.motion import Motion
+from rockbatch.observers.other_law.observe import by_other_law
 from rockbatch.pier import (
     LAWS,
     WITH_EXPONENT,
@@ -29,11 +31,30 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
+from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.devices import doubt as pier_doubt
 from rockbatch.pier.frequencies import fastest
 from rockbatch.pier.plausibility import wrong_restraints
+from rockbatch.pier.sizes import unlikely_deck, unlikely_heights, unlikely_inertia
 from rockbatch.simulation import run_fixed
 from rockbatch.simulation.models import CODES, springs
+
+
+@pytest.mark.parametrize(
+    ("least", "greatest", "problems_of"),
+    [
+        (0.25, 2.5, lambda share: unlikely_heights(20.0, (), top_m=20.0 * share)),
+        (0.005, 100.0, lambda share: unlikely_deck(1000.0, 1000.0 * share, ())),
+        (0.01, 5.0, lambda share: unlikely_inertia(100.0, 100.0 * (20.0 * share) ** 2, 20.0, ())),
+        (0.03, 1e3, lambda t_m3: unlikely_mass(SimpleNamespace(half_width=2.0, height=10.0, mass_t=320.0 * t_m3), ())),
+    ],
+)
+def test_the_proportions_of_a_pier_are_doubted_beyond_these_bounds(least, greatest, problems_of):
+    """The height of the top over the pier's, the mass of a deck over that below it, its radius of gyration over its height, and
+    the density of a square block [t/m³]."""
+    assert not problems_of(1.001 * least)
+    assert not problems_of(0.999 * greatest)
+    assert len(problems_of(0.999 * least)) == len(problems_of(1.001 * greatest)) == 1
 
 
 @pytest.mark.parametrize(("p", "size"), [(1.0, 7.36), (0.35, 60.1)])
@@ -122,7 +143,7 @@ def test_a_base_tells_what_it_can_do():
     """Springs deflect, yielding ones settle, those of Bouc–Wen ratchet, landings on undamped ones have an ε or ask for tension,
     and friction may hold a pier at a tilt."""
     bouc_wen = YieldingBase(50.0, eta=3.0)
-    epp = bouc_wen.by_other_law()
+    epp = replace(bouc_wen, spring="epp")
     told = [(base.on_springs, base.yields, base.ratchets, base.has_residual) for base in (
         RigidBase(), ElasticBase(50.0), bouc_wen, epp,
     )]  # fmt: skip
@@ -140,7 +161,8 @@ def test_a_base_tells_what_it_can_do():
         replace(epp, impact="housner"): (False, True),
     }
     assert {base: (base.has_epsilon, base.asks_tension) for base in impacts} == impacts
-    assert RigidBase().by_other_law() == RigidBase()
+    assert by_other_law(bouc_wen) == epp
+    assert by_other_law(epp) is by_other_law(RigidBase()) is None
     holds = {
         Damper("friction", f=0.05): True,
         Damper("hysteretic", f=0.05, yield_m=0.01): True,
@@ -233,9 +255,9 @@ def test_every_law_stands_in_both_tables_and_one_that_creeps_names_one_that_does
     assert set(get_args(SpringLaw)) == set(LAWS) == set(CODES) - {"elastic"}
     for spring, law in LAWS.items():
         base = YieldingBase(40.0, eta=3.0, spring=spring)
-        other = base.by_other_law()
-        assert not other.ratchets
-        assert base.ratchets == (other != base) == (law.creep is not None)
+        other = by_other_law(base)
+        assert other is None or not other.ratchets
+        assert base.ratchets == (other is not None) == (law.creep is not None)
         model = springs(Pier(0.13, 0.38), base)
         assert (model.law, model.creep > 0.0) == (CODES[spring], base.ratchets)
         assert base.has_exponent == law.has_exponent == (spring in WITH_EXPONENT)
@@ -320,6 +342,10 @@ def test_what_is_impossible_of_devices_under_a_pier_is_said_once(devices, said):
         ),
         (lambda: ElasticBase.from_stiffness(TALL, 1e9), ["stiffness_kN_m = 1e+09: the pier's weight presses"]),
         (lambda: YieldingBase.from_stiffness(TALL, 2e6, 4e6), ["yield_kN = 4e+06: 302 times what the support carries"]),
+        (
+            lambda: YieldingBase.from_stiffness(TALL, 2e6, 4e4, eta=2.5),
+            ["yield_kN = 40000: eta is given, too, which fixes the same"],
+        ),
     ],
 )
 def test_what_cannot_be_or_is_odd_is_said_where_it_is_made(made, said):

@@ -160,3 +160,12 @@ def test_a_sampling_rate_is_not_taken_for_a_step(dt, said):
 def test_steps_of_records_are_taken():
     for dt in (1e-4, 0.0005, 0.005, 0.02, 0.1, 0.2):
         assert rb.Motion.from_array(VALUES, dt, "m/s2").times(2.0).dt == dt
+
+
+@pytest.mark.parametrize("component", ["horizontal", "vertical", "across"])
+def test_a_factor_with_which_any_component_overflows_is_refused(component):
+    large = {
+        name: np.array([0.0, 1e200 if name == component else 1.0]) for name in ("horizontal", "vertical", "across")
+    }
+    with pytest.raises(rb.InputError, match=f"{component} sample 1 .* is inf"):
+        rb.Motion("mine", 0.01, **large).times(1e150)

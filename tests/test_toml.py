@@ -132,7 +132,7 @@ NOT_TOML = [  # a text, the line that is wrong, and why
     ("alpha = 0,13\n", 1, "expected newline or end of document after a statement"), ("alpha: 0.13\n", 1, "expected '=' after"),
     ("mass_t = 1.8e6 kg\n", 1, "expected newline or end of document"), ("alpha =\n", 1, "invalid value"),
     ("[pier\nalpha = 1\n", 1, "expected ']' at the end of a table declaration"), ("\n= 3\n", 2, "invalid statement"),
-    ("p = 1\np = 2\n", 2, "cannot overwrite a value"), ("[pier]\n[pier]\n", 2, "cannot declare ('pier',) twice"),
+    ("[pier]\n[pier]\n", 2, "cannot declare ('pier',) twice"),
     ("beta = [1,\n2\n\n", 2, "unclosed array"), ("title = \"a\nb = 1\n", 1, "illegal character"),
 ]  # fmt: skip
 
@@ -227,7 +227,9 @@ def test_advice_is_what_was_meant_and_what_was_expected_if_that_is_short(error, 
 @pytest.mark.parametrize(
     ("kind", "value", "expected", "meant"),
     [
-        (boolean, "yes", "true or false (without quotes)", ""),
+        (boolean, "yes", "true or false (without quotes)", "true"),
+        (boolean, "often", "true or false (without quotes)", ""),
+        (boolean, 0, "true or false (without quotes)", "false"),
         (boolean, 1.0, "true or false (without quotes)", ""),
         (Choice((1, 2)), "2", "one of 1, 2", "2"),
         (Choice((1, 2)), True, "one of 1, 2", ""),

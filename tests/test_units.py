@@ -11,7 +11,17 @@ from pathlib import Path
 import pytest
 
 import rockbatch
-from rockbatch.common.units import LEAST, Bounds, Usual, acceleration_factor, length_factor
+from rockbatch.common.units import (
+    LEAST,
+    Bounds,
+    Usual,
+    acceleration_factor,
+    factor_between,
+    length_factor,
+    number_in_unit_of,
+    unit_in_words,
+    unit_of,
+)
 from rockbatch.quantities.catalogue import COLUMNS, DEMANDS
 from rockbatch.study.schema import STUDY
 
@@ -31,6 +41,42 @@ def test_every_spelling_of_a_unit_has_its_factor(spellings, factor):
     assert [acceleration_factor(spelling) for spelling in spellings] == pytest.approx(
         [factor] * len(spellings), rel=1e-14
     )
+
+
+@pytest.mark.parametrize(
+    ("unit", "own", "factor"),
+    [
+        ("mm", "m", 1e-3), ("m", "mm", 1e3), ("MN_m", "kN_m", 1e3), ("kN_mm", "kN_m", 1e3), ("kN_cm2", "kN_m2", 1e4),
+        ("N_s_mm", "kN_s_m", 1.0), ("kg_m2", "t_m2", 1e-3), ("t_cm2", "t_m2", 1e-4), ("deg", "rad", math.radians(1)),
+        ("m_s2", "g", 1 / 9.81), ("cm_s2", "g", 0.01 / 9.81), ("gal", "g", 0.01 / 9.81), ("percent", "g", 0.01),
+        ("kN", "t", 1 / 9.81), ("kg", "kN", 9.81e-3), ("t", "kN", 9.81), ("cm_s", "m_s", 0.01), ("GPa", "MPa", 1e3),
+        ("percent", "", 0.01), ("percent", "m", None), ("m", "s", None), ("kN_m", "kN", None), ("deg", "", None),
+        ("lb", "kN", None), ("kg_m2", "kN_m2", None),
+    ],
+)  # fmt: skip
+def test_a_number_in_another_unit_of_the_same_measure_has_its_factor(unit, own, factor):
+    assert factor_between(unit, own) == (None if factor is None else pytest.approx(factor, rel=1e-12))
+
+
+@pytest.mark.parametrize(
+    ("key", "text", "number"),
+    [
+        ("width_m", "4.0 m", "4.0"), ("width_m", "400 [cm]", "4"), ("width_m", "4.0 kN", ""), ("width_m", "4.0", ""),
+        ("stiffness_kN_m", "1.5 MN/m", "1500"), ("deck_inertia_t_m2", "3 t m²", "3"), ("zeta", "7%", "0.07"),
+        ("dt", "5 ms", "0.005"), ("alpha", "7.5°", "0.1308996939"), ("ag_g", "2.4525 m/s^2", "0.25"), ("mass_t", "1,800 t", ""),
+        ("mass_t", "1 800 kg", ""),
+    ],
+)  # fmt: skip
+def test_a_number_with_its_unit_is_read_in_the_unit_of_its_key(key, text, number):
+    assert number_in_unit_of(key, text) == number
+
+
+def test_every_key_of_a_study_that_ends_in_a_unit_has_it_known_and_readable():
+    keys = {key for section in STUDY for key in section}
+    units = {unit_of(key) for key in keys} - {""}
+    assert {"m", "mm", "t", "kN", "kN_m", "kN_s_m", "s", "g", "deg", "rad", "m_s", "t_m2"} <= units
+    assert all(factor_between(unit, unit) == 1.0 for unit in units)
+    assert [unit_in_words(unit) for unit in ("kN_s_m", "m_s2", "MN_m3")] == ["kN s/m", "m/s²", "MN/m³"]
 
 
 @pytest.mark.parametrize("unit", ["m/s", "cm", "counts", "V", "", "m/s3", "nm/s"])

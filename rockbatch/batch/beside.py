@@ -24,7 +24,7 @@ Rows = list[Row]
 
 
 def packed(run: StudyRun, table: str) -> str:
-    """Return the rows of a finished run in ``table`` as one cell without commas; "" without rows or with too many."""
+    """Return the rows of a finished run in ``table`` as one cell without commas; "" without that table or with too many rows."""
     rows = None if run.outcome is None else run.outcome.tables.get(table)
     if rows is None:
         return ""
@@ -83,7 +83,10 @@ def rows_beside(
 def read_again(
     planned: StudyRun, row: "pd.Series", observers: Sequence[Observer], numerics: Numerics
 ) -> Mapping[str, Rows]:
-    """Repeat a run with the steps of its ``row`` of peaks.csv, which gives bitwise equal results; return its other tables."""
+    """Return the rows of each table of ``observers`` for a run, by name, repeated with the steps of its ``row`` of peaks.csv.
+
+    Its results are bitwise those of the row; one that an observer does not read, as it is too long, has no rows in its table.
+    """
     (run,) = simulations([planned])
     outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), numerics.quiet_s)
     outcome = outcome.changed(status=row["status"], reason=row["reason"], note=row["note"])

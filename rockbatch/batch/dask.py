@@ -143,7 +143,10 @@ class Dask:
     def outcomes(
         self, runs: Sequence[StudyRun], numerics: Numerics, observers: Sequence[Observer] = ()
     ) -> Generator[Group, None, None]:
-        """See :class:`rockbatch.batch.threads.Engine`."""
+        """Yield groups of runs with their outcomes, as they finish (:class:`rockbatch.batch.threads.Engine`).
+
+        Raises ``InputError`` if several workers die at a group, or if the cluster is lost.
+        """
         from distributed import CancelledError
         from distributed.scheduler import KilledWorker
 
@@ -188,7 +191,7 @@ class Dask:
                 self._client.cancel(list(pending))
 
     def _finished_of(self, client: "Client", pending: "Iterable[Future]") -> "list[Future]":
-        """Wait for at least one result; raise ``OSError`` if no worker is left, or if they keep dying."""
+        """Return the futures that have finished, once one has; raise ``OSError`` if no worker is left, or if they keep dying."""
         from distributed import TimeoutError as NotYetError
         from distributed import wait
 

@@ -14,7 +14,7 @@ from rockbatch.study import Study
 SHOW = ("commands", "terminal", "reporting", "__init__.py", "__main__.py", "common/version.py")
 """Packages and modules that only display rows; all others influence rows or the choice of runs."""
 
-OF_SLICES = ("command.py", "section.py", "figure.py")
+OF_SLICES = ("command.py", "section.py", "figure.py", "summary.py")
 """Modules of analyses and observers that only display rows."""
 
 _TOP = Path(__file__).parents[1]

@@ -132,7 +132,7 @@ def _tried(
 
 
 def _spread(steps: Sequence[float]) -> list[int]:
-    """Return indices spread evenly over all runs, in shuffled order, whose ``steps`` sum to at most :data:`STEPS_TRIED`.
+    """Return up to TRIED indices, even over all runs, in shuffled order, whose ``steps`` sum to at most :data:`STEPS_TRIED`.
 
     At least one, whatever its steps.
     """

@@ -101,9 +101,10 @@ def _tables(batch: Batch, saved: Results, journal: Journal) -> Iterator[tuple[st
 
 
 def _keep_histories(batch: Batch, saved: Results, records: Collection[str]) -> tuple[Path | None, InputError | None]:
-    """Write the histories of the study and of ``records``; return their file and an error, each None if there is none.
+    """Write the histories of the study and of ``records``; return (file, None), or (None, None) if none are kept.
 
-    The error is that of a full disk, without a file, or of histories too long for memory.
+    (None, error) if the disk is full, or if some are too long for memory; the file then has the others. If none are kept, an
+    earlier file is removed.
     """
     study, runs, listener = batch.study, batch.runs, batch.listener
     chosen = to_keep(study, runs, saved.peaks.iloc[: len(runs)], records)

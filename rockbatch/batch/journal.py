@@ -284,7 +284,7 @@ class Journal:
     def write_in_order(self, path: Path, extra_rows: Iterable[Mapping[str, object]] = ()) -> Written:
         """Write the table completely or not at all: finished runs in rising order, then rows of no run.
 
-        The journal is then removed at the end of the context.
+        The journal is then removed at the end of the ``with``, unless an error ends it.
         """
         digest, rows = hashlib.sha256(), -1
         with replacing(path) as temporary, temporary.open("wb") as file:

@@ -59,7 +59,7 @@ class Bars(Listener):
 
     @contextmanager
     def progress(self, total: int) -> "Iterator[Advance]":
-        """See :class:`Listener`."""
+        """Return a context that shows a bar of ``total`` runs; its value advances the bar."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # raised in notebooks without widgets, which get a text bar
             from tqdm.auto import tqdm
@@ -98,7 +98,7 @@ class Calls(Listener):
 
     @contextmanager
     def progress(self, total: int) -> "Iterator[Advance]":
-        """See :class:`Listener`."""
+        """Return a context whose value calls the function with the numbers of finished items so far, and of all, ``total``."""
         done = 0
 
         def advance(more: int) -> None:
@@ -116,7 +116,7 @@ Progress = bool | Callable[[int, int], object] | Listener | None
 def listener_of(progress: Progress) -> Listener:
     """Return the listener for ``progress``: a bar (True), none (False), one that calls a function, or a listener itself.
 
-    None means a bar if stderr is a terminal, else no bar.
+    None means a bar if stderr is a terminal, else no bar. ``InputError`` for anything else.
     """
     if progress is None:
         return Bars(SHORT) if sys.stderr is not None and sys.stderr.isatty() else Listener()

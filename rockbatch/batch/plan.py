@@ -84,7 +84,7 @@ class Plan(Runs):
         return self._length
 
     def run(self, number: int) -> StudyRun:
-        """See :class:`Runs`."""
+        """Return run ``number``, with the polarity that it mirrors if another is simulated for both."""
         rest, case = divmod(number, len(self.cases))
         rest, scale = divmod(rest, len(self.scale))
         motion, polarity = divmod(rest, len(self.polarity))
@@ -94,7 +94,7 @@ class Plan(Runs):
         return StudyRun(on_axis, sign, self.scale[scale], self.cases[case], mirror_of)
 
     def images(self, number: int) -> Sequence[int]:
-        """See :class:`Runs`."""
+        """Return the numbers of both polarities of a run, the simulated one first; of one polarity its own number."""
         if not self.mirrored:
             return (number,)
         group, rest = divmod(number, self._of_one)
@@ -112,7 +112,7 @@ class Made(Runs):
         return self._length
 
     def run(self, number: int) -> StudyRun:
-        """See :class:`Runs`."""
+        """Return ``make(number)``."""
         return self._make(number)
 
 

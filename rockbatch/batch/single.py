@@ -161,19 +161,19 @@ class HistoriesOfRun(Observer):
 
     @property
     def every_step(self) -> bool:  # type: ignore[override]
-        """See :class:`Observer`."""
+        """Return whether the histories need every step: the ground remembers, or one of the observers adds to them by steps."""
         return self.remembers or any(observer.histories_of_steps for observer in self.observers)
 
     def claims_error(self, outcome: Outcome) -> bool:
-        """See :class:`Observer`."""
+        """Return False: histories have no error."""
         return False
 
     def read(self, recording: Recording, outcome: Outcome) -> Response:
-        """See :class:`Observer`."""
+        """Return the histories of the run, with those of the observers."""
         return histories(recording, outcome.status, self.case, {}, self.observers)
 
     def add(self, run: Run, outcome: Outcome, fine: Response | None, coarse: None) -> Outcome:
-        """See :class:`Observer`."""
+        """Return ``outcome`` with the histories ``fine`` as its table "histories"; unchanged without them."""
         return outcome if fine is None else outcome.with_table(self.table, fine)
 
 

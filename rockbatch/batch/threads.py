@@ -79,7 +79,7 @@ class Threads:
     def outcomes(
         self, runs: Sequence[StudyRun], numerics: Numerics, observers: Sequence[Observer] = ()
     ) -> Generator[Group, None, None]:
-        """See :class:`Engine`."""
+        """Yield groups of runs with their outcomes, as they finish (:class:`Engine`)."""
         waiting = groups(runs, numerics, self.jobs)
         pending: dict[Future[list[Outcome | None]], Group] = {}
         stop = Stop()

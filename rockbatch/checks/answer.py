@@ -43,7 +43,10 @@ def answer(
     runs: Sequence[CaseRuns] = (),
     stations: Stations = ALL_STATIONS,
 ) -> list[Line]:
-    """Return the lines of the answer: failing suite, cases that pass, lack a limit, fail, are undecided or unchecked, if any.
+    """Return the lines of the answer: failing suite, cases that pass, lack a limit, fail or are undecided, missing stations.
+
+    A line with nothing to say is left out; missing stations come before the cases if any case meets its limits. Unchecked cases
+    have a line of their own only if no case passes.
 
     Parameters
     ----------
@@ -93,7 +96,7 @@ def _is_low(below: Sequence[Verdict]) -> bool:
 
 
 def _lines_on_suite(verdicts: Sequence[Verdict]) -> list[Line]:
-    """Return one line that the suite fails, with a sentence for each of its failing checks, at most three; [] if none fails."""
+    """Return one line that the suite fails, with up to three sentences on the failing ``verdicts``, "and 2 more."; or []."""
     sentences: dict[str, None] = {}  # most conditions are the same at every scale
     for verdict in verdicts:
         parts = filter(None, (wording.against(verdict), verdict.note))
@@ -115,7 +118,11 @@ def _line_under_failing_suite(line: Line | None, below: Sequence[Verdict]) -> Li
 
 
 def missing_stations(stations: Stations) -> Line | None:
-    """Return the line on stations without a usable motion, or with unusable files beside usable ones, by reason; None if none."""
+    """Return the line on stations without a usable motion, or with unusable files beside usable ones; None if there are none.
+
+    A single reason follows the text; of several, up to three are details, and how many more. The last detail is the key that
+    leaves these stations out.
+    """
     if not stations.unusable:
         return None
     whole = [name for name in stations.unusable if name not in stations.used]
@@ -142,15 +149,15 @@ def _reason_of_file(file: File) -> str:
 
 
 def _wholly_or_in_part(stations: Mapping[str, Sequence[File]], used: Collection[str]) -> list[str]:
-    """Return the names of stations that are not ``used``, then "2 files of WTMC" for those that are, without these files."""
+    """Return the names of ``stations`` that are not ``used``, then for each used one the number of its files: "2 files of A"."""
     parts = [f"{len(files)} file{'s' * (len(files) > 1)} of {name}" for name, files in stations.items() if name in used]
     return [name for name in stations if name not in used] + parts
 
 
 def without_limits(cases: Mapping[str, Sequence[Verdict]], worst: Sequence[Worst]) -> dict[str, list[Worst]]:
-    """Return the governing responses that no check bounds, by the names of cases with such responses.
+    """Return the governing responses that no check bounds, by the name of their case; cases without any are left out.
 
-    ``worst`` are those of every case at each scale, as a case of verdicts is of one.
+    ``cases`` have the verdicts of each case at one scale, ``worst`` the worst responses of every case at each scale.
     """
     by_case = grouped(
         worst, lambda response: (*_key(name_along(response.case), response.case["columns"]), response.scale)
@@ -189,15 +196,18 @@ class _Cases:
 
     @cached_property
     def unchecked(self) -> list[str]:
-        """Names of cases to which no check applies, or of which checks pass though no run ends standing."""
+        """Names of cases to which no check applies, or whose checks pass though under one of the bounds no run ends standing."""
         return [name for name in self.every if not self._of([name], FAIL, NOT_DECIDED) and not self._passes(name)]
 
     def _passes(self, name: str) -> bool:
-        """Return whether a check of the case passes, and not only because no run ends standing."""
+        """Return whether a check of the case passes, and runs end standing under every bound of the design."""
         return bool(self._of([name], PASS)) and not any(runs.none_stands for runs in self.runs.get(name, ()))
 
     def passing(self, names: Sequence[str]) -> Line | None:
-        """Return the line on cases that pass every check, undecided if other cases or stations are left; None for no case."""
+        """Return the line on cases that pass every check; None for no case.
+
+        Its verdict is "not decided" if another case is not checked, or a station could not be used.
+        """
         if not names:
             return None
         ratios = [judged for judged in self._of(names) if math.isfinite(judged.ratio) and not judged.is_ban]
@@ -232,7 +242,7 @@ class _Cases:
         return Line(NOT_DECIDED, _capital(text), self._with_ends(names), ())
 
     def _with_ends(self, names: Sequence[str]) -> str:
-        """Return up to three names of cases, first those with most runs cut short: "pads, 2 of 10 runs overturned; piles"."""
+        """Return up to three names of cases, "and 2 more", most runs cut short first: "pads, 2 of 10 runs overturned; piles"."""
         runs = {name: joined(self.runs[name]) for name in names if name in self.runs}
         ends = {name: runs[name].in_words if name in runs else "" for name in names}
         order = sorted(names, key=lambda name: -sum(runs[name].ended.values()) if ends[name] else 0)
@@ -248,7 +258,7 @@ class _Cases:
         return (f"Not every run ends standing: {self._with_ends(ended)}.",) if ended else ()
 
     def _coverage(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence for each share of further records beyond the statistics by which these cases pass; () if none."""
+        """Return a sentence for each share of further records that exceed a statistic by which these cases pass; () if none."""
         passed = [
             (statistic.coverage(verdict.records), verdict.check)
             for verdict in self._of(names, PASS)
@@ -287,7 +297,7 @@ class _Cases:
         return Line(NOT_DECIDED, _capital(text), _few(list(free)), details)
 
     def failing(self, names: Sequence[str]) -> Line | None:
-        """Return the line on cases that fail a check, with the case that is nearest to passing; None for no case."""
+        """Return the line on cases that fail a check, with the nearest to passing if its ratio is finite; None for no case."""
         if not names:
             return None
         near = min((max(self._of([name], FAIL), key=_excess) for name in names), key=_excess)
@@ -311,7 +321,7 @@ class _Cases:
         return " under every bound" if any(under(verdict.columns) for verdict in self._of(self.every)) else ""
 
     def _failing_bounds(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence each for up to three failing cases that pass nominally, with the bounds that fail; () for none."""
+        """Return a sentence each for up to three cases that fail under bounds but not nominally, with the bounds; () for none."""
         sentences = []
         for name in names:
             failing = dict.fromkeys(verdict.columns.get(BOUND, "") for verdict in self._of([name], FAIL))

@@ -11,10 +11,9 @@ import numpy.typing as npt
 from rockbatch.checks.omissions import omissions, open_landings, unconverged
 from rockbatch.checks.rules import Rule
 from rockbatch.quantities.arrays import Rows, Texts
-from rockbatch.quantities.cases import Case, creeps
+from rockbatch.quantities.cases import Case
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.demands import Demand
-from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.statistics import STATISTICS, Values
 
 SCATTER = 2.0
@@ -43,9 +42,10 @@ class Axis(NamedTuple):
 class Demanded(NamedTuple):
     """The demand of a rule in the n runs of a case.
 
-    ``bounds`` of every run, and whether it is ``counting`` at all; the ``own`` demand by the spring law of the case, and
-    ``by_other`` that by the other law, NaN if that did not go through and None if it was not run; ``chaotic`` runs; and what
-    the demand leaves out in runs that count (``omitted``), by the names of :data:`rockbatch.checks.omissions.OMISSIONS`.
+    ``bounds`` of every run, and whether it is ``counting`` at all; the ``own`` demand by the model of the case, and
+    ``by_other`` that by the other one of a range, NaN if that did not go through and None if it was not run; ``chaotic`` runs;
+    and what the demand leaves out in runs that count (``omitted``), by the names of
+    :data:`rockbatch.checks.omissions.OMISSIONS`.
     """
 
     bounds: Bounds
@@ -87,7 +87,10 @@ _COMBINED: dict[str, Callable[[Values, Values], Values]] = {
 
 
 def of_suite(rule: Rule, axes: Sequence[Axis], counted_as: Texts) -> OfSuite:
-    """Return the demand of a rule on a suite; ``counted_as`` has the record under which each run counts, shape (n,)."""
+    """Return the demand of a rule on a suite; ``counted_as`` has the record under which each run counts, shape (n,).
+
+    A run counts if it does so on every axis.
+    """
     of_axes = [of_runs(rule, axis.suite, axis.case) for axis in axes]
     runs = _on_both_axes([its.bounds for its in of_axes], rule.both_axes or "greater")
     counting = np.logical_and.reduce([its.counting for its in of_axes])
@@ -101,7 +104,10 @@ def of_suite(rule: Rule, axes: Sequence[Axis], counted_as: Texts) -> OfSuite:
 
 
 def _of_records(rule: Rule, records: Bounds) -> tuple[float, float, float]:
-    """Return the statistic of the demands of all records, and its bounds; NaN without a record."""
+    """Return the statistic of the demands of all records, and its bounds; NaN without a record.
+
+    By ASCE 7-16 the upper bound is infinite if the upper bounds of more records are infinite than the lower ones.
+    """
     interval = STATISTICS[rule.statistic or "max"].interval
     value, low, high = (_statistic(rule, values) for values in records[:3])
     if interval is not None and len(records.value):
@@ -151,10 +157,10 @@ def _governing(runs: Bounds, counting: npt.NDArray[np.bool_], *, by_bound: bool)
 
 
 def lacking(counting: npt.NDArray[np.bool_], counted_as: Texts) -> dict[str, tuple[int, int]]:
-    """Return (runs that count, runs expected) of each record with runs of which some, but not all, count; {} if there is none.
+    """Return (runs that count, runs expected) of each record of which some runs count, but fewer than expected; {} if none.
 
-    Expected are the runs of the record, or the usual number of the others if that is more. The missing direction may be the
-    worst.
+    Expected are all runs of the record, counting or not, or the commonest number of runs of a record if that is more. The
+    missing direction may be the worst.
     """
     planned, remaining = Counter(counted_as), Counter(counted_as[counting])
     usual = max(Counter(planned.values()).items(), key=lambda item: (item[1], item[0]))[0] if planned else 0
@@ -163,7 +169,12 @@ def lacking(counting: npt.NDArray[np.bool_], counted_as: Texts) -> dict[str, tup
 
 
 def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
-    """Return the demand of a rule in the runs of a case, with its bounds, chaotic runs and omissions."""
+    """Return the demand of a rule in the runs of a case, with its bounds, chaotic runs and omissions.
+
+    Bounds are value ∓ error; from the value up to infinite where the error is; from 0 up to infinite where the value is NaN; a
+    factor of :data:`SCATTER` for chaotic runs. Runs cut short count by the rule's ``ways``. An event is 0 or 1; its upper
+    bound is 1 where it may have followed.
+    """
     demand = DEMANDS[rule.demand]
     value, error = demand.evaluate(runs, case)
     status = runs.texts("status")
@@ -181,8 +192,8 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
     low = np.where(wild, value / SCATTER, np.maximum(value - margin, 0.0))
     high = np.where(wild, value * SCATTER, value + margin)
     by_other = None
-    if demand.other_law and OTHER_LAW in runs and creeps(case):  # the worse law counts
-        by_other = demand.other_law(runs, case)
+    if (end := demand.other_end) and end.column in runs and end.has_range(case):  # the worse end counts
+        by_other = end.evaluate(runs, case)
         high = np.where(np.isnan(by_other) & rule.other_law, np.inf, np.fmax(high, by_other))
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
     if rule.ways["overturned"] == "infinite":
@@ -213,10 +224,10 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
 
 
 def _chaotic(demand: Demand, runs: Rows, error: Values) -> npt.NDArray[np.bool_]:
-    """Return True for each chaotic run without an ``error``, and, but for a residual, without one of its peak either, shape (n,).
+    """Return True for each chaotic run without an ``error`` of the demand and, but for a residual, of its peak, shape (n,).
 
-    An earlier version did not write the column: a run that ended well, and claims no error beside others that do, counts as
-    such.
+    An earlier version did not write the column ``chaotic``: then a run that ended well without an error of its peak counts as
+    chaotic, if other runs have one.
     """
     of_peak, ended_well = runs.numbers("theta_max_error"), np.isin(runs.texts("status"), ("ok", "flight"))
     withheld = np.isnan(of_peak) & ended_well & bool(np.isfinite(of_peak).any())

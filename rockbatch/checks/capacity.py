@@ -28,20 +28,26 @@ _ROUNDING = 1e-9
 
 
 def line(constant: float, per_axial: float = 0.0) -> tuple[tuple[float, float], ...]:
-    """Return the curve of ``constant`` + ``per_axial`` N, where it is not below 0."""
+    """Return both ends of the line ``constant`` + ``per_axial`` N: from where it is 0, or −10⁹ kN if it is level, to 10⁹ kN."""
     first = (-constant / per_axial, 0.0) if per_axial else (-FARTHEST, constant)
     return first, (FARTHEST, constant + per_axial * FARTHEST)
 
 
 def whole(parts: Sequence[Capacity]) -> Capacity | tuple[object, ...]:
-    """Return the capacity that was written in ``parts``: one number, or a curve of all its points."""
+    """Return the capacity that was written in ``parts``: a single number as it is, else all points in order.
+
+    A number among several parts stays a number, which is no point.
+    """
     if len(parts) == 1 and isinstance(parts[0], float):
         return parts[0]
     return tuple(point for part in parts for point in (part if isinstance(part, tuple) else (part,)))
 
 
 def problems(curve: Curve) -> Iterator[str]:
-    """Yield a phrase for each fault of a curve: under two points, below 0, N not ascending, or not concave."""
+    """Yield a phrase for each fault of a curve: under two points, below 0, 0 at every N, N not ascending, or not concave.
+
+    Where N does not ascend, concavity is not looked at.
+    """
     if len(curve) < 2:
         yield "has fewer than two points; write [N, M] pairs from the greatest tension to the greatest compression"
     below = [f"[{n:g}, {m:g}]" for n, m in curve if m < 0.0]
@@ -75,7 +81,7 @@ def resistance(curve: Curve, axial: Values) -> Values:
 
 
 def _share(effect: Values, most: Values) -> Values:
-    """Return E/E_Rd, shape (n,): 0 for E = 0; infinite where ``most``, E_Rd, is NaN, and for E > 0 where it is 0."""
+    """Return E/E_Rd, shape (n,): infinite where ``most``, E_Rd, is NaN, else 0 for E ≤ 0, and infinite for E > 0 over 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(effect > 0.0, effect / most, 0.0)
     return np.where(np.isnan(most), np.inf, share)

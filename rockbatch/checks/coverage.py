@@ -70,7 +70,9 @@ ALL_STATIONS = Stations()
 
 
 def runs_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], records: int) -> list[CaseRuns]:
-    """Return every case at every scale, in order; one of both axes of a pier has the runs of both.
+    """Return every case at every scale, scales ascending; one of both axes of a pier has the runs of both.
+
+    Runs short of one for each record and polarity are "not run".
 
     Parameters
     ----------
@@ -100,7 +102,10 @@ def runs_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], records: int) -> 
 
 
 def stations_of(info: Mapping[str, Any]) -> Stations:
-    """Return the stations of the suite in run.json (``info``); a record or file without a known station is one by itself."""
+    """Return the stations of the suite in run.json (``info``); a record or file without a known station is one by itself.
+
+    A station that is left out by name and has unusable files besides is unusable only.
+    """
     used = [str(record.get("station") or record["record"]) for record in info["records"]]
 
     def station(file: File) -> str:

@@ -59,7 +59,7 @@ def _undecided(
 
 
 def _ended(suite: Rows, ending: str) -> npt.NDArray[np.bool_]:
-    """Return True for each run with this ending of :data:`ENDINGS`, shape (n,); one that overturned is none that may overturn."""
+    """Return True for each run with this ending of :data:`ENDINGS`, shape (n,); "may overturn" leaves out those that did."""
     status = suite.texts("status")
     return suite.facts("may_overturn") & (status != "overturned") if ending == MAY_OVERTURN else status == ending
 

@@ -30,7 +30,7 @@ def largest_event(records: Texts, counted_as: Texts, events: Mapping[str, str]) 
     """Return the earthquake with the most records; None if none is known.
 
     ``records`` and ``counted_as`` have the component of each run and the record under which it counts, shape (n,); ``events``
-    are those of components.
+    has the earthquake of each component, "" if it is not known. Of equal numbers the first counts.
     """
     event_of: dict[str, str] = {}
     for record, counted in zip(records, counted_as, strict=True):

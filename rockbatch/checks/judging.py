@@ -21,10 +21,9 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import Case, creeps, has_device, is_across, of_pier
+from rockbatch.quantities.cases import Case, has_device, is_across, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.quantities.demands import OF_BASE
-from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.rows import NOT_RUN, complete, counts_as, rows_of_cases, simulated, with_case
 from rockbatch.quantities.statistics import STATISTICS
 
@@ -32,6 +31,7 @@ MOST_NAMES = 5
 
 
 NOT_WEIGHED = "the study does not state the pier's mass"
+_OTHER_ENDS = [demand.other_end for demand in DEMANDS.values() if demand.other_end]
 PLANAR = "each axis of the pier is a planar model of its own"
 
 
@@ -71,10 +71,16 @@ def judge(
     doubted : bool
         Whether limits are compared with the piers: those of a study were when it was read.
 
+    Returns
+    -------
+    list of Verdict
+        By case, then scale, then rule; none of cases and scales that a rule does not choose.
+
     Raises
     ------
     InputError
-        If a rule asks for a case, scale or column that the results do not have, or has a doubted limit that decides nothing.
+        If there is no run, or a rule asks for a case, scale or column that the results do not have, or has a doubted limit that
+        decides nothing.
     """
     runs = with_case(peaks)
     if runs.empty:
@@ -84,15 +90,19 @@ def judge(
     at_heights = {
         needs: rows for needs, rows in (("sections", sections), ("interaction", interaction)) if rows is not None
     }
+    none_read = bool((runs["status"] == "failed").all())  # tables are empty then, and no choice of theirs is wrong
     available = Available(
         cases=list(dict.fromkeys(str(case["case"]) for case in cases if not is_across(case))),
         scales=scales,
-        other_law=OTHER_LAW in runs or not any(map(creeps, cases)),
         output=[
             *(key for key, columns in BROUGHT.items() if _has_columns(runs, columns)),
-            *([] if interaction is None or interaction["height_m"].notna().all() else [OF_BASE]),
+            *(end.needs for end in _OTHER_ENDS if end.column in runs or not any(map(end.has_range, cases))),
+            *([OF_BASE] if interaction is not None and (none_read or interaction["height_m"].isna().any()) else []),
         ],
-        sections={needs: set(rows["height_m"].dropna()) for needs, rows in at_heights.items()},
+        sections={
+            needs: {rule.at_m or 0.0 for rule in rules} if none_read else set(rows["height_m"].dropna())
+            for needs, rows in at_heights.items()
+        },
         piers=cases if doubted else (),
     )
     fits = [fitted(rule, available) for rule in rules]
@@ -142,14 +152,17 @@ def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", fit: Fitted) -> R
 
 
 def _has_columns(runs: "pd.DataFrame", columns: Collection[str]) -> bool:
-    """Return whether results have a column of these of a key of [output]; True also if no pier has the devices they are of."""
+    """Return whether results have one of the ``columns`` of a key of [output]; True also if all are of devices no pier has."""
     devices = {"", *(COLUMNS[name].device for name in runs if name in COLUMNS)}  # other devices have no columns here
     return any(name in runs for name in columns) or not any(COLUMNS[name].device in devices for name in columns)
 
 
 def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str, events: Mapping[str, str]) -> Verdict:
-    """Return the verdict of a rule on a pier at one scale, on one or both ``axes``."""
-    absent = [_absent(rule, axis) for axis in axes]
+    """Return the verdict of a rule on a pier at one scale, on one or both ``axes``.
+
+    If the demand is absent on one axis, the other decides alone; if on both, the verdict is "does not apply" with the reason.
+    """
+    absent = [_why_absent(rule, axis) for axis in axes]
     applying = [axis for axis, reason in zip(axes, absent, strict=True) if not reason]
     none = _not_applying(rule, axes, scale, count, rule.on_both_axes if len(applying) > 1 else "")
     if not applying:
@@ -163,7 +176,7 @@ def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str, events:
 
 
 def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, combined: str) -> Verdict:
-    """Return the verdict of a rule without its numbers, as if it did not apply; ``combined`` says how both axes are."""
+    """Return a verdict "does not apply" of a rule, its numbers NaN; ``combined`` says how demands on two axes combine."""
     demand, case = DEMANDS[rule.demand], axes[0].case
     height = demand.height(case) if demand.height else rule.at_m
     statistic, suites = "", []
@@ -191,7 +204,7 @@ def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, co
         basis=rule.basis,
         reason=rule.reason,
         counting=rule.counting,
-        counted=_ended_early(rule, suites),
+        counted=_counts_ended_early(rule, suites),
         remarks=(),
         count="" if demand.per_case else count,
         unit="" if rule.statistic == "count" else demand.unit,
@@ -201,8 +214,11 @@ def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, co
     )
 
 
-def _ended_early(rule: Rule, suites: Iterable[Rows]) -> str:
-    """Return how many runs did not go through, and how each counts: "1 overturned (infinite), 2 not run (unknown)"; or ""."""
+def _counts_ended_early(rule: Rule, suites: Iterable[Rows]) -> str:
+    """Return how many runs did not go through, and how each counts: "1 overturned (infinite), 2 not run (unknown)"; or "".
+
+    How they count is left out for a demand that is not of every run, such as an event.
+    """
     numbers: Counter[str] = Counter()
     for runs in suites:
         numbers.update(np.where(runs.missing, NOT_RUN, runs.texts("status")).tolist())
@@ -232,7 +248,7 @@ def _place(axis: Axis) -> str:
     return "across the axis" if is_across(axis.case) else "along the axis"
 
 
-def _absent(rule: Rule, axis: Axis) -> str:
+def _why_absent(rule: Rule, axis: Axis) -> str:
     """Return why the demand of a rule does not apply on an axis: "the pier has no damper"; "" if it applies."""
     demand, (case, suite) = DEMANDS[rule.demand], axis
     if not demand.applies_to(case):
@@ -251,9 +267,9 @@ def _absent(rule: Rule, axis: Axis) -> str:
 
 
 def _with_numbers(verdict: Verdict, value: float, low: float, high: float) -> Verdict:
-    """Return the verdict with a value, its bounds, ratio to the limit, and margin, negative beyond the limit.
+    """Return the verdict with a value, its bounds, its ratio (above 1 beyond the limit) and its margin (below 0 beyond it).
 
-    NaN for a value of NaN. The ratio to a limit of 0 is infinite, and 0 for a value of 0.
+    Ratio and margin of a value of NaN are NaN. Division by 0 gives infinity, 0/0 gives 0.
     """
     limit = verdict.limit
     numerator, denominator, margin = value, limit, limit - value
@@ -267,7 +283,10 @@ def _with_numbers(verdict: Verdict, value: float, low: float, high: float) -> Ve
 
 
 def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[str, str]) -> Verdict:
-    """Return the verdict on a statistic of a suite, on one or both axes; ``none`` is the verdict without its numbers."""
+    """Return the verdict on a statistic of a suite; demands on two axes combine run by run: ``both_axes``, else the greater.
+
+    Without a run that counts it is not decided, its numbers NaN. ``none`` is the verdict "does not apply", which gives the rest.
+    """
     suite = axes[0].suite
     counted_as, unknown = counts_as(suite, none.count)
     demand = of_suite(rule, axes, counted_as)
@@ -279,19 +298,21 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
     left_out = {name for its in demand.axes for name in its.omitted if verdict != PASS or OMISSIONS[name].decides}
     omitted = [name for name in OMISSIONS if name in left_out]
     open_by = math.isinf(demand.high) and not all(OMISSIONS[name].decides for name in omitted)
-    laws = [_laws(its, axis.suite, demand.governing) for its, axis in zip(demand.axes, axes, strict=True)]
+    ends = [
+        _remarks_on_ends(rule, its, axis.suite, demand.governing) for its, axis in zip(demand.axes, axes, strict=True)
+    ]
     remarks = [
         few or ("" if verdict != NOT_DECIDED or open_by else _between(demand.low, demand.high)),
         *(OMISSIONS[name].remark for name in omitted),
-        _far(rule, demand.value) if verdict == PASS else "",
+        _remark_if_far(rule, demand.value) if verdict == PASS else "",
         _on_each(demand, axes),
         statistic.remark(demand.records.high) if statistic.remark and n else "",
         unknown,
         *(of_event.remarks if of_event else ()),
         "" if none.count == "component" else _remark_on_directions(lacking(counting, counted_as)),
-        *dict.fromkeys(remark for of_axis in laws for remark in of_axis),
+        *dict.fromkeys(remark for of_axis in ends for remark in of_axis),
         "" if demand.records.estimated or DEMANDS[rule.demand].event else "no error estimate",
-        *dict.fromkeys(_chaotic(int(its.chaotic.sum())) for its in demand.axes),
+        *dict.fromkeys(_remark_on_chaos(int(its.chaotic.sum())) for its in demand.axes),
     ]
     judged = replace(
         _with_numbers(none, math.nan if demand.is_unknown else demand.value, demand.low, demand.high),
@@ -308,7 +329,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
 
 
 def _on_each(demand: OfSuite, axes: Sequence[Axis]) -> str:
-    """Return the demands of the governing run on two axes: "0.2 along the axis, 0.3 across the axis"; "" on one axis."""
+    """Return the demands of the governing run on two axes: "0.2 along the axis, 0.3 across the axis"; "" on one or without it."""
     run = demand.governing
     if len(axes) == 1 or run is None:
         return ""
@@ -316,7 +337,7 @@ def _on_each(demand: OfSuite, axes: Sequence[Axis]) -> str:
     return ", ".join(f"{its.bounds.value[run]:.4g} {_place(axis)}" for its, axis in of_axes)
 
 
-def _far(rule: Rule, value: float) -> str:
+def _remark_if_far(rule: Rule, value: float) -> str:
     """Return the remark that the value is below a hundredth of the limit; "" if it is not, is 0 or confirmed, or for a count."""
     key = limit_key(rule)
     if rule.statistic == "count" or key in rule.confirm or not 0.0 < FAR * value < rule.limit:
@@ -324,20 +345,24 @@ def _far(rule: Rule, value: float) -> str:
     return f"{value:.4g} is below {1 / FAR:g} of the limit: check its unit, or write confirm = [{shown(key)}]"
 
 
-def _laws(demanded: Demanded, suite: Rows, deciding: int | None) -> list[str]:
-    """Return remarks that the worse of two spring laws counts, with both demands of run ``deciding``; [] if one law was run."""
-    by_other = demanded.by_other
-    if by_other is None:
+def _remarks_on_ends(rule: Rule, demanded: Demanded, suite: Rows, deciding: int | None) -> list[str]:
+    """Return remarks that the worse end of a range counts, with both ends of run ``deciding``; [] if one model was run.
+
+    A second remark has the number of runs that went through by the model of the case alone.
+    """
+    by_other, end = demanded.by_other, DEMANDS[rule.demand].other_end
+    if by_other is None or end is None:
         return []
-    remarks = ["the worse of two spring laws counts"]
+    remarks = [f"the worse of two {end.models} counts"]
     if deciding is not None and np.isfinite(by_other[deciding]):
-        remarks[0] += f": {demanded.own[deciding]:.4g} by the law of the case, {by_other[deciding]:.4g} by the other"
+        own, other = demanded.own[deciding], by_other[deciding]
+        remarks[0] += f": {own:.4g} by the {end.model} of the case, {other:.4g} by the other"
     missing = int((np.isnan(by_other) & (suite.texts("status") == "ok")).sum())
     runs = "1 run" if missing == 1 else f"{missing} runs"
-    return [*remarks, f"{runs} did not go through by the other law"] if missing else remarks
+    return [*remarks, f"{runs} did not go through by the other {end.model}"] if missing else remarks
 
 
-def _chaotic(runs: int) -> str:
+def _remark_on_chaos(runs: int) -> str:
     """Return the remark on this number of chaotic runs, which have no error estimate; empty for 0."""
     if not runs:
         return ""
@@ -372,7 +397,10 @@ def _between(low: float, high: float) -> str:
 
 
 def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> str:
-    """Return the unmet condition on the records: "5 stations count, EN 1998-1 asks for 7"; "" if all are met."""
+    """Return the first unmet condition on the records: "5 stations count, EN 1998-1 asks for 7"; "" if all are met.
+
+    These are the least number, which the rule's ``least`` replaces, stations for a code, and ``per_event``.
+    """
     statistic = STATISTICS[rule.statistic or "max"]
     least, authority = statistic.least, statistic.code or (f"the {statistic.words}" if statistic.least > 1 else "")
     if rule.least is not None:

@@ -72,7 +72,8 @@ OMISSIONS = {
 def open_landings(demand: Demand, runs: Rows, case: Case) -> npt.NDArray[np.bool_]:
     """Return True for each run of which landings by impulse are missing in the demand, shape (n,): a lower bound.
 
-    A run without impacts, whose pier never lifted off or never came back, misses none.
+    A run without impacts misses none, one with an unknown number (NaN) some. False throughout for demands without landings, on
+    bases that do not stop the pier by an impulse, and where the modes of a bending shaft take up the blow.
     """
     if not (demand.landing and lands_by_impulse(case)) or _follows_modes(demand, case):
         return np.zeros(len(runs), dtype=bool)
@@ -103,7 +104,10 @@ def _follows_modes(demand: Demand, case: Case) -> bool:
 
 
 def omissions(demand: Demand, runs: Rows, error: Values, case: Case) -> list[str]:
-    """Return the names in :data:`OMISSIONS` of what the demand, of this ``error``, omits in runs of a case; [] for none."""
+    """Return the names in :data:`OMISSIONS` of what the demand, of this ``error``, omits in runs of a case; [] for none.
+
+    A demand that follows the modes of a bending shaft omits no more than the further modes, or those at a point.
+    """
     if _follows_modes(demand, case):
         if _at_a_point(demand, case):
             return [POINTS]

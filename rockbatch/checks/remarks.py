@@ -1,7 +1,7 @@
 """Remarks on the supports of a study's cases, shown before the results: one sentence each, with the cases."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rockbatch.checks.responses import Worst
@@ -86,15 +86,15 @@ def _is_damped(case: Case) -> bool:
     return bool(parameters.get("zeta")) or any("kind" in device for device in parameters.get("restraints", ()))
 
 
-def _named(cases: Iterable[Case], among: Sequence[Case]) -> str:
-    """Return the names of ``cases``, with varied values unless all of a name are meant; "5 of 8 cases" for more than three."""
+def _named(cases: Sequence[Case], among: Sequence[Case]) -> str:
+    """Return up to three names of ``cases``, with varied values unless all of a name are meant; for more "5 of 8 cases"."""
     names = []
     every = grouped(among, lambda case: str(case["case"]))
     for name, of_name in grouped(cases, lambda case: str(case["case"])).items():
         for case in of_name if len(of_name) < len(every[name]) else of_name[:1]:
             values = case["columns"].items() if len(of_name) < len(every[name]) else ()
             names.append(" ".join([name, *(f"{key}={_written(value)}" for key, value in values if value != "")]))
-    return "; ".join(names) if len(names) <= MOST_NAMES else f"{len(names)} of {len(among)} cases"
+    return "; ".join(names) if len(names) <= MOST_NAMES else f"{len(cases)} of {len(among)} cases"
 
 
 def _written(value: float | str) -> str:

@@ -13,7 +13,6 @@ from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, bends
 from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.quantity import SETTLING
 from rockbatch.quantities.rows import rows_of_cases
 
@@ -97,8 +96,8 @@ def standing(runs: "pd.DataFrame") -> npt.NDArray[np.bool_]:
 def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], *, at_each_scale: bool = False) -> list[Worst]:
     """Return the worst response of every case, at all scales or at each, for each of :data:`RESPONSES` that it has.
 
-    ``runs`` are rows of peaks.csv of all cases, and ``cases`` as in run.json. None of a case without a run that ends
-    standing.
+    ``runs`` are rows of peaks.csv of all cases, and ``cases`` as in run.json. A case without a run that ends standing is left
+    out.
     """
     worst = []
     stood, table = standing(runs), Rows(runs)
@@ -116,7 +115,8 @@ def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], *, at_each_scale
 def _greatest(rows: Rows, case: Case) -> Iterator[tuple[str, float, int]]:
     """Yield each response of a case, its greatest value in these rows, and the place of that row in the whole table.
 
-    Responses that the case does not have, and those without a finite value, are left out.
+    Responses that the case does not have, and those without a finite value, are left out; settlements and tilts below
+    :data:`ROUNDING` are 0.
     """
     for name in RESPONSES if len(rows) else ():
         if not DEMANDS[name].applies_to(case) or (name == "theta_res_rad" and case["base"] != "rigid"):
@@ -167,7 +167,10 @@ def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst
 
 
 def in_words(worst: Worst) -> str:
-    """Return the value of a response with its units: "1.49 m (1486 mm)"; a settlement by two spring laws as a range."""
+    """Return the value of a response with its units: a drift "1.49 m (1486 mm) at 30 m", a rotation in α, degrees and rad.
+
+    One that two models give is a range in mm; other lengths are in mm, tilts in mrad and degrees.
+    """
     value, pier = worst.value, worst.case["pier"]
     if worst.demand == "theta_max_over_alpha":
         theta = value * float(pier["alpha"])
@@ -176,9 +179,10 @@ def in_words(worst: Worst) -> str:
         return f"{1000 * value:.3g} mrad ({math.degrees(value):.2g}°)"
     if worst.demand == "top_drift_m":
         return f"{value:.3g} m ({_millimetres(value)} mm){at(worst.height)}"
-    if worst.demand == "settlement_m" and not math.isnan(worst.run.get(OTHER_LAW, math.nan)):
-        low, high = sorted((value, float(worst.run[OTHER_LAW])))
-        return f"{_millimetres(low)} to {_millimetres(high)} mm, by the law of the springs"
+    end = DEMANDS[worst.demand].other_end
+    if end and not math.isnan(other := float(worst.run.get(end.column, math.nan))):
+        low, high = sorted((value, other))
+        return f"{_millimetres(low)} to {_millimetres(high)} mm, by both {end.models}"
     return f"{_millimetres(value)} mm" if DEMANDS[worst.demand].unit == "m" else f"{value:.3g}"
 
 

@@ -30,14 +30,12 @@ class Available(NamedTuple):
     """Choices that a study offers to rules.
 
     ``cases`` are names, ``output`` the keys of [output] whose columns it has, ``sections`` the heights [m] of sections of any
-    pier by the ``needs`` of demands; ``other_law`` is True if it has the settlement by the other spring law. ``piers`` are the
-    cases with which limits are compared, as in run.json, with ``case``, ``base``, ``pier`` and ``parameters`` at least; none
-    if limits are not compared.
+    pier by the ``needs`` of demands. ``piers`` are the cases with which limits are compared, as in run.json, with ``case``,
+    ``base``, ``pier`` and ``parameters`` at least; none if limits are not compared.
     """
 
     cases: Collection[str]
     scales: Collection[float]
-    other_law: bool
     output: Collection[str]
     sections: Mapping[str, Collection[float]] = {}
     piers: Sequence[Case] = ()
@@ -54,7 +52,10 @@ class Fitted(NamedTuple):
 
 
 def fitted(rule: Rule, available: Available) -> Fitted:
-    """Return a rule fitted to a study: what it chooses of what is ``available``, and a problem for each choice that is not."""
+    """Return a rule fitted to a study: what it chooses of what is ``available``, and a problem for each choice that is not.
+
+    If piers are available, so is a problem of a limit or capacity that decides nothing on them.
+    """
     matches = {pattern: chosen(pattern, available.cases) for pattern in rule.case}
     cases = frozenset(chain.from_iterable(matches.values()) if rule.case else available.cases)
     scales = [scale for scale in available.scales if not rule.scale or _is_among(scale, rule.scale)]
@@ -62,7 +63,7 @@ def fitted(rule: Rule, available: Available) -> Fitted:
     at = [] if rule.at_m is None else [height for height in heights if is_height(height, rule.at_m)]
     if DEMANDS[rule.demand].needs == OF_BASE:
         at = [math.nan]
-    problems = [*_unmet(rule, matches, available), *_no_section(rule, at, heights)]
+    problems = [*_unavailable(rule, matches, available), *_no_section(rule, at, heights)]
     piers = [case for case in available.piers if str(case["case"]) in cases]
     if available.piers:
         problems += _without_dead_load(rule, piers) if rule.curve else _implausible(rule, piers)
@@ -79,8 +80,11 @@ def is_height(height: float, other: float) -> bool:
     return math.isclose(height, other, rel_tol=1e-6, abs_tol=1e-9)
 
 
-def _unmet(rule: Rule, matches: Mapping[str, Collection[str]], available: Available) -> Iterator[Problem]:
-    """Yield a problem for each case, scale and column of the rule that is not ``available``; ``matches`` by its patterns."""
+def _unavailable(rule: Rule, matches: Mapping[str, Collection[str]], available: Available) -> Iterator[Problem]:
+    """Yield a problem for each case, scale and column of the rule, and the other law, that is not ``available``.
+
+    ``matches`` has the names of cases by the rule's patterns.
+    """
     cases, scales = available.cases, available.scales
     for pattern, names in matches.items():
         if not names:
@@ -91,13 +95,13 @@ def _unmet(rule: Rule, matches: Mapping[str, Collection[str]], available: Availa
         if not _is_among(scale, scales):
             text = f"the motions are scaled by {', '.join(f'{factor:g}' for factor in scales)} only"
             yield Problem("scale", scale, text, kind=UnknownKey)
-    if rule.other_law and not available.other_law:
+    needs, end = DEMANDS[rule.demand].needs, DEMANDS[rule.demand].other_end
+    if rule.other_law and end and end.needs not in available.output:
         text = (
-            "there is no settlement by the other law; write both_laws = true under [output] of the study and run it, or leave "
-            "other_law out"
+            f"there is no {rule.demand} by the other {end.model}; write {end.needs} = true under [output] of the study and run "
+            f"it, or leave other_law out"
         )
         yield Problem("other_law", None, text, kind=MissingKey)
-    needs = DEMANDS[rule.demand].needs
     if needs and needs not in AT_HEIGHTS and needs not in available.output:
         text = f"there is no column of {needs}; write {needs} = true under [output] of the study and run it"
         yield Problem("demand", rule.demand, text, kind=MissingKey)
@@ -119,9 +123,10 @@ def _no_section(rule: Rule, own: Collection[float], sections: Collection[float])
 
 
 def _without_dead_load(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
-    """Yield the problem of a capacity whose curve does not reach the axial force of the dead load of any of the ``cases``.
+    """Yield the problem of a capacity whose curve has the axial force of the dead load in none of the ``cases``.
 
-    That force is the weight at the base and in a section at the foot, and less above. No problem without a known mass.
+    That force is the weight at the base and in a section at the foot; above, any force from 0 to the weight will do. No problem
+    if no mass is known.
     """
     ends = [axial for axial, _ in rule.curve or ()]
     weights, at_foot = [weight(case) for case in cases if "mass_t" in case["pier"]], not rule.at_m
@@ -136,7 +141,10 @@ def _without_dead_load(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
 
 
 def _implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
-    """Yield the problem of a limit too far from possible values in all ``cases`` to decide anything, unless it is confirmed."""
+    """Yield problems of a limit, or threshold of "count", that decides nothing; none if it is confirmed.
+
+    It is negative, next to 0 in mm, or in all ``cases`` above the greatest possible value or far from the size of the quantity.
+    """
     key = "above" if rule.statistic == "count" else limit_key(rule)
     demand, value = DEMANDS[rule.demand], rule.above if rule.statistic == "count" else rule.limit
     if value is None or key in rule.confirm:
@@ -167,7 +175,10 @@ def limit_key(rule: Rule) -> str:
 
 
 def _far_from(name: str, value: float, cases: Sequence[Case]) -> str:
-    """Return a message on a limit far from the parameter of every case, or from the weight; "" if near one, or unknown."""
+    """Return a message on a limit far from the parameter of every case, or a force far from the weight; "" otherwise.
+
+    Far is by a factor above 100, and below 10⁻⁴ of the weight; an unknown size (NaN), or no case, counts as near.
+    """
     demand = DEMANDS[name]
     if demand.per_case:
         no_runs = Rows(pd.DataFrame())

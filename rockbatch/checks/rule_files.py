@@ -46,9 +46,6 @@ TOP = Section(
 )
 
 
-_SECOND = ("suite", "checks")
-"""Key of the file of checks that a file of checks, or a study, names."""
-
 SECTIONS = (TOP, SUITE, CHECK)
 """Tables of a file of checks."""
 
@@ -66,8 +63,8 @@ def given_rules(rules: str | os.PathLike[str] | Iterable[Rule]) -> tuple[Rule, .
 def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
     """Return the rules of the [[check]] tables of a file, and of a file that its [suite] names.
 
-    Other tables of a study file are ignored. Raises ``InputError`` with every mistake and its line, and for a file without
-    checks.
+    Other tables of a study file are ignored; in a file without [pier] they are mistakes. Raises ``InputError`` with every mistake
+    and its line, and for a file without checks.
     """
     file = _opened(Path(path))
     if "pier" not in file.data:
@@ -104,25 +101,16 @@ def read_checks(
     """
     names: set[str] = set()
     rules, usual = _rules(file, SUITE, {}, unmet, names)
-    second = _second(file, usual["checks"], opened) if "checks" in usual else None
+    second = None
+    if (suite := file.table("suite")) and "checks" in usual:
+        with suite.noting("checks", before=f"checks = {shown(usual['checks'])}: "):
+            second = opened(file.path.parent / usual["checks"])
     if second is not None:
+        Table(second, (), "", second.data).read(TOP, other=("check", "suite"))
         without_file = {name: key for name, key in SUITE.items() if name != "checks"}
         rules += _rules(second, without_file, usual, unmet, names)[0]
-        file.adopt(second, _SECOND)
+        file.adopt(second, ("suite", "checks"))
     return Checks(tuple(rules), usual.get("count", COUNTS[0]), second)
-
-
-def _second(file: TomlFile, name: str, opened: Callable[[Path], TomlFile]) -> TomlFile | None:
-    """Return the file of checks of this name beside ``file``; None if it cannot be read, with the problems added to ``file``."""
-    try:
-        second = opened(file.path.parent / name)
-    except InputError as error:
-        for problem in error.problems:
-            text = f"checks = {shown(name)}: {problem}"
-            file.complain(_SECOND, Problem("checks", name, text, kind=problem.kind, named=False), "[suite]")
-        return None
-    Table(second, (), "", second.data).read(TOP, other=("check", "suite"))
-    return second
 
 
 def _rules(
@@ -132,7 +120,7 @@ def _rules(
     unmet: Callable[[Rule], Iterable[Problem]] | None,
     names: set[str],
 ) -> tuple[list[Rule], KeyValues]:
-    """Return the rules of the sound [[check]] tables, and the values of [suite], or else the ``usual`` ones.
+    """Return the rules of the sound [[check]] tables, and the ``usual`` values with those of [suite] in their place.
 
     ``section`` has the keys of [suite]. Mistakes become problems of ``file``, such as a name that is among ``names``, to which
     those of the tables are added.

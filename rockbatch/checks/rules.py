@@ -148,18 +148,18 @@ class Rule:
 
     @property
     def limit(self) -> float:
-        """The value of at_most or at_least, times a capacity that is no curve; NaN without one."""
+        """The value of at_most or at_least, times :attr:`number_of_capacity`, if any; NaN if neither limit is given."""
         limit = float(next((limit for limit in (self.at_most, self.at_least) if limit is not None), math.nan))
         return limit * (self.number_of_capacity or 1.0)
 
     @property
     def number_of_capacity(self) -> float | None:
-        """The capacity of which ``at_most`` is a share; None without one, and for a curve."""
+        """The capacity of which ``at_most`` is a share; None without one, for a curve, and for a demand over a capacity."""
         return self.capacity if isinstance(self.capacity, float) and not DEMANDS[self.demand].over_capacity else None
 
     @property
     def curve(self) -> Curve | None:
-        """The curve of a capacity that depends on the axial force; None without one."""
+        """The capacity of a demand over a capacity, as a curve of the axial force (level for a number); None for others."""
         if not DEMANDS[self.demand].over_capacity or self.capacity is None:
             return None
         return capacity.line(self.capacity) if isinstance(self.capacity, float) else self.capacity
@@ -190,11 +190,11 @@ class Rule:
 
     @property
     def words(self) -> str:
-        """What is compared with the limit: "mean of theta_max_over_alpha"; "no record overturns"; "eta" of a case."""
+        """Words for what is compared with the limit: "mean of theta_max_over_alpha"; "no record overturns"; "eta"."""
         return self.words_at(self.at_m)
 
     def words_at(self, height: float | None) -> str:
-        """Return :attr:`words` with the height at which the demand is read [m], without one for None."""
+        """Return :attr:`words` with the height at which the demand is read [m]; without it for None, a ban and a property."""
         demand = DEMANDS[self.demand]
         if demand.per_case:
             return self.demand
@@ -210,7 +210,7 @@ class Rule:
 
     @property
     def counting(self) -> str:
-        """Ways of counting runs cut short: "overturned: infinite; flight, failed: unknown"; "" unless it is of every run."""
+        """Ways of counting runs cut short: "overturned: infinite; flight, failed: unknown"; "" for a demand not of every run."""
         if not DEMANDS[self.demand].per_run:
             return ""
         by_way = grouped(self.ways, self.ways.__getitem__)
@@ -234,7 +234,7 @@ _CALLED = {
             ("heel_uplift_m", "heel_uplift_mm"): "uplift heeluplift",
             ("theta_max_rad", "theta_max_over_alpha"): "rotation maxrotation peakrotation thetamax theta",
             ("theta_res_rad", "theta_res_over_alpha"): "residualrotation residual thetares",
-            ("top_drift_m", "top_drift_mm"): "displacement topdisplacement",
+            ("top_drift_m", "top_drift_mm"): "displacement topdisplacement drift topdrift deckdisplacement",
             "friction_demand": "sliding slip",
             "overturned": "overturning overturn collapse toppling",
         }
@@ -266,7 +266,7 @@ _DEMAND = Choice(tuple(DEMANDS), called=_CALLED["demand"], listed_by="rockbatch 
 
 
 def _part_of_capacity(value: object) -> capacity.Capacity:
-    """Return a number as it is, a point [N, M] as a curve of one point, a line as one of two; :class:`KindError` for others."""
+    """Return a number above 0 as it is, [N, M] as a tuple of one point, a line as one of two; :class:`KindError` for others."""
     if isinstance(value, dict):
         if not value or not value.keys() <= {"constant", "per_N"}:
             raise KindError("a line { constant = 500.0, per_N = 0.6 }")
@@ -400,6 +400,7 @@ CHECK = Section(
     ),
     instead=names(
         {
+            'write statistic = "median" or "p84"': "percentile quantile fractile",
             "the unit stands in the name of the demand, as in heel_uplift_mm; leave it out": "unit units",
             "both polarities of a study are mirror images, of which each run counts once; leave it out": "polarity "
             "polarities sign",
@@ -457,7 +458,7 @@ def _wrong_limit(rule: Rule) -> Iterator[tuple[str, str]]:
 
 
 def _wrong_threshold(rule: Rule) -> Iterator[tuple[str, str]]:
-    """Yield the problem of ``above`` missing beside "count", but for events and properties, or given with another statistic."""
+    """Yield a problem if ``above`` is missing for a "count" of runs by a quantity, or given with another statistic."""
     demand = DEMANDS[rule.demand]
     if rule.above is not None and rule.statistic != "count":
         yield "above", 'above: is for statistic = "count"; leave it out'
@@ -497,9 +498,9 @@ def _wrong_for_demand(rule: Rule) -> Iterator[tuple[str, str]]:
             "both_axes",
             f"both_axes: {rule.demand} does not add up over the axes, and the greater counts; leave it out",
         )
-    if rule.other_law and demand.other_law is None:
-        with_other_law = " and ".join(name for name, candidate in DEMANDS.items() if candidate.other_law)
-        yield "other_law", f"other_law: is for {with_other_law}; leave it out"
+    if rule.other_law and demand.other_end is None:
+        ranges = " and ".join(name for name, candidate in DEMANDS.items() if candidate.other_end)
+        yield "other_law", f"other_law: is for {ranges}; leave it out"
 
 
 def _wrong_capacity(rule: Rule) -> Iterator[tuple[str, str]]:

@@ -68,7 +68,7 @@ class Row(NamedTuple):
 
     @property
     def in_words(self) -> str:
-        """The verdict on the case in words: "fails 2 checks", "passes 5 checks", "2 checks not decided", "not checked"."""
+        """The verdict on the case in words: "fails 2 checks", "2 checks not decided", "no limit on drift", "not checked"."""
         if self.verdict == DOES_NOT_APPLY:
             return "not checked" if not self.count(PASS) else "no run ends standing"
         if self.unlimited:
@@ -87,7 +87,10 @@ class Scorecard(NamedTuple):
     rows: list[Row]
 
     def open_columns(self, most: int) -> list[int]:
-        """Return the indices of the first columns to show: all with a failing or undecided cell, at least ``most``."""
+        """Return the indices of the columns to show, the worst: as many as have a failing or undecided cell, or ``most`` if more.
+
+        They are all columns if these are fewer than ``most``.
+        """
         in_columns = zip(*(row.cells for row in self.rows), strict=True)
         telling = sum(
             any(cell and cell.verdict.verdict in (FAIL, NOT_DECIDED) for cell in cells) for cells in in_columns
@@ -150,7 +153,7 @@ def _worst(verdicts: Sequence[Verdict]) -> str:
 def badness(verdict: Verdict) -> tuple[int, float]:
     """Return a sort key that grows with badness: pass or not applying, undecided, fail; within each the share of the limit.
 
-    That is −1 for NaN and for a ban that is met, and infinite for a ban that fails.
+    That is −1 for NaN, for a check that does not apply and for a ban that is met, and infinite for a ban that fails.
     """
     kind = (DOES_NOT_APPLY, PASS, NOT_DECIDED, FAIL).index(verdict.verdict)
     ratio = -1.0 if math.isnan(verdict.ratio) else math.inf if verdict.is_ban and kind == 3 else verdict.ratio
@@ -169,7 +172,7 @@ def _column(verdicts: Sequence[Verdict]) -> Column:
 
 
 def _cell(verdict: Verdict, column: Column) -> Cell:
-    """Return a verdict in a column; without numbers if it does not apply or its value is NaN."""
+    """Return a verdict in a column; without numbers if it does not apply or its value is NaN, "none" or "some" for a ban."""
     named = str(verdict.columns.get(BOUND, ""))
     if verdict.verdict == DOES_NOT_APPLY or math.isnan(verdict.value):
         return Cell(verdict, "", "")

@@ -120,7 +120,7 @@ class Verdict:
 
     @property
     def curve(self) -> Curve:
-        """Return the points of the capacity that depends on the axial force; none of other checks."""
+        """Return the points (N, E_Rd) of the capacity that depends on the axial force; () for other checks."""
         return tuple((float(n), float(e)) for n, e in json.loads(self.capacity or "[]"))
 
     @property

@@ -21,7 +21,7 @@ MOST = 30
 
 
 def name_of(verdict: Verdict) -> str:
-    """Return the name of the check, for a condition of a code on the suite followed by it: "suite to target (stations)"."""
+    """Return the name of the check; of a condition on the suite, but for its mean, with that: "suite to target (stations)"."""
     if verdict.case or verdict.demand == MEAN_OVER_TARGET:
         return verdict.check
     return f"{verdict.check} ({verdict.words})"
@@ -44,7 +44,7 @@ def scaled(verdicts: Iterable[Verdict]) -> bool:
 
 
 def count_of(verdicts: Iterable[Verdict]) -> dict[str, int]:
-    """Return the number of verdicts of each kind, in the order of ``WAYS``."""
+    """Return the number of verdicts of each kind, 0 included, in the order of ``WAYS``."""
     count = Counter(verdict.verdict for verdict in verdicts)
     return {kind: count[kind] for kind in WAYS}
 
@@ -55,7 +55,10 @@ def count_by_check(verdicts: Iterable[Verdict]) -> dict[str, dict[str, int]]:
 
 
 def number(value: float, neighbour: float = math.nan, least: int = 4) -> str:
-    """Return a value with ``least`` significant digits, or as many as show that it differs from its ``neighbour``; "" for NaN."""
+    """Return a value with ``least`` significant digits, or up to ten, until it differs from its ``neighbour``: "1,234".
+
+    "∞" or "-∞" if it is infinite, "" for NaN.
+    """
     if math.isnan(value):
         return ""
     if math.isinf(value):
@@ -116,7 +119,7 @@ def ratio(verdict: Verdict) -> str:
 
 
 def percent(ratio: float) -> str:
-    """Return a share of the limit as "115 %", with decimals if it would look like the limit itself; "∞", and "" for NaN."""
+    """Return a share of the limit as "115 %", with up to three decimals if it would look like 100 %; "∞", and "" for NaN."""
     if not math.isfinite(ratio):
         return "∞" if ratio > 0 else ""
     digits = next((n for n in range(3) if ratio == 1 or f"{100 * ratio:.{n}f}" != f"{100:.{n}f}"), 3)
@@ -175,7 +178,10 @@ def records_of(verdicts: Iterable[Verdict]) -> str:
 
 
 def run(verdict: Verdict) -> str:
-    """Return the run that governs, by station, component and polarity: "WTMC, 20161113_110259_WTMC_20.N28W (+)"."""
+    """Return the run that governs, by station, component and polarity: "WTMC, 20161113_110259_WTMC_20.N28W (+)".
+
+    The station is left out if it is unknown, or named as the component.
+    """
     station = f"{verdict.station}, " if verdict.station and verdict.station != verdict.record else ""
     return f"{station}{verdict.record} ({verdict.polarity})"
 

@@ -237,7 +237,13 @@ COMMANDS = {
                 default=[],
             ),
             "--all": flag("unfold every section, so that all are printed"),
-            "--sheet": flag("write DIR/sheet.html instead: the calculation sheet, to print on A4 or Letter"),
+            "--sheet": flag(
+                "write the calculation sheet instead, for paper: DIR/sheet.html and, where typst is installed, DIR/sheet.pdf; "
+                "or FILE alone, a PDF if its name ends in .pdf"
+            ),
+            "--paper": value(
+                str, "A4|Letter", "size of the PDF's pages (default: A4)", choices=("A4", "Letter"), default="A4"
+            ),
         },
     ),
     "statement": Command(

@@ -45,18 +45,24 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def report(arguments: argparse.Namespace) -> int:
-    """Rewrite the report of results, write their calculation sheet, or compare two studies; print the path, and return 0."""
+    """Rewrite the report of results, write their calculation sheet, or compare two studies; return 0.
+
+    The path is printed, after the answer of a comparison.
+    """
     made = make_report(
         arguments.directory,
         arguments.other,
         out=arguments.out,
         whole=arguments.all,
         sheet=arguments.sheet,
+        paper=arguments.paper,
         pairs=dict(arguments.pair),
     )
     if made.answer and str(arguments.out) != "-":
         show(filled(_plain(made.answer)))
     say(str(made.path))
+    if made.pdf and made.pdf != made.path:
+        say(str(made.pdf))
     return 0
 
 
@@ -87,7 +93,7 @@ def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved, whole: bool = Fa
 
 
 def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
-    """Return the scorecard, or without checks the greatest responses, and the sentences at the top of the report."""
+    """Return the scorecard, or without verdicts on cases the greatest responses, and the sentences at the top of the report."""
     labels = {record["record"]: record.get("label") or record["record"] for record in saved.info["records"]}
     results, varied = labelled(saved.peaks, saved.info, saved.directory), saved.info["varied"]
     suites = runs_of_cases(results.runs, saved.info["cases"], len(saved.info["records"]))
@@ -187,7 +193,7 @@ def _cells(verdict: Verdict) -> tuple[str, ...]:
 
 
 def _plain(text: str) -> str:
-    """Return text with "inf", ">=", "<=" and plain spaces for signs that many terminals lack."""
+    """Return text with "inf", ">=", "<=" and plain spaces for "∞", "≥", "≤" and no-break spaces, which many terminals lack."""
     for sign, instead in {"\u00a0": " ", "∞": "inf", "≥": ">=", "≤": "<="}.items():
         text = text.replace(sign, instead)
     return text

@@ -115,7 +115,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Sequence[str]:
-    """Return the arguments with "help" and "version" as options; exit with 2 and a suggestion for an unknown command."""
+    """Return the arguments, with "help run" as "run --help", "version" as --version; exit with 2 for an unknown command.
+
+    The message suggests a command that may be meant.
+    """
     word, *rest = arguments or [""]
     if word in COMMANDS or not word or word.startswith("-"):
         return arguments
@@ -127,7 +130,11 @@ def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Se
 
 
 def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
-    """Return the end of a message on ``unknown`` options, "; did you mean --jobs?", or that the command takes none; "" else."""
+    """Return the end of a message on ``unknown`` arguments: "; did you mean --jobs?", or that the command takes no options.
+
+    A word without "--" after a study may be meant for --out or --motions, an option that is a key of the study for that key;
+    "" if nothing is similar.
+    """
     options = [name for name in COMMANDS[command].arguments if name.startswith("-")] if command else ["--version"]
     if not options:
         return f"; `rockbatch {command}` takes none"
@@ -143,7 +150,10 @@ def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
 
 
 def _key_meant(unknown: Sequence[str]) -> str:
-    """Return the end of a message on an option that is a key of a study, "; it is a key of the study: write …", else ""."""
+    """Return the end of a message on an option that is a key of a study: "; it is a key of the study: write p = 1 under [pier]".
+
+    "" if the first of the ``unknown`` is no such key. A value that is neither a number nor a truth value becomes an example.
+    """
     from rockbatch.study.load import SECTIONS
 
     option, _, given = unknown[0].partition("=")
@@ -159,7 +169,7 @@ def _key_meant(unknown: Sequence[str]) -> str:
 
 
 def _other_word(word: str, options: Sequence[str]) -> str | None:
-    """Return the option of which ``word`` is another name by :data:`_OPTIONS_MEANT`, if the command has it; else None."""
+    """Return the option for which ``word`` is another name by :data:`_OPTIONS_MEANT`, if the command has it; else None."""
     meant = (name for name, words in _OPTIONS_MEANT.items() if word in words.split())
     return next((name for name in meant if name in options), None)
 

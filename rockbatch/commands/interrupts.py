@@ -20,7 +20,9 @@ _END, _LATE = 0, -1
 
 @contextmanager
 def answered_interrupts() -> Iterator[None]:
-    """Context manager: report Ctrl-C at once; end the process at a second one, or if it takes longer than :data:`GRACE_S`.
+    """Context manager: after Ctrl-C say that the command stops, and end the process at a second one, or after :data:`GRACE_S`.
+
+    Nothing is said if the command ends within :data:`QUICK_S`.
 
     Python handles signals between bytecode instructions only, and compiling a kernel is one instruction of many seconds. A thread
     that the signal wakes through a socket need not wait for it. Outside the main thread, or if the program handles Ctrl-C itself,
@@ -47,9 +49,9 @@ def answered_interrupts() -> Iterator[None]:
 
 
 def _watch(bell: socket.socket) -> None:
-    """Wait for Ctrl-C until the other end of the socket is closed; then announce the end, and end the process with 130.
+    """Wait for Ctrl-C until the other end of the socket is closed; announce the end :data:`QUICK_S` after it, if still open.
 
-    It ends at a second Ctrl-C, or after :data:`GRACE_S`, unless the other end is closed before.
+    Then end the process with 130 at a second Ctrl-C, or after :data:`GRACE_S`, unless the other end is closed before.
     """
     number = _next(bell)
     while number not in (_END, signal.SIGINT):

@@ -129,8 +129,8 @@ def overview(suite: MotionSet) -> str:
 def _scorecard(records: Sequence[RankedRecord], room: int) -> list[str]:
     """Return the first doubtful records, their doubts in a second line, and the strongest others; doubtful ones come first.
 
-    ``records`` take at most ``room`` lines, a quarter of which or more go to doubtful ones; heads and the number of further
-    records are not counted in it.
+    Records take at most ``room`` lines, two for each doubtful one; half of the lines or more go to these if there are so many.
+    ``records`` has the doubtful first. Heads and the number of further records are not counted in ``room``.
     """
     doubtful = [record for record in records if record.doubtful]
     sound = records[len(doubtful) :]
@@ -177,7 +177,7 @@ def _by_reason(title: str, entries: Sequence[tuple[str, str]], most: int) -> lis
 
 
 def _show_all(rows: Sequence[Mapping[str, object]], suite: MotionSet) -> None:
-    """Print every recording, its processing, and every file that is not used."""
+    """Print every recording, its processing, missing verticals, every file that is not used or left out, and their numbers."""
     if rows:
         show(_table(rows))
     _list("Processing", [(motion.named, note) for motion in suite.motions for note in motion.notes])

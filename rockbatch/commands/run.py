@@ -66,9 +66,9 @@ def in_words(seconds: float) -> str:
 
 
 def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> int:
-    """Print peaks, warnings, verdicts, files and failures.
+    """Print peaks, warnings, verdicts, or responses without checks, files and failures; return the exit code.
 
-    The exit code is 1 if a run failed, a file was not used, histories are missing, or a check did not pass; else 0.
+    It is 1 if a run failed, a file was not used, histories are missing, or a check did not pass; else 0.
     """
     saved, code = finished.saved, 0
     if finished.without:

@@ -56,7 +56,10 @@ def of_checks(
 def _governing(
     columns: Sequence[tuple[str, Sequence[Cell | None]]], record_of: Callable[[Verdict], str]
 ) -> Iterator[str]:
-    """Yield for each check with governing records a line with these, the most frequent first, and their cases if several."""
+    """Yield for each check with governing records a line with these, the most frequent first.
+
+    Several are each followed by the number of cases that they govern: "NAME (2 of 3 cases)".
+    """
     for check, cells in columns:
         verdicts = [cell.verdict for cell in cells if cell and cell.verdict.record]
         records = Counter(map(record_of, verdicts)).most_common()
@@ -112,7 +115,10 @@ def _written(cell: Cell | None) -> str:
 
 
 def _table(heads: Sequence[Sequence[str]], rows: Sequence[Sequence[str]]) -> str:
-    """Return rows below heads of several lines as text, "" without heads; of more than :data:`MOST_CASES` the first alone."""
+    """Return rows below heads of several lines as text, "" without heads.
+
+    Of more than :data:`MOST_CASES` rows the first :data:`OPEN_CASES` are followed by a line with both numbers.
+    """
     depth = max(map(len, heads), default=0)
     top = [["", *line] for line in zip(*([""] * (depth - len(head)) + list(head) for head in heads), strict=True)]
     kept = rows if len(rows) <= MOST_CASES else rows[:OPEN_CASES]
@@ -122,7 +128,7 @@ def _table(heads: Sequence[Sequence[str]], rows: Sequence[Sequence[str]]) -> str
 
 
 def _showable(cell: str) -> str:
-    """Return the cell with ASCII words in place of the characters that the terminal cannot show."""
+    """Return the cell with ASCII in place of the :data:`PLAIN` characters that the terminal cannot show, and plain spaces."""
     for sign, plain in PLAIN.items():
         cell = cell.replace(sign, shown(sign, plain))
     return cell.replace("\u00a0", " ")

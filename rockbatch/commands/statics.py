@@ -68,7 +68,11 @@ def table(sheets: Sheets) -> str:
 
 
 def rotations(sheet: Statics) -> str:
-    """Return the moment–rotation curve, free-rocking periods and damping of a sheet at selected rotations as text."""
+    """Return the moment–rotation curve, free-rocking periods and damping of a sheet at selected rotations as text.
+
+    The rotations are the curve's ends, lift-off, that of greatest strength, and the amplitudes of swings. Moments are in kN m, or
+    over the weight [m] if the mass is not known; empty columns are left out.
+    """
     curve, swings, alpha = sheet.equilibria, sheet.swings_at, sheet.pier.alpha
     angles = np.unique([*curve.theta[[0, -1]], sheet.lift_off_rad or 0.0, sheet.strength_rad or 0.0, *swings.amplitude])
     size, unit = (1.0, "m") if sheet.weight_kN is None else (sheet.weight_kN, "kN m")
@@ -99,7 +103,7 @@ def rotations(sheet: Statics) -> str:
 
 
 def _write(path: Path, study: Study, columns: Sequence[str], rows: Sequence[tuple[Case, Sequence[Line]]]) -> None:
-    """Write a CSV whose rows begin with case and varied values."""
+    """Write a CSV whose rows begin with case and varied values, and print its path."""
     lines = [{"case": case.name, **case.columns, **line} for case, of_case in rows for line in of_case]
     write_output(path, csv_text(["case", *study.varied, *columns], lines))
     say(str(path))

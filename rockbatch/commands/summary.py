@@ -5,12 +5,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.batch.listening import count
 from rockbatch.checks.suite_target import NAMES
 from rockbatch.common.lazy import pd
+from rockbatch.common.observers import parts
 from rockbatch.outcome.outcome import LEANS, Failure
 from rockbatch.pier.bending import flexural_period
-from rockbatch.pier.laws import steady
+from rockbatch.pier.laws import without_ratcheting
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.quantities.rows import with_case
@@ -27,7 +27,7 @@ def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str
     """Return θ_max/α as text: a block for each pier, a line for each record, a column for each case.
 
     Of more than :data:`MOST_RUNS` runs, only the ten largest values are listed. ``records`` maps the names of records, in order,
-    to labels. A status other than "ok" precedes its value.
+    to labels. A status other than "ok", or "lean" for a peak that is mostly lean, precedes its value.
     """
     runs = with_case(table)
     if len(runs) > MOST_RUNS:
@@ -59,17 +59,21 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
 
 
 def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
-    """Return a sentence each on settlements that depend on the law, rotations too large, leans, and sliding; [] for none."""
+    """Return a sentence each on runs of ``table`` that an observer warns of, that rotate too far for linearised kinematics,
+    lean, or slide; [] for none.
 
-    def warning(runs: npt.NDArray[np.bool_], singular: str, plural: str) -> str:
+    ``varied`` are the keys by which an observer names a run.
+    """
+
+    def counted(runs: npt.NDArray[np.bool_], singular: str, plural: str) -> str:
         """Return the words for the number of these runs, in singular or plural; "" for none."""
         n = int(runs.sum())
         return "" if n == 0 else singular if n == 1 else plural.format(n)
 
     runs = Rows(table)
-    rotate = warning(runs.facts("beyond_linearised"), "1 run rotates", "{} runs rotate")
-    lean = warning(runs.texts("theta_max_is") == LEANS, "of 1 run, marked lean, is", "of {} runs, marked lean, is")
-    slide = warning(runs.facts("slides"), "1 run demands", "{} runs demand")
+    rotate = counted(runs.facts("beyond_linearised"), "1 run rotates", "{} runs rotate")
+    lean = counted(runs.texts("theta_max_is") == LEANS, "of 1 run, marked lean, is", "of {} runs, marked lean, is")
+    slide = counted(runs.facts("slides"), "1 run demands", "{} runs demand")
     beyond = 'too far for linearised kinematics; see the column note, and run kinematics = "finite"'
     leans = (
         "mostly the lean of a yielded base; the column note gives the rocking about it, and rocking = true under [output] "
@@ -77,7 +81,7 @@ def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
     )
     slides = "more friction than the interface has: the pier would slide, which is not modelled; see the column note"
     sentences = [
-        _other_law(table, varied),
+        *(warning(table, varied) for warning in parts("summary.warning")),
         rotate and f"{rotate} {beyond}",
         lean and f"theta_max/alpha {lean} {leans}",
         slide and f"{slide} {slides}",
@@ -100,14 +104,13 @@ def failed_later(runs: "pd.DataFrame") -> str:
     n, advice = int(failed.sum()), ""
     if ratchet:
         share = "in all of them" if ratchet == n else f"in {ratchet:,}"
-        advice = (
-            f"; {share} the springs ratchet on free vibration: take spring = {steady('or')}, or zeta of 0.2 or more"
-        )
+        laws = without_ratcheting("or")
+        advice = f"; {share} the springs ratchet on free vibration: take spring = {laws}, or zeta of 0.2 or more"
     return f"{n:,} failed only after the motion: {IN_MOTION} has the peak until then, a lower bound{advice}"
 
 
 def flexible(study: Study) -> list[str]:
-    """Return a warning for each case whose given flexural period is too long for a rigid pier; [] for none."""
+    """Return a warning for each case whose flexural period, given or by rigidities, is too long for a rigid pier."""
     flexible_cases = [case for case in study.cases if flexural_period(case.pier) is not None]
     if not flexible_cases:
         return []
@@ -122,28 +125,11 @@ def flexible(study: Study) -> list[str]:
     return warnings
 
 
-def _other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
-    """Return a warning if settlements by the two spring laws differ by over 10 % and 1 mm in a run; else ""."""
-    if "settlement_other_law_m" not in table:
-        return ""
-    of_case, by_other = table["settlement_m"], table["settlement_other_law_m"]
-    gap = (of_case - by_other).abs()
-    differ = gap > (0.1 * of_case.abs()).clip(lower=1e-3)
-    if not differ.any():
-        return ""
-    worst = table.iloc[int(np.nanargmax(gap.to_numpy()))]
-    keys = ["scale", *varied] if table["scale"].nunique() > 1 else varied
-    run = f"{worst['record']}, {worst['case']} {named(keys, [worst[name] for name in keys])}".rstrip()
-    mm = [1000 * worst[name] for name in ("settlement_m", "settlement_other_law_m")]
-    law = "Bouc–Wen" if mm[0] > mm[1] else "elastic–perfectly plastic"
-    return (
-        f"the settlement is a range, not one value, in {count(int(differ.sum()), 'run')}, depending on the law of the "
-        f"springs; the widest in {run}: {min(mm):z.1f} to {max(mm):z.1f} mm, the larger by the {law} law; checks take the worse"
-    )
-
-
 def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
-    """Return a table of θ_max/α as text: a line for each value of columns ``rows``, a column for each case."""
+    """Return a table of θ_max/α as text: a line for each set of values of columns ``rows``, a column for each case.
+
+    A case includes the values of ``case_keys``; a cell without a run is empty.
+    """
     cells: dict[str, dict[str, str]] = {}
     for run in runs.to_dict("records"):
         line = " ".join(f"{run[name]:g}" if name == "scale" else str(run[name]) for name in rows)

@@ -8,7 +8,7 @@ from typing import Any
 
 
 def positive(kind: Callable[[str], float], least: str) -> Callable[[str], float]:
-    """Return a converter of text to a number above 0; its error says that it must be ``least``."""
+    """Return a converter of text to a number of this ``kind`` above 0; its error for others says "must be" and ``least``."""
 
     def number(text: str) -> float:
         value = kind(text)

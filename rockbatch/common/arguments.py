@@ -94,7 +94,10 @@ def _alternatives(annotation: object) -> tuple[object, ...]:
 
 
 def _is_known(kind: object) -> bool:
-    """Return whether values can be checked against a type: False without annotation, and for ``Any``, texts and arrays."""
+    """Return whether values can be checked against a type.
+
+    False without annotation, and for ``Any``, ``object``, annotations in quotes, arrays, and protocols not checked at run time.
+    """
     plain = get_origin(kind) or kind
     return plain is Literal or (
         isinstance(plain, type)
@@ -110,7 +113,10 @@ def _first_taken(value: object, alternatives: tuple[object, ...]) -> object:
 
 
 def _take(value: Any, kind: Any) -> object:
-    """Return ``value`` converted to the type ``kind``, or itself if it is of this type; else _REFUSED."""
+    """Return ``value`` converted to the type ``kind``, or itself if it is of this type; else _REFUSED.
+
+    Of a ``Literal`` any value of the type of one of its values is accepted.
+    """
     plain = get_origin(kind) or kind
     fits = False
     if plain in (int, float):
@@ -160,7 +166,10 @@ def _unfit_for_a_name(value: object) -> str:
 
 
 def _members(values: Sequence[object], inner: tuple[object, ...]) -> object:
-    """Return a tuple of ``values`` converted to the ``inner`` type, those of a pair as they are; _REFUSED if one is unfit."""
+    """Return a tuple of ``values`` converted to the ``inner`` type; _REFUSED if one is unfit.
+
+    If ``inner`` has two types, as of a pair, the values are neither checked nor converted.
+    """
     if len(inner) == 2 and inner[1] is not ...:
         return tuple(values)
     converted = tuple(_first_taken(value, _alternatives(inner[0])) for value in values)

@@ -65,7 +65,7 @@ class Problem:
     named: bool = True
 
     def __str__(self) -> str:
-        """Return it as a sentence, with its place, its key and value, and how to confirm it."""
+        """Return the problem as a sentence: place, key and value if ``named``, text, and how to confirm it if it can be."""
         parts = [self.place, self._name if self.named else "", self.text]
         return ": ".join(filter(None, parts)) + (f"; {remedy(self.confirm)}" if self.confirm else "")
 

@@ -221,14 +221,15 @@ def remove(path: Path) -> None:
     path.unlink(missing_ok=True)
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Write UTF-8 ``text`` to ``path``, whole or not at all."""
+def write_whole(path: Path, content: str | bytes) -> None:
+    """Write bytes, or text as UTF-8, to ``path``, whole or not at all."""
+    written = content.encode() if isinstance(content, str) else content
     with replacing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8", newline="")
+        temporary.write_bytes(written)
 
 
-def write_output(path: Path, text: str) -> None:
-    """Write UTF-8 ``text`` where a user asks for it: as :func:`write_whole`, or into a pipe, a device or stdout (``-``).
+def write_output(path: Path, content: str | bytes) -> None:
+    """Write bytes, or text as UTF-8, where a user asks for it: as :func:`write_whole`, or to a pipe, a device or stdout (``-``).
 
     Raises ``InputError`` for all else that is no regular file, and for what cannot be written.
     """
@@ -239,10 +240,10 @@ def write_output(path: Path, text: str) -> None:
             elif path.exists() and _kind(path.stat()) in ("a pipe", "a device"):
                 handle = _open_at_once(path, os.O_WRONLY)
             else:
-                write_whole(path, text)
+                write_whole(path, content)
                 return
             with os.fdopen(handle, "wb") as file:
-                file.write(text.encode())
+                file.write(content.encode() if isinstance(content, str) else content)
     except OSError as error:
         advice = "; if it is a pipe, start its reader first" if error.errno == errno.ENXIO else ""
         raise InputError(f"{path}: cannot be written: {error.strerror or error}{advice}") from None
@@ -301,8 +302,8 @@ def only_writer(folder: Path) -> Iterator[None]:
 def legible(text: str, keep: str = "") -> str:
     """Return ``text`` with control and invisible characters, and bytes of a file's name that are no text, written as ``\\x1b``.
 
-    It can be printed, stays on its line, goes into UTF-8, and no other text looks like it. ``keep`` are characters that stay:
-    line breaks of a text of several.
+    It can be printed, stays on its line and goes into UTF-8. ``keep`` are characters that stay, such as line breaks of a text of
+    several lines.
     """
 
     def escaped(match: re.Match[str]) -> str:
@@ -362,7 +363,7 @@ def _cells(column: Sequence[object]) -> Sequence[str]:
 
 
 def _cell(value: object) -> str:
-    """Return a value as a cell: numbers with ten digits, "" for None and NaN, texts escaped."""
+    """Return a value as a cell: floats with ten digits, "" for None and NaN, texts legible and :func:`csv_safe`, else its str."""
     if value is None or value != value:
         return ""
     if isinstance(value, float):

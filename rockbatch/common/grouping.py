@@ -30,17 +30,22 @@ def spread(items: Sequence[T], most: int) -> list[T]:
 def distinct(names: Sequence[str], *longer: Callable[[int, str], str]) -> list[str]:
     """Return ``names`` made to differ: repeated ones made ``longer``, by one function after the other, then numbered, "a (2)".
 
-    A function takes the place of a name, and the name.
+    A function takes the place of a name, and the name. The first of several that are numbered stays, and a number that gives
+    another of the names is passed over.
     """
     names = list(names)
     for more in longer:
         count = Counter(names)
         names = [more(i, name) if count[name] > 1 else name for i, name in enumerate(names)]
     counts: Counter[str] = Counter()
+    taken = set(names)
     for i, name in enumerate(names):
         counts[name] += 1
         if counts[name] > 1:
-            names[i] = f"{name} ({counts[name]})"
+            while (numbered := f"{name} ({counts[name]})") in taken:
+                counts[name] += 1
+            names[i] = numbered
+            taken.add(numbered)
     return names
 
 

@@ -23,7 +23,10 @@ else:
 
 
 def loading(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
-    """Return the ``__getattr__`` of a package whose public names are loaded when they are first used, from their modules."""
+    """Return the ``__getattr__`` of a package, which loads a public name from its module at first use.
+
+    ``homes`` maps names to modules; the function raises ``AttributeError`` for other names.
+    """
 
     def load(name: str) -> Any:
         if name in homes:

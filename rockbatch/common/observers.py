@@ -30,7 +30,9 @@ class ReportPart(NamedTuple):
 
 
 def from_observer(name: str, function: str) -> Any:
-    """Return the attribute of an observer, such as "observe.requested", importing its module."""
+    """Return the attribute of an observer, such as "observe.requested", importing its module; ``AttributeError`` without it."""
+    if name not in OBSERVERS:
+        raise AttributeError(f"there is no observer {name}")
     module, _, attribute = function.partition(".")
     return getattr(import_module(f"rockbatch.observers.{name}.{module}"), attribute)
 

@@ -18,7 +18,7 @@ class InNotebook:
     """A dataclass that shows the fields that differ from their defaults as a table in a notebook; its ``repr`` is Python's."""
 
     def _facts(self) -> tuple[str, Mapping[str, str]]:
-        """Return the title, and facts by their names; facts that are "" are not shown."""
+        """Return the name of the class, and the fields that differ from their defaults as short texts; "" is not shown."""
         given = [(field.name, getattr(self, field.name), field.default) for field in fields(self)]  # type: ignore[arg-type]
         return type(self).__name__, {name: _short(value) for name, value, default in given if value != default}
 
@@ -53,7 +53,7 @@ class Shown(InNotebook, ABC):
 
 
 def _short(value: object) -> str:
-    """Return a value as short text: 5 significant digits, items separated by semicolons."""
+    """Return a value as short text: floats with 5 significant digits, items of a tuple separated by semicolons, others by str."""
     if isinstance(value, InNotebook):
         title, facts = value._facts()
         return f"{title}: " + ", ".join(f"{name} = {words}" for name, words in facts.items())

@@ -16,13 +16,14 @@ LEAST, MOST = 1e-15, 1e15
 
 
 class ColumnUnits(dict[str, str]):
-    """Units of the columns of a table, for its ``attrs``: tables that are made of it share them.
+    """Units of the columns of a table, for its ``attrs``.
 
-    pandas copies ``attrs`` deeply for every column that is taken, which was a quarter of the time of a small run.
+    pandas copies ``attrs`` deeply for every column that is taken, which was a quarter of the time of a small run: texts need
+    no copies.
     """
 
     def __deepcopy__(self, _: object) -> "ColumnUnits":
-        return self
+        return ColumnUnits(self)
 
 
 def of_percent(value: float, low: float, high: float) -> float | None:
@@ -51,7 +52,11 @@ class Bounds:
         )
 
     def message(self, value: float) -> str:
-        """Return the message about a value that is out of bounds, to follow "name = value: "."""
+        """Return the message about a value that is out of bounds, to follow "name = value: ".
+
+        "must be a number above 0" if the value is not and has to be; else ``why``, or "must be within 0 and 1", with the value to
+        write if it is probably in percent.
+        """
         if value <= 0.0 <= self.low and 0.0 not in self:
             return f"must be a number above 0{self.unit}"
         if value > self.high == MOST:
@@ -72,6 +77,115 @@ class Bounds:
         text = f"{name} = {value:.10g}: {problem.text}"  # not rounded into the bounds
         return [replace(problem, text=text, named=False)]
 
+
+_SIZES = {
+    **dict(m=("length", 1.0), mm=("length", 1e-3), cm=("length", 1e-2), km=("length", 1e3), ft=("length", 0.3048)),
+    **dict(kN=("force", 1.0), N=("force", 1e-3), MN=("force", 1e3), kgf=("force", 9.80665e-3), tf=("force", 9.80665)),
+    **dict(t=("mass", 1.0), kg=("mass", 1e-3), s=("time", 1.0), ms=("time", 1e-3)),
+    **dict(rad=("angle", 1.0), mrad=("angle", 1e-3), deg=("angle", math.pi / 180.0)),
+    **dict(MPa=("stress", 1.0), kPa=("stress", 1e-3), GPa=("stress", 1e3), Pa=("stress", 1e-6)),
+    **dict(g=("acceleration", 1.0), gal=("acceleration", 0.01 / GRAVITY), percent=("", 0.01), pct=("", 0.01)),
+}
+"""What the words at the ends of keys measure, and how much of it: kN and m of stiffness_kN_m."""
+
+_UNITS_OF = {"alpha": "rad", "axis": "deg", "azimuth": "deg", "dt": "s"}
+"""Units of keys that do not end in them."""
+
+_OTHERS = {
+    "m": ("mm", "cm"),
+    "mm": ("m", "cm"),
+    "s": ("ms",),
+    "t": ("kg", "kN"),
+    "g": ("m_s2", "cm_s2", "percent"),
+    "kN": ("MN", "N"),
+    "kN_m": ("MN_m", "N_m"),
+    "kN_s_m": ("MN_s_m", "N_s_m"),
+    "rad": ("deg",),
+    "": ("percent",),
+}
+"""Units in which numbers are written by mistake, by the unit of the key."""
+
+_LEAST_PERCENT = 10.0  # least number that may be in percent
+_MOST_SHARE = 10.0  # greatest usual value of a key without unit that may be written in percent
+
+
+def unit_of(name: str) -> str:
+    """Return the words of a key that are its unit: "kN_m" of "stiffness_kN_m"; "" if it has none."""
+    words = name.split("_")
+    end = len(words)
+    while end > 1 and re.sub(r"\d$", "", words[end - 1]) in _SIZES:
+        end -= 1
+    return _UNITS_OF.get(name, "_".join(words[end:]))
+
+
+def unit_in_words(unit: str) -> str:
+    """Return a unit of a key as it is read: "kN_m" as "kN/m", "m_s2" as "m/s²"."""
+    return re.sub(r"_(?=mm|cm|m|s2)", "/", unit).replace("_", " ").replace("2", "²").replace("3", "³")
+
+
+def factor_between(unit: str, own: str) -> float | None:
+    """Return what a number in ``unit`` is multiplied by to be in the unit ``own``, both as keys end in them.
+
+    A weight becomes a mass, and a mass a weight, by 9.81. None if they measure different things, or are not known.
+    """
+    given, wanted = _measured(unit), _measured(own)
+    if given is None or wanted is None:
+        return None
+    (what, size), (own_what, own_size) = given, wanted
+    if what == own_what:
+        return size / own_size
+    if (what, own_what) == (("force",), ("mass",)):
+        return size / own_size / GRAVITY
+    if (what, own_what) == (("mass",), ("force",)):
+        return size / own_size * GRAVITY
+    return 0.01 if unit in ("percent", "pct") and own in ("", "g") else None
+
+
+def is_weight_of(unit: str, own: str) -> bool:
+    """Return whether a number in ``unit`` is a weight, and one in ``own`` a mass."""
+    measured = [what for what, _ in filter(None, map(_measured, (unit, own)))]
+    return measured == [("force",), ("mass",)]
+
+
+def _measured(unit: str) -> tuple[tuple[str, ...], float] | None:
+    """Return what a unit measures, word by word, and its size in the units that keys have; None if a word is not known.
+
+    Lengths and times behind the first word divide, but for the areas behind a mass.
+    """
+    if unit.endswith("_s2"):
+        length = _SIZES.get(unit.removesuffix("_s2"), ("", 0.0))
+        return (("acceleration",), length[1] / GRAVITY) if length[0] == "length" else None
+    what: list[str] = []
+    size = 1.0
+    for word in unit.split("_") if unit else ():
+        plain, power = (word[:-1], int(word[-1])) if word[-1:].isdigit() else (word, 1)
+        if plain not in _SIZES:
+            return None
+        quantity, own_size = _SIZES[plain]
+        divides = what and what[0] != "mass"
+        size *= own_size ** (-power if divides else power)
+        what.append(quantity + (str(power) if power > 1 else ""))
+    return tuple(what), size
+
+
+def number_in_unit_of(name: str, text: str) -> str:
+    """Return a number with a unit, such as "1500 MN/m" or "7 %", as the key ``name`` has it; "" for another text or unit."""
+    match = re.fullmatch(rf"({NUMBER})\s*\[?([^\d\s\].,][^\]]*?)\]?", text.strip())
+    if match is None:
+        return ""
+    unit = match[2].replace("%", "percent").replace("°", "deg").translate(_POWERS)
+    unit = re.sub(r"[ /·*]+", "_", unit)
+    own = unit_of(name)
+    factor = 1.0 if unit.lower() == own.lower() else factor_between(unit, own)
+    if factor is None:
+        return ""
+    return match[1] if factor == 1.0 else f"{float(match[1]) * factor:.10g}"
+
+
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+"""Pattern of a number as people write it."""
+
+_POWERS = str.maketrans({"²": "2", "³": "3", "^": ""})
 
 POSITIVE = Bounds(LEAST, MOST)
 """Any number above 0."""
@@ -96,7 +210,27 @@ class Usual(NamedTuple):
         if self.holds(value):
             return []
         bound = f"more than {self.most:g}" if abs(value) > self.most else f"less than {self.least:g}"
-        return [Problem(name, float(value), f"{bound} {self.words}", confirm=name, kind=Unusual)]
+        text = f"{bound} {self.words}{in_other_units(name, value, self.holds, self.most)}"
+        return [Problem(name, float(value), text, confirm=name, kind=Unusual)]
+
+
+def in_other_units(name: str, value: float, holds: Callable[[float], bool], most: float = 0.0) -> str:
+    """Return "; if it is in mm, write width_m = 4" for each unit in which ``value`` would be one that ``holds``; "" for none.
+
+    A value of 10 or above may be in percent, if the key has the unit g, or none and usual values to 10, its ``most``.
+    """
+    own = unit_of(name)
+    others = [
+        unit
+        for unit in _OTHERS.get(own, ())
+        if unit != "percent" or (abs(value) >= _LEAST_PERCENT and (own or most <= _MOST_SHARE))
+    ]
+    factors = {unit: factor_between(unit, own) or 1.0 for unit in others}
+    return "".join(
+        f"; if it is in {unit_in_words(unit)}, write {name} = {value * factor:.5g}"
+        for unit, factor in factors.items()
+        if holds(value * factor)
+    )
 
 
 def rounded_up(value: float, digits: int = 4) -> float:
@@ -142,6 +276,10 @@ def length_factor(unit: str) -> float | None:
     return _LENGTH_IN_M.get(unit.strip().lower().partition("/")[0])
 
 
+ACCELERATIONS = f"one of {', '.join(['g', 'g/10', 'mg', *_ACCELERATION_IN_M_S2])}"
+"""Units of acceleration, as messages list them."""
+
+
 def acceleration_factor(unit: str, gravity: float = GRAVITY) -> float:
     """Return the factor that turns an acceleration in ``unit`` into m/s².
 
@@ -156,6 +294,5 @@ def acceleration_factor(unit: str, gravity: float = GRAVITY) -> float:
     if key in _ACCELERATION_IN_G:
         return gravity * _ACCELERATION_IN_G[key]
     if key not in _ACCELERATION_IN_M_S2:
-        units = ", ".join(["g", "g/10", "mg", *_ACCELERATION_IN_M_S2])
-        raise ValueError(f'unknown acceleration unit "{unit}"; write one of {units}')
+        raise ValueError(f'unknown acceleration unit "{unit}"; write {ACCELERATIONS}')
     return _ACCELERATION_IN_M_S2[key]

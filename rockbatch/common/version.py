@@ -10,7 +10,7 @@ _TOP = Path(__file__).parents[2]
 
 @cache
 def commit() -> str:
-    """Return the short digest of the commit that runs, with "+" if files of the package differ from it; "" but in a checkout."""
+    """Return the digest of the commit that runs, 12 digits, with "+" if any tracked file differs; "" but in a checkout."""
     if not (_TOP / ".git").exists():
         return ""
     import subprocess  # a few milliseconds, for the two that ask

@@ -140,7 +140,7 @@ def read_ground(lanes, i, ground):
 
 @inlined
 def ground_at(lanes, i, x):
-    """Return the Ground ``x`` [s] after the last sample."""
+    """Return the Ground of lane ``i`` at ``x`` [s] after its last sample."""
     at = lanes.ground
     a_slope, c_slope = at.horizontal_slope[i], at.vertical_slope[i]
     return Ground(at.horizontal[i] + x * a_slope, a_slope, at.vertical[i] + x * c_slope, c_slope)
@@ -148,16 +148,16 @@ def ground_at(lanes, i, x):
 
 @kernel
 def ground_rests(lanes, i):
-    """Return True if the ground remains at rest from the last sample on."""
+    """Return True once the record has no acceleration left: at its last sample if both components are 0 there, else one later."""
     over = lanes.clock.sample[i] >= lanes.clock.npts[i] - 1.0
     return over and lanes.ground.horizontal[i] == 0.0 and lanes.ground.vertical[i] == 0.0
 
 
 @shared
 def window_of(sample, samples):
-    """Return the window of a run of ``samples`` that contains ``sample``, and the first sample of the next one.
+    """Return the window (from 0) of a run of ``samples`` that contains ``sample``, and the first sample of the next one.
 
-    The last window extends to the end of the run: its next sample is inf.
+    The last of WINDOWS windows extends to the end of the run: its next sample is inf.
     """
     window = min(int(sample * WINDOWS / max(samples, 1.0)), WINDOWS - 1)
     begin_next = float(math.ceil((window + 1) * samples / WINDOWS)) if window < WINDOWS - 1 else math.inf
@@ -166,13 +166,13 @@ def window_of(sample, samples):
 
 @kernel
 def close_window(lanes, i, results):
-    """Write the greatest |θ| of the present window to the results."""
+    """Write the greatest |θ| at samples of the present window to the results."""
     results[int(lanes.clock.number[i])].extremes[int(lanes.peak.window[i])] = lanes.peak.in_window[i]
 
 
 @kernel
 def turn_window(lanes, i, theta, results):
-    """Write the present window and begin the next one if the sample belongs to it."""
+    """Write the present window's greatest |θ| and begin the next window at ``theta`` [rad], if the sample belongs to that."""
     peak, sample = lanes.peak, lanes.clock.sample[i]
     if sample >= peak.next_window[i]:
         close_window(lanes, i, results)
@@ -189,7 +189,7 @@ def note_motion_over(lanes, i, results):
 
 @inlined
 def motion_due(lanes, i):
-    """Return the record's last sample; inf from there on."""
+    """Return the number of the record's last sample; inf from that sample on."""
     last = lanes.clock.npts[i] - 1.0
     return last if lanes.clock.sample[i] < last else math.inf
 
@@ -203,10 +203,10 @@ def peak_decided(lanes, i):
 
 @kernel
 def include_peak(lanes, i, part, start, done):
-    """Raise the peak of lane ``i`` to that of a Part.
+    """Raise the peak of lane ``i`` to the greatest |θ| in a Part, if that is greater.
 
-    The Part begins ``done`` [s] after the sub-step, and that ``start`` [s] after the last sample; the times are added in the
-    same order as those of events, to give the same bits.
+    The Part begins ``done`` [s] after the start of the sub-step, and that ``start`` [s] after the last sample; the times are
+    added in the same order as those of events, to give the same bits.
     """
     y, end = part.start.y, part.end
     at, peak = largest_within(y.theta, y.omega, end.theta, end.omega, part.length, lanes.peak.theta[i])
@@ -217,7 +217,7 @@ def include_peak(lanes, i, part, start, done):
 
 @inlined
 def peak_at_end(lanes, i, tilt, substep):
-    """Raise the peak of lane ``i`` to the ``tilt`` = |θ| at the end of its sub-step."""
+    """Raise the peak of lane ``i`` to ``tilt`` = |θ| at the end of its sub-step, if that is greater."""
     clock, peak = lanes.clock, lanes.peak
     # abs changes nothing, but keeps the compiler from a slow masked store of the number that is there already
     theta, time = abs(peak.theta[i]), abs(peak.time[i])
@@ -227,7 +227,7 @@ def peak_at_end(lanes, i, tilt, substep):
 
 @kernel
 def include_height(lanes, i, start, end, h):
-    """Raise the flight height to that of the lower pivot in a smooth part of ``h`` [s] between two Clearances.
+    """Raise the flight height to the greatest of the lower pivot in a smooth part of ``h`` [s] between two Clearances.
 
     The lower of two cubics is highest at an end, at its own maximum, or where both intersect.
     """
@@ -256,7 +256,7 @@ def include_height(lanes, i, start, end, h):
 
 @kernel
 def note_flight(lanes, i, flies, t):
-    """Begin or end a flight at ``t`` [s] if ``flies`` has changed."""
+    """Begin a flight at ``t`` [s] if the pier ``flies`` and did not before, or end it if it no longer does."""
     tally = lanes.tally
     began = tally.airborne[i]
     if flies and math.isnan(began):

@@ -9,7 +9,7 @@ from rockbatch.core.types import Ground
 def ground_rows(horizontal, vertical, dt):
     """Return accelerations [m/s²] and slopes [m/s³] from each sample to the next: horizontal, its slope, vertical, its slope.
 
-    Linear between samples, and from the last one to zero a sample later. ``vertical`` may be empty.
+    Linear between samples, and from the last one to zero a sample later. ``vertical`` may be empty, for zeros.
 
     Returns
     -------

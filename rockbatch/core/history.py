@@ -20,7 +20,7 @@ class History(NamedTuple):
 
 
 def history_of(rows, runs, every_step=False):
-    """Return the History of ``runs`` runs that is written into ``rows``."""
+    """Return a History by which ``runs`` runs write into ``rows``, with no row written yet."""
     return History(rows, np.zeros(runs, np.int64), bool(every_step))
 
 
@@ -34,7 +34,7 @@ class Stamp(NamedTuple):
 
 @inlined
 def _write_devices(line, at, m, devices, now, ground):
-    """Write the devices' states and pull into ``line`` from column ``at``; nothing without devices."""
+    """Write the devices' states, then their total force and moment, into ``line`` from column ``at``; nothing without devices."""
     if devices is None:
         return
     under, _, _ = under_devices(m, devices, now, devices.x, ground)
@@ -45,7 +45,10 @@ def _write_devices(line, at, m, devices, now, ground):
 
 @kernel
 def write(history, stamp, m, devices, now, ground):
-    """Write a row of the Moment ``now``; one beyond the buffer is only counted."""
+    """Write a row of the Moment ``now``; one beyond the buffer is only counted, and without buffers nothing is.
+
+    Its time is at least that of the row before.
+    """
     if history.rows.shape[0] == 0:
         return
     number, t, y, contact = stamp.number, stamp.t, now.y, now.contact
@@ -66,5 +69,5 @@ def write(history, stamp, m, devices, now, ground):
 
 @inlined
 def take_back(history, number):
-    """Remove the last row of run ``number``."""
+    """Remove the last row of run ``number``, if it has any, from the count."""
     history.written[number] = max(history.written[number] - 1, 0)

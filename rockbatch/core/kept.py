@@ -45,7 +45,8 @@ class _State:
 def folder() -> Path:
     """Return the cache folder: ROCKBATCH_CACHE, or ``rockbatch`` in the user's cache folder; it may not exist yet.
 
-    Raises ``OSError`` without a home folder.
+    The user's is XDG_CACHE_HOME if that is absolute, else ``~/.cache``. Raises ``FileNotFoundError`` if that needs a home folder
+    and there is none.
     """
     try:
         if chosen := os.environ.get("ROCKBATCH_CACHE"):
@@ -57,7 +58,7 @@ def folder() -> Path:
 
 
 def read(name: str, identity: str) -> bytes | None:
-    """Return the content kept for ``identity``; None if there is no such file, or it is damaged or not trusted."""
+    """Return the content kept for ``identity``, and mark it as used; None if it is missing, unreadable, damaged or distrusted."""
     try:
         path = _trusted(folder()) / f"{name}{_SUFFIX}"
         with open(os.open(path, os.O_RDONLY | _PLAIN_ONLY), "rb") as file:
@@ -77,7 +78,7 @@ def read(name: str, identity: str) -> bytes | None:
 
 
 def keep(name: str, identity: str, content: bytes) -> None:
-    """Write ``content`` for :func:`read`, and drop old kernels; a failure is reported by :func:`unreported`."""
+    """Write ``content`` for :func:`read`, and drop old kernels; an ``OSError`` is not raised but left to :func:`unreported`."""
     try:
         path = _made() / f"{name}{_SUFFIX}"
         _replace(path, _head(identity, content) + content)
@@ -95,7 +96,7 @@ def usable() -> bool:
 
 
 def unreported() -> str:
-    """Return why kernels of this process were not kept, once after a failure; else ""."""
+    """Return why this process could not keep a kernel, at the first call after the first failure only; else ""."""
     if _State.reported or not _State.reason:
         return ""
     _State.reported = True
@@ -106,7 +107,7 @@ def unreported() -> str:
 
 
 def files() -> list[KernelFile]:
-    """Return the files of the cache, least recently used first; empty without a folder."""
+    """Return the kernels and unfinished files in the cache folder, least recently used first; [] without a folder."""
     found = []
     with contextlib.suppress(FileNotFoundError):
         for entry in os.scandir(folder()):
@@ -118,7 +119,7 @@ def files() -> list[KernelFile]:
 
 
 def clear() -> list[KernelFile]:
-    """Remove all kernels, but no other files in the folder; return the removed ones."""
+    """Remove all kernels and unfinished files, but no others in the folder; return the removed ones."""
     removed = files()
     for file in removed:
         file.path.unlink(missing_ok=True)
@@ -126,19 +127,19 @@ def clear() -> list[KernelFile]:
 
 
 def _head(identity: str, content: bytes) -> bytes:
-    """Return the first bytes of a file: a mark and the digest of identity and content."""
+    """Return the first bytes of a file: a mark and the digest of ``identity`` and ``content``."""
     digest = hashlib.sha256(hashlib.sha256(identity.encode()).digest())
     digest.update(content)
     return _MAGIC + digest.digest()
 
 
 def _others_write(status: os.stat_result) -> bool:
-    """Return True if another user than this one and root may have written the file; False on Windows."""
+    """Return True if the owner is neither this user nor root, or if group or others may write; always False on Windows."""
     return hasattr(os, "geteuid") and (status.st_uid not in (os.geteuid(), 0) or bool(status.st_mode & _OTHERS))
 
 
 def _trusted(home: Path) -> Path:
-    """Return ``home``; raise ``PermissionError`` if others than this user and root may write into it."""
+    """Return ``home``; raise ``PermissionError`` if others than this user and root may write into that folder."""
     if _others_write(os.stat(home)):
         remedy = "others may write into this folder; `chmod go-w` ends that if it is yours"
         raise PermissionError(errno.EPERM, remedy, str(home))
@@ -153,7 +154,7 @@ def _made() -> Path:
 
 
 def _replace(path: Path, content: bytes) -> None:
-    """Write a file under a temporary name, and rename it to ``path``."""
+    """Write a file under a temporary name, and rename it to ``path``; after a failure remove it and raise."""
     handle, unfinished = tempfile.mkstemp(_UNFINISHED, f"{path.stem}-", path.parent)
     try:
         with open(handle, "wb") as file:
@@ -166,7 +167,10 @@ def _replace(path: Path, content: bytes) -> None:
 
 
 def _drop_old(newest: Path) -> None:
-    """Remove files unused for UNUSED_DAYS, unfinished ones after a day, and beyond MOST_BYTES the least recently used."""
+    """Remove files unused for UNUSED_DAYS, unfinished ones after a day, and beyond MOST_BYTES the least recently used.
+
+    ``newest`` is never removed.
+    """
     every, now = files(), time.time()
     total = sum(file.size for file in every)
     for file in every:

@@ -29,7 +29,7 @@ _CORE = Path(__file__).parent
 
 
 def core_digest(folder: Path = _CORE) -> str:
-    """Return the digest of all kernel sources and of the compiler's version.
+    """Return the digest, 20 hexadecimal digits, of the names and contents of all kernel sources and of Numba's version.
 
     A kernel consists of functions of many files: after a change in any of them, no kernel on disk is used any more.
     """
@@ -136,7 +136,7 @@ def _entry_to(block: CPUDispatcher) -> Callable[..., object]:
 
 
 def _guarded(dispatcher: Any) -> Any:
-    """Return the dispatcher of a building block, safe to call from Python."""
+    """Return the dispatcher of a building block, made safe to call from Python; unchanged if Numba does not compile."""
     if not numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
         dispatcher.__class__ = _Guarded
     return dispatcher
@@ -177,7 +177,7 @@ class _Kept(_Cache):
         self._sources = _DIGEST, self._own_digest()
 
     def _own_digest(self) -> str:
-        """Return the digest of the function's own file, which may be outside of the core."""
+        """Return the digest of the file of the function, which may be outside of the core."""
         return hashlib.sha256(Path(inspect.getfile(self._function)).read_bytes()).hexdigest()
 
     def _identity(self, signature: Signature, codegen: Any) -> str:
@@ -188,16 +188,16 @@ class _Kept(_Cache):
         return repr((self._sources, compiler, switches, function.__module__, function.__qualname__, str(signature)))
 
     def _name(self, identity: str) -> str:
-        """Return the name of the file, without its suffix."""
+        """Return the name of the kernel's file without its suffix: the function's name and a digest of ``identity``."""
         return f"{self._function.__name__}-{hashlib.sha256(identity.encode()).hexdigest()[:40]}"
 
     @property
     def cache_path(self) -> str:
-        """See ``_Cache``."""
+        """Return the path of the cache folder, as ``_Cache`` does."""
         return str(kept.folder())
 
     def load_overload(self, sig: Signature, target_context: Any) -> CompileResult | None:
-        """Return the machine code kept for a signature; None if there is none."""
+        """Return the machine code kept for a signature; None if there is none that fits and is intact, or if disabled."""
         target_context.refresh()
         identity = self._identity(sig, target_context.codegen())
         content = kept.read(self._name(identity), identity) if self._enabled else None
@@ -208,7 +208,11 @@ class _Kept(_Cache):
         return CompileResult._rebuild(target_context, *parts) if signature == sig else None
 
     def save_overload(self, sig: Signature, data: Any) -> None:
-        """See ``_Cache``; nothing is kept if the sources have changed since they were loaded."""
+        """Keep the machine code ``data`` of a signature on disk.
+
+        Nothing is kept if the sources have changed since they were loaded, if the code refers to addresses of this process, or if
+        disabled.
+        """
         changed = (core_digest(), self._own_digest()) != self._sources
         if changed or data.library.has_dynamic_globals or not self._enabled:
             return
@@ -216,19 +220,22 @@ class _Kept(_Cache):
         kept.keep(self._name(identity), identity, dumps((sig, data._reduce())))
 
     def enable(self) -> None:
-        """See ``_Cache``."""
+        """Let kernels be loaded and kept from now on."""
         self._enabled = True
 
     def disable(self) -> None:
-        """See ``_Cache``."""
+        """Let no kernel be loaded or kept from now on."""
         self._enabled = False
 
     def flush(self) -> None:
-        """See ``_Cache``: there is nothing to flush."""
+        """Do nothing: there is no index of files to clear."""
 
 
 def entry(function: Function) -> Function:
-    """Compile a function that Python calls, and keep the machine code on disk."""
+    """Compile a function that Python calls, and keep the machine code on disk.
+
+    Raises ``TypeError`` for a closure.
+    """
     dispatcher: Any = numba.njit(**_OPTIONS)(function)
     if not numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
         dispatcher._cache = _Kept(function)
@@ -241,7 +248,8 @@ def hook(stub: Callable[..., object]) -> Any:
 
     ``stub`` has the arguments and the docstring; ``@stub.of(Model)`` registers the implementation for systems described by the
     named tuple ``Model``, or for ``type(None)``. The selection is made in compilation, so that a driver that calls a hook knows
-    no system by name and costs nothing more. Implementations are inlined, so that loops over lanes can be vectorised.
+    no system by name and costs nothing more, and a missing implementation fails there. Implementations are inlined, so that loops
+    over lanes can be vectorised.
     """
     return _hook(stub, None)
 

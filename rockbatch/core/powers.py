@@ -8,9 +8,9 @@ LARGEST_WHOLE = 10
 
 @inlined
 def power(x, n):
-    """Return xⁿ for x ≥ 0: n = None stands for 5; an int up to 10 is a product of squares; a float calls pow.
+    """Return xⁿ for x ≥ 0; ``n`` None stands for 5, an int is at most LARGEST_WHOLE = 10.
 
-    A call to pow would keep a loop over lanes from being vectorised.
+    These are products of squares; a float ``n`` calls pow, which keeps a loop over lanes from being vectorised.
     """
     if n is None:
         square = x * x

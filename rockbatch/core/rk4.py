@@ -19,7 +19,10 @@ from rockbatch.core.types import Moment
 
 @hook
 def rates_with(devices, m, now, ground, place):
-    """Return the rates of ``now``, and the pier under its devices; write the rates of their staged states to ``place``."""
+    """Return the rates of the Moment ``now``, and the pier ``m`` under its devices.
+
+    Write the rates of the devices' staged states to their row ``place``.
+    """
 
 
 @rates_with.of(type(None))
@@ -35,7 +38,7 @@ def _rates_under_devices(devices, m, now, ground, place):
 
 @inlined
 def rk4(m, devices, start, h):
-    """Return the state ``h`` [s] after the Instant ``start``; write the devices' states then to ``devices.end``."""
+    """Return the state ``h`` [s] after the Instant ``start``; write the states of devices, if any, to ``devices.end``."""
     half = 0.5 * h
     y, k1, contact, supports, ground = start
     middle, end = later(ground, half), later(ground, h)

@@ -16,7 +16,7 @@ NO_ACCELERATION = 1e-12
 
 @inlined
 def surely(velocity, acceleration, rest):
-    """Return ``velocity``; if it is at most ``rest``, hence rounding, ±``rest`` by the sign of ``acceleration``, or 0."""
+    """Return ``velocity``; if |velocity| ≤ ``rest``, hence rounding, ±``rest`` by the sign of ``acceleration``, or 0."""
     if abs(velocity) > rest:
         return velocity
     return rest if acceleration > 0.0 else (-rest if acceleration < 0.0 else 0.0)
@@ -43,7 +43,8 @@ def hermite_slope(f0, d0, f1, d1, h, x):
 def turning_point(f0, d0, f1, d1, h):
     """Return the time in the step at which the Hermite cubic has an extremum; the slopes d0 and d1 differ in sign, or d0 = 0.
 
-    The slope is a quadratic with values d0 and d1 at the ends: exactly one root lies between; beside d0 = 0 at most one.
+    The slope is a quadratic with values d0 and d1 at the ends, and has exactly one root between them. For d0 = 0 it is the other
+    root, limited to the step.
     """
     mean = (f1 - f0) / h
     curve = 3.0 * (d0 + d1 - 2.0 * mean)  # slope(s) = d0 + 2 c s + curve s²
@@ -90,20 +91,20 @@ def _root(f0, d0, f1, d1, h, start, end):
 
 @inlined
 def excess(d0, d1, h):
-    """Return a bound on the overshoot of a Hermite cubic with slopes d0 and d1 beyond its ends: |s (1 − s)²| ≤ 4/27."""
+    """Return a bound on how far a Hermite cubic with end slopes d0 and d1 goes beyond its end values: |s (1 − s)²| ≤ 4/27."""
     return 4.0 / 27.0 * h * (abs(d0) + abs(d1))
 
 
 @inlined
 def inner_points(f0, d0, f1, d1, h):
-    """Return the inner two of the four Bézier points of a Hermite cubic, whose least and greatest bound it."""
+    """Return the inner two of the four Bézier points of a Hermite cubic; the least and the greatest of the four bound it."""
     third = h * (1.0 / 3.0)
     return f0 + third * d0, f1 - third * d1
 
 
 @kernel
 def _extremes(f0, d0, f1, d1, h):
-    """Return the times in (0, h) of the Hermite cubic's maximum and minimum; −1 for none."""
+    """Return the times in (0, h) of the Hermite cubic's maximum and of its minimum; −1 for the one that is not there."""
     mean = (f1 - f0) / h
     curve = 3.0 * (d0 + d1 - 2.0 * mean)  # slope(s) = d0 + 2 c s + curve s²
     c = 3.0 * mean - 2.0 * d0 - d1
@@ -121,8 +122,9 @@ def _extremes(f0, d0, f1, d1, h):
 def falls(f0, d0, f1, d1, h):
     """Return the time in [0, h] at which an event function falls through zero, by the cubic through both ends; −1 if never.
 
-    One that starts at zero, or a rounding below it, has to rise first; if the cubic does not show that it did, h/2 is
-    returned as a trial. A function that falls and rises again within the step has fallen.
+    A function that starts at or below zero, by rounding, falls at 0 if its slope is negative, or is 0 and the end negative. With
+    a positive slope it has to rise first; if the cubic does not show that it did and the end is not above zero, h/2 is returned
+    as a trial. A function that falls and rises again within the step has fallen.
     """
     early, late = inner_points(f0, d0, f1, d1, h)
     if f0 >= 0.0 and min(early, late, f1) > 0.0:
@@ -156,7 +158,10 @@ def _falls(f0, d0, f1, d1, h):
 
 @kernel
 def largest_within(f0, d0, f1, d1, h, best):
-    """Return the time in this step of the greatest |f|, −1 if it does not exceed ``best``; and the greatest |f| so far."""
+    """Return the time of the greatest |f| after the start of a step, and |f|; −1 and ``best`` if it does not exceed ``best``.
+
+    It is that of the end, or of an extremum of the cubic if the slopes differ in sign or d0 = 0.
+    """
     x_best = -1.0
     if max(abs(f0), abs(f1)) + excess(d0, d1, h) <= best:  # no point of the cubic lies beyond this bound
         return x_best, best
@@ -183,16 +188,16 @@ def steepest_within(f0, d0, f1, d1, h):
 
 @kernel
 def highest_within(f0, d0, f1, d1, h):
-    """Return the greatest value of the Hermite cubic in the step."""
+    """Return the greatest value of the Hermite cubic at both ends, and at a maximum inside if d0 > 0 > d1."""
     inside = hermite(f0, d0, f1, d1, h, turning_point(f0, d0, f1, d1, h)) if d0 > 0.0 > d1 else f1
     return max(f0, f1, inside)
 
 
 @kernel
 def summit_within(f0, d0, f1, d1, h, best):
-    """Return the greatest of ``best`` and of the Hermite cubic in the step, also of one that rises, falls and rises again.
+    """Return the greater of ``best`` and the Hermite cubic's maximum in the step, and the time of that maximum [s].
 
-    And its time; 0 of ``best``.
+    It may be one of a cubic that rises, falls and rises again. The time is 0 if ``best`` is the greater.
     """
     greatest = max(max(f0, f1), max(inner_points(f0, d0, f1, d1, h)))
     if greatest <= best:
@@ -207,7 +212,7 @@ def summit_within(f0, d0, f1, d1, h, best):
 
 @kernel
 def lowest_within(f0, d0, f1, d1, h, best):
-    """Return the least of ``best``, a minimum inside this step, and the value at its end."""
+    """Return the least of ``best``, the value at the end of the step, and a minimum inside if d0 < 0 < d1."""
     if d0 < 0.0 and d1 > 0.0 and min(inner_points(f0, d0, f1, d1, h)) < best:
         best = min(best, hermite(f0, d0, f1, d1, h, turning_point(f0, d0, f1, d1, h)))
     return min(best, f1)

@@ -110,7 +110,10 @@ class Context(NamedTuple):
 
 @inlined
 def _commit(devices, lanes, i, k_end, which):
-    """Set the devices' states to the end of a step; the next step takes its rates unless an event intervenes."""
+    """Set the devices' states to the end of a step, and keep the pier's rates ``k_end`` there; nothing without devices.
+
+    The next step begins with these rates, unless ``which`` is an event.
+    """
     if devices is None:
         return
     put(lanes.rates, i, k_end)
@@ -134,7 +137,10 @@ def _strongest(lanes, i, ground):
 
 @inlined_once
 def _flight_status(context, i, m, y):
-    """Return the status of a pier with both pivots in the air: SURVIVED if flights are guided."""
+    """Return the status of a pier with both pivots in the air: SURVIVED if flights are guided, LATE_FLIGHT if the peak is final.
+
+    Else OVERTURNED if it falls beyond α and no later ground acceleration can turn it back, or FLIGHT.
+    """
     lanes = context.lanes
     if m.guided != 0.0:
         return SURVIVED
@@ -183,7 +189,10 @@ def _is_zero(y):
 
 @inlined_once
 def _apply_event(context, i, m, devices, now, which, x):
-    """Apply event ``which``, ``x`` [s] after the sample, to lane ``i``; return status and the Moment after it."""
+    """Apply event ``which``, ``x`` [s] after the sample, to lane ``i``; return status and the Moment after it.
+
+    The status is SURVIVED unless a flight ends the run. Rows of both sides are written, of devices only with every step.
+    """
     lanes, history = context.lanes, context.history
     here, dt, number = ground_at(lanes, i, x), lanes.clock.dt[i], int(lanes.clock.number[i])
     t = lanes.clock.sample[i] * dt + x
@@ -211,7 +220,7 @@ def _apply_event(context, i, m, devices, now, which, x):
 
 @inlined
 def _clear_of_zero(functions):
-    """Return True if all event functions of a pier are above zero, those of the laws at least rising."""
+    """Return True if the event functions of both contacts are above zero, and those of both laws above zero or rising."""
     clear = min(functions.values[0], functions.values[1]) > 0.0
     for j in (2, 3):
         clear = clear and (functions.values[j] > 0.0 or functions.slopes[j] > 0.0)
@@ -262,7 +271,7 @@ def _step_by_events(context, i, substep):
 
 @inlined_once
 def _start_lane(context, i, number, run):
-    """Start the ``run`` with ``number`` in lane ``i``; return its status."""
+    """Start the ``run`` with ``number`` in lane ``i``; return its status, RUNNING unless it ends at once."""
     traits, lanes = context.traits, context.lanes
     start_clock(lanes, i, number, run)
     devices = devices_in(context.equipment, lanes, i)
@@ -299,7 +308,7 @@ def _finish(traits, lanes, i, status, t, rows, results):
 
 @inlined_once
 def _accept_step(context, i, substep):
-    """Return True if the sub-step of lane ``i`` stands as the pass integrated it; then record its peak and extremes."""
+    """Return False if the sub-step of lane ``i`` is EVENTFUL; else record peak and extremes, advance the lane, return True."""
     lanes = context.lanes
     if lanes.step_status.kind[i] >= EVENTFUL:
         return False
@@ -318,7 +327,10 @@ class Turn(NamedTuple):
 
 @inlined
 def _advance_to_samples(lanes, count, ground):
-    """Advance all lanes to the next sample; return how many have something due there."""
+    """Advance all lanes to the next sample; return how many have something due there.
+
+    The others include the sample in their windows.
+    """
     clock, peak, due = lanes.clock, lanes.peak, 0
     for i in range(count):
         clock.sample[i] += 1.0
@@ -331,7 +343,7 @@ def _advance_to_samples(lanes, count, ground):
 
 @inlined_once
 def _update_at_sample(context, i):
-    """Update windows and peaks if due at the sample of lane ``i``; return its status, RUNNING unless it ends."""
+    """Update window, peak and status of lane ``i`` if due at its sample; return its status, RUNNING unless it ends."""
     lanes, clock, peak = context.lanes, context.lanes.clock, context.lanes.peak
     theta = lanes.now.theta[i]
     if clock.sample[i] < clock.due[i]:
@@ -348,7 +360,10 @@ def _update_at_sample(context, i):
 
 @hook
 def _pass(equipment, context, count, substep):
-    """Integrate all lanes over a sub-step."""
+    """Integrate the first ``count`` lanes over a sub-step.
+
+    With devices all are EVENTFUL instead if none may be smooth, or the pass does not take these devices.
+    """
 
 
 @_pass.of(Equipment)
@@ -392,7 +407,7 @@ def _write_now(context, count, kind, steps):
 
 @entry
 def _march(traits, runs, ground, settings, equipment, marks, history, stop, memory, results):
-    """Integrate all ``runs`` to their ends; ``results`` of stopped runs remain unchanged."""
+    """Integrate all ``runs`` to their ends; those that ``stop`` interrupts keep the status RUNNING in ``results``."""
     lanes, cells = memory[0][0], memory[1]
     context = Context(traits, lanes, equipment, marks, settings, ground, history, results)
     waiting, count = ZERO, ZERO
@@ -446,6 +461,7 @@ def march(system, lines, ground, stop, substeps, locate=True, every_step=False, 
     system : System
         The system of all runs.
     lines : sequence of system.line
+        Requests of the runs.
     ground : ndarray, shape (rows, 4)
         Rows of all motions, by :func:`rockbatch.core.ground.ground_rows`.
     stop : ndarray of one uint8

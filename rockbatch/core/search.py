@@ -24,14 +24,14 @@ class Marks(NamedTuple):
 
 
 def marks_for(elements):
-    """Return Marks for the event functions of a pier with ``elements`` devices."""
+    """Return Marks, all zeros, for the event functions of a pier and of ``elements`` devices."""
     size = OF_PIER + PER_DEVICE * elements
     return Marks(*(EventFunctions(np.zeros(size), np.zeros(size)) for _ in Marks._fields))
 
 
 @kernel
 def _copy(functions, to):
-    """Copy values and slopes of event functions."""
+    """Copy values and slopes of event ``functions`` into those of ``to``."""
     for i in range(len(functions.values)):
         to.values[i] = functions.values[i]
     for i in range(len(functions.slopes)):
@@ -40,7 +40,7 @@ def _copy(functions, to):
 
 @kernel
 def _earliest(early, late, h):
-    """Return the number of the first event function to fall through zero within ``h`` [s], and its time; NO_EVENT and ``h``."""
+    """Return the number of the first event function to fall through zero in ``h`` [s], and its time; else NO_EVENT and ``h``."""
     which, first = NO_EVENT, h
     for i in range(len(early.values)):
         at = falls(early.values[i], early.slopes[i], late.values[i], late.slopes[i], h)
@@ -51,7 +51,10 @@ def _earliest(early, late, h):
 
 @inlined
 def _evaluate(m, devices, now, place, h, functions):
-    """Write all event functions of the Instant ``now`` at a ``place`` of a step; ``m`` is the pier under its devices."""
+    """Write event functions of the Instant ``now``, at a ``place`` of a step of ``h`` [s], and their slopes into ``functions``.
+
+    ``m`` is the pier under its devices.
+    """
     f, d = event_functions(m, devices, now)
     values, slopes = functions.values, functions.slopes
     values[0], values[1], values[2], values[3] = f.left, f.right, f.left_law, f.right_law
@@ -70,7 +73,7 @@ def _trial_step(m, devices, start, x):
 
 @inlined
 def nearby(m, start, end, t, x):
-    """Return state and rates at ``x`` [s], close to the end of a step from ``start`` to ``end`` over ``t`` [s], by a cubic."""
+    """Return state and rates at ``x`` [s] after ``start``, near the ``end`` of a step of ``t`` [s], by the cubic through both."""
     away = (x - t) / t
     back = along(end.y, start.y, -1.0)
     bend = along(along(start.k, end.k, 2.0), back, -3.0 / t)
@@ -94,7 +97,7 @@ def _first_below(values):
 def _narrow(marks, a, t, b):
     """Return the bracket [a, b] of the first event narrowed by a trial at ``t``, its function, and its time after a.
 
-    The function is NO_EVENT if none falls before a trial at ``b``.
+    The function is NO_EVENT if none falls in the new bracket. ``marks`` are moved to its ends.
     """
     which, at = _earliest(marks.early, marks.now, t - a)
     if which != NO_EVENT:
@@ -111,7 +114,7 @@ def _narrow(marks, a, t, b):
 def start_rates(m, devices, now, ground, at_end):
     """Return the rates at the start of a sub-step, and the pier under its devices; write the rates of the devices' states.
 
-    A sub-step that continues from the end of the last one takes the rates ``at_end``.
+    If the step continues from the end of the last one, the rates are ``at_end``, and those of devices are copied.
     """
     if devices is not None and goes_on(devices):
         return at_end, pulled_at_end(m, devices)

@@ -1,4 +1,5 @@
-"""Hooks by which the driver calls a system: each kind of pier implements them (``springs``, ``block``, ``flexure``).
+"""Hooks by which the driver calls a system: each kind of pier implements them (``springs``, ``block``, ``flexure``,
+``footing``).
 
 The first group takes a model ``m`` (Springs, Block), the second the traits that kernels are compiled for, and a lane of a
 table. ``contact`` and ``supports`` are constant between events; ``devices`` are None without any. Optional hooks have a default
@@ -41,19 +42,25 @@ def rates(m, y, contact, ground):
 
 @optional_hook
 def share(m, h):
-    """Return the factor after ``h`` [s] of variables that decay in closed form."""
+    """Return the factor that ``h`` [s] leave of variables that decay in closed form; by default 1: none decays."""
     return 1.0
 
 
 @optional_hook
 def stage(m, y, start, contact, remaining):
-    """Return the stage ``y`` of a step from ``start``, with decaying variables set to ``remaining`` times their start."""
+    """Return the stage ``y`` of a step from ``start``, with decaying variables set to ``remaining`` times their values there.
+
+    By default ``y`` itself.
+    """
     return y
 
 
 @optional_hook
 def end_step(m, y, start, contact, remaining):
-    """Return the end ``y`` of a step from ``start``, projected onto its constraints."""
+    """Return the end ``y`` of a step from ``start``, projected onto its constraints, with decaying variables as in :func:`stage`.
+
+    By default ``y`` itself.
+    """
     return y
 
 
@@ -64,7 +71,10 @@ def ground_power(m, y, contact, ground):
 
 @optional_hook
 def rates_and_power(m, y, contact, ground, at):
-    """Return rates and ground power in a pass, of a pier with devices that is not in flight; ``at`` is its Attitude."""
+    """Return the rates, and the power of the ground [W/kg], in a pass of a pier with devices that is not in flight.
+
+    ``at`` is its Attitude.
+    """
     return rates(m, y, contact, ground), ground_power(m, y, contact, ground)
 
 
@@ -76,13 +86,13 @@ def sines_in_pass(m, angle):
 
 @optional_hook
 def shift(m, contact):
-    """Return the shift of devices to the right of their offsets from the middle of the base [m]."""
+    """Return by how much devices are to the right of their offsets from the middle of the base [m]; by default 0."""
     return 0.0
 
 
 @hook
 def event_functions(m, devices, now):
-    """Return Signals of the Instant ``now``, and their slopes."""
+    """Return the Signals of the Instant ``now``, and their slopes as Signals."""
 
 
 @hook
@@ -120,7 +130,10 @@ def begin(traits, lanes, i, run):
 
 @optional_hook
 def lanes_in_pass(traits, count):
-    """Return how many lanes a pass takes: whole vectors; lanes beyond ``count`` are padding."""
+    """Return how many lanes a pass takes: ``count``, made up to whole vectors (VECTOR) by lanes of padding.
+
+    At most FEW lanes beyond the last whole vector are taken one by one, without padding.
+    """
     left_over = count % VECTOR
     return count if left_over <= FEW else count - left_over + VECTOR
 
@@ -130,7 +143,7 @@ def one_pass(traits, lanes, count, substep, settings):
     """Integrate the first ``count`` lanes over a sub-step, from ``now`` to ``end``, and set their ``step_status``.
 
     A CALM lane is advanced, with its extremes. Otherwise the sub-step stands (STANDS), or has to be repeated event by event
-    (EVENTFUL).
+    (EVENTFUL), by default in all lanes.
     """
     for i in range(count):
         lanes.step_status.kind[i] = EVENTFUL
@@ -138,14 +151,17 @@ def one_pass(traits, lanes, count, substep, settings):
 
 @optional_hook
 def pass_with_devices(traits, lanes, equipment, count, substep, settings):
-    """Integrate the first ``count`` lanes as :func:`one_pass`, with their devices."""
+    """Integrate the first ``count`` lanes as :func:`one_pass`, with their devices; by default all are EVENTFUL."""
     for i in range(count):
         lanes.step_status.kind[i] = EVENTFUL
 
 
 @optional_hook
 def note_devices(traits, lanes, i, devices):
-    """Record in lane ``i`` what a pass needs to know of its ``devices``; return True if the pier is at rest on rigid ground."""
+    """Record in lane ``i`` what a pass needs to know of its ``devices``; return True if the pier is at rest on rigid ground.
+
+    By default nothing is recorded, and False returned.
+    """
     return False
 
 
@@ -157,7 +173,10 @@ def gives_way(traits):
 
 @optional_hook
 def in_pass(traits, lanes, i):
-    """Return the model of lane ``i``, its state and its contact for a pass, which leaves other contacts to scalar code."""
+    """Return the model of lane ``i``, its state, and its contact as far as a pass handles it; by default all of it.
+
+    Lanes with other contacts are left to scalar code.
+    """
     m, now = pier_in(traits, lanes, i)
     return m, now.y, now.contact
 

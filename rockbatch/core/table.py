@@ -25,7 +25,7 @@ _DOUBLE = ir.DoubleType()
 
 
 def record(kind: type[NamedTuple]) -> np.dtype:
-    """Return the dtype of a record with the fields of ``kind``."""
+    """Return the dtype of a record with the fields of ``kind``: f8 for a float, i8 for an int."""
     return np.dtype([(name, _CODES[hint]) for name, hint in get_type_hints(kind).items()])
 
 
@@ -35,12 +35,18 @@ def lanes_of(parts: Mapping[str, type[NamedTuple]]) -> np.dtype:
 
 
 def with_beds(lanes: np.dtype, beds: np.dtype) -> np.dtype:
-    """Return ``lanes`` with ``beds`` behind them: numbers of a lane that lie next to each other, and stay as lanes are moved."""
+    """Return ``lanes`` with a last field "beds" of the dtype ``beds``, which stays in place as lanes are moved.
+
+    A lane refers to its bed by a slot, which moves with it; the numbers of a bed lie next to each other.
+    """
     return np.dtype([*((name, lanes[name]) for name in lanes.names or ()), ("beds", beds)])
 
 
 def table(lanes: np.dtype) -> tuple[np.recarray, np.ndarray]:
-    """Return one empty record of ``lanes`` in an array, and its numbers as rows with a column for each lane, but for beds."""
+    """Return an array of one record of ``lanes``, all zeros, and a view of its numbers as rows with a column for each lane.
+
+    The view leaves out beds.
+    """
     memory = np.zeros(1, lanes)
     fields = lanes.fields
     movable = fields["beds"][1] if fields is not None and "beds" in fields else lanes.itemsize
@@ -49,7 +55,7 @@ def table(lanes: np.dtype) -> tuple[np.recarray, np.ndarray]:
 
 @kernel
 def move(cells, i, j):
-    """Copy lane ``i`` to lane ``j``."""
+    """Copy lane ``i``, a column of ``cells``, to lane ``j``."""
     for k in range(len(cells)):
         cells[k, j] = cells[k, i]
 
@@ -88,6 +94,10 @@ def _interpreted_weighted(k1, k2, k3, k4):
     return type(k1)(*(a + 2.0 * (b + c) + d for a, b, c, d in zip(k1, k2, k3, k4, strict=True)))
 
 
+def _interpreted_selected(first, a, b):
+    return a if first else b
+
+
 def _addresses(builder, part, pointer, lane, names):
     base = builder.bitcast(pointer, ir.IntType(8).as_pointer())
     for name in names:
@@ -97,7 +107,7 @@ def _addresses(builder, part, pointer, lane, names):
 
 @intrinsic
 def _get(typing_context, part, i, kind):
-    """Return the named tuple ``kind``, or one like it, in lane ``i`` of a part of the table."""
+    """Return lane ``i`` of a part of the table as a named tuple; ``kind`` is its class or an instance of it."""
     fields = kind.instance_class._fields
     result = types.NamedUniTuple(types.float64, len(fields), kind.instance_class)
 
@@ -110,7 +120,7 @@ def _get(typing_context, part, i, kind):
 
 @intrinsic
 def _taken(typing_context, line, kind):
-    """Return the named tuple ``kind`` from fields of a record."""
+    """Return the named tuple of class ``kind`` with the numbers that a record has in fields of the same names."""
     fields = kind.instance_class._fields
     result = types.NamedUniTuple(types.float64, len(fields), kind.instance_class)
 
@@ -124,7 +134,7 @@ def _taken(typing_context, line, kind):
 
 @intrinsic
 def _put(typing_context, part, i, value):
-    """Write a named tuple into lane ``i`` of a part of the table."""
+    """Write a named tuple into the fields of the same names of lane ``i`` of a part of the table."""
 
     def generate(context, builder, signature, arguments):
         places = _addresses(builder, part, arguments[0], arguments[1], value.instance_class._fields)
@@ -208,12 +218,25 @@ def _weighted(typing_context, k1, k2, k3, k4):
     return k1(k1, k2, k3, k4), generate
 
 
+@intrinsic
+def _selected(typing_context, first, a, b):
+    """Return the named tuple ``a`` if ``first`` is True, else ``b``, of one kind, without a branch."""
+
+    def generate(context, builder, signature, arguments):
+        is_first, *both = arguments
+        pairs = [[builder.extract_value(each, j) for each in both] for j in range(len(a))]
+        return context.make_tuple(builder, a, [builder.select(is_first, *pair) for pair in pairs])
+
+    return a(types.boolean, a, b), generate
+
+
 _COMPILES = not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
 get = _get if _COMPILES else _interpreted_get
 taken = _taken if _COMPILES else _interpreted_taken
 with_pull = _with_pull if _COMPILES else _interpreted_with_pull
 with_rates = _with_rates if _COMPILES else _interpreted_with_rates
 with_z = _with_z if _COMPILES else _interpreted_with_z
+selected = _selected if _COMPILES else _interpreted_selected
 put = _put if _COMPILES else _interpreted_put
 along = _along if _COMPILES else _interpreted_along
 weighted = _weighted if _COMPILES else _interpreted_weighted

@@ -15,7 +15,10 @@ HALF_PI_REST = 6.123233995736766e-17
 
 
 def _interpolated(series, nodes):
-    """Return the coefficients of the polynomial through Σ series[k] zᵏ at ``nodes``, by Newton's differences, exact."""
+    """Return coefficients, lowest power first, of the polynomial through Σ series[k] zᵏ at ``nodes``, by Newton's differences.
+
+    They are exact until they are rounded to floats.
+    """
     differences = [sum(c * z**k for k, c in enumerate(series)) for z in nodes]
     for j in range(1, len(nodes)):
         for i in range(len(nodes) - 1, j - 1, -1):
@@ -29,10 +32,10 @@ def _interpolated(series, nodes):
 
 
 def _coefficients(first):
-    """Return the coefficients of a polynomial of degree 5 that approximates Σ (−z)ᵏ/(2k + first)! for 0 ≤ z ≤ (π/4)².
+    """Return six coefficients, lowest power first, of a polynomial that approximates Σ (−z)ᵏ/(2k + first)! for 0 ≤ z ≤ (π/4)².
 
-    It interpolates at Chebyshev nodes, which nearly minimise the error; rounded to 20 bits, they are the same on every
-    machine.
+    It interpolates at Chebyshev nodes, which nearly minimise the error. The nodes are rounded to 20 bits, so that the
+    coefficients are the same on every machine.
     """
     series = [Fraction((-1) ** k, math.factorial(2 * k + first)) for k in range(16)]
     middle = 0.5 * QUARTER * QUARTER
@@ -57,7 +60,7 @@ FLAT = 0.75
 
 @inlined
 def flat_sine_and_cosine(angle):
-    """Return sine and cosine of an ``angle`` [rad] up to FLAT, at half the cost of :func:`sine_and_cosine`."""
+    """Return sine and cosine for |angle| ≤ FLAT = 0.75 rad, at half the cost of :func:`sine_and_cosine`."""
     z = angle * angle
     return angle - angle * z * _polynomial(_SINE, z), 1.0 - (0.5 * z - z * z * _polynomial(_COSINE, z))
 

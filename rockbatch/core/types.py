@@ -66,11 +66,11 @@ class Ground(NamedTuple):
 
 
 class Moment(NamedTuple):
-    """State of a pier at one moment, and its contacts and supports, which are constant between events."""
+    """State of a pier at one moment, with its contacts and supports, which are constant between events."""
 
     y: tuple  # state
     contact: tuple
-    supports: tuple | None  # positions of supports without their pivots; None on rigid ground
+    supports: tuple | None  # positions of supports without their pivots, and yield points; None without springs
 
 
 class Instant(NamedTuple):
@@ -84,7 +84,7 @@ class Instant(NamedTuple):
 
 
 class Part(NamedTuple):
-    """A smooth part of a sub-step, to an event or to its end."""
+    """A smooth part of a sub-step: up to an event, to the end of a step that devices shorten, or to that of the sub-step."""
 
     start: Moment
     end: tuple  # state before the event
@@ -102,7 +102,7 @@ class Transition(NamedTuple):
 
 
 class Signals(NamedTuple):
-    """Event functions of a pier, or their slopes: positive until an event at a pivot."""
+    """Event functions of a pier, each positive until its event at a pivot; or their slopes."""
 
     left: float
     right: float
@@ -126,7 +126,7 @@ class Result(NamedTuple):
     flight_height: float  # greatest, of the lower pivot above its support [m]
     t_impact: float  # of the last impact; NaN without one
     t_rest: float  # when the pier last came to rest; NaN while it moves
-    base_left: float  # unstressed position of each support when residuals are read
+    base_left: float  # unstressed position of each support when residuals are read; of a footing the edges' plastic set
     base_right: float
     deepest_left: float  # lowest position of each support
     deepest_right: float
@@ -140,12 +140,12 @@ class Result(NamedTuple):
     deflection_max: float  # greatest deflection of the top of a shaft that bends [m]
     drift_max: float  # greatest horizontal displacement of that top
     bed_tilt: float  # tilt of the plastic set of a footing's bed at the end [rad]
-    lean: float  # rotation at which the pier rests on it [rad]
-    settled: float  # by which the middle of the foot is then deeper than at the start [m]
+    lean: float  # rotation at which the pier rests on that bed [rad]
+    settled: float  # by which the middle of the foot is then deeper than on an unyielded bed [m]
     contact_least: float  # least share of a footing that was pressed
-    bed_pressure: float  # greatest pressure at an edge of a footing, as of its whole area over the mass [m/s²]
+    bed_pressure: float  # greatest pressure at an edge of a footing, times its area over the mass [m/s²]
     t_pressure: float
-    pressure_side: float  # LEFT or RIGHT
+    pressure_side: float  # LEFT, RIGHT or NEITHER
     bed_force: float  # greatest push of a footing's bed [m/s²]
     t_force: float
     yielding_rocks: float  # rocks to one side in which the ground under a footing has yielded

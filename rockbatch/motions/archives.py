@@ -74,7 +74,7 @@ class Member:
 
 
 class _Entry(NamedTuple):
-    """A file in an archive's list: its name, with / between folders; sizes [bytes]; why its kind must not be opened."""
+    """A file in an archive's list: its name, with / between folders; sizes [bytes]; why its kind must not be opened, or ""."""
 
     name: str
     size: int
@@ -84,7 +84,7 @@ class _Entry(NamedTuple):
 
 
 class _Archive(ABC):
-    """An archive in memory, listed once; ``by_path`` has the files that may be opened."""
+    """An archive in memory, listed once, by name; ``by_path`` has the files that may be opened, of one path the first."""
 
     def __init__(self, listed: Iterable[_Entry]) -> None:
         self.entries = sorted(listed, key=lambda entry: entry.name)
@@ -99,9 +99,10 @@ class _Archive(ABC):
 
 
 def members(archive: Path) -> Iterator[Member]:
-    """Yield the files of an archive by name, without hidden and read-me files; one that must not be opened with its reason.
+    """Yield the files of an archive, and of archives in it, by name, each with the reason if it must not be opened.
 
-    Raises ``InputError`` for a damaged archive, and for one too large or with too many files.
+    Hidden and read-me files are skipped; the second file of one path, and all beyond 1 GiB unpacked, must not be opened. Raises
+    ``InputError`` for a damaged archive, one above 256 MiB, or with more than 2000 files.
     """
     total = 0
     visited: set[Path] = set()
@@ -122,7 +123,8 @@ def members(archive: Path) -> Iterator[Member]:
 def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
     """Yield the files of an archive, and of archives in it, with their sizes [bytes]; ``outer`` is the prefix of their names.
 
-    Hidden and read-me files are left out; an inner archive that cannot be read is a file with that reason.
+    Hidden and read-me files are left out; an inner archive that cannot be read, or lies in another inner one, is a file with that
+    reason.
     """
     for entry in _opened_archive(archive, state(archive)).entries:
         name, path = PurePosixPath(entry.name), archive / _member_path(entry.name)
@@ -141,7 +143,7 @@ def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
 
 
 def is_member(path: Path) -> bool:
-    """Return whether a path leads to a file in an archive, also a refused one; False if the archive cannot be read."""
+    """Return whether a path leads to one of the :func:`members` of an archive, even a refused one; False if it is unreadable."""
     archive = archive_of(path)
     try:
         return archive is not None and path in _paths_in(archive, state_of(archive.stat()))
@@ -163,7 +165,7 @@ def archive_of(path: Path) -> Path | None:
 
 
 def state(path: Path) -> tuple[int, ...]:
-    """Return what :func:`state_of` says of the file on the disk that a path names or lies within; () if it is gone."""
+    """Return inode, device, size [bytes] and time [ns] of a file, or of the archive on the disk that holds it; () if gone."""
     try:
         return state_of((archive_of(path) or path).stat())
     except OSError:
@@ -171,7 +173,10 @@ def state(path: Path) -> tuple[int, ...]:
 
 
 def files_in(folder: Path) -> list[Path]:
-    """Return paths of the regular files directly in a folder, in order; in an archive without those that must not be opened."""
+    """Return the sorted paths of the regular files directly in a folder, on the disk or in an archive.
+
+    In an archive without hidden and read-me files and those that must not be opened.
+    """
     archive = folder if is_archive(folder) and folder.is_file() else archive_of(folder)
     if archive is None:
         return sorted(path for path in folder.iterdir() if path.is_file())
@@ -181,7 +186,7 @@ def files_in(folder: Path) -> list[Path]:
 def content(path: Path, first: int | None = None) -> bytes:
     """Return the contents of a file, or its ``first`` bytes, unpacked if it is a .gz or lies in an archive.
 
-    Raises ``InputError`` for a file that is damaged, or larger than allowed, ``OSError`` if it cannot be read.
+    Raises ``InputError`` for a file that is damaged, packed twice or larger than 256 MiB, ``OSError`` if it cannot be read.
     """
     if archive_of(path) is not None:
         data = _from_archive(path, first)
@@ -204,7 +209,10 @@ def _from_disk(path: Path, first: int | None = None) -> bytes:
 
 
 def _from_gzip(data: bytes, first: int | None = None) -> bytes:
-    """Return the unpacked ``data``, or its ``first`` bytes; raise ``InputError`` for other or damaged data, or too much of it."""
+    """Return the unpacked ``data``, or its ``first`` bytes.
+
+    Raises ``InputError`` for damaged or other data, and for more than 256 MiB or, above 1 MiB, 100 times the packed size.
+    """
     most = min(LARGEST, max(_NEVER_TOO_LARGE, _GROWTH * len(data)))
     try:
         with gzip.GzipFile(fileobj=io.BytesIO(data)) as file:
@@ -217,7 +225,7 @@ def _from_gzip(data: bytes, first: int | None = None) -> bytes:
 
 
 def _from_archive(path: Path, first: int | None = None) -> bytes:
-    """Return the contents of a file in an archive, or its ``first`` bytes; raise ``InputError`` if it is gone or damaged."""
+    """Return the contents of a file in an archive, or its ``first`` bytes; raise ``InputError`` if gone, refused or damaged."""
     archive = next(filter(is_archive, path.parents))
     opened = _opened_archive(archive, state(archive))
     entry = opened.by_path.get(PurePosixPath(path.relative_to(archive).as_posix()))
@@ -303,7 +311,7 @@ def _tar_entry(info: tarfile.TarInfo, most: int) -> _Entry:
 
 
 def _refuse_long_lists(tail: bytes) -> None:
-    """Raise ``InputError`` if the end record of a .zip is missing, or states a list of files that is too long."""
+    """Raise ``InputError`` if the end record of a .zip is missing, or states a list of files above 1 MiB or in ZIP64 format."""
     start = tail.rfind(_END)
     if start < 0:
         raise InputError("not a zip archive, or a cut one; fetch it again")
@@ -328,6 +336,7 @@ def _refusal(entry: _Entry) -> str:
 
 
 def _too_large(packed: int, most: int) -> str:
+    """Return the reason to refuse a file of ``packed`` bytes that unpacks to more than ``most``."""
     if most == LARGEST:
         return f"unpacks to more than {LARGEST // 2**20} MiB"
     return f"unpacks to more than {_GROWTH} times its {packed} bytes, as no record does; unpack it if it is one"

@@ -28,9 +28,10 @@ def azimuths_every(step: float) -> tuple[float, ...]:
 def components_along(
     horizontals: Sequence[Component], azimuths: Sequence[float]
 ) -> tuple[list[Component], list[Unusable]]:
-    """Return a station's motion along ``azimuths`` [degrees], and the components that cannot be turned.
+    """Return a station's motion along ``azimuths`` [degrees], and as unusable the components that cannot be turned.
 
-    Two components square to each other are turned; without such a pair, those along a single azimuth asked for are kept.
+    Exactly two components square to each other with a time in common are turned. Otherwise a component stays only if
+    ``azimuths`` is its own azimuth alone.
     """
     obstacle = _rotation_obstacle(horizontals)
     if not obstacle:
@@ -46,7 +47,7 @@ def components_along(
 
 
 def _rotation_obstacle(horizontals: Sequence[Component]) -> str:
-    """Return why a station's horizontal components cannot be turned; empty for two with azimuths, square to each other."""
+    """Return why a station's horizontals cannot be turned; "" for two with known azimuths at a right angle and common samples."""
     for component in horizontals:
         if component.orientation.azimuth is None:
             return f"the azimuth of {component.name} is not known; write it in motions.toml"

@@ -20,7 +20,8 @@ class Offset:
     """Rule for the offset removed from every component.
 
     "as needed": the mean over the record where the format leaves the instrument's zero in it (K-NET, counts), nothing
-    elsewhere; "keep": nothing; "mean": the mean over the record; "pre-event": the mean over ``window_s``.
+    elsewhere; "keep": nothing; "mean": the mean over the record; "pre-event": the mean over ``window_s``. Raises ``InputError``
+    for another rule, a window without "pre-event" or the reverse, and times out of order.
     """
 
     rule: str = "as needed"
@@ -36,7 +37,7 @@ class Offset:
 
 
 def remove_offset(component: Component, offset: Offset) -> Component:
-    """Return ``component`` less its offset by the rule, with a note of the offset; what needs no removal comes back as it is.
+    """Return ``component`` less its offset by the rule, with a note, and no longer raw; itself if the rule removes nothing.
 
     Of a raw component, "keep" leaves the offset in, with a note. Raises ``InputError`` for a window outside the record.
     """

@@ -18,9 +18,10 @@ _ENOUGH = 100  # common samples
 
 
 def with_gains_compared(components: Sequence[Component]) -> list[Component]:
-    """Return the components, with a finding on two sensors of a station whose motions differ by a factor or in sign only.
+    """Return the components, with a gross finding on two sensors of a station whose motions differ by a factor, or in sign, only.
 
-    Which is right cannot be known: both are held back until confirmed, or one is left out by ``use = false``.
+    Factors up to 1.25 are calibration. Which sensor is right cannot be known: both are held back until confirmed, or one is left
+    out by ``use = false``.
     """
     compared = list(components)
     for i, j, sign in _side_by_side(components):
@@ -40,9 +41,9 @@ def with_gains_compared(components: Sequence[Component]) -> list[Component]:
 
 
 def _side_by_side(components: Sequence[Component]) -> Iterator[tuple[int, int, float]]:
-    """Yield places of two components of one line, time and station, from sensors with different location codes.
+    """Yield places i < j of two dated components of one station and line that overlap in time, and the sign of their directions.
 
-    With them the sign that makes their directions equal.
+    The sign is −1 if these are opposite; their sensors have different location codes.
     """
     coded = [(i, c) for i, c in enumerate(components) if c.sensor.number and c.sensor.location is not None and c.dated]
     for of_station in grouped(coded, lambda pair: (pair[1].sensor.network, pair[1].sensor.number)).values():
@@ -53,7 +54,7 @@ def _side_by_side(components: Sequence[Component]) -> Iterator[tuple[int, int, f
 
 
 def _sign_between(a: Component, b: Component) -> float:
-    """Return the sign that turns the direction of one component into that of the other; 0 if they are not of one line."""
+    """Return 1 for equal directions of two components, −1 for opposite ones, 0 for others and unknown azimuths."""
     mine, others = a.orientation, b.orientation
     if mine.vertical or others.vertical:
         return (1.0 if mine.down == others.down else -1.0) if mine.vertical == others.vertical else 0.0
@@ -64,9 +65,9 @@ def _sign_between(a: Component, b: Component) -> float:
 
 
 def _gain_ratio(a: Component, b: Component, sign: float) -> float | None:
-    """Return the amplitude of ``b`` over that of ``a`` times ``sign`` if their motions are alike, negative for opposite signs.
+    """Return the amplitude of ``b`` over that of ``a``, negative if the signs of their motions differ from ``sign``.
 
-    ``None`` if they are not alike, have fewer than 100 common samples, or differ by less than :data:`_FACTOR`.
+    ``None`` for a correlation below 0.98, fewer than 100 common samples, a component at rest, and a ratio from 0.8 to 1.25.
     """
     if too_unlike(a, b):
         return None

@@ -84,7 +84,10 @@ def on_common_samples(first: Component, second: Component, names: tuple[str, str
 
 
 def _offset(first: Component, second: Component, name: str) -> tuple[float, list[str]]:
-    """Return the delay of the second component [s], whole samples within jitter, with a note; 0 if a start time is unknown."""
+    """Return the delay of the second component [s]; 0 if a start time is unknown.
+
+    A delay within a tenth of the finer step of whole steps is rounded to them, with a note if by more than 1 µs.
+    """
     if first.start is None or second.start is None:
         return 0.0, []
     offset, step = second.start - first.start, min(first.dt, second.dt)

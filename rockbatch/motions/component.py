@@ -35,10 +35,10 @@ class Sensor:
         return bool(self.number) and self.number == other.number and not self._codes_differ(other)
 
     def is_distinct_from(self, other: "Sensor") -> bool:
-        """Return whether headers tell two sensors apart, by codes in one station, or by stations in one network.
+        """Return whether headers tell two sensors apart: by codes that differ in one station, or by two stations of one network.
 
-        Station names of two networks are not compared. If a channel number is known, the place in words, which differs
-        between formats, is ignored.
+        False without both stations, and for stations of two networks. If a channel number is known, the place in words, which
+        differs between formats, is ignored.
         """
         if not self.number or not other.number:
             return False
@@ -48,7 +48,7 @@ class Sensor:
         return bool(self.network) and self.network == other.network
 
     def _codes_differ(self, other: "Sensor") -> bool:
-        """Return whether network, location, place or channel differ, where both sensors have them."""
+        """Return whether network, location, place or channel differ in letters or digits, where both sensors have them."""
         mine, others = ((sensor.network, sensor.location, sensor.place, sensor.channel) for sensor in (self, other))
         return any(None not in (a, b) and _bare(str(a)) != _bare(str(b)) for a, b in zip(mine, others, strict=True))
 

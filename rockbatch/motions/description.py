@@ -46,7 +46,7 @@ def entry(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[
         "pgv_m_s": measures.pgv(motion.horizontal, motion.dt, motion.initial),
         "pgd_m": measures.believable_pgd(motion),
         "arias_m_s": measures.arias_intensity(motion.horizontal, motion.dt, gravity),
-        "d5_95_s": None if len(motion.shocks) > 1 else measures.significant_duration(motion.horizontal, motion.dt),
+        "d5_95_s": measures.duration_of_shaking(motion),
         "azimuth_deg": motion.azimuth,
         "magnitude": motion.magnitude,
         "distance_km": motion.distance_km,
@@ -106,7 +106,7 @@ def spectra(
 
 
 def _four_digits(values: npt.NDArray[np.float64]) -> list[float | None]:
-    """Return values rounded to four significant digits, None for NaN."""
+    """Return values rounded to four significant digits, None for NaN, in a list."""
     return [None if math.isnan(value) else float(f"{value:.4g}") for value in values]
 
 

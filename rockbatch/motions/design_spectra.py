@@ -231,7 +231,10 @@ class NzsSpectrum:
         return _within(self.limits, periods, values)
 
     def _near(self, t: Array) -> Array:
-        """Return the near-fault factor N(T, D) at periods ``t`` [s], as shaped: 1 up to 1.5 s, beyond 20 km, or R ≤ 0.75."""
+        """Return the near-fault factor N(T, D) at periods ``t`` [s], shape of ``t``: 1 up to 1.5 s, 1.6 at 4 s, 1.66 at 4.5 s.
+
+        That is up to 2 km from the fault; N − 1 falls linearly to 0 at 20 km, and is 0 for R ≤ 0.75.
+        """
         share = min(1.0, max(0.0, (FAR_KM - self.fault_km) / 18.0)) if self.return_period_factor > 0.75 else 0.0
         return 1.0 + share * (np.interp(t, [1.5, 4.0, 5.0], [1.0, 1.6, 1.72]) - 1.0)
 
@@ -239,7 +242,10 @@ class NzsSpectrum:
 @dataclass(frozen=True)
 class TableSpectrum:
     """A spectrum [g] given at rising periods [s]; linear between them in logarithms, or, if ``linear``, in its numbers, which
-    allows 0 s."""
+    allows 0 s.
+
+    Raises ``InputError`` for fewer than two periods, numbers not above 0 and periods that do not rise.
+    """
 
     periods: tuple[float, ...]
     sa_g: tuple[float, ...]
@@ -285,8 +291,8 @@ class TableSpectrum:
 def read_spectrum(path: str | os.PathLike[str], damping: float = 0.05, linear: bool = False) -> TableSpectrum:
     """Return the spectrum in a text file: a period [s] and a spectral acceleration [g] on each line, after an optional header.
 
-    Raises ``InputError`` for a file that cannot be read, with the line below the header that is no such pair, or for values that
-    make no spectrum.
+    Blanks, commas or semicolons separate them; the header ends with the first pair, and lines that begin with # are skipped.
+    Raises ``InputError`` for a file that cannot be read, with the first other line, and as :class:`TableSpectrum`.
     """
     path = Path(path)
     periods: list[float] = []

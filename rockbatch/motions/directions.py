@@ -36,7 +36,7 @@ def judge_directions(readings: Sequence[Reading]) -> list[Reading]:
 
 
 def _judge_set(station: Sequence[Component]) -> list[Component]:
-    """Return the components of a set with their decided directions, or all held back if any statements contradict."""
+    """Return the components of a set with their decided directions, or all held back if statements or directions contradict."""
     components = _copies_as_their_originals(_with_names(station))
     # copied headers are void whatever they say; only then can the remaining statements speak for or against angles of 0°
     for i, statement, reason in [*_copied_headers(components), *_void_defaults(components)]:
@@ -47,14 +47,14 @@ def _judge_set(station: Sequence[Component]) -> list[Component]:
         contradictions.setdefault(i, text)
         contradictions.setdefault(j, text)
     if contradictions:
-        return [_hold_back(c, contradictions.get(i, ""), components, contradictions) for i, c in enumerate(components)]
+        return [_held_back(c, contradictions.get(i, ""), components, contradictions) for i, c in enumerate(components)]
     return [_with_remark(component) for component in components]
 
 
-def _hold_back(
+def _held_back(
     component: Component, contradiction: str, components: Sequence[Component], contradictions: dict[int, str]
 ) -> Component:
-    """Return a component of a set that is held back, with its own ``contradiction`` or the first one of the set."""
+    """Return a component of a set held back: with its own ``contradiction`` and no direction, else with the first of the set."""
     if contradiction:
         return replace(component, contradiction=contradiction, orientation=unknown(component.orientation.label))
     first, text = next(iter(contradictions.items()))
@@ -67,7 +67,7 @@ def _by_user(component: Component) -> bool:
 
 
 def _strong_statement(component: Component, *kinds: Kind) -> Statement | None:
-    """Return a component's first statement of these kinds that is not weak; ``None`` without one."""
+    """Return a component's first statement of one of ``kinds`` that is not weak; ``None`` without any."""
     return next((s for s in component.statements if s.kind in kinds and not s.weak), None)
 
 
@@ -77,7 +77,7 @@ def _same_samples(a: Component, b: Component) -> bool:
 
 
 def _with_names(station: Sequence[Component]) -> list[Component]:
-    """Return components whose file names are no weak statements any more, if each gives another direction; else as they are.
+    """Return the components, their file names no longer weak statements if two or more give directions, and all different ones.
 
     "North" or "z" alone may be the name of a place or a copy; beside "East" it is a direction.
     """
@@ -103,7 +103,10 @@ def _copies_as_their_originals(station: Sequence[Component]) -> list[Component]:
 
 
 def _contradiction(component: Component) -> str:
-    """Return the first two contradictory statements of a component in words; empty if none, or if the user states it."""
+    """Return the first two contradictory statements of a component in words; "" if none, or if the user states its direction.
+
+    Angles of 0°, which may be defaults, and weak statements do not count.
+    """
     if _by_user(component):
         return ""
     pairs = combinations((s for s in component.statements if not (s.default or s.weak)), 2)
@@ -112,7 +115,10 @@ def _contradiction(component: Component) -> str:
 
 
 def _copied_headers(components: Sequence[Component]) -> Iterator[tuple[int, Statement, str]]:
-    """Yield place, statement and reason of codes or headers that give one direction in a set whose file names give several."""
+    """Yield place, statement and reason of codes or headers that give one direction for two or more components of a set.
+
+    Their file names must all give directions, each another one; none is yielded if two components have the same samples.
+    """
     for kind in _COPIED:
         of_kind = [(i, s) for i, c in enumerate(components) if (s := _strong_statement(c, kind)) and not _by_user(c)]
         names = [name.orientation for i, _ in of_kind if (name := _strong_statement(components[i], Kind.NAME))]
@@ -128,8 +134,8 @@ def _copied_headers(components: Sequence[Component]) -> Iterator[tuple[int, Stat
 def _void_defaults(components: Sequence[Component]) -> Iterator[tuple[int, Statement, str]]:
     """Yield place, statement and reason of angles of 0° that are void: other statements contradict them, or other components do.
 
-    Others of the sensor do if no statement agrees, and one has the same angle, or one an angle other than 0° and none a right
-    angle.
+    Other components of the sensor do if no other statement agrees, and one of them has the same angle, or one has an angle other
+    than 0° and none has 90° or 270°, to 5°.
     """
     angles = [(i, s) for i, c in enumerate(components) if (s := _strong_statement(c, Kind.ANGLES)) and not _by_user(c)]
     for i, statement in (pair for pair in angles if pair[1].default):
@@ -181,7 +187,10 @@ def _with_remark(component: Component) -> Component:
 def _impossible_pairs(
     components: Sequence[Component], contradictions: dict[int, str]
 ) -> Iterator[tuple[int, int, str]]:
-    """Yield places of two components whose directions cannot both be right, and why: equal with other samples, or skew."""
+    """Yield places of two components whose directions cannot both be right, and why: equal with other samples, or skew.
+
+    Two components that the user states, and most with ``contradictions`` of their own, are not compared.
+    """
     places = [i for i in range(len(components)) if i not in contradictions]
     pairs = {pair for pair in combinations(places, 2) if not all(_by_user(components[i]) for i in pair)}
     alike = [(i, j) for i, j in sorted(pairs) if same_direction(components[i].orientation, components[j].orientation)]
@@ -202,14 +211,17 @@ def _impossible_pairs(
 
 
 def _of_one_sensor(a: Component, b: Component) -> bool:
-    """Return whether two components of one file are of one sensor: other files may hold the channels of a building."""
+    """Return whether two components are of one file, time and sensor; False for a sensor in the header unless both have angles.
+
+    Such a file may hold the channels of a building.
+    """
     if file_of(a.source) != file_of(b.source) or a.sensor != b.sensor or not overlap(a, b):
         return False
     return a.sensor == UNKNOWN_SENSOR or all(_strong_statement(c, Kind.ANGLES) for c in (a, b))
 
 
 def _skew_pair(a: Component, b: Component) -> str:
-    """Return a message on horizontal components of one sensor that are more than 30° off a right angle; "" for others."""
+    """Return a message on horizontals of one sensor over 30° off a right angle; "" for others, and equal or unknown azimuths."""
     first, second = a.orientation.azimuth, b.orientation.azimuth
     if a.sensor != b.sensor or first is None or second is None or same_direction(a.orientation, b.orientation):
         return ""

@@ -109,7 +109,7 @@ def _factor_finding(component: Component, other: Component) -> Finding:
 def _shared_verticals(
     components: Sequence[Component], stands_for: Mapping[int, int]
 ) -> Iterator[tuple[int, list[int]]]:
-    """Yield the place of a set's only vertical, if a copy of another station's, and those of the set's used horizontals."""
+    """Yield the place of a set's only vertical if another station's stands for it, and the places of its used horizontals."""
 
     def place(i: int) -> tuple[str, str]:
         return components[i].folder, components[i].station or components[i].site
@@ -125,7 +125,7 @@ def _shared_verticals(
 def _ranks(
     components: Sequence[Component], pairs: Pairs, factors: dict[tuple[int, int], float | None]
 ) -> dict[int, tuple[object, ...]]:
-    """Return sort keys of components with copies, the one to use first; all components of a set have the key of the set.
+    """Return sort keys of components with copies, the least for the one to use: the key of its set, then its index.
 
     In this order: chosen by a manifest; sound before grossly odd; corrected before unknown before uncorrected; not called
     scaled; two horizontals and a vertical before fewer; a unit of acceleration before counts; the finer time step; the
@@ -161,13 +161,13 @@ def _ranks(
 
 
 def _is_unit_ratio(factor: float) -> bool:
-    """Return whether a factor between copies, or its inverse, is the ratio of two units, such as m/s² and g; False near 1."""
+    """Return whether a factor between copies, or its inverse, is to 0.3 % the ratio of two units, as m/s² and g; False near 1."""
     apart = abs(math.log(abs(factor)))
     return any(abs(apart - math.log(unit)) < _SAME_UNIT for unit in _UNITS)
 
 
 def _reason(copy: Component, used: Component, factor: float | None) -> str:
-    """Return why ``copy`` is left out for ``used``: the same samples, less corrected, or larger by ``factor``."""
+    """Return why ``copy`` is left out for ``used``: a copy, the same recording, less corrected, or ``factor`` times as large."""
     same = copy.dt == used.dt and np.array_equal(copy.acceleration, used.acceleration)
     corrected = "" if _CORRECTED[used.processed] >= _CORRECTED[copy.processed] else "less corrected, "
     larger = "" if factor is None else f"{factor:.4g} times as large, "
@@ -192,7 +192,7 @@ def tell_use_of_originals(left_out: Iterable[LeftOut], motions: MotionSet) -> li
 def _finding_on_copy(copy: Component, used: Component, factor: float | None, decided: bool) -> Finding | None:
     """Return a finding on a left-out ``copy`` times a ``factor``, or with a peak 1.5 times larger or smaller; else None.
 
-    A factor other than ±1 that is not ``decided``, as by a file's name, is gross: it has to be confirmed.
+    A factor over 5 % off ±1 that is not ``decided``, as by a file's name, is gross: it has to be confirmed.
     """
     if factor is not None:
         text = f"{copy.source}, left out, has the same samples times {factor:.4g}: check which of them is right"

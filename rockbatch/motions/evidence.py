@@ -36,9 +36,10 @@ class Statement:
     weak: bool = False  # whether it may mean something else, and counts only without another statement
 
     def contradicts(self, other: "Statement") -> bool:
-        """Return whether the two cannot both be right.
+        """Return whether two cannot both be right: only one vertical, opposite signs of verticals, or azimuths over 5° apart.
 
-        Sensors turned to any azimuth still have codes with N and E, so these contradict an angle only if 90° off.
+        False for an unknown azimuth. Sensors turned to any azimuth still have codes with N and E, so letters contradict an angle
+        only if 75° to 105° apart.
         """
         mine, others = self.orientation, other.orientation
         if mine.vertical != others.vertical:
@@ -93,7 +94,7 @@ def angles_statement(label: str, words: str, azimuth: float | None, dip: float |
     """Return the statement of azimuth and dip [degrees, dip down from the horizontal] for a channel ``label``.
 
     ``None`` without either, and for an azimuth of 0° without a dip, which programs write by default. Raises ``ValueError``
-    for an inclined channel, of a dip from 10° to 80°.
+    for an inclined channel, of a dip beyond 10° up to 80°, up or down.
     """
     default = azimuth in (None, 0.0) and dip in (None, 0.0)
     if dip is None and (azimuth is None or default):

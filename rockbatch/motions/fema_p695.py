@@ -78,7 +78,7 @@ def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component
 
 
 def all_components(gravity: float = GRAVITY) -> list[Component]:
-    """Return both stored components of all 50 stations, in m/s²."""
+    """Return both stored components of all 50 stations, 100 in all, in m/s²."""
     return [_recorded(station, direction, gravity) for station in stations() for direction in (0, 1)]
 
 
@@ -131,7 +131,7 @@ def _open(set_name: str) -> "h5py.File":
 
 @cache
 def _stations(set_name: str) -> tuple[Station, ...]:
-    """Return the stations of one set, from its tables."""
+    """Return the stations of one of ``SETS``, from its tables, in their order."""
     with _open(set_name) as store:
         rows = store["groundmotions/table"][:]
         events = {int(row["index"]): row for row in store["records/table"][:]}

@@ -45,7 +45,11 @@ class SourceFile:
 
 
 def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
-    """Yield the files of ``roots`` in order, each once, also refused ones; below a folder without hidden and read-me files."""
+    """Yield the files of ``roots`` in turn, sorted within a folder, each real file once; instead of an archive its files.
+
+    Hidden and read-me files below a folder are skipped. A link to a folder or out of the folder, a closed folder, a pipe, and an
+    unreadable or empty archive come with a refusal.
+    """
     visited: set[Path] = set()
     for root in roots:
         prefix = f"{root.absolute().name}/" if len(roots) > 1 and root.is_dir() else ""
@@ -70,7 +74,7 @@ def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
 
 
 def inventories_beside(file: Path) -> list[SourceFile]:
-    """Return the files beside ``file`` that may be StationXML by suffix; a link that leads out of the folder has a refusal."""
+    """Return the .xml and .xml.gz files in the folder of ``file``, sorted; a link that leads out of the folder has a refusal."""
     inside = Path(os.path.realpath(file.parent))
     beside = []
     for path in archives.files_in(file.parent):
@@ -80,7 +84,10 @@ def inventories_beside(file: Path) -> list[SourceFile]:
 
 
 def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
-    """Yield the files of an archive, and first the archive itself with the reason if it cannot be read or holds none."""
+    """Yield the files of an archive; the archive itself, with the reason as its refusal, if it cannot be read or is empty.
+
+    A manifest in it is a companion.
+    """
     try:
         members = list(archives.members(path))
         refusal = "" if members else "an archive without files"
@@ -106,7 +113,7 @@ def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
 def _source_file(path: Path, source: str) -> SourceFile:
     """Return a regular file, as a ``companion`` if it is known to be no record, with a ``refusal`` if it is an archive not read.
 
-    It is known by its name, its suffix, or content that this program wrote.
+    It is known by its name (license.txt), its suffix (.pdf), or content that this program wrote. A manifest is neither.
     """
     if path.name.lower() == _SEARCH_RESULTS:
         return SourceFile(path, source, companion="a table about the records")
@@ -121,7 +128,7 @@ def _source_file(path: Path, source: str) -> SourceFile:
 
 
 def _paths_below(folder: Path) -> Iterator[Path]:
-    """Yield the files in a folder and below it, but hidden and read-me ones; links to folders and closed folders themselves."""
+    """Yield the files in and below a folder but hidden and read-me ones; links to folders and closed folders as they are."""
     closed: list[Path] = []
     for parent, folders, files in os.walk(folder, onerror=lambda error: closed.append(Path(error.filename))):
         folders[:] = [name for name in folders if not name.startswith(".")]

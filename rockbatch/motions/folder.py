@@ -79,9 +79,9 @@ def read_motions(
     Parameters
     ----------
     paths : path or sequence of paths
-        Files and folders, with subfolders and archives; hidden files, read-me files and links to outside are skipped.
+        Files and folders, with subfolders and archives; hidden and read-me files are skipped, links to outside are unusable.
         Manifests in them are obeyed.
-    vertical : bool
+    vertical : bool or "required"
         Whether motions get their station's vertical component, if it has one; "required": without one they are unusable.
     gravity : float
         Value of "g" in files [m/s²].
@@ -103,7 +103,7 @@ def read_motions(
     Raises
     ------
     InputError
-        For paths that do not exist, stations that are unknown, and mistakes in manifests, all at once; for a name in
+        For all paths that do not exist and stations that are unknown, else all mistakes in manifests, else each name in
         ``leave_out`` that matches nothing. A file that cannot be used is no error: it is in ``unusable``, with the reason.
 
     Returns
@@ -147,7 +147,10 @@ def read_motions(
 
 
 def _with_stations(readings: Sequence[Reading], paired: MotionSet) -> list[Unusable | LeftOut]:
-    """Return the unusable and left-out readings, each with the station of the records that share its file or its name."""
+    """Return the unusable and left-out readings, with the station of a motion from their file, else of one with their site.
+
+    It is in their folder; without either they keep their station.
+    """
     sources = [(source, m.of_station) for m in paired.motions for source in m.files.split(", ")]
     sources += [(source, file.station) for file in paired.unusable for source in file.source.split(", ")]
     station_of_file = {file_of(source): station for source, station in sources}
@@ -190,9 +193,9 @@ def read_files(
     gravity: float = GRAVITY,
     offset: Offset | None = None,
 ) -> tuple[list[Reading], dict[str, Path], list[tuple[str, ShockSequence]]]:
-    """Return the readings of all files, not yet paired; their paths by source; the sequences of manifests.
+    """Return the readings of all files, not yet paired; paths by source; and each sequence of a manifest after its path.
 
-    Raises ``InputError`` with every mistake in the manifests.
+    Raises ``InputError`` with every mistake in the manifests; a file that cannot be read is an unusable reading.
     """
     files = list(files_of(roots))
     neighbours = [path.parent / name for path in roots if path.is_file() for name in MANIFESTS]
@@ -244,8 +247,8 @@ def _with_progress(files: Sequence[SourceFile]) -> Iterable[SourceFile]:
 def _without_companions(readings: Sequence[Reading]) -> list[Reading]:
     """Return the readings, with companions of records (spectra, velocities, notes) left out instead of unusable.
 
-    A companion of a known station lies in the folder of a record of this station; one of no station beside any record, or in a
-    folder above.
+    A companion that names its station counts only in the folder of a record of this station; one that names none, beside any
+    record or in a folder above.
     """
     components = [reading for reading in readings if isinstance(reading, Component)]
     folders = {(_folder(component), component.sensor.number) for component in components}
@@ -267,7 +270,7 @@ def _folder(reading: Reading) -> str:
 
 
 def _without_renamed(readings: Sequence[Reading], files: Sequence[SourceFile]) -> list[Reading]:
-    """Return the readings; renamed copies of a record, which no reader recognises by their names, are left out, not unusable."""
+    """Return the readings; byte for byte copies of a record under names that no reader recognises are left out, not unusable."""
     refused = {reading.source for reading in readings if isinstance(reading, Unusable)}
     records = {file_of(reading.source) for reading in readings if isinstance(reading, Component)}
 
@@ -299,7 +302,10 @@ def _content(file: SourceFile, first: int | None = None) -> bytes:
 
 
 def _names(files: Sequence[SourceFile]) -> dict[Path, tuple[str, Orientation | None]]:
-    """Return station's part and direction of the names of files; names in one folder decide if digits are azimuths."""
+    """Return the station's part of each file's name and its direction, by the stem, else by the suffix (.EW), else None.
+
+    The names in one folder decide together whether digits are azimuths.
+    """
     names: dict[Path, tuple[str, Orientation | None]] = {}
     for paths in grouped((file.path for file in files), lambda path: path.parent).values():
         stems = {path: archives.bare(path).stem for path in paths}
@@ -372,7 +378,10 @@ def _readings_of_entries(file: SourceFile, settings: _ReadSettings) -> list[Read
 
 
 def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Sequence[Component | Unusable]:
-    """Return the components of one file, usable or not, by the reader of its format. Raises ``InputError`` if it has none."""
+    """Return the components of one file, usable or not, by the reader of its format.
+
+    Raises ``InputError`` for a file that no reader knows or that its reader refuses.
+    """
     path = archives.bare(file.path)
     data = archives.content(file.path, HEAD)
     if format_of(path.suffix, data) is not None:  # else its first bytes suffice for the refusal
@@ -382,14 +391,17 @@ def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Se
 
 
 def _with_place(component: Component, path: Path, name: tuple[str, Orientation | None], alone: bool) -> Component:
-    """Return a component with its folder, its site by the file's ``name``, and the name's direction if ``alone`` in it."""
+    """Return a component with its folder, its site by the file's ``name``, and that name's direction if ``alone`` in the file."""
     site, direction = name
     component = add_name_statement(component, path.name, direction) if alone else component
     return replace(component, site=_site(path, site), folder=path.parent.absolute().as_posix())
 
 
 def _with_list(component: Component, path: Path, settings: _ReadSettings) -> Component:
-    """Return a component with the facts of PEER's list in its folder; as it is if no list has it."""
+    """Return a component with the facts of PEER's list in its folder; magnitude and distance are the list's.
+
+    It is returned as it is if no list has it.
+    """
     listed = of_file(settings.lists, path, component.site)
     if listed is NOT_LISTED:
         return component
@@ -403,7 +415,10 @@ def _site(path: Path, site: str) -> str:
 
 
 def _without_offset(component: Component, settings: _ReadSettings) -> Component | Unusable:
-    """Return a component without its offset, an unknown direction set to the study's role; ``Unusable`` if unfit."""
+    """Return a component without its offset, and horizontal if its direction is unknown and the study states this role.
+
+    ``Unusable`` with the reason if it cannot become a motion.
+    """
     role = settings.options.role
     if not component.orientation.known and role is not None:
         orientation = replace(component.orientation, known=True)

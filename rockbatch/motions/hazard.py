@@ -130,7 +130,10 @@ class HazardCurve:
 def problems(
     levels: Sequence[float], rates: Sequence[float], slope: float | None, shape: str
 ) -> Iterator[tuple[int | None, str]]:
-    """Yield each mistake in the points of a curve: the index of the point, or None, and a message; nothing for a sound curve."""
+    """Yield each mistake in the points of a curve: the index of the point, or None, and a message; nothing for a sound curve.
+
+    Unequal numbers of levels and rates, no point, and an impossible point end the search.
+    """
     if shape not in ("points", "quadratic"):
         yield None, f'shape = "{shape}": write "points" or "quadratic"'
     if len(levels) != len(rates):

@@ -1,6 +1,6 @@
 """Kinds of values that a study or a manifest may state about records: units, sampling intervals, azimuths of components."""
 
-from rockbatch.common.units import acceleration_factor
+from rockbatch.common.units import ACCELERATIONS, acceleration_factor
 from rockbatch.motions.limits import LONGEST_STEP, SHORTEST_STEP, STEPS
 from rockbatch.toml.kinds import Choice, KindError, Number, Other, Text, Whole, text
 
@@ -11,12 +11,12 @@ def _check_unit(value: str) -> None:
     """Raise :class:`KindError` for a text that is no unit of acceleration."""
     try:
         acceleration_factor(value)
-    except ValueError as error:
-        raise KindError(f"expected {str(error).rpartition('; write ')[2]}", whole=True) from None
+    except ValueError:
+        raise KindError(f"expected {ACCELERATIONS}", whole=True) from None
 
 
 def _check_file_name(value: str) -> None:
-    """Raise :class:`KindError` for a text that no file can be called."""
+    """Raise :class:`KindError` for a file name with a NUL, or of more than 1000 characters."""
     if "\x00" in value or len(value) > _LONGEST_NAME:
         raise KindError("the name of a file")
 

@@ -66,7 +66,7 @@ class Recordings(NamedTuple):
 
 
 def pairs_of_one_recording(components: Sequence[Component]) -> Recordings:
-    """Return the pairs of components of one recording, by headers and samples."""
+    """Return the pairs of components of one recording by headers and samples, copies by a factor apart, and denied pairs."""
     table = _Table(components)
     pairs: Pairs = {}
     scaled = []
@@ -82,7 +82,7 @@ def pairs_of_one_recording(components: Sequence[Component]) -> Recordings:
         for j in table.same_by_headers(i):
             if j in pairs.get(i, ()) or likeness_of(components[i], components[j]) >= _ALIKE:
                 join(i, j)
-            elif not table.may_be_parts(i, j):
+            elif table.way[i] >= 0 and not table.may_be_parts(i, j):  # unknown directions may be two
                 denied.append((i, j))
     for i, j in table.similar_pairs():
         first, second = components[i], components[j]
@@ -103,9 +103,9 @@ def _pairs_of_sets(
 ) -> Iterator[tuple[int, int]]:
     """Yield further pairs from two sets that are of one recording as wholes, each component with its counterpart.
 
-    Two sets with a pair already must correlate; others must be coherent wherever both have energy: that distinguishes a copy
-    that was cut, rotated and filtered from a neighbour in an array, and a correlation does not. Sets with a ``scaled`` pair
-    stay two.
+    Two sets with a pair already must correlate or be coherent; others must be coherent wherever both have energy: that
+    distinguishes a copy that was cut, rotated and filtered from a neighbour in an array, and a correlation does not. Sets with
+    none but a ``scaled`` pair stay two.
     """
     sets = list(sets_of(components))
     set_of = {i: number for number, members in enumerate(sets) for i in members}
@@ -128,7 +128,10 @@ def _pairs_of_sets(
 
 
 def _similar_envelopes(components: Sequence[Component], sets: Sequence[Sequence[int]]) -> set[tuple[int, int]]:
-    """Return pairs of sets whose horizontals have similar envelopes around a peak, which rotation and cutting do not change."""
+    """Return pairs of sets (i < j) whose horizontals have similar envelopes around a peak, however they were rotated and cut.
+
+    Sets without one or two horizontals, or with steps of 0.11 s or more, are in none.
+    """
     shapes, owners = [np.empty((0, len(_AROUND)))], list[int]()
     for number, members in enumerate(sets):
         horizontals = [components[i] for i in members if not components[i].orientation.vertical]
@@ -235,9 +238,10 @@ def _coherence(a: Samples, b: Samples, dt: float) -> float:
 
 
 def sets_of(components: Sequence[Component]) -> Iterator[list[int]]:
-    """Yield sets of components that belong together, by index: of a file with several, else of one station, step and processing.
+    """Yield sets of components that belong together, by index: all of a file with several, else of one station, event and step.
 
-    Each component is in one set; a set may have one component.
+    These are of one folder and processing, too; if two share a direction, those of one site and suffix are a set. Each component
+    is in one set, perhaps alone.
     """
 
     def place(i: int) -> Hashable:
@@ -294,7 +298,7 @@ class _Table:
         self.start = np.array([c.start for c in components], dtype=float)
         self.end = self.start + [c.duration for c in components]
         self.dated = np.array([c.dated for c in components], dtype=bool)
-        self.growth = np.array([_growth(component) for component in components]).reshape(-1, len(_SHARES))
+        self.growth = np.array([_growth_times(component) for component in components]).reshape(-1, len(_SHARES))
         self.bands = np.array([np.searchsorted(_BANDS, 0.5 / c.dt, "right") - 1 for c in components], dtype=np.int64)
         self.amplitude = np.full((len(components), len(_BANDS) - 1), math.nan, dtype=np.float32)
         self.energy = np.full((len(components), len(_BANDS)), math.nan, dtype=np.float32)
@@ -302,11 +306,11 @@ class _Table:
         self.whole_file = np.isin(self.file, self.file[vertical]) & np.isin(self.file, self.file[~vertical])
 
     def _differ(self, column: Indices, i: int, j: Indices) -> Truths:
-        """Return whether codes of components ``j`` differ from that of ``i``; False where either is unknown, -1."""
+        """Return whether the codes ``column[j]`` differ from ``column[i]``, shape of ``j``; False where either is unknown, -1."""
         return (column[i] != column[j]) & (column[i] >= 0) & (column[j] >= 0)
 
     def _pointing_alike(self, i: int, j: Indices) -> Truths:
-        """Return whether components ``j`` have the direction of ``i``: azimuths within 1°, else equal labels, or both unknown."""
+        """Return whether components ``j`` point as ``i``: all vertical, to 1° of azimuth, by equal labels, or all unknown."""
         angles = np.abs((self.azimuth[j] - self.azimuth[i] + 180.0) % 360.0 - 180.0)
         return (self.way[j] == self.way[i]) & ~(angles > SAME_AZIMUTH)
 
@@ -354,7 +358,10 @@ class _Table:
         return [k for k in candidates if sensor.may_be_same_as(self.components[k].sensor)]
 
     def may_be_parts(self, i: int, j: int) -> bool:
-        """Return whether two components may be of consecutive parts of a recording: of whole files of one step and stage."""
+        """Return whether two components may be of consecutive parts of a recording: of one step and processing, in whole files.
+
+        A whole file has a vertical and a horizontal component.
+        """
         a, b = self.components[i], self.components[j]
         alike = a.processed == b.processed and same_step(a.dt, b.dt)
         return bool(self.whole_file[i] and self.whole_file[j]) and alike
@@ -397,15 +404,15 @@ def _kind_of_direction(component: Component) -> tuple[str, ...]:
     return ("label", orientation.label.upper()) if orientation.label else ()
 
 
-def _growth(component: Component) -> Samples:
-    """Return the times [s] between the ``_SHARES`` of ∫a² dt, and their sum."""
+def _growth_times(component: Component) -> Samples:
+    """Return the times [s] between neighbouring ``_SHARES`` of ∫a² dt, then their sum, shape (5,)."""
     energy = np.cumsum(np.square(component.acceleration))
     times = np.searchsorted(energy, np.multiply(_SHARES, energy[-1])) * component.dt
     return np.append(np.diff(times), times[-1] - times[0])
 
 
 def _amplitudes(component: Component) -> Samples:
-    """Return the Fourier amplitude in each of ``_BANDS``, normalised so that their squares sum to 1."""
+    """Return the Fourier amplitude in each of ``_BANDS`` over the root of the energy at all frequencies; 0 for a still record."""
     a, dt = component.acceleration - component.acceleration.mean(), component.dt
     n = 1 << max(2 * len(a), math.ceil(2.0 / (dt * _BANDS[1]))).bit_length()
     energy = np.concatenate(([0.0], np.cumsum(np.square(np.abs(np.fft.rfft(a, n))))))
@@ -414,13 +421,13 @@ def _amplitudes(component: Component) -> Samples:
 
 
 def likeness_of(a: Component, b: Component) -> float:
-    """Return the largest correlation of the samples of two components, brought to one step, over all shifts."""
+    """Return the largest absolute correlation of two components, at the coarser of their steps, over all shifts."""
     dt = max(a.dt, b.dt)
     return correlation(_at_step(a, dt), _at_step(b, dt))
 
 
 def _are_one_recording(a: Component, b: Component) -> bool:
-    """Return whether the samples of two components, brought to one step, are so well correlated that they are one recording."""
+    """Return whether two components, at the coarser of their steps, have a significant absolute correlation of 0.95 or more."""
     coarse, fine = sorted((a, b), key=lambda c: -c.dt)
     first, second = coarse.acceleration, _at_step(fine, coarse.dt)
     r = correlation(first, second)
@@ -428,7 +435,7 @@ def _are_one_recording(a: Component, b: Component) -> bool:
 
 
 def _is_significant(r: float, first: Samples, second: Samples) -> bool:
-    """Return whether an absolute correlation of two series of one step lies far above those by chance.
+    """Return whether an absolute correlation of two series of one step is four standard deviations or more above chance.
 
     A few waves of one period look alike in any two records: the inverse hyperbolic tangent of a correlation by chance, of n
     independent values, has a standard deviation of 1/√(n − 3) (Fisher).
@@ -457,7 +464,7 @@ def _strong_samples(values: Samples) -> int:
 
 
 def same_step(a: float, b: float) -> bool:
-    """Return whether two sampling intervals [s] are equal but for their printing."""
+    """Return whether two sampling intervals [s] are equal to 0.1 %, since they may be rounded in print."""
     return abs(a - b) <= _SAME_STEP * b
 
 
@@ -480,7 +487,10 @@ class Alignment(NamedTuple):
 
 
 def alignment(first: Samples, second: Samples, parts: int = 4) -> Alignment:
-    """Return the largest correlation, by its absolute value, over all shifts by 1/``parts`` of a step; 1 if one is constant."""
+    """Return the correlation of largest absolute value, with sign and delay, over all shifts by 1/``parts`` of a step.
+
+    Correlation 1 and delay 0 if either series is constant.
+    """
     first, second = ((x - x.mean()) / (np.abs(x).max() or 1.0) for x in (first, second))
     n = 1 << (len(first) + len(second) - 1).bit_length()
     shifted = parts * np.fft.irfft(np.fft.rfft(first, n) * np.conj(np.fft.rfft(second, n)), parts * n)
@@ -519,7 +529,7 @@ def copy_between(first: Samples, second: Samples) -> Copy | None:
 
 
 def _common_factor(first: Samples, second: Samples) -> float:
-    """Return the factor from the ``second`` series to the ``first`` if they are equal but for it, within 0.1 %; else 0."""
+    """Return the factor that makes the ``second`` series the ``first``, to 0.1 % of its peak; 0 if there is none."""
     if len(first) != len(second) or not second.any():
         return 0.0
     factor = float(first @ second) / float(second @ second)
@@ -527,6 +537,6 @@ def _common_factor(first: Samples, second: Samples) -> float:
 
 
 def factor_between(a: Component, b: Component) -> float | None:
-    """Return the factor by which samples of ``a`` are those of ``b``; ``None`` if there is none, or it is within 0.5 % of 1."""
+    """Return the factor that makes samples of ``b`` those of ``a``; ``None`` if there is none, or it is within 0.5 % of 1."""
     factor = _common_factor(a.acceleration, b.acceleration) if same_step(a.dt, b.dt) else 0.0
     return None if not factor or abs(factor - 1.0) <= _NO_FACTOR else factor

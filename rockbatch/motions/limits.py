@@ -22,7 +22,7 @@ HUGE = 1e30
 
 
 def is_step(dt: float) -> bool:
-    """Return whether ``dt`` [s] may be the sampling interval of a record."""
+    """Return whether ``dt`` [s] may be the sampling interval of a record: from 1e-5 to 1 s, both included."""
     return SHORTEST_STEP <= dt <= LONGEST_STEP
 
 

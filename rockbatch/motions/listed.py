@@ -16,4 +16,4 @@ class Listed:
 
 
 NOT_LISTED = Listed()
-"""For a record that no list has."""
+"""For a record in no list."""

@@ -215,7 +215,10 @@ def _file_exists(path: Path) -> bool:
 
 
 def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
-    """Return ``options`` with the values of entries for the whole file, which then go before the file's own, if there are any."""
+    """Return ``options`` with unit, dt, layout, columns and sensitivity of the entries for the whole file.
+
+    These then replace the file's own statements.
+    """
     for entry in entries:
         if entry.component is None:
             stated = {key: entry.values[key] for key in _OPTIONS if key in entry.values}
@@ -228,7 +231,7 @@ def apply_entries(
 ) -> list[tuple[Component, bool]]:
     """Return a file's components with its entries applied, and whether each is to be used; mistakes go to the manifest.
 
-    ``refused`` are the unusable components of the file, for which entries may be, too.
+    An entry that names no component applies to all. ``refused`` are the unusable components of the file, which entries may name.
     """
     chosen: list[tuple[Component, bool]] = [(component, True) for component in components]
     for entry in entries:
@@ -353,7 +356,10 @@ def _delimiter(head: str) -> str:
 
 
 def _from_csv(path: Path) -> TomlFile:
-    """Return a ``motions.csv``, with any line ends, as if it were TOML; empty cells are missing keys."""
+    """Return a ``motions.csv``, with any line ends, as if it were TOML; empty cells are missing keys.
+
+    Unknown columns and lines with too many cells become problems; raises ``InputError`` with a line that is no CSV.
+    """
     content = TomlFile.text_of(path)
     delimiter = _delimiter(_first_line(content))
     rows = csv.reader(io.StringIO(content, newline=""), delimiter=delimiter)
@@ -380,9 +386,9 @@ def _from_csv(path: Path) -> TomlFile:
 
 
 def _cell_value(name: str, cell: str, delimiter: str) -> str | int | float:
-    """Return the value of a cell: the text of keys with texts, True or False, a whole number of a channel, or a float.
+    """Return the value of a cell: the text of keys with texts, a channel's number of one or two digits, a bool, or a float.
 
-    A cell that is none of these comes back as text, which its key then refuses.
+    Between semicolons a float may have a decimal comma. Any other cell comes back as text, which its key then refuses.
     """
     if name in _TEXTS or (name == "component" and not _COUNTED.fullmatch(cell)):
         return cell

@@ -43,7 +43,7 @@ _ASKED = {
 def write_manifest(folder: str | os.PathLike[str], options: ReadOptions | None = None) -> Path:
     """Write a draft of ``motions.toml`` into ``folder`` and return its path.
 
-    Raises ``InputError`` if there is a manifest, which is never overwritten.
+    Raises ``InputError`` if it is no folder, or has a ``motions.toml`` or ``motions.csv``, which are never overwritten.
     """
     folder = Path(folder)
     target = folder / "motions.toml"
@@ -57,7 +57,7 @@ def write_manifest(folder: str | os.PathLike[str], options: ReadOptions | None =
 
 
 def draft(folder: Path, options: ReadOptions | None = None) -> str:
-    """Return the text of a manifest: a table for each component, a remark for each file without any.
+    """Return the text of a manifest: a table for each component, a remark for each unusable one; nothing for files left out.
 
     Unedited, it changes no name and no number.
     """
@@ -132,5 +132,11 @@ def _remark(name: str, unusable: Unusable) -> str:
 
 
 def _toml_value(value: str | float) -> str:
-    """Return a value as TOML writes it, a text in quotes, with characters that TOML or a terminal would not take escaped."""
-    return json.dumps(legible(value), ensure_ascii=False) if isinstance(value, str) else f"{value:g}"
+    """Return a value as TOML writes it: a number in full, a text in quotes.
+
+    Characters that TOML or a terminal would not take are escaped.
+    """
+    if isinstance(value, str):
+        return json.dumps(legible(value), ensure_ascii=False)
+    short = f"{value:g}"
+    return short if float(short) == value else repr(float(value))

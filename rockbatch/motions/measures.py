@@ -17,13 +17,13 @@ _BELONG = 0.2  # of its peak: scatter of a file's velocity about the integral of
 
 
 def velocity(acceleration: Samples, dt: float, initial: Initial | None = None) -> Samples:
-    """Return the ground velocity [m/s] at the samples, shape (npts,), of an acceleration [m/s²]; ``dt`` in s."""
+    """Return the ground velocity [m/s] at the samples, shape (npts,), by an acceleration [m/s²] from ``initial``, or rest."""
     increments = 0.5 * dt * (acceleration[:-1] + acceleration[1:])
     return (initial or _REST).velocity + np.concatenate(([0.0], np.cumsum(increments)))
 
 
 def displacement(acceleration: Samples, dt: float, initial: Initial | None = None) -> Samples:
-    """Return the ground displacement [m] at the samples, shape (npts,), of an acceleration [m/s²]; ``dt`` in s."""
+    """Return the ground displacement [m] at the samples, shape (npts,), by an acceleration [m/s²] from ``initial``, or rest."""
     v = velocity(acceleration, dt, initial)
     increments = dt * v[:-1] + dt**2 / 6.0 * (2.0 * acceleration[:-1] + acceleration[1:])
     return (initial or _REST).displacement + np.concatenate(([0.0], np.cumsum(increments)))
@@ -35,8 +35,8 @@ def initial_of(
     """Return the ground's state at the first sample from the velocities [m/s] and displacements [m] of a record's file.
 
     It is the mean difference, over the record, from the integral from rest: a file's first values are rounded, and
-    accelerations that were thinned out after their integration drift from them. ``None`` without velocities, or if they
-    are not the integral of the acceleration; displacement 0 without displacements.
+    accelerations that were thinned out after their integration drift from them. ``None`` without as many velocities, or if these
+    scatter about the integral of the acceleration by over 20 % of their peak; displacement 0 without as many displacements.
     """
     if velocities is None or len(velocities) != len(acceleration):
         return None
@@ -50,7 +50,7 @@ def initial_of(
 
 
 def state_at(acceleration: Samples, dt: float, initial: Initial, time: float) -> Initial:
-    """Return velocity [m/s] and displacement [m] at ``time`` [s] after the first sample and before the last."""
+    """Return velocity [m/s] and displacement [m] at a ``time`` [s after the first sample] up to the last sample."""
     k = min(int(time / dt), len(acceleration) - 2)
     remainder = time - k * dt
     v, d = (float(series(acceleration, dt, initial)[k]) for series in (velocity, displacement))
@@ -62,17 +62,17 @@ def state_at(acceleration: Samples, dt: float, initial: Initial, time: float) ->
 
 
 def pga(acceleration: Samples) -> float:
-    """Return the peak ground acceleration [m/s²]."""
+    """Return the peak ground acceleration [m/s²], by its absolute value."""
     return float(np.abs(acceleration).max())
 
 
 def pgv(acceleration: Samples, dt: float, initial: Initial | None = None) -> float:
-    """Return the peak ground velocity [m/s], at the samples."""
+    """Return the peak absolute ground velocity [m/s] at the samples, from ``initial``, else from rest."""
     return float(np.abs(velocity(acceleration, dt, initial)).max())
 
 
 def pgd(acceleration: Samples, dt: float, initial: Initial | None = None) -> float:
-    """Return the peak ground displacement [m], at the samples."""
+    """Return the peak absolute ground displacement [m] at the samples, from ``initial``, else from rest."""
     return float(np.abs(displacement(acceleration, dt, initial)).max())
 
 
@@ -92,6 +92,11 @@ def believable_pgd(motion: Motion) -> float | None:
     """Return the PGD [m] of a motion; ``None`` if its displacement drifts and its initial state is unknown."""
     moved = displacement(motion.horizontal, motion.dt, motion.initial)
     return None if motion.initial is None and runs_away(moved) else float(np.abs(moved).max())
+
+
+def duration_of_shaking(motion: Motion) -> float | None:
+    """Return the significant duration D5–95 [s] of a motion; ``None`` for a sequence, whose pauses are no shaking."""
+    return None if len(motion.records) > 1 else significant_duration(motion.horizontal, motion.dt)
 
 
 def arias_intensity(acceleration: Samples, dt: float, gravity: float = GRAVITY) -> float:
@@ -137,7 +142,7 @@ def bracketed_duration(acceleration: Samples, dt: float, threshold: float) -> fl
         return 0.0
 
     def beyond(last_above: int, outside: int) -> float:
-        """Return the share of the interval to a sample ``outside`` that is above the threshold; 0 beyond the record."""
+        """Return the share of the interval to the sample ``outside`` in which |a| exceeds the threshold; 0 past either end."""
         if not 0 <= outside < len(acceleration):
             return 0.0
         a = acceleration[last_above]

@@ -142,8 +142,8 @@ class Motion(Shown):
     station : str
         What the components of one station in one earthquake share, which count as one record; empty for a record of its own.
     confirm : sequence of str
-        "pga", if it is right though no earthquake has had such a one; else :func:`rockbatch.simulate` refuses it. "dt", if the
-        sampling interval is right though no record has such a one.
+        "pga", if a PGA above 5 g is right, which :func:`rockbatch.simulate` else refuses; "dt", if a sampling interval is right
+        that no record has, outside 1e-5 to 0.2 s.
     shocks : tuple of Shock
         Records of which it is a sequence, in their order; empty for a record of its own.
     start : float or None
@@ -154,8 +154,8 @@ class Motion(Shown):
     vertical_factor : float or None
         What the vertical component as it was recorded was multiplied by, if that is not ``factor``.
 
-    All samples are copied and cannot be changed afterwards. Raises ``InputError`` for samples that are no numbers and
-    components of different lengths.
+    All samples are copied and cannot be changed afterwards. Raises ``InputError`` for samples that are no finite numbers,
+    components of different lengths, and a ``dt`` not above 0, or unusual and not confirmed.
 
     Examples
     --------
@@ -339,9 +339,14 @@ class Motion(Shown):
         return hash((self.name, self.dt, self.npts))
 
     @property
+    def records(self) -> tuple[str, ...]:
+        """Return the names of the records of which it is a sequence; its own name if it is not one."""
+        return tuple(shock.name for shock in self.shocks) or (self.name,)
+
+    @property
     def label(self) -> str:
-        """Return its name in words, "Imperial Valley 1979, Meloland, 270", else its file, or a pulse's name."""
-        by_name = self.source in ("", "pulse") or len(self.shocks) > 1
+        """Return its name in words, "Imperial Valley 1979, Meloland, 270", else its file; the name of a pulse or a sequence."""
+        by_name = self.source in ("", "pulse") or len(self.records) > 1
         return self.origin.label or (self.name if by_name else self.source)
 
     @property
@@ -371,7 +376,7 @@ class Motion(Shown):
 
     @cached_property
     def pga(self) -> float:
-        """Return the peak horizontal ground acceleration [m/s²]."""
+        """Return the peak absolute horizontal ground acceleration [m/s²]."""
         return float(np.abs(self.horizontal).max())
 
     @property
@@ -381,7 +386,7 @@ class Motion(Shown):
 
     @property
     def pga_vertical(self) -> float | None:
-        """Return the peak vertical ground acceleration [m/s²], ``None`` without a vertical component."""
+        """Return the peak absolute vertical ground acceleration [m/s²]; ``None`` without a vertical component."""
         return None if self.vertical is None else float(np.abs(self.vertical).max())
 
     def _facts(self) -> tuple[str, dict[str, str]]:
@@ -397,7 +402,7 @@ class Motion(Shown):
 
     @cached_property
     def exchanged(self) -> "Motion":
-        """Return the motion, which has both, with ``horizontal`` and ``across`` exchanged.
+        """Return the motion with ``horizontal`` and ``across``, which it must have, exchanged.
 
         Its azimuth is 90° further, and its initial state unknown.
         """
@@ -406,7 +411,7 @@ class Motion(Shown):
         return replace(self, horizontal=self.across, across=self.horizontal, azimuth=azimuth, initial=None)
 
     def scaled(self, factor: float) -> "Motion":
-        """Return the motion with all components ``factor`` times as large."""
+        """Return the motion with all components, and its initial state, ``factor`` times as large; its field ``factor`` stays."""
         return self.times(factor)
 
     @checked
@@ -444,7 +449,7 @@ class Motion(Shown):
     def times(self, factor: float, reverse: bool = False) -> "Motion":
         """Return the motion with all components ``factor`` times as large, and the horizontal one reversed if ``reverse``.
 
-        Raises ``InputError`` if they overflow.
+        So is its initial state. Raises ``InputError`` if a component overflows.
         """
         along = -factor if reverse else factor
         times = copy(self)  # without the checks of __init__: the product is finite unless it overflows
@@ -455,7 +460,8 @@ class Motion(Shown):
                     vars(times)[name] = _frozen(samples * by)
         if self.initial is not None:
             vars(times)["initial"] = self.initial.times(along)
-        if not math.isfinite(times.pga + (times.pga_vertical or 0.0)):
+        across = 0.0 if times.across is None else float(np.abs(times.across).max())
+        if not math.isfinite(times.pga + (times.pga_vertical or 0.0) + across):
             times.__post_init__()
         return times
 
@@ -464,12 +470,11 @@ class Motion(Shown):
 class Unusable:
     """A file or component that cannot be used, with the reason; it stays in the tables as a row.
 
-    ``label`` is that of the one component that is meant, as the file has it; empty where it is the whole file.
-    ``lacks`` has the keys of a manifest that would state what the file does not say; ``number`` is that of the component
-    in its file, from 1, or 0. A ``companion`` is what lies beside records, such as spectra or notes: beside any ("") or
-    those of a station. ``station`` is what it would count as, by its header or its file's name; empty if that is not known.
-    ``kind`` is the class of error by which it is refused, such as ``NoUnit``. ``motion`` is what was read, with its findings, if
-    these have to be confirmed before it is used.
+    ``label`` and ``number``, from 1, are the component's in its file; "" and 0 for the whole file. ``lacks`` has the keys of a
+    manifest that would state what the file does not say. ``companion`` is the station beside whose records such files lie
+    (spectra, notes), "" for any station, None for other files. ``station`` is the name under which it would count, by its header
+    or its file's name, "" if unknown. ``kind`` is the class of error by which it is refused, such as ``NoUnit``. ``motion`` is
+    the motion read, with its findings, if these have to be confirmed before it is used.
     """
 
     name: str
@@ -491,8 +496,8 @@ class Unusable:
 class LeftOut:
     """A file or record that is left out on purpose, with the reason: not selected, excluded, a copy, or no record.
 
-    It is ``named`` if a manifest or the study names it; ``station`` is then the name under which it would count. ``of`` is
-    the source of the original of a copy.
+    It is ``named`` if a manifest or the study names it; ``station`` is the name under which it would count, if known. ``of``
+    is the source of the original of a copy.
     """
 
     name: str

@@ -30,7 +30,7 @@ _COLUMNS: dict[str, tuple[type, Callable[[Motion], Cell]]] = {
     "pgv_h_m_s": (float, lambda m: measures.pgv(m.horizontal, m.dt, m.initial)),
     "pgd_h_m": (float, measures.believable_pgd),
     "arias_m_s": (float, lambda m: measures.arias_intensity(m.horizontal, m.dt)),
-    "d5_95_s": (float, lambda m: None if len(m.shocks) > 1 else measures.significant_duration(m.horizontal, m.dt)),
+    "d5_95_s": (float, measures.duration_of_shaking),
     "azimuth_deg": (float, lambda m: m.azimuth),
     "magnitude": (float, lambda m: m.magnitude),
     "distance_km": (float, lambda m: m.distance_km),
@@ -127,7 +127,10 @@ class MotionSet(Shown):
     @overload
     def __getitem__(self, which: slice) -> list[Motion]: ...
     def __getitem__(self, which: int | str | slice) -> Motion | list[Motion]:
-        """Return a motion by index or name, or a list by a slice; ``InputError`` for an unknown name, else ``IndexError``."""
+        """Return a motion by index or name, or a list by a slice.
+
+        Raises ``IndexError`` beyond the last one, ``InputError`` for an unknown name and for other types.
+        """
         if isinstance(which, Integral | slice):
             return self.motions[which]
         if not isinstance(which, str):
@@ -140,7 +143,7 @@ class MotionSet(Shown):
         raise InputError(f'there is no motion "{which}"; {hint}')
 
     def table(self) -> "pd.DataFrame":
-        """Return what is known of each motion, a row for each; ``rockbatch motions --csv`` has these columns, and more.
+        """Return a table of the motions, a row for each; ``rockbatch motions --csv`` has these columns, and more.
 
         Returns
         -------
@@ -171,9 +174,9 @@ class MotionSet(Shown):
         }
 
     def _beneath(self) -> "pd.DataFrame":
-        """Return the table of the motions, its main columns alone, rounded and without those of which nothing is known."""
+        """Return the main columns of the table, rounded to three decimals, without columns of text that are empty for all."""
         table = self.table()[_AT_A_GLANCE].round(3)
-        return table.loc[:, (table != "").any()]  # without columns of text that are empty for all
+        return table.loc[:, (table != "").any()]
 
 
 def row(motion: Motion) -> dict[str, Cell]:

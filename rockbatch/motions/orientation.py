@@ -64,7 +64,8 @@ _NOISE = re.compile(
 def orientation_of(label: str) -> Orientation | None:
     """Return the orientation of a label such as "UP", "DWN", "S62W", "21", "N-S", "HNZ"; ``None`` for other texts.
 
-    One or two digits behind a word are no azimuth: "COMP 3" is the third component, not 3°.
+    "X", "L" and "H1" are horizontal without azimuth. One or two digits behind a word are no azimuth: "COMP 3" is the third
+    component, not 3°.
     """
     label = label.strip()
     key = _key(label)
@@ -160,9 +161,10 @@ _PROCESSING = re.compile(
 def split_stem(stem: str) -> tuple[str, Orientation | None]:
     """Return the station's part of a file's stem and the orientation at its end, before times and words such as "corrected".
 
-    "RSN1063_NORTHR_RRS228" gives "RSN1063_NORTHR_RRS" and 228°, "ABBAR--V" gives "ABBAR" and vertical; a stem without a
-    direction gives itself and ``None``. Numbers count as azimuths only with three digits, unless they are dates, times,
-    stations or files counted from 001. Names with a horizontal direction and a vertical channel's code have no orientation.
+    "RSN1063_NORTHR_RRS228" gives "RSN1063_NORTHR_RRS" and 228°, "ABBAR--V" gives "ABBAR" and vertical, "UP" gives "" and
+    vertical; a stem without a direction gives itself and ``None``. Numbers count as azimuths only with three digits, unless they
+    are dates, times, stations or files counted from 001. Names with a horizontal direction and a vertical channel's code have no
+    orientation.
     """
     whole = orientation_of(stem) if stem.isalnum() and not _is_number("", stem, stem) else None
     if whole and (whole.vertical or whole.azimuth is not None):
@@ -173,47 +175,50 @@ def split_stem(stem: str) -> tuple[str, Orientation | None]:
             match = end.fullmatch(site)
             if match is None or _is_number(match["site"], match["label"], site):
                 continue
-            if orientation := _in_name(match["label"]):
+            if orientation := _name_orientation(match["label"]):
                 return (stem, None) if _contradicted(orientation, stem) else (match["site"] + behind, orientation)
         processing = _PROCESSING.fullmatch(site)
         if processing is None:
             break
         site, behind = processing["site"], site[len(processing["site"]) :] + behind
-    for orientation in reversed(_channels(stem)):
+    for orientation in reversed(_channel_orientations(stem)):
         if not _contradicted(orientation, stem):
             return re.sub(rf"(^|[-_. ]+){re.escape(orientation.label)}(?=[-_. ])", "", stem, count=1), orientation
     return stem, None
 
 
-def _in_name(label: str) -> Orientation | None:
-    """Return the orientation of a label at the end of a name; ``None`` for words that also name places."""
+def _name_orientation(label: str) -> Orientation | None:
+    """Return the orientation of a label at the end of a name; ``None`` for others, and words that name places, too (Nord)."""
     key = _key(label)
     pair = "-" not in label or (len(key) > 1 and (key in _AZIMUTHS or key in _VERTICAL | _UP | _DOWN))
     return orientation_of(label) if pair and key not in _ELSEWHERE_IN_NAMES else None
 
 
 def direction_of_suffix(suffix: str) -> Orientation | None:
-    """Return the orientation of a file's suffix such as K-NET's .EW and .UD2, or .090; ``None`` for other suffixes."""
+    """Return the orientation of a file's suffix such as K-NET's .EW and .UD2; ``None`` for other suffixes.
+
+    Of numbers only .000, .090, .180, .270 and .360 count.
+    """
     label = suffix.lstrip(".")
     if label.isdigit() and label not in ("000", "090", "180", "270", "360"):
         return None
-    orientation = _in_name(label)
+    orientation = _name_orientation(label)
     return orientation if orientation and (orientation.vertical or orientation.azimuth is not None) else None
 
 
-def _channels(stem: str) -> list[Orientation]:
-    """Return the orientations of all channel codes in a name: one, vertical, of "CCM.BHZ.00.D"."""
+def _channel_orientations(stem: str) -> list[Orientation]:
+    """Return the orientations of all channel codes in a name, in order: [vertical] for "CCM.BHZ.00.D"; [] without a code."""
     parts = [part for part in re.split(r"[-_. ]+", stem) if _CHANNEL_IN_NAME.fullmatch(part.upper())]
     return [orientation for part in parts if (orientation := orientation_of(part))]
 
 
 def _contradicted(orientation: Orientation, stem: str) -> bool:
     """Return whether ``stem`` has a vertical channel's code and ``orientation`` is not vertical, but horizontal or unknown."""
-    return not orientation.vertical and any(channel.vertical for channel in _channels(stem))
+    return not orientation.vertical and any(channel.vertical for channel in _channel_orientations(stem))
 
 
 def _is_number(site: str, label: str, stem: str) -> bool:
-    """Return whether the end ``label`` of a name is no direction: part of a date or time, or the number of a station or file."""
+    """Return whether digits ``label`` at a name's end are of a date, a station or a file; True too if the name ends in a time."""
     if _AT_MOMENT.search(stem):
         return True
     if not label.isdigit():
@@ -311,5 +316,5 @@ def not_acceleration(channel: str) -> str:
 
 
 def is_clock(label: str) -> bool:
-    """Return whether a channel's label is that of the recorder's clock, such as "INTC", or SEED's "LCQ"; digits do not matter."""
+    """Return whether a channel's label means the recorder's clock, such as "INTC", or SEED's "LCQ"; its digits do not matter."""
     return _CLOCKS.fullmatch(re.sub(r"[^A-Z]", "", label.upper())) is not None

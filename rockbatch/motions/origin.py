@@ -28,7 +28,7 @@ _KINDS = re.compile(
     r"|station|sta|building|bldg|bld|site)\.?)+$",
     re.IGNORECASE,
 )
-"""Words at the end of a station's name that say what stands there."""
+"""Words for buildings at the end of a station's name."""
 _EVENT, _STATION = 34, 20  # characters that fit beside numbers
 _PART = 6  # characters of a part of a station's name that can stand for it
 _CODE = 5  # letters that a word in capitals may have and be a code
@@ -65,7 +65,7 @@ class Origin:
 
     @property
     def short_station(self) -> str:
-        """Return the station in 20 characters at most, without the event's place; a long name without "fire station" and such."""
+        """Return the station in 20 characters at most, without the event's place; of a long name the end, without "School"."""
         place = self.event.partition(" ")[0]
         station = self.station.removesuffix(f" {place}") if place else self.station
         if len(station) > _STATION:
@@ -82,7 +82,7 @@ UNKNOWN_ORIGIN = Origin()
 
 
 def origin_of(event: str = "", station: str = "", date: str = "") -> Origin:
-    """Return the origin by a header's words for ``event`` and ``station``; ``date`` is its text with the event's date."""
+    """Return the origin by a header's words for ``event`` and ``station``, 80 characters of each, and its text with the date."""
     return Origin(_event(event[:_LONGEST], date[:_LONGEST]), _without_capitals(station[:_LONGEST]))
 
 

@@ -39,7 +39,8 @@ _NAMED_TOGETHER: tuple[frozenset[str], ...] = tuple(
 def is_own(path: Path) -> bool:
     """Return whether a file, or a member of an archive, is a table, a journal or the histories of a study or an analysis.
 
-    Its first bytes decide, not its name: a table may have been copied or renamed.
+    Its first bytes decide, and of its name the suffix only (.csv, .tsv, .txt, .part, .h5, .hdf5), since it may have been renamed.
+    False if it cannot be read.
     """
     suffix = bare(path).suffix.lower()
     try:
@@ -51,7 +52,7 @@ def is_own(path: Path) -> bool:
 
 
 def _is_head(begin: bytes) -> bool:
-    """Return whether the first line of a table or journal, after a journal's checksum and digests, has columns of rockbatch."""
+    """Return whether the first line has all columns of a group in :data:`_NAMED_TOGETHER`, in any order, among others."""
     first = begin.removeprefix(b"\xef\xbb\xbf").partition(b"\n")[0].decode(errors="replace")
     cells = {cell.strip(' \r"') for cell in re.split("[,;\t]", first)}
     return any(names <= cells for names in _NAMED_TOGETHER)

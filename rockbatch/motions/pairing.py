@@ -53,7 +53,7 @@ def to_motions(
     unusable: list[Unusable] = []
     sound: list[Component] = []
     for c in components:
-        if (kind := _why_held(c)) is None:
+        if (kind := _holding_error(c)) is None:
             sound.append(c)
         else:
             question, label = _direction_question(c), c.orientation.label
@@ -123,8 +123,8 @@ def _confirmed_motions(
     return MotionSet(motions, unusable)
 
 
-def _why_held(component: Component) -> type[InputError] | None:
-    """Return the kind of error for which a component is held back; ``None`` if its direction is known."""
+def _holding_error(component: Component) -> type[InputError] | None:
+    """Return the kind of error for which a component is held back; ``None`` for a known direction without contradiction."""
     if component.contradiction:
         return Contradiction
     return None if component.orientation.known else NoDirection
@@ -148,7 +148,7 @@ def _direction_question(component: Component) -> str:
 
 
 def _with_packaged(files: Sequence[Component], packaged: Sequence[Component]) -> list[Component]:
-    """Return the components of files, with a note if used instead of a package's, then those of the package without a file."""
+    """Return the components of files, with a note if used for a package's of this site and azimuth, then the package's others."""
     components, added = list(files), []
     for component in packaged:
         azimuth, found = component.orientation.azimuth, False
@@ -208,9 +208,9 @@ def _why_dead(h: Component, v: Component) -> str:
 
 
 def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
-    """Return the motion of a horizontal and its vertical component over their common time; without ``v`` if that lacks the peak.
+    """Return the motion of a horizontal and its vertical component over their common time; of ``h`` alone if that lacks its peak.
 
-    ``notes`` come before those on this.
+    It lacks the peak if less than 95 % of it remains. ``notes`` come before those on this.
     """
     remarks = list(notes)
     dt, horizontal, vertical, initial, start = h.dt, h.acceleration, None, h.initial, h.start

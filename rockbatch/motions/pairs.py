@@ -73,8 +73,9 @@ def _peaks_by_direction(first: Array, second: Array) -> Array:
 def common_samples(first: Motion, second: Motion) -> tuple[Samples, Samples]:
     """Return the horizontal accelerations of two motions over their common time, shape (n,) each.
 
-    Motions without absolute times start together. Raises ``InputError`` for azimuths not square to each other, different
-    sampling intervals, starts not a whole number of samples apart, and no time in common.
+    Unless both have absolute times they start together, and unknown azimuths may be at a right angle. Raises ``InputError`` for
+    azimuths not square to each other, different sampling intervals, starts not a whole number of samples apart, sequences with
+    shocks at different times, and fewer than two samples in common.
     """
     names = f"{first.name} and {second.name}"
     if askew := not_square(first.azimuth, second.azimuth, names):
@@ -94,9 +95,9 @@ def common_samples(first: Motion, second: Motion) -> tuple[Samples, Samples]:
 
 
 def square_pair(motions: Sequence[Motion]) -> tuple[Motion, Motion]:
-    """Return the first two of a station's motions that are square to each other, or may be, and have common samples.
+    """Return the first two of a station's motions with common samples, at a right angle or one azimuth unknown.
 
-    Raises ``InputError`` for a station without such a pair, with the reason.
+    Raises ``InputError`` for a station without such a pair, with the reason of its first two motions.
     """
     if len(motions) < 2:
         raise InputError("its station has one horizontal component, and two are needed")
@@ -113,7 +114,7 @@ def square_pair(motions: Sequence[Motion]) -> tuple[Motion, Motion]:
 
 
 def pairing_obstacle(motions: Sequence[Motion]) -> str:
-    """Return why no two of a station's motions are at a right angle and have common samples; "" if two are."""
+    """Return why :func:`pair_of` finds no pair in a station's motions; "" if it does."""
     try:
         pair_of(motions)
     except InputError as error:
@@ -121,22 +122,24 @@ def pairing_obstacle(motions: Sequence[Motion]) -> str:
     return ""
 
 
-def pair_of(motions: Sequence[Motion]) -> tuple[Samples, Samples]:
-    """Return the two accelerations of a station's pair, at a right angle, over their common time, shape (n,) each.
+def pair_of(motions: Sequence[Motion]) -> tuple[Samples, Samples, float]:
+    """Return the accelerations of a station's pair, at a right angle, over their common time, shape (n,), and their step [s].
 
-    Measures of them do not depend on the directions to which ``motions`` are rotated. Raises ``InputError`` as
-    :func:`square_pair`.
+    They are those of the first motion with an ``across``, else of the :func:`square_pair`. Measures of them do not depend on
+    the directions to which ``motions`` are rotated. Raises ``InputError`` as :func:`square_pair` if none has an ``across``.
     """
     for motion in motions:
         if motion.across is not None:
-            return motion.horizontal, motion.across
-    return common_samples(*square_pair(motions))
+            return motion.horizontal, motion.across, motion.dt
+    first, second = square_pair(motions)
+    return *common_samples(first, second), first.dt
 
 
 def srss_components(motions: Sequence[Motion]) -> list[tuple[Samples, float]]:
     """Return a station's accelerations for SRSS, with their sampling intervals [s]: the first two square to each other.
 
-    They need no common time. Without such a pair, the first one alone.
+    A motion and its ``across`` are a pair, too. They need no common time; unknown azimuths may be at a right angle. Without such
+    a pair, the first motion alone.
     """
     first = motions[0]
     for i, motion in enumerate(motions):
@@ -151,9 +154,10 @@ def srss_components(motions: Sequence[Motion]) -> list[tuple[Samples, float]]:
 def station_spectra(motions: Sequence[Motion], periods: npt.ArrayLike, damping: float) -> dict[str, Array]:
     """Return the spectral accelerations [m/s²] of a station by ``PAIR_RULES``, shape (periods,) each.
 
-    Raises ``InputError`` as :func:`square_pair`, and for periods and damping out of range.
+    Raises ``InputError`` as :func:`pair_of`, and for periods and damping out of range.
     """
-    histories = (responses(a, motions[0].dt, periods, damping) for a in pair_of(motions))
+    *pair, dt = pair_of(motions)
+    histories = (responses(a, dt, periods, damping) for a in pair)
     rows = [pair_measures(u, v) for u, v in zip(*histories, strict=True)]
     return {rule: np.array([row[rule] for row in rows]) for rule in PAIR_RULES}
 

@@ -51,7 +51,7 @@ def of_file(lists: Lists, path: Path, site: str) -> Listed:
 
 
 def _rows(text: str) -> list[dict[str, str]]:
-    """Return the rows below heads with a record number, by heads in lower case, up to the first without; [] without heads."""
+    """Return rows, by heads in lower case, below the heads with a record number up to the first row without; [] without heads."""
     rows: list[dict[str, str]] = []
     heads: list[str] = []
     for cells in csv.reader(text.splitlines(), skipinitialspace=True):

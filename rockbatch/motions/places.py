@@ -139,7 +139,7 @@ _HIGH = re.compile(r"\b(?:elev|el|elevation|alt|altitude|height|h|within|about|~
 
 
 def stand(place: str, name: str) -> tuple[Stand, str]:
-    """Return the location of a sensor and the text, place or station's ``name``, that states it; on the ground, "".
+    """Return the location of a sensor and the text that states it, ``place`` or the station's ``name``; "" for the ground.
 
     What stands in brackets behind a name, "Lower Dam (Gallery)", is a place, unless the name itself says ground.
     """
@@ -170,7 +170,7 @@ def _stand(text: str, is_name: bool) -> Stand:
 
 
 def _folded(text: str) -> str:
-    """Return a text in lower case, without accents, with blanks for signs between words."""
+    """Return a text in lower case without accents, with single blanks for runs of blanks, "_", ":", "/" and quotation marks."""
     text = text.casefold().replace("ı", "i").replace("ß", "ss").replace("ø", "o")
     plain = "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))
     plain = unicodedata.normalize("NFC", plain)
@@ -179,7 +179,7 @@ def _folded(text: str) -> str:
 
 @lru_cache(maxsize=64)
 def _pattern(*kinds: str) -> re.Pattern[str]:
-    """Return a pattern that matches the words of these kinds in ``_PLACES``."""
+    """Return a pattern that matches the words of these kinds in ``_PLACES``, and their plurals, in a folded text."""
     words = {
         word.strip().casefold() for kind in kinds for listed in _PLACES[kind].values() for word in listed.split(",")
     }
@@ -194,7 +194,7 @@ def _pattern(*kinds: str) -> re.Pattern[str]:
 
 
 def _is_on_structure(text: str, is_name: bool) -> bool:
-    """Return whether a folded text places a sensor on a structure or embankment, or above the ground floor."""
+    """Return whether a folded text places a sensor on a structure, or above the ground floor; False if it says free field."""
     if _pattern("free field").search(text):
         return False
     kinds = ("structure",) if is_name else ("structure", "structure, in places only")
@@ -230,7 +230,7 @@ def _upper_floor() -> re.Pattern[str]:
 
 
 def _is_below(text: str, is_name: bool) -> bool:
-    """Return whether a folded text places a sensor in a borehole, or states a depth of more than 2 m."""
+    """Return whether a folded text says borehole, or a depth over 2 m; False if it says surface (but not "below surface")."""
     if _pattern("surface").search(text) and not re.search(r"below (?:the |ground )?surface", text):
         return False
     kinds = ("borehole",) if is_name else ("borehole", "borehole, in places only")
@@ -255,7 +255,7 @@ def _depths(text: str, is_name: bool) -> list[float]:
 
 
 def _stands_alone(before: str, behind: str) -> bool:
-    """Return whether a length is a part of its text by itself, and no height: "Array, 30 m"."""
+    """Return whether a length stands alone between commas or brackets, and is no height: True for the 30 m of "Array, 30 m"."""
     if _HIGH.search(before) or not re.fullmatch(r"[ )]*(?:[;,].*)?", behind):
         return False
     return re.fullmatch(r"(?:.*[;,(-] ?|.*array ?|)", before) is not None

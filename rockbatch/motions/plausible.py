@@ -74,7 +74,10 @@ class Candidate:
 
 
 def unlikely_peak(candidate: Candidate) -> Finding | None:
-    """Return a finding on a PGA outside 0.001–5 g, so probably of a wrong unit, or from 2 to 5 g in a file in g; else None."""
+    """Return a gross finding on a horizontal PGA outside 0.001–5 g, or a vertical one above 5 g; probably the unit is wrong.
+
+    From 2 to 5 g in a file in g it is not gross; None for any other PGA.
+    """
     horizontal = candidate.motion.pga / candidate.gravity
     vertical = (candidate.motion.pga_vertical or 0.0) / candidate.gravity
     if LOWEST <= horizontal <= HIGHEST >= vertical:
@@ -94,7 +97,7 @@ def _strong_peak(peak: float) -> Finding | None:
 
 
 def unlikely_samples(motion: Motion, gravity: float) -> list[str]:
-    """Return a message in a list on a PGA above 5 g of a motion from Python; [] for others, or if judged or confirmed."""
+    """Return a message in a list on an unconfirmed PGA above 5 g; [] for others, pulses, and motions with a finding on PGA."""
     peak = max(motion.pga, motion.pga_vertical or 0.0)
     candidate = motion.source == "pulse" or any(finding.what == "PGA" for finding in motion.findings)
     if candidate or "pga" in motion.confirm or peak <= HIGHEST * gravity:
@@ -106,7 +109,10 @@ def unlikely_samples(motion: Motion, gravity: float) -> list[str]:
 
 
 def no_zero_line(candidate: Candidate) -> Finding | None:
-    """Return a finding on samples of one sign, as of a spectrum or envelope, or with a mean above 15 % of their peak."""
+    """Return a gross finding on samples of one sign, as of a spectrum, or with a mean above 15 % of their peak; else None.
+
+    Components at rest, or of fewer than eight samples, are not judged.
+    """
     components = (("", candidate.motion.horizontal), ("its vertical component ", candidate.motion.vertical))
     moving = [(name, a) for name, a in components if a is not None and len(a) >= _ENOUGH and np.any(a)]
     for name, a in moving:
@@ -124,7 +130,7 @@ def no_zero_line(candidate: Candidate) -> Finding | None:
 
 
 def alternation(candidate: Candidate) -> Finding | None:
-    """Return a finding on samples that alternate in sign from one to the next, a fault of the recorder or its file."""
+    """Return a gross finding on samples that alternate from one to the next by over 25 % of their peak; else None."""
     for name, samples in (("", candidate.motion.horizontal), ("vertical: ", candidate.motion.vertical)):
         if samples is None:
             continue
@@ -155,7 +161,7 @@ def alternating(samples: Samples) -> float:
 
 
 def flat_top(candidate: Candidate) -> Finding | None:
-    """Return a finding on a flat top of four samples or more, or several of five in all, at the peak: clipped; else None."""
+    """Return a gross finding on a flat top of four samples or more at the peak, or several of five in all: clipped; else None."""
     for name, samples in (("", candidate.component.acceleration), ("vertical: ", candidate.motion.vertical)):
         tops = [] if samples is None else flat_tops(samples)
         if max(tops, default=0) >= _LONG_TOP or (len(tops) > 1 and sum(tops) > _LONG_TOP):
@@ -168,7 +174,7 @@ def flat_top(candidate: Candidate) -> Finding | None:
 
 
 def flat_tops(samples: Samples) -> list[int]:
-    """Return the number of samples of each flat top at the largest and smallest value; [] for natural peaks."""
+    """Return the number of samples of each flat top (:data:`FLATTER`) at the largest and smallest value; [] for natural peaks."""
     peak = float(np.abs(samples).max(initial=0.0))
     values = np.unique(samples)
     if peak == 0.0 or len(values) < _ENOUGH:
@@ -205,7 +211,7 @@ def displacement(candidate: Candidate) -> Finding | None:
 
 
 def unequal_horizontals(candidate: Candidate) -> Finding | None:
-    """Return a finding on two horizontal components of a station whose PGAs differ by a factor above 5."""
+    """Return a finding on two horizontals of a station whose PGAs differ by a factor above 5; None else, or for one or three."""
     if len(candidate.peaks) != 2:
         return None
     (low, least), (high, most) = sorted(candidate.peaks, key=lambda peak: peak[1])
@@ -216,7 +222,10 @@ def unequal_horizontals(candidate: Candidate) -> Finding | None:
 
 
 def copied_horizontal(candidate: Candidate) -> Finding | None:
-    """Return a finding on a horizontal that is a copy of the station's other one, perhaps scaled and shifted; else None."""
+    """Return a finding on a horizontal that is a copy of the station's other one, perhaps scaled and shifted; else None.
+
+    None for a station with one or three horizontals, too, and for different sampling intervals.
+    """
     this, others = candidate.component, [c for c, _ in candidate.peaks if c is not candidate.component]
     if len(candidate.peaks) != 2 or not others or not same_step(this.dt, others[0].dt):
         return None
@@ -229,7 +238,7 @@ def copied_horizontal(candidate: Candidate) -> Finding | None:
 
 
 def unlike_vertical(candidate: Candidate) -> Finding | None:
-    """Return a finding on a vertical component that is a copy of a horizontal one, noise, or of another gain or unit."""
+    """Return a finding on a vertical that is a copy of a horizontal, noise, or of another gain or unit; else None."""
     motion = candidate.motion
     if motion.vertical is None or not np.any(motion.vertical):
         return None
@@ -258,7 +267,7 @@ def unlike_vertical(candidate: Candidate) -> Finding | None:
 
 
 def _changes(copy: Copy, dt: float) -> str:
-    """Return by what a copy differs from its original: " times 0.667, 0.05 s later"; empty for an exact one."""
+    """Return in words how a copy differs from its original: " times 0.667, 0.05 s later"; "" for an equal copy."""
     times = "" if abs(copy.factor - 1.0) <= _SAME_SHAPE else f" times {copy.factor:.3g}"
     return times + (f", {abs(copy.delay) * dt:g} s {'later' if copy.delay > 0 else 'earlier'}" if copy.delay else "")
 
@@ -270,7 +279,7 @@ def _growth_apart(samples: Samples) -> float:
 
 
 def in_a_structure(candidate: Candidate) -> Finding | None:
-    """Return a finding on a sensor on a structure or in a borehole, by its place or its station's name."""
+    """Return a gross finding on a sensor on a structure or in a borehole, by its place or its station's name; else None."""
     where, text = _stand(candidate.component)
     if where is Stand.BOREHOLE:
         return Finding("borehole", f'"{text}" is in a borehole, and not at the surface', gross=True)
@@ -290,14 +299,14 @@ def _stand(component: Component) -> tuple[Stand, str]:
 
 
 def lack_of_processing(candidate: Candidate) -> Finding | None:
-    """Return a finding on an uncorrected record; None if corrected or unknown."""
+    """Return a finding on an uncorrected record, not gross; None if corrected or unknown."""
     if candidate.motion.processed is not False:
         return None
     return Finding("unprocessed", "unprocessed: long-period noise not removed")
 
 
 def findings_of_readers(candidate: Candidate) -> Finding | None:
-    """Return what readers found on both components as one finding, gross if any part is; None if they found nothing."""
+    """Return the readers' findings on both components as one, named as the first and gross if any is; None without findings."""
     both = (*candidate.component.findings, *candidate.motion.findings)
     if not both:
         return None

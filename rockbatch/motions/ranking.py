@@ -93,7 +93,10 @@ class RankedRecord:
 
     @cached_property
     def values(self) -> dict[str, Cell]:
-        """Return :data:`COLUMNS` for the stronger component, with the other's PGA [g] and doubts about both; None if unknown."""
+        """Return :data:`COLUMNS` for the stronger component, with the other's PGA [g] and doubts about both; None if unknown.
+
+        The pulse period is of the first component that has a pulse.
+        """
         known: dict[str, Cell] = dict.fromkeys(COLUMNS)
         known["record"] = self.name
         if self.motions:
@@ -109,16 +112,16 @@ class RankedRecord:
 def ranked_records(motions: MotionSet) -> list[RankedRecord]:
     """Return the records of a set: held back, not read, doubtful, other used ones, copies; the strongest first in each group.
 
-    Files that are no records are left out.
+    Of the files left out, only copies are in it.
     """
     records = [*_unused_records(motions.unusable), *map(_used_record, motions.stations().values())]
     records += [
         RankedRecord(Use.COPY, file.name, file.source, reasons=[file.reason]) for file in motions.left_out if file.of
     ]
-    return sorted(records, key=_order)
+    return sorted(records, key=_sort_key)
 
 
-def _order(record: RankedRecord) -> tuple[int, float]:
+def _sort_key(record: RankedRecord) -> tuple[int, float]:
     """Return the sort key of a record: its group, as :func:`ranked_records` lists them, and the negative PGA [m/s²]."""
     groups = (Use.HELD_BACK, Use.NOT_READ, None, Use.USED, Use.COPY)
     odd = record.use is Use.USED and record.doubtful
@@ -150,7 +153,7 @@ def _unused_records(unusable: Iterable[Unusable]) -> Iterator[RankedRecord]:
 
 
 def use_of(file: Unusable | LeftOut) -> Use:
-    """Return the ``Use`` of a file without a motion: held back if its user can state or confirm what it lacks, else not used.
+    """Return the ``Use`` of a file not used: held back if the user can state or confirm what it lacks, else "not used".
 
     A file that was left out is a copy, or left out.
     """

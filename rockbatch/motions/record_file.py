@@ -93,7 +93,7 @@ class ReadOptions:
             raise InputError(*wrong)
 
     def with_statement(self, stated: Mapping[str, object]) -> "ReadOptions":
-        """Return these options with the statements of a manifest for one file, by field, which go before those of the file."""
+        """Return these options with the statements ``stated`` of a manifest, by field, which replace the file's own."""
         values: dict[str, Any] = dict(stated)
         return replace(self, **values, instead=self.instead.union(stated))
 
@@ -110,7 +110,7 @@ class ReadOptions:
 
 
 def no_acceleration(called: str, kind: str) -> InputError:
-    """Return the error that a file, ``called`` so in it, holds another ``kind`` of samples than accelerations, "velocities"."""
+    """Return the error for a channel, ``called`` so in its file, with another ``kind`` of samples, "velocities"."""
     return InputError(
         f"{called} holds {kind}, and accelerations are expected; if it does hold them, write unit = … for this file in "
         "motions.toml"

@@ -54,7 +54,7 @@ class Target:
         return f"PGA = {self.pga_g:g} g" if self.pga_g is not None else f"PGV = {self.pgv_m_s:g} m/s"
 
     def factors_of(self, motions: Sequence[Motion], gravity: float) -> list[float]:
-        """Return the factor that scales each of ``motions`` to the target; infinite for one without motion.
+        """Return the factor that scales each of ``motions`` to the target; infinite for motions at rest.
 
         Raises ``InputError`` if the rule takes pairs, and a station has none (:func:`rockbatch.motions.pairs.pairing_obstacle`).
         """
@@ -69,7 +69,7 @@ class Target:
         return [factors[motion.of_station] for motion in motions]
 
     def _factor(self, motion: Motion, gravity: float) -> float:
-        """Return the factor that scales one motion to the target; infinite for one without motion."""
+        """Return the factor that scales one motion to the target; infinite if it is at rest."""
         if self.pga_g is not None:
             target, present = self.pga_g * gravity, motion.pga
         elif self.pgv_m_s is not None:
@@ -89,9 +89,10 @@ MOST_FACTOR = 4.0
 def at_target(
     motion_set: MotionSet, target: Target | SpectrumTarget, gravity: float = GRAVITY, confirmed: Sequence[str] = ()
 ) -> MotionSet:
-    """Return all motions scaled to ``target``, with a note of the factor; those without motion are unusable.
+    """Return all motions scaled to ``target``, with a note of the factor; unchanged for a factor of 1.
 
-    So are those that need more than :data:`MOST_FACTOR` to meet a spectrum, unless a pattern in ``confirmed`` matches.
+    Unusable are motions at rest, those of stations without the pair that the target takes, and those that need more than
+    :data:`MOST_FACTOR`, 4, to meet a spectrum, unless a pattern in ``confirmed`` matches their name.
     """
     motions: list[Motion] = []
     unusable = _without_pair(motion_set.motions, target)
@@ -111,10 +112,17 @@ def at_target(
 
 
 def scale_as_listed(motion_set: MotionSet) -> MotionSet:
-    """Return all motions scaled by their factors in PEER's lists, with a note; those without a listed factor are unusable."""
+    """Return all motions scaled by their factors in PEER's lists, with a note; those without a listed factor are unusable.
+
+    A sequence has the factor that all its records share, if there is one.
+    """
     lacking = [motion for motion in motion_set if motion.listed.scale is None]
-    reason = 'has no scale factor: scale = "list" takes those of PEER\'s _SearchResults.csv in its folder'
-    unusable = [Unusable(m.name, m.files, f"{m.label} {reason}", station=m.of_station) for m in lacking]
+    none = 'has no scale factor: scale = "list" takes those of PEER\'s _SearchResults.csv in its folder'
+    several = 'has no scale factor that all its records share: scale them by its factors, and leave out scale = "list"'
+    unusable = [
+        Unusable(m.name, m.files, f"{m.label} {several if len(m.shocks) > 1 else none}", station=m.of_station)
+        for m in lacking
+    ]
     scaled = []
     for motion in motion_set:
         if (factor := motion.listed.scale) is not None:
@@ -131,7 +139,7 @@ def scale_to_targets(
     gravity: float,
     confirmed: Sequence[str] = (),
 ) -> MotionSet:
-    """Return motions scaled to both targets, fitted again without the refused ones until none is refused.
+    """Return motions scaled to both targets; if some are unusable, the others are scaled anew until all are usable.
 
     A common factor is right only for the motions from which it was computed. ``vertical_scale`` multiplies the vertical
     components; without targets motions keep their scale.
@@ -148,7 +156,7 @@ def scale_to_targets(
 
 
 def verticals(motions: Sequence[Motion]) -> list[Motion]:
-    """Return the first vertical component of each station as a motion, named as the station; none of those missing or at rest."""
+    """Return the first vertical component of each station that moves, as a motion with the station's name; [] without any."""
     moving = {motion.of_station: motion for motion in reversed(motions) if motion.pga_vertical}
     return [
         Motion(name, motion.dt, motion.vertical, source=motion.vertical_source)

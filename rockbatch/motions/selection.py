@@ -37,7 +37,10 @@ _MEASURES: dict[str, Callable[[Motion, float], float | None]] = {
 
 
 def selected(motion_set: MotionSet, selection: Selection, gravity: float = GRAVITY) -> MotionSet:
-    """Return the motions within ``selection``, others left out; unknown magnitudes are unusable if magnitudes are selected."""
+    """Return the motions within ``selection``, others left out; unknown magnitudes are unusable if magnitudes are selected.
+
+    Another measure that is unknown does not exclude a motion.
+    """
     chosen: list[Motion] = []
     unusable: list[Unusable] = []
     left_out: list[LeftOut] = []

@@ -19,6 +19,7 @@ from rockbatch.common.showing import shown
 from rockbatch.common.units import GRAVITY, Usual
 from rockbatch.motions import measures
 from rockbatch.motions.limits import MOST_SAMPLES, MOST_STEPS
+from rockbatch.motions.listed import NOT_LISTED, Listed
 from rockbatch.motions.motion import Initial, LeftOut, Motion, Samples, Shock, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.origin import UNKNOWN_ORIGIN
@@ -43,7 +44,8 @@ _SAME = 1e-6  # relative: steps that differ by less are the same
 class ShockSequence:
     """A sequence by the names of its records; its fields are the keys of :data:`SEQUENCE`.
 
-    One value of ``factors`` or ``polarity`` is for all records; none means 1 or "+".
+    One value of ``factors`` or ``polarity`` is for all records; none means 1 or "+". Raises ``InputError`` for another number of
+    them than that of the records.
     """
 
     name: str
@@ -119,7 +121,7 @@ SEQUENCE = Section(
 
 
 def read_sequences(file: TomlFile, *at: str) -> tuple[ShockSequence, ...]:
-    """Return the sequences in the tables ``[[at]]`` of a study or manifest; mistakes are added to the file's problems."""
+    """Return the sound sequences in the tables ``[[at]]`` of a study or manifest; mistakes are added to the file's problems."""
     sequences: list[ShockSequence] = []
     for table in file.tables(*at, title="name"):
         read = table.read(SEQUENCE)
@@ -149,8 +151,8 @@ def sequence(
     name : str
         Of the sequence.
     pause : float
-        Time from the last sample of a shock to the first of the next [s], rounded to a whole number of samples. In it the ground
-        is brought to the initial velocity of the next record, mostly 0, by an acceleration (Δv/P) (1 − cos(2πt/P)).
+        Time from the last sample of a shock to the first of the next [s], rounded to whole samples, at least two. In it the
+        ground is brought to the initial velocity of the next record, mostly 0, by an acceleration (Δv/P) (1 − cos(2πt/P)).
     factors : sequence of float, optional
         On all components of each shock.
     polarity : sequence of str, optional
@@ -161,9 +163,10 @@ def sequence(
     Motion
         With the times of its ``shocks``. Its sampling interval is the least of theirs; records with a longer one are interpolated
         linearly, which changes nothing for a multiple. If some shocks have a vertical component, the others get zeros, with a
-        note. A sequence of one has the record's samples.
+        note; it has a component ``across`` if all have. A sequence of one has the record's samples.
 
-    Raises ``InputError`` for no motions, lists of other lengths, and more than 0.005 g needed to bring the ground to rest.
+    Raises ``InputError`` for no motions, sequences among them, lists of other lengths, values other than above, sampling
+    intervals too far apart, too many samples, and more than 0.005 g needed to bring the ground to rest.
 
     Examples
     --------
@@ -268,7 +271,7 @@ def _resampled(motion: Motion, dt: float, notes: list[str]) -> Motion:
 def _concatenated(
     series: Sequence[Samples], initial: Sequence[Initial], dt: float, gap: int, name: str, part: str, notes: list[str]
 ) -> Samples:
-    """Return accelerations one after the other, ``gap`` steps apart, each preceded by its ``initial`` velocity.
+    """Return accelerations one after the other, ``gap`` steps apart, in which the ground reaches the next ``initial`` velocity.
 
     ``part`` names the component in ``notes`` and errors. Raises ``InputError`` if the pauses need too much acceleration.
     """
@@ -294,7 +297,10 @@ def _concatenated(
 
 
 def _with_common_origin(parts: Sequence[Motion], whole: Motion) -> Motion:
-    """Return ``whole`` with the sources and findings of all ``parts``, and facts that all share, such as magnitude, else None."""
+    """Return ``whole`` with the sources and findings of all ``parts``, and facts that all share, such as magnitude; else None.
+
+    Its station is theirs joined by " + ".
+    """
     return replace(
         whole,
         source=_in_turn(part.source for part in parts),
@@ -307,16 +313,23 @@ def _with_common_origin(parts: Sequence[Motion], whole: Motion) -> Motion:
         magnitude=_common(part.magnitude for part in parts),
         distance_km=_common(part.distance_km for part in parts),
         processed=_common(part.processed for part in parts),
+        listed=_listed_of_all([part.listed for part in parts]),
     )
 
 
+def _listed_of_all(lists: Sequence[Listed]) -> Listed:
+    """Return the facts of lists on which all agree; None for others, and for D5–95, which is that of one record."""
+    shared = {name: _common(getattr(listed, name) for listed in lists) for name in vars(NOT_LISTED)}
+    return Listed(**shared | {"d5_95_s": None})
+
+
 def _in_turn(sources: Iterable[str]) -> str:
-    """Return different sources joined by "then"; empty ones are skipped."""
+    """Return the sources once each, joined by ", then "; empty ones are skipped."""
     return ", then ".join(dict.fromkeys(filter(None, sources)))
 
 
 def _common(values: Iterable[T]) -> T | None:
-    """Return the value that all ``values`` share; None if they differ."""
+    """Return the value that all ``values`` share; None if they differ, or there is none."""
     different = set(values)
     return different.pop() if len(different) == 1 else None
 
@@ -371,8 +384,8 @@ def _sequence_or_refusal(
 ) -> Motion | Unusable | LeftOut:
     """Return a sequence of the motions ``by_name``; unusable if a record of it is, or if they cannot be joined.
 
-    ``reasons`` has those of unusable records by name. For unknown names raises ``InputError`` in a study, where ``source`` is "";
-    in a manifest the sequence is unusable, or left out if all are unknown.
+    ``reasons`` has those of unusable and left-out records by name. For unknown names raises ``InputError`` in a study,
+    where ``source`` is ""; in a manifest the sequence is unusable, or left out if all are unknown.
     """
     missing = [name for name in entry.records if name not in by_name]
     reasons_of_parts = [f"its record {name} cannot be used: {reasons[name]}" for name in missing if name in reasons]

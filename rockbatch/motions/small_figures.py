@@ -19,7 +19,7 @@ _HEIGHT = 44.0  # [px]
 
 
 def trace(motion: Motion) -> Figure:
-    """Return a figure of the horizontal acceleration on its own scale, with the length of the record."""
+    """Return a figure of the horizontal acceleration on its own scale, ± PGA, thinned, with the duration [s] at its end."""
     times = motion.dt * np.arange(motion.npts, dtype=float)
     x, y = thin(times, motion.horizontal / GRAVITY, MOST_POINTS // 4)
     peak, end = motion.pga_g or 1.0, motion.duration or motion.dt
@@ -29,7 +29,7 @@ def trace(motion: Motion) -> Figure:
 
 
 def spectra(motions: Sequence[Motion]) -> list[Figure]:
-    """Return a figure of each motion's response spectrum, 5 % damped, all on one logarithmic scale of three decades."""
+    """Return a figure of each motion's response spectrum, 5 % damped, all on one log scale: three decades below the greatest."""
     ordinates = [spectral_acceleration(motion.horizontal, motion.dt, PERIODS, 0.05) / GRAVITY for motion in motions]
     top = max((float(sa.max()) for sa in ordinates), default=0.0) or 1.0
     x, y = Axis("", float(PERIODS[0]), float(PERIODS[-1]), log=True), Axis("", 1e-3 * top, top, log=True)

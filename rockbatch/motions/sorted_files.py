@@ -19,11 +19,15 @@ _LONGEST = 100  # bytes of a file that holds a number
 
 
 def statements_beside(files: Sequence[SourceFile]) -> tuple[dict[Path, tuple[str, ...]], dict[Path, str]]:
-    """Return header lines for each record's file from the step and count files beside it, and for each of those what it is about.
+    """Return header lines by record, "DT = 0.01 s" and "NPTS = 4000", and by file that states them "a statement about RECORD".
 
-    Files that belong to no record, or hold no number, are in neither.
+    A step or count file without its record beside it, or with anything but a number in it, is in neither.
     """
-    named = {(file.path.parent, *_parts(match)): file for file in files if (match := _NAMED.fullmatch(file.path.stem))}
+    named = {
+        (file.path.parent, *_kind_and_number(match)): file
+        for file in files
+        if (match := _NAMED.fullmatch(file.path.stem))
+    }
     stated: dict[Path, tuple[str, ...]] = {}
     companions: dict[Path, str] = {}
     for (folder, kind, number), file in named.items():
@@ -34,9 +38,9 @@ def statements_beside(files: Sequence[SourceFile]) -> tuple[dict[Path, tuple[str
     return stated, companions
 
 
-def _parts(match: Mapping[str, str] | re.Match[str]) -> tuple[str, str]:
-    """Return the kind of a file ("DT", "NUM", "SOR" or "EQF") and the number of its record."""
-    kind = match["kind"].upper()
+def _kind_and_number(match: Mapping[str, str] | re.Match[str]) -> tuple[str, str]:
+    """Return the kind of a file, "DT", "NUM", "SOR" (SortedEQFile) or "EQF" (EQFile), and the number of its record."""
+    kind = match["kind"].upper().replace("_", "")
     return "DT" if kind.startswith("DT") else kind[:3], match["number"]
 
 

@@ -27,7 +27,7 @@ _PER_PERIOD = 20  # least samples per period, so that a peak between them is mis
 
 
 def as_periods(periods: npt.ArrayLike) -> Samples:
-    """Return periods as an array, shape (n,); raise ``InputError`` unless they are a sequence of numbers."""
+    """Return periods as an array, shape (n,); raise ``InputError`` unless they are a sequence of numbers, of any sign."""
     try:
         values = np.asarray(periods, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
@@ -56,8 +56,8 @@ def spectral_acceleration(
     Returns
     -------
     ndarray, shape (n,)
-        In m/s², the largest value up to the last sample. For periods with fewer than 20 samples the record is interpolated
-        linearly.
+        In m/s², the largest value at the samples, up to the last. For periods with fewer than 20 samples the record is
+        interpolated linearly.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def spectral_acceleration(
 def responses(acceleration: Samples, dt: float, periods: npt.ArrayLike, damping: float = 0.05) -> list[Samples]:
     """Return the history ω² u(t) [m/s²] of an oscillator of each period; its peak is the :func:`spectral_acceleration`.
 
-    Its sampling interval is ``dt``, or an even part of it for short periods, the same for every record of this ``dt``.
+    Its sampling interval is ``dt``, for periods below 20 ``dt`` halved until it is a twentieth of the period or less.
     """
     periods = as_periods(periods)
     by_place: dict[int, Samples] = {}
@@ -112,7 +112,7 @@ def _refined(
 
 
 def periods_over(low: float, high: float) -> npt.NDArray[np.float64]:
-    """Return ``PERIODS``, extended at fifty a decade to reach from ``low`` to ``high`` [s]."""
+    """Return all ``PERIODS``, extended at fifty a decade as far as needed to reach from ``low`` to ``high`` [s]."""
     below = max(0, math.ceil(50 * math.log10(PERIODS[0] / low) - 1e-9))
     above = max(0, math.ceil(50 * math.log10(high / PERIODS[-1]) - 1e-9))
     return np.asarray(PERIODS[0] * 10.0 ** (np.arange(-below, len(PERIODS) + above) / 50.0), dtype=np.float64)

@@ -108,7 +108,7 @@ class SpectrumTarget:
         return np.geomspace(low, high, 1 + max(1, math.ceil(_A_DECADE * math.log10(high / low))))
 
     def factors_of(self, motions: Sequence[Motion], gravity: float) -> list[float]:
-        """Return the factor for each motion; infinite for one without motion, and 1 for all if ``factors`` is "none".
+        """Return the factor for each motion; infinite for motions at rest, and 1 for all if ``factors`` is "none".
 
         Raises ``InputError`` if the rule takes pairs, and a station has none (:func:`pairing_obstacle`).
         """
@@ -134,7 +134,8 @@ class SpectrumTarget:
     def mean(self, motions: Sequence[Motion], periods: Array, gravity: float, spectra: Array | None = None) -> Array:
         """Return the suite's mean spectrum [g] at ``periods`` [s], shape (periods,); NaN without motions.
 
-        ``spectra``, shape (motions, periods), are those of the components, if already computed.
+        ``spectra``, shape (motions, periods), are those of the components, if already computed; only "apart" uses them. Stations
+        without the pair that a rule takes are left out.
         """
         members = self._counted(motions)
         if not members:
@@ -206,7 +207,8 @@ class SpectrumTarget:
     def _conditions(self, motions: Sequence[Motion], gravity: float) -> dict[str, object]:
         """Return the values for a code's further conditions: longest period, both spectra at 0 s [g], and ranges of factors.
 
-        The record factor k₁ of NZS 1170.5 fits a record by least squares of ln S_a; the family factor k₂ is the rest.
+        The record factor k₁ of NZS 1170.5 fits a record by least squares of ln S_a; the family factor k₂ is the rest. Infinite
+        periods, and values at 0 s of a spectrum that begins later, are left out.
         """
         low, high = self.spectrum.limits
         members = [places for places in self._counted(motions) if motions[places[0]].pga > 0]
@@ -225,10 +227,10 @@ class SpectrumTarget:
         return values
 
     def _peak(self, station: Sequence[Motion]) -> float:
-        """Return the value at 0 s of a member's spectrum [m/s²]: the PGA of its first motion, or the rule's measure of a pair."""
+        """Return the value at 0 s of a station's spectrum [m/s²]: by the rule of its pair, else the PGA of its first motion."""
         if self.pairs == "apart" or pairing_obstacle(station):
             return station[0].pga
-        return pair_measures(*pair_of(station))[self.pairs]
+        return pair_measures(*pair_of(station)[:2])[self.pairs]
 
     def _is_alone(self, station: Sequence[Motion]) -> bool:
         """Return whether a station lacks the second component that the rule needs."""
@@ -244,7 +246,7 @@ class SpectrumTarget:
 
 
 def _stations(motions: Sequence[Motion], among: Sequence[int] | None = None) -> list[list[int]]:
-    """Return the indices of motions, all or ``among`` some, grouped by station and earthquake."""
+    """Return the indices of motions, all or ``among`` some, grouped by station, which has another name in each earthquake."""
     places = range(len(motions)) if among is None else among
     return list(grouped(places, lambda i: motions[i].of_station).values())
 

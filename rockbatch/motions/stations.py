@@ -117,7 +117,7 @@ def _directions(components: Iterable[Component]) -> set[tuple[bool, float | None
 
 
 def _may_join(station: Sequence[Component], group: Sequence[Component]) -> bool:
-    """Return whether two groups of one name may be one recording: not both are complete, and they overlap in time."""
+    """Return whether two groups of one name may be one recording: not both are complete, and some components overlap."""
     if _is_whole(station) and _is_whole(group):
         return False
     return any(overlap(member, component) for member in station for component in group)
@@ -167,7 +167,7 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
 
 
 def station_of(component: Component) -> str:
-    """Return the name of a component's station: PEER's number, that of its header, or that of its file."""
+    """Return the name of a component's station: PEER's number, else by its header, else by its file, else its own name."""
     if is_numbered(component.site):
         return component.site
     return component.sensor.station.strip() or component.site or component.station or component.name
@@ -210,7 +210,7 @@ def _share_record(a: Component, b: Component) -> bool:
 
 
 def _are_copies(a: Component, b: Component) -> bool:
-    """Return whether samples of two components of one length and step are equal but for a factor; False if one has no motion."""
+    """Return whether samples of two components are equal but for a factor; False for another length or step, or one at rest."""
     first, second = a.acceleration, b.acceleration
     if len(first) != len(second) or abs(a.dt - b.dt) > 1e-6 * a.dt:
         return False

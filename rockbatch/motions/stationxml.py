@@ -98,12 +98,15 @@ class Inventories:
         return Inventories(self._files, within)
 
     def epochs_of(self, channel_id: str) -> list[Channel]:
-        """Return the epochs of a channel in all files, in order; [] for an unknown one."""
+        """Return the epochs of a channel, those in the record's own file first, then file by file; [] for an unknown channel."""
         return self._read[0].get(channel_id, [])
 
 
 def contradiction(channels: Sequence[Channel]) -> str:
-    """Return two statements of a channel's epochs, all with sensitivities, that contradict each other; "" if all agree."""
+    """Return two statements in words that contradict each other in a channel's epochs, all with sensitivities; "" if all agree.
+
+    A sensitivity may be 5 % off the product of the stages' gains; other epochs are compared with the first, gains to 0.1 %.
+    """
     for channel in channels:
         if channel.stages and channel.sensitivity and abs(channel.stages / channel.sensitivity - 1.0) > _SAME_STAGES:
             return f"{channel.gain} ({channel.named}) and {channel.stages:.6g} as the product of its stages' gains"

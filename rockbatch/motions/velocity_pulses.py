@@ -39,7 +39,7 @@ Array = npt.NDArray[np.float64]
 
 
 def pulse_period(motion: Motion) -> float | None:
-    """Return the period [s] of the pulse in the horizontal component as it was recorded; None if that is not pulse-like."""
+    """Return the period [s] of the pulse in the horizontal component over ``factor``, as recorded; None if not pulse-like."""
     return period_of_pulse(velocity(motion.horizontal, motion.dt, motion.initial) / motion.factor, motion.dt)
 
 

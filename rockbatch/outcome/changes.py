@@ -72,7 +72,7 @@ OF_DEVICES = {
 
 
 def change_of_devices(fine: Outcome, coarse: Outcome, pier: Pier) -> float | None:
-    """Return the greatest relative change of the devices' demands, at least :data:`LEAST`; None without devices."""
+    """Return the greatest relative change of the devices' demands but counts, at least :data:`LEAST`; None without devices."""
     if fine.damper_force is fine.tendon_force is fine.stop_force is fine.deck_spring_force is None:
         return None
     return max(greatest_change(OF_DEVICES, fine, coarse, pier)[1], LEAST)

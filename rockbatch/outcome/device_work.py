@@ -14,8 +14,8 @@ from rockbatch.pier import Base, Damper, Pier, Tendon, places
 class Courses(NamedTuple):
     """Elongation [m], force [N/kg] and energy taken [J/kg] of all devices at every row; shape (rows, devices) each.
 
-    Without the energy it is that of the force along the way, by the trapezoidal rule. With the times ``t`` [s] of the rows and
-    the ``speed`` [m/s] of each device, without its brace, a device turns between rows, where its way is cubic; else at rows.
+    If ``lost`` is None, the energy is the work of the force between rows, by the trapezoidal rule. With the times ``t`` [s] of
+    the rows and the ``speed`` [m/s] of each device without its brace, extremes between rows count, too: :func:`with_turns`.
     """
 
     elongation: Samples
@@ -35,7 +35,10 @@ class Work(NamedTuple):
 
 
 def rainflow(course: Sequence[float] | Samples) -> tuple[Samples, Samples]:
-    """Return the ranges of a ``course`` and their half cycles, 1 or 2, by rainflow counting (ASTM E1049-85, 5.4.4)."""
+    """Return the ranges of a ``course`` and their half cycles, 1 or 2, by rainflow counting (ASTM E1049-85, 5.4.4).
+
+    Both are empty if the course is constant.
+    """
     values = np.asarray(course, dtype=np.float64)
     values = values[np.concatenate([[True], np.diff(values) != 0.0])]
     steps = np.diff(values)
@@ -61,7 +64,10 @@ def rainflow(course: Sequence[float] | Samples) -> tuple[Samples, Samples]:
 
 
 def with_turns(t: Samples, way: Samples, speed: Samples) -> Samples:
-    """Return the ``way`` [m] with the extremes between the times ``t`` inserted, by cubic Hermite interpolation."""
+    """Return the ``way`` [m] at times ``t`` [s] with an extreme inserted wherever ``speed`` [m/s] changes sign between rows.
+
+    The extreme is that of the cubic Hermite polynomial between the two rows.
+    """
     h = np.diff(t)
     rows = np.flatnonzero((h > 0.0) & (speed[:-1] * speed[1:] < 0.0))
     h, start, travel = h[rows], way[rows], way[rows + 1] - way[rows]

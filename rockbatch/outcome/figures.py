@@ -51,7 +51,7 @@ LOADED = 1e-3
 OVER = 1.5
 """Rotation over α at which the curve of an overturning pier is cut."""
 MOVES = 0.02
-"""Share of the largest rotation, or of α if that is smaller, from which a pier counts as moving."""
+"""Share of the largest rotation, or of α if that is smaller, above which a pier counts as moving."""
 CUT = 0.9
 """Share of the record from which on it is drawn whole, instead of the stretch in which piers move."""
 
@@ -65,17 +65,17 @@ class History:
     curves : list
         Abscissae [s] and ordinates of each of :data:`QUANTITIES`, with every extremum that a pixel resolves.
     impacts, separations, flights : ndarray
-        Times of the events [s]; of impacts and separations only those that can be distinguished.
+        Times of the events [s], rounded to a pixel; events of a kind in the same pixel appear once.
     peak : tuple of float
-        Time and θ/α of the largest rotation.
+        Time and θ/α, with its sign, of the largest |θ|.
     end : tuple of float
         Time and θ/α at the end.
     moving : tuple of float
-        First and last time [s] at which the pier is away from rest by more than :data:`MOVES`.
+        Times [s] at which θ/α is first beyond :data:`MOVES` from 0, and last from its final value.
     band : float
         |θ/α| up to which both supports of a weakly rocking pier stay loaded (THEORY.md, eq. 10); 0 on the rigid base.
     springs, devices : tuple of Panel
-        Force against deflection of both springs; force against elongation of the first devices.
+        Force against deflection of each spring, or loops of a footing's bed; force against elongation of the first devices.
     """
 
     status: str
@@ -120,7 +120,10 @@ class Drawn(NamedTuple):
 
 
 def reduced(response: Response, look: Look, pixels: int = 900, most_devices: int | None = MOST_DEVICES) -> History:
-    """Return the response thinned to ``pixels`` while the pier moves; loops, of ``most_devices`` or all, in ``look``."""
+    """Return the response thinned to ``pixels`` while the pier moves, with loops in ``look``, thinned to an eighth.
+
+    They are those of the supports and of the first ``most_devices`` devices, of all for None.
+    """
     pier, t = response.pier, response.t
     theta = response.theta / pier.alpha
     ground = response.history["ag_h"].to_numpy(dtype=np.float64) / pier.gravity
@@ -151,7 +154,7 @@ def reduced(response: Response, look: Look, pixels: int = 900, most_devices: int
 def _moving(t: Array, theta: Array) -> tuple[float, float]:
     """Return the times [s] at which θ/α, shape (n,), is first beyond a threshold from 0, and last from its final value.
 
-    The threshold is ``MOVES`` of the greatest |θ/α|, and of 1 at most; both ends of the history if it is never exceeded.
+    The threshold is ``MOVES``, 2 %, of the greatest |θ/α|, and of 1 at most; both ends of the history if it is never exceeded.
     """
     least = MOVES * min(float(np.nanmax(np.abs(theta))), 1.0)
     left, away = np.abs(theta) > least, np.abs(theta - theta[-1]) > least
@@ -161,7 +164,7 @@ def _moving(t: Array, theta: Array) -> tuple[float, float]:
 
 
 def _thinned(t: Array, y: Array, moving: tuple[float, float], pixels: int) -> tuple[Array, Array]:
-    """Return times and values of a history thinned to ``pixels`` while the pier moves, and outside as for the whole record."""
+    """Return times and values of a history thinned to ``pixels`` while the pier moves, outside as if the record had so many."""
     first, last = np.searchsorted(t, moving)
     parts = []
     for part in (slice(0, first), slice(first, last + 1), slice(last + 1, len(t))):
@@ -173,7 +176,10 @@ def _thinned(t: Array, y: Array, moving: tuple[float, float], pixels: int) -> tu
 
 
 def together(runs: Sequence[Drawn], record: str) -> tuple[Figure, Axis]:
-    """Return a figure of piers under one motion while any of them moves, and a time axis of the whole record."""
+    """Return a figure of piers under one motion while any of them moves, with margins, and a time axis of the whole record.
+
+    Rotation, velocity and ground acceleration; of the whole record if piers move during more than :data:`CUT` of it.
+    """
     end = max(run.history.end[0] for run in runs) or 1.0
     low, high = min(run.history.moving[0] for run in runs), max(run.history.moving[1] for run in runs)
     margin = 0.03 * (high - low)
@@ -185,7 +191,7 @@ def together(runs: Sequence[Drawn], record: str) -> tuple[Figure, Axis]:
 
 
 def of_one(response: Response, title: str) -> Figure:
-    """Return the figure of a single response at the resolution of print, with its loops below."""
+    """Return the figure of a single response at the resolution of print, with the loops of supports and all devices below."""
     look = Look("curve", int(response.base.on_springs))
     own = reduced(response, look, 2000, None)
     runs, heights, shown = [Drawn(own, "", "", look, PEAK)], dict(enumerate(HEIGHTS)), (0.0, own.end[0] or 1.0)
@@ -247,7 +253,10 @@ def history(
 
 
 def _scale(histories: Sequence[History], row: int) -> Axis:
-    """Return an axis for all ``histories`` of a quantity, from those that stood unless none did."""
+    """Return the axis of quantity ``row``, for the values of the runs that stood, or of all if none did, up to :data:`OVER`.
+
+    The rotation's axis of a single history also holds its band without uplift, and has room for strokes of events.
+    """
     stood = [one for one in histories if one.status == "ok"] or histories
     bands = [np.array([-one.band, one.band]) for one in stood[:1]] if row == 0 and len(histories) == 1 else []
     # Strokes of events stand beyond the curves
@@ -266,7 +275,7 @@ def _entry(run: Drawn) -> str:
 
 
 def _standing(one: History, row: int) -> Array:
-    """Return the values of a quantity up to the first |θ|/α beyond :data:`OVER`, all of them for a pier that stands."""
+    """Return the values of quantity ``row`` up to the first |θ|/α beyond :data:`OVER`, 1.5; all of them if none is beyond."""
     t, theta = one.curves[0]
     beyond = np.flatnonzero(np.abs(theta) > OVER)
     times, values = one.curves[row]
@@ -274,7 +283,11 @@ def _standing(one: History, row: int) -> Array:
 
 
 def _events(runs: Sequence[Drawn], y: Axis, shown: tuple[float, float]) -> Iterator[Mark]:
-    """Yield marks: impacts at the foot, separations at the top, flights, peaks, the largest with its value, and early ends."""
+    """Yield the marks of events in the panel of rotations.
+
+    The band without uplift of a single run; impacts at the foot and separations at the top, unless there are more than
+    :data:`MOST_LANES` runs; flights; peaks of the runs that stood, the largest with its value; early ends.
+    """
     if len(runs) == 1 and (band := runs[0].history.band):
         yield Span("y", max(-band, y.low), min(band, y.high), look=Look("band"), label="no uplift")
     lane = _lane(len(runs))
@@ -303,7 +316,7 @@ def _events(runs: Sequence[Drawn], y: Axis, shown: tuple[float, float]) -> Itera
 
 
 def _clipped(point: tuple[float, float], y: Axis) -> tuple[Array, Array]:
-    """Return a point as arrays, moved to the edge of the panel if it lies beyond."""
+    """Return a point as arrays of one element, moved to the edge of the panel if it lies above or below."""
     return np.full(1, point[0]), np.full(1, np.clip(point[1], y.low, y.high))
 
 
@@ -315,7 +328,10 @@ def _band(response: Response) -> float:
 
 
 def _springs(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
-    """Return panels of force against deflection of both springs while loaded, normalised if they yield; () on rigid ground."""
+    """Return a panel of force against deflection of each spring while it is loaded; () on rigid ground.
+
+    Both are over the values at yield if springs yield, else F/(M g) over mm. Of a footing, the panels of :func:`_bed`.
+    """
     base, pier, sides = response.base, response.pier, ("left", "right")
     if not base.on_springs:
         return ()
@@ -344,7 +360,7 @@ def _springs(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
 
 
 def _bed(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
-    """Return two panels over the rotation [mrad]: moment of the bed about the middle of the foot, and depth of that middle."""
+    """Return two panels over θ [mrad]: moment of the bed about the middle of the foot, over M g [m], and its depth there [mm]."""
     pier, history = response.pier, response.history
     theta = 1000.0 * response.theta
     left, right = (history[f"force_{side}"].to_numpy(dtype=np.float64) for side in ("left", "right"))
@@ -359,14 +375,17 @@ def _bed(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
 
 
 def _devices(response: Response) -> list[str]:
-    """Return the names of the devices; a pair at both pivots has one name."""
+    """Return the names of the devices in order, the same name once for a pair at both pivots; [] without devices."""
     columns = () if response.restraints is None else response.restraints
     names = (str(name).removesuffix(" force") for name in columns if str(name).endswith(" force"))
     return list(dict.fromkeys(name.removesuffix(" left").removesuffix(" right") for name in names))
 
 
 def _device(response: Response, name: str, look: Look, pixels: int) -> Panel:
-    """Return a panel of force against elongation [mm] of a device, in kN if the mass is known; a pair's right one behind."""
+    """Return a panel of force against elongation [mm] of a device, the right one of a pair behind the left.
+
+    The force is in kN if the mass is known, else over M g.
+    """
     table, pier = response.restraints, response.pier
     assert table is not None
     sides = [side for side in (" right", " left", "") if f"{name}{side} force" in table]

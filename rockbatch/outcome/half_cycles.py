@@ -109,7 +109,10 @@ def _cubic(path: Path, before: Rows, after: Rows, h: Samples, s: Samples) -> tup
 
 
 def _peak(path: Path, first: int, end: int) -> tuple[float, float]:
-    """Return the greatest |θ| [rad] of the rows from ``first`` until ``end``, and its time [s]; NaN if θ does not turn there."""
+    """Return the greatest |θ| [rad] of the rows from ``first`` until before ``end``, and its time [s].
+
+    Both are NaN if θ neither turns there nor starts at rest, tilted, from its greatest value.
+    """
     theta, omega = path.theta[first:end], path.omega[first:end]
     top = int(np.abs(theta).argmax())
     best, t = abs(float(theta[top])), float(path.t[first + top])

@@ -239,15 +239,15 @@ class Outcome:
     def theta_max_in_motion_error(self) -> float | None:
         """Estimated error of ``theta_max_in_motion`` [rad]; None if it is not known.
 
-        It is that of ``theta_max`` if the pier stood and both are the same, or ``theta_max`` has none; otherwise
-        ``change_in_motion``, which a run that overturned or failed after its motion has, too.
+        If the run is "ok" or ended by flight: ``theta_max_error`` if both peaks are the same, None if ``theta_max`` has no
+        error. Otherwise ``change_in_motion``, which a run that overturned or failed after its motion has, too.
         """
         stood = self.status in ("ok", "flight")
         same = self.theta_max_error is None or self.theta_max == self.theta_max_in_motion
         return self.theta_max_error if stood and same else self.change_in_motion
 
     def changed(self, **fields: object) -> "Outcome":
-        """Return the outcome with other ``fields``; ``TypeError`` for an unknown one. Faster than ``dataclasses.replace``."""
+        """Return a copy with other ``fields``; ``TypeError`` for an unknown one. It is faster than ``dataclasses.replace``."""
         if unknown := fields.keys() - vars(self).keys():
             raise TypeError(f"Outcome has no field {min(unknown)!r}")
         copy = object.__new__(Outcome)
@@ -255,7 +255,7 @@ class Outcome:
         return copy
 
     def noted(self, *remarks: str, **fields: object) -> "Outcome":
-        """Return the outcome with the non-empty ``remarks`` appended to its note, and other ``fields``."""
+        """Return a copy with the non-empty ``remarks`` appended to its note after "; ", and with other ``fields``."""
         return self.changed(note="; ".join(filter(None, (self.note, *remarks))), **fields)
 
     def with_observed(self, observer: str, results: object) -> "Outcome":
@@ -329,7 +329,7 @@ class ShockOutcome:
 
 
 def _mirrored(results: Any) -> Any:
-    """Return the results of an observer for the mirror image: the same unless they have a ``mirrored``."""
+    """Return the results of an observer for the mirror image: the same unless they have a method ``mirrored``."""
     return results.mirrored() if hasattr(results, "mirrored") else results
 
 

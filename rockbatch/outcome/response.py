@@ -87,11 +87,11 @@ class Response(Shown):
     history : DataFrame, one row per instant
         ``t`` [s]; ``theta`` [rad], positive tilts right; ``omega`` = dθ/dt [rad/s]; ``v`` [m], the centre of
         mass above the position of unstressed springs; ``z_left``, ``z_right``, spring forces over the yield
-        force, −1..0; ``v_left``, ``v_right`` [m], the pivots, up positive; ``force_left``, ``force_right`` [N/kg],
-        forces of the supports per unit mass of the pier, negative in compression; ``energy`` [J/kg], relative to the start;
-        ``ag_h``, ``ag_v`` [m/s²], the ground, positive right and up; ``deflection`` [m] of the top of a shaft that bends,
-        across it, positive right. On the rigid base ``v``, ``z_*``, ``v_*`` and
-        ``force_*`` are NaN.
+        force, −1..0, of elastic springs over half the weight; ``v_left``, ``v_right`` [m], the pivots, up positive;
+        ``force_left``, ``force_right`` [N/kg], forces of the supports per unit mass of the pier, negative in compression;
+        ``energy`` [J/kg], relative to the start; ``ag_h``, ``ag_v`` [m/s²], the ground, positive right and up; ``deflection``
+        [m] of the top of a shaft that bends, across it, positive right. On the rigid base ``v``, ``z_*``, ``v_*`` and
+        ``force_*`` are NaN, on a footing ``z_*``.
     events : DataFrame, one row per event
         ``t`` [s], ``kind`` ("separation", "impact", …), ``pivot`` ("left", "right"), and the places in ``history`` of
         the rows ``before`` and ``after`` it, alike where nothing jumps.
@@ -170,7 +170,7 @@ class Response(Shown):
 
     @classmethod
     def unread(cls, read: Callable[[], "Response"], **known: Any) -> Self:
-        """Return a response of ``known`` fields, whose histories are those of the response that ``read`` returns if needed."""
+        """Return a response of ``known`` fields; ``read`` is called for the whole one when a history is first needed."""
         response = object.__new__(cls)
         response.__dict__.update(known, _read=read)
         return response
@@ -193,22 +193,31 @@ class Response(Shown):
 
     @property
     def theta_max(self) -> float:
-        """Greatest rotation |θ| until the end of the run [rad]; NaN if nothing was run."""
+        """Greatest rotation |θ| until the end of the run [rad]; NaN if nothing was run. ``InputError`` without a row."""
         return self.pier.alpha * self._number("theta_max_over_alpha")
 
     @property
     def theta_max_error(self) -> float:
-        """Estimated error of ``theta_max`` [rad]; NaN with a fixed step, of a chaotic peak, or if the pier did not stand."""
+        """Estimated error of ``theta_max`` [rad]; NaN with a fixed step, of a chaotic peak, or if the pier did not stand.
+
+        ``InputError`` without a row.
+        """
         return self.pier.alpha * self._number("theta_max_error")
 
     @property
     def theta_res(self) -> float:
-        """Residual rotation [rad]; NaN on a rigid base without dampers that hold a tilt, or if the pier did not stand."""
+        """Residual rotation θ [rad]; NaN on a rigid base without dampers that hold a tilt, or if the pier did not stand.
+
+        ``InputError`` without a row.
+        """
         return self.pier.alpha * self._number("theta_res_over_alpha")
 
     @property
     def settlement(self) -> float:
-        """Mean settlement of the supports [m]; NaN on the rigid base, or if the pier did not stand."""
+        """Mean settlement of the supports [m]; NaN on the rigid base, or if the pier did not stand.
+
+        ``InputError`` without a row.
+        """
         return self._number("settlement_m")
 
     @property
@@ -243,12 +252,18 @@ class Response(Shown):
 
     @property
     def z_left(self) -> Samples:
-        """Force of the left spring over its yield force, −1..0, shape (n,); NaN on the rigid base."""
+        """Force of the left spring over its yield force, −1..0, shape (n,); NaN on the rigid base and on a footing.
+
+        Of an elastic spring, which does not yield, it is the force over half the weight, without a lower bound.
+        """
         return self._history("z_left")
 
     @property
     def z_right(self) -> Samples:
-        """Force of the right spring over its yield force, −1..0, shape (n,); NaN on the rigid base."""
+        """Force of the right spring over its yield force, −1..0, shape (n,); NaN on the rigid base and on a footing.
+
+        Of an elastic spring, which does not yield, it is the force over half the weight, without a lower bound.
+        """
         return self._history("z_right")
 
     @property
@@ -339,7 +354,7 @@ class Response(Shown):
         """Draw force against deformation of one device or support into ``ax``, as :meth:`plot_rotation` does; return the axes.
 
         ``of`` is "damper 1", "left" and so on; by default the first device, or the left support without any. Raises
-        ``InputError`` for an unknown name, and lists the names.
+        ``InputError`` for an unknown name, and lists the names, or if there are neither devices nor supports that give.
         """
         from rockbatch.common.figures.paper import panel_in
         from rockbatch.outcome.figures import loops
@@ -347,7 +362,10 @@ class Response(Shown):
         return panel_in(loops(self), ax, of)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
-        """See :class:`Shown`."""
+        """Return the title, and peak, residual, settlement, reason and note if the response has a row, history and events.
+
+        "" hides a fact: see :class:`Shown`.
+        """
         kinds = self.events["kind"].value_counts(sort=False)
         facts = {
             "history": f"{len(self.history)} rows until {self.t[-1]:.2f} s" if len(self.history) else "",
@@ -377,7 +395,7 @@ class Response(Shown):
         return f"{self.record} × {self.scale:g}{sign}, {self.case}: {self.status}"
 
     def _of_row(self) -> "pd.Series[Any]":
-        """Return the row of peaks.csv; raise ``InputError`` if the response has histories only."""
+        """Return the row of peaks.csv; raise ``InputError`` if the response was read without it."""
         if self.row is None:
             raise InputError(
                 f"{self._title}: these are histories alone; take them from `open_results(...).response(...)`"

@@ -6,7 +6,7 @@ Impossible combinations of a pier and a base are checked in :mod:`rockbatch.pier
 import math
 import warnings
 from collections.abc import Sequence
-from dataclasses import InitVar, dataclass, field, replace
+from dataclasses import InitVar, dataclass, field
 from typing import Any, ClassVar, Literal, Self
 
 from rockbatch.common.arguments import checked
@@ -87,7 +87,7 @@ class RigidBase(WithShaft):
         warnings.warn(message, Superseded, stacklevel=4)
 
     def parameters(self, pier: Pier) -> dict[str, object]:
-        """Return this base under ``pier`` by the keys of run.json; ``restitution`` is None for Housner's value."""
+        """Return this base under ``pier`` by the keys of run.json; ``restitution`` not given is None, or a frame's own."""
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
         values: dict[str, object] = {"restitution": of_frame if self.restitution is None else self.restitution}
         values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
@@ -266,10 +266,6 @@ class YieldingBase(ElasticBase):
         """Return True if these springs settle cyclically under vibration (ratcheting)."""
         return self.law.creep is not None
 
-    def by_other_law(self) -> Self:
-        """Return the base with elastic–perfectly plastic springs for Bouc–Wen ones; itself if its law does not ratchet."""
-        return self if self.law.creep is None else replace(self, spring=self.law.creep.other)
-
     def parameters(self, pier: Pier) -> dict[str, object]:
         """Return these springs under ``pier`` by the keys of run.json."""
         values = super().parameters(pier) | {"eta": self.eta, "spring": self.spring}
@@ -280,8 +276,14 @@ class YieldingBase(ElasticBase):
     @classmethod
     @checked
     def from_stiffness(cls, pier: Pier, stiffness_kN_m: float, yield_kN: float | None = None, **rest: Any) -> Self:
-        """Return a base as :meth:`ElasticBase.from_stiffness`, with the yield force F_y of one support [kN], or with ``eta``."""
+        """Return a base as :meth:`ElasticBase.from_stiffness`, with the yield force F_y of one support [kN], or with ``eta``.
+
+        Raises ``InputError`` if both are given.
+        """
         if yield_kN is not None:
+            if "eta" in rest:
+                text = "eta is given, too, which fixes the same; keep one"
+                refuse([Problem("yield_kN", yield_kN, text, kind=Contradiction)])
             rest["eta"] = eta_of(pier, yield_kN)
             refuse(unlikely_supports(pier, rest.get("confirm", ()), yield_kN=yield_kN))
         return super().from_stiffness(pier, stiffness_kN_m, **rest)

@@ -180,7 +180,7 @@ class BentAbove(NamedTuple):
 
 
 def bent_above(pier: Pier, modes: Modes, height: float) -> BentAbove:
-    """Return the integrals of the ``modes`` over the mass of ``pier`` above the section at ``height`` [m]; zeros at the top."""
+    """Return the integrals of the ``modes`` over the mass of ``pier`` above the section at ``height`` [m]; 0 without mass."""
     parts = parts_of(pier)
     pieces = [(part, share) for part in parts if (share := share_above(part, height, ROUNDING * pier.highest)) > 0.0]
     n = len(modes.frequency)

@@ -303,7 +303,7 @@ class Pier(InNotebook):
         )
 
     def _facts(self) -> tuple[str, dict[str, str]]:
-        """See :class:`InNotebook`."""
+        """Return "Pier" and its entries in run.json to five digits, which a notebook shows."""
         return "Pier", {name: f"{value:.5g}" for name, value in described(self).items()}
 
     @property
@@ -370,20 +370,22 @@ class Pier(InNotebook):
 
     @property
     def shaft_share(self) -> float:
-        """Return the share of the mass in the shaft or the columns, without the deck on top.
+        """Return the share of the shaft or the columns in the mass of these and the deck on top, without a footing below.
 
-        Among parts, the deck is the point masses at or above the highest upper end of those with a length.
+        Among parts, the deck is the point masses at or above the highest upper end of those with a length, and if none has a
+        length, the highest mass; a footing is a part on the pivots that is wider than long, below others with a length.
         """
         if self.parts is None:
             return share_of_shaft(self.alpha, self.mu, self.deck_over_columns)
-        ends = [part.height_m + 0.5 * part.length_m for part in self.parts if part.length_m]
-        end = max(ends or [part.height_m for part in self.parts]) * (1.0 - ROUNDING)
-        carried = math.fsum(part.mass_t for part in self.parts if not part.length_m and part.height_m >= end)
-        return 1.0 - carried / math.fsum(part.mass_t for part in self.parts)
+        long = [part for part in self.parts if part.length_m]
+        end = max(part.upper_end for part in long or self.parts) * (1.0 - ROUNDING)
+        above = [part for part in self.parts if not (part.is_slab_at_foot and len(long) > 1)]
+        carried = math.fsum(part.mass_t for part in above if not part.length_m and part.height_m >= end)
+        return 1.0 - carried / math.fsum(part.mass_t for part in above)
 
     @property
     def least_beta(self) -> float:
-        """Return β = ω_v/p below which the pier topples on its springs under its own weight (g h < ω_v² b²)."""
+        """Return β = ω_v/p below which the pier topples on its springs under its own weight (g h > ω_v² b²)."""
         return math.sqrt((1 + self.mu) * math.cos(self.alpha) / self.mu) / math.sin(self.alpha)
 
 

@@ -215,7 +215,7 @@ class SlowTurn:
     # Balance of the vertical forces
 
     def _heel(self, theta: Array, depth: Array) -> Array:
-        """Return the force of the heel over the weight: 0 on rigid ground and after lift-off."""
+        """Return the force of the heel over the weight: elastic from rest, up to its strength; 0 on rigid ground or lifted."""
         if self.spring is None:
             return np.zeros_like(theta)
         risen = self.settled - depth + 2.0 * self._rise(theta)
@@ -379,7 +379,10 @@ class SlowTurn:
         return high - step * float(moments[i] / (moments[i] - previous))
 
     def curve(self, until: float, before: int = 12, after: int = 100) -> Equilibria:
-        """Return the equilibria from rest to ``until`` [rad], in ``before`` steps to lift-off or yield and ``after`` beyond."""
+        """Return the equilibria from rest to ``until`` [rad], in ``before`` steps to lift-off and ``after`` growing ones beyond.
+
+        If the toe yields before lift-off, twice ``before`` steps go to twice the rotation at which it yields.
+        """
         start = self.lift_off
         if start is None and self.spring is not None:
             # twice the rotation at which the toe, elastic up to there, yields

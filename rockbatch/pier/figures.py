@@ -56,7 +56,10 @@ class Sheet(NamedTuple):
 
 def statics(sheets: Sequence[Sheet]) -> Figure:
     """Return a figure of righting moment and steady acceleration over rotation, and of period over amplitude; of footings also
-    the share that is pressed; for a single pier also the contributions to the moment, and its period fixed at the base."""
+    the share that is pressed; for a single pier also the contributions to the moment, and its period fixed at the base.
+
+    The first :data:`MOST_SHEETS` are drawn; moments are over the weight unless every pier has a mass.
+    """
     sheets = sheets[:MOST_SHEETS]
     heavy = all(sheet.pier.mass_t is not None for sheet in sheets)
     moments, accelerations, periods, shares_pressed = [], [], [], []
@@ -136,9 +139,10 @@ class _Shape(NamedTuple):
 
 
 def sketches(piers: Sequence[Mapping[str, Any]], bases: Collection[str]) -> list[Figure]:
-    """Return sketches of the first four possible piers, at one scale; ``piers`` as in run.json, ``bases`` their kinds.
+    """Return sketches of the first four possible piers, at one scale; ``piers`` as in run.json, ``bases`` the kinds of bases.
 
-    A pier with impossible values is left out, since run.json may come from anybody; [] if none is left.
+    All stand on springs if any base is not "rigid". A pier with impossible values is left out, since run.json may come from
+    anybody; [] if none is left.
     """
     shapes = [shape for shape in map(_Shape.of, piers) if shape.possible][:MOST_PIERS]
     if not shapes:
@@ -148,7 +152,7 @@ def sketches(piers: Sequence[Mapping[str, Any]], bases: Collection[str]) -> list
 
 
 def _sketch(pier: _Shape, scale: float, springs: bool) -> Figure:
-    """Return a pier in pixels from the middle of its base."""
+    """Return the sketch of a pier on ``springs`` or rigid ground, in pixels from the middle of its base, ``scale`` [px/m]."""
     b, h, top = (scale * length for length in (pier.half_width, pier.height, pier.top))
     side, high = max(b, 30.0), max(top, h) + ABOVE
     arc = 0.45 * math.hypot(b, h)

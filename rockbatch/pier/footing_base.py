@@ -118,8 +118,10 @@ class FootingBase(Traits):
     def from_stiffness(
         cls, pier: Pier, stiffness_MN_m3: float, *, length_m: float, bearing_MPa: float | None = None, **rest: Any
     ) -> Self:
-        """Return a footing from the stiffness of the bed [MN/m³], or E/depth of a toe, and its bearing strength [MPa], or with
-        ``safety_factor``, under ``pier``, whose mass is known; ``rest`` as in the class.
+        """Return a footing under ``pier``, whose mass is known, from the stiffness of its bed [MN/m³], E/depth under a toe.
+
+        Its bearing strength [MPa], or ``safety_factor`` in ``rest``, makes it yield; with neither it is elastic. ``rest`` as in
+        the class.
 
         Raises ``InputError`` if the pier has no mass, or for values that are impossible, or unusual and not confirmed.
         """

@@ -72,7 +72,7 @@ class SlowFooting(SlowTurn):
 
     @cached_property
     def lift_off(self) -> float | None:
-        """The rotation at which the heel's edge is no longer pressed [rad]."""
+        """The rotation at which the heel's edge is no longer pressed [rad]; π/2 if it always is."""
         low, high = 0.0, 0.5 * math.pi
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
@@ -93,7 +93,10 @@ def slow_turn(pier: Pier, base: Base, restraints: tuple[Restraint, ...] | None =
 
 
 def facts_of_bed(pier: Pier, base: Base) -> dict[str, float | None]:
-    """Return the statics sheet's facts on the ground under a footing, in MN m, kN m if the mass is known; {} on other bases."""
+    """Return the statics sheet's facts on the ground under a footing, by the names in ``FACTS``; {} on other bases.
+
+    Rocking stiffness [MN m/rad] and ultimate moment [kN m], W B/2 of an elastic bed, are there if the mass is known.
+    """
     if not isinstance(base, FootingBase):
         return {}
     facts = {"safety_factor": base.safety_factor, "vertical_over_formula": base.vertical_over_formula}

@@ -48,7 +48,10 @@ class FreeRocking:
         self.turn = slow_turn(pier, springs, holding)
 
     def swings(self, amplitudes: Array) -> Swings:
-        """Return period and damping at ``amplitudes`` > 0 [rad], below the unstable equilibrium; NaN if the swings are uneven."""
+        """Return period and damping at ``amplitudes`` > 0 [rad], below the unstable equilibrium; NaN if the swings are uneven.
+
+        The damping is NaN on springs and footings, too.
+        """
         none = np.full_like(amplitudes, math.nan)
         if not self.even:
             return Swings(amplitudes, none, none)

@@ -71,7 +71,7 @@ RATCHETING = tuple(name for name, law in LAWS.items() if law.creep is not None)
 """Laws that ratchet."""
 
 
-def steady(word: str) -> str:
+def without_ratcheting(word: str) -> str:
     """Return the quoted names of the laws that do not ratchet, joined by commas and ``word``: '"epp" and "hardening"'."""
     names = [f'"{name}"' for name in LAWS if name not in RATCHETING]
     return f" {word} ".join((", ".join(names[:-1]), names[-1]))

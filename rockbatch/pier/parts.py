@@ -33,6 +33,13 @@ class Part(NamedTuple):
         """Return the height of the part's upper end above the pivots [m]; of its centre if it has no length."""
         return self.height_m + 0.5 * (self.length_m or 0.0)
 
+    @property
+    def is_slab_at_foot(self) -> bool:
+        """Return whether the part stands on the pivots and is wider than long, by its inertia as a rectangle."""
+        length = self.length_m or 0.0
+        square = self.mass_t * length**2 / 6.0  # inertia of one as wide as long
+        return self.height_m <= 0.5 * length * (1.0 + _ROUNDING) and self.inertia_t_m2 > square
+
     @classmethod
     @checked
     def shaft(cls, width_m: float, height_m: float, mass_t: float) -> "Part":

@@ -23,7 +23,7 @@ class Place(NamedTuple):
 
 
 def places(pier: Pier, restraint: Restraint) -> tuple[Place, ...]:
-    """Return the places of ``restraint``, left before right."""
+    """Return the places of ``restraint``, left before right: two if it acts at both pivots or sides, otherwise one."""
     if isinstance(restraint, DeckSpring):
         height = pier.deck if restraint.height_m is None else restraint.height_m
         if restraint.linear:
@@ -55,7 +55,7 @@ def holds_a_tilt(restraints: tuple[Restraint, ...]) -> bool:
 
 
 def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
-    """Return True if weight and prestress overcome the dampers' forces at small rotations, about either corner.
+    """Return True if weight and prestress overcome the dampers' forces at small rotations, about both corners.
 
     With dampers at both corners that is 2 f < 1 + ψ. Friction and hysteretic dampers count alike.
     """

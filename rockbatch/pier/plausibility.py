@@ -7,8 +7,8 @@ from rockbatch.pier.places import offsets, symmetric
 from rockbatch.pier.restraints import DeckSpring, Restraint, Tendon
 
 
-def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Problem]:
-    """Return the problem of tendons under a pier on springs without equal ones on the other side; [] if they are symmetric."""
+def lopsided_tendons(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Problem]:
+    """Return the problem of tendons of a pier on springs that have no equal ones on its other side; [] if all have."""
     if symmetric(pier, tuple(device for device in restraints if isinstance(device, Tendon))):
         return []
     text = (
@@ -19,9 +19,9 @@ def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Prob
 
 
 def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Problem]:
-    """Return a problem for each device that is impossible under ``pier``: at a frame's deck, off the base, or more friction.
+    """Return the problems of devices impossible under ``pier``: at a frame's deck, or farther from the axis than its width.
 
-    Friction is solved at two places at most. [] if all are possible.
+    Without these, the problem of friction at more than two places, which is not solved; [] if all are possible.
     """
     wrong = []
     at_deck = any(isinstance(device, DeckSpring) or device.at == "deck" for device in restraints)

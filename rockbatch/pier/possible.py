@@ -11,7 +11,7 @@ from rockbatch.pier.bending import problems as bending_problems
 from rockbatch.pier.block import Pier
 from rockbatch.pier.footing_base import FootingBase
 from rockbatch.pier.places import places, prestress_over_weight
-from rockbatch.pier.plausibility import wrong_on_springs, wrong_restraints
+from rockbatch.pier.plausibility import lopsided_tendons, wrong_restraints
 from rockbatch.pier.traits import LEAST_ETA
 
 
@@ -77,7 +77,7 @@ def problems(pier: Pier, base: Base) -> list[Problem]:
     if isinstance(base, RigidBase) and base.contact_stiffness_kN_m is not None:
         wrong += _wrong_contact(pier, base)
     if base.on_springs and not wrong:
-        wrong += wrong_on_springs(pier, base.restraints)
+        wrong += lopsided_tendons(pier, base.restraints)
     if isinstance(base, YieldingBase) and base.eta < (least := least_eta(pier, base)):
         prestress = prestress_over_weight(pier, base.restraints)
         text = (

@@ -202,7 +202,7 @@ class Stop(Device):
         return wrong_words(self.at, "left", "right") + super()._wrong()
 
     def doubts(self, pier: Pier) -> Iterator[Doubt]:
-        """See :meth:`Device.doubts`."""
+        """Yield doubts about a gap below 0.5 mm or wider than the pier, and about a stiffness that is odd under ``pier``."""
         yield from _gap_doubts(self)
         if self.gap_m > 2.0 * pier.half_width:
             yield Doubt("gap_m", f"it is met at a rise of {self.gap_m:.3g} m, more than the pier is wide")
@@ -278,7 +278,7 @@ class DeckSpring(Device):
         return wrong + super()._wrong()
 
     def doubts(self, pier: Pier) -> Iterator[Doubt]:
-        """See :meth:`Device.doubts`."""
+        """Yield doubts about a height far from the pier's, a gap below 0.5 mm or met beyond α, and an odd stiffness."""
         height = pier.deck if self.height_m is None else self.height_m
         yield from _gap_doubts(self)
         if not LOWEST * 2.0 * pier.height <= height <= HIGHEST * 2.0 * pier.height:
@@ -333,7 +333,10 @@ def kinds_of(values: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def restraint_of(values: Mapping[str, Any]) -> Restraint:
-    """Return the device with the fields of run.json or a history; None stands for the default."""
+    """Return the device with the fields of run.json or a history, of the kind :func:`what_of` them.
+
+    Other names are left out; None stands for the default.
+    """
     kind = KINDS[what_of(values)]
     names = {attribute.name for attribute in fields(kind)}
     return kind(**{name: value for name, value in values.items() if name in names and value is not None})

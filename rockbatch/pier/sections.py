@@ -34,7 +34,8 @@ def problems(pier: Pier) -> list[Problem]:
 def distribution_problems(pier: Pier) -> list[str]:
     """Return reasons that the distribution of ``pier``'s mass over its height is not known; [] if it is.
 
-    It is known of a solid rectangle, μ = 3, and of parts that all have a ``length_m``, 0 included; never of a frame.
+    It is known of a solid rectangle, μ = 3, and of parts that all have a ``length_m``, 0 included, and have the pier's centre and
+    inertia; never of a frame.
     """
     if pier.deck_over_columns is not None:
         return [
@@ -62,8 +63,8 @@ def distribution_problems(pier: Pier) -> list[str]:
 def section_heights(pier: Pier, sections: int | Sequence[float], key: str = "sections_m") -> tuple[float, ...]:
     """Return the heights [m] of ``sections``, ascending, each once: the given ones, or that number at equal distances.
 
-    ``key`` names them in messages. Raises ``InputError`` for fewer than two, for heights outside the pier, and for a pier whose
-    sections are not known.
+    ``key`` names them in messages. Raises ``InputError`` for a number below two, for heights outside the pier, and for a pier
+    whose mass over the height is not known.
     """
     refuse(problems(pier))
     top = pier.highest

@@ -112,7 +112,7 @@ def unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], **
 
 
 def unlikely_heights(height_m: float, confirm: Collection[str], **heights: float | None) -> list[Problem]:
-    """Return a problem for each of ``heights`` [m] implausible for a pier of ``height_m``; none of those in ``confirm``."""
+    """Return a problem for each of ``heights`` [m] outside 0.25 to 2.5 times ``height_m``, unless it is in ``confirm``."""
     wrong = []
     for name, value in heights.items():
         if value is None or LOWEST * height_m <= value <= HIGHEST * height_m or name in confirm:

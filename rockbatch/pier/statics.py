@@ -259,7 +259,7 @@ class Statics(Shown):
         return float(values[place]) if len(values) > place and not math.isnan(values[place]) else None
 
     def _facts(self) -> tuple[str, dict[str, str]]:
-        """See :class:`Shown`."""
+        """Return the heading "statics of a pier, base rigid" and the lines of :func:`in_words`, for :class:`Shown`."""
         return f"statics of a pier, base {self.base.name}", in_words(self)
 
 

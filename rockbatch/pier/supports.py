@@ -5,7 +5,7 @@ from collections.abc import Callable, Collection
 from typing import NamedTuple
 
 from rockbatch.common.errors import MissingKey, Problem, Unusual, refuse
-from rockbatch.common.units import POSITIVE
+from rockbatch.common.units import POSITIVE, in_other_units
 from rockbatch.pier.block import Pier
 
 MOST_ETA = 100.0
@@ -60,7 +60,9 @@ class Support(NamedTuple):
         """Return the problem of an unusual value of the key ``name``; empty if it is usual."""
         if self.holds(pier, value):
             return []
-        return [Problem(name, value, self.words.format(self.comes_to(pier, value)), confirm=name, kind=Unusual)]
+        text = self.words.format(self.comes_to(pier, value))
+        text += in_other_units(name, value, lambda other: self.holds(pier, other))
+        return [Problem(name, value, text, confirm=name, kind=Unusual)]
 
 
 def _half_weight(pier: Pier) -> float:

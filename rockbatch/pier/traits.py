@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import fields
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, get_args
 
 from rockbatch.common.errors import Problem, WrongType, refuse
 from rockbatch.common.showing import InNotebook, shown
@@ -163,10 +163,6 @@ class Traits(InNotebook):
     def has_residual(self) -> bool:
         """Return True if the pier may come to rest tilted: on yielding springs, or with friction or hysteretic dampers."""
         return self.yields or holds_a_tilt(self.restraints)
-
-    def by_other_law(self) -> Self:
-        """Return the base by the other spring law if its own ratchets: itself unless a class overrides it."""
-        return self
 
 
 def interface(friction: float | None, area_m2: float | None) -> dict[str, float]:

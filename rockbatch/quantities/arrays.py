@@ -18,7 +18,7 @@ MISSING = -1
 
 
 def texts_in(column: "pd.Series[Any]") -> "pd.Series[Any]":
-    """Return a column as texts, "" for empty cells, whatever its dtype."""
+    """Return a column of any dtype as texts, "" for None and NaN."""
     cells = column.astype(object)
     return cells.where(cells.notna(), "").map(str)
 
@@ -37,9 +37,9 @@ class Rows:
         self._texts: dict[str, Texts] = {}
 
     def at(self, places: npt.NDArray[np.intp], **own: Texts) -> "Rows":
-        """Return the rows at ``places`` of the table, :data:`MISSING` for a missing one.
+        """Return the rows at ``places`` of the table (not of these rows), :data:`MISSING` for a missing one.
 
-        Columns in ``own``, shape (n,), replace those of the table.
+        Columns of texts in ``own``, shape (n,), replace those of the table; those of these rows are not kept.
         """
         taken = copy.copy(self)
         taken.places, taken._own = places, own
@@ -60,7 +60,7 @@ class Rows:
         return column in self._table
 
     def numbers(self, column: str) -> Values:
-        """Return a column of numbers; NaN if the table lacks it, as one of an earlier version."""
+        """Return a column of numbers; NaN throughout if the table lacks it, as the table of an earlier version may."""
         if column not in self._table:
             return np.full(len(self), np.nan)
         if column not in self._numbers:
@@ -74,11 +74,11 @@ class Rows:
         return self.places == MISSING
 
     def facts(self, column: str) -> npt.NDArray[np.bool_]:
-        """Return True where a column of facts is 1, shape (n,); False where it is 0 or empty."""
+        """Return True where a column of facts is 1, shape (n,); False where it is 0 or empty, or the table lacks it."""
         return self.numbers(column) == 1.0
 
     def texts(self, column: str) -> Texts:
-        """Return a column of texts; "" if the table lacks it, as one of an earlier version."""
+        """Return a column of texts; "" throughout if the table lacks it, as the table of an earlier version may."""
         if column in self._own:
             return self._own[column]
         if column not in self._table:

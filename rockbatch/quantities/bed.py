@@ -34,7 +34,7 @@ def _strips_error(run: Run) -> float | None:
 
 
 def _edge_error(run: Run) -> float | None:
-    """Return the error of an edge's settlement [m]: that of the middle, and of the rotation at rest times half the width.
+    """Return the error of an edge's settlement [m]: the middle's, plus half the width times that of the residual rotation.
 
     None without a bed, or if one of the two errors is not known.
     """

@@ -27,12 +27,12 @@ def name_along(case: Case) -> str:
 
 
 def of_pier(case: Case) -> tuple[object, ...]:
-    """Return a key that the cases of both axes of a pier share: the name of that along the axis, and the columns."""
+    """Return a key that the cases of both axes of a pier share: the name of the case along the axis, and (key, value) pairs."""
     return name_along(case), *case["columns"].items()
 
 
 def always(value: float) -> Lever:
-    """Return a factor that is the same for all cases."""
+    """Return a function that returns ``value`` for every case."""
     return lambda case: value
 
 
@@ -40,7 +40,7 @@ ONE, THOUSAND = always(1.0), always(1000.0)
 
 
 def product(first: Lever, second: Lever) -> Lever:
-    """Return the product of two factors."""
+    """Return a function that returns the product of two factors of a case."""
     return lambda case: first(case) * second(case)
 
 
@@ -71,7 +71,7 @@ def per_gravity(case: Case) -> float:
 
 
 def creeps(case: Case) -> bool:
-    """Return whether the springs of a case settle further in each cycle, so that two laws give a range of settlement."""
+    """Return whether the springs of a case ratchet, settling further in each cycle, so that settlement depends on the law."""
     return case["parameters"].get("spring") in RATCHETING
 
 
@@ -81,12 +81,12 @@ def asks_tension(case: Case) -> bool:
 
 
 def has_device(case: Case, device: str) -> bool:
-    """Return whether the pier has a device of this kind."""
+    """Return whether the pier has a device of this kind, such as "damper" or "yielding tendon"."""
     return any(device in kinds_of(restraint) for restraint in devices(case))
 
 
 def holds_a_tilt(case: Case) -> bool:
-    """Return whether a damper keeps a force at rest, as friction and hysteretic ones do, and so may hold a tilt."""
+    """Return whether a friction or hysteretic damper, whose f is not 0, keeps a force at rest, and so may hold a tilt."""
     holding = ("friction", "hysteretic")
     return any(damper.get("kind") in holding and damper.get("f") != 0.0 for damper in devices(case))
 
@@ -102,7 +102,7 @@ def bends(case: Case) -> bool:
 
 
 def number_of_modes(case: Case) -> int:
-    """Return the number of modes in which the shaft of a case bends; 0 of a rigid one, and 1 if an earlier version ran it."""
+    """Return the number of modes in which the shaft of a case bends; 0 if it is rigid, 1 if run.json does not say."""
     return int(case["parameters"].get("flexural_modes", 1)) if bends(case) else 0
 
 
@@ -125,7 +125,7 @@ def lands_by_impulse(case: Case) -> bool:
 
 
 def stops_by_impulse(case: Case) -> bool:
-    """Return whether ε < 1, so that an impulse stops a part of every landing on springs; False without ε."""
+    """Return whether ε < 1, by which an impulse takes part of the speed of every landing on springs; False without ε."""
     return float(case["parameters"].get("epsilon", 1.0)) < 1.0
 
 

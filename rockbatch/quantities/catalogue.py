@@ -70,7 +70,7 @@ _SPENT = Ceiling(always(MOST_DUCTILITY), "is more than any support bears")
 
 
 def _displacements(name: str, lever: Lever) -> tuple[Limit, Limit]:
-    """Return limits on the greatest rotation times a length, in m and in mm."""
+    """Return limits on the greatest rotation times a length, in m and in mm; ``name`` gets the unit at its end."""
     in_metres, in_millimetres = product(lever, alpha), product(product(THOUSAND, lever), alpha)
     return rotation("theta_max", f"{name}_m", "m", in_metres), rotation("theta_max", f"{name}_mm", "mm", in_millimetres)
 
@@ -82,7 +82,7 @@ def _top_drift(run: Run) -> float:
 
 
 def _bent_as_well(limit: Limit) -> Limit:
-    """Return a limit on drift that also holds for a shaft that bends, which drifts by more than it rotates."""
+    """Return a limit on drift that, for a shaft that bends, takes the recorded drift in place of the rotation's."""
     bent = largest(("top_drift_m",), THOUSAND if limit.unit == "mm" else ONE, "top_drift_error_m")
 
     def bent_or(rigid: Evaluate | None) -> Evaluate | None:
@@ -95,19 +95,19 @@ def _bent_as_well(limit: Limit) -> Limit:
 
 
 def _settlement(runs: Rows, case: Case) -> Estimated:
-    """Return the mean settlement of the supports."""
+    """Return the mean settlement of the supports [m] and its error."""
     return Estimated(runs.numbers("settlement_m"), runs.numbers("settlement_error_m"))
 
 
-_BY_OTHER_LAW = {name: values for found in parts("quantities.BY_OTHER_LAW") for name, values in found.items()}
+_OTHER_ENDS = {name: end for ends in parts("quantities.OTHER_ENDS") for name, end in ends.items()}
 _SETTLEMENTS = (
-    Limit(ceiling=WIDER, evaluate=_settlement, other_law=_BY_OTHER_LAW.get("settlement_m")),
+    Limit(ceiling=WIDER, evaluate=_settlement, other_end=_OTHER_ENDS.get("settlement_m")),
     Limit(
         "toe_settlement_m",
         ceiling=WIDER,
         words="settlement of the support that settles more",
         evaluate=toe_settlement,
-        other_law=_BY_OTHER_LAW.get("toe_settlement_m"),
+        other_end=_OTHER_ENDS.get("toe_settlement_m"),
     ),
 )
 _TILTS = (
@@ -479,7 +479,7 @@ def report_columns(shown: str = "peaks") -> list[Quantity]:
 
 
 def as_markdown() -> str:
-    """Return the table of docs/columns.md; columns with one meaning share a line."""
+    """Return the table of docs/columns.md; neighbouring columns with the same meaning share a line."""
     lines = ["| column | unit | meaning | where |", "| --- | --- | --- | --- |"]
     for meaning, alike in groupby(COLUMNS.values(), key=lambda quantity: quantity.meaning):
         first, *further = alike
@@ -494,7 +494,10 @@ def listed() -> dict[str, list[str]]:
 
 
 def _dependence(name: str) -> str:
-    """Return the heading of a demand in the list: the key of [output], device or base on which it depends."""
+    """Return the heading of a demand in the list: the key of [output], device or base on which it depends, or its kind.
+
+    The first that applies: events, properties of the case, section, [output], device, footing, bending; else "of every run".
+    """
     demand = DEMANDS[name]
     if demand.event:
         return "yes or no, 1 or 0"

@@ -42,6 +42,21 @@ class Ceiling(NamedTuple):
     beyond: str
 
 
+class OtherEnd(NamedTuple):
+    """The other end of a demand's range: its values in the same runs by another model, which an observer brings.
+
+    ``column`` of peaks.csv has them, with the key ``needs`` of [output], and ``evaluate`` returns the demand by them, shape (n,),
+    for a case that ``has_range``. ``model`` and ``models`` are the words for one model, and for both.
+    """
+
+    column: str
+    needs: str
+    evaluate: Callable[[Rows, Case], Values]
+    has_range: Callable[[Case], bool]
+    model: str
+    models: str
+
+
 @dataclass(frozen=True)
 class Demand:
     """A quantity that a check limits; less is better, except for properties of the case.
@@ -62,8 +77,8 @@ class Demand:
         True if it is the same for all records.
     residual : bool
         True if it is what remains after a motion.
-    other_law : function or None
-        Values by the other spring law, shape (n,); the worse counts.
+    other_end : OtherEnd or None
+        The other end of its range, where two models give one; the worse counts.
     ceiling : Ceiling or None
         Value beyond which a limit decides nothing.
     verb : str
@@ -98,7 +113,7 @@ class Demand:
     event: bool = False
     per_case: bool = False
     residual: bool = False
-    other_law: Callable[[Rows, Case], Values] | None = None
+    other_end: OtherEnd | None = None
     ceiling: Ceiling | None = None
     verb: str = ""
     needs: str = ""
@@ -113,7 +128,10 @@ class Demand:
     over_capacity: bool = False
 
     def applies_to(self, case: Case) -> bool:
-        """Return whether the demand applies to a case, by its base, its dampers or its shaft."""
+        """Return whether the demand applies to a case by one of ``bases``.
+
+        "held" stands for dampers that hold a tilt, "bending" for a shaft that bends, the others for the base of this name.
+        """
         held = "held" in self.bases and holds_a_tilt(case)
         return case["base"] in self.bases or held or ("bending" in self.bases and bends(case))
 
@@ -124,8 +142,11 @@ class Demand:
 
     @property
     def brings(self) -> set[str]:
-        """Keys of [output] that a check of it brings: the other law, since the worse counts, and forces of one moment."""
-        return {"both_laws"} if self.other_law else {self.needs} & {OF_BASE}
+        """Keys of [output] that a check of it switches on: that of the other end of its range, if any, else OF_BASE if needed.
+
+        Other keys that it ``needs`` have to be in the study.
+        """
+        return {self.other_end.needs} if self.other_end else {self.needs} & {OF_BASE}
 
     @property
     def words(self) -> str:
@@ -146,7 +167,8 @@ def without_error(value: Values) -> Estimated:
 def largest(columns: tuple[str, ...], times: Lever = ONE, error: str = "", share: str = "") -> Evaluate:
     """Return the evaluation of the largest magnitude of some columns times a factor of the case.
 
-    ``error`` is the column of its error, to be multiplied by the factor too, or ``share`` that of its relative error.
+    ``error`` is the column of its error, to be multiplied by the factor too, or ``share`` that of its relative error; without
+    either the error is NaN. The value is NaN where one of the columns is.
     """
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
@@ -218,7 +240,7 @@ def in_flight(column: str) -> Evaluate:
 
 
 def tilt(times: Lever) -> Evaluate:
-    """Return the evaluation of the base's tilt times a factor; its error is proportional to that of the residual rotation."""
+    """Return the evaluation of the base's |tilt| times a factor; its error is proportional to that of the residual rotation."""
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
         pier = case["pier"]
@@ -256,7 +278,10 @@ def event(name: str, meaning: str, happened: Callable[[Rows], npt.NDArray[np.boo
 def parameter(
     name: str, meaning: str, unit: str, bases: tuple[str, ...], ceiling: Ceiling | None = None, of: str = ""
 ) -> Demand:
-    """Return the demand on a parameter of the case, called ``of`` in run.json if not ``name``; NaN if the case lacks it."""
+    """Return the demand on a parameter of the case, called ``of`` in run.json if not ``name``.
+
+    Its value has shape (1,), NaN if the case lacks it; its error is NaN.
+    """
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
         return without_error(np.array([float(case["parameters"].get(of or name, np.nan))]))

@@ -7,9 +7,6 @@ from rockbatch.quantities.quantity import Limit
 IN_MOTION, IN_MOTION_ERROR = "theta_max_in_motion_over_alpha", "theta_max_in_motion_error"
 """Columns of the peak until a motion ends, which a run that failed later has reached, and of its error."""
 
-OTHER_LAW = "settlement_other_law_m"
-"""Column of the settlement by the other spring law, which an observer brings."""
-
 OVERTURNS = "is past the edge of overturning"
 WIDER = Ceiling(width, "is more than the pier is wide")
 _IN_MM = Limit(unit="mm", times=THOUSAND, ceiling=Ceiling(product(THOUSAND, width), WIDER.beyond))
@@ -24,10 +21,10 @@ def rotation(of: str, name: str, unit: str, times: Lever, words: str = "") -> Li
 
 
 def greater(name: str, words: str, *limits: Limit) -> tuple[Limit, ...]:
-    """Return limits on the greater of the left and right support, whose columns have "_left" or "_right" for the "/" in ``name``.
+    """Return limits on the greater of two columns, left and right: "ductility" stands for ductility_left and ductility_right.
 
-    Without a "/" it ends the name: "ductility". ``words`` have "{}" for "a"; one limit in the columns' unit unless others are
-    given.
+    In ``name``, "/" is the place of "_left" and "_right", which the limit's name lacks; by default they are at its end. In
+    ``words``, "{}" becomes "a". Without ``limits`` there is one, in the unit of the columns.
     """
     stem, _, ending = name.partition("/")
     columns = (f"{stem}_left{ending}", f"{stem}_right{ending}")

@@ -5,10 +5,8 @@ from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, Protocol
 
 from rockbatch.pier import Pier
-from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import ONE, Case, Lever
-from rockbatch.quantities.demands import Ceiling, Demand, Evaluate, largest, largest_force
-from rockbatch.quantities.statistics import Values
+from rockbatch.quantities.cases import ONE, Lever
+from rockbatch.quantities.demands import Ceiling, Demand, Evaluate, OtherEnd, largest, largest_force
 
 ALL = ("rigid", "elastic", "yielding", "footing")
 SPRINGS = ("elastic", "yielding", "footing")
@@ -107,7 +105,7 @@ class Limit(NamedTuple):
     columns: tuple[str, ...] = ()
     evaluate: Evaluate | None = None
     reached: Evaluate | None = None
-    other_law: Callable[[Rows, Case], Values] | None = None
+    other_end: OtherEnd | None = None
     height: Lever | None = None
 
 
@@ -205,7 +203,10 @@ class Quantity:
         return ", ".join(filter(None, (base, run)))
 
     def requested_by(self, study: Any) -> bool:
-        """Return whether a :class:`rockbatch.study.Study` has a column of this quantity."""
+        """Return whether the peaks.csv of a :class:`rockbatch.study.Study` has a column of this quantity.
+
+        ``requested`` alone decides if given; otherwise [output] must have what it ``needs``, and a case its ``device``.
+        """
         if self.requested:
             return self.requested(study)
         if self.needs and not study.output.has(self.needs):
@@ -219,7 +220,10 @@ class Quantity:
         return [self._demand(limit) for limit in self.limits]
 
     def _demand(self, limit: Limit) -> Demand:
-        """Return the demand of a limit; unless the limit has its own evaluation, the largest magnitude of its columns."""
+        """Return the demand of a limit: its own evaluation, else the largest magnitude of its columns, by default the quantity's.
+
+        Quantities with [output] forces are evaluated by :func:`largest_force`.
+        """
         columns = limit.columns or (self.name,)
         evaluate = limit.evaluate
         if evaluate is None and self.needs == "forces":
@@ -235,7 +239,7 @@ class Quantity:
             limit.unit or in_print(self.unit),
             self.bases,
             residual=self.stood,
-            other_law=limit.other_law,
+            other_end=limit.other_end,
             ceiling=limit.ceiling,
             needs=self.needs,
             weighed=self.weighed,

@@ -26,7 +26,7 @@ def simulated(runs: "pd.DataFrame") -> "pd.DataFrame":
 
 
 def as_in_peaks(value: object) -> object:
-    """Return a value as peaks.csv has it: numbers rounded to ten digits, "" for None and NaN."""
+    """Return a value as peaks.csv has it: a number as a float of ten digits, "" for None and NaN, others unchanged."""
     if value is None or value != value:
         return ""
     return float(f"{value:.10g}") if isinstance(value, float | int) else value
@@ -48,7 +48,7 @@ def rows_of_cases(runs: "pd.DataFrame", cases: Sequence[Case]) -> Iterator[tuple
 
 
 def _fits(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArray[np.bool_]:
-    """Return True for each row with these values of the varied keys, shape (n,)."""
+    """Return True for each row with these values of the varied keys, shape (n,); numbers may differ by a relative 1e-9."""
     fits = np.ones(len(runs), dtype=bool)
     for name, value in columns.items():
         if isinstance(value, str):
@@ -79,7 +79,10 @@ def complete(rows: Rows, stations: Mapping[str, str], polarities: Sequence[str])
 
 
 def counts_as(rows: Rows, count: str) -> tuple[Texts, str]:
-    """Return the record under which each run counts by ``count``, of ``COUNTS``, shape (n,); and a remark on unknown stations."""
+    """Return what each run counts as, shape (n,): its record if ``count`` is "component", else its station; and a remark or "".
+
+    If any station is unknown, all runs count as their records, and the remark says so.
+    """
     if count == "component":
         return rows.texts("record"), ""
     stations_of_runs = rows.texts("station")

@@ -24,7 +24,10 @@ def quantile(values: Values, q: float) -> float:
 
 
 def quantiles(ordered: Values, first: npt.NDArray[np.int64], n: npt.NDArray[np.int64], q: float) -> Values:
-    """Return the quantile of each group ``ordered[first : first + n]`` of ascending values; NaN for an empty group."""
+    """Return the quantile of each group ``ordered[first : first + n]`` of ascending values; NaN for an empty group.
+
+    It is linear between ranks, and infinite if a rank that it needs is.
+    """
     of_groups = np.full(len(n), math.nan)
     filled = n > 0
     last = n[filled] - 1
@@ -42,9 +45,10 @@ P84, CONFIDENCE = 0.84, 0.95
 
 
 def exceedance(q: float, n: int) -> float:
-    """Return the share of further records that exceed the quantile ``q`` between the ranks of ``n``.
+    """Return the expected share of further records that exceed the quantile ``q``, interpolated between the ranks of ``n``.
 
-    Its rank is q (n − 1) + 1, and k/(n + 1) of all values are expected below the k-th (Gumbel 1958).
+    1 − (q (n − 1) + 1)/(n + 1): its rank is q (n − 1) + 1, and k/(n + 1) of all values are expected below the k-th
+    (Gumbel 1958).
     """
     return 1.0 - (q * (n - 1) + 1.0) / (n + 1)
 
@@ -76,19 +80,19 @@ def _p84_remark(values: Values) -> str:
 
 
 def _p84_95(values: Values) -> float:
-    """Return the value at :func:`tolerance_rank`, or the greatest of too few."""
+    """Return the value at :func:`tolerance_rank`, or the greatest if there are too few for a rank."""
     rank = tolerance_rank(len(values))
     return float(np.sort(values)[(rank or len(values)) - 1])
 
 
 def _p84_95_remark(values: Values) -> str:
-    """Return the rank that bounds the quantile, in words; empty for too few values."""
+    """Return the rank that bounds the quantile: "rank 18 of 18"; empty if there are too few for a rank."""
     rank = tolerance_rank(len(values))
     return f"rank {rank} of {len(values)}" if rank else ""
 
 
 def _lognormal(values: Values) -> float:
-    """Return exp(m + z s), with mean m and deviation s of the logarithms; infinite if a value is.
+    """Return exp(m + z s), with mean m and sample deviation s of the logarithms, z of 84 %; infinite if a value is.
 
     NaN for a single value, and if one is 0.
     """
@@ -145,7 +149,7 @@ def _max(values: Values) -> float:
 def _asce7_16(values: Values) -> float:
     """Return the mean by ASCE 7-16; infinite values are unacceptable responses, of which two or more give infinity.
 
-    One counts as 120 % of the median, or the mean of the others if that is greater.
+    One alone gives 120 % of the median of all values, or the mean of the others if that is greater; infinity without others.
     """
     acceptable = values[np.isfinite(values)]
     if len(acceptable) == len(values):

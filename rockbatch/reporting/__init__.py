@@ -4,6 +4,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 from rockbatch.checks import as_table
 from rockbatch.checks.verdicts import CHECKS
@@ -21,14 +22,15 @@ from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.margins import headline
 from rockbatch.reporting.page import comparison, page
 from rockbatch.reporting.pair import Pair, pair
+from rockbatch.reporting.pdf import installed
 from rockbatch.reporting.sections.statement.statements import statements
-from rockbatch.reporting.sheet import sheet as sheet_of
+from rockbatch.reporting.sheet import sheet_of
 from rockbatch.results.opened import Results
 from rockbatch.results.reading import ANALYSES_PAGE
 from rockbatch.results.run_json import describe_study, is_of
 from rockbatch.study import Study
 
-REPORT, SHEET = "report.html", "sheet.html"
+REPORT, SHEET, SHEET_PDF = "report.html", "sheet.html", "sheet.pdf"
 
 __all__ = ["REPORT", "Report", "report", "statement", "write_analyses", "write_comparison", "write_report"]
 
@@ -97,6 +99,10 @@ class Report:
         Which of two studies passes, and by how much; empty for one.
     pairs : dict
         Cases of the second study by those of the first with which they are compared, if it was asked for.
+    pdf : Path or None
+        The calculation sheet as PDF, if it was written.
+    paper : str
+        Size of the PDF's pages: "A4" or "Letter".
     """
 
     path: Path
@@ -106,14 +112,19 @@ class Report:
     is_sheet: bool = False
     answer: str = ""
     pairs: Mapping[str, str] = field(default_factory=dict)
+    pdf: Path | None = None
+    paper: str = "A4"
 
     def __repr__(self) -> str:
         return f"<{'sheet' if self.is_sheet else 'report'} of {' and '.join(map(str, self.folders))}: {self.path}>"
 
     def save(self, folder: str | os.PathLike[str]) -> Path:
-        """Write the page into ``folder`` under its present name; return its path."""
+        """Write the page, made anew from the results, into ``folder`` under its present name; return its path."""
         directory = made_folder(Path(folder))
-        return _write(_contents(self.folders, self.pairs), directory / self.path.name, sheet=self.is_sheet)
+        contents, target = _contents(self.folders, self.pairs), directory / self.path.name
+        if isinstance(contents, Finished) and self.is_sheet:
+            return _write_sheet(contents, target, self.paper)[0]
+        return _write(contents, target)
 
 
 @checked
@@ -124,6 +135,7 @@ def report(
     out: str | os.PathLike[str] | None = None,
     whole: bool = False,
     sheet: bool = False,
+    paper: Literal["A4", "Letter"] = "A4",
     pairs: Mapping[str, str] | None = None,
 ) -> Report:
     """Write the report of finished results again, or of two studies side by side.
@@ -140,7 +152,10 @@ def report(
     whole : bool, optional
         Whether sections that are folded on the screen are unfolded, and printed.
     sheet : bool, optional
-        Whether to write the calculation sheet instead, for paper: ``sheet.html`` in the folder, of one study only.
+        Whether to write the calculation sheet instead, for paper, of one study only: ``sheet.html`` in the folder and, where
+        typst is installed, ``sheet.pdf``; or ``out`` alone, a PDF if its name ends in ``.pdf``.
+    paper : {"A4", "Letter"}, optional
+        Size of the PDF's pages.
     pairs : dict, optional
         Cases of the second study by those of the first with which to compare them. By default cases of one name go together,
         and those that are left by the inputs that differ least.
@@ -153,7 +168,7 @@ def report(
     Raises
     ------
     InputError
-        If results are missing, damaged or do not belong together, or a sheet of two studies is asked for.
+        If results are missing, damaged or do not belong together, a sheet of two studies is asked for, or a PDF without typst.
 
     Examples
     --------
@@ -167,17 +182,21 @@ def report(
     Name: count, dtype: int64
     """
     folders = (Path(directory),) if other is None else (Path(directory), Path(other))
-    if sheet and other is not None:
+    contents = _contents(folders, pairs)
+    if sheet and isinstance(contents, Pair):
         raise InputError(
             "a calculation sheet is of one study; write one for each folder, or compare the two without it"
         )
-    contents = _contents(folders, pairs)
-    path = _write(contents, None if out is None else Path(out), whole, sheet)
+    target = None if out is None else Path(out)
+    if sheet and isinstance(contents, Finished):
+        path, pdf = _write_sheet(contents, target, paper)
+    else:
+        path, pdf = _write(contents, target, whole), None
     finished = contents.studies if isinstance(contents, Pair) else (contents,)
     tables = [(results.saved.peaks, as_table(results.verdicts)) for results in finished]
     peaks, checks = (_stacked(of_studies) for of_studies in zip(*tables, strict=True))
     answer = headline(contents) if isinstance(contents, Pair) else ""
-    return Report(path, folders, peaks, checks, sheet, answer, dict(pairs or {}))
+    return Report(path, folders, peaks, checks, sheet, answer, dict(pairs or {}), pdf, paper)
 
 
 @checked
@@ -224,7 +243,10 @@ def statement(directory: str | os.PathLike[str], case: str | None = None) -> str
 
 
 def _contents(folders: Sequence[Path], pairs: Mapping[str, str] | None) -> Finished | Pair:
-    """Read the results of one folder, or of two without their histories, which a comparison does not show."""
+    """Read the results of one folder, or of two without their histories, which a comparison does not show.
+
+    Raises ``InputError`` for ``pairs`` with one folder.
+    """
     if len(folders) == 1:
         if pairs:
             raise InputError("cases are paired between two folders; give the second one, too")
@@ -233,17 +255,33 @@ def _contents(folders: Sequence[Path], pairs: Mapping[str, str] | None) -> Finis
     return pair(first, second, pairs)
 
 
-def _write(contents: Finished | Pair, out: Path | None, whole: bool = False, sheet: bool = False) -> Path:
-    """Write the report or sheet of one folder or the comparison of two, to ``out`` or into the first folder; return its path."""
+def _write(contents: Finished | Pair, out: Path | None, whole: bool = False) -> Path:
+    """Write the report of one folder or the comparison of two, to ``out`` or into the first folder; return its path."""
     if isinstance(contents, Pair):
         first, second = (study.directory for study in contents.studies)
         content, target = comparison(contents, whole), first / f"compare-{second.resolve().name}.html"
-    elif sheet:
-        content, target = sheet_of(contents), contents.directory / SHEET
     else:
         content, target = page(contents, whole), contents.directory / REPORT
     (write_output if out else write_whole)(out or target, content)
     return out or target
+
+
+def _write_sheet(contents: Finished, out: Path | None, paper: str) -> tuple[Path, Path | None]:
+    """Write the calculation sheet of one folder; return its path, and that of its PDF or None.
+
+    To ``out``, a PDF if its name ends in ".pdf"; without it as HTML into the folder, and as PDF where that can be made.
+    """
+    sheet = sheet_of(contents)
+    if out is not None:
+        is_pdf = out.suffix.lower() == ".pdf"
+        write_output(out, sheet.pdf(paper) if is_pdf else sheet.html())
+        return out, out if is_pdf else None
+    path, pdf = contents.directory / SHEET, contents.directory / SHEET_PDF
+    write_whole(path, sheet.html())
+    if not installed():
+        return path, None
+    write_whole(pdf, sheet.pdf(paper))
+    return path, pdf
 
 
 def _stacked(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":

@@ -26,7 +26,10 @@ INDEPENDENT = ("theta_max_over_alpha", "settlement_m", "base_tilt_rad", "ductili
 
 
 def answer(pair: Pair) -> Markup:
-    """Return which study passes and by how much, then margins by check, and rotations over the runs that both have."""
+    """Return which study passes and by how much, then margins by check, and the worst responses and rotations of both.
+
+    Responses are over the runs that end standing in both, the change of the rotation over pairs of runs.
+    """
     lead = tag("div", tag("strong", headline(pair)), class_="lead")
     in_common = zip(pair.studies, pair.runs, strict=True)
     studies = [replace(study, runs=study.runs.loc[runs.index]) for study, runs in in_common]
@@ -139,7 +142,7 @@ def figures(pair: Pair) -> Markup:
 
 
 def pairs(pair: Pair) -> Markup:
-    """Return a table with a row for each pair of runs, worst first; empty without pairs."""
+    """Return a table with a row for each of the worst :data:`MOST_ROWS` pairs of runs, worst first; empty without pairs."""
     a, b = pair.runs
     if a.empty:
         return Markup("")
@@ -182,7 +185,7 @@ def suites(pair: Pair) -> Markup:
 
 
 def only_in_one(pair: Pair) -> Markup:
-    """Return a table of the cases with unmatched runs; empty without any."""
+    """Return a table of the cases with unmatched runs, with their number and up to six records each; empty without any."""
     rows: list[list[object]] = []
     for name, study, runs in zip(SIDES, pair.studies, pair.only, strict=True):
         for _, group in runs.groupby(["series", "pier", "scale", "polarity", "with_vertical"], sort=False):
@@ -198,7 +201,7 @@ def _first(names: Sequence[str], most: int) -> str:
 
 
 def studies(pair: Pair) -> Markup:
-    """Return both studies, one after the other: greatest responses, inputs and statics."""
+    """Return the number of pairs of runs, then both studies, one after the other: greatest responses, inputs and statics."""
     parts: list[object] = [
         tag("p", f"{counted(len(pair.runs[0]), 'pair')} of runs of paired cases under the same ground motion.")
     ]

@@ -85,7 +85,10 @@ def written(study: Mapping[str, Any], names: Mapping[str, str] | None = None) ->
 
 
 def case_values(study: Mapping[str, Any], name: str) -> dict[Place, object]:
-    """Return the values of a case as they are written, by their places in its table, without its name."""
+    """Return the values of a case, without its name, by their places in its table and as :func:`_as_compared` has them.
+
+    {} if the study has no such case.
+    """
     whole = written(study)
     own = {place[2:]: value for place, value in whole.values.items() if place[:2] == ("case", name)}
     return {place: _as_compared(value) for place, value in own.items() if place != ("name",)}
@@ -133,7 +136,7 @@ def _alone(value: object) -> object:
 
 
 def _as_compared(value: object) -> object:
-    """Return a value as it is compared: numbers by their size, a list of one as its item."""
+    """Return a value as it is compared: numbers as floats of ten digits, lists as tuples, a list of one as its item."""
     value = _alone(value)
     if isinstance(value, list | tuple):
         return tuple(map(_as_compared, value))
@@ -164,7 +167,10 @@ def _named(place: Place) -> str:
 
 
 def _shown(value: object, digits: int) -> str:
-    """Return a value in words, with enough ``digits``; "–" for a key that is not written and has no default."""
+    """Return a value in words, a number with so many ``digits``; "–" for None, a key not written and without a default.
+
+    Of a list the first :data:`MOST_VALUES` values are shown, then "…".
+    """
     if value is None:
         return "–"
     if isinstance(value, bool):
@@ -183,15 +189,15 @@ def _of_motions(a: Finished, b: Finished) -> list[Difference]:
     Of these one for files that could not be used, and one for files left out; [] if all agree.
     """
     only = [[name for name in x.records if name not in y.records] for x, y in ((a, b), (b, a))]
-    rows = [Difference("motions in one only", *map(_listed, only))] if any(only) else []
+    rows = [Difference("motions in one only", *(_listed(names, "motion") for names in only))] if any(only) else []
     other = [name for name in a.records if name in b.records and _differ(a.records[name], b.records[name])]
     if other:
         sides = ([f"{name} ({x.records[name]['pga_g']:.4g} g)" for name in other] for x in (a, b))
-        rows.append(Difference("different motions under the same name", *map(_listed, sides)))
+        rows.append(Difference("different motions under the same name", *(_listed(names, "motion") for names in sides)))
     for key, words in (("unusable", "files that could not be used"), ("left_out", "files left out")):
         names = [[str(file["name"]) for file in x.info.get(key, ())] for x in (a, b)]
         if names[0] != names[1]:
-            rows.append(Difference(words, *map(_listed, names)))
+            rows.append(Difference(words, *(_listed(side, "file") for side in names)))
     return rows
 
 
@@ -203,8 +209,8 @@ def _differ(first: Mapping[str, Any], second: Mapping[str, Any]) -> bool:
     return any(as_in_peaks(first[key]) != as_in_peaks(second[key]) for key in keys)
 
 
-def _listed(names: Sequence[str]) -> str:
-    """Return names, at most :data:`MOST_VALUES` of them after their number; "–" for none."""
+def _listed(names: Sequence[str], noun: str) -> str:
+    """Return names separated by commas, "–" for none; of more than six their number before the first: "9 files: a, …"."""
     if len(names) <= MOST_VALUES:
         return ", ".join(names) or "–"
-    return f"{counted(len(names), 'file')}: {', '.join(names[:MOST_VALUES])}, …"
+    return f"{counted(len(names), noun)}: {', '.join(names[:MOST_VALUES])}, …"

@@ -131,7 +131,7 @@ def _points(look: Look) -> Mark:
 
 
 def _across(theta: float, top: float) -> float:
-    """Return the position of a rotation θ/α [% of the width]; the axis ends at ``top``."""
+    """Return the position of a rotation θ/α [% of the width], to a tenth: ``FIRST``, 1.5, at 0, and ``LAST``, 97, at ``top``."""
     return round(FIRST + (LAST - FIRST) * theta / top, 1)
 
 
@@ -142,7 +142,7 @@ def _line(
 
 
 def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Marks, words: str) -> Markup:
-    """Draw the peaks of a row in one column; of coinciding ones of a foundation, the first."""
+    """Draw the peaks of a row's standing runs in one column; of those of a foundation that would coincide, the largest alone."""
     peaks = runs["theta_max_over_alpha"].to_numpy(dtype=np.float64)
     order = np.argsort(-peaks, kind="stable")
     order = order[((runs["status"] == "ok").to_numpy() & ~np.isnan(peaks))[order]]
@@ -173,7 +173,10 @@ def _mark(run: Run, x: float, marks: Marks) -> Markup:
 
 @cache
 def _template(series: Series | None, place: int | None) -> Markup:
-    """Return a mark's HTML with placeholders {x} for its position [%] and {said} for its tooltip: thousands are alike."""
+    """Return a mark's HTML with placeholders {x} for its position [%] and {said} for its tooltip; a dot without a ``series``.
+
+    ``place`` is the number of the series. The result is cached, as thousands of marks are alike.
+    """
     if series is None:
         return marker(DOT, "{x}%", MIDDLE, "{said}")
     if series.rigid:
@@ -187,7 +190,11 @@ def _rigid(series: Series) -> Look:
 
 
 def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
-    """Return the signs of runs without a peak, by status, with their foundations' letters or, if too many, their number."""
+    """Return the signs of runs without a peak, by status, with the letters of their foundations.
+
+    Rigid ones are named in full. The number of runs stands in place of a list longer than :data:`MOST_LETTERS` characters, and
+    if foundations have no marks of their own.
+    """
     shown: list[Markup] = []
     statuses = set(runs["status"])
     for status, words in ENDED.items() if statuses != {"ok"} else ():
@@ -211,7 +218,10 @@ def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
 
 
 def _legend(drawn: "Sequence[pd.DataFrame]", marks: Marks) -> list[Entry]:
-    """Return legend entries of the cases and statuses that are drawn; clicking one hides its runs."""
+    """Return legend entries of the cases, rigid ones first, and of the statuses without a peak that are drawn.
+
+    Clicking one hides its runs. If ``marks`` do not distinguish cases, one entry says what a mark stands for.
+    """
     present = {place for runs in drawn for place in runs["series"].unique().tolist()}
     if marks.series is None:
         entries = [Entry(f"a {marks.kind}", [_points(DOT)])]

@@ -132,7 +132,7 @@ class Finished(Contents, Labelled):
         return groups_of(self.runs, self.piers)
 
     def case_of(self, run: "pd.Series | Row") -> str:
-        """Describe a run without its record: "pads (scale 2, reversed)"."""
+        """Describe a run without its record: "pads (p = 1.2 rad/s, scale 2, reversed)", or "pads" if nothing of this applies."""
         also = [self.piers[run["pier"]], f"scale {number(float(run['scale']))}" if run["scale"] != 1 else ""]
         also += ["reversed" if run["polarity"] == "-" else "", run["with_vertical"]]
         details = ", ".join(filter(None, also))

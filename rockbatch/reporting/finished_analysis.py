@@ -76,7 +76,7 @@ class FinishedAnalysis:
 def read(directory: Path, name: str, sha256: str) -> FinishedAnalysis | None:
     """Return the analysis ``name`` of a folder; None if missing, damaged or of a study without the digest ``sha256``.
 
-    Warns with ``EditedTable`` if NAME.json was changed after it was written.
+    Warns with ``EditedTable`` if NAME.json was changed after it was written, or is damaged.
     """
     path = Path(directory) / f"{name}.json"
     try:

@@ -94,7 +94,10 @@ def _worst(cells: Sequence[tuple[Row, Cell]]) -> tuple[Row, Cell] | None:
 
 
 def _place(study: Finished, cell: Cell, case: str = "") -> list[str]:
-    """Return the case, if it is given, the governing station and the bound of a cell in words, without what is empty."""
+    """Return the case, if it is given, the governing station (by name or label, the shorter) and the bound of a cell in words.
+
+    What is empty is left out.
+    """
     label = study.label(cell.verdict.record)
     name = study.records.get(cell.verdict.record, {}).get("station_name") or label
     station = min(str(name), label, key=len)
@@ -168,7 +171,7 @@ def _written(study: Finished, cell: tuple[Cell, str] | None) -> Iterator[object]
 
 
 def _change(cells: Sequence[tuple[Cell, str] | None]) -> str:
-    """Return the difference of the shares of the limit, "+12 %"; empty unless both are known."""
+    """Return the difference of the shares of the limit, B less A: "+12 %", "0 %" below 0.1 %; empty unless both are known."""
     ratios = [cell[0].verdict.ratio if cell and cell[0].percent else math.nan for cell in cells]
     change = ratios[1] - ratios[0]
     if not math.isfinite(change):

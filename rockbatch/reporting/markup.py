@@ -36,11 +36,14 @@ def join(*children: object, between: str = "") -> Markup:
 
 
 def tag(name: str, *children: object, **attributes: object) -> Markup:
-    """Return an HTML element; ``class_`` becomes ``class``, ``aria_label`` ``aria-label``; None and False omit an attribute."""
+    """Return an HTML element; ``class_`` becomes ``class``, ``aria_label`` ``aria-label``.
+
+    None and False omit an attribute, True leaves it empty: the element is well-formed XML, too.
+    """
     written = []
     for key, value in attributes.items():
         if value is not None and value is not False:
-            written.append(_attribute(key) if value is True else f'{_attribute(key)}="{escape(str(value))}"')
+            written.append(f'{_attribute(key)}="{"" if value is True else escape(str(value))}"')
     return Markup(f"<{name}{''.join(written)}>{''.join(map(escape, children))}</{name}>")
 
 
@@ -69,7 +72,10 @@ def number(value: object, form: str = ".4g") -> str:
 
 
 def _without_exponent(written: str) -> str:
-    """Return a formatted number in decimals, grouped by thousands from 10,000; as a power of ten below 10⁻⁶ and above 10⁹."""
+    """Return a formatted number in decimals, grouped by thousands from 10,000.
+
+    One that is written with an exponent keeps it, as a power of ten, if it is below 10⁻⁶ or 10¹⁰ and above.
+    """
     mantissa, _, exponent = written.partition("e")
     power = int(exponent or 0)
     if not -_FEWEST <= power <= _MOST:

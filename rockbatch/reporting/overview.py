@@ -47,7 +47,11 @@ def by_record(finished: Finished) -> Markup:
 def drawn_by_record(
     finished: Finished, columns: "Sequence[tuple[str, pd.DataFrame]]", limits: Sequence[Sequence[dots.Limit]] = ()
 ) -> Markup:
-    """Return the figure of runs in rows by record; ``columns`` are (caption, runs), ``limits`` those of each column."""
+    """Return the figure of runs in rows by record; ``columns`` are (caption, runs), ``limits`` those of each column.
+
+    Of more than :data:`MOST_ROWS` records the least bad ones share a row, and have a folded one each unless there are very many
+    runs.
+    """
     runs = pd.concat([of_column for _, of_column in columns]) if len(columns) > 1 else columns[0][1]
     names = groups_worst_first(runs, "record")
     single = names if len(names) <= MOST_ROWS else names[: MOST_ROWS - 1]
@@ -63,7 +67,7 @@ def drawn_by_record(
 
     rows = _rows(columns, "record", single, label, len(names), folded=folded)
     marks = dots.Marks(finished.series if len(finished.series) <= MOST_NAMED else None, description, "foundation")
-    caption = join(CAPTION, "record, the worst first", _all(finished), *_marks_in_words(finished))
+    caption = join(CAPTION, "record, the worst first", _end_of_caption(finished), *_marks_in_words(finished))
     top = ceiling(runs)
     within = [limit.theta for column in limits for limit in column if limit.theta < MOST_STRETCH * top]
     top = max([top, *(1.03 * theta for theta in within)])
@@ -83,7 +87,10 @@ def _marks_in_words(finished: Finished) -> Iterator[str]:
 
 
 def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
-    """Return the limits of rotation checks as θ/α; empty if the column has several piers, whose limits differ."""
+    """Return the limits of rotation checks as θ/α, ascending, but of checks that count records.
+
+    [] if the column has several piers, whose limits differ.
+    """
     if runs["pier"].nunique() != 1:
         return []
     cases = [finished.cases[places] for places in set(zip(runs["series"], runs["pier"], strict=True))]
@@ -107,7 +114,10 @@ def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
 
 
 def by_foundation(finished: Finished) -> Markup:
-    """Return the figure of many foundations: the best in rows, the others in one, then all, folded; empty for 24 or fewer."""
+    """Return the figure of many foundations: the best 13 in rows, the others in one, then up to 300, folded.
+
+    Empty if no pier and scale has more than :data:`MOST_SERIES`, 24.
+    """
     if finished.runs.empty or finished.grouped["series"].nunique().max() <= MOST_SERIES:
         return Markup("")
     runs, columns = finished.runs, _columns(finished)
@@ -128,16 +138,17 @@ def by_foundation(finished: Finished) -> Markup:
     rows = _rows(columns, "series", best[: MOST_ROWS - 1], label, len(best), always=True)
     drawn = dots.draw(_rows(columns, "series", every, label, len(every)), words, top, marks)
     return join(
-        figure(dots.draw(rows, words, top, marks), join(CAPTION, order, _all(finished))), tag("details", summary, drawn)
+        figure(dots.draw(rows, words, top, marks), join(CAPTION, order, _end_of_caption(finished))),
+        tag("details", summary, drawn),
     )
 
 
 def _columns(finished: Finished) -> "list[tuple[str, pd.DataFrame]]":
-    """Return captions and runs of each pier and scale; all runs in one column if there are many."""
+    """Return captions and runs of each pier, scale and vertical component; if over :data:`MOST_COLUMNS`, all runs under ""."""
     return list(finished.groups()) if finished.grouped.ngroups <= MOST_COLUMNS else [("", finished.runs)]
 
 
-def _all(finished: Finished) -> str:
+def _end_of_caption(finished: Finished) -> str:
     """Return the end of a caption: "." if each pier and scale has a column, ", of all piers and scales." if they share one."""
     return "." if finished.grouped.ngroups <= MOST_COLUMNS else ", of all piers and scales."
 

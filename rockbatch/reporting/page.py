@@ -133,7 +133,7 @@ def sections(contents: Contents) -> list[Section]:
 
 
 def analyses(contents: Contents) -> list[Section]:
-    """Draw the sections of the analyses whose results a folder has."""
+    """Draw the sections of all analyses; those of which a folder has no results have no content."""
     return [Section(part.heading, part.anchor, part.content(contents)) for part in _of_analyses()]
 
 
@@ -146,7 +146,7 @@ def page(contents: Contents, whole: bool = False) -> str:
 
 
 def comparison(pair: Pair, whole: bool = False) -> str:
-    """Return the page that compares two studies as HTML."""
+    """Return the page that compares two studies as HTML; with ``whole`` folded sections are unfolded and printed."""
     a, b = (study.study["title"] or study.directory.name for study in pair.studies)
     versions = " and ".join(dict.fromkeys(study.info["rockbatch"] for study in pair.studies))
     shown = [Section(part.heading, part.anchor, part.content(pair), part.folded) for part in PARTS_OF_TWO]

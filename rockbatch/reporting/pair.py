@@ -53,8 +53,8 @@ class Pair:
 def pair(a: Finished, b: Finished, asked: Mapping[str, str] | None = None) -> Pair:
     """Match the runs of two studies by record, polarity, scale, case and the values of the keys that both vary.
 
-    Cases are paired as ``asked``, of A by B; then by their names; and those that are left by the inputs that differ least. Of a
-    study with bounds beside one without, the nominal design is matched.
+    Cases are paired as ``asked``, of B by those of A; then by their names; and those that are left by the inputs that differ
+    least. Of a study with bounds beside one without, the nominal design is matched. Runs alike in all of these are not matched.
     """
     names = paired_cases(a, b, asked or {})
     in_both = [key for key in a.info["varied"] if key in b.info["varied"] and key != "vertical"]

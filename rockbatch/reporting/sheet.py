@@ -2,12 +2,14 @@
 
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from rockbatch.common.observers import from_observer, report_parts
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.page import analyses
+from rockbatch.reporting.pdf import compiled, frame
 from rockbatch.reporting.sections import (
     answer,
     assumptions,
@@ -26,6 +28,7 @@ from rockbatch.reporting.sections import (
 from rockbatch.reporting.svg import markers
 from rockbatch.reporting.table import on_paper
 from rockbatch.reporting.templates import Section, render, styles
+from rockbatch.reporting.typeset import Setting, blocks, parsed, words
 
 Draw = Callable[[Finished], Markup]
 
@@ -65,8 +68,53 @@ AFTER = (
 )
 
 
-def sheet(finished: Finished) -> str:
-    """Return the calculation sheet of one folder as HTML; it needs no script, and prints on paper of any size from A5."""
+@dataclass(frozen=True)
+class Sheet:
+    """The calculation sheet of one folder.
+
+    Attributes
+    ----------
+    title, path : str
+        Title and path of the study file.
+    version : str
+        Version and commit of the rockbatch that computed the results, and the date.
+    sections : list of Section
+        Those with content, with their folds open.
+    """
+
+    title: str
+    path: str
+    version: str
+    sections: list[Section]
+
+    def html(self) -> str:
+        """Return the sheet as HTML, which needs no script and prints on paper of any size from A5."""
+        values = vars(self) | {"markers": markers(), "style": styles("style.css", "sheet.css")}
+        return render("reporting/sheet.html", **values)
+
+    def pdf(self, paper: str = "A4") -> bytes:
+        """Return the sheet as PDF on ``paper``, "A4" or "Letter", ``KeyError`` for another; ``InputError`` without Typst."""
+        setting = Setting({})
+        sections = (
+            f"\n= {place} {words(section.heading)}\n{blocks(parsed(section.content), setting)}"
+            for place, section in enumerate(self.sections, start=1)
+        )
+        start = frame(self.title, (f"{self.title}: calculation sheet", self.version), self.path, "9.5pt", paper=paper)
+        return compiled(start + _STYLE + "#title()\n" + "".join(sections), setting.pictures)
+
+
+_STYLE = """
+#set table(stroke: (x, y) => (bottom: 0.25pt + luma(200)), inset: (x: 3pt, y: 2pt))
+#show table: set text(6.8pt)
+#show table: set par(leading: 0.4em)
+#show table.cell.where(y: 0): set text(gray.darken(50%))
+#show raw: set text(size: 0.9em)
+#show raw.where(block: true): it => text(6.5pt, columns(2, it))
+"""
+
+
+def sheet_of(finished: Finished) -> Sheet:
+    """Return the calculation sheet of one folder: its sections with content, drawn for paper, with their folds open."""
     with on_paper():
         sections = [
             *(Section(part.heading, part.anchor, part.content(finished)) for part in BEFORE),
@@ -76,18 +124,15 @@ def sheet(finished: Finished) -> str:
         ]
     info = finished.info
     commit = info["versions"].get("commit", "")
-    return render(
-        "reporting/sheet.html",
-        title=info["study"]["title"] or "Rocking piers",
-        path=info["study"]["path"],
-        version=f"rockbatch {info['rockbatch']}" + (f" ({commit})" if commit else ""),
-        date=str(info["created"])[:10],
-        sections=[_unfolded(section) for section in sections if section.content],
-        markers=markers(),
-        style=styles("style.css", "sheet.css"),
+    version = f"rockbatch {info['rockbatch']}" + (f" ({commit})" if commit else "")
+    return Sheet(
+        info["study"]["title"] or "Rocking piers",
+        info["study"]["path"],
+        f"{version}, {str(info['created'])[:10]}",
+        [_unfolded(section) for section in sections if section.content],
     )
 
 
 def _unfolded(section: Section) -> Section:
     """Return a section with its folds open; words of a record cannot be mistaken for a fold, since they are escaped."""
-    return section._replace(content=Markup(re.sub(r"<details(?! open)", "<details open", section.content)))
+    return section._replace(content=Markup(re.sub(r"<details(?! open)", '<details open=""', section.content)))

@@ -85,7 +85,10 @@ def base_of(case: Case, pier: Pier) -> Base | None:
 
 
 def device_in_words(pier: Pier, restraint: Restraint) -> str:
-    """Describe a device, in kN if the pier's mass is known: "friction damper at each pivot, F = 450 kN"."""
+    """Describe a device: "friction damper at each pivot, F = 450 kN"; over the weight if the pier's mass is not known.
+
+    Infinite values are left out.
+    """
     kind = restraint.kind if isinstance(restraint, Damper) else restraint.what
     fields = fields_of(pier)
     values = {}

@@ -256,12 +256,12 @@ def _picture(rows: Sequence[Sequence[Panel]], description: str, more: str = "") 
 
 
 def svg(width: float, height: float, *content: object, description: str, class_: str = "plot") -> Markup:
-    """Return an SVG element of this size [px]; screen readers read its ``description``."""
+    """Return an SVG element that shows ``width`` × ``height`` px, scaled to its place; screen readers read ``description``."""
     return tag("svg", *content, class_=class_, role="img", aria_label=description, viewBox=f"0 0 {width:g} {height:g}")
 
 
 def _room_left(panel: Panel) -> float:
-    """Return the width [px] of the numbers beside the ordinate."""
+    """Return the width [px] left of the axes for the numbers of the ordinate, room for two letters or more."""
     longest = max(map(len, panel.y.ticks().values()), default=0) if panel.y.numbered else 0
     return 10.0 + 6.6 * max(longest, 2)
 
@@ -288,7 +288,7 @@ def _panel(box: Box, captioned: bool) -> Iterator[Markup]:
 
 
 def _frame(box: Box) -> Markup:
-    """Draw axes, grid and numbers; an axis of names has no grid lines."""
+    """Draw axes, grid and numbers; an axis of names has no grid lines, and only as many of its names as have room."""
     x, y = box.panel.x, box.panel.y
     columns, rows = x.ticks(), y.ticks()
     lines = "".join(
@@ -450,7 +450,7 @@ def curve(x: Array, y: Array, class_: str, name: str | None = None, title: str =
 
 
 def _relative(x: Array, y: Array) -> str:
-    """Return SVG path data in whole steps, without points that repeat or lie on a line between two others."""
+    """Return SVG path data in whole steps of a tenth of a pixel, thinned by :func:`_bends`; NaN and far points interrupt it."""
     drawn = (np.abs(x) < _FAR) & (np.abs(y) < _FAR)
     points = np.rint(FINE * np.column_stack([x[drawn], y[drawn]])).astype(np.int64)
     begins = (drawn & ~np.concatenate(([False], drawn[:-1])))[drawn]

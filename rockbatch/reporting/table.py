@@ -54,11 +54,12 @@ def table(
     worst_of: int | None = None,
     open_: bool = False,
 ) -> Markup:
-    """Return a table in a container that scrolls if too wide; columns without a value are left out.
+    """Return a table in a container that scrolls if too wide; columns without a value are left out but for the first.
 
-    Constant columns of a ``sortable`` table stand in a line above it. ``prose`` cells hold several lines of text.
-    ``worst_of`` is the number of rows of which these are the worst. Only the first :data:`MOST_ROWS` rows are shown, with a
-    sentence that says so; tables of more than :data:`MOST_OPEN` are folded unless ``open_``.
+    Constant columns of a ``sortable`` table of more than :data:`LEAST_COMMON` rows stand in a line above it. ``prose`` cells hold
+    several lines of text. ``worst_of`` is the number of rows of which these are the worst. Only the first :data:`MOST_ROWS` rows
+    are shown, on paper :data:`MOST_PRINTED`, with a sentence that says so; tables of more than :data:`MOST_OPEN` are folded
+    unless ``open_``.
     """
     whole = list(rows)
     rows, total = whole[: MOST_PRINTED if for_paper() else MOST_ROWS], worst_of or len(whole)
@@ -193,7 +194,7 @@ def listed(
 
 
 def _cells(kind: str, values: Iterable[object], form: str, **attributes: object) -> list[Markup]:
-    """Return the cells of a column as HTML, numbers aligned on the decimal point."""
+    """Return the cells of a column as HTML; numbers in a format "g", whose decimals differ, are padded by :func:`_aligned`."""
     start, end = tag(kind, _HERE, **attributes).split(_HERE)
     shown = [_text(value, form) for value in values]
     if form.endswith("g"):  # decimals that differ from row to row

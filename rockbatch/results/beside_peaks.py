@@ -37,7 +37,7 @@ class SimulatedRun(NamedTuple):
 
 
 def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[SimulatedRun]:
-    """Yield the simulated runs of ``peaks``, without mirror images."""
+    """Yield the simulated runs of ``peaks`` in its order, without mirror images and unusable files."""
     records = {motion.name: motion for motion in motions}
     cases = {case_key(case.name, case.columns, study.varied): case for case in study.cases}
     columns_kept = [*NAMING, *study.varied, "status", "theta_max_over_alpha"]
@@ -65,13 +65,22 @@ def present(path: Path, key: str) -> Path:
 def read_beside(
     path: Path, varied: Sequence[str], columns: Iterable[str], texts: Collection[str] = ()
 ) -> "pd.DataFrame":
-    """Read a table beside peaks.csv; raise ``InputError`` if a column is missing or, except for ``texts``, not numeric."""
+    """Read a table beside peaks.csv, with "" for empty texts.
+
+    A table without rows, of a study whose runs have none, has heads for its runs only, and gets the ``columns``.
+
+    Raises ``InputError`` if a column that names the run or one of ``columns`` is missing, or if one of these that is not in
+    ``texts`` is not numeric.
+    """
     table = read_table(path)
+    if table.empty and list(table) == list(NAMING):
+        return table.reindex(columns=[*NAMING, *varied, *columns])
     wrong = [f"column {name} is missing" for name in (*NAMING, *varied, *columns) if name not in table]
     numbers = [name for name in columns if name in table and name not in texts]
     wrong += [f"column {name} has texts" for name in numbers if not pd.api.types.is_numeric_dtype(table[name])]
     if wrong:
-        raise InputError(f"{path}: {wrong[0]}: the file was changed; start `rockbatch run` again")
+        why = "the file was changed, or written by an earlier version"
+        raise InputError(f"{path}: {wrong[0]}: {why}; start `rockbatch run` again")
     # As in peaks.csv, with which it is merged: the nominal design has an empty bound
     return table.fillna({name: "" for name in TEXTS if name in table})
 
@@ -98,7 +107,7 @@ def write_semicolons(directory: Path) -> Path:
 
 
 def _with_comma(cell: str) -> str:
-    """Return a cell with a decimal comma if it is a number, infinity as :data:`LARGEST`; words and empty cells unchanged."""
+    """Return a cell with a decimal comma if it is a number, +infinity as :data:`LARGEST`; words and empty cells unchanged."""
     try:
         return LARGEST if float(cell) == math.inf else cell.replace(".", ",")
     except ValueError:

@@ -52,12 +52,13 @@ def check(
     -------
     DataFrame
         The rows of checks.csv, one for each case, scale and rule: see :class:`rockbatch.checks.Verdict`. For a folder whose study
-        fits the suite to a target spectrum, the first row judges the suite and has no case.
+        fits the suite to a target spectrum, the first rows judge the suite, and have no case.
 
     Raises
     ------
     InputError
-        For mistakes in the rules, with line numbers, for rules that do not apply to the results, and for missing columns.
+        For mistakes in the rules, with line numbers, for rules that do not apply to the results, for missing columns, without any
+        rule, and for a table without its ``study``.
 
     Examples
     --------
@@ -77,7 +78,7 @@ def verdicts(
     *,
     study: PathLike | Study | None = None,
 ) -> list[Verdict]:
-    """Return the verdicts of :func:`check`, one for each row."""
+    """Return the verdicts of :func:`check`, one for each row, those on the suite first; ``InputError`` likewise."""
     given = None if rules is None else given_rules(rules)
     records: Mapping[str, str] | None = None
     events: Mapping[str, str] | None = None

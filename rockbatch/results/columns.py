@@ -84,12 +84,12 @@ def cells(runs: Sequence[StudyRun], requested: Container[str] = COLUMNS) -> dict
 
 
 def row(run: StudyRun) -> dict[str, object]:
-    """Return the row of a finished run in peaks.csv."""
+    """Return the row of a finished run in peaks.csv, with all optional columns; None where one does not apply."""
     return {name: values[0] for name, values in cells([run]).items()}
 
 
 def unusable_rows(motions: MotionSet) -> list[dict[str, object]]:
-    """Return a row of peaks.csv, with the reason, for each file that could not be used."""
+    """Return the cells record, status, failure and reason of peaks.csv for each file that could not be used."""
     status: dict[str, object] = {"status": "failed", "failure": Failure.UNUSABLE.value}
     return [status | {"record": file.name, "reason": f"{file.source}: {file.reason}"} for file in motions.unusable]
 
@@ -113,7 +113,10 @@ def with_units(table: "pd.DataFrame", of_columns: Mapping[str, str]) -> "pd.Data
 
 
 def as_table(rows: Iterable[Mapping[str, object]], study: Study) -> "pd.DataFrame":
-    """Return rows of peaks.csv as a DataFrame: "" for missing texts, NaN for numbers, <NA> for counts."""
+    """Return rows of peaks.csv as a DataFrame with the study's columns: "" for missing texts, NaN for numbers, <NA> for counts.
+
+    Varied keys keep their values; further cells are left out.
+    """
     table, varied = list(rows), set(study.varied)
     cells = {name: [row.get(name) for row in table] for name in columns(study)}
     return pd.DataFrame({name: values if name in varied else _typed(name, values) for name, values in cells.items()})
@@ -139,7 +142,10 @@ def _value(name: str, text: str) -> float | str | None:
 
 
 def as_series(cells: Mapping[str, object]) -> "pd.Series":
-    """Return a row of peaks.csv as a Series named after its record; optional columns only if they have a value."""
+    """Return a row of peaks.csv as a Series named after its record, without varied keys.
+
+    Optional columns are there only if they have a value; other missing cells are "", NaN or <NA>.
+    """
     present = [column for column in OPTIONAL if cells.get(column.name) is not None]
     columns = names((*FIXED, *TRAILING, *present))
     values = [

@@ -47,8 +47,8 @@ _DRAWN = ["record", "series", "polarity", "side", "status", "theta_max_over_alph
 def peaks(runs: "pd.DataFrame", series: Sequence[Series], records: Mapping[str, tuple[str, str]], top: float) -> Figure:
     """Return a figure of peaks: a panel for each record, a marker for each foundation, a line for rigid ground.
 
-    ``runs`` have a column ``side``, which distinguishes the marks of one foundation; ``records`` maps records to caption
-    and note; ``top`` is the end of the common axis, θ_max/α.
+    ``runs`` have a column ``side``, which distinguishes the marks of one foundation; ``records`` maps records, each with a
+    run, to caption and note. ``top`` is the end of the common axis of θ_max/α, above which is a band for runs without a peak.
     """
     present = sorted((series[place] for place in runs["series"].unique()), key=lambda one: (not one.rigid, one.index))
     ticks = {one.index + 1.0: one.tick for one in present if not one.rigid}
@@ -70,7 +70,7 @@ def peaks(runs: "pd.DataFrame", series: Sequence[Series], records: Mapping[str, 
 
 
 def _foundation_marks(one: Series, side: str, sides: list[str], runs: list[Row], top: float) -> Iterator[Mark]:
-    """Yield the marks of one foundation and side in a panel; with three or more sides colours distinguish sides."""
+    """Yield the marks of one foundation and side in a panel; of two sides one has open marks, three or more have colours."""
     place, label = sides.index(side), one.keyed + (f" ({side})" if len(sides) > 1 else "")
     titles = [tooltip(one, run, len(sides) > 1) for run in runs]
     abscissa = 0.42 if one.rigid else one.index + 1 + SPREAD * ((place + 0.5) / len(sides) - 0.5)
@@ -100,7 +100,10 @@ def _foundation_marks(one: Series, side: str, sides: list[str], runs: list[Row],
 
 
 def tooltip(series: Series, run: Row, several_sides: bool) -> str:
-    """Return the tooltip of a run's marker: "2: η = 3.5: 0.0617 ± 3e-07", or its status instead of numbers."""
+    """Return the tooltip of a run's marker: "2: η = 3.5: 0.0617 ± 3e-07", or its status instead of numbers.
+
+    With ``several_sides`` the polarity is behind the label, in brackets.
+    """
     name = series.label + (f" ({run['polarity']})" if several_sides else "")
     if run["status"] != "ok":
         return f"{name}: {run['status']}"
@@ -109,9 +112,9 @@ def tooltip(series: Series, run: Row, several_sides: bool) -> str:
 
 
 def peaks_of_all(results: Labelled, info: Item) -> Figure:
-    """Return a figure of the peaks of all piers, scales and polarities, for the :data:`MOST_PANELS` worst records.
+    """Return a figure of the peaks of all piers, scales and polarities: the :data:`MOST_PANELS` worst records, ordered by PGA.
 
-    Raises ``InputError`` without runs, as the other figures of results.
+    Raises ``InputError`` without runs.
     """
     runs = _nonempty(results.runs)
     sides = [runs.loc[of_group.index, []].assign(side=words) for words, of_group in groups_of(runs, results.piers)]
@@ -128,7 +131,7 @@ def peaks_of_all(results: Labelled, info: Item) -> Figure:
 
 
 def peaks_of_cases(results: Labelled) -> Figure:
-    """Return one panel of all peaks that have a value or an ending: a column of points for each foundation.
+    """Return a figure of one panel with the peaks of all records and piers: a column of points for each foundation.
 
     Raises ``InputError`` without runs.
     """
@@ -194,7 +197,7 @@ def _distribution(words: str, runs: "pd.DataFrame", series: Sequence[Series], co
 def self_similar(results: Labelled, info: Item) -> Figure:
     """Return the runs at PGA/(g tan α) over ω_g/p, a panel for each foundation, their θ_max/α as tone.
 
-    Raises ``InputError`` if no run has a PGV.
+    Runs across the axis of a pier are left out. Raises ``InputError`` if none is left that has a PGV.
     """
     runs = _with_self_similar_axes(_nonempty(results.runs), results, info)
     theta = runs["theta_max_over_alpha"][(runs["status"] == "ok") & (runs["theta_max_over_alpha"] > 0)]
@@ -223,9 +226,9 @@ def _scattered(runs: "pd.DataFrame", tone: Axis) -> Iterator[Mark]:
 
 
 def _with_self_similar_axes(runs: "pd.DataFrame", results: Labelled, info: Item) -> "pd.DataFrame":
-    """Return the runs with ω_g/p (``frequency``) and PGA/(g tan α) (``intensity``); those with zero PGV are left out.
+    """Return the runs with ω_g/p (``frequency``) and PGA/(g tan α) (``intensity``); those without a PGV above 0 are left out.
 
-    Runs across the axis of a pier are left out, too: run.json has only the PGV along it.
+    Runs across the axis of a pier are left out, too: run.json has only the PGV along it. Raises ``InputError`` if none is left.
     """
     along = [not is_across(results.cases[place]) for place in zip(runs["series"], runs["pier"], strict=True)]
     runs = runs[along]

@@ -171,7 +171,7 @@ def _write(group: "h5py.Group", response: Response) -> None:
 
 
 def _write_all(group: "h5py.Group", table: "pd.DataFrame", columns: Iterable[str]) -> None:
-    """Write columns of a table: texts, or numbers with their unit."""
+    """Write columns of a table: "kind" and "pivot" as texts of at most 16 bytes, others as numbers with their unit."""
     is_devices = group.name.endswith("restraints")
     for name in columns:
         if name in ("kind", "pivot"):
@@ -183,7 +183,7 @@ def _write_all(group: "h5py.Group", table: "pd.DataFrame", columns: Iterable[str
 
 
 def _set(group: "h5py.Group", values: Mapping[str, object]) -> None:
-    """Set the attributes of a group; None is left out."""
+    """Set the attributes of a group, with characters escaped that HDF5 cannot store; None is left out."""
     for name, value in values.items():
         if value is not None:
             group.attrs[name] = _legible(value) if isinstance(value, str) else value
@@ -211,7 +211,7 @@ class Responses(Sequence[Response]):
     def runs(self) -> "pd.DataFrame":
         """Table of the runs: record, case, polarity, scale, status and varied keys, NaN if a key does not apply.
 
-        No history is read for it.
+        No history is read for it; it has no rows if there is no file.
         """
         rows = []
         if self.path.exists() or self.path.is_symlink():
@@ -255,7 +255,7 @@ class Responses(Sequence[Response]):
                 raise InputError(f"{self.path}: damaged ({error}); start `rockbatch run` again") from error
 
     def _check_digest(self, plain: io.FileIO) -> None:
-        """Raise ``InputError`` if bytes were changed; accept a file without a digest."""
+        """Raise ``InputError`` if bytes were changed; accept a file without a digest, or found intact and unchanged since."""
         if (state := state_of(os.fstat(plain.fileno()))) != self._intact:
             head = plain.read(BLOCK)
             if head.startswith(MARK) and head[len(MARK) :].rstrip(b"\0") != _digest(plain):
@@ -324,7 +324,7 @@ def _table(group: "h5py.Group", kinds: Mapping[str, str], rows: int | None = Non
 
 
 def _row_of(response: Response, peaks: "pd.DataFrame") -> "pd.Series | None":
-    """Return the row of ``peaks`` with the response's identity, numbers compared to ten digits; None without one."""
+    """Return the first row of ``peaks`` with the response's identity, numbers compared to ten digits; None if there is none."""
     names = {name: getattr(response, name) for name in ("record", "case", "polarity", "scale")} | response.columns
     matches = np.ones(len(peaks), dtype=bool)
     for name, value in names.items():
@@ -345,7 +345,7 @@ def _run(group: "h5py.Group") -> dict[str, Any]:
 def history_bytes(run: StudyRun, row: "Item | pd.Series") -> float:
     """Estimate the size of a run's history on disk [bytes], at most a third too large.
 
-    Each column takes eight bytes for each sample and for each side of an event.
+    Each column takes eight bytes for each sample and for each side of an event, and :data:`BYTES_OF_A_DATASET`.
     """
     pier, base = run.case.pier, run.case.base
     columns = len(columns_of(base, base.bends))

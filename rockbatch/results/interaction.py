@@ -11,5 +11,5 @@ INTERACTION = "interaction.csv"
 
 
 def read_interaction(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
-    """Return the table of a study that varies these keys; ``InputError`` if it is not as it was written."""
+    """Read interaction.csv of a study with these ``varied`` keys; ``InputError`` if a column is missing or has texts."""
     return read_beside(path, varied, OF_INTERACTION).astype(dict.fromkeys(OF_INTERACTION, "float64"))

@@ -62,7 +62,7 @@ class Labelled:
     ) -> str:
         """Return the label of a case and its pier, with the ``scale`` of its motions if given and if there are several.
 
-        ``columns`` maps the ``varied`` keys to values.
+        ``columns`` maps the ``varied`` keys to values. A case without runs is called by its name and all values of ``columns``.
         """
         key, pier = foundation_key(case, columns, varied), pier_key(columns, varied)
         if key in self.places and pier in self.pier_places:
@@ -133,9 +133,10 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
 
 
 def groups_of(runs: "pd.DataFrame", piers: Sequence[str]) -> "Iterator[tuple[str, pd.DataFrame]]":
-    """Yield a description, "" if only one is run, and the runs of each scale, pier and vertical component.
+    """Yield a description and the runs of each group of one scale, pier and vertical component, ordered by these.
 
-    A generator, since all groups together take as much memory as ``runs``.
+    The description names those of the three that differ in ``runs``; "" if none does. A generator, since all groups together
+    take as much memory as ``runs``.
     """
     rows: dict[Any, Any] = runs.groupby(["scale", "pier", "with_vertical"]).indices
     scaled = runs["scale"].nunique() > 1
@@ -148,14 +149,14 @@ def groups_of(runs: "pd.DataFrame", piers: Sequence[str]) -> "Iterator[tuple[str
 
 
 def ceiling(runs: "pd.DataFrame") -> float:
-    """Return the top of a θ_max/α axis for the runs that end standing, with their errors and a margin; 1 without a peak."""
+    """Return the top of a θ_max/α axis: 1.1 times the highest peak with its error of runs with status "ok"; 1 without any."""
     stood = runs[runs["status"] == "ok"]
     highest = (stood["theta_max_over_alpha"] + stood["theta_max_error"].fillna(0)).max()
     return 1.1 * float(highest) if highest > 0 else 1.0
 
 
 def by_pga(names: Iterable[str], info: Item) -> list[str]:
-    """Sort the record ``names`` by peak ground acceleration, weakest first, unknown ones last."""
+    """Sort the record ``names`` by peak ground acceleration, weakest first, then by name; unknown records last."""
     pga = {record["record"]: record["pga_g"] for record in info["records"]}
     return sorted(names, key=lambda name: (pga.get(name, math.inf), name))
 

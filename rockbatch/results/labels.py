@@ -101,7 +101,7 @@ class Series:
 
     @property
     def keyed(self) -> str:
-        """Return the label for a legend, preceded by the tick unless it begins with it: "a – pads: β = 40"."""
+        """Return the label for a legend after the tick, "a – pads: β = 40"; alone if rigid, or if its case is the tick."""
         return self.label if self.rigid or self.label.split(":")[0] == self.tick else f"{self.tick} – {self.label}"
 
 
@@ -152,13 +152,16 @@ def unit_with_exponent(unit: str, exponent: float) -> str:
 
 
 def _exponent(case: Case, kind: str, number: int) -> float:
-    """Return the exponent of the ``number``-th device of a kind in a case of run.json; 1 if it has none."""
+    """Return the exponent of the ``number``-th device of a kind in a case of run.json; 1 if it has none or is not there."""
     of_kind = [device for device in devices(case) if what_of(device) == kind]
     return next((device.get("exponent") for device in of_kind[number - 1 :]), None) or 1.0
 
 
 def plain(value: float, digits: int) -> str:
-    """Format a number as given, without an "e": "45,000", "2.5 × 10⁶"; ``digits`` significant, integer digits in full."""
+    """Format a number to ``digits`` significant digits without an "e": "0.35", "4500", "45,000", "2.5 × 10⁶".
+
+    Up to six integer digits are kept in full, with a comma from five on; numbers with more are written with a power of ten.
+    """
     whole = len(str(int(abs(value))))
     if whole <= 6:
         written = f"{value:.{max(digits, whole)}g}"
@@ -176,10 +179,11 @@ def digits_that_tell(values: Iterable[object], least: int = 3) -> int:
 def named(
     cases: Mapping[Key, Sequence[Case]], varied: Sequence[str], given: Mapping[str, Collection[str]]
 ) -> dict[Key, Series]:
-    """Return a series for each foundation, labelled by the values that distinguish it from the others.
+    """Return a series for each foundation, labelled by its case and the values that distinguish it from others of its kind.
 
-    ``cases`` maps each foundation to its entries in run.json, one for each pier; ``given`` maps case names to the keys that
-    the study gives.
+    The case is left out if all share it and values distinguish them. A tick is a letter, or the name of the case if all names are
+    short and different. ``cases`` maps each foundation to its entries in run.json,
+    one for each pier; ``given`` maps case names to the keys that the study gives.
     """
     constants = {key: _constants(of_foundation, given.get(str(key[0]), ())) for key, of_foundation in cases.items()}
     # The rocking block itself, drawn as a line to compare others with: on rigid ground and without devices
@@ -212,7 +216,10 @@ def named(
 
 
 def under_bounds(designs: Mapping[Key, Series], keys: Iterable[Key]) -> dict[Key, Series]:
-    """Return a series for each of the ``keys``, which end with a bound: the label of its design, and the bound behind it."""
+    """Return a series for each of the ``keys``, which end with a bound: the label of its design, and the bound after a comma.
+
+    The nominal design, whose bound is "", keeps its label. Letters are given anew.
+    """
     series: dict[Key, Series] = {}
     count = {True: 0, False: 0}
     for *design, bound in keys:
@@ -235,9 +242,10 @@ def _differing(names: Iterable[str], values: Sequence[Mapping[str, object]]) -> 
 
 
 def _constants(cases: Sequence[Case], given: Collection[str]) -> dict[str, object]:
-    """Return the parameters of a foundation that are equal on every pier, without equivalents of ``given`` keys.
+    """Return the parameters and varied values of a foundation that are equal on every pier, except keys of the pier and None.
 
-    With the stiffness given, for example, β depends on the pier and is left out; of a footing on soil it says nothing.
+    Of β and the stiffness, and of η and the yield force, the one with units is kept if it is in ``given``, since the other then
+    depends on the pier; else the one without. β of a footing is left out unless it is given.
     """
     first, *further = [case["parameters"] | case["columns"] for case in cases]
     omitted = {free if unit in given else unit for free, unit in SAME.items()}.union(PIER_KEYS)

@@ -160,7 +160,10 @@ class Results(Shown, Saved):
         return labelled(self.peaks, self.info, self.directory)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
-        """See :class:`Shown`."""
+        """Return the title, and the numbers of runs by status, the largest peak, the number of unused files, and histories.
+
+        "" hides a fact: see :class:`Shown`.
+        """
         runs = simulated(with_case(self.peaks))
         counts = runs["status"].value_counts()
         facts = {"runs": f"{len(runs)}: " + ", ".join(f"{n} {status}" for status, n in counts.items())}
@@ -175,7 +178,7 @@ class Results(Shown, Saved):
         return f"results of {self.info['study']['title']!r} in {self.directory}", facts
 
     def _beneath(self) -> "pd.DataFrame":
-        """See :class:`Shown`."""
+        """Return the table below the facts in a notebook: record, case, varied keys and results of simulated runs."""
         results = ["status", "theta_max_over_alpha", "theta_max_error", "settlement_m"]
         return simulated(self.peaks)[["record", "case", *self.info["varied"], *results]]
 

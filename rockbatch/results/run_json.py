@@ -216,12 +216,14 @@ def is_of(directory: Path, sha256: str, records: Sequence[str] | None = None) ->
 
 def _is_pulse(motion: Motion, study: Study) -> bool:
     """Return whether a motion is a pulse of the study, or a sequence of pulses: targets do not scale these."""
-    names = [shock.name for shock in motion.shocks] or [motion.name]
-    return {pulse.name for pulse in study.motions.pulses}.issuperset(names)
+    return {pulse.name for pulse in study.motions.pulses}.issuperset(motion.records)
 
 
 def rocking_periods(cases: Sequence[Case], target: SpectrumTarget) -> dict[str, list[float]]:
-    """Return the shortest and longest free-rocking period at 0.1 α [s] as ``rocking_s``; {} without a code or any period."""
+    """Return {"rocking_s": [shortest, longest]}, the free-rocking periods [s] at 0.1 α of all cases, to five digits.
+
+    {} if the target follows no code, or no case has a period.
+    """
     kinds = [(case.pier, case.base) for case in cases] if target.code else []
     distinct = [kind for i, kind in enumerate(kinds) if kind not in kinds[:i]]
     periods = [period for kind in distinct for period in _period_at(*kind)]
@@ -238,7 +240,7 @@ def _period_at(pier: Pier, base: Base) -> list[float]:
 
 
 def _vertical_target(study: Study, motions: MotionSet, gravity: float) -> Row:
-    """Return the entry of the vertical target spectrum; empty without one."""
+    """Return {"vertical_target": …}, the entry of the vertical target spectrum; {} without one."""
     target = study.motions.vertical_target
     if not isinstance(target, SpectrumTarget):
         return {}

@@ -23,12 +23,12 @@ def section_rows(pier: Pier, sections: Sequence[Section]) -> list[dict[str, Any]
 
 
 def as_table(rows: Iterable[dict[str, Any]]) -> "pd.DataFrame":
-    """Return rows as a DataFrame of numbers; NaN where one is not known."""
+    """Return rows as a DataFrame of floats, with the columns of sections.csv alone; NaN for None and missing cells."""
     return pd.DataFrame(list(rows), columns=list(OF_SECTIONS), dtype="float64")
 
 
 def read_sections(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
-    """Return the table of a study that varies these keys; ``InputError`` if it is not as it was written."""
+    """Read sections.csv of a study with these ``varied`` keys; ``InputError`` if a column is missing or has texts."""
     return read_beside(path, varied, OF_SECTIONS).astype(dict.fromkeys(OF_SECTIONS, "float64"))
 
 

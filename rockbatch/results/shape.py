@@ -44,7 +44,7 @@ class Misfit(NamedTuple):
 
 
 def unfit(value: object, shape: object, most: int | None = None) -> Iterator[Misfit]:
-    """Yield the parts of ``value`` that do not fit, at most ``most``."""
+    """Yield the parts of ``value`` that do not fit ``shape``, at most ``most``; all for None."""
     return islice(_unfit(value, shape, ""), most)
 
 
@@ -100,7 +100,10 @@ def _fits_at_once(value: object, shape: object) -> bool:
 
 
 def _is_a(value: object, kind: object) -> bool:
-    """Return whether ``value`` is None, of type ``kind``, or equal to the text ``kind``."""
+    """Return whether ``value`` is None, of type ``kind``, or equal to the text ``kind``, as ``kind`` is one of these.
+
+    Numbers are finite and less than :data:`MOST`; an int is a float, too, and a bool no number.
+    """
     if kind is None:
         return value is None
     if kind is bool or kind is str:

@@ -25,9 +25,10 @@ LABELLED = COLOURS
 
 
 def drawable(spectra: Item) -> bool:
-    """Return whether periods rise and every spectrum has a value, not negative, or None for each: run.json is untrusted.
+    """Return whether spectra of run.json, which is untrusted, can be drawn.
 
-    A target and its mean are both there or both missing.
+    There are two or more periods, above 0 and rising; every spectrum has a value for each, not negative, or None; and a target
+    and its mean are both there or both missing.
     """
     periods, more = spectra["period_s"], [spectra[name] for name in ("mean_sa_g", "target_sa_g") if name in spectra]
     shown = [*spectra["sa_g"], *more]
@@ -41,7 +42,8 @@ def response_spectra(spectra: Item, names: Sequence[str], fitted: tuple[float, f
     """Return a figure of pseudo-spectral acceleration [g] over period [s], both logarithmic.
 
     ``spectra``, from run.json, has ``damping``, ``period_s``, ``sa_g`` in the order of ``names`` and, optionally,
-    ``target_sa_g``, to which the suite's ``mean_sa_g`` is ``fitted`` between two periods [s].
+    ``target_sa_g``, to which the suite's ``mean_sa_g`` is ``fitted`` between two periods [s]. Without a target the median of
+    several records is drawn; more than :data:`LABELLED` records are faint, with the 16 and 84 % quantiles.
     """
     periods, values = np.array(spectra["period_s"], dtype=float), np.array(spectra["sa_g"], dtype=float)
     target = np.array(spectra.get("target_sa_g", ()), dtype=float)

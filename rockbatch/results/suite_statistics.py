@@ -51,8 +51,8 @@ class Statistics:
 
 
 class Records(NamedTuple):
-    """Records, shapes (n,): the worst magnitude of each, infinite if it overturned or flew, NaN if unknown; flags of these
-    outcomes; and its group, in whose order the records are."""
+    """Records, shapes (n,): the worst magnitude of each over its runs that did not fail, infinite if it overturned or flew, NaN
+    without a value; flags of these outcomes, at most one True; and its group, in whose order the records are."""
 
     worst: Values
     overturned: npt.NDArray[np.bool_]
@@ -75,8 +75,8 @@ def records(
     """Combine runs with ``values``, shape (n,), whose magnitudes count, and ``status`` into records.
 
     Runs of one ``group`` that are ``counted_as`` the same record count once, with the worst of them: overturned, then
-    flight, then the largest value. If one of them failed and none overturned or flew, the record is unknown. By default
-    every run is a record of group 0.
+    flight, then the largest value. If one of them failed and none overturned or flew, the record counts as failed, whatever
+    its other runs. By default every run is a record of group 0.
     """
     kinds = np.asarray(status, dtype=object)
     no_peak = np.isin(kinds, NO_PEAK)

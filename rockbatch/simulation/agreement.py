@@ -50,7 +50,10 @@ class Tolerances(NamedTuple):
 
 
 def agreement(fine: Trial, coarse: Trial, tolerances: Tolerances, pier: Pier) -> Agreement:
-    """Return the extent to which two trials agree within ``tolerances``; NONE if their statuses differ."""
+    """Return the extent to which two trials agree within ``tolerances``; NONE if their statuses differ.
+
+    Failed runs agree only in a failure that smaller steps do not change (:data:`rockbatch.simulation.runs.LEFT_ALONE`).
+    """
     finer, coarser = fine.outcome, coarse.outcome
     if finer.status != coarser.status:
         return Agreement.NONE
@@ -95,7 +98,10 @@ def same_counts(fine: Outcome, coarse: Outcome) -> bool:
 
 
 def windows(fine: Trial, coarse: Trial) -> tuple[Samples, Samples]:
-    """Return the greater of two runs' extremes and their difference, per window [rad]; 0 if none reached it, inf if one did."""
+    """Return the greater of two runs' extremes and their difference, per window [rad].
+
+    Both are 0 in a window that neither run reached; the difference is infinite if one alone did.
+    """
     greatest, change = np.fmax(fine.extremes, coarse.extremes), np.abs(fine.extremes - coarse.extremes)
     change[np.isnan(change)] = math.inf  # a window that only one of the two runs has reached
     reached = ~np.isnan(greatest)

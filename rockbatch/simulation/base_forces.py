@@ -25,7 +25,7 @@ def at_rows(run: Run, rows: np.recarray) -> np.recarray:
 def observed(run: Run, rows: np.recarray, least_normal: float, forces: np.recarray, extremes: Samples) -> np.record:
     """Fill ``forces`` at the rows, or ``extremes`` over ``rows`` at every step; return the record Noted.
 
-    An empty array is not filled. The friction demand is taken where N > ``least_normal`` M g.
+    An empty array is not filled; without rows nothing is. The friction demand is taken where N > ``least_normal`` M g.
     """
     noted = np.zeros(1, NOTED).view(np.recarray)
     noted.slides = noted.pulls = NEVER

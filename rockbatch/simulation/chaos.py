@@ -34,7 +34,8 @@ rotation FALLS α, from which a pier may overturn."""
 def magnifies(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, until: int) -> bool:
     """Return True if a run that claims the error of its peak magnifies errors of steps; ``until`` is the motion's last window.
 
-    A chaotic peak does, as it magnifies changes of the motion (THEORY.md, The error that a row reports).
+    Without that error its peak within the motion is looked at; False if neither has an error. A chaotic peak magnifies them, as
+    it does changes of the motion (THEORY.md, The error that a row reports).
     """
     greatest, change = windows(fine, coarse)
     peak, claimed = outcome.theta_max, outcome.theta_max_error
@@ -51,8 +52,8 @@ def magnifies(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, until: int
 def residuals_wander(levels: Sequence[Trial], tolerance: float, pier: Pier) -> bool:
     """Return True if the residuals of a converged run may be chaotic, which rotations do not show; False without residuals.
 
-    Then counts of events differ between the last two ``levels``, or the changes of residuals did not fall by :data:`NEARER`
-    from one halving to the next.
+    Then counts of events differ between the last two ``levels``, or a halving changed residuals by more than the ``tolerance``
+    [rad] and than 1/:data:`NEARER` of what the halving before did.
     """
     outcomes = [trial.outcome for trial in levels]
     if outcomes[-1].theta_res_error is None:
@@ -70,7 +71,10 @@ def look_for_chaos(
     quiet_s: float,
     stop: Stop,
 ) -> None:
-    """Repeat ``doubtful`` runs under :data:`CHANGES`, and raise or withdraw the errors in ``outcomes``; None if stopped."""
+    """Repeat ``doubtful`` runs under :data:`CHANGES`, and raise or withdraw their errors in ``outcomes``, in place.
+
+    The outcome of a run whose repetition was stopped becomes None.
+    """
     probes = [(i, words, change) for i in doubtful for words, change in CHANGES.items()]
     changed = [replace(runs[i], motion=runs[i].motion.times(1.0 + change)) for i, _, change in probes]
     trials = try_all(changed, [doubtful[i].outcome.substeps for i, _, _ in probes], quiet_s, stop)

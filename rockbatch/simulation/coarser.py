@@ -29,7 +29,8 @@ def with_fewer_modes(run: Run) -> Run | None:
 def with_modes_error(outcome: Outcome, other: Outcome, chance: float) -> Outcome:
     """Return ``outcome`` with ``chance`` times the change from the ``other`` one, by a mode fewer, in its errors.
 
-    Modes converge at no known order.
+    Unchanged unless the run ended well; without errors, and with a note, if the other ended otherwise. Modes converge at no known
+    order.
     """
     if outcome.status != "ok":
         return outcome
@@ -112,7 +113,7 @@ def _change(one: Outcome, other: Outcome, name: str) -> float:
 
 
 def tolerances_beside(tolerance: float, share: StripsShare | None) -> Tolerances:
-    """Return the Tolerances of a run: ``tolerance`` [rad], or the part of the ``share`` of its strips that steps may add."""
+    """Return the Tolerances of a run: ``tolerance`` [rad], or a tenth (:data:`STEPS`) of the ``share`` of its strips if more."""
     if share is None:
         return Tolerances(tolerance, tolerance, np.full(WINDOWS, tolerance))
     return Tolerances(
@@ -123,7 +124,12 @@ def tolerances_beside(tolerance: float, share: StripsShare | None) -> Tolerances
 
 
 def with_strips_error(outcome: Outcome, own: Trial, fewer: Trial, half_width: float) -> Outcome:
-    """Return ``outcome`` with errors by steps and strips, of trials on its ``own`` strips and ``fewer`` at the same step."""
+    """Return ``outcome`` with errors by steps and strips, of trials on its ``own`` strips and ``fewer`` at the same step.
+
+    An error is :data:`UNEVEN` times that by steps, and the share of the strips. Without errors, and with a note, if the trials
+    end differently; one that did not end well has that of its peak within the motion only.
+    """
+    outcome = _with_strips_in_motion(outcome, own.outcome, fewer.outcome)
     if outcome.status != "ok" or outcome.bed is None:
         return outcome
     share = share_of_strips(own, fewer, half_width)
@@ -139,6 +145,15 @@ def with_strips_error(outcome: Outcome, own: Trial, fewer: Trial, half_width: fl
         error = getattr(outcome, name)
         more[name] = None if error is None else UNEVEN * error + of_strips
     return outcome.changed(**more)
+
+
+def _with_strips_in_motion(outcome: Outcome, own: Outcome, fewer: Outcome) -> Outcome:
+    """Return ``outcome`` with the share of the strips in the error of its peak within the motion, if that has one."""
+    if outcome.change_in_motion is None:
+        return outcome
+    least = EXTREMES * LEAST * own.theta_max_in_motion
+    of_strips = max(UNEVEN * _change(own, fewer, "theta_max_in_motion"), least)
+    return outcome.changed(change_in_motion=UNEVEN * outcome.change_in_motion + of_strips)
 
 
 MOST_DAMPING = 0.1

@@ -46,7 +46,7 @@ ERRORS = (
 
 
 def run_to_tolerance(pier: Pier, base: Base, motion: Motion, tolerance: float, quiet_s: float = 2.0) -> Outcome:
-    """Run with step halving; see :func:`run_all_to_tolerance`."""
+    """Return the converged outcome of one run, as :func:`run_all_to_tolerance` of several."""
     outcome = run_all_to_tolerance([Run(pier, base, motion)], tolerance, quiet_s, Stop())[0]
     assert outcome is not None
     return outcome
@@ -60,7 +60,9 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
     if they do not, more halvings are needed (:data:`PAIRS`). The first step respects the springs' frequency, because two coarse
     runs that agree prove nothing otherwise. A run that has not converged after :data:`HALVINGS`, or would take more than
     :data:`rockbatch.simulation.runs.MOST_STEPS` steps, keeps its best values and fails with the reason; counts that have not
-    converged are a note. ``None`` for runs that were stopped.
+    converged are a note. Results that may be chaotic are repeated under a tiny change of the motion, and claim no error if it
+    moves them beyond the tolerance. With fewer strips of a bed, or modes of a shaft, runs are repeated for their share in the
+    errors. ``None`` for runs that were stopped.
     """
     outcomes: list[Outcome | None] = [None] * len(runs)
     first = [first_substeps(run.pier, run.base, run.motion.dt) for run in runs]
@@ -119,7 +121,7 @@ def _on_beds(
 def _with_modes_errors(
     runs: Sequence[Run], outcomes: Sequence[Outcome | None], quiet_s: float, stop: Stop
 ) -> list[Outcome | None]:
-    """Return ``outcomes`` with the share of the modes of shafts in their errors, by runs with one fewer."""
+    """Return ``outcomes`` with the share of the modes of shafts in their errors, by runs with one fewer; None if stopped."""
     found = list(outcomes)
     fewer = list[tuple[int, Run, int]]()
     for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True)):
@@ -152,7 +154,10 @@ def _least_error(base: Base) -> float:
 
 
 def _with_errors(run: Run, fine: Outcome, coarse: Outcome) -> Outcome:
-    """Return ``fine`` with its differences from ``coarse`` as errors; without, if it overturned, failed or ended otherwise."""
+    """Return ``fine`` with its differences from ``coarse`` as errors, at least rounding, of devices :data:`CHANCE` times these.
+
+    Unchanged if it overturned or failed, or if the statuses differ.
+    """
     if fine.status != coarse.status or fine.status in (
         "overturned",
         "failed",
@@ -177,8 +182,8 @@ def _with_peak_in_motion(
 ) -> Outcome:
     """Return the ``outcome`` of ``fine`` with the error of the peak within the motion, which ends in the window ``until``.
 
-    It is :data:`CHANCE` times the greatest change of any extreme until then from ``coarse``, of twice the step; None if that
-    exceeds the ``tolerance`` [rad].
+    It is :data:`CHANCE` times the greatest change of any extreme until then from ``coarse``, of twice the step; unchanged if that
+    exceeds the ``tolerance`` [rad], or if the pier lay on its side by then.
     """
     peaks = abs(fine.outcome.theta_max_in_motion - coarse.outcome.theta_max_in_motion)
     change = CHANCE * max(peaks, float(windows(fine, coarse)[1][:until].max(initial=0.0)))
@@ -230,7 +235,10 @@ def _with_notes(fine: Trial, coarse: Trial, extent: Agreement, tolerances: Sampl
 
 
 def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: str) -> Outcome:
-    """Return the finest of a run's ``levels`` as a failed outcome: it keeps its values, and claims no errors."""
+    """Return the finest of a run's ``levels`` as a failed outcome, which keeps its values and claims no errors.
+
+    One that failed by itself is returned as it is.
+    """
     finest = levels[-1].outcome
     if finest.status == "failed":
         return finest

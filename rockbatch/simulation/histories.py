@@ -96,7 +96,10 @@ def histories(
 
 
 def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str, str, int, int]]:
-    """Return time, kind and pivot of every event, and the indices of the rows before and after it, in order of time."""
+    """Return time, kind and pivot of every event, and the indices of the rows before and after it, in order of time.
+
+    Both are the same row for an event without a jump; for the first flight it is the last row until then.
+    """
     kinds = rows.kind
     events = []
     for row in np.flatnonzero(kinds > 0):
@@ -117,7 +120,7 @@ def _energy(pier: Pier, base: Base, rows: np.recarray) -> Samples:
 
 
 def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Samples]:
-    """Return columns of a history on rigid ground: rotation, rate, and energy without devices since the start."""
+    """Return columns of a history on rigid ground: rotation, rate, energy without devices since the start; NaN for springs'."""
     none = dict.fromkeys(
         ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"), np.full(len(rows), np.nan)
     )
@@ -125,7 +128,7 @@ def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Sa
 
 
 def _deflection(pier: Pier, base: WithShaft, rows: np.recarray) -> Samples:
-    """Return the deflection of the top of an elastic shaft across it [m]."""
+    """Return the deflection of the highest point of an elastic shaft across its axis [m], at every row."""
     shapes = base.modes(pier).at(pier.highest)
     deflection: Samples = shapes @ of_modes(rows)[0][: len(shapes)]
     return deflection
@@ -144,7 +147,8 @@ def of_modes(rows: np.recarray) -> tuple[Samples, Samples]:
 def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
     """Return columns of a history on a footing at every step: state, edges of the foot, two forces there, energy.
 
-    The forces at the edges are equal to the push of the bed; the energy is without devices, and from the start.
+    The two forces have the sum and the moment of the bed's push, and are below 0 when pressed; the energy is without devices, and
+    from the start.
     """
     pier, base, nothing = run.pier, run.base, np.full(len(rows), np.nan)
     bed = np.recarray(len(rows), BED_STATE)
@@ -172,7 +176,10 @@ def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
 
 
 def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str, Samples]:
-    """Return columns of a history on springs: state, pivots, support forces, energy without devices since the start."""
+    """Return columns of a history on springs: state, pivots, support forces, energy without devices since the start.
+
+    Forces are per unit mass [N/kg], and below 0 when pressed.
+    """
     m = springs(pier, base)
     v, theta, z_left, z_right = rows.v, rows.theta, rows.z_left, rows.z_right
     b, h = m.half_width, m.height

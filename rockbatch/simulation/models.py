@@ -324,7 +324,7 @@ def _element(pier: Pier, base: Base, device: Restraint, place: Place) -> Element
     if isinstance(device, DeckSpring) and device.linear:
         return element._replace(kind=SPRING, stiffness=stiffness, linear_below=math.inf)
     returned = float(device.restitution**2)
-    quickest = math.sqrt(_lever(pier, base, element) * stiffness / returned)
+    quickest = math.sqrt(_accelerance(pier, base, element) * stiffness / returned)
     return element._replace(
         kind=CONTACT, stiffness=stiffness, start=float(device.gap_m), returned=returned, quickest=quickest
     )
@@ -365,19 +365,19 @@ def _braced(pier: Pier, damper: Damper, element: Element) -> Element:
 def _linear_part(pier: Pier, base: Base, element: Element, coefficient: float, exponent: float) -> tuple[float, float]:
     """Return the speed [m/s] below which a viscous damper is linear, and the slope [1/s] of its force there.
 
-    For a < 1 the damping rate is unbounded at low speed, and would stop small motions faster than any step resolves. 0 and 0
-    for a > 1.
+    For a < 1 the damping rate is unbounded at low speed, and would stop small motions faster than any step resolves. Infinite and
+    the coefficient for a = 1; 0 and 0 for a > 1 and without a coefficient.
     """
     if exponent > 1.0 or coefficient == 0.0:
         return 0.0, 0.0
     if exponent == 1.0:
         return math.inf, coefficient
-    speed = (coefficient * _lever(pier, base, element) / _fastest(pier, base)) ** (1.0 / (1.0 - exponent))
+    speed = (coefficient * _accelerance(pier, base, element) / _fastest(pier, base)) ** (1.0 / (1.0 - exponent))
     return speed, coefficient * speed ** (exponent - 1.0)
 
 
 def _fastest(pier: Pier, base: Base) -> float:
-    """Return the greatest rate [1/s] on springs, without devices; on rigid ground :data:`STEEP` p, the bound for dampers."""
+    """Return the greatest frequency or decay rate [1/s] on springs, without devices; on rigid ground the bound STEEP p."""
     if not base.on_springs:
         return STEEP * pier.p
     return _fastest_on_springs(springs(pier, base)) if base.bends else fastest(pier, base)
@@ -400,7 +400,7 @@ def _fastest_on_springs(m: Springs) -> float:
     return greatest
 
 
-def _lever(pier: Pier, base: Base, element: Element) -> float:
+def _accelerance(pier: Pier, base: Base, element: Element) -> float:
     """Return the acceleration at a device by a unit force there per unit mass: on springs in full contact, else about a pivot."""
     if element.height != 0.0:
         inertia = pier.inertia + pier.height**2 if base.on_springs else pier.inertia_about_pivot
@@ -432,7 +432,7 @@ def fastest_rate(pier: Pier, base: Base) -> float:
     """Return the greatest rate [1/s] of a model: of springs, vibration against devices, or decay by linear dampers."""
     stiff, slows, relaxes, steep = 0.0, 0.0, 0.0, False
     for law in elements(pier, base):
-        lever = _lever(pier, base, law)
+        lever = _accelerance(pier, base, law)
         steel = law.strength / (1.0 + law.give) if law.kind == HYSTERETIC else 0.0
         stiff += lever * law.stiffness * (steel or law.kind in (TENDON, SPRING, MAXWELL))
         slows += lever * law.coefficient if law.kind == VISCOUS else 0.0
@@ -457,12 +457,15 @@ def acceleration_at(samples: Samples, dt: float, t: Samples | float) -> Samples:
 
 
 def first_substeps(pier: Pier, base: Base, dt: float) -> int:
-    """Return the steps per sample of ``dt`` [s] of a first run, by the model's highest frequency; on a rigid base two or more."""
+    """Return the steps per sample of ``dt`` [s] of a first run: with the model's fastest rate ω, ω h ≤ :data:`FREQUENCY_STEP`.
+
+    One at least, on a rigid base two.
+    """
     return max(_substeps_for(FREQUENCY_STEP, pier, base, dt), 1 if base.on_springs else FIRST_ON_ROCK)
 
 
 def least_substeps(pier: Pier, base: Base, dt: float) -> int:
-    """Return the least steps per sample of ``dt`` [s] with which the integration is stable."""
+    """Return the least steps per sample of ``dt`` [s] with which the integration is stable, ω h ≤ :data:`STABLE_STEP`."""
     return _substeps_for(STABLE_STEP, pier, base, dt)
 
 
@@ -471,7 +474,7 @@ def _substeps_for(largest: float, pier: Pier, base: Base, dt: float) -> int:
 
 
 def patience(pier: Pier, dt: float) -> int:
-    """Return the greatest number of samples of ``dt`` [s] after the record; see :data:`PATIENCE`."""
+    """Return the greatest number of samples of ``dt`` [s] after the record: those of 40/p (:data:`PATIENCE`), and one more."""
     return int(PATIENCE / (pier.p * dt)) + 1
 
 

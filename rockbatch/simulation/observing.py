@@ -103,8 +103,8 @@ def observed(
 ) -> list[Outcome]:
     """Return ``outcomes`` with the results of ``observers``; with ``error`` also their errors, by a history of twice the step.
 
-    A run that is too long to be recorded at every step is read only by observers that need samples. Runs that come after
-    ``stop`` are not read.
+    A run that is too long to be recorded at every step is read only by observers that need samples. A run with an odd number of
+    steps per sample has no errors. Runs that come after ``stop`` are not read.
     """
     reading, halved = dict[int, list[Observer]](), [o.changed(substeps=o.substeps // 2) for o in outcomes]
     for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True)):

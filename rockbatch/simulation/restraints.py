@@ -172,7 +172,7 @@ def rests_at(
 def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Samples, sticks: np.ndarray) -> float:
     """Return the rotation [rad] at which devices hold a pier that is not at rest upright; 0 if they do not hold it.
 
-    Friction holds the final rotation; other devices deform elastically until weight and devices balance.
+    Friction holds the final rotation; other devices deform elastically until weight and devices balance, between 0 and that.
     """
     theta, b = result.theta_end, pier.half_width
     laws = elements(pier, base)

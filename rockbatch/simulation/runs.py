@@ -28,7 +28,7 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
-from rockbatch.pier.laws import steady
+from rockbatch.pier.laws import without_ratcheting
 from rockbatch.simulation.beds import of_bed
 from rockbatch.simulation.compilation import kernel_of
 from rockbatch.simulation.models import (
@@ -72,7 +72,7 @@ _REASONS = {
     Failure.UNDECIDED: "left alone after the record, the pier stays where it may yet overturn",
     Failure.RATCHETS: (
         "left alone after the record, the pier leans further and further: yielding springs ratchet on free vibration; "
-        f"spring = {steady('and')} do so least"
+        f"spring = {without_ratcheting('and')} do so least"
     ),
 }
 
@@ -177,9 +177,10 @@ def written_runs(
     every_step: bool = False,
     wait: bool = True,
 ) -> list[tuple[Result, np.recarray]]:
-    """Return the results of runs of one system, and their histories of at most ``rows`` rows each.
+    """Return the results of runs of one system, and their histories of ``rows`` rows each, the first ``Result.rows`` filled.
 
-    With ``every_step`` the history has rows between samples, too. All runs must be :func:`alike`.
+    A run that has more rows than that fills all, and has its number in ``Result.rows``. With ``every_step`` the history has rows
+    between samples, too. All runs must be :func:`alike`.
     """
     system, equipment = kernel_of(runs[0].pier, runs[0].base)[0], _equipment(runs)
     columns = _row_type(system, 0 if equipment is None else len(equipment.lanes))
@@ -223,7 +224,7 @@ def _results(records: np.recarray) -> list[Result]:
 def run_fixed(
     pier: Pier, base: Base, motion: Motion, substeps: int, quiet_s: float = 2.0, locate: bool = True, wait: bool = True
 ) -> Outcome:
-    """Run with ``substeps`` steps per sample, without an error estimate; see :func:`run_all_fixed`."""
+    """Return the outcome of one run with ``substeps`` steps per sample, without an error estimate; see :func:`run_all_fixed`."""
     outcome = run_all_fixed([Run(pier, base, motion)], [substeps], quiet_s, Stop(), locate, wait)[0]
     assert outcome is not None
     return outcome
@@ -268,7 +269,10 @@ def try_all(
 
 
 def _with_static_rotation(run: Run, result: Result, equipment: Equipment, number: int, outcome: Outcome) -> Outcome:
-    """Return ``outcome`` of the run ``number`` with its static residual rotation under devices; unchanged without residuals."""
+    """Return ``outcome`` of the run ``number`` with its static residual rotation under devices; unchanged without residuals.
+
+    A note says so if devices change it by more than :data:`NOTED_TILT` α.
+    """
     pier, base = run.pier, run.base
     if outcome.status != "ok" or not base.has_residual:
         return outcome
@@ -284,7 +288,10 @@ def _with_static_rotation(run: Run, result: Result, equipment: Equipment, number
 
 
 def _device_demands(run: Run, use: np.recarray) -> dict[str, float]:
-    """Return the greatest demands on devices by the fields of Outcome; {} without devices, only kinds that the base has."""
+    """Return the demands on the kinds of devices of a base by the fields of Outcome, forces over the weight; {} without devices.
+
+    They are the greatest of each kind; energies and counts are sums.
+    """
     kinds = np.array([device.what for device in run.base.restraints for _ in places(run.pier, device)])
     dampers, tendons = (use[kinds == stop_kind].view(np.recarray) for stop_kind in ("damper", "tendon"))
     demands: dict[str, float] = {}

@@ -233,7 +233,10 @@ def forces_in_sections(run: Run, rows: np.recarray, heights: Sequence[float]) ->
 
 
 def sections_of(run: Run, rows: np.recarray, heights: Sequence[float]) -> list[Section]:
-    """Return the greatest forces in sections at ``heights`` [m] of a run recorded at every step."""
+    """Return the greatest forces in sections at ``heights`` [m] of a run recorded at every step.
+
+    They are the greatest |V| and |M|, the least and the greatest N, and N at the greatest |M|.
+    """
     sections = []
     for height, (shear, moment, axial) in zip(heights, forces_in_sections(run, rows, heights), strict=True):
         bent = int(np.abs(moment).argmax())
@@ -263,7 +266,10 @@ def _let_go(rows: np.recarray, forces: InSection) -> None:
 
 
 def _promising(ends: InSection, middles: InSection, steps: Places) -> tuple[Places, Samples]:
-    """Return steps and shares of them at which a parabola through ends and middle exceeds the extremes of any force."""
+    """Return steps and shares of them at which a parabola through ends and middle exceeds the extremes of any force.
+
+    Of each extreme the :data:`MOST_TURNS` highest are taken.
+    """
     places: set[tuple[int, float]] = set()
     for values, half in zip(ends, middles, strict=True):
         slope, bend = values[steps] - values[steps - 1], values[steps - 1] + values[steps] - 2.0 * half
@@ -290,7 +296,7 @@ _SIZED = {
 
 
 def with_errors(fine: Sequence[Section], coarse: Sequence[Section], pier: Pier, chance: float) -> list[Section]:
-    """Return ``fine`` with ``chance`` times the greatest relative change from ``coarse`` added to its errors."""
+    """Return ``fine`` with ``chance`` times the greatest relative change from ``coarse``, LEAST at least, added to its errors."""
     pairs = zip(fine, coarse, strict=True)
     changes = [max(greatest_change(_SIZED, section, other, pier)[1], LEAST) for section, other in pairs]
     return [

@@ -37,7 +37,7 @@ def start_of(pier: Pier, base: Base) -> Start:
 
 
 def _on_springs(pier: Pier, base: ElasticBase) -> Start:
-    """Return the vertical equilibrium of a pier on springs at its initial rotation, by the deflection of the pressed spring."""
+    """Return the state of a pier held on springs at its initial rotation, where vertical forces balance."""
     m, theta, laws = springs(pier, base), pier.initial_rotation_rad, elements(pier, base)
     curve, delta, side = base.first_loading, m.yield_deflection, math.copysign(1.0, theta)
     static = 0.5 * (m.gravity + prestress(pier, base)) / m.yield_force

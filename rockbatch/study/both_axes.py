@@ -94,7 +94,8 @@ def across(pier: Pier, base: Base, other: Pier) -> Base:
     """Return the base of ``pier`` under ``other``, the same pier across its axis.
 
     Its springs have the stiffness and the yield force of those along the axis at the lever of the other width. Its devices stand
-    in the plane of the axis, hence in the middle of the other width; those at the deck act in that plane alone.
+    in the plane of the axis, hence in the middle of the other width, two there for one at both pivots; those at the deck act
+    in that plane alone, and are left out.
     """
     restraints = tuple(_in_the_middle(pier, device, other) for device in base.restraints for _ in offsets(pier, device))
     if base.on_springs:

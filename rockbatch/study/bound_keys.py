@@ -96,8 +96,9 @@ BOUNDS = Section(
 
 
 def read_bounds(file: TomlFile) -> list[DesignBound]:
-    """Return every [[bound]] of a study; its mistakes become problems of ``file``, and a mistaken change is left out of it.
+    """Return every [[bound]] of a study, for a preset each of its bounds; mistakes become problems of ``file``.
 
+    A mistaken change is left out of its bound, a table with an unknown preset wholly.
     Whether the pier or any case gives the keys that it changes is checked by :func:`placed`.
     """
     bounds: list[DesignBound] = []
@@ -136,7 +137,10 @@ def _note_mistakes(table: Table, paths: Sequence[str], names: Collection[str]) -
 
 
 def _of_preset(table: Table, name: str, place: int) -> Iterator[DesignBound]:
-    """Yield the bounds of a preset, with changes of whichever of their keys cases have; note changes beside it."""
+    """Yield the bounds of a preset, "NTC 2018 viscous low" and so on, with a change of each of their keys; a case needs one.
+
+    Changes that the table gives beside the preset become problems of it.
+    """
     source, bounds = PRESETS[name]
     for path in table.data:
         if path.startswith(("pier.", "case.")):

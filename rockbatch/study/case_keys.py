@@ -30,7 +30,7 @@ _CALLED = {
     ),
     "spring": names(
         {
-            "epp": "bilinear elastoplastic elasticplastic elasticperfectlyplastic perfectlyplastic",
+            "epp": "bilinear elastoplastic elasticplastic elasticperfectlyplastic perfectlyplastic elasticpp",
             "bouc-wen": "smooth",
         }
     ),
@@ -47,6 +47,8 @@ _ON_GROUND_THAT_GIVES = {"base": tuple(name for name, base in BASES.items() if b
 _NOT_ON_A_BED = {"base": (*_ON_SPRINGS["base"], "rigid")}
 _ON_ROCK = {"base": tuple(name for name, base in BASES.items() if not base.on_springs)}
 _YIELDS = {"base": tuple(name for name, base in BASES.items() if base.two_springs and base.yields)}
+
+WHICH_DEVICE = "write [[case.damper]], [[case.tendon]], [[case.stop]] or [[case.deck_spring]]"
 
 
 def _impact_rule(value: object) -> str:
@@ -261,13 +263,21 @@ CASE = Section(
             "zeta": "damping dampingratio xi",
             ("restitution", "epsilon"): "cor e r coefficientofrestitution",
             "friction": "mu mus coefficientoffriction",
-            "spring": "law hysteresis material springs springlaw springtype",
+            "spring": "law hysteresis material uniaxialmaterial springs springlaw springtype",
             "eta": "fs factorofsafety safetyfactor",
             "n": "exponent boucwenn",
             "name": "id label title",
+            "tendon": "cable cables strand posttensioning",
         }
     ),
-    instead=names({("mass_t", "the weight in kN over 9.81"): "weight w"}),
+    instead=names(
+        {
+            ("mass_t", "the weight in kN over 9.81"): "weight w",
+            "write friction, the tangent of the angle": "phi frictionangle frictiondeg",
+            "write zeta, the damping ratio of the vertical vibration": "rayleigh alpham betak",
+            WHICH_DEVICE: "device devices restraint restraints",
+        }
+    ),
     clashes=(
         Clash(
             ("beta", "stiffness_kN_m"),

@@ -59,10 +59,11 @@ class Cases(NamedTuple):
 
 
 def read_cases(file: TomlFile, piers: Sequence[PierRead], bounds: Sequence[DesignBound] = ()) -> Cases:
-    """Return every combination of a [[case]], its listed values and a pier, each followed by itself under the ``bounds``.
+    """Return every combination of a pier, a [[case]] and its listed values, each followed by itself under the ``bounds``.
 
     Mistakes become problems of ``file``; a [[case]] of no known base is left out, and all are if they are more than
-    :data:`MOST_CASES`. Columns of a case are all keys that apply to it.
+    :data:`MOST_CASES`. Columns of a case are all keys that apply to it. Without ``piers``, cases stand on a stand-in, so that
+    their keys are still checked.
     """
     tables = file.tables("case", title="name")
     if file.data.get("case", []) == [] and ("case",) not in file.misspelt:
@@ -202,8 +203,8 @@ def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
 def _read_case(table: Table) -> _WrittenCase:
     """Return a [[case]] as it is written, its name by default its base, its base "" if unknown.
 
-    A strength or stiffness that is missing, or given without a mass, and a mass that [pier] states already become problems of the
-    file.
+    Problems of the file: a missing strength or stiffness; one in kN without a mass; a mass given again that [pier] states; an
+    area without a mass.
     """
     grid = Grid.of(table, CASE, other=RESTRAINTS)
     base, name = (next((s.value for s in grid.settings.pop(key, ())), "") for key in ("base", "name"))
@@ -234,7 +235,10 @@ def _read_case(table: Table) -> _WrittenCase:
 
 
 def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: Base) -> None:
-    """Add a problem of pier and base to the table, at its key, or at K or F_y, from which β or η follows, with what is needed."""
+    """Add a problem of pier and base to the table, at its key; of β or η at K or F_y if these are given.
+
+    It then says what K or F_y would have to be.
+    """
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(problem.key, "")
     mass = pier.mass_t
     if source in chosen and mass is not None:
@@ -256,7 +260,10 @@ def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: 
 
 
 def _other_unit(name: str, value: float, needed: float, gravity: float) -> str:
-    """Return "if it is in MN, write …; else ", or of a weight in place of the mass, if ``value`` were enough then; else ""."""
+    """Return the likelier mistake by which ``value`` is below ``needed``: "if it is in MN, write …; else "; "" for none.
+
+    The mistake looked at first is a weight in kN written as the mass.
+    """
     if value * gravity > needed:
         return f"if a mass is a weight in kN, write it over {gravity:g}; else "
     return f"if it is in MN, write {name} = {1000.0 * value:g}; else " if 1000.0 * value > needed else ""

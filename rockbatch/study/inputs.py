@@ -113,9 +113,9 @@ def varied(case: Case, values: KeyValues) -> Case:
 
 
 def values_of(case: Case) -> KeyValues:
-    """Return the values of all quantities of a case that may vary, by key, without ε where it does not apply and ζ if not given.
+    """Return α, p and μ, all fields of the base and, to twelve digits, the parameters of its devices, by key.
 
-    Those in kN are among them if the mass is known.
+    Without ε where it does not apply and ζ if not given; with stiffness and strength in kN if the mass is known.
     """
     pier = {name: getattr(case.pier, name) for name in OF_PIER}
     base = {field.name: getattr(case.base, field.name) for field in fields(case.base)}

@@ -25,7 +25,7 @@ from rockbatch.quantities.demands import AT_HEIGHTS
 from rockbatch.quantities.design import BOUND
 from rockbatch.study.both_axes import along_the_axis, with_other_axes
 from rockbatch.study.bound_keys import BOUNDS, read_bounds
-from rockbatch.study.case_keys import BASE_KEYS, CASE
+from rockbatch.study.case_keys import BASE_KEYS, CASE, WHICH_DEVICE
 from rockbatch.study.cases import read_cases
 from rockbatch.study.design_bounds import DesignBound, placed
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
@@ -55,6 +55,12 @@ TOP = Section(
             "numerics": "analysis solver settings options integration numerical",
             "output": "results",
             "check": "limit limits criteria acceptance rule rules verification",
+        }
+    ),
+    instead=names(
+        {
+            "write [[case.tendon]]": "cable cables strand",
+            WHICH_DEVICE: "device devices restraint restraints",
         }
     ),
 )
@@ -91,9 +97,9 @@ NUMERICS = Section(
     instead=names(
         {
             "the step follows from tolerance; leave it out, or write substeps, the number of steps per sample": (
-                "dt timestep step deltat"
+                "dt timestep step deltat dtmax maxstep"
             ),
-            "there is one method; leave it out": "integrator method solver scheme",
+            "there is one method; leave it out": "integrator method solver scheme maxiter iterations gamma newmark",
             "write --jobs behind rockbatch run; leave it out": "jobs threads cores workers",
         }
     ),
@@ -335,6 +341,7 @@ def _checked_study(file: TomlFile, motions: Motions) -> Study:
     along = along_the_axis(cases)
     checks = read_checks(file, partial(_problems_of_rule, along, motion_spec, output, bool(piers)) if along else None)
     output = output.also({key for rule in checks.rules for key in DEMANDS[rule.demand].brings})
+    _place_brought(file)
     for kind, complain in parts("study.COMPLAINS"):
         complain(file, output.of(kind), [read.pier for read in piers])
     placed_bounds = placed(file, bounds, keys_of_pier, keys_of_cases)
@@ -372,7 +379,6 @@ def _problems_of_rule(
     available = Available(
         cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
-        other_law=True,  # a check that uses the other law requests its runs
         output=[
             *DEMANDS[rule.demand].brings,
             *(key for key in BROUGHT if output.has(key) or not _adds_columns(key, cases)),
@@ -381,6 +387,17 @@ def _problems_of_rule(
         piers=[_as_in_run_json(case) for case in cases] if known_piers else (),
     )
     return fitted(rule, available).problems
+
+
+def _place_brought(file: TomlFile) -> None:
+    """Give the keys of [output] that checks bring, and that are not written, the line of the first check that does."""
+    named = file.lines.get(("suite", "checks"), 0)
+    lines = {key: named for demand in DEMANDS.values() for key in demand.brings} if named else {}
+    for table in reversed(file.tables("check", title="name")):
+        demand = DEMANDS.get(str(table.data.get("demand")))
+        lines |= dict.fromkeys(demand.brings if demand else (), file.lines.get(table.key_path, 0))
+    for key, line in lines.items():
+        file.lines.setdefault(("output", key), line)
 
 
 def _as_in_run_json(case: Case) -> dict[str, object]:
@@ -415,7 +432,10 @@ def _device_kinds(cases: Sequence[Case]) -> set[str]:
 
 
 def _references(file: TomlFile, cases: Sequence[Case], varied: Iterable[str]) -> tuple[Reference, ...]:
-    """Return the references that have all required keys; values of ``varied`` keys that no such case has become problems."""
+    """Return the references that have all required keys, with their values of ``varied`` keys alone.
+
+    A value that no case of the reference's name has becomes a problem.
+    """
     named = [table.data.get("name", table.data.get("base")) for table in file.tables("case", title="name")]
     names = choice(*dict.fromkeys(name for name in named if isinstance(name, str)))
     of_parts = {name: Key(not_negative, "0.0") for name in varied if name not in (*REFERENCE, BOUND)}

@@ -9,11 +9,11 @@ from typing import Any
 
 from rockbatch.common.errors import InputError, Problem, Unusual
 from rockbatch.common.showing import shown
-from rockbatch.common.units import GRAVITY, Bounds, Usual
+from rockbatch.common.units import GRAVITY, Bounds, Usual, in_other_units
 from rockbatch.motions import Motion, MotionSet, kinds
 from rockbatch.motions.azimuths import azimuths_every
 from rockbatch.motions.baseline import RULES, Offset
-from rockbatch.motions.pulses import SHAPES, unlikely
+from rockbatch.motions.pulses import MOST_PULSE, SHAPES, unlikely
 from rockbatch.motions.record_file import LAYOUTS, ROLES, ReadOptions
 from rockbatch.motions.selection import Selection
 from rockbatch.motions.sequences import read_sequences
@@ -64,7 +64,8 @@ class _Factor(Number):
 
 
 _FACTOR = _Factor(f'a number above 0, or "{_LIST}"', low=0.0, above=True)
-_SIGNS = names({"+": "positive plus normal", "-": "negative minus reversed reverse"}) | {"both": ["+", "-"]}
+_SIGNS = names({"+": "positive plus normal", "-": "negative minus reversed reverse"}) | {"1": "+", "+1": "+", "-1": "-"}
+_SIGNS |= {word: ["+", "-"] for word in ("both", "+-", "+/-", "±")}
 _WITH_VERTICAL = {"vertical": (True, "required")}
 
 MOTIONS = Section(
@@ -191,12 +192,19 @@ MOTIONS = Section(
             "axis_deg": "azimuth angle direction bearing orientation pierazimuth pieraxis",
             "scale": "factor factors amplification multiplier scaling sf",
             "dt": "timestep step samplinginterval deltat",
+            "unit": "accunit accelerationunit",
             "polarity": "sign signs",
             "offset": "baseline baselinecorrection detrend",
             "vertical": "includevertical usevertical",
         }
     ),
-    instead=names({"write dt = 1 over the sampling rate": "samplingrate samplingfrequency frequency"}),
+    instead=names(
+        {
+            "write dt = 1 over the sampling rate": "samplingrate samplingfrequency frequency",
+            'write polarity = "-"': "reverse reversed flip invert",
+            "horizontal components are always used; leave it out": "horizontal",
+        }
+    ),
     clashes=(
         Clash(
             ("axis_deg", "every_deg"),
@@ -342,7 +350,10 @@ def read_motions_table(file: TomlFile, replaced_by: Path | MotionSet | None = No
 
 
 def _read_motions(table: Table) -> KeyValues:
-    """Return the fields of a ``MotionSpec`` that [motions] gives, "path" as it is written, and "offset" also if not given."""
+    """Return the fields of a ``MotionSpec`` that [motions] gives, "path" as it is written, and "offset" also if not given.
+
+    axis_deg or every_deg become "azimuths", scale = "list" becomes "scale_as_listed".
+    """
     read = table.read(MOTIONS, other=("fema_p695", "pulse", "sequence"))
     if "columns" in read:
         with table.noting("columns"):
@@ -430,7 +441,7 @@ def _read_pulses(file: TomlFile) -> tuple[PulseSpec, ...]:
 
 
 def _check_pulse(table: Table, spec: PulseSpec) -> None:
-    """Add impossible values of a pulse to the table, at the key of their problem, or else unusual ones that are not confirmed."""
+    """Add a problem to the table for each impossible value of a pulse, or else for unusual ones that are not confirmed."""
     try:
         spec.motion(GRAVITY)
     except InputError as error:
@@ -442,5 +453,6 @@ def _check_pulse(table: Table, spec: PulseSpec) -> None:
         doubts = unlikely(abs(spec.amplitude_g), spec.period_s, spec.dt_s)
         for name, key in (("amplitude", "amplitude_g"), ("dt", "dt_s")):
             if name in doubts and key not in table.confirmed:
-                doubt = Problem(key, float(getattr(spec, key)), doubts[name], confirm=key, kind=Unusual)
+                text = doubts[name] + in_other_units(key, getattr(spec, key), lambda other: other <= MOST_PULSE)
+                doubt = Problem(key, float(getattr(spec, key)), text, confirm=key, kind=Unusual)
                 table.complain(in_table(doubt), key)

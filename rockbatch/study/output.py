@@ -51,7 +51,7 @@ class Output:
         return next((chosen for chosen in self.settings if isinstance(chosen, kind)), kind())
 
     def has(self, key: str) -> bool:
-        """Return whether an optional output is asked for, by its ``key``; False for an unknown one."""
+        """Return whether an optional output is asked for: the value of its ``key`` is true, or not empty; False if unknown."""
         return bool(self.keys.get(key))
 
     def also(self, keys: Collection[str]) -> "Output":
@@ -94,6 +94,7 @@ OUTPUT = joined(
         instead=names(
             {
                 "write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file",
+                "`rockbatch report` draws them, and makes a PDF with --sheet; leave it out": "plot plots figures pdf png",
                 "estimates of design practice are an example now, configs/code_estimates.py; leave it out": "estimate estimates",
             }
         ),

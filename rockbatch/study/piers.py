@@ -138,7 +138,7 @@ PIER = Section(
             "width_m": "diameter breadth basewidth",
             "size_m": "r0 r radius halfdiagonal",
             "flexural_period_s": "period t t1 fundamentalperiod naturalperiod elasticperiod",
-            "height_m": "totalheight overallheight",
+            "height_m": "totalheight overallheight clearheight",
             "gravity": "g",
             "alpha": "alfa",
             "p": "frequencyparameter",
@@ -150,19 +150,28 @@ PIER = Section(
     instead=names(
         {
             ("mass_t", "the weight in kN over 9.81"): "weight selfweight w",
-            ("deck_mass_t", "the weight in kN over 9.81"): "deckweight superstructureweight",
+            (
+                "deck_mass_t",
+                "the weight in kN over 9.81",
+            ): "deckweight superstructureweight axialload axialforce deadload nkn pkn",
+            "write mass_t, the density times the volume": "density rho unitweight volume",
+            "the model is plane, so that the size across its axis does not enter; leave it out": "length depth",
+            'write flexural_period_s; a pier is rigid unless its case says shaft = "elastic"': "e ei fck modulus youngsmodulus",
+            "write flexural_period_s, 2 pi over it": "omega omegarads",
             ("mass_t", "of the pier without its deck"): "totalmass overallmass",
             ("width_m", "twice the half"): "halfwidth",
             ("width_m", "the whole width, twice the b of the theory"): "b",
             ("height_m", "twice the half"): "halfheight",
             ("height_m", "the whole height, twice the h of the theory"): "h",
-            "write deck_mass_t, of what rests on the pier, or a [[pier.part]] for each part of it": "capmass capbeam capbeammass",
+            "write deck_mass_t, in t, of what rests on the pier, or a [[pier.part]] for each part of it": (
+                "capmass capbeam capbeammass"
+            ),
             ("size_m", "half the diagonal"): "diagonal",
             "write alpha = atan(width/height), in radians": "slenderness slendernessratio aspectratio",
             "write mu = M R0²/I0, or a [[pier.part]] with its inertia_t_m2": "inertia i0 momentofinertia",
             "units stand in the names of keys; leave it out": "unit units",
             "write deck_mass_t and deck_height_m in [pier]": "deck",
-            "write flexural_period_s, 1 over it in Hz": "frequency",
+            "write flexural_period_s, 1 over it in Hz": "frequency frequencyhz fhz f1hz",
         }
     ),
     clashes=(
@@ -460,7 +469,7 @@ def _pier_of_parts(values: KeyValues, parts: int, common: KeyValues) -> Pier:
 
 
 def _check_one_size(table: Table) -> None:
-    """Add to ``table`` that the size is missing or given in several ways, and α and μ beside sides from which they follow."""
+    """Add to ``table`` that the size, one of two sides or α is missing, the size given in several ways, α or μ beside sides."""
     parts = table.has("part")
     written = [name for name in table.names if name in ("p", "size_m", "width_m", "height_m")]
     sides = [name for name in written if name in ("width_m", "height_m")]

@@ -80,7 +80,7 @@ def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str
 
 
 def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
-    """Return a message with what to write instead for each input of devices that is ambiguous in this case, by name."""
+    """Return, by name, a message for each input of devices that is ambiguous in this case, or fixes what an earlier one does."""
     numbers = numbered(case.pier, case.base.restraints)
     problems: dict[str, str] = {}
     fixed: dict[tuple[int, str], str] = {}

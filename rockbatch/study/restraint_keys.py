@@ -1,9 +1,11 @@
 """Devices of a case: [[case.damper]], [[case.tendon]], [[case.stop]] and [[case.deck_spring]]."""
 
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from rockbatch.common.errors import InputError, Problem, Unusual
+from rockbatch.common.units import in_other_units
 from rockbatch.pier import DeckSpring, Pier, Restraint, Stop, doubt, fields_of
 from rockbatch.pier.dampers import DAMPERS
 from rockbatch.pier.devices import BOUNDS
@@ -33,9 +35,9 @@ _ALSO_SPRING = _ALSO_AT | names(
 _ONE_EACH = names({"write a table for each": "number quantity count"})
 _KINDS = names(
     {
-        "viscous": "dashpot fluid fluidviscous fvd oil linearviscous nonlinearviscous",
+        "viscous": "dashpot fluid fluidviscous fvd oil linearviscous nonlinearviscous viscousdamper fluidviscousdamper",
         "friction": "coulomb sliding frictional",
-        "hysteretic": "steel metallic yielding brb ufp tadas bilinear elastoplastic",
+        "hysteretic": "steel metallic yielding brb ufp tadas bilinear elastoplastic elasticplastic",
     }
 )
 _FORCE, _VISCOUS = {"kind": ("friction", "hysteretic")}, {"kind": ("viscous",)}
@@ -235,7 +237,7 @@ _UNMEASURED = ("kind", "at", "side", "height_m", "confirm")
 
 
 def _measured_keys(section: Section, damper: str = "") -> tuple[str, ...]:
-    """Return the keys of a device that have numbers; of those of dampers, the keys of this kind of ``damper``."""
+    """Return the keys of a device that have numbers; for the section of dampers, those of the kind ``damper``."""
     measured = ((name, key) for name, key in section.items() if name not in _UNMEASURED)
     return tuple(name for name, key in measured if damper in key.only.get("kind", (damper,)))
 
@@ -309,7 +311,16 @@ class Device:
         doubts = doubt(pier, device)
         if doubts is not None and doubts.name in keys:
             key = keys[doubts.name]
-            problem = Problem(key, float(values[key].value), doubts.meaning, confirm=key, kind=Unusual)
+            written = float(values[key].value)
+
+            def usual(other: float) -> bool:
+                with suppress(InputError):
+                    changed = replace(device, **{doubts.name: getattr(device, doubts.name) * other / written})
+                    return doubt(pier, changed) is None
+                return False
+
+            text = doubts.meaning + in_other_units(key, written, usual)
+            problem = Problem(key, written, text, confirm=key, kind=Unusual)
             self.table.complain_about(values[key], in_table(problem, f"[[case.{self.what}]]"))
 
 

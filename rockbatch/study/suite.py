@@ -18,7 +18,7 @@ from rockbatch.study.spec import MotionSpec
 
 
 def ground_motions(study: Study) -> MotionSet:
-    """Return all motions of a study, of its files, packaged records and pulses, and its unusable files.
+    """Return all motions of a study, of its files, packaged records, pulses and still ground, and its unusable files.
 
     Records are read, freed of their offsets, turned and paired, joined to sequences, then selected, then scaled to the study's
     target; its ``scale`` and ``polarity`` are left to the runs. Raises ``InputError`` if no motion is left, in a strict study if
@@ -86,7 +86,7 @@ _OF_RECORDS = (
 
 
 def _without_records(spec: MotionSpec, both_axes: bool) -> list[str]:
-    """Return a message for each key that only recorded motions use, in a study without these; [] if it has records."""
+    """Return a message for each key that only files use, or only recorded motions, in a study without these; [] with files."""
     if spec.paths or spec.override is not None:
         return []
     usual = {field.name: field.default for field in fields(spec)} | {"offset": Offset(), "select": Selection()}
@@ -133,7 +133,10 @@ def _with_pairs(motions: MotionSet, pulses: Sequence[Motion]) -> tuple[MotionSet
 
 
 def _without_the_square(motions: MotionSet, azimuths: Sequence[float]) -> MotionSet:
-    """Return motions without those along the last of ``azimuths``, which go across those along the first of the same length."""
+    """Return motions without those along the last of ``azimuths``, square to the first.
+
+    Each becomes the component across of its station's motion along the first, if that is as long.
+    """
     first, square = (f"_az{azimuth:03g}" for azimuth in (azimuths[0], azimuths[-1]))
     across = {motion.of_station: motion for motion in motions if motion.name.endswith(square)}
     along = [motion for motion in motions if across.get(motion.of_station) is not motion]

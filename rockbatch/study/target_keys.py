@@ -195,15 +195,23 @@ KEYS_OF_ANY_SPECTRUM = {name: replace(key, required=False) for name, key in (SPE
 _ALSO = names(
     {
         "spectrum": "code standard designspectrum",
-        ("ground", "subsoil"): "soil soiltype soilclass siteclass groundtype subsoilclass",
+        ("ground", "subsoil"): "soil soiltype soilclass siteclass groundtype subsoilclass category soilcategory",
         "damping": "zeta xi dampingratio",
         "hazard_factor": "z hazard",
         "return_period_factor": "r",
         "ag_g": "ag",
         "type": "spectrumtype",
         "soil_factor": "s",
-        "period_range_s": "range periods",
+        "period_range_s": "range periods trange periodrange",
         "fault_km": "faultdistance distance",
+    }
+)
+_INSTEAD = names(
+    {
+        "write ground or subsoil, the class that has this velocity": "vs30 vs",
+        "ag_g has the importance factor in it; leave it out": "importance importancefactor gammai",
+        "the spectra are elastic; leave it out": "q behaviourfactor behaviorfactor rfactor",
+        "write period_range_s = [least, greatest]": "periodmin periodmax tmin tmax",
     }
 )
 TARGET = Section(
@@ -215,6 +223,7 @@ TARGET = Section(
     {**MEASURE, **KEYS_OF_ANY_SPECTRUM, **CONFIRM},
     homes=(Target, SpectrumTarget),
     also=_ALSO,
+    instead=_INSTEAD,
 )
 """Every key that a target may have, of one measure or of a spectrum."""
 
@@ -231,4 +240,5 @@ VERTICAL_TARGET = Section(
     },
     homes=(Target, SpectrumTarget),
     also=_ALSO,
+    instead=_INSTEAD,
 )

@@ -39,8 +39,8 @@ def print_files(analysis: Analysis) -> None:
 def in_lines(heads: Sequence[Head], items: Iterable[Item], names: int = 1) -> str:
     """Return a table as text, with the heads and cells of :func:`rockbatch.reporting.table.listed`.
 
-    The first ``names`` columns identify a row; other columns are left out if empty. A head over several columns is printed
-    above the first of them.
+    The first ``names`` columns identify a row; other columns are left out if empty, as all are without items. A head over
+    several columns is printed above the first of them.
     """
     rows = [[cell(head, item) for head in heads] for item in items]
     used = [place for place in range(len(heads)) if place < names or any(row[place] for row in rows)]
@@ -53,5 +53,5 @@ def in_lines(heads: Sequence[Head], items: Iterable[Item], names: int = 1) -> st
 
 
 def cell(head: Head, item: Item) -> str:
-    """Return the cell of an item as plain text; "" for None and NaN."""
+    """Return the cell of an item as plain text, in the form of its head; "" for None and NaN."""
     return number(head.value_in(item), head.form).replace("\u00a0", " ").replace("\u2060", "")

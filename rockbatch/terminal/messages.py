@@ -58,7 +58,7 @@ class Terminal(Listener):
 
 
 def _repeated(motions: MotionSet) -> list[tuple[str, str]]:
-    """Return pairs of names of motions with the same samples: the first, and one that repeats it."""
+    """Return pairs of names of motions with the same horizontal samples and interval: the first, and one that repeats it."""
     first: dict[tuple[float, bytes], str] = {}
     names = [(first.setdefault((m.dt, m.horizontal.tobytes()), m.name), m.name) for m in motions.motions]
     return [(name, repeat) for name, repeat in names if name != repeat]

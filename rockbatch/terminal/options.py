@@ -13,7 +13,10 @@ def folder(arguments: argparse.Namespace) -> Path:
 
 
 def engine(arguments: argparse.Namespace) -> Engine:
-    """Return the engine of --engine, --scheduler and --jobs, a context; by default a thread for each processor."""
+    """Return the engine of --engine, --scheduler and --jobs, a context: Dask if either asks for it, else threads.
+
+    Without --jobs there is a thread for each processor.
+    """
     if arguments.engine == "dask" or arguments.scheduler:
         return Dask(arguments.scheduler, arguments.jobs)
     return Threads(arguments.jobs or cores())

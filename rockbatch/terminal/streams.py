@@ -94,7 +94,11 @@ def width() -> int | None:
 
 
 def filled(text: str, first: int = 0, rest: int = 2) -> str:
-    """Return prose wrapped to the terminal's width, the first line indented by ``first`` columns, the others by ``rest``."""
+    """Return prose wrapped to the terminal's width, 100 columns at most.
+
+    The first line is indented by ``first`` columns, the others by ``rest``. If stdout cannot show a character, all beyond ASCII
+    become "?".
+    """
     lines = _in_lines(text, min(WIDTH, width() or WIDTH), " " * first, " " * rest)
     return shown(lines, lines.encode("ascii", "replace").decode())
 
@@ -117,7 +121,7 @@ def _wrapped(text: str, most: int) -> str:
 
 
 def aligned(lines: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> list[str]:
-    """Return lines of cells as text in columns, those at ``left`` flush left, the others flush right."""
+    """Return lines of cells as text in columns two blanks apart, those at ``left`` flush left, the others flush right."""
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     pads = [str.ljust if i in left else str.rjust for i in range(len(widths))]
     return ["  ".join(pad(cell, w) for pad, cell, w in zip(pads, line, widths, strict=True)) for line in lines]

@@ -20,8 +20,8 @@ def columns_of(path: Path, kinds: Mapping[str, Kind], *, gaps: bool = False) -> 
 
     Lines that begin with # are comments, and lines of empty cells alone are skipped. With semicolons between the cells, decimals
     may have commas. With ``gaps`` a cell that is empty or "nan" is NaN. Raises ``InputError`` with the file and the lines for an
-    unknown or repeated column, cells that are not of their kind, lines with fewer or more cells than names, and a file without a
-    row below its heading.
+    unknown or repeated column, cells that are not of their kind, lines with fewer or more cells than names (20 at most), and a
+    file without a row below its heading. A column of ``kinds`` that the file lacks is no error.
     """
     rows, delimiter = _rows(path)
     names = _names(path, *rows[0], kinds)

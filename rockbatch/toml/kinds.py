@@ -56,7 +56,7 @@ class Kind(Protocol):
 
 @dataclass(frozen=True)
 class Number:
-    """A finite number within ``low`` and ``high``; an integer will do, a boolean will not.
+    """A finite number within ``low`` and ``high``, 0 or of a size from 1e-15 to 1e15; an integer will do, a boolean will not.
 
     ``text`` is what a message expects; ``above`` and ``below`` exclude these ends. ``bounds`` are those of the quantity, whose
     message explains itself; ``but`` is the one number that is excluded; ``endless`` accepts positive infinity, which leaves a
@@ -125,7 +125,10 @@ class Whole:
 
 @dataclass(frozen=True)
 class Text:
-    """Text that is not empty; ``check`` may raise :class:`KindError` for some of it, which a schema cannot express."""
+    """Text that is neither blank nor has control or invisible characters, but tabs and line breaks.
+
+    ``check`` may raise :class:`KindError` for further texts, which a schema cannot express.
+    """
 
     words: str = "text in quotes"
     check: Callable[[str], None] | None = None
@@ -172,8 +175,13 @@ class Choice:
 
     def _meant(self, value: object) -> list[object]:
         """Return the options that a misspelt word, or a number in quotes, may stand for; [] for none, and for other values."""
-        if same := [option for option in self.options if not isinstance(option, str) and str(option) == value]:
+        last = str(value).strip().split(" ")[-1]
+        if same := [option for option in self.options if not isinstance(option, str) and _is_spelt(option, last)]:
             return same
+        if letter := [option for option in self.options if len(str(option)) == 1 and option == last]:
+            return list(letter)
+        if isinstance(value, int):
+            value = str(value)
         words = [option for option in self.options if isinstance(option, str)]
         return words_meant(value, words, self.called) if isinstance(value, str) else []
 
@@ -197,6 +205,12 @@ class Other:
 
     def schema(self) -> Schema:
         return dict(self.form)
+
+
+def _is_spelt(option: object, word: str) -> bool:
+    """Return whether a ``word`` says the truth value or number ``option``: "yes", "1" or "true" for True."""
+    spelt = {True: ("true", "yes", "on", "1"), False: ("false", "no", "off", "0")}
+    return word.lower() in spelt[option] if isinstance(option, bool) else word == str(option)
 
 
 _NUMBER = re.compile(r"[-+]?\d+(\.\d+)?([eE][-+]?\d+)?")
@@ -223,7 +237,7 @@ def choice(*options: str, called: Mapping[str, object] | None = None) -> Choice:
 
 
 def within(bounds: Bounds) -> Number:
-    """Return the kind of a number within ``bounds``; if these exclude 0, the first message is about the sign."""
+    """Return the kind of a number within ``bounds``; if these are above 0, a number that is not gets "a number above 0"."""
     return replace(positive, bounds=bounds) if bounds.low > 0 or bounds.above else Number(bounds=bounds)
 
 

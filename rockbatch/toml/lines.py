@@ -36,7 +36,8 @@ class TooDeepError(ValueError):
 def key_lines(text: str) -> dict[KeyPath, int]:
     """Return the line (from 1) of every table, key and list element in ``text``.
 
-    Raises :class:`TooDeepError` for nesting that would take a parser long, ``ValueError`` where the text is no TOML.
+    Raises :class:`TooDeepError` for nesting that would take a parser long, ``ValueError`` where the scan cannot go on;
+    other mistakes are left to the parser.
     """
     scan = _Scan(text)
     scan.document()
@@ -82,7 +83,11 @@ class _Scan:
             self.lines.setdefault(key_path[:depth], line)
 
     def document(self) -> None:
-        """Scan the whole text, filling ``lines``. Raises ``ValueError`` if it is not TOML."""
+        """Scan the whole text, filling ``lines``.
+
+        Raises ``ValueError`` where it cannot go on, as in an unclosed text, and :class:`TooDeepError`, a kind of it; other
+        mistakes are left to the parser.
+        """
         table: KeyPath = ()
         while self.take("blank") is not None and self.here < len(self.text):
             if self.peek() == "[":
@@ -137,7 +142,7 @@ class _Scan:
             self.take("string" if self.peek() in ('"', "'") else "plain")
 
     def items(self, key_path: KeyPath, *, inline_table: bool) -> None:
-        """Scan an array, or an inline table, with its brackets."""
+        """Scan an array, or an inline table, with its brackets; keep lines of its elements, of plain ones the first 10 000."""
         self.here += 1
         index = 0
         while self.take("blank") is not None and self.peek() not in ("]", "}"):

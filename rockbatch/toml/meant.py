@@ -4,11 +4,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from rockbatch.common.grouping import closest
+from rockbatch.common.units import unit_of
 
 _LONGEST = 100  # characters of a name that are looked at
-
-_UNITS = frozenset(("m", "mm", "km", "m2", "s", "t", "kN", "g", "deg", "rad", "years"))
-"""Words at the ends of keys that are units."""
 
 _ALIKE, _VERY_ALIKE = 0.75, 0.85
 """Least similarities of a misspelt name: of one with its unit left out, and of one that is looked for first."""
@@ -23,22 +21,20 @@ def names(listed: Mapping[Any, str]) -> dict[str, Any]:
 
 
 def plain(name: str) -> str:
-    """Return the letters and digits of a name, in lower case."""
+    """Return the letters and digits of a name's first 100 characters, in lower case."""
     return "".join(filter(str.isalnum, name[:_LONGEST].lower()))
 
 
 def without_unit(name: str) -> Iterator[str]:
-    """Yield the plain name, then with fewer and fewer words: "height_kN_m" gives "heightknm", "heightkn", "height"."""
+    """Yield the plain name, then without its last word, its last two, and so on: "heightknm", "heightkn", "height"."""
     words = name[:_LONGEST].replace("-", "_").split("_")
     return (plain("_".join(words[:n])) for n in range(len(words), 0, -1))
 
 
 def _stem(key: str) -> str:
     """Return the plain key without its unit: "stiffness_kN_m" gives "stiffness"."""
-    words = key.split("_")
-    while len(words) > 1 and words[-1] in _UNITS:
-        words.pop()
-    return plain("_".join(words))
+    stem = key.removesuffix("_years")
+    return plain(stem.removesuffix(f"_{unit_of(stem)}"))
 
 
 def known_as(name: str, keys: Iterable[str], also: Mapping[str, Also], table: str = "") -> str:
@@ -50,13 +46,16 @@ def known_as(name: str, keys: Iterable[str], also: Mapping[str, Also], table: st
     if same := next((key for key in keys if plain(key) == plain(name)), ""):
         return same
     first, _, rest = name.partition("_")
-    if rest and table and plain(first) == plain(table) and (meant := _same(rest, keys, also)):
+    if rest and table and plain(first) == plain(table) and (meant := _same_key(rest, keys, also)):
         return meant
-    return closest(name, keys, _VERY_ALIKE) or _same(name, keys, also) or closest(name, keys, _ALIKE) or ""
+    return closest(name, keys, _VERY_ALIKE) or _same_key(name, keys, also) or closest(name, keys, _ALIKE) or ""
 
 
-def _same(name: str, keys: Iterable[str], also: Mapping[str, Also]) -> str:
-    """Return the key called ``name`` but for capitals and unit, or whose other name in ``also`` that is; "" if there is none."""
+def _same_key(name: str, keys: Iterable[str], also: Mapping[str, Also]) -> str:
+    """Return the key that ``name`` is but for capitals, signs and last words such as a unit, or that ``also`` gives for it.
+
+    "" if that is none of ``keys``.
+    """
     keys = list(keys)
     stems = {_stem(key): key for key in reversed(keys)}
     for word in without_unit(name):
@@ -75,7 +74,7 @@ def words_meant(word: str, options: Iterable[str], called: Mapping[str, object])
     options = list(options)
     if same := [option for option in options if plain(word) and plain(option) == plain(word)]:
         return list[object](same)
-    meant = called.get(plain(word))
+    meant = called.get(word, called.get(plain(word)))
     if meant is not None:
         return list(meant) if isinstance(meant, tuple) else [meant]
     nearest = closest(word, options, _ALIKE)

@@ -26,7 +26,8 @@ from rockbatch.common.errors import (
 from rockbatch.common.files import opened_input
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
-from rockbatch.toml.kinds import Choice, KeyValues, KindError, Other
+from rockbatch.common.units import factor_between, is_weight_of, number_in_unit_of, unit_in_words, unit_of
+from rockbatch.toml.kinds import Choice, KeyValues, Kind, KindError, Number, Other
 from rockbatch.toml.lines import KeyPath, TooDeepError, key_lines
 from rockbatch.toml.section import CONFIRM, Key, Section, home, options
 from rockbatch.toml.slips import syntax_error
@@ -102,7 +103,7 @@ class TomlFile:
         try:
             return cls(path, text, tomllib.loads(text), lines, sections)
         except (ValueError, RecursionError) as error:
-            raise BadSyntax(syntax_error(path, text, str(error))) from None
+            raise BadSyntax(syntax_error(path, text, str(error), sections)) from None
 
     def complain(self, key_path: KeyPath, message: str | Problem, label: str = "") -> None:
         """Add a mistake about the value at ``key_path`` to the problems, once; a missing value has the line of its table.
@@ -153,7 +154,7 @@ class TomlFile:
         if isinstance(value, dict):
             return Table(self, key_path, f"[{name}]", value)
         if value is not None:
-            self.complain(key_path, f"{name}: expected one table; write [{name}] on a line of its own, once")
+            self.complain(key_path, f"{name}: expected one table; write [{name}], once")
         elif required and key_path not in self.misspelt:
             self.complain(key_path, _problem(MissingKey, f"[{name}] is missing; write {required}"))
         return None
@@ -209,13 +210,13 @@ class Table:
         self.complain(message, *setting.key_path[len(self.key_path) :])
 
     @contextmanager
-    def noting(self, *key: str | int) -> Iterator[None]:
-        """Context manager: turn an ``InputError`` in the block into mistakes about a key, added to the file's problems."""
+    def noting(self, *key: str | int, before: str = "") -> Iterator[None]:
+        """Context manager: turn an ``InputError`` in the block into mistakes about a key; messages begin with ``before``."""
         try:
             yield
         except InputError as error:
             for problem in error.problems:
-                self.complain(problem, *key)
+                self.complain(Problem("", None, f"{before}{problem}", kind=problem.kind, named=False), *key)
 
     @property
     def names(self) -> list[str]:
@@ -272,7 +273,8 @@ class Table:
         return read
 
     def requires(self, keys: Mapping[str, Key], name: str) -> bool:
-        """Return whether a key has to be written, given the keys on which it depends; False if one of these is not written."""
+        """Return whether a key has to be written, given the keys on which it depends; False if one of these is not
+        written, or has a value for which the key is not meant."""
         return keys[name].required and all(self.data.get(other) in values for other, values in keys[name].only.items())
 
     def _check_missing(self, keys: Mapping[str, Key]) -> None:
@@ -366,12 +368,15 @@ class Table:
         """Add the problem of a list, or of several tables, where the key takes a single value or table."""
         if isinstance(key.kind, Other) and all(isinstance(item, dict) for item in whole.value):
             header = ".".join(part for part in whole.key_path if isinstance(part, str))
-            self.complain(f"{name}: expected one table; write [{header}] on a line of its own, once", name)
+            self.complain(f"{name}: expected one table; write [{header}], once", name)
         else:
-            self._wrong(name, key, whole, KindError("one value, not a list"))
+            meant = shown(whole.value[0]) if len(whole.value) == 1 and _is_fit(key.kind, whole.value[0]) else None
+            self._wrong(name, key, whole, KindError("one value, not a list", meant))
 
     def _wrong(self, name: str, key: Key, setting: Setting, wrong: KindError) -> None:
         """Add the problem of a value that its kind refuses, with an example unless the message has one."""
+        if isinstance(key.kind, Number) and isinstance(setting.value, str) and not wrong.meant:
+            wrong = KindError(str(wrong), number_in_unit_of(name, setting.value), whole=wrong.whole)
         example = "" if wrong.meant or wrong.whole or options(key) else f"; write for example {name} = {key.example}"
         message = f"{name} = {shown(setting.value)}: {wrong.advice()}{example}"
         self.complain_about(setting, _problem(OutOfRange if wrong.whole else WrongType, message))
@@ -402,14 +407,40 @@ class Table:
         if meant and meant not in self.data:
             self.file.misspelt.add((*self.key_path, meant))
         if advice or meant:
-            return advice or f"did you mean {meant}?"
+            return _with_value(name, self.data[name], meant, advice)
         if not isinstance(self.data[name], dict | list) and (belongs := home(self.file.sections, name, place)):
             return f"it belongs under {belongs}"
-        if inner := next(
-            (section for section in self.file.sections if len(section.at) > 1 and section.at[-1] == name), None
-        ):
-            return f"write {inner.header}"
+        inner = {section.at[-1]: section.header for section in self.file.sections if len(section.at) > 1}
+        if not place and (nested := own.known_as(name, inner)):
+            return f"write {inner[nested]}"
         return f"write one of {', '.join(known)}"
+
+
+def _with_value(name: str, value: Any, meant: str, advice: str) -> str:
+    """Return what to write for an unknown key: the key ``meant``, with its value if the units differ, and the ``advice``.
+
+    width_mm = 4000 gives "write width_m = 4, in m"; with advice there is a value only if a weight is written for a mass.
+    """
+    if not meant:
+        return advice
+    unit, own = unit_of(name), unit_of(meant)
+    factor = factor_between(unit, own) if unit and (not advice or is_weight_of(unit, own)) else None
+    numbers = value if isinstance(value, list) else [value]
+    if factor is not None and factor != 1.0 and all(type(number) in (int, float) for number in numbers):
+        converted = [f"{number * factor:.10g}" for number in numbers]
+        written = f"[{', '.join(converted)}]" if isinstance(value, list) else converted[0]
+        return f"write {meant} = {written}, {advice or (f'in {unit_in_words(own)}' if own else 'as a share of 1')}"
+    differs = f" it is in {unit_in_words(own)}" if unit and own and unit != own else ""
+    return f"write {meant}, {advice}" if advice else f"did you mean {meant}?{differs}"
+
+
+def _is_fit(kind: Kind, value: object) -> bool:
+    """Return whether a value is of a kind."""
+    try:
+        kind(value)
+    except KindError:
+        return False
+    return True
 
 
 def _problem(kind: type[InputError], message: str) -> Problem:
@@ -451,6 +482,18 @@ def with_slashes(written: str) -> str:
 _SLASHED = str.maketrans({"\\": "/", "\n": "/n", "\t": "/t", "\r": "/r", "\b": "/b", "\f": "/f", "\x1b": "/e"})
 
 
+def _spelt_out(path: Path, written: str) -> str | None:
+    """Return a path without its pattern, as a folder is read whole, with variables filled in, or that of an address of a file.
+
+    None for a path that has none of these, or if there is nothing there.
+    """
+    folder = Path(written).parent.as_posix()
+    if any(sign in path.name for sign in "*?[") and path.parent.is_dir() and folder != ".":
+        return folder
+    other = os.path.expandvars(written.removeprefix("file://"))
+    return other if other != written and Path(other).expanduser().exists() else None
+
+
 def nearby(path: Path, written: str) -> str:
     """Return "; did you mean …?" with a file of similar name beside ``path``, in the form of ``written``; empty if none.
 
@@ -458,11 +501,13 @@ def nearby(path: Path, written: str) -> str:
     """
     if (slashed := with_slashes(written)) != written:
         return f"; did you mean {shown(slashed)}? Slashes do on every system"
+    if (other := _spelt_out(path, written)) is not None:
+        return f"; did you mean {shown(other)}?"
     try:
         names = os.listdir(path.parent)
     except OSError:
         return ""
-    nearest = next((name for name in (f"{path.name}.toml",) if name in names), None) or closest(
-        path.name, sorted(names)
-    )
+    longer = [name for name in names if name.startswith(f"{path.name}.")]
+    nearest = next((name for name in (f"{path.name}.toml", *longer) if len(longer) == 1 and name in names), None)
+    nearest = nearest or closest(path.name, sorted(names))
     return f"; did you mean {(Path(written).parent / nearest).as_posix()}?" if nearest else ""

@@ -8,9 +8,9 @@ from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
 from rockbatch.common.errors import Problem
-from rockbatch.common.units import Usual
+from rockbatch.common.units import Usual, unit_of
 from rockbatch.toml.kinds import Choice, Kind, text
-from rockbatch.toml.meant import Also, known_as, without_unit
+from rockbatch.toml.meant import Also, known_as, plain
 
 
 @dataclass(frozen=True)
@@ -148,12 +148,13 @@ class Section(Mapping[str, Key]):
         return known_as(name, names, self.also, self.at[-1] if self.at else "")
 
     def advice(self, name: str) -> tuple[str, str]:
-        """Return the key to write in place of an unknown name, and the advice, each "" if there is none.
+        """Return the key to write in place of an unknown name, and what to say of it, each "" if there is none.
 
-        weight_kN gives ("mass_t", "write mass_t, the weight in kN over 9.81").
+        weight_kN gives ("mass_t", "the weight in kN over 9.81"). Without a key the words are the whole advice.
         """
-        advice = next(filter(None, map(self.instead.get, without_unit(name))), "")
-        return ("", advice) if isinstance(advice, str) else (advice[0], f"write {advice[0]}, {advice[1]}")
+        names = dict.fromkeys((plain(name), plain(name.removesuffix(f"_{unit_of(name)}"))))
+        advice = next(filter(None, map(self.instead.get, names)), "")
+        return ("", advice) if isinstance(advice, str) else (advice[0], advice[1])
 
     def default(self, name: str) -> object:
         """Return the value of a key that is not written; None if there is none, or it follows from others."""
@@ -165,7 +166,10 @@ class Section(Mapping[str, Key]):
 
 
 def joined(section: Section, *more: Section) -> Section:
-    """Return ``section`` with the keys, homes, other names and clashes of all sections; its texts and pattern stay its own."""
+    """Return ``section`` with the keys, homes, names in ``also`` and clashes of all sections; the rest stays its own.
+
+    Of a key or name in several sections the last counts.
+    """
     sections = (section, *more)
     return replace(
         section,
@@ -206,7 +210,10 @@ _GENERAL = {
 
 
 def home(sections: Iterable[Section], name: str, place: tuple[str, ...]) -> str:
-    """Return table headers, but that at ``place``, with a key ``name``: "[pier] or [[case]]"; "" for none or a common name."""
+    """Return the headers of tables but that at ``place`` that list a key ``name``: "[pier] or [[case]]"; "" for none.
+
+    "" also for names that mean something else in other tables, such as "file".
+    """
     others = (section for section in sections if section.at and section.at != place)
     headers = dict.fromkeys(section.header for section in others if name in section and not section.free)
     return "" if name in _GENERAL else " or ".join(headers)

@@ -155,7 +155,10 @@ class AnalysisFolder:
         cases: Sequence[Case],
         row: RowOf,
     ) -> None:
-        """Carry out ``runs`` and write the ``row`` of each into ``file``, unless it has them; compile kernels for ``cases``."""
+        """Carry out ``runs`` and write the ``row`` of each into ``file``, unless it has them; list the file in NAME.json.
+
+        Kernels for ``cases`` are compiled before. Runs in the journal of an interrupted command are not repeated.
+        """
         if self.has(file, digest):
             self.keep(file, digest)
             return
@@ -223,7 +226,10 @@ class AnalysisFolder:
         return {name: read_table(self.directory / f"{name}.csv") if f"{name}.csv" in files else None for name in names}
 
     def end(self, **cost: object) -> tuple[Path, ...]:
-        """Add ``cost`` to NAME.json and write the report; return the paths of all files, none for a temporary folder."""
+        """Add ``cost`` to NAME.json, write the report, and return the paths of all files.
+
+        For a temporary folder no report is written, and () is returned.
+        """
         self.info |= cost
         self._write_info()
         if self.temporary:

@@ -60,7 +60,7 @@ def page(motions: MotionSet, title: str, about: str) -> str:
 
 
 def scorecard(records: Sequence[RankedRecord]) -> Markup:
-    """Return a table of the records, which readers can sort and filter."""
+    """Return a table of the first :data:`MOST_ROWS` records, which readers can sort and filter, and its legend."""
     shown = records[:MOST_ROWS]
     read = [record for record in shown if record.motions]
     drawn = dict(zip(map(id, read), spectra([record.motions[0] for record in read]), strict=True))

@@ -226,7 +226,10 @@ def _unchanged(batch: Batch) -> FinishedBatch | None:
     """Return the results in the folder of a finished ``batch`` if writing them again would change nothing; else None."""
     if not (written := unchanged(batch)):
         return None
-    judged = _verdicts(written.saved, batch.study)
+    try:
+        judged = _verdicts(written.saved, batch.study)
+    except InputError:  # a table beside peaks.csv is not as it was written
+        return None
     more = [batch.directory / name for name in (*([CHECKS] if judged else []), REPORT)]
     if not all(map(is_plain, more)):
         return None

@@ -3,9 +3,12 @@
 import numpy as np
 import pandas as pd
 import pytest
+from check_samples import case, runs
 from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.checks.judging import judge
+from rockbatch.checks.rules import Rule
 from rockbatch.results.interaction import INTERACTION, read_interaction
 
 PIER = {"width_m": 3.0, "height_m": 14.0, "mass_t": 400.0, "deck_mass_t": 200.0}
@@ -134,3 +137,51 @@ def test_a_capacity_that_cannot_be_used_is_refused_with_its_line_and_a_remedy(tm
 def test_a_check_of_the_base_of_a_pier_without_a_mass_is_refused(tmp_path):
     with pytest.raises(rb.InputError, match="interaction_base: its forces are in kN; write mass_t under"):
         rb.load_study(study_of(tmp_path, pier={"width_m": 3.0, "height_m": 14.0}, check=[JOINT]))
+
+
+def test_an_older_table_is_refused_with_a_remedy_that_works(tmp_path):
+    """Delete a column that earlier versions did not write: to run the study again, as the message says, writes it."""
+    path = study_of(tmp_path, output={"interaction_m": [0.0]}, check=[FOOT])
+    rb.run(path, out=tmp_path / "out")
+    table = tmp_path / "out" / INTERACTION
+    written = table.read_bytes()
+    pd.read_csv(table).drop(columns="shear_kN").to_csv(table, index=False)
+    with pytest.raises(rb.InputError, match=r"shear_kN is missing: .*an earlier version; start `rockbatch run` again"):
+        rb.check(tmp_path / "out")
+    rb.run(path, out=tmp_path / "out")
+    assert table.read_bytes() == written
+
+
+def test_a_table_without_rows_is_read_and_decides_nothing_where_all_runs_failed(tmp_path):
+    """Where a run went through there have to be rows: its checks are refused, not passed over."""
+    rows = tmp_path / INTERACTION
+    rows.write_text("record,case,polarity,scale\n")
+    empty = read_interaction(rows, ["beta"])
+    assert (len(empty), [*empty][4:6], empty["height_m"].dtype) == (0, ["beta", "height_m"], float)
+    rules = [
+        Rule(**{**FOOT, "capacity": tuple(map(tuple, CURVE))}),
+        Rule(**{**JOINT, "capacity": ((0.0, 4e2), (1e4, 5e3))}),
+    ]
+    ran = runs([0.1]).assign(beta=40.0)
+    failed = ran.assign(status="failed", theta_max_over_alpha=np.nan, theta_max_error=np.nan)
+    judged = judge(rules, failed, [case()], interaction=empty)
+    assert [verdict.verdict for verdict in judged] == ["not decided", "not decided"]
+    with pytest.raises(
+        rb.InputError, match=r"(?s)there are no forces in sections.*there is no column of interaction_base"
+    ):
+        judge(rules, ran, [case()], interaction=empty)
+
+
+def test_a_mistake_in_an_output_that_a_check_brings_has_the_line_of_the_check(tmp_path):
+    path = study_of(tmp_path, pier={"width_m": 3.0, "height_m": 14.0}, check=[JOINT])
+    line = 1 + path.read_text(encoding="utf-8").splitlines().index("[[check]]")
+    message = rf"study.toml:{line}: \[output\]: interaction_base: its forces are in kN; write mass_t"
+    with pytest.raises(rb.InputError, match=message):
+        rb.load_study(path)
+    (tmp_path / "more.toml").write_text(
+        path.read_text(encoding="utf-8")[path.read_text(encoding="utf-8").index("[[check]]") :]
+    )
+    other = study_of(tmp_path, pier={"width_m": 3.0, "height_m": 14.0}, suite={"checks": "more.toml"})
+    line = 1 + other.read_text(encoding="utf-8").splitlines().index('checks = "more.toml"')
+    with pytest.raises(rb.InputError, match=message.replace(message[11 : message.index(": ")], str(line))):
+        rb.load_study(other)

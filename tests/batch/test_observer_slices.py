@@ -14,9 +14,11 @@ import pytest
 from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.common import observers
 from rockbatch.common.observers import OBSERVERS, report_parts
 from rockbatch.quantities.catalogue import COLUMNS, DEMANDS
 from rockbatch.reporting.page import PARTS
+from rockbatch.results.opened import Results
 
 KEYS = {
     "other_law": {"both_laws": True},
@@ -151,6 +153,14 @@ def test_an_observer_is_deleted_with_its_folder_and_its_name(tmp_path, name):
     assert files == [path.name for path in sorted((tmp_path / "rest").glob("*.csv"))]
     for file in files:
         assert (tmp_path / "whole" / file).read_bytes() == (tmp_path / "rest" / file).read_bytes()
+
+
+def test_results_have_no_table_of_an_observer_that_is_not_there(monkeypatch):
+    monkeypatch.setattr(
+        observers, "OBSERVERS", tuple(name for name in OBSERVERS if name not in ("shocks", "intensity"))
+    )
+    results = object.__new__(Results)
+    assert not any(hasattr(results, name) for name in ("shocks", "intensity"))
 
 
 QUICKEST = {

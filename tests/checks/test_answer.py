@@ -48,7 +48,7 @@ def test_the_worst_of_every_response_is_found_whatever_is_checked():
 
 def test_the_worst_settlement_of_springs_that_creep_is_a_range():
     found = worst_of_all(worst(**YIELDED, settlement_other_law_m=[0.01, 0.02, 0.0, 0.0]))
-    assert in_words(found["settlement_m"]) == "20 to 381 mm, by the law of the springs"
+    assert in_words(found["settlement_m"]) == "20 to 381 mm, by both spring laws"
 
 
 def test_what_has_no_limit_is_told_with_its_values_at_the_scale_of_the_case():

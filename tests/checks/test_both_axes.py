@@ -103,6 +103,15 @@ def test_remarks_and_the_way_of_both_axes_are_read_back_from_the_file_as_written
     assert both_axes([replace(read, words="reworded")]) == both_axes([written])
 
 
+@pytest.mark.parametrize("without", [[], ["pads"], ["pads across"], ["pads", "pads across"]])
+def test_an_axis_without_error_estimates_leaves_the_combined_demand_without(without):
+    table = both([0.3], [0.4])
+    table["theta_max_error"] = 1e-3
+    table.loc[table["case"].isin(without), "theta_max_error"] = math.nan
+    (verdict,) = judged(table, Rule("r", "theta_max_over_alpha", at_most=0.6, both_axes="srss"))
+    assert ("no error estimate" in verdict.note) == bool(without)
+
+
 @pytest.mark.parametrize("fallen", ["pads", "pads across"])
 def test_a_pier_that_overturns_on_either_axis_fails(fallen):
     table = both([0.1, 0.2], [0.1, 0.2])

@@ -30,7 +30,7 @@ def test_a_pattern_that_is_a_name_chooses_that_name_alone(pattern, names, expect
 def test_a_limit_is_compared_with_the_piers_that_its_check_is_about_and_no_others():
     piers = [case("weak", YieldingBase(beta=40.0, eta=1.5)), case("strong", YieldingBase(beta=40.0, eta=900.0))]
     names = [pier["case"] for pier in piers]
-    available = Available(names, [1.0], other_law=False, output=[], piers=piers)
+    available = Available(names, [1.0], output=[], piers=piers)
     found = {name: fitted(Rule("a", "eta", at_least=0.02, case=(name,)), available) for name in names}
     assert {name: [problem.kind for problem in of_rule.problems] for name, of_rule in found.items()} == {
         "weak": [],

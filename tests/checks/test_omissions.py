@@ -243,6 +243,20 @@ def test_a_mass_within_the_height_is_of_the_shaft_and_a_rectangle_is_all_shaft()
     assert Pier.frame(column, 3, 900.0).shaft_share == pytest.approx(180.0 / 1080.0)
 
 
+def test_a_footing_below_a_shaft_is_not_of_its_mass():
+    """A slab 2 m high and 10 m wide under a shaft; alone, or above the pivots, or as wide as high it is shaft."""
+    deck, shaft = Part(600.0, 24.0, 0.0, 0.0), Part.rectangle(200.0, 12.0, 20.0, 4.0)
+    slab, raised = Part.rectangle(200.0, 1.0, 2.0, 10.0), Part.rectangle(200.0, 1.5, 2.0, 10.0)
+    square = Part.rectangle(200.0, 1.0, 2.0, 2.0)
+
+    def share(*parts):
+        return Pier.of_parts(10.0, parts, confirm=("width_m", "mass_t")).shaft_share
+
+    assert share(slab, shaft, deck) == pytest.approx(0.25)
+    assert share(raised, shaft, deck) == share(square, shaft, deck) == pytest.approx(0.4)
+    assert share(slab, Part(600.0, 2.0, 0.0, 0.0)) == pytest.approx(0.25)
+
+
 def test_the_first_screen_says_what_an_undecided_and_a_green_check_leave_out():
     omitting = verdict("rock", "not decided", check="shear", high=math.inf, value=0.2, omits="landings, bending")
     also = verdict("rock", "not decided", check="foot", high=math.inf, value=0.2, omits="landings")

@@ -41,6 +41,8 @@ def test_weak_cases_are_named_once_with_the_values_that_tell_them_apart():
     many = [case("pads", YieldingBase(beta=50.0, eta=1.5), k=k) for k in range(40)]
     assert weak_supports(many).startswith("pads: ")
     assert "40 of 41 cases: one support cannot carry" in weak_supports([*many, case(eta=2.5)])
+    named = [case(name, YieldingBase(beta=50.0, eta=1.5), k=k) for name in ("a", "b", "c", "d") for k in range(2)]
+    assert weak_supports([*named, RIGID]).startswith("8 of 9 cases: ")
 
 
 def test_cases_whose_impacts_pull_at_a_support_are_named_and_only_they(tmp_path, capsys):

@@ -9,8 +9,8 @@ from studies import PADS, RIGID, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.core.observe.ledger import Energies
+from rockbatch.observers.other_law.quantities import OTHER_LAW
 from rockbatch.outcome.outcome import TERMS
-from rockbatch.quantities.limits import OTHER_LAW
 
 PIER = rb.Pier(0.2, 1.0)
 T = np.arange(0, 8.001, 0.01)

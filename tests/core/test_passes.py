@@ -17,7 +17,7 @@ from rockbatch.core.run import Settings
 from rockbatch.core.springs import lanes as spring_lanes
 from rockbatch.core.springs.laws import CODES, kept_sign, may_yield
 from rockbatch.core.springs.model import Contact, SpringTraits, State, Supports
-from rockbatch.core.springs.passing import correct_reversals
+from rockbatch.core.springs.passing import correct_lane
 from rockbatch.core.springs.recovery import lag, top
 from rockbatch.core.springs.reversal import pivots
 from rockbatch.core.system import one_pass, rates
@@ -151,7 +151,7 @@ def test_the_pass_on_springs_misses_no_event_of_a_pivot(changes):
 
 @numba.njit(error_model="numpy", _nrt=False)
 def corrections(traits, lanes, i):
-    correct_reversals(traits, lanes, i)
+    correct_lane(traits, lanes, i)
 
 
 def machine_code(function, *arguments):

@@ -182,3 +182,22 @@ def test_the_page_of_two_designs_quotes_what_is_printed(tmp_path, capsys):
     capsys.readouterr()
     assert main(["report", str(tmp_path / "with"), str(tmp_path / "without")]) == 0
     assert capsys.readouterr().out == page
+
+
+RECIPES = (ROOT / "docs" / "pages" / "extending.md").read_text(encoding="utf-8")
+
+
+def test_recipes_name_files_functions_and_numbers_of_hooks_that_there_are():
+    files = set(re.findall(r"`((?:rockbatch|tests|benchmarks|docs)/[\w./]+)`", RECIPES))
+    assert len(files) > 60
+    assert not [file for file in files if "NAME" not in file and not (ROOT / file).exists()]
+    names = set(re.findall(r"`(_?[a-z]+(?:_[a-z0-9]+)+)(?:\([^`]*\))?`|`(_[a-z]+)`", RECIPES))
+    sources = [
+        path.read_text(encoding="utf-8") for top in ("rockbatch", "tests") for path in (ROOT / top).rglob("*.py")
+    ]
+    used = set(re.findall(r"\w+", " ".join(sources)))
+    assert len(names) > 30
+    assert not [name for pair in names if (name := "".join(pair)) not in used]
+    hooks = (ROOT / "rockbatch" / "core" / "system.py").read_text(encoding="utf-8")
+    counts = [len(re.findall(rf"^@{kind}$", hooks, re.MULTILINE)) for kind in ("hook", "optional_hook")]
+    assert re.search(r"the (\d+) hooks of .*, and of (\d+) optional", RECIPES).groups() == tuple(map(str, counts))

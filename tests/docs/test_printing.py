@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from rockbatch.reporting.typeset import words
+
 pytest.importorskip("typst")
 pytest.importorskip("markdown")
 
@@ -53,9 +55,9 @@ def test_signs_that_mean_something_to_typst_are_only_signs():
 
 def test_dots_over_theta_are_set_as_accents():
     """The text's font draws them into the letter, where nobody sees them: θ̇² would read as θ²."""
-    assert "accent(upright(θ), dot)" in printing._text("θ̇")
-    assert "accent(upright(θ), dot.double)" in printing._text("θ̈")
-    assert printing._text("v̇ θ") == "v̇ θ"
+    assert "accent(upright(θ), dot)" in words("θ̇")
+    assert "accent(upright(θ), dot.double)" in words("θ̈")
+    assert words("v̇ θ") == "v̇ θ"
 
 
 def test_what_cannot_be_set_is_refused_by_name():

@@ -25,7 +25,7 @@ MADE = {"Response", "Statics", "Study"}
 """Classes that functions make for users, who do not call them."""
 
 INNER = {
-    "NAME", "TABLES", "by_other_law", "counting", "counts", "deck", "ends", "flies", "has_exponent", "has_residual",
+    "NAME", "TABLES", "counting", "counts", "deck", "ends", "flies", "has_exponent", "has_residual",
     "in_file", "intensity_order", "is_ban", "least_beta", "lined", "linear", "log_slope", "misfit",
     "missing_in_words", "named", "of_station", "on_springs", "overruled", "parameters", "quadrature", "ratchets",
     "reduced_to", "refuse_irregular", "sense", "spec", "what", "yields",

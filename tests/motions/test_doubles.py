@@ -13,8 +13,10 @@ from waveform_files import COUNTS, START, trace, write_mseed
 
 from rockbatch.common.errors import Contradiction
 from rockbatch.motions import ReadOptions, read_motions
-from rockbatch.motions.component import Sensor
+from rockbatch.motions.component import Component, Sensor
+from rockbatch.motions.likeness import pairs_of_one_recording
 from rockbatch.motions.manifest_draft import draft
+from rockbatch.motions.orientation import Orientation
 
 
 def title(component: str, station: str = "STA", event: str = "Somewhere, 1/17/1994") -> str:
@@ -268,3 +270,19 @@ def test_a_copy_of_unknown_processing_ranks_between_corrected_and_uncorrected(tm
     (tmp_path / "unknown.AT2").write_text(at2.replace("PEER NGA STRONG MOTION DATABASE RECORD", "A RECORD"))
     found = read_motions(tmp_path)
     assert [motion.source for motion in found.motions] == [used]
+
+
+def test_two_channels_of_unknown_direction_do_not_contradict_each_other():
+    """Two files of one sensor and event: with equal labels one of them is wrong, without labels they may be two directions."""
+
+    def denied(label):
+        made = [
+            Component(
+                f"c{k}", 0.01, wiggle(seed=k), Orientation(label), source=f"{k}.x", sensor=Sensor("A", "CI"), event="E"
+            )
+            for k in (1, 2)
+        ]
+        return pairs_of_one_recording(made).denied
+
+    assert denied("H1") == [(0, 1)]
+    assert denied("") == []

@@ -424,3 +424,11 @@ def test_two_horizontals_with_the_same_samples_say_so(tmp_path):
         write_at2(tmp_path, name, wiggle(500), title=f"Big One, 1/17/1994, Town Hall, {way}")
     found = read_motions(tmp_path)
     assert [[finding.what for finding in motion.findings] for motion in found.motions] == [["copy"], ["copy"]]
+
+
+def test_a_draft_has_azimuths_in_full(tmp_path):
+    write_sac(tmp_path, a=("HNE", 93.45678, 90.0), b=("HNN", 3.5, 90.0))
+    options = ReadOptions(unit="m/s2")
+    before = used(tmp_path, options=options)
+    assert "azimuth = 3.5\n" in write_manifest(tmp_path, options).read_text(encoding="utf-8")
+    assert used(tmp_path, options=options) == before

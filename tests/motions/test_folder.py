@@ -1,6 +1,7 @@
 """Folders: pairing of components, common samples, names, order, and a reason for every file that is not used."""
 
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -221,6 +222,23 @@ def test_links_that_lead_out_are_not_followed_and_it_is_said(tmp_path):
     assert "leads out" in reasons["c"]
     assert reasons["d.AT2"] == reasons["e.AT2"] == "not a regular file"
     assert reasons["f"] == "a link to a folder, not followed"
+
+
+def test_a_folder_that_cannot_be_opened_is_named_as_such(tmp_path, monkeypatch):
+    """As if it were another's: an administrator opens every folder."""
+    write_at2(tmp_path, "a.AT2", wiggle(50), title="nothing, 000")
+    (tmp_path / "theirs").mkdir()
+    scan = os.scandir
+
+    def refusing(path):
+        if Path(path).name == "theirs":
+            raise PermissionError(13, "Permission denied", str(path))
+        return scan(path)
+
+    monkeypatch.setattr(os, "scandir", refusing)
+    found = read_motions(tmp_path)
+    assert [motion.name for motion in found.motions] == ["a"]
+    assert [(u.source, u.reason) for u in found.unusable] == [("theirs", "a folder that cannot be opened")]
 
 
 def test_a_reader_that_fails_costs_one_file_and_its_exception_is_named(tmp_path, monkeypatch):

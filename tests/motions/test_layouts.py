@@ -271,8 +271,8 @@ def test_clock_times_go_on_after_midnight_and_may_stand_behind_a_count(tmp_path)
 # FEMA P-695
 
 
-def p695(folder: Path, number: int, count: int = N) -> None:
-    (folder / f"SortedEQFile_({number}).txt").write_text("".join(f"{a:.6e}\n" for a in A))
+def p695(folder: Path, number: int, count: int = N, called: str = "SortedEQFile") -> None:
+    (folder / f"{called}_({number}).txt").write_text("".join(f"{a:.6e}\n" for a in A))
     (folder / f"DtFile_({number}).txt").write_text(f"{DT}\n")
     (folder / f"NumPointsFile_({number}).txt").write_text(f"{count}\n")
 
@@ -287,6 +287,14 @@ def test_the_text_files_of_fema_p695_have_step_and_count_beside_them(tmp_path):
     p695(tmp_path, 120711, count=N + 1)
     reasons = [one.reason for one in read_motions(tmp_path, options=ReadOptions(unit="g", role="horizontal")).unusable]
     assert any(f"says {N + 1} samples" in reason for reason in reasons)
+
+
+@pytest.mark.parametrize("called", ["EQFile", "EQ_File", "SortedEQ_File"])
+def test_the_record_of_a_step_file_may_be_spelt_in_other_ways(tmp_path, called):
+    p695(tmp_path, 120711, called=called)
+    found = read_motions(tmp_path, options=ReadOptions(unit="g", role="horizontal"), gravity=1.0)
+    assert is_a(found.motions[0])
+    assert [left.reason for left in found.left_out] == [f"no record: a statement about {called}_(120711).txt"] * 2
 
 
 def test_a_step_without_its_record_is_no_statement(tmp_path):

@@ -174,6 +174,14 @@ def test_of_many_directions_the_first_two_that_are_square_make_the_pair():
     np.testing.assert_allclose(found, rb.pair_spectrum(a, b, PERIODS)["rotd100_g"] * 9.81, rtol=1e-9)
 
 
+def test_the_step_of_the_pair_counts_not_that_of_the_first_motion():
+    a, b = component(1, 0.0), component(2, 90.0)
+    other = Motion("coarse", 0.02, a.horizontal[::2], azimuth=0.0, station="S")
+    found = station_spectra([other, a, b], PERIODS, 0.05)
+    for rule, values in station_spectra([a, b], PERIODS, 0.05).items():
+        np.testing.assert_array_equal(found[rule], values)
+
+
 # Targets of pairs
 
 TABLE = TableSpectrum((0.1, 0.5, 2.0, 6.0), (0.8, 0.9, 0.3, 0.05))

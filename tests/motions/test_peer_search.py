@@ -98,6 +98,24 @@ def test_a_study_scales_records_by_the_factors_of_the_list(tmp_path):
     assert "has no scale factor" in lacking.reason
 
 
+@pytest.mark.parametrize(("second", "factor"), [("1.5", 1.5), ("0.5", None)])
+def test_a_sequence_has_the_facts_of_a_list_that_all_its_records_share(tmp_path, second, factor):
+    records = tmp_path / "records"
+    records.mkdir()
+    write_records(records)
+    (records / "_SearchResults.csv").write_text(listing(row(6, pulse="1.41"), row(7, scale=second)))
+    joined = '[[motions.sequence]]\nname = "both"\nrecords = ["RSN6_MADEUP_ELC180", "RSN7_MADEUP_XYZ090"]\n'
+    (whole,) = ground_motions(load_study(write_study(tmp_path, FOLDER_STUDY + joined)))
+    listed = whole.listed
+    assert (listed.scale, listed.vs30_m_s, listed.pulse_period_s, listed.d5_95_s) == (factor, 213.44, None, None)
+    study = load_study(write_study(tmp_path, FOLDER_STUDY + 'scale = "list"\n' + joined))
+    if factor is not None:
+        assert [motion.factor for motion in ground_motions(study)] == [factor]
+    else:
+        with pytest.raises(InputError, match="both has no scale factor that all its records share"):
+            ground_motions(study)
+
+
 @pytest.mark.parametrize("scale", ['["list", 2.0]', '"lists"', "0"])
 def test_a_scale_that_is_no_factor_nor_the_list_is_refused(tmp_path, scale):
     (tmp_path / "records").mkdir()

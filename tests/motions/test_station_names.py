@@ -133,6 +133,13 @@ def test_several_records_of_one_station_differ_in_event_or_folder():
     assert station_names([[component("x")], [component("x")]]) == ["x", "x (2)"]
 
 
+@pytest.mark.parametrize(
+    ("given", "named"), [(["x", "x", "x (2)"], ["x", "x (3)", "x (2)"]), (["x (2)", "x", "x"], ["x (2)", "x", "x (3)"])]
+)
+def test_a_number_gives_no_station_the_name_of_another(given, named):
+    assert station_names([[component(name)] for name in given]) == named
+
+
 def test_a_motion_that_is_made_in_python_is_a_record_of_its_own():
     assert rb.pulse("sine", name="p", amplitude=1.0, period=1.0, dt=0.01, duration=2.0).of_station == "p"
 

@@ -360,6 +360,12 @@ def test_a_motion_of_another_shape_and_the_same_peak_differs(tmp_path):
     assert list(inputs(folders)) == ["different motions under the same name"]
 
 
+def test_many_motions_of_one_study_only_are_counted_as_motions(tmp_path):
+    pulses = [PULSES[0] | {"name": f"n{i:02}"} for i in range(12)]
+    rows = inputs(two(tmp_path, tables(), tables(motions={"pulse": [*PULSES, *pulses]})))
+    assert rows["motions in one only"][1].startswith("12 motions: n00, n01")
+
+
 def test_motions_of_one_study_only_are_named(tmp_path):
     rows = inputs(two(tmp_path, tables(), tables(motions={"pulse": PULSES[:1]})))
     assert rows["motions in one only"] == ("Lyttelton", "–")

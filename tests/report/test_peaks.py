@@ -41,7 +41,7 @@ def test_outcomes_other_than_ok_are_words_and_never_rotations(tmp_path):
     text = report(tmp_path, changes=changes)
     page = Page(text)
     head, *rows = page.tables["peaks"]
-    assert re.findall(r"data-filter>([^<]*)", text) == ["case", "status"]
+    assert re.findall(r'data-filter="">([^<]*)', text) == ["case", "status"]
     status = {(row[0], row[1]): row[head.index("status")] for row in rows}
     assert status["RRS228", "2"] == status["CPM000", "rigid"] == "overturned"
     assert (status["SYL360", "3"], status["CPM000", "4"], status["ERZ-NS", "1"]) == ("flight", "failed", "ok")
@@ -135,7 +135,7 @@ def test_both_directions_and_scales_are_distinguished(tmp_path):
     assert {len(row.marks) for row in rows.values()} == {2}
     assert {title.split(": ")[-2][-3:] for title in rows["ERZ-NS"].marks[0]} == {"(+)", "(-)"}
     assert "in both polarities, scaled by 1, 2: 120 runs." in page.text
-    assert re.findall(r"data-filter>([^<]*)", text) == ["case", "polarity", "scale"]
+    assert re.findall(r'data-filter="">([^<]*)', text) == ["case", "polarity", "scale"]
     # PGA is that of the scaled motion
     head, *body = page.tables["peaks"]
     own = [dict(zip(head, row, strict=True)) for row in body if row[0] == "ERZ-NS"]

@@ -172,7 +172,7 @@ def test_neither_report_nor_comparison_loads_the_compiler_nor_what_it_does_not_n
 
 def test_markup_escapes_all_but_markup():
     assert tag("p", "<b>", tag("i", "a & b"), title='"') == '<p title="&quot;">&lt;b&gt;<i>a &amp; b</i></p>'
-    assert tag("td", class_="n", hidden=False, open=True) == '<td class="n" open></td>'
+    assert tag("td", class_="n", hidden=False, open=True) == '<td class="n" open=""></td>'
     assert escape(1.5) == "1.5"
 
 

@@ -38,5 +38,5 @@ def test_the_page_says_by_which_law_a_settlement_is_if_the_other_was_not_asked_f
 def test_springs_that_do_not_creep_have_one_settlement_and_no_warning(tmp_path, capsys):
     path, out = write_study(tmp_path, study_text(cases=(PADS | {"spring": "epp"},))), tmp_path / "out"
     assert main(["run", str(path), "--out", str(out)]) == 0
-    assert "by the law of the springs" not in "".join(capsys.readouterr())
+    assert "both spring laws" not in "".join(capsys.readouterr())
     assert "ratchet" not in Page((out / "report.html").read_text(encoding="utf-8")).text

@@ -18,7 +18,7 @@ from rockbatch.pier import Damper, Pier, RigidBase, Stop, Tendon, YieldingBase
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.sections import assumptions, studied
-from rockbatch.reporting.sheet import sheet
+from rockbatch.reporting.sheet import sheet_of as made
 from rockbatch.reporting.table import PAPER, Head, on_paper, table
 from rockbatch.reporting.templates import Section
 
@@ -44,7 +44,7 @@ def bending(**parameters):
 
 def sheet_of(directory, **results):
     write_results(directory, **results)
-    return sheet(read(directory))
+    return made(read(directory)).html()
 
 
 def assumptions_of(directory):
@@ -243,7 +243,7 @@ def test_digests_of_study_results_program_and_records_are_on_the_sheet(tmp_path)
     results.info["peaks"] = {"rows": 30, "sha256": of_peaks}
     for place, record in enumerate(results.info["records"]):
         record["digest"] = f"{place:064d}"
-    rows = Page(sheet(results)).tables["digests"]
+    rows = Page(made(results).html()).tables["digests"]
     assert [row[2] for row in rows if row[0] == "record"] == [f"{place:064d}" for place in range(len(FIG7))]
     found = {row[0]: row[2] for row in rows}
     assert found["study file"] == results.info["study"]["sha256"]
@@ -261,7 +261,7 @@ def test_python_writes_the_sheet_beside_the_report_and_refuses_one_of_two_studie
     write_results(tmp_path)
     written = rb.report(tmp_path, sheet=True)
     assert written.path == tmp_path / "sheet.html"
-    assert written.path.read_text(encoding="utf-8") == sheet(read(tmp_path))
+    assert written.path.read_text(encoding="utf-8") == made(read(tmp_path)).html()
     assert not (tmp_path / "report.html").exists()
     assert written.save(tmp_path / "mail").read_bytes() == written.path.read_bytes()
     with pytest.raises(InputError, match="a calculation sheet is of one study"):
@@ -316,5 +316,5 @@ def test_devices_observers_and_analyses_of_a_folder_have_their_sections_on_the_s
     rb.run(rb.Study.from_dict(tables), out=tmp_path, jobs=1, progress=False)
     drawn = [Section("Free rocking", "release", Markup("<p>θ</p>"))]
     monkeypatch.setattr("rockbatch.reporting.sheet.analyses", lambda contents: drawn)
-    headings = {re.sub(r"^\d+ ", "", heading) for heading in Page(sheet(read(tmp_path))).headings}
+    headings = {re.sub(r"^\d+ ", "", heading) for heading in Page(made(read(tmp_path)).html()).headings}
     assert {"Devices", "Forces", "Free rocking"} <= headings

@@ -23,7 +23,7 @@ from rockbatch.reporting.page import page
 from rockbatch.reporting.sections.statement import MOST_CASES, section
 from rockbatch.reporting.sections.statement.check_sentences import quoted
 from rockbatch.reporting.sections.statement.statements import statements
-from rockbatch.reporting.sheet import sheet
+from rockbatch.reporting.sheet import sheet_of
 from rockbatch.results.checking import verdicts
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
@@ -373,7 +373,7 @@ def test_page_and_sheet_have_the_statements_of_as_many_cases_as_are_read(tmp_pat
     peaks = pd.concat([runs((0.1, 0.2), name) for name in names], ignore_index=True)
     results = folder(tmp_path / "out", peaks, [case(name) for name in names])
     found = of(results, FREE)
-    for drawn in (page(read(results, ())), sheet(read(results, ()))):
+    for drawn in (page(read(results, ())), sheet_of(read(results, ())).html()):
         text = "".join(Page(drawn).words)
         shown_cases = [name for name, (_, paragraph) in found.items() if paragraph in text]
         assert shown_cases == names[:MOST_CASES]

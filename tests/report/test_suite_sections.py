@@ -160,6 +160,20 @@ def test_measures_of_scaled_motions_are_not_called_as_recorded(tmp_path):
     assert "as recorded" not in text
 
 
+def test_the_table_of_foundations_has_what_each_case_was_given(tmp_path):
+    """β and η as given; static deflection g/(β p)² and η times it."""
+    write_results(tmp_path)
+    head, *rows = page_of(tmp_path, studied).tables[""]
+    names = ("case", "base", "β", "η", "ε", "δs [mm]", "δy [mm]")
+    shown = [[row[head.index(name)] for name in names] for row in rows]
+    assert shown[0] == ["rigid", "rigid", "", "", "", "", ""]
+    given = [(40.0, 2.5), (40.0, 3.5), (80.0, 2.5), (80.0, 3.5)]
+    for number, (row, (beta, eta)) in enumerate(zip(shown[1:], given, strict=True), 1):
+        static = 1000.0 * 9.81 / (beta * 0.38) ** 2
+        assert row[:2] == [str(number), "yielding"]
+        assert [float(cell) for cell in row[2:]] == pytest.approx([beta, eta, 0.05, static, eta * static], abs=0.006)
+
+
 def test_forces_of_a_case_with_runs_that_did_not_go_through_are_marked_as_bounds(tmp_path):
     write_results(tmp_path, changes={("ERZ-NS", "1"): {"status": "failed", "reason": "not settled"}})
     peaks = pd.read_csv(tmp_path / "peaks.csv")

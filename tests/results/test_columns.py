@@ -229,7 +229,7 @@ def test_demands_read_columns_of_the_table_only():
     runs = Rows(pd.DataFrame({name: ["" if column.kind == "text" else 0.5] for name, column in COLUMNS.items()}))
     for demand in DEMANDS.values():
         assert len(demand.evaluate(runs, pads).value) == 1
-        assert demand.other_law is None or len(demand.other_law(runs, pads)) == 1
+        assert demand.other_end is None or len(demand.other_end.evaluate(runs, pads)) == 1
 
 
 UNSHOWN = {

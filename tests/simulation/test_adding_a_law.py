@@ -54,6 +54,7 @@ SCRIPT = """
 import json
 import numpy as np
 import rockbatch as rb
+from rockbatch.observers.other_law.observe import by_other_law
 from rockbatch.quantities.cases import creeps
 from rockbatch.simulation import run_fixed
 from rockbatch.study.case_keys import CASE
@@ -73,7 +74,7 @@ print(json.dumps({
     "plastic": float(shaken.ledger["plastic"].iloc[-1]),
     "dissipated": outcome.dissipated_left + outcome.dissipated_right,
     "creeps": creeps({"parameters": base.parameters(pier)}),
-    "other": base.by_other_law().spring,
+    "other": by_other_law(base).spring,
     "help": CASE["spring"].words,
 }))
 """

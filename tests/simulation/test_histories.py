@@ -304,7 +304,9 @@ def test_tables_of_a_study_say_the_units_of_their_columns(tmp_path):
     assert (units["t_max_s"], units["theta_max_over_alpha"], units["settlement_m"]) == ("s", "1", "m")
     assert set(units) <= set(table)
     assert rb.open_results(tmp_path / "out").peaks.attrs["units"] == rb.run(study).attrs["units"] == units
-    assert table["t_max_s"].attrs["units"] is units  # pandas would copy all of them for every column
+    column = table["t_max_s"]
+    column.attrs["units"]["t_max_s"] = "min"
+    assert units["t_max_s"] == table.attrs["units"]["t_max_s"] == "s"
 
 
 def test_tables_say_the_units_of_their_columns():
@@ -313,7 +315,7 @@ def test_tables_say_the_units_of_their_columns():
     assert list(units) == list(response.history)
     assert (units["theta"], units["v_left"], units["ag_h"]) == ("rad", "m", "m/s^2")
     assert response.forces.attrs["units"]["heel_speed_left"] == "m/s"
-    assert response.history["theta"].attrs["units"] is units
+    assert response.history["theta"].attrs["units"] == units
 
 
 # Piers drawn together

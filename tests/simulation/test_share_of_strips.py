@@ -88,6 +88,17 @@ def test_errors_of_results_are_those_of_steps_and_strips_together():
     assert with_strips_error(replace(kept, theta_max_error=None), own, fewer, 5.0).theta_max_error is None
 
 
+def test_a_peak_within_the_motion_has_the_strips_share_however_the_run_ended():
+    """Of a run that overturned after its motion nothing else has an error; a peak on its side tells that nothing is known."""
+    own, fewer = trial(0.02, change_in_motion=1e-4), trial(0.0206)
+    found = with_strips_error(own.outcome, own, fewer, 5.0)
+    assert found.change_in_motion == pytest.approx(4.0 * (1e-4 + 0.0006))
+    fallen = replace(own.outcome, status="overturned", bed=None)
+    assert with_strips_error(fallen, own, fewer, 5.0).change_in_motion == pytest.approx(4.0 * (1e-4 + 0.0006))
+    assert with_strips_error(fallen, own, own, 5.0).change_in_motion == pytest.approx(4e-4 + 3e-5 * 0.02)
+    assert with_strips_error(replace(fallen, change_in_motion=None), own, fewer, 5.0).change_in_motion is None
+
+
 def test_steps_may_add_a_tenth_of_what_strips_leave_and_no_less_than_the_tolerance():
     share = share_of_strips(trial(0.02, 0.01, theta_res=0.0), trial(0.022, 0.014, theta_res=0.008), 5.0)
     wide, own = tolerances_beside(1e-5, share), tolerances_beside(1e-5, None)

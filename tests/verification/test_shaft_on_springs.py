@@ -185,6 +185,26 @@ def test_forces_at_the_base_and_at_the_deck_are_those_of_the_mass_points(uncompi
         )
 
 
+def test_the_base_shear_is_what_stiffness_and_damping_of_the_modes_bear(uncompiled):
+    """(E10): beside the steady push on the masses that no mode follows; nothing of a foot that turns at once is in it."""
+    base, calls, expected = base_of(), [], []
+    m = springs(PIER, base)
+    share, frequency, damping = (np.array(getattr(m.shaft, name)) for name in ("share", "frequency", "damping"))
+    for down, q, rates, z, shaking in random_states(7):
+        contact, ground = Contact(*down, 0.0, 0.0, 0.0), Ground(shaking[0], 0.0, shaking[1], 0.0)
+        y, supports = state(q, rates, z), Supports(0.0, 0.0)
+        calls.append(("observe.forces", "on_springs", m, 40.0, Moment(y, contact, supports), ground))
+        s, c, side = math.sin(q[1]), math.cos(q[1]), down[1] - down[0]
+        turned = shaking[0] + (side * m.half_width * c - m.height * s) * rates[1] ** 2
+        steady = c * turned - s * (m.gravity + shaking[1])
+        expected.append((1.0 - share @ share) * steady - share @ (frequency**2 * q[2:] + damping * np.array(rates[2:])))
+    for found, wanted, call in zip(uncompiled(values_of, calls), expected, calls, strict=True):
+        theta = call[4].y.theta
+        assert found.shear * math.cos(theta) - found.normal * math.sin(theta) == pytest.approx(
+            wanted, rel=1e-9, abs=1e-9
+        )
+
+
 def test_forces_in_sections_are_those_of_the_mass_points_above(uncompiled):
     """V, N and the moment about the deflected section, of v̈ and θ̈ across the shaft as far as modes follow."""
     run, heights, cuts = Run(PIER, base_of(), shaken(5.0, 1.4, duration=2.2)), (0.0, 12.0, 29.0, 41.0), (0, 12, 29, 40)
@@ -314,17 +334,20 @@ OPENSEES = pd.read_csv(Path(__file__).parents[2] / "benchmarks" / "opensees_shaf
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name", "shaft", "top", "period", "shear", "moment"),
+    ("name", "shaft", "top", "period"),
     [
-        ("tower", 3000.0, 1500.0, 0.9, 0.06, 0.04),
-        ("light deck", 3000.0, 300.0, 0.9, 0.07, 0.05),
-        ("even", 2000.0, 2000.0, 0.7, 0.08, 0.05),
-        pytest.param("heavy top", 500.0, 4000.0, 1.2, 0.1, 0.05, marks=pytest.mark.thorough),
-        ("stiff tower", 3000.0, 1500.0, 0.4, 0.25, 0.01),
+        ("tower", 3000.0, 1500.0, 0.9),
+        ("light deck", 3000.0, 300.0, 0.9),
+        ("even", 2000.0, 2000.0, 0.7),
+        pytest.param("heavy top", 500.0, 4000.0, 1.2, marks=pytest.mark.thorough),
+        ("stiff tower", 3000.0, 1500.0, 0.4),
     ],
 )
-def test_finite_elements_on_springs_turn_as_far_and_bear_as_much(name, shaft, top, period, shear, moment):
-    """benchmarks/opensees_shaft.py --springs: both half cycles to 2 %, with three modes V at the foot and M at mid-height."""
+def test_finite_elements_on_springs_turn_as_far_and_bear_as_much(name, shaft, top, period):
+    """benchmarks/opensees_shaft.py --springs: both half cycles to 1 %, with three modes V at the foot to 5 and M at mid-height.
+
+    What parts the shears, by up to 4 %, is damping forces, which OpenSees leaves out of its elements' forces, and higher modes.
+    """
     parts = [rb.Part(shaft, 20.0, shaft * 40.0**2 / 12.0, 40.0), rb.Part(top, 40.0, 1e-3 * top, 0.0)]
     pier, others = replace(rb.Pier.of_parts(8.0, parts, top_m=40.0), flexural_period_s=period), OPENSEES.loc[name]
     t = np.arange(0.0, 8.5, 0.005)
@@ -334,7 +357,7 @@ def test_finite_elements_on_springs_turn_as_far_and_bear_as_much(name, shaft, to
     steps = 2 * first_substeps(pier, base, motion.dt)
     run = rb.simulate(pier, base, motion, forces=True, sections=3, wait=False, substeps=steps)
     second = int(run.theta.argmax())
-    assert -run.theta[:second].min() == pytest.approx(others.first_rad, rel=0.01)
-    assert run.theta[second] == pytest.approx(others.second_rad, rel=0.02)
-    assert run.row.base_shear_kN == pytest.approx(others.base_shear_kN, rel=shear)
-    assert run.sections.section_moment_kNm.iloc[1] == pytest.approx(others.moment_kNm, rel=moment)
+    assert -run.theta[:second].min() == pytest.approx(others.first_rad, rel=0.004)
+    assert run.theta[second] == pytest.approx(others.second_rad, rel=0.01)
+    assert run.row.base_shear_kN == pytest.approx(others.base_shear_kN, rel=0.05)
+    assert run.sections.section_moment_kNm.iloc[1] == pytest.approx(others.moment_kNm, rel=0.01)

@@ -100,7 +100,8 @@ def accuracy(
     Raises
     ------
     InputError
-        With every mistake in the study; if no run converges under step halving, so that there is no error to measure.
+        With every mistake in the study; for ``runs`` below 1 or ``seconds`` not above 0; if no run converges under step halving,
+        so that there is no error to measure.
 
     Examples
     --------

@@ -14,7 +14,7 @@ from rockbatch.terminal.streams import show
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Measure errors against times, and print them."""
+    """Measure errors against times, and print them; return 0."""
     result = accuracy(study, folder(arguments), runs=arguments.runs, seconds=arguments.seconds, progress=Terminal())
     show(shown(result.accuracy))
     print_files(result)

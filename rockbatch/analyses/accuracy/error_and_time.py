@@ -51,7 +51,7 @@ class Clock:
         self.seconds, self.started = seconds, time.monotonic()
 
     def remaining(self, share: float = 1.0) -> float:
-        """Return the seconds until ``share`` of the time is over."""
+        """Return the seconds until ``share`` of the time is over; negative afterwards."""
         return self.started + share * self.seconds - time.monotonic()
 
 
@@ -65,7 +65,11 @@ class Reference:
 
 
 def reference(run: StudyRun, quiet_s: float, seconds: float = math.inf) -> Reference | None:
-    """Return a run with its outcome, converged by step halving; None if it does not converge, or not in ``seconds``."""
+    """Return a run with its outcome, by halving the step until that changes θ_max/α by CONVERGED, 1e-12, or less.
+
+    At most HALVINGS, 10, are made, and those for which ``seconds`` last; None if the last one changed θ_max/α by more than
+    ACCEPTED, 1e-9, or the status, if that is "failed", or if none was made. Of a run that overturns the status alone counts.
+    """
     (simulation,) = simulations([run])
     pier, base, motion = simulation.pier, simulation.base, simulation.motion
     clock, took = Clock(seconds), 0.0
@@ -124,7 +128,7 @@ def references(
 
 
 def _scattered(i: int) -> float:
-    """Return a key that spreads the first few of a range over all of it, wherever one stops: multiples of the golden section."""
+    """Return a key that sorts a range so that its first few are spread over all of it: multiples of the golden section."""
     return i * 0.6180339887498949 % 1.0
 
 
@@ -187,7 +191,11 @@ def _ends(outcomes: Sequence[Outcome | None]) -> list[tuple[str, float]]:
 
 
 def _measured(references: Sequence[Reference], simulate: Simulate, seconds: float) -> dict[str, object]:
-    """Return errors and times of ``simulate`` over the references; once at least, repeated while ``seconds`` remain."""
+    """Return errors of θ_max/α and the time per run of ``simulate``, run up to REPEATS, 5, times while ``seconds`` last, or once.
+
+    Errors are of runs that end as their references do and do not overturn, None without any; the time is that of runs that
+    were not broken off as unstable, None without any.
+    """
     runs = [ref.run for ref in references]
     times: list[float] = []
     clock = Clock(seconds)

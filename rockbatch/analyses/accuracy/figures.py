@@ -22,7 +22,11 @@ ERRORS = {
 
 
 def error_and_time(levels: Sequence[Level]) -> Figure:
-    """Return error against time per run, both logarithmic: the largest solid, that of 95 % dashed, the median dotted."""
+    """Return a figure of error against time per run, both logarithmic, with a star at the setting of this study.
+
+    The line of the largest error is solid, of the 95 % quantile dashed, of the median dotted. Levels without a time are left out;
+    errors below LEAST are drawn there.
+    """
     timed = [level for level in levels if level.seconds_per_run]
     errors = [max(error, LEAST) for level in timed for name in ERRORS if (error := getattr(level, name)) is not None]
     x, y = decades("time per run [ms]", [level.time for level in timed]), decades("error of θ_max/α", errors, about=8)

@@ -53,7 +53,7 @@ class Level:
 
     @property
     def milliseconds(self) -> str:
-        """Return the time per run [ms] as text; empty if it was not measured."""
+        """Return the time per run [ms] as text: "1.23", from 100 on without decimals; empty if it was not measured."""
         return "" if self.seconds_per_run is None else f"{self.time:.0f}" if self.time >= 100 else f"{self.time:.3g}"
 
 
@@ -82,13 +82,13 @@ def _number(text: str) -> float | None:
 
 
 def of_table(table: "pd.DataFrame") -> list[Level]:
-    """Return the levels of the table of which ``accuracy.csv`` is made."""
+    """Return the levels of the table of which ``accuracy.csv`` is made, with None for NaN."""
     numbers = table[NUMBERS].astype(float)
     rows = zip(table["method"], table["machine"], numbers.to_numpy().tolist(), strict=True)
     return [Level(method, machine, *(None if x != x else x for x in row)) for method, machine, row in rows]
 
 
 def chosen(levels: Sequence[Level]) -> Level | None:
-    """Return the level at the study's own setting; None if it was not measured."""
+    """Return the level at the study's own setting; None if it lacks an error or a time, or was not measured."""
     of_study = next((level for level in levels if level.method == "study"), None)
     return of_study if of_study is not None and of_study.error_max is not None and of_study.seconds_per_run else None

@@ -22,9 +22,9 @@ QUANTITIES = (
         value=lambda level: level["status_differs"] or None,
     ),
 )
-"""Of :func:`rows`."""
+"""Heads of a table of :func:`rows`."""
 
 
 def rows(levels: Sequence[Level]) -> list[Entry]:
-    """Return the fields of each level, with its time per run [ms]."""
+    """Return the fields of each level, and ``milliseconds``, its time per run as text."""
     return [vars(level) | {"milliseconds": level.milliseconds} for level in levels]

@@ -30,7 +30,10 @@ def section(contents: Contents) -> Markup:
 
 
 def _remarks(own: Level, last_change: float) -> Iterator[str]:
-    """Yield remarks on the limits of the measured error of the study's own setting."""
+    """Yield remarks on the error of the study's own setting: that it is above the tolerance, or lacks runs that end otherwise.
+
+    The last is that it is below ``last_change``, to which the references are known.
+    """
     error, differing = own.error_max or 0.0, int(own.status_differs or 0)
     if own.tolerance and error > own.tolerance:
         yield "that is more than the tolerance"

@@ -132,7 +132,8 @@ def design(
     Returns
     -------
     DesignSearch
-        With the tables ``design``, ``design_values``, ``design_checks`` and ``design_runs``, as their CSV files have them.
+        With the tables ``design``, ``design_values``, ``design_checks`` and ``design_runs``, as their CSV files have them, and
+        ``design_sections`` and ``design_interaction`` if a check is about a section.
 
     Raises
     ------
@@ -205,7 +206,7 @@ def _said(trial: Trial, spec: DesignSpec) -> str:
 
 @contextmanager
 def _waves(results: AnalysisFolder, study: Study, motions: MotionSet, digest: dict[str, str]) -> "Iterator[Waves]":
-    """Open the waves of runs: from finished ones of the folder, or into a journal, of which the table is written at the end."""
+    """Open the waves of runs: finished ones of the folder, or new ones in a journal, which is written as a table at the end."""
     of_one_moment = any(rule.at_m is not None or rule.curve is not None for rule in study.checks)
     requested = observers_beside(study.output, motions.motions) if of_one_moment else ()
     observers = [observer for observer in requested if observer.table in BESIDE]
@@ -227,7 +228,7 @@ def _waves(results: AnalysisFolder, study: Study, motions: MotionSet, digest: di
 
 
 def _announce(results: AnalysisFolder, spec: DesignSpec, scan: list[Trial], cases: int, motions: MotionSet) -> None:
-    """Say how many runs the scan takes, and each change of verdict."""
+    """Say how many runs the scan takes, and how many at most the bisection of a change of verdict."""
     study, designs = results.study, len({trial.design for trial in scan})
     of_case = len(motions.motions) * len(study.motions.scale)
     first = spec.vary[0]
@@ -240,7 +241,7 @@ def _announce(results: AnalysisFolder, spec: DesignSpec, scan: list[Trial], case
 
 
 def _bisected(trials: Trials, spec: DesignSpec) -> Iterator[Trial]:
-    """Yield the trials between neighbours with different verdicts that are further apart than the width."""
+    """Yield the trials in the middle between neighbours with different verdicts that are further apart than the width."""
     lines = grouped(trials.judged, lambda trial: (trial.design, trial.values[1:]))
     for (design, others), of_line in lines.items():
         verdicts = {trial.values[0]: trials.judged[trial].verdict for trial in of_line}
@@ -248,7 +249,7 @@ def _bisected(trials: Trials, spec: DesignSpec) -> Iterator[Trial]:
 
 
 def _on_suite(study: Study, motions: MotionSet) -> Callable[[Sequence[Case]], list[Verdict]]:
-    """Return the function of the cases of a trial to the verdicts on the suite by the targets of the study."""
+    """Return a function from the cases of a trial to the verdicts on the suite by the study's targets, [] without any."""
     target = study.motions.target
     if target is None and study.motions.vertical_target is None:
         return lambda cases: []

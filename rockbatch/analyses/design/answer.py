@@ -26,7 +26,10 @@ _STATES = {PASS: "passes", FAIL: "fails", NOT_DECIDED: "is not decided", REFUSED
 
 
 def answer(info: Entry, intervals: "pd.DataFrame", values: "pd.DataFrame") -> list[Said]:
-    """Return the sentences of the answer; ``info`` is design.json, the tables design.csv and design_values.csv."""
+    """Return the sentences of the answer, each with its verdict, "" for a remark without one.
+
+    ``info`` is design.json, the tables are design.csv and design_values.csv.
+    """
     rows, tried = with_labels(info, intervals), by_design(info, with_labels(info, values))
     said: list[Said] = []
     for label, own in by_design(info, rows).items():
@@ -48,24 +51,25 @@ def with_labels(info: Entry, table: "pd.DataFrame") -> list[dict[str, Any]]:
 
 
 def by_design(info: Entry, rows: Sequence[Entry]) -> dict[str, list[Entry]]:
-    """Return rows of a table by their designs in words, in the order of the study."""
+    """Return the rows of a table by the words for their design, in the order of the study; [] for a design without rows."""
     keys = ["case", *info["varied"]]
     by_name = grouped(rows, lambda row: named(row, keys))
     names = [
         named({"case": design["case"], **design["columns"]}, ["case", *design["columns"]]) for design in info["designs"]
     ]
-    return {name: by_name[name] for name in names}
+    return {name: by_name.get(name, []) for name in names}
 
 
 def plain(value: float) -> str:
-    """Return a value with all its digits: "1,187.5"."""
+    """Return a value with ten significant digits, all that a value of a scan has: "1,187.5"."""
     return f"{value:,.10g}"
 
 
 def governs(row: Entry, end: str = "", short: bool = False) -> str:
     """Return what governs at a value, or at an ``end`` of an interval: "drift under soft ground at 101 %, in LGP000".
 
-    A ``short`` one leaves the record out, where a table has a column for it.
+    Without a check it is the reason, or empty. A ratio that is 0 or infinite and a scale of 1 are left out, and so is the record
+    if ``short``.
     """
     prefix = f"{end}_" if end else ""
     check, reason = row[f"{prefix}check"], row[f"{prefix}reason"]
@@ -85,7 +89,7 @@ def _of_line(info: Entry, rows: Sequence[Entry], tried: Sequence[Entry]) -> Iter
     if not passing:
         low, high = (plain(info["vary"][0][end]) for end in ("low", "high"))
         yield (
-            _none(rows),
+            _verdict_without_pass(rows),
             f"no value of {path} that was run from {low} to {high} passes every check{_nearest(tried, path)}.",
         )
         return
@@ -115,7 +119,7 @@ def _of_line(info: Entry, rows: Sequence[Entry], tried: Sequence[Entry]) -> Iter
 
 
 def _interval(row: Entry) -> str:
-    """Return an interval in words with what governs its ends: "412.5 to 612.5 (above it fails: drift at 101 %)"."""
+    """Return an interval in words with what governs its ends: "4 to 6 (below: end of the scan; above it fails: drift)"."""
     ends = []
     for end in ("below", "above"):
         state = (
@@ -134,13 +138,16 @@ def _beyond(rows: Sequence[Entry], row: Entry, end: str) -> Said:
     return NOT_DECIDED, f"from {plain(other['low'])} to {plain(other['high'])} nothing is decided, so that {extreme}."
 
 
-def _none(rows: Sequence[Entry]) -> str:
-    """Return the verdict on a key of which no value passes: not decided if some values are not."""
+def _verdict_without_pass(rows: Sequence[Entry]) -> str:
+    """Return the verdict on a key of which no value passes: not decided if some value is not, else fail."""
     return NOT_DECIDED if any(row["verdict"] == NOT_DECIDED for row in rows) else FAIL
 
 
 def _nearest(tried: Sequence[Entry], path: str) -> str:
-    """Return the value that is nearest to passing, with what governs it, to follow a sentence; empty without one."""
+    """Return the value nearest to passing, with what governs it, to follow a sentence; empty if all are refused.
+
+    A value that is not decided is nearer than one that fails, then one with a lower ratio.
+    """
     order = {NOT_DECIDED: 0, FAIL: 1}
     candidates = [row for row in tried if row["verdict"] in order]
     if not candidates:
@@ -150,11 +157,11 @@ def _nearest(tried: Sequence[Entry], path: str) -> str:
 
 
 def _of_map(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
-    """Yield the sentence on the passing values of two keys: the extreme of the first over all values of the second."""
+    """Yield sentences on the passing values of two keys: the extreme of the first over all of the second; where none passes."""
     (path, other), find = (varied["path"] for varied in info["vary"]), info["find"]
     passing, number = [row for row in rows if row["verdict"] == PASS], len({row[other] for row in rows})
     if not passing:
-        yield _none(rows), "no pair of values that was run passes every check."
+        yield _verdict_without_pass(rows), "no pair of values that was run passes every check."
         return
     end, outer, best = ("low", "below", min) if find == "least" else ("high", "above", max)
     row = best(passing, key=lambda each: float(each[end]))

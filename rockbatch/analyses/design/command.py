@@ -14,7 +14,10 @@ from rockbatch.terminal.streams import filled, show
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Find the values that pass, and print them: the answer, then the intervals."""
+    """Find the values that pass, and print them: the answer, then the intervals.
+
+    Return 1 if a record is unusable, or no value passes in some case, else 0.
+    """
     result = design(study, **analysis_arguments(arguments))
     said = answer(result.info, result.design, result.design_values)
     show("\n".join(filled(f"{SIGNS.get(verdict, '')} {words}".lstrip()) for verdict, words in said))

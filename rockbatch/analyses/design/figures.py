@@ -64,13 +64,12 @@ def axis_of(varied: Entry) -> Axis:
 
 
 def ratios(info: Entry, intervals: Sequence[Entry], checks: Sequence[Entry]) -> Figure:
-    """Return demand over limit of every check, the worst of its bounds, against the value: a panel for each design."""
+    """Return a figure of demand over limit of every check, the worst of its bounds, against the value: a panel each design."""
     judged = by_design(info, [row for row in checks if row["ratio"] == row["ratio"]])
     finite = [row["ratio"] for rows in judged.values() for row in rows if np.isfinite(row["ratio"])]
     top = min(1.08 * max(finite, default=1.0), HIGHEST)
     panels = [
-        _ratios(info, label, rows, judged.get(label, []), max(top, 1.2))
-        for label, rows in by_design(info, intervals).items()
+        _ratios(info, label, rows, judged[label], max(top, 1.2)) for label, rows in by_design(info, intervals).items()
     ]
     return Figure(panels, "Demand over limit of every check against the value")
 
@@ -124,20 +123,20 @@ def _of_check(path: str, place: int, check: str, rows: Sequence[Entry], top: flo
 
 
 def _in_words(row: Entry) -> str:
-    """Return a verdict in words, for a tooltip."""
+    """Return a verdict in words, for a tooltip: "drift 101 % under soft ground, fail"."""
     bound = f" under {row['bound']}" if row.get("bound") and row["bound"] == row["bound"] else ""
     return f"{row['check']} {percent(row['ratio'])}{bound}, {row['verdict']}".replace("\u00a0", " ")
 
 
 def maps(info: Entry, values: Sequence[Entry]) -> Figure:
-    """Return what passes over two keys: a panel for each design, with the check that governs as colour."""
+    """Return a figure of what passes over two keys: a panel for each design, with the check that governs as colour."""
     checks = {name: place for place, name in enumerate(info["checks"])}
     panels = [_map(info, label, rows, checks) for label, rows in by_design(info, values).items()]
     return Figure(panels, "Passing values, and the check that governs")
 
 
 def _map(info: Entry, label: str, values: Sequence[Entry], checks: Mapping[str, int]) -> Panel:
-    """Return the map of a design: cells about the values that were run, filled where a check fails."""
+    """Return the map of a design: points where all checks pass, filled cells about all other values that were run."""
     up, across = info["vary"]
     cells: dict[tuple[str, str], list[tuple[float, float, float, float]]] = {}
     points: dict[str, list[Entry]] = {}
@@ -175,7 +174,7 @@ def _map(info: Entry, label: str, values: Sequence[Entry], checks: Mapping[str, 
 
 
 def _outlines(boxes: Sequence[tuple[float, float, float, float]]) -> tuple[np.ndarray, np.ndarray]:
-    """Return boxes as outlines with gaps between them."""
+    """Return x and y of the outlines of boxes (left, right, low, high), with NaN after each."""
     x = [value for left, right, *_ in boxes for value in (left, right, right, left, np.nan)]
     y = [value for *_, low, high in boxes for value in (low, low, high, high, np.nan)]
     return np.array(x), np.array(y)

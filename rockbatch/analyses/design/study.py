@@ -73,12 +73,12 @@ class DesignSpec:
 
 
 def rounded(value: float) -> float:
-    """Return a value with :data:`DIGITS` significant digits."""
+    """Return a value with :data:`DIGITS`, 10, significant digits."""
     return float(f"{value:.{DIGITS}g}")
 
 
 def _end(value: object) -> float | tuple[float, ...]:
-    """Return an end of a range, or both of one of two ranges."""
+    """Return a number, an end of a range, or both of a list, a range; raises ``KindError`` for others."""
     if not isinstance(value, list):
         return number(value)
     if len(value) != 2:
@@ -171,7 +171,7 @@ def read_design(study: Study) -> DesignSpec:
 
 
 def _varied(table: Table, read: Mapping[str, Any]) -> Iterator[Varied]:
-    """Yield the keys that are varied with their ranges; note what is impossible about them."""
+    """Yield the keys that are varied, with their ranges, without those that have mistakes, which become problems of the file."""
     paths, ranges, points = read["vary"], read["between"], read.get("points", (11,))
     if len(paths) > 2:
         table.complain("vary: expected one key or two", "vary")
@@ -191,7 +191,7 @@ def _varied(table: Table, read: Mapping[str, Any]) -> Iterator[Varied]:
     for path, (low, high), number_of in zip(paths, ranges, (*points, points[0])[: len(paths)], strict=True):
         if wrong := why_fixed(path, EXAMPLE):
             table.complain(wrong, "vary")
-        elif wrong := _why_not(path, low, high):
+        elif wrong := _why_not_over(path, low, high):
             table.complain(wrong, "between")
         elif not low < high:
             table.complain(f"between: {low:g} is not below {high:g}; write [{high:g}, {low:g}]", "between")
@@ -199,8 +199,8 @@ def _varied(table: Table, read: Mapping[str, Any]) -> Iterator[Varied]:
             yield Varied(path, low, high, number_of)
 
 
-def _why_not(path: str, low: float, high: float) -> str:
-    """Return why a key cannot be varied over a range; empty if it can."""
+def _why_not_over(path: str, low: float, high: float) -> str:
+    """Return why an existing key cannot be varied over a range, tried at its ends and middle; empty if it can."""
     if path == "pier.gravity":
         return f"{shown(path)}: motions that are given in g would change with it; vary another key"
     key = key_at(path)
@@ -215,7 +215,10 @@ def _why_not(path: str, low: float, high: float) -> str:
 
 
 def _having(table: Table, study: Study, paths: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return the names of the cases that have all keys at these ``paths``, and of the others; note keys that none has."""
+    """Return the names of the cases that have all keys at these ``paths``, and of the others.
+
+    A key that no case has becomes a problem of the file, and both are empty.
+    """
     tables: dict[str, Any] = tomllib.loads(study.text)
     having = {name_of(case): [with_value(tables, path, name_of(case), 1.0) is not None for path in paths]
               for case in tables["case"]}  # fmt: skip

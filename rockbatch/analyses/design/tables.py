@@ -18,7 +18,7 @@ VALUES, INTERVALS = "design_values.csv", "design.csv"
 BESIDE = {SECTIONS: "design_sections.csv", INTERACTION: "design_interaction.csv"}
 """Files of the rows beside those of the runs, by the names that a batch has for them."""
 GOVERNING = ("check", "under_bound", "at_scale", "station", "record", "ratio")
-"""Of the check that governs: its name, the bound and scale at which it does, the run, and demand over limit."""
+"""Columns of the check that governs: its name, the bound and scale at which it does, the run, and demand over limit."""
 ENDS = ("below", "above")
 _OF_INTERVAL = ("verdict", "low", "high", "values", "widest_step")
 _OF_END = ("", "_verdict", *(f"_{name}" for name in GOVERNING), "_reason")
@@ -27,12 +27,12 @@ Judgements = Mapping[Trial, Judged]
 
 
 def value_columns(spec: DesignSpec, varied: Sequence[str]) -> list[str]:
-    """Return the columns of design_values.csv."""
+    """Return the columns of design_values.csv: case, ``varied`` but for the bound, the keys of ``spec``, verdict and why."""
     return ["case", *_of_designs(varied), *spec.paths, "verdict", *GOVERNING, "reason"]
 
 
 def interval_columns(spec: DesignSpec, varied: Sequence[str]) -> list[str]:
-    """Return the columns of design.csv."""
+    """Return the columns of design.csv: case, ``varied`` but for the bound, later keys of ``spec``, the interval and its ends."""
     ends = [f"{end}{name}" for end in ENDS for name in _OF_END]
     return ["case", *_of_designs(varied), *spec.paths[1:], *_OF_INTERVAL, *ends]
 
@@ -42,7 +42,10 @@ def _of_designs(varied: Sequence[str]) -> list[str]:
 
 
 def values_table(judged: Judgements, spec: DesignSpec, varied: Sequence[str]) -> "pd.DataFrame":
-    """Return a row for each value of each design, with the verdict and the check that governs it."""
+    """Return a row for each value of each design, with the verdict and the check that governs it.
+
+    Rows are sorted by case, then by the value of the second key, if any, then of the first.
+    """
     rows = [
         {"case": trial.design.case, **dict(trial.design.columns), **dict(zip(spec.paths, trial.values, strict=True))}
         | {"verdict": found.verdict, **_governing(found), "reason": found.reason}
@@ -69,7 +72,10 @@ def _of_design(judged: Judgements, spec: DesignSpec, design: Design) -> Iterator
 
 
 def _row(interval: Interval, line: Mapping[float, Judged]) -> dict[str, Any]:
-    """Return the cells of an interval with what governs its ends: the worse of both sides, the outer one if it passes."""
+    """Return the cells of an interval: at each end the neighbour beyond it, and what governs the worse of the two values there.
+
+    An end of the scan has none of these.
+    """
     verdict, low, high, below, above, values, widest = interval
     row: dict[str, Any] = dict(zip(_OF_INTERVAL, (verdict, low, high, values, widest), strict=True))
     for end, inner, outer in zip(ENDS, (low, high), (below, above), strict=True):
@@ -81,7 +87,7 @@ def _row(interval: Interval, line: Mapping[float, Judged]) -> dict[str, Any]:
 
 
 def _governing(found: Judged) -> dict[str, Any]:
-    """Return the cells of the check that governs; none where the study is refused."""
+    """Return the cells of the check that governs; {} where the study is refused, or no check applies."""
     verdict = found.governing
     if verdict is None:
         return {}

@@ -25,7 +25,6 @@ from rockbatch.results.interaction import INTERACTION
 from rockbatch.results.run_json import describe_case
 from rockbatch.results.sections import SECTIONS
 from rockbatch.study import Case, Study
-from rockbatch.study.both_axes import along_the_axis
 from rockbatch.study.bound_keys import key_at
 from rockbatch.study.design_bounds import Change
 
@@ -76,9 +75,10 @@ class Written:
 
     @cached_property
     def designs(self) -> list[Design]:
-        """Return the designs of the cases that have the varied keys."""
-        cases = [case for case in along_the_axis(self.study.cases) if case.name in self.spec.cases]
-        return list(dict.fromkeys(self._design(case) for case in cases))
+        """Return the designs of the cases that have the varied keys, each once, also with cases along and across the axis."""
+        return list(
+            dict.fromkeys(self._design(case) for case in self.study.cases if case.name_along in self.spec.cases)
+        )
 
     def _design(self, case: Case) -> Design:
         columns = of_design({name: case.columns[name] for name in self.varied if name in case.columns})
@@ -90,7 +90,7 @@ class Written:
         return cases if isinstance(cases, str) else ""
 
     def cases(self, trial: Trial) -> list[Case]:
-        """Return the cases of a trial, nominal and under each bound, on every axis, with its values as columns."""
+        """Return the cases of a trial, nominal and under each bound, on every axis, with its values as columns; [] if refused."""
         cases = self._of(trial)
         return [] if isinstance(cases, str) else cases[trial.design]
 
@@ -134,7 +134,7 @@ class Trials:
         self.omitted: dict[str, dict[str, None]] = {}
 
     def execute(self, requested: Iterable[Trial]) -> None:
-        """Run and judge trials that are not yet."""
+        """Run and judge those trials that are not judged yet; one with which the study is refused is not run."""
         trials = [trial for trial in dict.fromkeys(requested) if trial not in self.judged]
         for trial in trials:
             if reason := self.written.refusal(trial):
@@ -152,7 +152,7 @@ class Trials:
         """Judge the trials of a case by the checks that are about it."""
         study, motions = self.waves.study, self.motions.motions
         described = [describe_case(case) for of_trial in cases.values() for case in of_trial]
-        names = frozenset(case.name for case in along_the_axis(self.written.study.cases))
+        names = frozenset(case.name_along for case in self.written.study.cases)
         about = (rule for rule in study.checks if not rule.case or name in chosen_by(tuple(rule.case), names))
         rules = [replace(rule, case=()) for rule in about]
         runs = peaks[peaks["case"].isin({str(case["case"]) for case in described})]
@@ -200,7 +200,10 @@ def _values(columns: Mapping[str, Any], spec: DesignSpec) -> tuple[tuple[float, 
 
 
 def _judged(verdicts: Sequence[Verdict]) -> Judged:
-    """Return the worst of the verdicts of all checks on a trial; not decided if none applies."""
+    """Return the worst of the verdicts of all checks on a trial, governed by the greatest ratio among those that have it.
+
+    A ratio of NaN is the least. If no check applies it is not decided, without a check that governs.
+    """
     applying = [verdict for verdict in verdicts if verdict.verdict != DOES_NOT_APPLY]
     if not applying:
         return Judged(NOT_DECIDED, None, "no check applies")
@@ -210,5 +213,5 @@ def _judged(verdicts: Sequence[Verdict]) -> Judged:
 
 
 def worse(first: Judged, second: Judged) -> Judged:
-    """Return which of two is the worse."""
+    """Return the one with the worse verdict, the first if both have the same."""
     return max(first, second, key=lambda judged: WORSE.index(judged.verdict))

@@ -10,7 +10,10 @@ Tables = Mapping[str, Any]
 
 
 def with_value(tables: Tables, path: str, case: str, value: float) -> Tables | None:
-    """Return the tables of a study with the key at a path changed, of the ``case`` of this name; None if it is not written."""
+    """Return the tables of a study with the key at a path changed; None if it is not written.
+
+    A path in "case" changes each [[case]] of the name ``case`` alone; another, such as one in "pier", changes the study.
+    """
     top, *rest = path.split(".")
     if top != "case":
         return _changed(tables, [top, *rest], value)
@@ -19,7 +22,10 @@ def with_value(tables: Tables, path: str, case: str, value: float) -> Tables | N
 
 
 def _changed(table: Tables, path: Sequence[str], value: float) -> Tables | None:
-    """Return a table with the key at a path within changed, in all tables of a name or in a numbered one; None without any."""
+    """Return a table with the key at a path within it changed; None if the key is not written.
+
+    The path "damper.f" changes each damper that has f, "damper_2.f" the second alone.
+    """
     name, *rest = path
     if not rest:
         return {**table, name: value} if name in table else None
@@ -34,7 +40,7 @@ def _changed(table: Tables, path: Sequence[str], value: float) -> Tables | None:
 
 
 def paths_in(tables: Tables) -> Iterator[str]:
-    """Yield the paths of all keys of the pier and the cases that are written."""
+    """Yield the paths of all keys written in the pier and the cases, also in tables one level within; some may come twice."""
     for top in ("pier", "case"):
         for table in _listed(tables.get(top, ())):
             for name, value in table.items():

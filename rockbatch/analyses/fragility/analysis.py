@@ -98,7 +98,7 @@ class Fragility(Analysis):
     def plot_fragility(self, ax: "Axes | None" = None, limit: str = "") -> "Axes":
         """Draw the curves of one limit into ``ax``, by default in a figure of one column of a paper, 88 mm; return the axes.
 
-        ``limit`` is the name of the limit, by default the first. Raises ``InputError`` for another, with those that there are.
+        ``limit`` is the name of the limit, by default the first; raises ``InputError`` for an unknown one.
         """
         from rockbatch.analyses.fragility.figures import curves
         from rockbatch.common.figures.paper import panel_in
@@ -120,7 +120,8 @@ class Fragility(Analysis):
         added : float, optional
             Dispersion added to that of the records; what the study adds if it is not given.
 
-        Raises ``InputError`` without any hazard, and for periods or a dispersion that are negative or not finite.
+        Raises ``InputError`` without any hazard, for periods that are not above 0, for a negative dispersion, and for either if
+        it is not finite.
         """
         of_study = self.spec.hazard
         if hazard is None and of_study is None:
@@ -149,10 +150,12 @@ def fragility(
     progress: Progress = None,
     im: "Mapping[str, float] | pd.Series | str | os.PathLike[str] | None" = None,
 ) -> Fragility:
-    """Compute the probability of overturning, and of exceeding every limit of a check, by intensity: [fragility] of a study.
+    """Compute the probability of overturning, and of exceeding the limit of a check, by intensity: [fragility] of a study.
 
-    Every horizontal component is a record here, whatever [suite] says: a probability is that of a motion along the pier. Those
-    of one station are not independent: intervals count stations, or earthquakes where five or more are known.
+    The limits are those of all checks of single records, or of the ``checks`` that [fragility] names. Every horizontal component
+    is a record here, even if [suite] keeps one of a station: a probability is that of a motion along the pier. Components of
+    one station are not independent: intervals count stations, or earthquakes if those of all records are known, and they are
+    five or more and fewer than the stations.
 
     Parameters
     ----------
@@ -167,8 +170,8 @@ def fragility(
     Returns
     -------
     Fragility
-        With the tables ``fragility``, ``fragility_capacities``, ``fragility_runs``, ``fragility_scales``,
-        ``fragility_risk`` and ``fragility_deaggregation``, as their CSV files have them.
+        With the tables ``fragility``, ``fragility_capacities``, ``fragility_cloud``, ``fragility_runs``, ``fragility_scales``,
+        ``fragility_risk`` and ``fragility_deaggregation``, as their CSV files have them; None if the method has none.
 
     Raises
     ------
@@ -262,7 +265,7 @@ def _write_tables(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, obj
 
 
 def _keep_risk(results: AnalysisFolder, spec: FragilitySpec, curves: list[Curve], rates: list[Risk]) -> None:
-    """Write the tables of annual rates; of a study without a hazard, remove those of an earlier one."""
+    """Write the tables of annual rates, and remove those of earlier results; without a hazard there are none."""
     for file in (RISK, DEAGGREGATION):
         results.drop(file)
     if spec.hazard is not None:

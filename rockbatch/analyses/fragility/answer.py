@@ -23,7 +23,10 @@ Info = Entry
 
 
 def of_curves(info: Info) -> Markup:
-    """Return sentences on the weakest case for overturning and for the limit exceeded first, and remarks on their uncertainty."""
+    """Return sentences on the weakest case for overturning and for the limit exceeded first, if that is lower; and remarks.
+
+    If it is not, the sentence says that no other limit is exceeded, or has a lower median.
+    """
     overturning, *others = grouped(info["curves"], lambda curve: curve["limit_state"]).values()
     sentences = [_of_limit(info, overturning, _capital(overturning[0]["limit_state"]))]
     weakest = min(others, key=_lowest, default=None)
@@ -38,7 +41,7 @@ def of_curves(info: Info) -> Markup:
 
 
 def of_rates(info: Info) -> Markup:
-    """Return sentences on the highest annual rates of overturning and of any limit, and remarks on their uncertainty."""
+    """Return sentences on the highest annual rates of overturning and, if greater, of another limit, and remarks on them."""
     by_limit = grouped(info["curves"], lambda curve: curve["limit_state"])
     known = {name: [curve for curve in curves if curve["risk"]] for name, curves in by_limit.items()}
     overturning, *_ = known
@@ -55,7 +58,7 @@ def of_rates(info: Info) -> Markup:
 
 
 def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
-    """Return the sentence about a limit: the case with the lowest median."""
+    """Return the sentence about a limit: the case with the lowest median, or bound of it, and what leaves it in doubt."""
     curve = min(curves, key=_strength)
     decided = _decided(curve)
     total = sum(point["records"] - point["undecided"] for point in decided)
@@ -78,7 +81,7 @@ def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
 
 
 def _median(info: Info, curve: Curve) -> str:
-    """Return the median with its interval, the one by shares, if it differs, and the dispersion."""
+    """Return the median with its interval and dispersion, and the median by shares if it is APART, a tenth, or more from it."""
     if curve["median_interval"] is None:
         interval = f"from {_records(curve)}, no interval: {counted(curve['stations'], 'station')}"
     else:
@@ -91,7 +94,7 @@ def _median(info: Info, curve: Curve) -> str:
 
 
 def _never(curve: Curve) -> bool:
-    """Return whether every run is decided, and none exceeds the limit."""
+    """Return whether every run at the levels is decided, and no run, there or between them, exceeds the limit."""
     points = curve["points"]
     return _withstood(points, curve) and not any(point["undecided"] for point in points)
 
@@ -118,10 +121,13 @@ def _left_open(info: Info, curve: Curve, curves: Sequence[Curve]) -> Iterator[st
 
 
 def _of_all(info: Info) -> Iterator[str]:
-    """Yield remarks on all curves that may change a decision."""
+    """Yield remarks that may change a decision: curves without a median, undecided runs, what records share, unsearched gaps.
+
+    Of a single curve the first two are in its sentence.
+    """
     curves = info["curves"]
     if len(curves) > 1:  # else the sentence has said it
-        if lost := sum(map(_unknown, curves)):
+        if lost := sum(map(_has_no_median, curves)):
             yield f"{lost} of {len(curves)} curves could not be fitted: the table says why."
         if little := sum(curve["says_little"] for curve in curves):
             yield f"{little} of {len(curves)} curves {'says' if little == 1 else 'say'} little: too many runs are undecided."
@@ -132,7 +138,7 @@ def _of_all(info: Info) -> Iterator[str]:
 
 
 def _shared(info: Info) -> Iterator[str]:
-    """Yield the basis of intervals if records share a station or an earthquake."""
+    """Yield the basis of intervals if records share a station or an earthquake; nothing if each has its own."""
     stations, events = info.get("stations", info["records"]), info.get("events", 0)
     if info.get("by") == "event":
         yield f"Intervals are by earthquake: the records are of {events}."
@@ -145,7 +151,7 @@ def _shared(info: Info) -> Iterator[str]:
 
 
 def _of_rate(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
-    """Return the sentence about a limit: the case that exceeds it most often."""
+    """Return the sentence about a limit: the case that exceeds it most often, by the shortest period; or that it has no rate."""
     if not curves:
         return sentence(f"{subject} has no rate, as no curve could be fitted")
     curve = max(curves, key=_rate)
@@ -182,8 +188,8 @@ def _lowest(curves: Sequence[Curve]) -> float:
 
 
 def _strength(curve: Curve) -> float:
-    """Return the median of a curve, 0 if it is below all levels; without one the lowest level at which half of the decided
-    records exceed the limit.
+    """Return the median of a curve, or for its bound 0 "below", infinity "above", the upper end "between"; without either the
+    lowest level at which half of the decided records exceed the limit, infinity if there is none.
     """
     if curve["median"] is not None:
         return float(curve["median"])
@@ -204,8 +210,11 @@ def _withstood(points: Sequence[Entry], curve: Curve) -> bool:
     return not any(point["exceeded"] for point in points) and all(high is None for _, high in curve["capacities"])
 
 
-def _unknown(curve: Curve) -> bool:
-    """Return whether a curve has no median though some record may have one."""
+def _has_no_median(curve: Curve) -> bool:
+    """Return whether a curve has neither a median nor a bound of it, unless every run is decided and withstood the limit.
+
+    Without any record it is True.
+    """
     points = curve["points"]
     return (
         curve["median"] is None
@@ -219,7 +228,7 @@ def _unknown(curve: Curve) -> bool:
 
 
 def _overlap(curve: Curve, other: Curve) -> bool:
-    """Return whether another curve's median may be as low, by the intervals of both; False without one of these."""
+    """Return whether another curve's median interval begins within that of ``curve`` or below; False if one has none."""
     if other["median_interval"] is None or curve["median_interval"] is None:
         return False
     low, high = (other["median_interval"][0] or 0.0), curve["median_interval"][1]
@@ -227,8 +236,8 @@ def _overlap(curve: Curve, other: Curve) -> bool:
 
 
 def _records(curve: Curve) -> str:
-    """Return the number of records in words, at each level if it differs between them; of stations where piers share a curve,
-    since the runs of one record on several piers are not independent.
+    """Return the number of records in words, or its range over levels: "38 to 40 records a level"; of piers that share a curve
+    "12 stations on 3 piers", since the runs of one record on several piers are not independent.
     """
     if curve.get("piers", 1) > 1:
         return f"{counted(curve['stations'], 'station')} on {curve['piers']} piers"
@@ -249,7 +258,7 @@ def _intensity(info: Info, value: float) -> str:
 
 
 def _rate(curve: Curve) -> float:
-    """Return the annual rate of a curve, or its greatest bound; 0 without either."""
+    """Return the annual rate of a curve; of bounds the lower one, or the upper if that is 0; 0 without any that is finite."""
     risk = curve["risk"]
     rate = (risk["rate_least"] or risk["rate_most"]) if risk["bound"] else risk["rate_per_year"]
     return float(rate or 0.0)

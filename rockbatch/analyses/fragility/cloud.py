@@ -35,7 +35,7 @@ DRAWS = 1000
 """Sets of parameters from their joint distribution, from which all intervals come."""
 
 SEED = 2017
-"""Of the draws, so that the same runs give the same intervals."""
+"""Seed of the draws, so that the same runs give the same intervals."""
 
 PROPOSALS = 10_000
 """Points from which the draws of a logistic part are chosen."""
@@ -50,7 +50,7 @@ LEAST_RECORDS = 4
 """Demands above the floor that a line needs."""
 
 _WIDEST = 12.0
-"""Of ln x about the data, in which medians are sought; beyond it one is 0 or infinite."""
+"""Greatest distance of ln x from the mean of the data at which medians are sought; beyond it a median is 0 or infinite."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class Cloud:
         return self._probabilities(*self._parameters(), np.log(x))[0]
 
     def band(self, x: Values) -> tuple[Values, Values] | None:
-        """Return the pointwise interval of P(x), each shape (n,); None of too few stations."""
+        """Return the pointwise interval of P(x), each shape (n,); None with fewer than STATIONS_OF_INTERVAL, 5, stations."""
         if not self._has_intervals:
             return None
         low, high = np.quantile(self._of_draws(np.log(x)), self._ends, axis=0)
@@ -120,22 +120,22 @@ class Cloud:
 
     @property
     def median(self) -> float:
-        """Return x where P = 1/2."""
+        """Return x where P = 1/2; 0 or infinite if it is not within a factor exp(12) of the records."""
         return float(self._quantiles(0.5)[0])
 
     @property
     def dispersion(self) -> float:
-        """Return half of ln(x_84/x_16), which is β of a lognormal curve."""
+        """Return half of ln(x_84/x_16), which is β of a lognormal curve; infinite if it does not reach both."""
         return float(_dispersion(*(self._quantiles(float(ndtr(z))) for z in (-1.0, 1.0)))[0])
 
     @property
     def median_interval(self) -> Interval | None:
-        """Return the interval of the median; None of too few stations."""
+        """Return the interval of the median; None with fewer than STATIONS_OF_INTERVAL, 5, stations."""
         return self._interval(self._quantiles(0.5, drawn=True)) if self._has_intervals else None
 
     @property
     def dispersion_interval(self) -> Interval | None:
-        """Return the interval of the dispersion; None of too few stations."""
+        """Return the interval of the dispersion; None with fewer than STATIONS_OF_INTERVAL, 5, stations."""
         if not self._has_intervals:
             return None
         return self._interval(_dispersion(*(self._quantiles(float(ndtr(z)), drawn=True) for z in (-1.0, 1.0))))
@@ -149,13 +149,14 @@ class Cloud:
         return float(low), float(high)
 
     def widened(self, added: float) -> "Cloud":
-        """Return the curve with a dispersion ``added`` to the intensity that exceeds the limit."""
+        """Return the curve with a dispersion ``added`` to ln x at the limit, and to any added before, by the root of squares."""
         return self if added == 0 else replace(self, added=math.hypot(self.added, added))
 
     def rate(self, x: Values, rates: Values) -> tuple[float, float, float]:
         """Return Σ P(x) times the annual ``rates`` of motions about each x, shape (n,), and its interval.
 
-        It is NaN of too few stations. Of draws with which the probability falls with the intensity the rate is infinite.
+        The interval is NaN with fewer than STATIONS_OF_INTERVAL, 5, stations. A draw whose probability falls with the intensity
+        counts with an infinite rate.
         """
         rate = float(self.probability(x) @ rates)
         if not self._has_intervals:
@@ -185,7 +186,7 @@ class Cloud:
         return self._probabilities(*self._parameters(drawn=True), log_x)
 
     def _probabilities(self, line: Values | None, share: Values | None, log_x: Values) -> Values:
-        """Return P of m parameters at ``log_x``, shape (n,) or (m, n): shape (m, n)."""
+        """Return P of m sets of parameters at ``log_x``, shape (n,) or (m, n), with the added dispersion: shape (m, n)."""
         if self.added == 0:
             return self._plain(line, share, log_x)
         places, weights = np.polynomial.hermite_e.hermegauss(15)
@@ -201,7 +202,7 @@ class Cloud:
         return standing * (1.0 - beyond) + beyond
 
     def _quantiles(self, p: float, *, drawn: bool = False) -> Values:
-        """Return x where P = ``p``, of every draw or of the curve, by bisection; 0 or infinite far from the data."""
+        """Return x where P = ``p``, of every draw or of the curve, by bisection; 0 or infinite if beyond exp(±12) of the data."""
         line, share = self._parameters(drawn=drawn)
         m = next(len(part) for part in (line, share) if part is not None)
         low, high = np.full((m, 1), self.centre - _WIDEST), np.full((m, 1), self.centre + _WIDEST)
@@ -238,7 +239,11 @@ def _alone(x: Values) -> Numbers:
 
 
 def fit(runs: Demands, limit: float, floor: float, confidence: float = 0.95) -> Cloud | NoCurve:
-    """Return the curve of a limit above 0, or why the data do not have one; demands below ``floor`` are censored.
+    """Return the curve of a limit above 0, or ``NoCurve`` with the reason; demands up to ``floor`` are censored.
+
+    There is none with fewer than STATIONS_OF_CURVE, 3, stations or LEAST_RECORDS, 4, demands above the floor, if all are of one
+    intensity or on one line, if demand or overturning does not grow with the intensity, or if all runs or none exceed the limit
+    and the median lies outside them.
 
     σ has n − 2 in its denominator, and its draws are those of a χ² variable, so that without censored demands the intervals of
     the line are Student's. The logistic part is penalised as Firth (1993, Biometrika 80(1):27–38) proposes, which
@@ -292,7 +297,11 @@ def _without_both(x: Values, happened: npt.NDArray[np.bool_]) -> NoCurve:
 def fit_event(
     x: Values, happened: npt.NDArray[np.bool_], confidence: float = 0.95, station: Numbers | None = None
 ) -> Cloud | NoCurve:
-    """Return the curve of an event such as overturning, logistic alone, or why the data do not have one."""
+    """Return the curve of an event such as overturning, logistic alone, or ``NoCurve`` with the reason.
+
+    There is none if all records have the event or none has, with fewer than STATIONS_OF_CURVE, 3, stations, for one intensity,
+    and if the share does not grow with it.
+    """
     log_x, station = np.log(x), _alone(x) if station is None else station
     if not len(x):
         return NoCurve("no record counts")
@@ -307,7 +316,9 @@ def fit_event(
 
 
 def _share(log_x: Values, happened: npt.NDArray[np.bool_], station: Numbers) -> Logistic | NoCurve | None:
-    """Return the logistic share that overturns; None if no record did, or the reason why there is none."""
+    """Return the logistic share that overturns; None if no record did, ``NoCurve`` if all did, their intensities
+    are the same, or the share does not grow.
+    """
     if not happened.any():
         return None
     if happened.all():
@@ -321,6 +332,7 @@ def _share(log_x: Values, happened: npt.NDArray[np.bool_], station: Numbers) -> 
 def _line(log_x: Values, log_d: Values, censored_x: Values, bounds: Values, station: Numbers) -> Regression:
     """Return the censored regression by maximum likelihood, by Newton's method; ``station`` has the censored ones last.
 
+    σ² and its draws are then by the mean squares of stations, with n − 2 in the denominator of independent demands.
     In δ = β/σ and γ = 1/σ the likelihood is concave (Olsen 1978, Econometrica 46(5):1211–1215).
     """
     centre = log_x.mean()
@@ -375,9 +387,10 @@ class _MeanSquares:
 
 
 def _mean_squares(residuals: Values, exact: int, station: Numbers) -> _MeanSquares:
-    """Return the mean squares of residuals over σ, of which the first ``exact`` are of demands that are known.
+    """Return the mean squares of residuals over σ between and within stations; the first ``exact`` are of known demands.
 
-    The line, two parameters, is taken off those between stations. If each record is of a station by itself, there is only one.
+    The two parameters of the line are taken off the degrees of freedom between stations. If each record is of a station by
+    itself, the first is exact/(exact − 2), as σ is that of the maximum likelihood, and the second 0.
     """
     sums = sums_by(station, np.column_stack((residuals, np.ones(len(station)))))
     of_station, numbers = sums.T
@@ -439,8 +452,8 @@ def _logistic(log_x: Values, happened: npt.NDArray[np.bool_], station: Numbers) 
 def _design_effect(residuals: Values, station: Numbers) -> float:
     """Return the factor on the variance of draws by stations, 1 if each record is of a station by itself.
 
-    It is how much more the sums of residuals scatter than those of independent records, 1 at least, and Student's quantile of
-    the number of stations over the normal one, squared.
+    It is the variance of the sums of residuals over that of independent records, 1 at least, times the square of Student's
+    quantile of the number of stations over the normal one.
     """
     of_station = sums_by(station, residuals[:, None])
     k = len(of_station)

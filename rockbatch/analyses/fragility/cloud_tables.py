@@ -21,8 +21,7 @@ def cloud_table(
 ) -> "pd.DataFrame":
     """Return fragility_cloud.csv: a row for each curve and run, with its ``demand`` and the ``limit``.
 
-    It ``counts`` in the "line", as "below" the share of the limit under which demands are censored, as "overturned" or by the
-    event, as "undecided", or is "left out".
+    The column ``counts`` says how it counts, as :func:`counts` does.
     """
     rows: list[dict[str, object]] = []
     for curve in curves:
@@ -43,7 +42,9 @@ def cloud_table(
 
 
 def counts(run: CloudPoint, curve: Curve, spec: FragilitySpec) -> str:
-    """Return how a run counts: "line", "below", "overturned", "undecided", "left out"; for an event "exceeds" or "within"."""
+    """Return how a run counts: "line", "overturned", "undecided", "left out", or "below" the share of the limit at which demands
+    are censored; for an event "exceeds" or "within". One that ended normally, within its error of the limit, is no undecided one.
+    """
     if run.state == LEFT_OUT:
         return "left out"
     if run.state == UNDECIDED and run.status != "ok":
@@ -56,7 +57,7 @@ def counts(run: CloudPoint, curve: Curve, spec: FragilitySpec) -> str:
 
 
 def described_cloud(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
-    """Return the entry of a curve's cloud in fragility.json: its runs, its line and its logistic part."""
+    """Return the entry of a curve's cloud in fragility.json: its runs, its line and its logistic part, None for what it lacks."""
     fitted = curve.fitted
     line = fitted.line if isinstance(fitted, Cloud) else None
     share = fitted.overturning if isinstance(fitted, Cloud) else None
@@ -79,7 +80,7 @@ def described_cloud(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
 
 
 def note_on_cloud(curve: Curve, spec: FragilitySpec) -> list[str]:
-    """Return remarks on a curve of a cloud: few records beyond the limit, none overturning, some below the censoring."""
+    """Return remarks on a curve of a cloud: fewer than FEW, 3, records beyond the limit, none overturns, some count as small."""
     notes = []
     beyond = sum(run.state == EXCEEDED for run in curve.cloud)
     if beyond < FEW:

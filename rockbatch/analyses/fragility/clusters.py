@@ -30,7 +30,7 @@ class Clusters:
 
 
 def clusters(motions: Sequence[Motion]) -> Clusters:
-    """Return the earthquakes of the records if all are known and five or more, enough for intervals; else their stations."""
+    """Return the earthquakes of the records if all are known, five or more, and fewer than the stations; else the stations."""
     by_station = [motion.of_station for motion in motions]
     by_event = [motion.origin.event for motion in motions]
     stations, events = len(set(by_station)), len(set(by_event)) if all(by_event) else 0

@@ -18,7 +18,7 @@ from rockbatch.terminal.streams import say, show
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Fit fragility curves, and print them."""
+    """Fit fragility curves, and print them; return 1 if a record is unusable or a run at a level failed, else 0."""
     result = fragility(study, **analysis_arguments(arguments))
     show(table(result.info, result.spec))
     show(result.info["scales"]["said"])
@@ -65,7 +65,10 @@ def added(spec: FragilitySpec) -> str:
 
 
 def risk_lines(info: Entry) -> str:
-    """Return annual rates and probabilities with their intervals, a line for each limit and case, with their basis."""
+    """Return annual rates and probabilities with their intervals, a line for each limit and case that has one, and remarks.
+
+    If none has a rate, it is a sentence that says so.
+    """
     curves = [curve for curve in info["curves"] if curve["risk"]]
     if not curves:
         return "No annual rates: no curve could be fitted"

@@ -160,7 +160,10 @@ class Curve:
 
     @property
     def inconclusive(self) -> bool:
-        """Return whether undecided runs open the median more than its confidence interval does."""
+        """Return whether undecided runs open the median, upper over lower, more than its confidence interval does.
+
+        Without an interval, whether they leave it without a bound; False if no run is undecided, or without a curve.
+        """
         if self.readings is None or isinstance(self.fitted, NoCurve):
             return False
         ratio, interval = _ratio(self.readings.medians), self.fitted.median_interval
@@ -168,8 +171,10 @@ class Curve:
 
     @property
     def shares(self) -> tuple[Values, Values, Values]:
-        """Return the levels at which runs count, and the shares of the records beyond the limit there, shape (n,) each: undecided
-        ones within it, and beyond it. A record whose first exceedance is lower is beyond it.
+        """Return the levels at which runs count, and the least and greatest shares of records beyond the limit, shape (n,) each.
+
+        Undecided ones are within it for the least, beyond it for the greatest. With capacities a record is beyond it from the
+        upper end of its bracket on for the least, above the lower end for the greatest; of a cloud each run is a level.
         """
         counting = [stripe for stripe in self.stripes if stripe.records]
         levels = np.array([stripe.level for stripe in counting])
@@ -200,11 +205,11 @@ def assess(
 ) -> list[Curve]:
     """Return the fragility curves of every case for every limit that applies to it.
 
-    Every record is run at the levels of ``plans``, one for each case, at all of them if it is not given, and with method "ida"
-    in the windows about them; the first exceedance of every record is then sought below that so far, in one wave, and bisected,
-    in more of them.
+    Every record is run at the levels of ``plans``, one for each case (:func:`level_plans` if they are not given). With method
+    "ida" it is run in the windows about them, too; below its first exceedance so far it is then run between the levels, in one
+    wave, and the first exceedance is bisected, in several.
 
-    ``simulate`` is called once for the levels and windows and once for every wave, each depending on the rows before.
+    ``simulate`` is called once for the levels and windows, and once for every wave.
     """
     plans = plans or level_plans(study, spec, motions)
     runs = RecordRuns(study, spec, motions, plans, simulate)
@@ -247,14 +252,17 @@ class Member(NamedTuple):
 
 
 def _shared_by(case: Case, spec: FragilitySpec) -> Hashable:
-    """Return a key shared by cases with one curve: their name and values that are not the pier's; else one of its own."""
+    """Return a key shared by cases with one curve: their name and values that are not the pier's, over what lifts a pier off.
+
+    With another measure each case has its own.
+    """
     if not spec.of_pier:
         return id(case)
     return case.name_along, *((name, each) for name, each in case.columns.items() if name not in PIER_KEYS)
 
 
 def _common(cases: Sequence[Case]) -> Case:
-    """Return the first of the cases of a curve with the columns that are the same in all."""
+    """Return the first of the cases of a curve, with only the columns that have the same values in all."""
     first = cases[0]
     if len(cases) == 1:
         return first
@@ -269,7 +277,7 @@ _Key = tuple[int, Rule, int]
 def _curve(
     runs: RecordRuns, spec: FragilitySpec, rule: Rule, members: Sequence[Member], looks: Sequence[Looks]
 ) -> Curve:
-    """Return the curve through the states of every member."""
+    """Return the curve fitted to the states (``looks``) of every member: to brackets with method "ida", else to stripes."""
     on_levels = np.array([[states.get(x, LEFT_OUT) for x in spec.levels] for states in looks], dtype=np.int8)
     undecided, station = _undecided(runs, members, looks), _stations(runs, members)
     capacities: tuple[tuple[Member, Capacity], ...] = ()
@@ -298,7 +306,7 @@ def _curve(
 
 
 def _stations(runs: RecordRuns, members: Sequence[Member]) -> Numbers:
-    """Return the number of the station of each member."""
+    """Return the number of the cluster, a station or an earthquake, of each member."""
     return runs.clusters.of_motion[np.array([m for _, m in members], dtype=np.int64)]
 
 
@@ -307,13 +315,15 @@ Interval = tuple[Point, float, float]
 
 
 def _one_sided(point: Point, state: int) -> Interval:
-    """Return the interval of capacities by the state of a run; 0 to infinity if it is undecided."""
+    """Return the interval of the capacity by the state of a run: 0 to its intensity if it exceeded the limit, from there to
+    infinity if it withstood, else 0 to infinity.
+    """
     low, high = point.intensity if state == WITHSTOOD else 0.0, point.intensity if state == EXCEEDED else math.inf
     return point, low, high
 
 
 def _with_share(curve: Curve, runs: RecordRuns, intervals: Sequence[Interval], confidence: float) -> Curve:
-    """Return the curve with the contribution of drawn inputs to its dispersion, by the intervals of capacities."""
+    """Return the curve with the contribution of drawn inputs to its dispersion; unchanged if none is drawn, or all are open."""
     informative = [interval for interval in intervals if interval[1] > 0 or math.isfinite(interval[2])]
     scores = [runs.drawn(point).scores for point, _, _ in informative]
     if not scores or not scores[0]:
@@ -363,7 +373,7 @@ def _of_cloud(runs: RecordRuns, spec: FragilitySpec, numbers: Sequence[int], rul
 
 
 def _is_doubtful(run: CloudPoint) -> bool:
-    """Return whether a run is undecided for another reason than the error of its demand, which does not affect a line."""
+    """Return whether a run is undecided as it overturned, flew or failed; the error of a demand does not affect a line."""
     return run.state == UNDECIDED and run.status != "ok"
 
 

@@ -45,7 +45,7 @@ def in_brackets(unit: str) -> str:
 
 
 def _looks(info: Entry) -> dict[str, Look]:
-    """Return the marks of each case, the same in every figure."""
+    """Return the marks of each case by its label, the same in every figure."""
     return {name: marks_of(i) for i, name in enumerate(dict.fromkeys(map(label, info["curves"])))}
 
 
@@ -54,7 +54,7 @@ def _intensity(info: Entry) -> str:
 
 
 def curves(info: Entry) -> Figure:
-    """Return the share of the records that exceed each limit, the fitted curves and their bands."""
+    """Return a figure of the shares of records beyond each limit, the fitted curves and their bands, four cases a panel."""
     looks, panels = _looks(info), []
     for name, of_limit in grouped(info["curves"], lambda entry: entry["limit_state"]).items():
         for first in range(0, len(of_limit), CASES_OF_A_PANEL):
@@ -138,27 +138,32 @@ def _said(entry: Curve, point: Entry) -> str:
 
 
 def _steps(capacities: Sequence[float | None], right: float) -> tuple[Array, Array]:
-    """Return the share of the records whose capacity is at most x, as a staircase."""
+    """Return x from 0 to ``right`` and the share of the records whose capacity is at most x, a staircase; None is above all x."""
     finite = np.minimum(np.sort([x for x in capacities if x is not None]), right)
     shares = np.arange(len(finite) + 1) / len(capacities)
     return np.concatenate(([0.0], np.repeat(finite, 2), [right])), np.repeat(shares, 2)
 
 
 def clouds(info: Entry) -> Figure:
-    """Return the demand of every record over its intensity, the line through them and its standard deviation, and the limit."""
+    """Return a figure of demands over intensity, the line through them, its standard deviation and the limit, a panel a curve.
+
+    Curves of events, or without a finite limit above 0, have none.
+    """
     looks = _looks(info)
     shown = [entry for entry in info["curves"] if _has_demands(entry)]
     return Figure([_cloud(info, entry, looks[label(entry)]) for entry in shown], "Demands of the records")
 
 
 def _has_demands(entry: Curve) -> bool:
-    """Return whether a curve has a cloud with demands, not that of an event."""
+    """Return whether a curve has a cloud of demands, not of an event, with a finite limit above 0."""
     cloud = entry.get("cloud") or {"floor": None}
     return cloud["floor"] is not None and 0 < cloud["limit"] < math.inf
 
 
 def _cloud(info: Entry, entry: Curve, look: Look) -> Panel:
-    """Return the cloud of a curve, with its limit; what overturned above all demands."""
+    """Return the panel of a curve's cloud: demands, line and limit, censored demands at the floor and overturned runs above all;
+    others are not drawn.
+    """
     cloud, runs = entry["cloud"], entry["cloud"]["runs"]
     demands = [run["demand"] for run in runs if run["counts"] == "line"] + [cloud["limit"], cloud["floor"]]
     x = log_spanning(_intensity(info), np.array([run["x"] for run in runs], dtype=float), margin=0.1)
@@ -194,7 +199,7 @@ def _cloud(info: Entry, entry: Curve, look: Look) -> Panel:
 
 
 def risk(info: Entry, shown: Sequence[Curve]) -> Figure:
-    """Return the hazard of the site, and from which intensities the rate of each limit comes."""
+    """Return a figure of the site's hazard and, a panel for each limit, of the intensities that the rates come from."""
     hazard, looks = info["hazard"], _looks(info)
     across, rate = (np.array(hazard["drawn"][name]) for name in ("x", "rate"))
     titles = [

@@ -140,7 +140,10 @@ DISPERSION = Section(
 
 
 def read_hazard(file: TomlFile, levels: str) -> Hazard | None:
-    """Return the hazard of a study; None without one, or with the mistakes noted. ``levels`` is the key of its measure."""
+    """Return the hazard of a study; None without the table, or with mistakes in it, which become problems of ``file``.
+
+    ``levels`` is the key of the levels of the measure, such as "levels_g".
+    """
     table = file.table("fragility", "hazard")
     if table is None:
         return None
@@ -194,7 +197,10 @@ def _curve(table: Table, points: dict[str, Any], levels: str, read: dict[str, An
 
 
 def read_dispersions(file: TomlFile, drawn: Sequence[str] = ()) -> tuple[Dispersion, ...]:
-    """Return a study's added dispersions; complain about mistakes, also about values that may contain ``drawn`` inputs."""
+    """Return a study's added dispersions that have a name and a value; mistakes become problems of ``file``.
+
+    A mistake is also a value that is not said to be ``without`` each of the ``drawn`` inputs.
+    """
     added: list[Dispersion] = []
     for table in file.tables("fragility", "dispersion", title="name"):
         read = table.read(DISPERSION)

@@ -33,7 +33,7 @@ class Bracket(NamedTuple):
 
     @property
     def middle(self) -> float:
-        """Return the intensity to run next."""
+        """Return the geometric mean of both ends, the intensity to run next."""
         return math.sqrt(self.low * self.high)
 
     def is_wider(self, tolerance: float) -> bool:
@@ -60,7 +60,7 @@ class Capacity:
 
 
 def capacity(looks: Looks, levels: Sequence[float]) -> Capacity | None:
-    """Return the first exceedance from the lowest to the highest of the ``levels``; None if every run is left out."""
+    """Return the bounds of the first exceedance from the lowest to the highest level with a run; None if all are left out."""
     used = [x for x in levels if x in looks]
     states = sorted((x, state) for x, state in looks.items() if used[0] <= x <= used[-1] and state != LEFT_OUT)
     if not states:
@@ -85,9 +85,10 @@ Look = Callable[[list[tuple[K, float]]], Sequence[int]]
 def hunt(
     on_levels: Mapping[K, Looks], levels: Sequence[float], step_of: Callable[[K], float | None], states_of: Look[K]
 ) -> dict[K, dict[float, int]]:
-    """Run each record below its first exceedance so far between the levels, too, in relative steps of ``step_of`` at most.
+    """Return the states ``on_levels``, and those between the levels up to each record's first exceedance so far.
 
-    They come in one wave; records whose step is None keep the levels alone.
+    The relative steps are those of ``step_of`` at most; where it is None nothing is added. All runs come in one wave; one that
+    is left out counts as undecided.
     """
     states = {key: dict(looks) for key, looks in on_levels.items()}
     requested = []
@@ -101,7 +102,7 @@ def hunt(
 
 
 def _between(levels: Sequence[float], step: float) -> list[float]:
-    """Return intensities between neighbouring levels, in even relative steps of ``step`` at most."""
+    """Return intensities between neighbouring levels, without these, in even relative steps of ``step`` at most."""
     intensities = []
     for low, high in pairwise(levels):
         parts = math.ceil(math.log(high / low) / math.log1p(step) - 1e-9)
@@ -121,9 +122,10 @@ def bisect(
     tolerance: float,
     states_of: Look[K],
 ) -> dict[K, dict[float, int]]:
-    """Return the states of each record by level: those ``on_levels``, and others until its brackets are narrowed.
+    """Return the states of each record by intensity: those ``on_levels``, and those that bisect its first exceedance.
 
-    A bracket is narrowed when its relative width is at most ``tolerance``; the runs come in waves, one for every wider bracket.
+    Two brackets of it, if undecided runs exceeded and if they withstood, are cut at their geometric mean until their
+    high ≤ (1 + tolerance) low; a bracket from 0 or up to infinity stays. Each wave has one run for every bracket still wider.
     """
     states = {key: dict(looks) for key, looks in on_levels.items()}
     while new := [(key, x) for key, looks in states.items() for x in _middles(capacity(looks, levels), tolerance)]:

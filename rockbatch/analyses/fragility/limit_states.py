@@ -20,7 +20,9 @@ overturned and the check counts that as unknown; it is left out if the check say
 
 
 def applies(rule: Rule, case: Case, names: frozenset[str]) -> bool:
-    """Return whether a limit, which is of all scales, applies to a case as in run.json; ``names`` are those of all cases."""
+    """Return whether a limit applies to a case (as in run.json): by the names or patterns in ``rule.case``, with ``names`` those
+    of all cases, by its demand, and by the device that the demand is of.
+    """
     demand = DEMANDS[rule.demand]
     equipped = not demand.device or has_device(case, demand.device)
     about = not rule.case or case["case"] in chosen_by(tuple(rule.case), names)
@@ -28,12 +30,14 @@ def applies(rule: Rule, case: Case, names: frozenset[str]) -> bool:
 
 
 def threshold(rule: Rule) -> float:
-    """Return what the demand of one record must not exceed; a count of records has it in ``above``."""
+    """Return what the demand of one record must not exceed; of a check that counts records its ``above``, 0 if not given."""
     return (rule.above or 0.0) if rule.statistic == "count" else rule.limit
 
 
 def words(rule: Rule) -> str:
-    """Return the limit of one record in words, "theta_max_over_alpha > 0.5"; empty if the name says it all."""
+    """Return the limit of one record in words, "theta_max_over_alpha > 0.5", only the demand of an event with a limit of 0;
+    empty for OVERTURNING itself.
+    """
     if rule == OVERTURNING:
         return ""
     limit = threshold(rule)
@@ -46,7 +50,7 @@ def demands(rule: Rule, runs: Rows, case: Case) -> npt.NDArray[np.float64]:
 
 
 def states(rule: Rule, runs: Rows, case: Case) -> npt.NDArray[np.int8]:
-    """Return the state of each of the n runs of a case, shape (n,)."""
+    """Return the state of each of the n runs of a case, LEFT_OUT to EXCEEDED, shape (n,); one at the limit withstood."""
     demanded = of_runs(rule, runs, case)
     limit = threshold(rule)
     bounds = demanded.bounds

@@ -74,7 +74,10 @@ class Capacities:
     def of_same_records(
         cls, levels: Values, within: Values, beyond: Values, station: Numbers | None = None
     ) -> "Capacities":
-        """Return the capacities of m records, ``within`` or ``beyond`` the limit, or neither, at n levels, shape (m, n)."""
+        """Return the capacities of m records by the share, 0 to 1, of each ``within`` and ``beyond`` the limit at n levels.
+
+        Both have the shape (m, n). Records with neither at any level are left out, and so are intervals without a record.
+        """
         of_record = np.hstack((beyond, within)).astype(np.float64)
         low = np.concatenate((np.zeros(len(levels)), levels))
         high = np.concatenate((levels, np.full(len(levels), np.inf)))
@@ -128,7 +131,8 @@ class Lognormal:
     median, dispersion : float
         θ, in the unit of the levels, and β of the sample, β² unbiased.
     median_interval, dispersion_interval : tuple of two floats, or None
-        Profile-likelihood intervals by stations; a bound is 0 or infinite where the data leave it open; None of too few stations.
+        Profile-likelihood intervals by stations; a bound is 0 or infinite where the data leave it open; None with fewer than
+        STATIONS_OF_INTERVAL, 5, stations.
     region : ndarray, shape (m, 2), or None
         Edge of the region of (a, b) from which all intervals come.
     most_likely_dispersion : float
@@ -158,7 +162,7 @@ class Lognormal:
         return ndtr(z.min(axis=1)), ndtr(z.max(axis=1))
 
     def widened(self, added: float) -> "Lognormal":
-        """Return the curve with a dispersion ``added`` to its own, independent of it, by the root of the squares."""
+        """Return the curve with the dispersion √(β² + added²), also in its interval and region, and the median as it is."""
         if added == 0:
             return self
         wide, interval = self.region, self.dispersion_interval
@@ -182,7 +186,11 @@ class Lognormal:
 
 
 def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | NoCurve:
-    """Return the curve of maximum likelihood, with an unbiased β², or the reason why the data have none.
+    """Return the curve of maximum likelihood, with an unbiased β², or ``NoCurve`` with the reason.
+
+    There is none with fewer than STATIONS_OF_CURVE, 3, stations, if no level or bracket tells the dispersion, if the share
+    beyond the limit does not grow, or with a median outside the intensities that were run. With fewer than
+    STATIONS_OF_INTERVAL, 5, stations the curve has no intervals.
 
     The intervals are those of the profile likelihood: extremes over a region of (a, b). Unlike a bootstrap they need no luck:
     with a few records many resampled suites cannot be fitted. Unlike the delta method they keep to θ > 0, β > 0 and
@@ -214,7 +222,7 @@ def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | NoCurve
 
 
 def too_few(stations: int) -> str:
-    """Return the reason why so few ``stations`` give no curve, in words."""
+    """Return why so few ``stations`` give no curve: "records of 2 stations: a curve takes 3, and an interval 5"."""
     return f"records of {counted(stations, 'station')}: a curve takes {STATIONS_OF_CURVE}, and an interval {STATIONS_OF_INTERVAL}"
 
 
@@ -242,6 +250,10 @@ def contribution(
     capacities: Capacities, scores: Values, correlation: Values, confidence: float = 0.95
 ) -> Contribution | str:
     """Return the contribution of k inputs, drawn with normal ``scores`` of shape (n, k), or why it is unknown, in words.
+
+    It is unknown if the capacities have no curve, if they are fewer than LEAST_PER_PARAMETER, 5, for each of k + 2 parameters,
+    or if the scores separate those beyond the limit from the others. It is 0 at least, and exact, with errors of 0, if
+    brackets leave nothing to chance.
 
     The likelihood is that of :func:`fit` with a factor for each of the scores, z = a + b ln x + Σ c_j s_j, so that an input
     changes ln x by −c_j/b. Of the square that the changes make with their ``correlation``, shape (k, k), the share that
@@ -281,7 +293,7 @@ def contribution(
 
 
 def _degenerate(capacities: Capacities) -> NoCurve | None:
-    """Return ``NoCurve`` if the data do not determine a dispersion or a median; None if they do."""
+    """Return ``NoCurve``, with any bounds of the median, if the data determine no median or no dispersion; None if they do."""
     low, high = capacities.low, capacities.high
     if len(low) == 0:
         return NoCurve("no record counts")
@@ -305,7 +317,7 @@ def _degenerate(capacities: Capacities) -> NoCurve | None:
 
 
 def _outside(median: float, capacities: Capacities) -> NoCurve | None:
-    """Return ``NoCurve`` with a bound for a median beyond all intensities that were run; None for others."""
+    """Return ``NoCurve`` with a bound for a median below or above all intensities that were run; None for one among them."""
     ends = np.concatenate((capacities.low, capacities.high))
     ends = ends[(ends > 0) & np.isfinite(ends)]
     if median < ends.min():
@@ -365,7 +377,7 @@ class _Likelihood:
         return scores, np.block([[of_ab, mixed], [mixed.T, inputs.T @ (aa[:, None] * inputs)]])
 
     def maximum(self) -> Values | None:
-        """Return (a, b, …) over standardised ln x at the maximum; None if b > 0 does not hold there."""
+        """Return (a, b, …) over standardised ln x at the maximum; None if b is not above LEAST_SLOPE, 0.001, there."""
         optimum = minimize(
             lambda point: -self.value(*point)[0],
             np.array([0.0, 1.0, *np.zeros(self.inputs.shape[1])]),
@@ -377,11 +389,11 @@ class _Likelihood:
         return np.asarray(optimum.x) if optimum.x[1] > LEAST_SLOPE else None
 
     def region(self, best: Values, scatter: "_Scatter", confidence: float) -> Values:
-        """Return the edge of the region of (a, b) over ln x, from which all intervals come, shape (m, 2).
+        """Return RAYS points on the edge of the region of (a, b) over ln x, from which all intervals come, shape (RAYS, 2).
 
         ℓ is there n/2 ln(1 + t²/n) below its maximum, with n records and Student's quantile t of the number of stations less
         1: of n independent capacities, the interval of ln θ is then Student's. Where records contribute several times it is
-        t²/2 below.
+        t²/2 below. That edge is then stretched about the maximum as ``scatter`` says.
         """
         t, n = float(student.ppf(0.5 + 0.5 * confidence, scatter.stations - 1)), scatter.records
         least = self.value(*best)[0] - 0.5 * (t * t if scatter.repeated else n * math.log1p(t * t / n))
@@ -457,7 +469,7 @@ class _Scatter:
 
 
 def sums_by(station: Numbers, values: Values) -> Values:
-    """Return the sums of ``values``, shape (m, k), over the records of each station, shape (stations, k)."""
+    """Return the sums of ``values``, shape (m, k), over the records of each station, by its number, shape (stations, k)."""
     _, places = np.unique(station, return_inverse=True)
     sums = np.zeros((places.max() + 1, values.shape[1]))
     np.add.at(sums, places, values)
@@ -465,7 +477,10 @@ def sums_by(station: Numbers, values: Values) -> Values:
 
 
 def _stretch(scores: Values) -> Values:
-    """Return factors on deviations, shape (2, 2), from the scores of m records, shape (2, m), scaled to an information of 1."""
+    """Return the matrix, shape (q, q), that stretches deviations to the scatter of the scores of m stations, shape (q, m).
+
+    The scores are scaled to an information of 1; no deviation is shortened.
+    """
     m = scores.shape[1]
     variances, axes = np.linalg.eigh(scores @ scores.T * (m / max(m - 1, 1)))
     return (axes * np.sqrt(np.maximum(variances, 1.0))) @ axes.T
@@ -481,7 +496,11 @@ def _log_difference(z1: Values, z2: Values) -> Values:
 
 
 def _intervals(edge: Values) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the intervals of θ = exp(−a/b) and β = 1/b over a region's ``edge``; infinite if it reaches b ≤ 0."""
+    """Return the intervals of θ = exp(−a/b) and β = 1/b over a region's ``edge``.
+
+    If it reaches b ≤ 0, the upper bound of β is infinite, and where it crosses b = 0, with a > 0 the lower bound of θ is 0, with
+    a < 0 the upper one infinite.
+    """
     a, b = edge.T
     rising = b > 0
     medians = np.exp(np.clip(-a[rising] / b[rising], -700.0, 700.0))

@@ -40,8 +40,8 @@ _HEADING = re.compile(r"(?P<name>.*?\S)\s*[\[(](?P<unit>[^\])]*)[\])]")
 
 @dataclass(frozen=True)
 class OwnMeasure:
-    """An engineer's own measure: its name and unit, a value of each record as it was recorded, and the power by which it grows
-    with the motion's scale.
+    """An engineer's own measure: its name and unit, a value of each record as it was recorded, and the power of the motion's
+    scale by which it grows.
     """
 
     name: str
@@ -65,7 +65,10 @@ def _near(name: str, values: Mapping[str, float]) -> str:
 
 
 def own_measure(name: str, values: Iterable[tuple[str, float]], power: float) -> OwnMeasure:
-    """Return the measure of a column with the heading ``name``, "AvgSa [g]"; raises ``InputError`` for what it cannot be."""
+    """Return the measure of a column with the heading ``name``, "AvgSa [g]", and a value for each record.
+
+    Raises ``InputError`` for a heading without a unit ("[-]" for none), values that are not above 0, and a record twice.
+    """
     match = _HEADING.fullmatch(name.strip())
     if match is None:
         raise InputError(
@@ -87,7 +90,10 @@ def own_measure(name: str, values: Iterable[tuple[str, float]], power: float) ->
 
 
 def measure_of_file(path: Path, power: float) -> OwnMeasure:
-    """Return the measure of a CSV file: a column ``record``, and one of values with the unit in its heading."""
+    """Return the measure of a CSV file: a column ``record``, and one of values with the unit in its heading.
+
+    Raises ``InputError`` for other columns and as :func:`own_measure` does, with the path.
+    """
     headings = heading_of(path)
     others = [name for name in headings if name != "record"]
     if "record" not in headings or len(others) != 1:
@@ -102,7 +108,10 @@ def measure_of_file(path: Path, power: float) -> OwnMeasure:
 
 
 def given_measure(im: Any, power: float) -> OwnMeasure:
-    """Return a measure given from Python: values by record, such as a Series whose name has the unit, or a CSV file."""
+    """Return a measure given from Python: values by record, such as a Series named "AvgSa [g]", or the path of a CSV file.
+
+    Values without a name, such as a dict, are called IM, without a unit.
+    """
     if isinstance(im, str | Path):
         return measure_of_file(Path(im), power)
     name = getattr(im, "name", None)
@@ -111,7 +120,10 @@ def given_measure(im: Any, power: float) -> OwnMeasure:
 
 
 def as_they_come(motions: Sequence[Motion], spec: Any, gravity: float) -> list[float]:
-    """Return the measure of every unscaled motion, in g or m/s, or in the unit of the engineer's own measure."""
+    """Return the measure of every motion as it comes, with the factor of a target, in g, m/s or the unit of an own measure.
+
+    Raises ``InputError`` for records of which an own measure has no value.
+    """
     if spec.own is not None:
         values = spec.own.of_records([motion.name for motion in motions])
         return [value * motion.factor**spec.own.power for value, motion in zip(values, motions, strict=True)]
@@ -124,7 +136,7 @@ def as_they_come(motions: Sequence[Motion], spec: Any, gravity: float) -> list[f
 
 
 def over_uplift(measure: str, pier: Pier) -> float:
-    """Return the factor of a motion's measure in g or m/s on a pier: 1, or 1/(g tan α) for relative measures."""
+    """Return the factor on a motion's measure for a pier: 1, or of relative ones 1/tan α on g and p/(g tan α) on m/s."""
     if not MEASURES[measure].of_pier:
         return 1.0
     return (pier.p / pier.gravity if "PGV" in measure else 1.0) / math.tan(pier.alpha)

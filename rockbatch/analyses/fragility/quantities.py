@@ -17,12 +17,12 @@ FEW = 3
 
 
 def level_of(info: Entry) -> str:
-    """Return the level of the intervals in words."""
+    """Return the level of the intervals: "95 %"."""
     return f"{100 * info['confidence']:g} %"
 
 
 def of_curves(info: Entry) -> list[Head]:
-    """Return the quantities of a fitted curve."""
+    """Return the heads of a table of curves: medians, dispersions and their intervals."""
     level = level_of(info)
     return [
         Head(
@@ -99,7 +99,7 @@ def _head_of_years(years: float, level: str) -> Head:
 
 
 def of_rates(info: Entry, written: Callable[[float], str]) -> list[Head]:
-    """Return the quantities of the annual rate of a curve, whose ``risk`` has the columns of fragility_risk.csv.
+    """Return the heads of a table of annual rates, of curves whose ``risk`` has the columns of fragility_risk.csv.
 
     ``written`` formats a rate.
     """
@@ -144,7 +144,7 @@ def _interval(name: str) -> Callable[[Curve], Markup]:
 
 
 def _rate(written: Callable[[float], str]) -> Callable[[Curve], str]:
-    """Return a function to the rate of a curve in words, or its bound: "at least 2.1e-04"."""
+    """Return a function from a curve to its rate as ``written``, or its bounds: "at least 2.1e-04", "between … and …"."""
 
     def rate(curve: Curve) -> str:
         risk = curve["risk"]
@@ -190,7 +190,7 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def percent(p: float) -> str:
-    """Return a probability in per cent with two digits, without exponent where it is all but certain."""
+    """Return a probability in per cent with two digits, without the sign: "4.2", "1e-05", and "100" from 0.995 on."""
     return "100" if p >= 0.995 else f"{100.0 * p:.2g}"
 
 

@@ -43,8 +43,8 @@ class Risk:
     rate : float
         Mean annual rate of exceedance.
     interval : tuple of two floats, or None
-        What the fit of the fragility leaves open; the upper bound may be infinite. The hazard is taken as known. None of too few
-        stations.
+        What the fit of the fragility leaves open; the upper bound may be infinite. The hazard is taken as known. None with fewer
+        than five stations.
     undecided : tuple of two floats or None
         The rates with all undecided runs counted as within the limit, and as beyond it; None without any.
     below, above : float
@@ -81,7 +81,7 @@ class RiskBound:
 
     @property
     def kind(self) -> str:
-        """Return "at least", "at most" or "between", by which bounds of the rate are finite and above 0."""
+        """Return "at least" if the greater bound is infinite, else "between", or "at most" if the lesser is 0."""
         least, most = self.bounds
         return "at least" if math.isinf(most) else "between" if least > 0 else "at most"
 
@@ -155,7 +155,7 @@ def _undecided(curve: Curve, added: float, x: Values, rates: Values) -> tuple[fl
 
 
 def note(risk: Risk, spec: FragilitySpec) -> str:
-    """Return remarks on a rate's validity; empty without any."""
+    """Return remarks on a rate's validity, such as parts above NOTABLE, 5 %, from beyond the hazard or the levels; "" if none."""
     assert spec.hazard is not None
     notes, points = [], spec.hazard.curve.levels
     if risk.interval is not None and math.isinf(risk.interval[1]):
@@ -218,7 +218,7 @@ def _reason(curve: Curve) -> str:
 
 
 def _names(spec: FragilitySpec) -> list[str]:
-    """Return the columns of fragility_risk.csv after those that identify a curve."""
+    """Return the columns of fragility_risk.csv after those that identify a curve, in order, whether or not any row has them."""
     assert spec.hazard is not None
     periods = [f"p_in_{years:g}_years{end}" for years in spec.hazard.years for end in ("", "_low", "_high")]
     rates = ["rate_per_year", "bound", "rate_low", "rate_high", "rate_if_withstood", "rate_if_exceeded"]
@@ -297,9 +297,10 @@ def deaggregation_table(risks: Sequence[Risk], spec: FragilitySpec, varied: Sequ
 
 
 def deaggregated(risk: Risk, spec: FragilitySpec) -> list[tuple[float, float, str, float]]:
-    """Return bins of intensity, low and high, where they are on the hazard's table, and the part of the rate from each.
+    """Return bins of intensity: low and high, "below", "within" or "above" the hazard's points, and the rate from each.
 
-    Ten of a decade, cut at the hazard's ends; those of less than a thousandth of the rate at either end are joined.
+    There are ten a decade, cut at the hazard's ends; the first and the last have also what is beyond them, a thousandth of the
+    rate or less, so that the sum is the rate.
     """
     assert spec.hazard is not None
     x, rates = spec.hazard.curve.quadrature()
@@ -355,7 +356,7 @@ def _without_nan(row: Mapping[str, object]) -> dict[str, object]:
 
 
 def described(risk: Risk, spec: FragilitySpec) -> dict[str, object]:
-    """Return the entry of a curve's risk in fragility.json, with the share of the rate per unit of ln x for the figure."""
+    """Return the entry of a curve's risk in fragility.json, with the share of the rate per unit of ln x unless the rate is 0."""
     content = _without_nan(_row(risk, spec, ()))
     if spec.hazard is not None and risk.rate > 0:
         curve, (low, high) = spec.hazard.curve, risk.contributing

@@ -84,7 +84,7 @@ class LevelPlan(NamedTuple):
         return self.earlier[motion] * self.scale(motion, intensity)
 
     def number(self, motion: int, intensity: float) -> int:
-        """Return the number of the level, among all of a motion, at which it is run with an intensity."""
+        """Return the number, from 0, of the level among all of a motion at which it is run with an intensity."""
         levels = sorted(self.used[motion] | self.not_used[motion])
         return next(n for n, level in enumerate(levels) if self.used[motion].get(level) == intensity)
 
@@ -92,7 +92,8 @@ class LevelPlan(NamedTuple):
 def level_plans(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) -> list[LevelPlan]:
     """Return the levels of every motion, a plan for each case: the same plan, unless intensities are relative to its pier.
 
-    Raises ``InputError`` if there is no run at all, or a stripe names no record.
+    Raises ``InputError`` if limits on factors leave a case without a run, if a stripe names no record, and for a record whose
+    measure is 0 or unknown.
     """
     gravity = study.cases[0].pier.gravity
     unscaled = intensities(motions, spec, gravity)
@@ -139,7 +140,7 @@ def _level_plan(
 
 
 def first_intensities(spec: FragilitySpec, plan: LevelPlan, motion: int, case: Case) -> dict[float, float]:
-    """Return the intensities of a motion's runs that depend on no others, by level; those in the windows by themselves."""
+    """Return the intensities of a motion's runs that depend on no others, by level; allowed ones in windows by themselves."""
     used, earlier = plan.used[motion], plan.earlier[motion]
     around = (x for level in used for x in samples(level, spec.window_on(case.base)))
     return used | {x: x for x in around if spec.allows(earlier * plan.scale(motion, x))}
@@ -156,7 +157,10 @@ def output(spec: FragilitySpec, of_study: Output) -> Output:
 
 
 def intensities(motions: Sequence[Motion], spec: FragilitySpec, gravity: float) -> list[float]:
-    """Return the intensity measure of every motion as it is, in the unit of the levels; raises ``InputError`` if one has none."""
+    """Return the intensity measure of every motion as it comes, in g, m/s or the unit of an own measure.
+
+    Raises ``InputError`` with every motion whose measure is not above 0, or of which an own measure has no value.
+    """
     measures = as_they_come([*motions], spec, gravity)
     still = [motion for motion, value in zip(motions, measures, strict=True) if not value > 0]
     reason = (
@@ -187,7 +191,7 @@ class RecordRuns:
         self._last: tuple[dict[Point, int], Rows]
 
     def execute(self, requested: Iterable[Point]) -> None:
-        """Execute one wave of runs, and keep their statuses and rows."""
+        """Execute one wave of runs, each point in it once; keep their statuses, and their rows until the next wave."""
         points = sorted({*requested})  # what shares a motion stands together
         polarity = self.study.motions.simulated
         runs = ScaledRuns(points, self.motions, self.plans, lambda point: self.drawn(point).case, polarity)
@@ -196,7 +200,7 @@ class RecordRuns:
         self._last = {point: i for i, point in enumerate(points)}, Rows(table)
 
     def drawn(self, point: Point) -> Drawn:
-        """Return the case of a run, as it is drawn once for its motion, or for its motion and level."""
+        """Return the case of a run, as it is drawn for its motion and level, or with method "ida" once for its motion."""
         level = self.plans[point.case].number(point.motion, point.intensity) if self.draws_by_level else 0
         return self.draws.at(point.case, point.motion, level)
 
@@ -205,14 +209,14 @@ class RecordRuns:
         return self.status[Point(motion, self.plans[case].used[motion].get(level, level), case)]
 
     def demands(self, rule: Rule, points: Sequence[Point]) -> npt.NDArray[np.float64]:
-        """Return the demands of runs of the last wave of one case, shape (n,)."""
+        """Return the demands of runs, which are all of the last wave, shape (n,)."""
         values = np.empty(len(points))
         for drawn, numbers, runs in self._together(points):
             values[numbers] = demands(rule, runs, drawn.described)
         return values
 
     def states(self, requested: Sequence[tuple[Rule, Point]]) -> list[int]:
-        """Return the states of runs of the last wave with respect to limits."""
+        """Return the state of each run, all of the last wave, with respect to its limit."""
         result = np.full(len(requested), LEFT_OUT)
         for rule, numbers in grouped(range(len(requested)), lambda number: requested[number][0]).items():
             for drawn, places, runs in self._together([requested[number][1] for number in numbers]):
@@ -220,7 +224,7 @@ class RecordRuns:
         return result.tolist()
 
     def _together(self, points: Sequence[Point]) -> Iterator[tuple[Drawn, list[int], Rows]]:
-        """Yield cases as they are drawn, with the places of their runs among ``points`` of the last wave, and these."""
+        """Yield each case as it is drawn, the places of its runs among ``points``, all of the last wave, and their rows."""
         of_row, runs = self._last
         for drawn, places in grouped(range(len(points)), lambda place: self.drawn(points[place])).items():
             yield drawn, places, runs.at(np.array([of_row[points[place]] for place in places]))

@@ -21,8 +21,8 @@ def scales(
 ) -> "pd.DataFrame":
     """Return fragility_scales.csv: a row for each record and level that it is meant for, and each case where piers differ.
 
-    ``scale`` is the factor on the record as it was recorded, also what the study's target has done, ``unscaled`` its intensity
-    then, and ``intensity`` what it comes to; ``used`` is False where the factor is beyond the limits of the study.
+    ``unscaled`` is the intensity of the record as it was recorded, ``scale`` the factor on it, with that of the study's target,
+    and ``intensity`` what it comes to; ``used`` is False where the factor is beyond the limits of the study.
     """
     of_cases: list[tuple[dict[str, object], LevelPlan]] = [({}, plans[0])]
     if spec.of_pier:
@@ -42,7 +42,10 @@ def scales(
 
 
 def described_scales(plans: Sequence[LevelPlan], spec: FragilitySpec, names: Sequence[str]) -> dict[str, object]:
-    """Return the factors for fragility.json: for each record those at all levels, None where it is not meant for one."""
+    """Return the factors for fragility.json: for each record those at all levels, None where it is not meant for one.
+
+    There are no records of a cloud, nor of a measure relative to a pier: then it is only what is ``said`` in words.
+    """
     if spec.method == "cloud" or spec.of_pier:
         return {"records": [], "factors": [], "used": [], "limits": [None, None], "said": in_words(plans, spec)}
     plan = plans[0]
@@ -56,7 +59,11 @@ def described_scales(plans: Sequence[LevelPlan], spec: FragilitySpec, names: Seq
 
 
 def in_words(plans: Sequence[LevelPlan], spec: FragilitySpec) -> str:
-    """Return the range of scale factors and the number of records left at each level, in words."""
+    """Return the range of scale factors in words, or that records are taken as recorded if all are 1.
+
+    With it are the levels that lose records to the limits on factors, and how many they keep, and the levels that given factors
+    miss by more than FAR, a tenth.
+    """
     plan = plans[0]
     factors = [each.factor(m, x) for each in plans for m, used in enumerate(each.used) for x in used]
     if min(factors) == max(factors) == 1.0:

@@ -118,13 +118,13 @@ def _factor(factor: float | None, used: bool) -> str:
 
 
 def _greatest(name: str) -> Callable[[Curve], object]:
-    """Return a function to the largest number of records at a level; of a cloud to their sum."""
+    """Return a function from a curve to the greatest of its counts ``name`` over the levels, or of a cloud to their sum."""
     return lambda entry: (sum if "cloud" in entry else max)([point[name] for point in entry["points"]])
 
 
 @of_analysis("fragility")
 def rates(analysis: FinishedAnalysis) -> Markup:
-    """Return the report's section of hazard and annual rates; empty without a hazard."""
+    """Return the report's section of hazard and annual rates, a sentence if no curve has a rate; empty without a hazard."""
     if not analysis.info.get("hazard"):
         return Markup("")
     info = analysis.info

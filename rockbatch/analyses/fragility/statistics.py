@@ -38,7 +38,7 @@ def fragility(
     -------
     Lognormal
         Median, dispersion, their intervals, ``probability(x)`` and ``band(x)``; β² is that of the
-        maximum likelihood plus the variance of ln θ, as of a sample.
+        maximum likelihood plus the variance of ln θ, as of a sample. The records of every level count as fresh ones.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def stripes(
     Returns
     -------
     Lognormal
-        As of :func:`fragility`; its intervals are None of fewer than five stations.
+        As of :func:`fragility`; intervals are None, and so is the band, with fewer than five stations.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def capacities(
     ----------
     low, high : array_like, shape (n,)
         Each record withstands ``low``, 0 if no lower intensity is known, and exceeds the limit at ``high``, infinite if it
-        never does.
+        never does; a record with neither is left out.
     stations : sequence, shape (n,), optional
         Station of each record, by name or number; of a station by itself if it is not given. Intervals are by stations.
     confidence : float
@@ -148,12 +148,13 @@ def rate_bounds(levels: npt.ArrayLike, least: npt.ArrayLike, most: npt.ArrayLike
     levels : array_like, shape (k,)
         Intensities, rising.
     least, most : array_like, shape (k,)
-        Share of the records that exceed the limit there, with undecided ones within it, and beyond it. It does not fall with the
-        intensity.
+        Share of the records that exceed the limit there, if undecided ones are within it, and if they are beyond it. A share
+        below that of a lower level counts as that one.
     rates : array_like, shape (k,)
         Annual rates at which the levels are exceeded.
 
-    The greatest is infinite if some record exceeds the limit at the lowest level: weaker motions are not bounded.
+    The least takes 0 below the lowest level, and between two levels the share at the lower; the greatest that at the upper,
+    and 1 above the highest. It is infinite if ``most`` is above 0 at the lowest level: weaker motions are not bounded.
 
     Examples
     --------
@@ -199,7 +200,8 @@ def cloud(
     Returns
     -------
     Cloud
-        Median, dispersion, their intervals, ``probability(x)`` and ``band(x)``.
+        Median, dispersion, their intervals, ``probability(x)`` and ``band(x)``; intervals and band are None with fewer than
+        five stations.
 
     Raises
     ------
@@ -229,13 +231,16 @@ def cloud(
 
 
 def _refuse(right: npt.NDArray[np.bool_], name: str, bounds: str) -> None:
-    """Raise ``InputError`` for the first value that is not right; NaN never is."""
+    """Raise ``InputError`` for the first False in ``right``: "levels[2]: must be above 0"."""
     if not right.all():
         raise InputError(f"{name}[{int(np.argmin(right))}]: must be {bounds}")
 
 
 def _numbers(stations: Stations | None, records: int) -> Numbers:
-    """Return the number of the station of each record."""
+    """Return the number of each record's station, that of its first record; without ``stations`` each record has its own.
+
+    Raises ``InputError`` if ``stations`` are not as many as the ``records``.
+    """
     if stations is None:
         return np.arange(records)
     names = [*stations]

@@ -68,7 +68,10 @@ STRIPE = Section(
 
 
 def read_stripes(file: TomlFile, levels: str) -> tuple[StripeRecords, ...]:
-    """Return the stripes of a study; mistakes are noted. ``levels`` is the key of the levels of its measure."""
+    """Return the stripes of a study, () without any; mistakes become problems of ``file``.
+
+    ``levels`` is the key of the levels of its measure, such as "levels_g".
+    """
     key = levels.replace("levels", "level")
     stripes: list[StripeRecords] = []
     for table in file.tables("fragility", "stripe", title=key):
@@ -114,7 +117,8 @@ def _from_file(table: Table, name: str) -> tuple[tuple[str, ...], tuple[float, .
 def members(file: TomlFile, stripes: Sequence[StripeRecords], names: Sequence[str]) -> list[dict[int, float | None]]:
     """Return for each stripe the factors on its records by index in ``names``; None for a factor that scales to the level.
 
-    Raises ``InputError`` with the line of every name that is no record's, and of patterns with a factor that fit several.
+    Raises ``InputError`` with the line of every name that is no record's, of patterns with a factor that fit several, and of
+    records that a stripe names twice.
     """
     levels = []
     for n, stripe in enumerate(stripes):

@@ -76,26 +76,30 @@ class FragilitySpec:
 
     @property
     def of_runs(self) -> "FragilitySpec":
-        """Return the settings on which runs depend, with the defaults of all others."""
+        """Return the settings with the default confidence, and without the hazard and dispersions, on which no run depends."""
         return replace(self, confidence=0.95, hazard=None, dispersions=())
 
     @property
     def added(self) -> float:
-        """Return the dispersion that is added to that of the records: the root of the sum of squares, 0 without any."""
+        """Return the root of the sum of the squares of the added dispersions; 0 without any."""
         return root_of_squares(self.dispersions)
 
     def step_on(self, base: Base) -> float | None:
-        """Return the relative steps of the hunt between the levels on ``base``; None where it is the levels alone."""
+        """Return the relative steps of the hunt between the levels on ``base``: the given ones, else HUNT_STEP, 0.0025, on rigid
+        ground, and None, the levels alone, on springs.
+        """
         return HUNT_STEP if self.hunt_step is None and not base.on_springs else self.hunt_step
 
     def window_on(self, base: Base) -> float | None:
-        """Return the relative half-width of the windows about the levels on ``base``; None where there are none."""
+        """Return the relative half-width of the windows about the levels on ``base``: the given one, else WINDOW, 0.02, on rigid
+        ground, and None, no windows, on springs; None unless the method is "ida".
+        """
         if self.method != "ida":
             return None
         return WINDOW if self.window is None and not base.on_springs else self.window
 
     def allows(self, factor: float) -> bool:
-        """Return whether a factor on a record as it was recorded is within the limits of the study."""
+        """Return whether a factor on a record as it was recorded is within the limits of the study, to 1e-9 of it."""
         return self.least_scale <= factor * (1 + 1e-9) and factor <= self.most_scale * (1 + 1e-9)
 
     @property
@@ -281,7 +285,11 @@ def read_fragility(study: Study, im: Any = None) -> FragilitySpec:
 
 
 def _measure(table: Table, read: dict[str, Any], im: Any) -> str | None:
-    """Return the key of the levels of the measure, putting an own measure into ``read``; None, with a complaint, without one."""
+    """Return the key of the levels of the measure, "levels_g"; None, with a complaint, without a valid measure.
+
+    An own measure, ``im`` before a file, is put into ``read``; its key is that of its unit, if the table has it, or else the
+    first that the table has, or "levels".
+    """
     power, name = read.pop("measure_power", 1.0), read.pop("measure_file", None)
     if im is not None or name is not None:
         with table.noting("measure_file"):
@@ -298,7 +306,10 @@ def _measure(table: Table, read: dict[str, Any], im: Any) -> str | None:
 
 
 def _levels(table: Table, read: dict[str, Any], stripes: Sequence[StripeRecords], key: str | None) -> tuple[float, ...]:
-    """Return the levels in the unit of the measure, those of ``stripes`` if there are any; mistakes are noted."""
+    """Return the levels in the unit of the measure, those of ``stripes`` if there are any, () of a cloud or without a ``key``.
+
+    Mistakes become problems of the file.
+    """
     written = {name: read.pop(name, ()) for name in LEVELS}
     if read.get("least_scale", 0.0) > read.get("most_scale", math.inf):
         table.complain(
@@ -333,8 +344,11 @@ def _levels(table: Table, read: dict[str, Any], stripes: Sequence[StripeRecords]
 
 
 def _limits(table: Table, rules: tuple[Rule, ...], wanted: tuple[str, ...] | None) -> tuple[Rule, ...]:
-    """Return the checks that are limit states, all by default, at all scales; those of the case alone, and those in sections or
-    over a curve of capacity, which peaks do not have, are left out."""
+    """Return the checks that are ``wanted`` as limits of one record, by name or pattern; all if it is None.
+
+    Left out are those on overturning, which is a limit already, of the case alone, and in sections or over a curve of capacity,
+    which peaks do not have. Mistakes become problems of the file.
+    """
     able = [rule for rule in rules if not DEMANDS[rule.demand].per_case and rule.demand != OVERTURNING.demand]
     able = [rule for rule in able if rule.at_m is None and rule.curve is None]
     if any(rule.name == OVERTURNING.name for rule in able):
@@ -352,10 +366,10 @@ def _limits(table: Table, rules: tuple[Rule, ...], wanted: tuple[str, ...] | Non
 
 
 def _of_one_record(rule: Rule) -> Rule:
-    """Return a check as a limit of every record, in any suite and direction.
+    """Return a check as a limit of every record, at all scales; the rule of ASCE 7-16 becomes the largest value.
 
-    A run that flew or failed may be left out, but else it is undecided: a check is on the safe side where such a run counts as
-    infinite, a fragility is not.
+    A run that flew or failed is left out if the check says so, and else undecided: a check is on the safe side where such a run
+    counts as infinite, a fragility is not.
     """
     statistic = "max" if rule.statistic == "asce7-16" else rule.statistic
     limit = replace(rule, scale=(), statistic=statistic)

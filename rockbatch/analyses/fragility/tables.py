@@ -62,7 +62,7 @@ def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) 
 
 
 def _probabilities(curve: Curve, x: Values) -> dict[str, Values]:
-    """Return P(x) of a curve, and what it lies between; NaN without a curve."""
+    """Return p, P(x) of a curve, NaN without one, and p_low and p_high, between which undecided runs leave it, p without any."""
     p = np.full(len(x), np.nan) if isinstance(curve.fitted, NoCurve) else curve.fitted.probability(x)
     low, high = curve.readings.probability(x) if curve.readings else (p, p)
     return {"p": p, "p_low": np.fmin(low, p), "p_high": np.fmax(high, p)}
@@ -93,9 +93,10 @@ def capacities(
     """Return fragility_capacities.csv: a row for each curve and record.
 
     A capacity is above ``above`` and at most ``at_most`` by the runs that are decided, in the unit of the levels; the same as
-    scales of the record. Below it ``undecided`` runs are not: it is at most ``if_exceeded`` if they exceed the limit, and above
-    ``if_withstood`` if they withstand it. ``widest_step`` is the greatest relative step between runs below it: an island of
-    exceedance that is narrower may have been missed.
+    scales of the record; empty if no run exceeds the limit. ``found`` is "exceeded", "below the lowest level", "beyond the
+    highest level", or "undecided" if some runs below it are, ``undecided`` in number: if they exceed the limit it is at most
+    ``if_exceeded``, if they withstand it above ``if_withstood``. ``widest_step`` is the greatest relative step between runs
+    below it: an island of exceedance that is narrower may have been missed.
     ``names`` are those of the motions; ``plans`` have the intensities of the ``cases``, of which each record has its own.
     """
     rows: list[dict[str, object]] = []
@@ -149,7 +150,7 @@ def described(
 
 
 def drawn(spec: FragilitySpec) -> str:
-    """Return the drawn inputs and the number of draws in words; empty without any."""
+    """Return in words how often inputs are drawn, and which; empty without any."""
     often = {"ida": "once for each record", "cloud": "once for each run"}.get(
         spec.method, "once for each record and level"
     )
@@ -157,7 +158,7 @@ def drawn(spec: FragilitySpec) -> str:
 
 
 def looked_at(curves: Sequence[Curve], spec: FragilitySpec) -> str:
-    """Return where first exceedances were sought, case by case, in words; empty for stripes."""
+    """Return where first exceedances were sought, case by case, in words; empty unless the method is "ida"."""
     if spec.method != "ida":
         return ""
     hunted = {curve.case.name: step for curve in curves if (step := spec.step_on(curve.case.base)) is not None}
@@ -178,7 +179,9 @@ def looked_at(curves: Sequence[Curve], spec: FragilitySpec) -> str:
 
 
 def _looked(curve: Curve, spec: FragilitySpec) -> list[tuple[float, float]]:
-    """Return the intervals in which all records were run up to their first exceedance; a level alone has no width."""
+    """Return the intervals of intensity in which runs are close: from the lowest level to the greatest first exceedance, or to
+    the highest level; where nothing is run between the levels, the window about each, of no width if it has none.
+    """
     if spec.step_on(curve.case.base) is None:
         width = spec.window_on(curve.case.base) or 0.0
         return [(level * (1.0 - width), level * (1.0 + width)) for level in spec.levels]
@@ -244,7 +247,10 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
 
 
 def _described_windows(windows: Windows, first: object, x: Values) -> dict[str, object]:
-    """Return the shares of the windows and the curve through them, also how far its median is above that of the ``first``."""
+    """Return the shares of the windows and the curve through them, with its median relative to that of the ``first``, less 1.
+
+    Without a curve the median is None.
+    """
     shares = [_or_none(share) for share in windows.shares]
     content: dict[str, object] = {"width": windows.width, "shares": shares, "records": windows.records, "median": None}
     if not isinstance(fitted := windows.fitted, NoCurve):
@@ -278,9 +284,9 @@ def _or_none(value: float) -> float | None:
 
 
 def _bound(curve: Curve) -> dict[str, object] | None:
-    """Return the bound of an unknown median, "below", "above" or "between", with its intensities; None without one.
+    """Return the bound of an unknown median, "below", "above" or "between", with its intensities; None if it has no bound.
 
-    ``exceeded`` of ``records`` are beyond the limit at the bound; of a cloud, of all runs.
+    ``exceeded`` of ``records`` with a decided run are beyond the limit at the bound, the upper one of two; of a cloud, of all.
     """
     fitted = curve.fitted
     if not isinstance(fitted, NoCurve) or not fitted.is_bound:
@@ -305,7 +311,7 @@ def _finite(bounds: tuple[float, float]) -> list[float | None]:
 
 
 def note(curve: Curve, spec: FragilitySpec) -> str:
-    """Return remarks on a curve, or why there is none."""
+    """Return remarks on a curve, or the bound of its median or why there is none, parted by semicolons; "" without any."""
     fitted = curve.fitted
     notes = [_about_undecided(curve)]
     if isinstance(fitted, NoCurve):
@@ -350,7 +356,9 @@ def _about_undecided(curve: Curve) -> str:
 
 
 def _about_drawn(curve: Curve) -> str:
-    """Return the effect of each drawn input on the capacity, or why it is unknown; empty if nothing is drawn."""
+    """Return the effect of each drawn input on the capacity, or why it is unknown; empty if none is drawn, or if there is no
+    curve for that same reason.
+    """
     share = curve.drawn_share
     reason = curve.fitted.reason if isinstance(curve.fitted, NoCurve) else ""
     if share is None or share == reason:  # there is no curve, for the same reason

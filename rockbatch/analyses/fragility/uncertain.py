@@ -50,7 +50,7 @@ class Input:
 
     @property
     def at(self) -> tuple[str, str]:
-        """Return its table and key under [fragility.uncertain], as ("dispersion", "zeta")."""
+        """Return its table and key under [fragility.uncertain], as ("lognormal", "zeta")."""
         return self.spread, self.name
 
     @property
@@ -60,7 +60,7 @@ class Input:
         return f"{self.name} {self.spread} {size}"
 
     def value(self, score: float, own: float) -> float:
-        """Return the value at a normal ``score``; ``own`` is that of the case."""
+        """Return the value at a normal ``score``: lognormal about ``own``, that of the case, or uniform between the ends."""
         if self.spread == "lognormal":
             return own * math.exp(self.size * score)
         low, high = self.size
@@ -116,7 +116,7 @@ class Uncertain:
 
     @cached_property
     def root(self) -> Values:
-        """Return the lower triangle L of L Lᵀ = :attr:`matrix`, which may be singular, with inputs that go together."""
+        """Return the lower triangle L of L Lᵀ = :attr:`matrix`, also of a singular one (correlations of ±1)."""
         variances, axes = np.linalg.eigh(self.matrix)
         _, upper = np.linalg.qr((axes * np.sqrt(np.maximum(variances, 0.0))).T)
         return np.asarray(upper.T * np.where(np.diag(upper) < 0, -1.0, 1.0))
@@ -175,7 +175,7 @@ SECTIONS = (UNCERTAIN, *_SPREADS.values(), CORRELATION)
 
 
 def read_uncertain(file: TomlFile, study: Study) -> Uncertain:
-    """Return the inputs that a study draws; mistakes are noted."""
+    """Return the inputs that a study draws, none without the table; mistakes become problems of ``file``."""
     table = file.table("fragility", "uncertain")
     if table is None:
         return Uncertain()
@@ -195,7 +195,7 @@ def read_uncertain(file: TomlFile, study: Study) -> Uncertain:
             table.complain(f"{one.name} and {other.name} are given, which fix the same; keep one", *other.at)
     uncertain = Uncertain(tuple(inputs), _correlations(file, inputs), **read)
     if file.is_sound_since(before):
-        _check(table, uncertain, study)
+        _check_inputs(table, uncertain, study)
     return uncertain
 
 
@@ -221,8 +221,8 @@ def _correlations(file: TomlFile, inputs: Sequence[Input]) -> tuple[Correlation,
     return tuple(correlations)
 
 
-def _check(table: Table, uncertain: Uncertain, study: Study) -> None:
-    """Complain about inputs that no case has, unfit distributions, and cases that are impossible with many draws."""
+def _check_inputs(table: Table, uncertain: Uncertain, study: Study) -> None:
+    """Complain about inputs that no case has, unfit distributions, and cases of which over 3 % of the draws are impossible."""
     used: set[str] = set()
     for case in study.cases:
         own = _own_values(case)
@@ -241,7 +241,10 @@ def _check(table: Table, uncertain: Uncertain, study: Study) -> None:
 
 
 def _unfit(parameter: Input, own: float, case: Case) -> str:
-    """Return why the distribution of an input does not fit the value of a case; empty if it does."""
+    """Return why a distribution does not fit a case: it is lognormal and the value ``own`` 0, or uniform and ``own`` outside it.
+
+    Empty if it fits.
+    """
     if parameter.spread == "uniform":
         return outside(parameter.name, parameter.size, own, case)
     zero = f'{parameter.name} = 0 in case "{case.name}", about which nothing is lognormal; write it under uniform'
@@ -249,7 +252,9 @@ def _unfit(parameter: Input, own: float, case: Case) -> str:
 
 
 def _check_draws(table: Table, uncertain: Uncertain, case: Case) -> None:
-    """Complain if too many draws of a case are impossible, naming the input and the limit that most of them exceed."""
+    """Complain if more than MOST_IMPOSSIBLE, 3 %, of TRIALS, 500, draws are impossible in a case, with an example of the input
+    that is wrong in most of them.
+    """
     own = _own_values(case)
     trials = (values_at(uncertain, own, scores) for scores in uncertain.scores(TRIALS, 0))
     wrong = [problems[0] for values in trials if (problems := impossible(case, values))]
@@ -267,7 +272,7 @@ def _check_draws(table: Table, uncertain: Uncertain, case: Case) -> None:
 
 
 def _own_values(case: Case) -> dict[str, Any]:
-    """Return the values of a case about which inputs are drawn; a restitution that is not given is Housner's."""
+    """Return the values of a case, by input, about which inputs are drawn; a restitution that is not given is Housner's."""
     own = values_of(case)
     return own | ({"restitution": case.pier.restitution} if own.get("restitution", 0.0) is None else {})
 
@@ -303,14 +308,14 @@ class Draws:
         self._made: dict[tuple[int, int, int], Drawn] = {}
 
     def at(self, case: int, record: int, level: int) -> Drawn:
-        """Return the case ``case`` as it is drawn for a record and a level, all by their numbers."""
+        """Return the case ``case`` as it is drawn for a record and a level, all by their numbers; as it is if nothing is."""
         key = (case, 0, 0) if self._own[case].keys().isdisjoint(self.uncertain.names) else (case, record, level)
         if key not in self._made:
             self._made[key] = self._draw(*key)
         return self._made[key]
 
     def _draw(self, number: int, record: int, level: int) -> Drawn:
-        """Return a draw, repeated from its own random sequence until the pier is possible."""
+        """Return a case with its drawn inputs, drawn again, from a random sequence of its own, while it is impossible."""
         case, own, uncertain = self.cases[number], self._own[number], self.uncertain
         if own.keys().isdisjoint(uncertain.names):
             return Drawn(case, describe_case(case), {})

@@ -21,7 +21,8 @@ class Windows(NamedTuple):
     """Shares of the scales within ``width`` of each level at which records exceed a limit.
 
     ``shares`` and ``records`` have, for each level, the mean of the shares of the records and their number: those with a decided
-    run there. ``undecided`` is the number of runs that are in no share. ``fitted`` is the curve, or why there is none.
+    run there, NaN and 0 if none has. ``undecided`` is the number of runs that are in no share. ``fitted`` is the curve, or why
+    there is none.
     """
 
     width: float
@@ -38,7 +39,7 @@ class Windows(NamedTuple):
 
 
 def samples(level: float, width: float | None) -> list[float]:
-    """Return the intensities to run in the window of a level; none without a ``width``."""
+    """Return SAMPLES, 20, intensities, the middles of equal parts of level (1 ± width); [] without a ``width``."""
     if width is None:
         return []
     return [level * (1.0 + width * ((2 * i + 1) / SAMPLES - 1.0)) for i in range(SAMPLES)]

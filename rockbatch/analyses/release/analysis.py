@@ -61,7 +61,8 @@ class Release(Analysis):
         A row for each case: the ``parameter`` that is fitted, its ``value`` with ``low`` and ``high`` at the ``confidence``; for
         restitution also over Housner's, ``over_housner``; ``scatter``, its standard deviation from impact to impact;
         ``by_times`` and ``by_amplitudes``, fitted to these alone; ``time_stretch``, the factor on all computed times that would
-        fit best beside the value, and its error; root mean squares of measured less computed values; ``remark``.
+        fit best beside the value, and its error; root mean squares of measured less computed values; ``remark``, and of it
+        the ``doubt``, what speaks against the fit, or "".
     release_impacts : DataFrame
         A row for each case and impact: times [s] and amplitudes [rad], measured and computed, and the apparent restitution.
     release_history : DataFrame
@@ -172,7 +173,7 @@ class _Test:
         self.model = cache(self._model)  # fits to times, to amplitudes and to both begin with the same values
 
     def base(self, value: float) -> Base:
-        """Return the base with this value of the parameter."""
+        """Return the base with this value of the parameter; on springs without the other loss (``epsilon`` 0, no ``zeta``)."""
         changes: dict[str, Any] = {self.parameter: value}
         if self.parameter != "restitution":
             changes = {"epsilon": 0.0, "zeta": None} | changes
@@ -191,11 +192,14 @@ class _Test:
         return Passages(t - t[0] if self.spec.clock == "first impact" else t, amplitude)
 
     def fit(self, measured: Passages) -> Fit:
-        """Return the fit to some of the measured values."""
+        """Return the fit to ``measured`` values, all of the test or only those of a kind."""
         return fitted(measured, self.model, GRIDS[self.parameter], self.spec.confidence, self._shifted)
 
     def laid_over(self, value: float) -> "tuple[pd.DataFrame, pd.DataFrame]":
-        """Return the table of impacts, measured and computed, and the computed history."""
+        """Return the table of impacts, measured and computed with a value, and the computed history until past the last impact.
+
+        Times count from the first impact if those measured do.
+        """
         pier, computed = self.case.pier, self.model(value)
         table = pd.DataFrame({"impact": np.arange(1, len(computed.t) + 1)})
         for name, unit, measured, modelled in (
@@ -219,7 +223,7 @@ class _Test:
         return self.spec.clock == "first impact"
 
     def row(self, fit: Fit, table: "pd.DataFrame") -> dict[str, object]:
-        """Return the row of release.csv: the value with its interval, fits by times or amplitudes alone, residuals, remark."""
+        """Return the row of release.csv: the value with its interval, fits by times or amplitudes alone, residuals, remarks."""
         e = self.case.pier.restitution if self.parameter == "restitution" else math.nan
         apart = {"by_times": self._alone(0), "by_amplitudes": self._alone(1)}
         row = {
@@ -238,7 +242,8 @@ class _Test:
                 row[name if end == "value" else f"{name}_{end}"] = math.nan if best is None else getattr(best, end)
         row |= {"t_rms_s": fit.t_rms, "amplitude_rms_rad": fit.amplitude_rms}
         row |= {"time_stretch": fit.stretch, "time_stretch_error": fit.stretch_error}
-        return row | {"remark": self._remark(fit, apart)}
+        doubt = self._doubt(fit, apart)
+        return row | {"remark": "; ".join(filter(None, (doubt, self._differences(fit)))), "doubt": doubt}
 
     def _alone(self, kind: int) -> Fit | None:
         """Return the fit to times (0) or amplitudes (1) alone; None unless both were measured three times or more."""
@@ -247,25 +252,31 @@ class _Test:
         nothing = np.full(len(self.measured.t), math.nan)
         return self.fit(Passages(self.measured.t, nothing) if kind == 0 else Passages(nothing, self.measured.amplitude))
 
-    def _remark(self, fit: Fit, apart: Mapping[str, Fit | None]) -> str:
-        """Return a remark on the fit: its differences from the test, and a probable cause if it is poor."""
-        pier = self.case.pier
-        first, start = float(self.model(fit.value).t.max()) / len(self.measured.t), abs(pier.initial_rotation_rad)
+    def _differences(self, fit: Fit) -> str:
+        """Return by how much measured values differ from computed ones, in a sentence."""
+        first = float(self.model(fit.value).t.max()) / len(self.measured.t)
         differences = []
         if not math.isnan(fit.t_rms):
             differences.append(f"times by {fit.t_rms * 1000.0:.3g} ms ({fit.t_rms / first:.2g} of a mean half cycle)")
         if not math.isnan(fit.amplitude_rms):
-            relative = f"{fit.amplitude_rms / start:.2g} of the initial rotation"
+            relative = f"{fit.amplitude_rms / abs(self.case.pier.initial_rotation_rad):.2g} of the initial rotation"
             differences.append(f"amplitudes by {fit.amplitude_rms * 1000.0:.3g} mrad ({relative})")
-        words = f"measured values differ from computed ones by root mean square: {', '.join(differences)}"
-        poor = fit.t_rms > POOR_TIMES * first or fit.amplitude_rms > POOR_AMPLITUDES * start
+        return f"measured values differ from computed ones by root mean square: {', '.join(differences)}"
+
+    def _doubt(self, fit: Fit, apart: Mapping[str, Fit | None]) -> str:
+        """Return what to check, since the fit seems wrong; "" if nothing speaks against it.
+
+        That is the first that holds: the value is at an end of the values, all times are stretched, times and amplitudes
+        contradict each other, or the differences are above POOR_TIMES or POOR_AMPLITUDES.
+        """
+        pier = self.case.pier
+        first, start = float(self.model(fit.value).t.max()) / len(self.measured.t), abs(pier.initial_rotation_rad)
         if fit.at_end:
-            return f"the best value is at the end of what can be: check size, slenderness and initial rotation; {words}"
+            return "the best value is at the end of what can be: check size, slenderness and initial rotation"
         if abs(fit.stretch - 1.0) > max(fit.stretch_error, NO_STRETCH):
-            p = self.case.pier.p / fit.stretch
             return (
                 f"measured times are {fit.stretch:.3f} ± {fit.stretch_error:.3f} times as long as computed ones, as of a pier "
-                f"with p = {p:.4g} rad/s instead of {self.case.pier.p:.4g}: check size, slenderness, initial rotation; {words}"
+                f"with p = {pier.p / fit.stretch:.4g} rad/s instead of {pier.p:.4g}: check size, slenderness, initial rotation"
             )
         times, amplitudes = apart["by_times"], apart["by_amplitudes"]
         if (
@@ -275,10 +286,8 @@ class _Test:
         ):
             return (
                 f"times and amplitudes ask for values that differ by more than their intervals, {times.value:.4g} and "
-                f"{amplitudes.value:.4g}: size, slenderness or initial rotation may be others than stated; {words}"
+                f"{amplitudes.value:.4g}: size, slenderness or initial rotation may be others than stated"
             )
-        if poor:
-            return (
-                f"poor: no value describes the test; check size, slenderness, initial rotation and the clock; {words}"
-            )
-        return words
+        if fit.t_rms > POOR_TIMES * first or fit.amplitude_rms > POOR_AMPLITUDES * start:
+            return "poor: no value describes the test; check size, slenderness, initial rotation and the clock"
+        return ""

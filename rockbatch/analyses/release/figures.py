@@ -12,7 +12,7 @@ MEASURED = Look("", 2)
 
 
 def rotations(impacts: "pd.DataFrame", history: "pd.DataFrame", varied: Sequence[str]) -> Figure:
-    """Return a panel for each case, from release_impacts.csv and release_history.csv."""
+    """Return a figure with a panel for each case, from release_impacts.csv and release_history.csv."""
     keys = ["case", *varied]
     computed = {names: part for names, part in history.groupby(keys, sort=False, dropna=False)}
     groups = impacts.groupby(keys, sort=False, dropna=False)

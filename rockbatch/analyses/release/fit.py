@@ -9,7 +9,7 @@ import numpy as np
 from rockbatch.motions.motion import Samples
 
 EXACT = 1e-7
-"""Of the greatest value: least misfit of a value, so that a fit to exact ones has a logarithm."""
+"""Least misfit of a value over the greatest of its kind, so that the misfit to exact ones has a logarithm."""
 
 NEAR = 1e-4
 """Change of the parameter by which slopes are taken."""
@@ -71,12 +71,13 @@ class _Linear(NamedTuple):
 
 
 def fitted(measured: Passages, model: Model, grid: Samples, confidence: float, shared: bool = False) -> Fit:
-    """Return the parameter of ``model`` that makes ``measured`` values likeliest, and its interval.
+    """Return the fit of the parameter of ``model`` to ``measured`` values.
 
     Times and amplitudes have errors of measurement, independent and normal, each kind with a scatter that is not known; and the
     parameter itself scatters from impact to impact, which all later values keep (THEORY.md, Release tests). The value is the
-    median of what is then known of it, the interval holds the middle of it with a probability of ``confidence``. ``grid`` are
-    values, at one of which the fit begins. Times that count from the first impact have its error, ``shared``.
+    median of its posterior distribution, the interval holds the middle of that with a probability of ``confidence``; both stay
+    between the ends of ``grid``, values at the best of which the fit begins. If times count from the first impact they have its
+    error, too: ``shared``.
     """
     bounds = float(grid[0]), float(grid[-1])
     value = _least_squares(measured, model, grid)
@@ -100,7 +101,10 @@ def _rms(data: Samples, modelled: Samples) -> float:
 
 
 def _stretch(linear: _Linear, t: Samples, measured: Passages, confidence: float) -> tuple[float, float]:
-    """Return the factor on computed times ``t`` that fits measured ones best, and its error; NaN for fewer times than needed."""
+    """Return the factor on computed times that fits measured ones best, and its error; NaN with fewer than LEAST_TIMES, 4.
+
+    ``t`` has the computed times, then 0 for each amplitude.
+    """
     known = ~np.isnan(np.concatenate(measured))
     if np.count_nonzero(linear.kinds == 0) < LEAST_TIMES:
         return math.nan, math.nan
@@ -190,7 +194,7 @@ def _posterior(linear: _Linear) -> _Posterior:
 
 
 def _grid(ends: Samples, step: float) -> Samples:
-    """Return the points, shape (q, k), between ends, (k, 2)."""
+    """Return the points of a grid, shape (q, k), ``step`` apart on each axis from its lower end on, ``ends`` being (k, 2)."""
     axes = [np.arange(low, high + 0.5 * step, step) for low, high in ends]
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
 

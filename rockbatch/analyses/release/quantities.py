@@ -6,7 +6,7 @@ from rockbatch.reporting.table import Head
 
 
 def interval(fit: Entry) -> str:
-    """Return the interval of a fitted value with its confidence."""
+    """Return the interval of a fitted value with its confidence: "0.9061 to 0.918 (95%)"."""
     return f"{number(fit['low'], '.4g')} to {number(fit['high'], '.4g')} ({float(fit['confidence']):.0%})"
 
 
@@ -28,7 +28,7 @@ FIT = (
     Head("scatter", ".2g", "standard deviation from impact to impact, beside errors of reading", value="scatter"),
     Head("of Housner's", ".3f", "over the value that keeps the angular momentum", value="over_housner"),
 )
-"""Of a row of release.csv."""
+"""Heads of a table of release.csv."""
 
 IMPACTS = (
     Head("impact", "d", value="impact"),
@@ -42,4 +42,4 @@ IMPACTS = (
         for origin in ("measured", "computed")
     ),
 )
-"""Of a row of release_impacts.csv."""
+"""Heads of a table of release_impacts.csv."""

@@ -7,12 +7,12 @@ from rockbatch.analyses.release.figures import rotations
 from rockbatch.common.analyses import Entry
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.finished_analysis import FinishedAnalysis, answered, named, of_analysis, sentence
-from rockbatch.reporting.markup import Markup, figure, join, tag
+from rockbatch.reporting.markup import Markup, figure, join, number, tag
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import Head, listed
 from rockbatch.results.labelled import as_dicts
 
-FIT = ("case", "parameter", "value", "low", "high", "confidence", "scatter", "over_housner", "remark")
+FIT = ("case", "parameter", "value", "low", "high", "confidence", "scatter", "over_housner", "remark", "doubt")
 IMPACTS = ("case", "impact", "t_measured_s", "t_amplitude_computed_s", "amplitude_measured_rad", "restitution_measured")
 HISTORY = ("case", "t_s", "theta_rad")
 CAPTION = "Line: computed with the fitted value. Markers: measured, amplitudes at the time of the computed ones."
@@ -23,7 +23,7 @@ METHOD = "The value that makes the measured times and amplitudes likeliest, and 
 def section(
     analysis: FinishedAnalysis, fits: "pd.DataFrame", impacts: "pd.DataFrame", history: "pd.DataFrame"
 ) -> Markup:
-    """Say what was fitted in each case, and draw it."""
+    """Return the report's section of a release test: what was fitted in each case, the figure and the tables."""
     varied = analysis.info["varied"]
     keys, rows = ["case", *varied], as_dicts(fits)
     heads = [Head("case", value=lambda fit: named(fit, keys)), *quantities.FIT]
@@ -39,12 +39,12 @@ def section(
 
 def _answer(fit: Entry, keys: Sequence[str]) -> Markup:
     """Return what was fitted in a case, in a sentence, with what puts it in doubt."""
-    doubt = fit["remark"].rpartition("; ")[0]
-    return answered(sentence(f"{named(fit, keys)}: {quantities.in_words(fit)}", [doubt] if doubt else ()))
+    doubts = [doubt] if (doubt := number(fit["doubt"])) else []  # an empty cell is read as NaN
+    return answered(sentence(f"{named(fit, keys)}: {quantities.in_words(fit)}", doubts))
 
 
 def _impacts(impacts: "pd.DataFrame", keys: list[str]) -> list[Markup]:
-    """Return a folded table of the impacts of each case."""
+    """Return for each case a folded table of its impacts."""
     tables = []
     for names, of_case in impacts.groupby(keys, sort=False, dropna=False):
         title = f"Impacts of {named(dict(zip(keys, names, strict=True)), keys)}, measured and computed"

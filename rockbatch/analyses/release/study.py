@@ -117,13 +117,16 @@ def read_release(study: Study) -> ReleaseSpec:
         read |= _padded(read.get("impact_s", ()), read.get("amplitude_rad", ()), read.get("clock"))
         spec = ReleaseSpec(**read)
         if not file.problems:
-            _check(table, spec, study)
+            _check_measured(table, spec, study)
     file.finish()
     return spec
 
 
 def _padded(times: Sequence[float], amplitudes: Sequence[float], clock: str | None) -> dict[str, tuple[float, ...]]:
-    """Return times [s] and amplitudes [rad] of equal number, padded by NaN; times from the first impact if ``clock`` says so."""
+    """Return times [s] and amplitudes [rad] of equal number, padded by NaN.
+
+    With the clock "first impact" times count from the first, which is then NaN.
+    """
     rows = list(zip_longest(times, amplitudes, fillvalue=math.nan))
     if clock == "first impact" and rows:
         first = rows[0][0] if rows[0][0] == rows[0][0] else 0.0
@@ -133,7 +136,10 @@ def _padded(times: Sequence[float], amplitudes: Sequence[float], clock: str | No
 
 
 def _of_file(table: Table, name: str) -> dict[str, tuple[float, ...]]:
-    """Return the columns of a CSV of measured values; {} after a mistake in it, which is noted with its line."""
+    """Return the columns of a CSV of measured values as impact_s [s] and amplitude_rad [rad], whichever it has.
+
+    {} after a mistake in it, which becomes a problem of ``table``.
+    """
     path = table.file.path.parent / Path(name).expanduser()
     with table.noting("measured"):
         columns = columns_of(path, dict.fromkeys(UNITS, not_negative), gaps=True)
@@ -144,8 +150,12 @@ def _of_file(table: Table, name: str) -> dict[str, tuple[float, ...]]:
     return {}
 
 
-def _check(table: Table, spec: ReleaseSpec, study: Study) -> None:
-    """Note what the values are that no pier does, and cases in which nothing can be fitted."""
+def _check_measured(table: Table, spec: ReleaseSpec, study: Study) -> None:
+    """Complain about values that no free rocking gives, and about cases that leave nothing to fit.
+
+    They may be fewer than FEWEST, 3, values or more than MOST, 500, impacts, times that do not rise, and a first amplitude not
+    below the initial rotation, or no such rotation; and bases without what is to be fitted.
+    """
     times, amplitudes = _numbered(spec.impact_s), _numbered(spec.amplitude_rad)
     key = "measured" if spec.measured else "impact_s"
     measured = len(times) + len(amplitudes)

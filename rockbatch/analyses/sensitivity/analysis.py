@@ -198,7 +198,7 @@ def tornado(inputs: Sequence[Input], points: Sequence[Point], results: Values) -
 
 
 def _written(value: Value) -> float | str:
-    """Return a value as a study file has it, choices in lower case."""
+    """Return a value as a study file has it: True as "true", False as "false", others as they are."""
     return str(value).lower() if isinstance(value, bool) else value
 
 

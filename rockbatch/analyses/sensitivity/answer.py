@@ -46,7 +46,10 @@ def answer(info: Info, swings: "pd.DataFrame", sobol: "pd.DataFrame") -> Markup:
 
 
 def _of_case(rows: Rows) -> Markup:
-    """Return the rest of the sentence about a case, and one about the input that moves the answer most by itself."""
+    """Return the rest of the sentence about a case, and one about the input that moves the answer most by itself, if one does.
+
+    If all answers are the same (NaN indices), the sentence says so.
+    """
     if rows[0]["total"] != rows[0]["total"]:
         nothing = tag("span", "there is nothing to attribute to any of them", class_="undecided")
         return join(f" is {plain(rows[0]['answer_base'], 3)} whatever the inputs are: ", nothing, ".")
@@ -72,7 +75,7 @@ def _index(row: Entry) -> str:
 
 
 def _doubt(first: Entry, shown: Rows) -> Iterator[str]:
-    """Yield advice to take more samples if the errors leave the order of the inputs open, or the first index itself."""
+    """Yield advice to take more samples if errors leave the order of the inputs open, or are over half of the first index."""
     least = first["total"] - first["total_error"]
     alike = [symbol(row["parameter"]) for row in shown if row["total"] + row["total_error"] >= least]
     if alike:

@@ -14,7 +14,7 @@ from rockbatch.terminal.streams import say, show
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Compute and print the sensitivity of the peak rotation."""
+    """Compute and print the sensitivity of the peak rotation; return 1 if a record is unusable, else 0."""
     result = sensitivity(study, **analysis_arguments(arguments))
     show(shown(result.sensitivity, result.sobol, study.varied))
     ended = ", ".join(f"{number} {status}" for status, number in sorted(result.info["statuses"].items()))

@@ -26,7 +26,7 @@ def symbol(name: str) -> str:
 
 
 def bars(swings: "pd.DataFrame", sobol: "pd.DataFrame", varied: Sequence[str]) -> Figure:
-    """Return for each case of sensitivity.csv and sobol.csv the answer at both ends of every input, and Sobol's indices."""
+    """Return a figure with two panels for each case: the answer at both ends of every input, and Sobol's indices."""
     keys = ["case", *varied]
     varying = [name for name in keys if swings[name].nunique(dropna=False) > 1]
     panels = []

@@ -23,4 +23,4 @@ QUANTITIES = (
         for head, column in ((name, index), ("±", f"{index}_error"))
     ),
 )
-"""Of an input, a row of both files together."""
+"""Heads of a table of inputs, whose rows have the columns of both files."""

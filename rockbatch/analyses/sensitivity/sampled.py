@@ -37,7 +37,7 @@ class Point:
 
 
 def low_base_high(inputs: Sequence[Input], study: Study, case: Case) -> list[dict[str, Value]]:
-    """Return the study's own values, then those with each input in turn at its low and at its high end.
+    """Return the study's own values of the inputs, then these with each input in turn at its low and at its high end.
 
     A restitution that the study does not give is Housner's for its own pier.
     """
@@ -97,7 +97,7 @@ class Design:
         return varied(self.cases[point.case], values)
 
     def some_cases(self) -> tuple[Case, ...]:
-        """Return cases spread over the design, enough to compile every kernel that the others need."""
+        """Return up to 64 cases spread evenly over the points, to compile the kernels that the others need."""
         return tuple(map(self.case, self.points.all[:: 1 + len(self.points) // 64]))
 
 

@@ -42,7 +42,7 @@ class Input:
 
     @property
     def at(self) -> tuple[str, ...]:
-        """Return its place under [sensitivity]."""
+        """Return its place under [sensitivity]: ("uniform", "damper", "f")."""
         return self.spread, *self.name.split(".")
 
 
@@ -122,13 +122,13 @@ SECTIONS = (
 
 
 def applying(inputs: Iterable[Input], case: Case) -> tuple[Input, ...]:
-    """Return the inputs that a case has."""
+    """Return the inputs that a case has; ``vertical`` and ``polarity`` are of every case."""
     names = {*values_of(case), *OF_MOTION}
     return tuple(parameter for parameter in inputs if parameter.name in names)
 
 
 def own_values(study: Study, case: Case) -> dict[str, Any]:
-    """Return the study's own value of every input."""
+    """Return the values of a case by input, with the study's ``vertical`` and the first ``polarity``."""
     return values_of(case) | {"vertical": study.motions.vertical, "polarity": study.motions.polarity[0]}
 
 
@@ -153,7 +153,7 @@ def read_sensitivity(study: Study) -> SensitivitySpec:
         if not table.data.keys() & SPREADS.keys():
             table.complain("nothing is varied; write [sensitivity.uniform] and under it alpha = [0.12, 0.16]")
         if not file.problems:
-            _check(table, inputs, study)
+            _check_inputs(table, inputs, study)
     file.finish()
     return SensitivitySpec(tuple(inputs), **read)
 
@@ -195,7 +195,7 @@ def _read(
     return inputs
 
 
-def _check(table: Table, inputs: Sequence[Input], study: Study) -> None:
+def _check_inputs(table: Table, inputs: Sequence[Input], study: Study) -> None:
     """Complain about inputs that no case has, ranges without the study's value, and impossible corners of all ranges."""
     used: set[str] = set()
     places = {parameter.name: parameter.at for parameter in inputs}
@@ -217,7 +217,10 @@ def _check(table: Table, inputs: Sequence[Input], study: Study) -> None:
 
 
 def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
-    """Check the corners of all ranges: what is possible there is so between them, as no limit turns back within a range."""
+    """Complain about impossible corners of all ranges, once for each key that is wrong.
+
+    What is possible at the corners is so between them, as no limit turns back within a range.
+    """
     inputs = [parameter for parameter in inputs if parameter.name not in OF_MOTION]
     places = {parameter.name: parameter.at for parameter in inputs}
     reported: set[str] = set()

@@ -31,7 +31,7 @@ def answer(sentences: Sequence[str], remarks: Sequence[str]) -> Markup:
 
 
 def _marked(words: str) -> Markup:
-    """Return words with subscripts of θ_max, a_g, ω_p and the like, and no others, as names may have underscores, too."""
+    """Return escaped words, with subscripts for θ, ω and a before _max, _g and _p; other underscores, as in names, stay."""
     return Markup(re.sub(r"\b([θωa])_(max|g|p)\b", lambda match: sub(match[1], match[2]), escape(words)))
 
 
@@ -45,7 +45,10 @@ def of_spectra(info: Info, suite: "pd.DataFrame") -> tuple[list[str], list[str]]
 
 
 def _overturning(info: Info, suite: "pd.DataFrame", fallen: "pd.DataFrame") -> Iterator[str]:
-    """Yield the largest piers that overturn under one motion, and under half of them, for each slenderness."""
+    """Yield a sentence on the largest piers that overturn under one motion or more, and under half of them, for each slenderness.
+
+    If none overturns it says that.
+    """
     axis, motions, many = info["axis"], counted(info["motions"], "motion"), info["motions"] > 1
     if fallen.empty:
         yield f"No pier overturns under {'any of ' if many else ''}{motions}."
@@ -67,7 +70,7 @@ def _overturning(info: Info, suite: "pd.DataFrame", fallen: "pd.DataFrame") -> I
 
 
 def _greatest(info: Info, suite: "pd.DataFrame") -> Iterator[str]:
-    """Yield the greatest median rotation of the piers that stand, and where it is."""
+    """Yield a sentence on the greatest median rotation of the piers that stand, and where it is; nothing if none stands."""
     standing = as_dicts(suite[np.isfinite(suite["median"])])
     if not standing:
         return
@@ -108,7 +111,7 @@ def _order(axis: str) -> str:
 
 
 def _largest(fallen: "pd.DataFrame", axis: str, alpha: float) -> str:
-    """Return the size of the largest of the ``fallen`` piers with this slenderness."""
+    """Return the size of the largest of the ``fallen`` piers with this slenderness; "none" if none has it."""
     rows = as_dicts(fallen[fallen["alpha"] == alpha])
     if not rows:
         return "none"
@@ -121,7 +124,7 @@ def _listed(words: Iterable[str]) -> str:
 
 
 def _axis(axis: str) -> tuple[str, str]:
-    """Return symbol and unit of the size: "2π/p", " s"."""
+    """Return symbol and unit of ``axis``, a column: "2π/p" and "\u00a0s" of "two_pi_over_p_s"; "" for a column without unit."""
     words, _, unit = ACROSS.get(axis, symbol(axis)).partition(",")[0].partition(" [")
     return words, f"\u00a0{unit.rstrip(']')}" if unit else ""
 
@@ -131,7 +134,7 @@ def _peak(value: float) -> str:
 
 
 def of_maps(info: Info, regions: "pd.DataFrame") -> tuple[list[str], list[str]]:
-    """Return sentences on the least amplitude that overturns in each map, or in the worst of many maps, and remarks."""
+    """Return sentences on the least amplitude that overturns in each map, of over MOST_MAPS, 3, in the worst; and remarks."""
     maps = [of_map for _, of_map in regions.groupby("map", sort=False)]
     of = ""
     if len(maps) > MOST_MAPS:

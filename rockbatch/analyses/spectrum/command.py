@@ -20,7 +20,7 @@ MOST_LINES = 12
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Compute spectra and maps, and print them."""
+    """Compute spectra and maps, and print them; return 1 if a record is unusable or a run of a spectrum failed, else 0."""
     result = spectrum(study, **analysis_arguments(arguments))
     failed = 0
     if result.spectra is not None and result.spectrum is not None and result.spectrum_suite is not None:
@@ -36,7 +36,7 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
 
 
 def shown(suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
-    """Return medians of θ_max/α for a terminal: a line for each value on the axis, ∞ where the pier overturns."""
+    """Return medians of θ_max/α for a terminal: a line for each of up to MOST_LINES, 12, values on the axis, ∞ if overturned."""
     axis = spectrum.axis
     keys = [name for name in groups(spectrum.varied) if name != axis]
     labels = [name for name in keys if name != "case" and (name != "scale" or suite[name].nunique() > 1)]
@@ -69,7 +69,7 @@ def _evenly(values: np.ndarray) -> np.ndarray:
 
 
 def shown_maps(table: "pd.DataFrame", varied: tuple[str, ...]) -> str:
-    """Return the regions of every map for a terminal, a line for each frequency."""
+    """Return the regions of every map for a terminal, a line for each of up to MOST_LINES, 12, frequencies."""
     blocks = []
     for names, of_map in table.groupby(["map", "case", *varied], sort=False, dropna=False):
         lines = [f"{names[0]}, {names[1]} {named(varied, names[2:])}".rstrip() + ": outcome by a_p/(g tan alpha)"]

@@ -35,8 +35,11 @@ REGIONS = {
 
 
 def spectra(suite: "pd.DataFrame", records: "pd.DataFrame | None", info: Entry, axis: str | None = None) -> Figure:
-    """Return the largest rotation over the size of the pier, from spectrum_suite.csv and the curves of ``records`` in
-    spectrum.csv; ``info`` is spectrum.json, ``axis`` a column in place of its own."""
+    """Return a figure of the largest rotation over the size of the pier, a panel for each case, scale and value but α.
+
+    ``suite`` is spectrum_suite.csv, ``records`` spectrum.csv, whose curves are drawn in suites of several motions; ``info`` is
+    spectrum.json, ``axis`` a column in place of its own.
+    """
     keys = ("case", *(() if info["axis"] == "omega_g_over_p" else ("scale",)), *info["varied"])
     apart = [name for name in keys if name not in ("alpha", info["axis"])]
     varying = [name for name in apart if name == "case" or suite[name].nunique(dropna=False) > 1]
@@ -81,7 +84,7 @@ def _spectrum(suite: "pd.DataFrame", records: "pd.DataFrame | None", axis: str, 
 
 
 def _of_records(records: "pd.DataFrame", axis: str, top: float) -> Iterator[Polyline]:
-    """Yield a curve for each record up to ``top``, which ends where the pier overturns; none if they are too many."""
+    """Yield a curve for each record up to ``top``, with gaps where the pier overturns; none if they are over MOST_RECORDS."""
     keys = ["alpha", "record", "polarity"]
     groups = records.groupby(keys, sort=False)
     for _, of_record in groups if groups.ngroups <= MOST_RECORDS else ():
@@ -95,8 +98,8 @@ def _of_records(records: "pd.DataFrame", axis: str, top: float) -> Iterator[Poly
 
 
 def maps(regions: "pd.DataFrame", info: Entry) -> Figure:
-    """Return the regions of amplitude over frequency of each map of overturning_map.csv with their boundaries, as they were
-    computed; ``info`` is spectrum.json."""
+    """Return a figure of the regions of amplitude over frequency in overturning_map.csv, with their boundaries, as they were
+    computed, a panel for each map and case; ``info`` is spectrum.json."""
     apart = ["map", "case", *info["varied_map"]]
     shapes = {pulse["name"]: pulse["shape"] for pulse in info["maps"]}
     panels = []

@@ -43,7 +43,8 @@ class Region(NamedTuple):
 def regions(points: Sequence[tuple[float, End]], tolerance: float = 0.0) -> list[Region]:
     """Return neighbours with one outcome as regions; a boundary lies in the middle between two that differ.
 
-    What is no wider than ``tolerance`` belongs to the boundary, whose error then says so.
+    A region no wider than ``tolerance`` is left out, and the error of the boundary in its place spans it; if all are so narrow,
+    all stay.
     """
     unmerged = _regions(points, points)
     narrow = [region for region in unmerged if region.high - region.low <= tolerance]
@@ -108,7 +109,10 @@ class Search:
             self._regions[column] = regions(sorted(self._ends[column].items()), self.tolerance)
 
     def _suggested(self, number: int, frequencies: Sequence[float]) -> list[Point]:
-        """Return the middles of all regions of a neighbour that has other regions: what is narrow there may be here too."""
+        """Return points of each column at the middles of the regions of a neighbour with other outcomes, if not run yet.
+
+        What is narrow there may be here, too.
+        """
         suggested: dict[Point, None] = {}
         for left, right in pairwise(frequencies):
             neighbours = self._regions[number, left], self._regions[number, right]
@@ -119,7 +123,7 @@ class Search:
         return [point for point in suggested if point[2] not in self._ends[point[:2]]]
 
     def _middles(self, number: int, frequencies: Sequence[float]) -> list[float]:
-        """Return the frequencies between neighbours at which another column is needed."""
+        """Return the middles between neighbours further apart than ``width`` whose boundaries straight lines do not join."""
         columns = [self._regions[number, frequency] for frequency in frequencies]
         middles = []
         for i, (left, right) in enumerate(pairwise(frequencies)):
@@ -128,7 +132,10 @@ class Search:
         return middles
 
     def _joined(self, frequencies: Sequence[float], columns: Sequence[list[Region]], i: int) -> bool:
-        """Return whether straight lines join the boundaries of columns ``i`` and ``i + 1``, as their neighbours have it."""
+        """Return whether straight lines join the boundaries of columns ``i`` and ``i + 1`` to half the tolerance.
+
+        Parabolas through a third column on either side tell it; False if there is none with the same outcomes.
+        """
         outcomes = _outcomes(columns[i])
         if _outcomes(columns[i + 1]) != outcomes:
             return False

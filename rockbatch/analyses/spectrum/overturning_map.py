@@ -36,7 +36,7 @@ SAMPLES = 400
 
 
 def ending(status: str, impacts: int, base: Base) -> End:
-    """Return the region to which a run belongs, and the way there.
+    """Return the region to which a run belongs, and the way there; a status such as "failed" is UNDECIDED.
 
     Rigid blocks that overturn after another number of impacts do so by another way, with a boundary between the two, on which
     they would stay at the unstable equilibrium: near it there may be a window of safe amplitudes, however narrow. On springs
@@ -77,7 +77,7 @@ class Maps:
         return Search(ends, amplitudes, self.spec.tolerance, self.spec.width).find(len(self.cases), frequencies)
 
     def _unit(self, number: int, frequency: float) -> Motion:
-        """Return the pulse with an amplitude of g tan α."""
+        """Return the pulse of the map at ω_p/p = ``frequency`` of a case, with an amplitude of g tan α."""
         if (number, frequency) not in self._units:
             spec, pier = self.spec, self.cases[number].pier
             period = 2 * math.pi / (frequency * pier.p)

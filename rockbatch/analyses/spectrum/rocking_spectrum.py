@@ -47,7 +47,10 @@ RESULTS = (
 
 
 def plan(study: Study, spectrum: SpectrumSpec, motions: MotionSet) -> Runs:
-    """Return the runs of a spectrum: those of the study that are simulated, on the piers of the spectrum."""
+    """Return the runs of a spectrum: each motion and scale of the study, in the polarity that is simulated, on each of its piers.
+
+    Those of a self-similar one have PGA/(g tan α) in place of the scale.
+    """
     if spectrum.axis == SELF_SIMILAR:
         return _self_similar(study.motions.simulated, spectrum, motions.motions)
     once = replace(study.motions, polarity=(study.motions.simulated,))
@@ -74,7 +77,7 @@ def _self_similar(polarity: str, spectrum: SpectrumSpec, motions: Sequence[Motio
 
 
 def _frequency(motion: Motion) -> float:
-    """Return ω_g = PGA/PGV [rad/s] of a motion."""
+    """Return ω_g = PGA/PGV [rad/s] of a motion; raises ``InputError`` if the ground does not move."""
     pgv = measures.pgv(motion.horizontal, motion.dt, motion.initial)
     if not (motion.pga > 0.0 and pgv > 0.0):
         raise InputError(f"{motion.name}: PGA/PGV has no value, for the ground does not move; leave the record out")
@@ -87,7 +90,7 @@ def columns(spectrum: SpectrumSpec) -> list[str]:
 
 
 def groups(varied: Sequence[str]) -> list[str]:
-    """Return the columns that identify a point of a spectrum; the scale is none of a self-similar one, but follows."""
+    """Return the columns that identify a point of a spectrum; of a self-similar one without the scale, which each record has."""
     return [name for name in (*GROUP, *varied) if name != "scale" or SELF_SIMILAR not in varied]
 
 
@@ -117,7 +120,7 @@ def of_suite(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
 
 
 def _sizes(runs: "pd.DataFrame", varied: Sequence[str]) -> dict[str, float]:
-    """Return the size of the pier of these runs, or the ends of those of a self-similar spectrum."""
+    """Return p, 2π/p and R0 of the pier of these runs, NaN without runs; of a self-similar spectrum the ends of R0 and scale."""
     if SELF_SIMILAR in varied:
         return {f"{end}_{name}": getattr(runs[name], method)() for name in OWN for end, method in ENDS.items()}
     return {name: runs[name].iloc[0] if len(runs) else math.nan for name in SIZE}

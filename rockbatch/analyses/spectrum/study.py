@@ -27,7 +27,7 @@ AXES = ("two_pi_over_p_s", "p", "size_m", SELF_SIMILAR)
 """Quantities over which a spectrum may run: 2π/p [s], p [rad/s], R0 [m], or ω_g/p."""
 
 LEAST_TOLERANCE = 1e-9
-"""Of a boundary, along either axis; halves of intervals that are shorter would soon be no numbers between their ends."""
+"""Least tolerance of a boundary, along either axis: shorter intervals would soon have no number between their ends."""
 
 
 @dataclass(frozen=True)
@@ -167,7 +167,10 @@ SECTIONS = (SPECTRUM, MAP)
 
 
 def read_spectrum(study: Study) -> tuple[SpectrumSpec | None, tuple[MapSpec, ...]]:
-    """Return the spectrum and the maps of a study file; ``InputError`` with every mistake in [spectrum], or if there is none."""
+    """Return the spectrum of a study file, None if [spectrum] has maps alone, and the maps.
+
+    Raises ``InputError`` with every mistake in [spectrum], or if there is none.
+    """
     file = study.file()
     table = file.table(
         "spectrum", required="[spectrum] with alpha = [0.10, 0.15] and two_pi_over_p_s = [2, 16], or a [[spectrum.map]]"
@@ -246,9 +249,10 @@ def _without_size(table: Table, study: Study, names: Sequence[str]) -> None:
 
 
 def _piers(table: Table, alphas: Sequence[float], axis: str, values: list[float], study: Study) -> list[PierRead]:
-    """Return piers of every slenderness and size, with all else of the study's, and their values by key.
+    """Return piers of every slenderness and size, otherwise as the study's without deck and parts, and their values by key.
 
-    A mass that only a case says is no pier's: the case brings it itself.
+    A mass that is written in a case alone is left out, as the case adds it. A size that is impossible becomes a problem of the
+    file, and ends those of its slenderness.
     """
     weighed = has_mass(table.file)
     templates = dict.fromkeys(

@@ -141,14 +141,14 @@ class Axis:
     numbered: bool = True
 
     def fraction(self, values: float | Array) -> Array:
-        """Return places along the axis: 0 at ``low``, 1 at ``high``, beyond outside; on a ``log`` axis NaN or −inf up to 0."""
+        """Return places along the axis: 0 at ``low``, 1 at ``high``, beyond outside; on a ``log`` axis −inf at 0, NaN below."""
         values = np.asarray(values, dtype=np.float64)
         if self.log:
             return np.log(values / self.low) / math.log(self.high / self.low)
         return (values - self.low) / (self.high - self.low)
 
     def ticks(self) -> dict[float, str]:
-        """Return the places of ticks along the axis, each with its label."""
+        """Return the values with ticks, and their labels: ``names`` if given, else round ones, on a log axis :meth:`_powers`."""
         if self.names is not None:
             return dict(self.names)
         places = self._powers() if self.log else self._steps()
@@ -162,7 +162,10 @@ class Axis:
         return [i * step for i in range(first, last + 1)]
 
     def _powers(self) -> list[float]:
-        """Return powers of ten with 2 and 5 times these if that is not too many, or linear steps if it is too few."""
+        """Return 1, 2 and 5 times the powers of ten on the axis, powers of ten alone if these are over 9, steps if under 2.
+
+        Of more than ``about`` powers only every second, third or so is returned.
+        """
         low, high = self.low * (1 - 1e-9), self.high * (1 + 1e-9)
         powers = [10.0**n for n in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
         fine = [tick for power in powers for step in (1, 2, 5) if low <= (tick := step * power) <= high]
@@ -185,7 +188,10 @@ def subscripts(label: str) -> Iterator[tuple[str, bool]]:
 
 
 def spanning(label: str, *arrays: Array, margin: float = 0.06, about: int = 5) -> Axis:
-    """Return an axis that holds every finite value, and zero, with a margin; from −1 to 1 without a value other than 0."""
+    """Return an axis that holds every finite value, and zero, with a margin, none below if no value is negative.
+
+    It is from −1 to 1 without a value other than 0.
+    """
     finite = [array[np.isfinite(array)] for array in arrays]
     low = min((float(array.min()) for array in finite if len(array)), default=0.0)
     high = max((float(array.max()) for array in finite if len(array)), default=0.0)
@@ -302,7 +308,7 @@ def thin(x: Array, y: Array, buckets: int) -> tuple[Array, Array]:
 
 
 def without_repeats(x: Array, y: Array, pixels: int) -> tuple[Array, Array]:
-    """Return the points of a curve without those that lie within a tenth of a pixel of the one before."""
+    """Return the points of a curve without those that round to the same tenth of a pixel as the one before, in x and y."""
     moved = np.arange(len(x)) == 0
     for values in (x, y):
         finite = values[np.isfinite(values)]

@@ -287,7 +287,7 @@ def _arranged(figure: Figure, width_mm: float, tallest: float) -> Arranged:
 
 
 def _grid(panels: Sequence[Panel], columns: int, width_mm: float, least: float, across: float = 0.0) -> Arranged:
-    """Return the panels in rows of ``columns``, each at least ``least`` times as high as on the page, and at most 1.5 times."""
+    """Return the panels in rows of ``columns``, as much higher than on the page as they are wider: ``least`` to 1.5 times."""
     size = min(max(width_mm / columns / (MM * max(panel.width for panel in panels)), least), 1.5)
     rows = [list(panels[i : i + columns]) for i in range(0, len(panels), columns)]
     heights = [max(_height(panel, width_mm / columns, size, across) for panel in row) for row in rows]

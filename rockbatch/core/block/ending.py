@@ -16,7 +16,7 @@ from rockbatch.core.types import NO_EVENT, RESTLESS, RUNNING, SURVIVED, UNDECIDE
 
 @kernel
 def reach_of(theta, omega, alpha, p):
-    """Return the greatest |θ| [rad] of free rocking from a state on; inf if the pier may overturn."""
+    """Return the greatest |θ| [rad] that the energy of a state allows in free rocking; inf if the pier may overturn."""
     tilt = abs(theta)
     level = math.cos(alpha - tilt) + 0.5 * (omega / p) * (omega / p)
     if tilt >= alpha or level >= 1.0:
@@ -26,7 +26,7 @@ def reach_of(theta, omega, alpha, p):
 
 @inlined
 def stored_by_devices(m, devices, y, contact):
-    """Return the energy [J/kg] stored in tendons, stops and springs in state ``y``, and in dampers and their braces."""
+    """Return the energies [J/kg] stored in tendons, stops and springs, and in hysteretic dampers and braces, in state ``y``."""
     kept, back, at = 0.0, 0.0, attitude(m, y, contact, devices.level[0])
     for j in range(len(devices.elements)):
         of = devices.elements[j]
@@ -41,14 +41,14 @@ def stored_by_devices(m, devices, y, contact):
 
 @inlined
 def _at_rest(m, y, theta):
-    """Return the state at rest at rotation ``theta``, of the type of ``y``."""
+    """Return the state at rest at rotation ``theta``, on the pivot of that side, of the type of ``y``."""
     v, _ = on_pivot(m, theta, 1.0 if theta > 0.0 else -1.0)
     return type(y)(v, theta, 0.0, 0.0)
 
 
 @kernel
 def _cannot_reach(m, devices, now, peak):
-    """Return True if the present energy does not suffice to exceed ``peak`` [rad] on either side.
+    """Return True if the present energy does not suffice to exceed ``peak`` [rad], or α if less, on either side; False beyond α.
 
     Weight, tendons and springs have a potential, stops dissipate, and dampers return only the elastic energy of hysteretic
     ones and braces.
@@ -66,7 +66,10 @@ def _cannot_reach(m, devices, now, peak):
 
 @kernel
 def _decided(lanes, i, m, devices, now):
-    """Return True if nothing can exceed the peak any more, as energy only decreases while the ground is at rest."""
+    """Return True if nothing can exceed the peak any more, as energy only decreases while the ground is at rest.
+
+    Without devices it is final, too, once the velocity has reversed, if the pier cannot overturn.
+    """
     y = now.y
     if devices is None:
         reach = reach_of(y.theta, y.omega, m.alpha, m.p)
@@ -76,7 +79,7 @@ def _decided(lanes, i, m, devices, now):
 
 @kernel
 def held(m, devices, y):
-    """Return True if friction holds the block at a tilt; False without devices."""
+    """Return True if a friction damper sticks and the block's velocity is at most rounding; False without devices."""
     if devices is None:
         return False
     return sticking(devices, NO_EVENT) != NO_EVENT and abs(y.omega) * m.height <= m.rest
@@ -84,16 +87,16 @@ def held(m, devices, y):
 
 @kernel
 def set_deadline(lanes, i, run):
-    """Set the sample at which a run ends at the latest, and clear the velocity and rotation of its last reversal."""
+    """Set the sample at which a run ends at the latest, and clear the memory of velocity reversals."""
     lanes.ending.longest[i] = lanes.clock.samples[i] + run.patience
     lanes.ending.omega[i] = lanes.ending.turned[i] = 0.0
 
 
 @kernel
 def _watch_reversals(lanes, i):
-    """Record a velocity reversal since the last sample while the ground is at rest.
+    """Record a velocity reversal since the last sample while the ground is at rest; in flight discard all before.
 
-    Impacts keep the sign of the velocity. Landings from flight do not, so that reversals before them are discarded.
+    Impacts keep the sign of the velocity; landings from flight do not.
     """
     ending, contact, omega = lanes.ending, lanes.contact, lanes.now.omega[i]
     if contact.left[i] == 0.0 and contact.right[i] == 0.0:
@@ -112,7 +115,11 @@ def status_at_sample(traits, lanes, i, devices):
 
 @kernel
 def _status(traits, lanes, i, devices):
-    """Return the status of the run in lane ``i``, RUNNING unless it ends."""
+    """Return the status of the run in lane ``i``: RUNNING until the tail is over, and on while the peak may be exceeded.
+
+    SURVIVED then at rest, held by friction (UNDECIDED beyond α), or with a final peak. At the latest end SURVIVED if that is the
+    end of the tail, RESTLESS if the pier cannot overturn by its energy, else UNDECIDED.
+    """
     sample, samples, longest = lanes.clock.sample[i], lanes.clock.samples[i], lanes.ending.longest[i]
     _watch_reversals(lanes, i)
     if sample < samples:

@@ -44,7 +44,7 @@ def side_of(contact):
 
 @inlined
 def key_of(m, contact):
-    """Return the position of the key that guides the block in flight, −1 left to 1 right; for a frame the mean of its keys."""
+    """Return the position, −1 left to 1 right, of the key that guides the block in flight; a weighted mean for a frame."""
     return (1.0 - m.deck) * contact.bore + m.deck * contact.top
 
 
@@ -59,7 +59,7 @@ def halves(m, top):
 
 @inlined
 def arms(m, theta, top):
-    """Return ∂v_i/∂θ − ∂v/∂θ [m] of the left pivot and of the right one at rotation ``theta``."""
+    """Return ∂(v_i − v)/∂θ [m] of the left pivot and of the right one at rotation ``theta``."""
     sine, cosine = sine_and_cosine(theta)
     left, right = halves(m, top)
     return left * cosine + m.height * sine, -right * cosine + m.height * sine
@@ -73,7 +73,7 @@ def lost_by_deck(m):
 
 @system.shift.of(Block)
 def shift(m, contact):
-    """Return the distance of the middle of a frame's columns from that of its equivalent block [m]."""
+    """Return how far the middle of a frame's columns is to the right of that of its equivalent block [m]; 0 without a deck."""
     return m.half_width * m.deck * contact.top
 
 
@@ -133,7 +133,7 @@ def _constrained_block(m, y, contact):
 
 @system.sines_in_pass.of(Block)
 def sines_in_pass(m, angle):
-    """Return sine and cosine of a rotation [rad] up to FLAT; other sub-steps do not stand."""
+    """Return sine and cosine of a rotation for |θ| ≤ FLAT = 0.75 rad; sub-steps beyond it do not stand."""
     return flat_sine_and_cosine(angle)
 
 
@@ -169,7 +169,10 @@ def ground_power(m, y, contact, ground):
 
 @hook
 def normal_force(m, y, k, vertical):
-    """Return N/M [m/s²] of the ground on a block that rocks, with rates ``k`` (THEORY.md, Flight on the rigid base)."""
+    """Return N/M [m/s²] of the ground on a block that rocks with rates ``k``, at the ground's acceleration ``vertical`` [m/s²].
+
+    See THEORY.md, Flight on the rigid base.
+    """
 
 
 @normal_force.of(Block)

@@ -94,7 +94,7 @@ def _change_of_normal(m, devices, now):
 
 @inlined
 def _height(m, height, velocity, acceleration):
-    """Return the height [m] of a pivot in flight and its rate; made positive if, within rounding, it has just taken off."""
+    """Return the height [m] of a pivot in flight, and its rate; made positive if, within rounding, it has just taken off."""
     rest = m.rest
     length = rest * rest / (NO_ACCELERATION * m.gravity)
     rises = velocity > rest or (velocity >= -rest and acceleration >= -1e-9 * m.gravity)
@@ -105,7 +105,10 @@ def _height(m, height, velocity, acceleration):
 
 @inlined
 def _at_once(value, slope, rounding):
-    """Return an event function that may start below zero, and its slope: made falling, so that the event occurs at once."""
+    """Return an event function and its slope, made falling if the value is below zero, so that the event occurs at once.
+
+    A |value| up to ``rounding`` becomes ``rounding``.
+    """
     if abs(value) <= rounding:
         return rounding, slope
     return value, (slope if value > 0.0 else min(-abs(slope), value))
@@ -117,12 +120,18 @@ WEIGHTLESS = 1e-13
 
 @inlined
 def _weightless(m, ground):
-    """Return True if the ground falls as fast as the block, which takes off only once the ground falls faster."""
+    """Return True if the ground falls as fast as the block, to the rounding of a sample; False if it falls faster.
+
+    The block takes off only once the ground falls faster.
+    """
     return abs(m.gravity + ground.vertical) <= WEIGHTLESS * m.gravity
 
 
 def event_functions_of(m, devices, now):
-    """Return Signals and slopes: at rest the resistance of each pivot to uplift; rocking tilt and normal force; else heights."""
+    """Return Signals and their slopes: at rest the resistance of each pivot to uplift; rocking the tilt and the normal force.
+
+    In flight the heights of both pivots, and the tilt of a frame's deck.
+    """
     y, k, contact, _, ground = now
     side = side_of(contact)
     if side != 0.0:
@@ -166,7 +175,7 @@ system.event_functions.of(Block)(event_functions_of)
 
 @inlined
 def _deck_tilt(m, y, k, contact):
-    """Return the tilt at whose zero a frame's deck changes corners in flight, and its rate; 1 and 0 without a deck."""
+    """Return the tilt at whose zero a frame's deck changes corners in flight, and its rate; 1 and 0 if on both, or no deck."""
     if m.deck == 0.0 or contact.top == 0.0:
         return 1.0, 0.0
     rate = contact.top * y.omega
@@ -177,7 +186,10 @@ def _deck_tilt(m, y, k, contact):
 
 @inlined
 def within_bounce(m, start, h):
-    """Return a step [s] of at most ``h``, shorter than a bounce that has just begun: a cubic over both ends could hide it."""
+    """Return a step [s] of at most ``h``, and of HOP = 1.25 times the duration of a bounce that begins at θ = 0.
+
+    A cubic over both ends of a longer one could hide the bounce.
+    """
     y, k, contact, _, _ = start
     side = side_of(contact)
     if side == 0.0 or y.theta != 0.0:
@@ -233,7 +245,10 @@ system.released.of(Block)(released)
 
 @kernel
 def lift_off(m, devices, y, side, ground):
-    """Return state, stance and kind as the block lifts off about the pivot on ``side``, or takes off (THEORY.md, eq. 15)."""
+    """Return state, stance and kind as the block lifts off about the pivot on ``side``, or takes off (THEORY.md, eq. 15).
+
+    The directions and modes of devices are set.
+    """
     other = lifting(m, devices, y, -side, ground)
     under = about_to_turn(devices, m, y, on_side(side), OPENS)
     k = rates(under, y, on_side(side), ground)
@@ -252,7 +267,10 @@ def lift_off(m, devices, y, side, ground):
 
 @kernel
 def _impact(m, devices, y, ground, dt):
-    """Return state, stance, kind and the time [s] left to rest, as the block passes through θ = 0 (THEORY.md, eq. 16)."""
+    """Return state, stance and kind as the block passes through θ = 0, and the time [s] left to rest (THEORY.md, eq. 16).
+
+    That is 0 unless the kind is REST.
+    """
     omega = m.restitution * y.omega
     height, remaining = bounces(m, devices, Rocking(0.0, 0.0, 0.0, 0.0), omega, m.restitution, ground)
     if omega == 0.0 or (height < NEGLIGIBLE * m.alpha and remaining < dt):
@@ -264,10 +282,11 @@ def _impact(m, devices, y, ground, dt):
 
 @kernel
 def bounces(m, devices, still, omega, share, ground):
-    """Return the height [rad] of the next bounce, and the duration [s] of all that follow (Zeno); inf and inf without rest.
+    """Return the greater height [rad] of the next two bounces, and the duration [s] of their whole sequence (Zeno).
 
-    ``still`` is the state of the block with its base at rest; each impact leaves a ``share`` of the angular velocity. Small
-    bounces have a constant acceleration towards rest, to which friction adds while they open, and opposes while they close.
+    The duration is inf if they do not decay, both are inf if the block does not turn back or does not move. ``still`` is the
+    state of the block with its base at rest; each impact leaves a ``share`` of the angular velocity. Small bounces have a
+    constant acceleration towards rest, to which friction adds while they open, and opposes while they close.
     """
     here = RIGHT if omega > 0.0 else LEFT
     speed, times, ratio, height = abs(omega), 0.0, 1.0, 0.0
@@ -288,7 +307,7 @@ def bounces(m, devices, still, omega, share, ground):
 
 @kernel
 def _closing(m, devices, y, side, ground):
-    """Return θ̈ [rad/s²] of a block about its pivot on ``side`` that closes at θ = 0, against the devices' resistance."""
+    """Return θ̈ [rad/s²], positive to the right, of a block about to land at θ = 0 from its pivot on ``side``, with devices."""
     under = about_to_turn(devices, m, y, on_side(side), CLOSES)
     return rates(under, y, on_side(side), ground).omega
 
@@ -298,7 +317,9 @@ def _landing(m, y, contact, pivot):
     """Return state, stance and kind as ``pivot`` lands from flight; the other may land at the same instant.
 
     The impulse at the pivot has a horizontal part, as its key takes over from that of the pivot last in contact. The angular
-    momentum about it is conserved, and its velocity multiplied by −ε (THEORY.md, Flight on the rigid base).
+    momentum about it is conserved, and its velocity multiplied by −ε (THEORY.md, Flight on the rigid base), or by 0 if the
+    rebound would be below NEGLIGIBLE; after a rebound the block is in flight. If both land, velocities are multiplied by −ε, or
+    the block rests if that rebound is negligible.
     """
     left, right, left_velocity, right_velocity = clearances(m, y, contact.top)
     arm_left, arm_right = arms(m, y.theta, pivot)

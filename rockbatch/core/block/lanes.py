@@ -99,7 +99,7 @@ def in_pass(traits, lanes, i):
 
 @system.begin.of(BlockTraits)
 def begin(traits, lanes, i, run):
-    """Put the model and the start of ``run`` into lane ``i``."""
+    """Put the model of ``run`` into lane ``i``, and its start: at rest, or about the pivot to which it leans or moves."""
     alpha, bounds = run.alpha, lanes.bounds
     put(lanes.model, i, taken(run, Numbers))
     size = math.hypot(run.half_width, run.height)
@@ -137,7 +137,7 @@ def take_in_part(traits, lanes, i, m, part, after):
 
 @system.note_devices.of(BlockTraits)
 def note_devices(traits, lanes, i, devices):
-    """Record by how much devices resist the uplift of a block at rest; return True if it is."""
+    """Record by how much devices resist the uplift of a block at rest; return True if it is at rest."""
     m, now = pier_in(traits, lanes, i)
     rests = now.contact.left != 0.0 and now.contact.right != 0.0
     if devices is not None:

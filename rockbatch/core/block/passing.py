@@ -6,7 +6,7 @@ lane does not depend on its neighbours, so that a run gives the same bits in any
 
 from rockbatch.core import system
 from rockbatch.core.block.equations import side_of
-from rockbatch.core.block.model import BlockTraits, Rocker, Rocking, Stance, Tilt
+from rockbatch.core.block.model import BlockTraits, Rocker, Stance, Tilt
 from rockbatch.core.clock import CALM, EVENTFUL, STANDS, ground_at, peak_at_end
 from rockbatch.core.devices.passing import integrate, settle
 from rockbatch.core.ground import later
@@ -14,7 +14,7 @@ from rockbatch.core.kernel import inlined
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import inner_points
 from rockbatch.core.system import rates
-from rockbatch.core.table import get, put
+from rockbatch.core.table import get, put, selected
 from rockbatch.core.trigonometry import FLAT
 from rockbatch.core.types import LEFT, RIGHT, Instant, Pull
 
@@ -80,7 +80,7 @@ def one_pass(traits, lanes, count, substep, settings):
 
 @inlined
 def _resists(m, side, held, ground):
-    """Return the acceleration [rad/s²] by which a block at rest resists uplift about its pivot on ``side``."""
+    """Return the acceleration [rad/s²] by which a block at rest resists uplift about its pivot on ``side``, ``held`` included."""
     return m.quickness * ((m.gravity + ground.vertical) * m.half_width + side * ground.horizontal * m.height) + held
 
 
@@ -112,16 +112,7 @@ def _judged(traits, lanes, shared, i, substep, settings):
     eventful = CALM if stands else EVENTFUL
     calm = max(highest - lanes.peak.theta[i] if y.omega * end.omega < 0.0 else -1.0, eventful) <= 0.0
     peak_at_end(lanes, i, tilt_end if calm else 0.0, substep)
-    put(
-        lanes.now,
-        i,
-        Rocking(
-            end.v if calm else y.v,
-            end.theta if calm else y.theta,
-            end.v_rate if calm else y.v_rate,
-            end.omega if calm else y.omega,
-        ),
-    )
+    put(lanes.now, i, selected(calm, end, y))
     lanes.step_status.kind[i] = max(eventful, CALM if calm else STANDS)
 
 

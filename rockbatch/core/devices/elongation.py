@@ -32,7 +32,7 @@ class Gap(NamedTuple):
     speed: float  # ė [m/s]
     by_v: float  # ∂e/∂v
     by_theta: float  # ∂e/∂θ [m]
-    bend: float  # ë less v̈ ∂e/∂v + θ̈ ∂e/∂θ [m/s²]
+    bend: float  # ë − (v̈ ∂e/∂v + θ̈ ∂e/∂θ) [m/s²]
     arm: float  # of the force about the centre of mass [m], with first-order P–Δ
 
 
@@ -87,7 +87,8 @@ def gap(m, s, at, y):
 def across(m, of, at, y):
     """Return the Gap of the device ``of`` at the deck, positive along its ``way``.
 
-    It is h_d sin θ, and b (1 − cos θ) more if the pier turns about its pivots; h_d θ with linearised kinematics.
+    To the side to which the pier leans it is h_d sin θ, and b (1 − cos θ) more if the pier turns about its pivots; h_d θ with
+    linearised kinematics.
     """
     if m.finite is None:
         by_theta = of.way * of.height

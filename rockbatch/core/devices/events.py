@@ -94,7 +94,7 @@ def _crossing(value, slope, speed, rounding):
 
 @kernel
 def _stop_functions(devices, j, motion, rounding, functions):
-    """Write the three event functions of stop ``j``, and their slopes."""
+    """Write the event functions of stop ``j`` that its mode needs, and their slopes; the others stay as they are."""
     of, mode, at, acceleration, deepest = (
         devices.elements[j],
         devices.modes[j],
@@ -121,7 +121,10 @@ def _stop_functions(devices, j, motion, rounding, functions):
 
 @kernel
 def _write_functions(devices, j, motion, rounding, functions):
-    """Write the three event functions of device ``j`` and their slopes; not those of a sticking friction damper."""
+    """Write the three event functions of device ``j`` and their slopes, 1 and 0 for events that cannot occur.
+
+    None can occur to a spring, a linear viscous damper or, here, a sticking friction damper.
+    """
     of, mode, goes, at, state = devices.elements[j], devices.modes[j], devices.goes[j], motion.gap, motion.state
     values, slopes, acceleration, rest = functions.values, functions.slopes, motion.acceleration, rounding.speed
     turns = OF_PIER + PER_DEVICE * j + TURNS
@@ -161,7 +164,7 @@ def _write_functions(devices, j, motion, rounding, functions):
 
 @kernel
 def _sticking_functions(m, devices, now, place, h, functions):
-    """Write the reserve of strength of sticking friction dampers, and its slope by a finite difference."""
+    """Write the reserve of strength of up to two sticking friction dampers, and its slope by a finite difference."""
     x, kx, near = devices.x if place == START else devices.end, devices.rates[place], NEARBY * h
     for i in range(len(x)):
         devices.stage[i] = x[i] + near * kx[i]
@@ -212,7 +215,10 @@ def device_functions(m, devices, now, place, h, functions):
 
 @kernel
 def _consistent(m, devices, now, x, ground, pair):
-    """Return True if the directions in ``goes`` of a ``pair`` of friction dampers without velocity are consistent."""
+    """Return True if the directions in ``goes`` of a ``pair`` of friction dampers without velocity are consistent.
+
+    Those that stick need at most their strength, the others accelerate in their direction; the second may be NO_EVENT.
+    """
     under, one, two = under_devices(m, devices, now, x, ground)
     k = rates(under, now.y, now.contact, ground)
     holding = sticking(devices, NO_EVENT)
@@ -230,7 +236,7 @@ def _consistent(m, devices, now, x, ground, pair):
 
 @kernel
 def settle_friction(m, devices, now, x, ground):
-    """Set the directions of friction dampers without velocity: STICKS if they can hold, else a consistent combination."""
+    """Set the directions of up to two friction dampers without velocity: STICKS if they can hold, else a consistent pair."""
     first = sticking(devices, NO_EVENT)
     if first == NO_EVENT:
         return
@@ -250,7 +256,7 @@ def settle_friction(m, devices, now, x, ground):
 
 @kernel
 def change_tendon(mode, limit):
-    """Return the mode of a tendon after its force reached its strength (``limit``) or 0: SLACK if it was TAUT, else TAUT."""
+    """Return YIELDING for a tendon whose force has reached its strength (``limit``); at 0 SLACK if it was TAUT, else TAUT."""
     if limit:
         return YIELDING
     return SLACK if mode == TAUT else TAUT
@@ -258,7 +264,10 @@ def change_tendon(mode, limit):
 
 @kernel
 def _stop_event(devices, j, depth, what):
-    """Change mode and state of stop ``j`` at compression ``depth`` [m]; open, it recovers at the point of first contact."""
+    """Change mode and state of stop ``j`` at compression ``depth`` [m]; open, it recovers at the point of first contact.
+
+    It is counted as it closes, unless it has not recovered since.
+    """
     mode = devices.modes[j]
     if mode == YIELDING:
         devices.modes[j], devices.x[j] = TAUT, depth
@@ -321,7 +330,10 @@ def device_event(m, devices, now, ground, h, which):
 
 @kernel
 def reset_device_modes(m, devices, now, ground):
-    """Set directions and modes of devices from the velocities after an event at a pivot, where these may have jumped."""
+    """Set directions and modes of devices from the velocities after an event at a pivot, where these may have jumped.
+
+    Devices without velocity keep theirs, but for friction, which sticks or begins to slip.
+    """
     if devices is None:
         return
     y, at = now.y, attitude(m, now.y, now.contact, devices.level[0])
@@ -353,7 +365,7 @@ def reset_device_modes(m, devices, now, ground):
 
 @inlined
 def start_devices(m, devices, now, ground):
-    """Set directions and modes of devices at the start; an unknown level is that at which the lower pivot rests."""
+    """Set directions and modes of devices at the start; a level of NaN becomes that at which the lower pivot rests."""
     if devices is None:
         return
     y = now.y

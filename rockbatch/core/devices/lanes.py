@@ -115,7 +115,10 @@ class Equipment(NamedTuple):
 
 
 def signature(elements):
-    """Return what the devices of two runs must have in common for their lanes to go through one pass."""
+    """Return a tuple that the devices of two runs must have in common for their lanes to go through one pass.
+
+    It has, for each device, its kind and whether it is at the deck, is linear, and is hysteretic on a brace.
+    """
     return tuple((of.kind, of.height != 0.0, of.linear_below == np.inf, of.give > 0.0) for of in elements)
 
 
@@ -205,7 +208,7 @@ def _devices_in(equipment, lanes, i):
 
 @hook
 def fetch(equipment, devices, i):
-    """Copy the numbers of lane ``i`` that the pass advances to the ``devices`` of its run."""
+    """Copy the numbers of lane ``i`` that the pass advances to the ``devices`` of its run; nothing if it takes none."""
 
 
 @fetch.of(type(None))
@@ -242,7 +245,8 @@ def _copy_to_run(devices, each, shared, i):
 def stow(equipment, devices, i, smooth, event):
     """Copy the ``devices`` of a run to its lane ``i`` after scalar code, which ended with an ``event`` or not.
 
-    The pass takes the next sub-step if that may be ``smooth``, and at most two friction dampers can hold the pier.
+    The pass takes the next sub-step if that may be ``smooth``, and at most two friction dampers can hold the pier; nothing is
+    copied for devices that no pass takes.
     """
 
 

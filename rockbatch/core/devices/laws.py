@@ -88,7 +88,7 @@ def tension(of, elongation, slack):
 
 @kernel
 def past_release(of, elongation, deepest):
-    """Return the compression of a stop beyond its point of release [m] after a greatest compression ``deepest`` [m]."""
+    """Return the compression of a stop beyond its point of release [m], negative below, after the greatest, ``deepest`` [m]."""
     return elongation - of.start - deepest * (1.0 - of.returned)
 
 
@@ -101,7 +101,7 @@ def stop_force(of, elongation, deepest):
 
 @kernel
 def slip_rate(of, pull):
-    """Return the speed [m/s] of a braced viscous damper itself under the force ``pull`` [m/s²]."""
+    """Return the speed [m/s], with its sign, of a braced viscous damper itself under the force ``pull`` [m/s²]."""
     return math.copysign((abs(pull) / of.coefficient) ** (1.0 / of.exponent), pull)
 
 
@@ -113,7 +113,7 @@ def linear(of, elongation, speed, state, mode, goes):
 
 @inlined
 def viscous(of, elongation, speed, state, mode, goes):
-    """Return the Response of a viscous damper."""
+    """Return the Response of a viscous damper, linear for |speed| below ``linear_below``."""
     if abs(speed) < of.linear_below:
         pull = of.slope * speed
     else:
@@ -123,14 +123,14 @@ def viscous(of, elongation, speed, state, mode, goes):
 
 @inlined
 def friction(of, elongation, speed, state, mode, goes):
-    """Return the Response of a friction damper that slips."""
+    """Return the Response of a friction damper that slips; no force if it STICKS, which the motion decides."""
     pull = of.strength * goes
     return Response(pull, 0.0, pull * speed)
 
 
 @inlined
 def _unyielded(z, goes):
-    """Return the share of its elongation by which a hysteretic damper deforms elastically: two-sided Bouc–Wen, n = 5."""
+    """Return the share of its elongation by which a hysteretic damper deforms elastically: 1 − |z|⁵ if loaded, 1 if unloaded."""
     return 1.0 - (power(min(abs(z), 1.0), None) if goes * z > 0.0 else 0.0)
 
 
@@ -165,7 +165,7 @@ def _braced(of, speed, pull):
 
 @inlined
 def _stop(of, elongation, speed, deepest, mode):
-    """Return the Response of a stop."""
+    """Return the Response of a stop by its ``mode``: on its elastic line (TAUT), open (SLACK), or in first loading."""
     if mode == TAUT:
         return Response(of.stiffness / of.returned * past_release(of, elongation, deepest), 0.0, 0.0)
     if mode == SLACK:
@@ -202,7 +202,7 @@ def force(of, elongation, speed, state, mode, goes):
 
 @kernel
 def own_speed(of, speed, state):
-    """Return the speed [m/s] of a damper itself, that of its elongation with the brace being ``speed``."""
+    """Return the speed [m/s] of a damper without its brace, if it has one; ``speed`` is that of both together."""
     if of.kind == MAXWELL:
         return slip_rate(of, state)
     if of.give > 0.0:
@@ -229,7 +229,11 @@ def stored(of, elongation, state):
 
 @kernel
 def mode_of(of, elongation, state, goes):
-    """Return the mode of a tendon or a stop at an ``elongation`` that ``goes`` OPENS or CLOSES; TAUT for other devices."""
+    """Return the mode of a tendon or a stop at an ``elongation`` that ``goes`` OPENS or CLOSES; TAUT for other devices.
+
+    A tendon is SLACK in compression, YIELDING from its strength on if it OPENS; a stop is SLACK if open, else in first loading,
+    YIELDING. At zero force both are SLACK unless they open.
+    """
     if of.kind == CONTACT:
         depth = elongation - of.start
         return SLACK if depth < 0.0 or (depth == 0.0 and goes != OPENS) else YIELDING

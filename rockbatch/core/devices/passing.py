@@ -81,7 +81,7 @@ def _start(traits, lanes, equipment, i, steps):
 
 @inlined
 def _stage_pier(traits, lanes, shared, i, y):
-    """Set the staged state of the pier to ``y``, with its attitude, and its pull to that of no device."""
+    """Set the staged state of the pier to ``y``, with its attitude, and its pull to zero."""
     m, _, contact = in_pass(traits, lanes, i)
     put(shared.stage, i, y)
     put(shared.attitude, i, attitude_in_pass(m, y, contact, shared.verdict.level[i]))
@@ -117,7 +117,7 @@ def _unchanged(state):
 
 @inlined
 def _snapped(z):
-    """Return ``z`` of a hysteretic damper at the end of a step: ±1 if it counts as plastic."""
+    """Return ``z`` of a hysteretic damper at the end of a step: ±1 if within PLASTIC of it."""
     return (1.0 if z > 0.0 else -1.0) if abs(z) > 1.0 - PLASTIC else z
 
 
@@ -146,7 +146,10 @@ def _pulled(shared, i, here, force):
 
 @inlined
 def _rates_under_devices(traits, lanes, shared, i, steps, part):
-    """Return the rates of the pier under its devices in its stage, ``part`` of a step after its start, and the Works' powers."""
+    """Return the rates of the pier in its stage, under the pull of its devices, and the powers of the Works.
+
+    The stage is ``part`` of a step after its start.
+    """
     m, now, contact = in_pass(traits, lanes, i)
     y, h = get(shared.stage, i, now), lanes.clock.step[i]
     ground = later(ground_at(lanes, i, steps * h), part * h)
@@ -186,7 +189,7 @@ def _to_end(traits, lanes, shared, count, steps):
 
 @inlined
 def _evaluate_end(traits, lanes, shared, count, steps):
-    """Set the rates at the end of the step, and the numbers by which devices are judged."""
+    """Set the rates at the end of the step, and the numbers by which devices are judged to their first values."""
     for i in range(count):
         k, power = _rates_under_devices(traits, lanes, shared, i, steps, 1.0)
         put(shared.rates, i, k)
@@ -214,7 +217,7 @@ class Course(NamedTuple):
 
 @inlined
 def _keeps_direction(goes, c):
-    """Return a number that is positive if the speed of a device certainly keeps its direction, or is rounding throughout."""
+    """Return a number that is positive if the speed of a device certainly keeps its direction, or is never more than rounding."""
     early, late = inner_points(c.start.speed, c.lift, c.end.speed, c.lift_end, c.h)
     fastest, keenest = max(abs(c.start.speed), abs(c.end.speed)), max(abs(c.lift), abs(c.lift_end))
     still = min(c.speed - fastest, c.acceleration - keenest) >= 0.0  # at the pivot about which a block rocks
@@ -224,7 +227,7 @@ def _keeps_direction(goes, c):
 
 @inlined
 def _keeps_mode(of, mode, c):
-    """Return a number that is positive if a tendon certainly remains taut or slack, and does not yield."""
+    """Return a number that is positive if a tendon certainly keeps its mode, taut or slack; −1 for a yielding one."""
     pull, pull_end = tension(of, c.start.elongation, c.state), tension(of, c.end.elongation, c.state)
     early, late = inner_points(pull, of.stiffness * c.start.speed, pull_end, of.stiffness * c.end.speed, c.h)
     least, most = min(min(early, late), min(pull, pull_end)), max(max(early, late), max(pull, pull_end))
@@ -253,14 +256,14 @@ def _keeps_way(of, mode, c):
 
 @inlined
 def _keeps_steep(of, mode, c):
-    """Return a number that is positive if a viscous damper keeps its direction, and its step is short enough (``pull``)."""
+    """Return a number that is positive if a viscous damper keeps its direction, and its step is short enough by GROWTH."""
     near = GROWTH * max(abs(c.start.speed), of.linear_below) / (c.steepest * c.dt)
     return -1.0 if of.exponent < 1.0 and near < 1.0 else _keeps_direction(mode.goes, c)
 
 
 @inlined
 def _keeps_branch(of, mode, c):
-    """Return a number that is positive if a hysteretic damper keeps its direction, and its step is short enough (``pull``)."""
+    """Return a number that is positive if a hysteretic damper keeps its direction, and its step is short enough by TRAVEL."""
     way = (abs(c.start.speed) + c.steepest * c.h) * c.dt * of.stiffness
     return -1.0 if mode.goes * c.state < 1.0 and TRAVEL / way < 1.0 else _keeps_direction(mode.goes, c)
 
@@ -331,7 +334,7 @@ def _travelled(line, i, c):
 
 @inlined
 def _look_ahead(traits, lanes, shared, count, steps):
-    """Set the rates at the start of the sub-step under the ground motion at its end; later steps are as short as they need."""
+    """Set ``ahead`` to the rates at the start of the sub-step under the ground motion at its end."""
     for i in range(count):
         m, y, contact = in_pass(traits, lanes, i)
         h = lanes.clock.step[i]

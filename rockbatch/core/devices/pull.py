@@ -78,7 +78,10 @@ class Devices(NamedTuple):
 
 
 def bounds_steps(of):
-    """Return True if :func:`step_resolving_devices` may shorten steps for an element."""
+    """Return True if :func:`step_resolving_devices` may shorten steps for an element.
+
+    It may for hysteretic dampers, stops, and viscous dampers of exponent < 1.
+    """
     return of.kind in (HYSTERETIC, CONTACT) or (of.kind in (VISCOUS, MAXWELL) and of.exponent < 1.0)
 
 
@@ -193,7 +196,7 @@ def under_devices(m, devices, now, x, ground):
 
 @hook
 def loaded(devices, m, now, ground):
-    """Return the pier ``m`` under its devices in the Moment ``now``."""
+    """Return the pier ``m`` under its devices in the Moment ``now``; ``m`` itself without any."""
 
 
 @loaded.of(type(None))
@@ -208,7 +211,10 @@ def _loaded(devices, m, now, ground):
 
 @hook
 def loaded_soon(devices, m, now, soon, ground, near):
-    """Return the pier ``m`` under its devices in the Moment ``soon``, ``near`` [s] after ``now`` with the staged states."""
+    """Return the pier ``m`` under its devices in the Moment ``soon``, ``near`` [s] after ``now``; ``m`` itself without any.
+
+    The staged states, those of ``now``, are advanced by ``near``.
+    """
 
 
 @loaded_soon.of(type(None))
@@ -226,7 +232,7 @@ def _loaded_soon(devices, m, now, soon, ground, near):
 
 @hook
 def about_to_turn(devices, m, y, contact, sense):
-    """Return the pier ``m`` at rest under its devices as it begins to move with the ``contact`` to come.
+    """Return the pier ``m`` at rest under its devices as it begins to move with the ``contact`` to come; ``m`` without any.
 
     ``sense`` is OPENS or, for a block about to land, CLOSES. Friction resists with its full force.
     """
@@ -251,7 +257,10 @@ def _devices_hold(devices, m, y, contact, sense):
 
 @kernel
 def way_of_opening(m, of, contact):
-    """Return OPENS, CLOSES or STICKS for a device as the pier begins to turn about the pivot in ``contact``, or to rise."""
+    """Return the direction that a device takes as the pier begins to turn about the pivot in ``contact``, or to rise (OPENS).
+
+    OPENS or CLOSES by its side of the pivot, STICKS right at it.
+    """
     side = contact.right - contact.left
     if side == 0.0:
         return OPENS
@@ -263,7 +272,7 @@ def way_of_opening(m, of, contact):
 
 @inlined
 def stage_states(devices, place, h):
-    """Set the staged states of devices to those ``h`` [s] after the start by the rates at ``place``."""
+    """Set the staged states of devices to those ``h`` [s] after the start by the rates at ``place``; nothing without devices."""
     if devices is None:
         return
     for i in range(len(devices.x)):
@@ -272,7 +281,10 @@ def stage_states(devices, place, h):
 
 @inlined
 def advance_states(devices, h):
-    """Set ``end`` and the staged states of devices to those at the end of a step of ``h`` [s]."""
+    """Set ``end`` and the staged states of devices to those at the end of a step of ``h`` [s]; nothing without devices.
+
+    z of a hysteretic damper is set to ±1 within PLASTIC of it.
+    """
     if devices is None:
         return
     k, n = devices.rates, len(devices.elements)
@@ -288,8 +300,8 @@ def step_resolving_devices(under, devices, start, h, dt):
     """Return the longest step [s] from the Instant ``start``, at most ``h``, that resolves the laws of devices.
 
     They are hysteretic dampers not yet plastic, viscous ones of exponent < 1 near a velocity reversal or behind a brace, and
-    closed stops. The factor on ``h`` depends on ``dt`` and hardly on ``h``, so that a run with half the step halves these
-    steps, too, and its change still measures the error.
+    closed stops; ``h`` without such. The factor on ``h`` depends on ``dt`` and hardly on ``h``, so that a run with half the step
+    halves these steps, too, and its change still measures the error.
     """
     if devices is None or not devices.bound_steps:
         return h
@@ -325,5 +337,5 @@ def step_resolving_devices(under, devices, start, h, dt):
 
 @kernel
 def _is_steep(of):
-    """Return True for a viscous damper of exponent < 1, whose force has an unbounded slope at speed 0."""
+    """Return True for a viscous damper of exponent < 1 without a brace, whose force has an unbounded slope at speed 0."""
     return of.kind == VISCOUS and of.exponent < 1.0

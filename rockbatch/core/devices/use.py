@@ -53,7 +53,10 @@ def _include_unbraced(devices, j, k, k_end, h):
 
 @kernel
 def _greatest_force(devices, j, h):
-    """Return the greatest |force| [m/s²] of a device in a smooth part of ``h`` [s] that its stroke and speed include."""
+    """Return the greatest |force| [m/s²] of a device in a smooth part of ``h`` [s], which its stroke and speed already include.
+
+    For viscous dampers and springs it is that of the run so far, for stops and friction that at the end of the part.
+    """
     of, line, was, now = devices.elements[j], devices.use[j], devices.gaps[START, j], devices.gaps[END, j]
     if of.kind == VISCOUS:
         return force(of, 0.0, line.speed, 0.0, TAUT, OPENS)
@@ -86,6 +89,6 @@ def _take_in(devices, k, k_end, h):
 
 @inlined
 def take_in(devices, k, k_end, h):
-    """Include a smooth part of ``h`` [s] in the Use of all devices, with the pier's rates and the gaps at both ends."""
+    """Include a smooth part of ``h`` [s] in the Use of all devices; ``k`` and ``k_end`` are the pier's rates at its ends."""
     if devices is not None:
         _take_in(devices, k, k_end, h)

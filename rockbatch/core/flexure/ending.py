@@ -56,7 +56,7 @@ def _leaning(m, theta):
 
 @kernel
 def _cannot_reach(m, devices, now, limit):
-    """Return True if the present energy does not suffice to reach ``limit`` [rad] on either side."""
+    """Return True if the present energy does not suffice to reach ``limit`` [rad] on either side; False beyond ``tipping``."""
     kinetic, potential = kinetic_and_potential(m, now.y, now.contact)
     energy, least = kinetic + potential + bending_energy(m, deflections(now.y)), math.inf
     if devices is not None:
@@ -98,7 +98,11 @@ def status_at_sample(traits, lanes, i, devices):
 
 @kernel
 def _status(traits, lanes, i, devices):
-    """Return the status of the run in lane ``i``, RUNNING unless it ends."""
+    """Return the status of the run in lane ``i``: RUNNING until the tail is over, and on while the peak may be exceeded.
+
+    SURVIVED then. At the latest end SURVIVED if that is the end of the tail, RESTLESS if the pier cannot reach ``tipping`` by its
+    energy, else UNDECIDED.
+    """
     sample, samples, longest = lanes.clock.sample[i], lanes.clock.samples[i], lanes.ending.longest[i]
     if sample < samples:
         return RUNNING

@@ -12,9 +12,10 @@ from rockbatch.core.block.equations import (
     pull_down,
     side_of,
 )
-from rockbatch.core.flexure.model import FlexibleBlock, Flexing
+from rockbatch.core.block.model import Stance
+from rockbatch.core.flexure.model import FlexibleBlock, Flexing, Grounded
 from rockbatch.core.flexure.modes import PerMode, deflection_rates, deflections, dot, scaled, times
-from rockbatch.core.kernel import inlined
+from rockbatch.core.kernel import hook, inlined
 from rockbatch.core.table import along
 from rockbatch.core.trigonometry import sine_and_cosine
 
@@ -42,21 +43,34 @@ def straightening(m, y):
     return scaled(along(stiff, times(m.damping, deflection_rates(y)), 1.0), -1.0)
 
 
+@hook
+def _flies(contact):
+    """Return True if both pivots are in the air; in a pass the compiler knows that they are not."""
+
+
+@_flies.of(Stance)
+def _stance_flies(contact):
+    return contact.left == 0.0 and contact.right == 0.0
+
+
+@_flies.of(Grounded)
+def _never(contact):
+    return False
+
+
 @inlined
 def _accelerations(m, y, contact, ground):
-    """Return v̈ [m/s²], θ̈ [rad/s²] and ü of each mode [m/s²]."""
-    spring = straightening(m, y)
-    if contact.left != 0.0 and contact.right != 0.0:
-        return 0.0, 0.0, along(spring, m.share, -ground.horizontal)
-    side = side_of(contact)
-    key = side if side != 0.0 else key_of(m, contact)
+    """Return v̈ [m/s²], θ̈ [rad/s²] and ü of each mode [m/s²]; with both pivots down ``side`` and θ are 0."""
+    flies, side = _flies(contact), side_of(contact)
+    key = key_of(m, contact) if flies else side
     sine, cosine = sine_and_cosine(y.theta)
     about, weight, u_rate = masses_about(m, deflections(y), key), m.gravity + ground.vertical, deflection_rates(y)
     slope, arm = about.offset * cosine - m.height * sine, about.offset * sine + m.height * cosine
     straight_slope, straight_arm = arms_about(m, y.theta, key)
     down, back = pull_down(m.pull)
     squared = y.omega * y.omega
-    bending = along(along(spring, about.spread, squared), m.share, weight * sine - ground.horizontal * cosine)
+    across = weight * sine - ground.horizontal * cosine
+    bending = along(along(straightening(m, y), about.spread, squared), m.share, across)
     turning = (
         -2.0 * dot(about.spread, u_rate) * y.omega
         - ground.horizontal * arm
@@ -66,11 +80,11 @@ def _accelerations(m, y, contact, ground):
     )
     turning -= dot(m.coupling, bending)
     inertia = about.turning - dot(m.coupling, m.coupling)
-    if side != 0.0:
-        omega_rate = turning / inertia
+    if not flies:
+        omega_rate = abs(side) * turning / inertia
         v_acceleration = straight_slope * omega_rate - straight_arm * squared
         return v_acceleration, omega_rate, along(bending, m.coupling, -omega_rate)
-    # In flight the corner rises, too: its equation and that of the rotation remain once those of the modes are solved
+    # The corner rises, too: its equation and that of the rotation remain once those of the modes are solved
     falls = weight + down - arm * squared - 2.0 * dot(m.share, u_rate) * cosine * y.omega
     lifting = falls - sine * dot(m.share, bending)
     of_rise, of_both = 1.0 - sine * sine * dot(m.share, m.share), slope + sine * dot(m.share, m.coupling)
@@ -83,7 +97,7 @@ def _accelerations(m, y, contact, ground):
 
 @inlined
 def flexing(v, theta, v_rate, omega, u, u_rate):
-    """Return the state with the coordinates ``u`` of the modes and their rates."""
+    """Return the Flexing with the coordinates ``u`` of the modes and their rates."""
     return Flexing(
         v,
         theta,
@@ -109,10 +123,9 @@ def rates(m, y, contact, ground):
 
 @constrained.of(FlexibleBlock)
 def _constrained(m, y, contact):
-    side = side_of(contact)
-    if side == 0.0:
+    if _flies(contact):
         return y
-    v, slope = on_pivot(m, y.theta, side)
+    v, slope = on_pivot(m, y.theta, side_of(contact))
     return flexing(v, y.theta, slope * y.omega, y.omega, deflections(y), deflection_rates(y))
 
 
@@ -142,7 +155,10 @@ def ground_power(m, y, contact, ground):
 
 @inlined
 def bent_across(shape, y, k):
-    """Return the horizontal acceleration [m/s²] by bending of a point that the modes move by ``shape``; ``k`` are the rates."""
+    """Return the horizontal acceleration [m/s²] of a point by the motion of its modes, which move it by ``shape``.
+
+    It is relative to the turning base, Coriolis's included; ``k`` are the rates of state ``y``.
+    """
     sine, cosine = sine_and_cosine(y.theta)
     return dot(shape, deflection_rates(k)) * cosine - 2.0 * dot(shape, deflection_rates(y)) * y.omega * sine
 

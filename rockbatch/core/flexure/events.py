@@ -56,7 +56,7 @@ def _lift_rate(m, devices, now, side):
 
 @system.transition.of(FlexibleBlock)
 def transition(m, devices, now, which, ground, dt):
-    """Return the Transition by event ``which``."""
+    """Return the Transition by event ``which``; landings beyond α, of a pier that topples, are not counted as impacts."""
     y, contact, supports = now
     side = side_of(contact)
     pivot = LEFT if which == CONTACT_LEFT else RIGHT
@@ -76,10 +76,10 @@ def transition(m, devices, now, which, ground, dt):
 
 @kernel
 def _after_blow(m, y, key, rise, pivot):
-    """Return θ̇ and the rates of the modes after an impact at ``pivot``; before it the base turned about ``key``, which rose at
-    ``rise`` [m/s].
+    """Return θ̇ and the rates of the modes after an impact at ``pivot``.
 
-    The impulse has no moment about the pivot and does no work on the modes, so that all these momenta are conserved.
+    Before it the base turned about ``key``, which rose at ``rise`` [m/s]. The impulse has no moment about the pivot and does no
+    work on the modes, so that all these momenta are conserved.
     """
     sine, cosine = sine_and_cosine(y.theta)
     u, u_rate, b = deflections(y), deflection_rates(y), m.half_width

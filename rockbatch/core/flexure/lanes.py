@@ -5,18 +5,18 @@ from typing import NamedTuple
 
 from rockbatch.core import system
 from rockbatch.core.block.equations import clearances, constrained, on_side
-from rockbatch.core.block.model import Stance, Tilt
+from rockbatch.core.block.model import Stance
 from rockbatch.core.clock import COMMON, TIMING, include_height
-from rockbatch.core.flexure import ending, events  # noqa: F401  hooks of the flexible block
+from rockbatch.core.flexure import ending, events, passing  # noqa: F401  hooks of the flexible block
 from rockbatch.core.flexure.displacements import Displacements, displacements_in, displacements_within
 from rockbatch.core.flexure.ending import hanging
 from rockbatch.core.flexure.equations import flexing
-from rockbatch.core.flexure.model import NUMBERS, FlexibleBlock, FlexibleTraits, Flexing, Numbers, numbers_of
+from rockbatch.core.flexure.model import NUMBERS, FlexibleTraits, Flexing, Numbers, model_in, numbers_of
 from rockbatch.core.flexure.modes import PerMode
 from rockbatch.core.kernel import inlined
 from rockbatch.core.system import System
 from rockbatch.core.table import get, lanes_of, put, taken
-from rockbatch.core.types import LEFT, RIGHT, Moment
+from rockbatch.core.types import LEFT, RIGHT, Moment, Part
 
 
 class Ending(NamedTuple):
@@ -30,7 +30,7 @@ LANE = lanes_of(
     | {
         "model": Numbers,
         "now": Flexing,
-        "end": Tilt,
+        "end": Flexing,
         "rates": Flexing,
         "contact": Stance,
         "ending": Ending,
@@ -49,46 +49,18 @@ LINE = (
 Line = NamedTuple("Line", LINE)  # type: ignore[misc]
 
 
-@inlined
-def _model(traits, lanes, i):
-    """Return the FlexibleBlock of lane ``i``."""
-    m = get(lanes.model, i, Numbers)
-    return FlexibleBlock(
-        m.half_width,
-        m.height,
-        m.inertia,
-        m.gravity,
-        m.alpha,
-        m.p,
-        m.guided,
-        m.rest,
-        m.deck,
-        m.top,
-        m.tipping,
-        m.flight_step,
-        PerMode(m.share_first, m.share_second, m.share_third, m.share_fourth),
-        PerMode(m.coupling_first, m.coupling_second, m.coupling_third, m.coupling_fourth),
-        PerMode(m.frequency_first, m.frequency_second, m.frequency_third, m.frequency_fourth),
-        PerMode(m.damping_first, m.damping_second, m.damping_third, m.damping_fourth),
-        PerMode(m.end_shape_first, m.end_shape_second, m.end_shape_third, m.end_shape_fourth),
-        PerMode(m.top_shape_first, m.top_shape_second, m.top_shape_third, m.top_shape_fourth),
-        traits.pull,
-        True,
-    )
-
-
 @system.pier_in.of(FlexibleTraits)
 def pier_in(traits, lanes, i):
     """Return the FlexibleBlock of lane ``i`` and its Moment, without supports."""
-    return _model(traits, lanes, i), Moment(get(lanes.now, i, Flexing), get(lanes.contact, i, Stance), None)
+    return model_in(traits, lanes, i), Moment(get(lanes.now, i, Flexing), get(lanes.contact, i, Stance), None)
 
 
 @system.begin.of(FlexibleTraits)
 def begin(traits, lanes, i, run):
-    """Put the model and the start of ``run`` into lane ``i``."""
+    """Put the model of ``run`` into lane ``i``, and its start: at rest, or leaning on a pivot, bent by its weight."""
     put(lanes.model, i, taken(run, Numbers))
     contact = Stance(1.0, 1.0, 0.0, 0.0) if run.theta == 0.0 else on_side(RIGHT if run.theta > 0.0 else LEFT)
-    m = _model(traits, lanes, i)
+    m = model_in(traits, lanes, i)
     u = hanging(m, m.gravity * math.sin(run.theta))
     y = constrained(m, flexing(0.0, run.theta, 0.0, 0.0, u, PerMode(0.0, 0.0, 0.0, 0.0)), contact)
     put(lanes.now, i, y)
@@ -97,10 +69,25 @@ def begin(traits, lanes, i, run):
     put(lanes.displaced, i, displacements_in(m, y))
 
 
+@inlined
+def _include_displacements(lanes, i, m, part):
+    """Raise the greatest displacements of lane ``i`` to those of a Part."""
+    put(lanes.displaced, i, displacements_within(m, part, get(lanes.displaced, i, Displacements)))
+
+
+@system.take_in_step.of(FlexibleTraits)
+def take_in_step(traits, lanes, i, substep, history):
+    """Record displacements of a sub-step of lane ``i`` that stands, and advance the lane to its end."""
+    m, now = pier_in(traits, lanes, i)
+    end = get(lanes.end, i, Flexing)
+    _include_displacements(lanes, i, m, Part(now, end, lanes.clock.step[i]))
+    put(lanes.now, i, end)
+
+
 @system.take_in_part.of(FlexibleTraits)
 def take_in_part(traits, lanes, i, m, part, after):
     """Record displacements and the height of flight, and set state and stance."""
-    put(lanes.displaced, i, displacements_within(m, part, get(lanes.displaced, i, Displacements)))
+    _include_displacements(lanes, i, m, part)
     if system.airborne(m, part.start.contact):
         start, top = part.start, part.start.contact.top
         include_height(lanes, i, clearances(m, start.y, top), clearances(m, part.end, top), part.length)
@@ -110,7 +97,7 @@ def take_in_part(traits, lanes, i, m, part, after):
 
 @system.finish.of(FlexibleTraits)
 def finish(traits, lanes, i, t, result):
-    """Write the greatest displacements."""
+    """Write the greatest displacements of the top of lane ``i`` into its ``result``."""
     result.deflection_max, result.drift_max = lanes.displaced.deflection[i], lanes.displaced.drift[i]
 
 

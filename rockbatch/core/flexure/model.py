@@ -3,6 +3,8 @@
 from typing import NamedTuple
 
 from rockbatch.core.flexure.modes import PerMode
+from rockbatch.core.kernel import inlined
+from rockbatch.core.table import get
 from rockbatch.core.types import Pull
 
 
@@ -57,6 +59,34 @@ NUMBERS = tuple(
 Numbers = NamedTuple("Numbers", NUMBERS)  # type: ignore[misc]
 
 
+@inlined
+def model_in(traits, lanes, i):
+    """Return the FlexibleBlock of lane ``i``."""
+    m = get(lanes.model, i, Numbers)
+    return FlexibleBlock(
+        m.half_width,
+        m.height,
+        m.inertia,
+        m.gravity,
+        m.alpha,
+        m.p,
+        m.guided,
+        m.rest,
+        m.deck,
+        m.top,
+        m.tipping,
+        m.flight_step,
+        PerMode(m.share_first, m.share_second, m.share_third, m.share_fourth),
+        PerMode(m.coupling_first, m.coupling_second, m.coupling_third, m.coupling_fourth),
+        PerMode(m.frequency_first, m.frequency_second, m.frequency_third, m.frequency_fourth),
+        PerMode(m.damping_first, m.damping_second, m.damping_third, m.damping_fourth),
+        PerMode(m.end_shape_first, m.end_shape_second, m.end_shape_third, m.end_shape_fourth),
+        PerMode(m.top_shape_first, m.top_shape_second, m.top_shape_third, m.top_shape_fourth),
+        traits.pull,
+        True,
+    )
+
+
 def numbers_of(m: FlexibleBlock) -> tuple[float, ...]:
     """Return the numbers of ``m`` in the order of :data:`NUMBERS`."""
     values = m._asdict()
@@ -79,3 +109,12 @@ class Flexing(NamedTuple):
     u_2_rate: float
     u_3_rate: float
     u_4_rate: float
+
+
+class Grounded(NamedTuple):
+    """A Stance in a pass, whose piers do not fly."""
+
+    left: float
+    right: float
+    bore: float
+    top: float

@@ -19,19 +19,19 @@ class PerMode(NamedTuple):
 
 @inlined
 def times(a, b):
-    """Return the products of two numbers of each mode."""
+    """Return the products, mode by mode, of two PerMode."""
     return PerMode(a.first * b.first, a.second * b.second, a.third * b.third, a.fourth * b.fourth)
 
 
 @inlined
 def scaled(a, factor):
-    """Return the numbers times a ``factor``."""
+    """Return the PerMode ``a`` times a ``factor``."""
     return PerMode(a.first * factor, a.second * factor, a.third * factor, a.fourth * factor)
 
 
 @inlined
 def dot(a, b):
-    """Return the sum of the products of two numbers of each mode."""
+    """Return the sum over the modes of the products of two PerMode."""
     return a.first * b.first + a.second * b.second + a.third * b.third + a.fourth * b.fourth
 
 

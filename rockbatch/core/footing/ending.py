@@ -1,4 +1,4 @@
-"""Ending of a run on a footing (THEORY.md, When a run is over). Looked at once a sample, from the end of the record on."""
+"""Ending of a run on a footing (THEORY.md, When a run is over), checked once a sample from the end of the record on."""
 
 from typing import NamedTuple
 
@@ -16,20 +16,20 @@ from rockbatch.core.types import RESTLESS, RUNNING, SURVIVED, UNDECIDED
 class Ending(NamedTuple):
     """Numbers that decide when the run is over."""
 
-    longest: float  # sample at which the pier is no longer waited for
-    load: float  # what the bed carries at rest, the weight and what tendons add to it [m/s²]
+    longest: float  # sample at which the run ends in any case
+    load: float  # load of the bed at rest: weight and tendons [m/s²]
 
 
 @kernel
 def set_deadline(lanes, i, run):
-    """Set how long lane ``i`` goes on after its record at most."""
+    """Set the sample at which lane ``i`` ends at the latest, and the load of its bed at rest."""
     lanes.ending.longest[i] = lanes.clock.samples[i] + run.patience
     lanes.ending.load[i] = run.gravity + run.prestress
 
 
 @kernel
 def _kept(m, devices, y, contact):
-    """Return the energy [J/kg] that devices store in state ``y``, and what they may give back."""
+    """Return the result of :func:`stored_by_devices`, zeros without devices."""
     if devices is None:
         return 0.0, 0.0
     return stored_by_devices(m, devices, y, contact)
@@ -37,10 +37,10 @@ def _kept(m, devices, y, contact):
 
 @kernel
 def cannot_turn_further(m, devices, now, load, peak):
-    """Return whether the energy of this moment does not suffice to turn beyond ``peak`` [rad] to either side.
+    """Return whether the present energy does not suffice to turn beyond ``peak`` [rad], or beyond the summit, to either side.
 
     To pass a rotation takes at least the energy of the pier at rest there, on the bed as it is: yielding only costs more. Past
-    its summit nothing holds the pier, so that it is the lesser rotation that counts.
+    its summit nothing holds the pier: the lesser of both rotations counts. False if |θ| is not below it.
     """
     y, limit = now.y, min(peak, summit(m, load))
     if not abs(y.theta) < limit:
@@ -60,7 +60,10 @@ def cannot_turn_further(m, devices, now, load, peak):
 
 @system.status_at_sample.of(FootingTraits)
 def status_at_sample(traits, lanes, i, devices):
-    """Return the status at a sample, and the next one to look at it: the end of the record, and every one from there on."""
+    """Return the status at a sample, and the next sample to check: the end of the record, then every one.
+
+    Once the peak is final, it is the end of the tail.
+    """
     status, clock = _status(traits, lanes, i, devices), lanes.clock
     decided = lanes.peak.decided_at[i] >= 0.0
     following = max(clock.samples[i] if decided else clock.npts[i] - 1.0, clock.sample[i] + 1.0)
@@ -69,14 +72,18 @@ def status_at_sample(traits, lanes, i, devices):
 
 @kernel
 def _status(traits, lanes, i, devices):
-    """Return how the run in lane ``i`` has ended, RUNNING if it goes on."""
+    """Return the status of the run in lane ``i``: RUNNING until the tail is over, and on while the peak may be exceeded.
+
+    The sample at which the peak is final is noted. SURVIVED then. At the latest end SURVIVED if that is the end of the tail,
+    RESTLESS below the summit, else UNDECIDED.
+    """
     clock, peak, longest = lanes.clock, lanes.peak, lanes.ending.longest[i]
     sample, samples = clock.sample[i], clock.samples[i]
     if peak.decided_at[i] >= 0.0:
         return RUNNING if sample < samples else SURVIVED
     if not ground_rests(lanes, i) and sample < longest:
         return RUNNING
-    if longest == samples:  # nothing is waited for
+    if longest == samples:  # the run ends with its tail in any case
         return RUNNING if sample < samples else SURVIVED
     m, now = pier_in(traits, lanes, i)
     load = lanes.ending.load[i]

@@ -66,25 +66,25 @@ def ground_power(m, y, contact, ground):
 
 @system.airborne.of(Footing)
 def airborne(m, contact):
-    """Return whether the foot is in the air."""
+    """Return whether the foot is in the air: no part of it is pressed."""
     return contact.clear != 0.0
 
 
 @system.event_functions.of(Footing)
 def event_functions(m, devices, now):
-    """Return no zero crossings: nothing jumps on a bed, and no event is searched for."""
+    """Return Signals of 1 with slopes of 0: nothing jumps on a bed, and no event is searched for."""
     return Signals(1.0, 1.0, 1.0, 1.0), Signals(0.0, 0.0, 0.0, 0.0)
 
 
 @system.transition.of(Footing)
 def transition(m, devices, now, which, ground, dt):
-    """Return what no bed has: its Transition by an event."""
+    """Return the Moment ``now`` unchanged, as a Transition without counts: no event occurs on a bed."""
     return Transition(now, STEP, 0.0, 0.0, 0.0)
 
 
 @kernel
 def energies(m, y):
-    """Return the kinetic, potential and elastic energy in state ``y`` [J/kg]."""
+    """Return the kinetic energy, the potential energy g v and the elastic energy of the bed in state ``y`` [J/kg]."""
     d = sinking(m, y)
     arm = m.height if m.finite is None else lever(m, y).length
     kinetic = 0.5 * (y.v_rate * y.v_rate + (m.inertia + arm * arm) * y.omega * y.omega)

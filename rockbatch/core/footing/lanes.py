@@ -1,4 +1,4 @@
-"""Lanes of piers on a footing: what a table holds of them, how runs begin, take their steps and end."""
+"""Lanes of piers on a footing: their table, and the start, the steps and the results of their runs."""
 
 import math
 from typing import NamedTuple
@@ -42,12 +42,12 @@ from rockbatch.core.types import Instant, Moment, Part
 
 
 class Demands(NamedTuple):
-    """Greatest demands on the bed until now."""
+    """Greatest demands on the bed so far."""
 
     contact_least: float  # least share of the area that was pressed at the end of a step
-    pressure: float  # greatest pressure at an edge, over that on the whole area per unit mass [m/s²]
+    pressure: float  # greatest pressure at an edge, times the area over the mass [m/s²]
     pressure_time: float  # [s]
-    pressure_side: float  # LEFT or RIGHT
+    pressure_side: float  # LEFT, RIGHT or NEITHER
     force: float  # greatest push [m/s²]
     force_time: float  # [s]
     yielding: float  # rocks to one side in which the ground has yielded
@@ -66,7 +66,7 @@ LINE = (
     ("prestress", float),  # of tendons, over the mass [m/s²]
     ("theta", float),  # where the pier is held at the start [rad]
 )  # fmt: skip
-"""Fields of a run as it is requested."""
+"""Fields of the request of a run, with their types."""
 
 Line = NamedTuple("Line", LINE)  # type: ignore[misc]
 
@@ -79,7 +79,7 @@ def pier_in(traits, lanes, i):
 
 @kernel
 def _free_slot(lanes, i):
-    """Return the place of a bed that none of the lanes before ``i`` has."""
+    """Return the first slot of a bed that none of the lanes before ``i`` has; −1 if all are taken."""
     for slot in range(LANES):
         free = True
         for j in range(i):
@@ -91,14 +91,14 @@ def _free_slot(lanes, i):
 
 @inlined
 def touch(m, d, bed):
-    """Return the Touch of the foot under the Sinking ``d``, pressed by this Push."""
+    """Return the Touch of the foot under the Sinking ``d``, with this Push of the bed."""
     left, right = deflection(m, d, FIRST), deflection(m, d, last_node(m))
     return Touch(1.0 if left > 0.0 else 0.0, 1.0 if right > 0.0 else 0.0, 1.0 if bed.touched == 0.0 else 0.0)
 
 
 @kernel
 def start_on_bed(m, y):
-    """Lay the bed as it is after the foot was pressed into it once, to state ``y``."""
+    """Lay a new bed with the plastic set that a foot leaves which is pressed into it once, to state ``y``."""
     lay(m)
     d = sinking(m, y)
     settle(m, d, d, 1.0)
@@ -106,7 +106,7 @@ def start_on_bed(m, y):
 
 @system.begin.of(FootingTraits)
 def begin(traits, lanes, i, run):
-    """Put the model of ``run`` into lane ``i``, at rest, or as it was pushed to a rotation from there."""
+    """Put the model of ``run`` into lane ``i``, at rest, or held at a rotation to which it was pushed from rest."""
     put(lanes.model, i, taken(run, Numbers))
     put(lanes.bed, i, Place(_free_slot(lanes, i), 0.0))
     m, load = model_in(traits, lanes, i), run.gravity + run.prestress
@@ -123,13 +123,13 @@ def begin(traits, lanes, i, run):
 
 @inlined
 def _edge_pressure(m, d, j):
-    """Return the pressure [m/s²] at node ``j``, 0 if it is not pressed."""
+    """Return the pressure at node ``j``, at most the strength, times the area over the mass [m/s²]; 0 if it is not pressed."""
     return max(0.0, min(pressure(m, d, j), m.strength)) if deflection(m, d, j) > 0.0 else 0.0
 
 
 @inlined
 def _include_demands(lanes, i, m, d, bed, t):
-    """Bring the demands on the bed up to the Sinking ``d`` at ``t`` [s], under this Push."""
+    """Raise the demands on the bed to those under the Sinking ``d`` at ``t`` [s], with this Push; the least contact falls."""
     demands = lanes.demands
     demands.contact_least[i] = min(demands.contact_least[i], bed.touched)
     left, right = _edge_pressure(m, d, FIRST), _edge_pressure(m, d, last_node(m))
@@ -153,7 +153,7 @@ def _clearances(m, d):
 
 @kernel
 def take_in(lanes, i, m, part, t):
-    """Keep extremes and plastic set of a Part that ends at ``t`` [s], and put its end into the lane."""
+    """Keep extremes and plastic set of a Part that ends at ``t`` [s], and put its end into the lane; return the Push there."""
     before, y, end, tally, demands = part.start.contact, part.start.y, part.end, lanes.tally, lanes.demands
     d, d_end = sinking(m, y), sinking(m, end)
     if part.length > 0.0 and settle(m, d, d_end, part.length):
@@ -185,15 +185,15 @@ def take_in_part(traits, lanes, i, m, part, after):
 
 @system.lanes_in_pass.of(FootingTraits)
 def lanes_in_pass(traits, count):
-    """Return the number of lanes that hold a run: they are taken one by one."""
+    """Return ``count``: lanes are taken one by one, without padding."""
     return count
 
 
 @system.one_pass.of(FootingTraits)
 def one_pass(traits, lanes, count, substep, settings):
-    """Take the first ``count`` lanes a sub-step further, one by one.
+    """Integrate the first ``count`` lanes over a sub-step, one by one, and advance them.
 
-    A run in any company comes to the same bits. One that falls, or has no numbers any more, is left to the driver.
+    A run in any company comes to the same bits. One that falls (|θ| ≥ π/2) or becomes NaN is EVENTFUL, left to the driver.
     """
     for i in range(count):
         m, now = pier_in(traits, lanes, i)
@@ -216,7 +216,7 @@ def one_pass(traits, lanes, count, substep, settings):
 
 @system.finish.of(FootingTraits)
 def finish(traits, lanes, i, t, result):
-    """Write the residuals, and what the bed has borne, of the run in lane ``i``."""
+    """Write the residuals, and the demands on the bed, of the run in lane ``i``; residuals are 0 if nothing has yielded."""
     m, _ = pier_in(traits, lanes, i)
     demands, load = lanes.demands, lanes.ending.load[i]
     result.base_left, result.base_right = m.bed[FIRST, SET], m.bed[last_node(m), SET]

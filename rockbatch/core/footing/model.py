@@ -23,7 +23,7 @@ AREA = 4  # share of the area of the strip to the right of the node
 WEIGHTS, WEIGHTED_POSITIONS, WEIGHTED_SETS = 5, 6, 7
 ARMS, ARMED_POSITIONS, ARMED_SETS = 8, 9, 10
 
-# Columns of the last row, which is no node: first and last node of what was found last, from where it is sought again
+# Columns of the last row, which is no node: first and last node of the Spans found last, from which the next search begins
 PRESSED = 0
 YIELDING = 2
 DEEPEST = 4  # node that was pressed deepest
@@ -37,7 +37,7 @@ BED_OF_LANES = np.dtype(("f8", (LANES, *BEDS)))
 class Footing(NamedTuple):
     """A pier on a footing, per unit mass.
 
-    Lanes hold the numbers; what follows them is told apart by its type, hence when kernels are compiled.
+    Lanes hold the numbers; the types of the fields after them select code when kernels are compiled.
     """
 
     half_width: float  # b = B/2 [m]
@@ -50,7 +50,7 @@ class Footing(NamedTuple):
     strips: float  # number of them
     gap: float  # 0 of a bed; above 0 of two separate strips, the share of the width that they have: for tests
     guided: float  # 1: flight goes on, as always on a bed
-    rest: float  # velocity that counts as none [m/s]
+    rest: float  # velocity that counts as zero [m/s]
     finite: bool | None  # True: finite kinematics; None: first-order
     shifting: (
         bool | None
@@ -91,7 +91,7 @@ class Touch(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where a lane's bed is among those of all lanes, and up to when its state is known."""
+    """Slot of a lane's bed among those of all lanes, and the time up to which its set is known."""
 
     slot: float
     time: float  # [s]
@@ -99,7 +99,7 @@ class Place(NamedTuple):
 
 @inlined
 def model_in(traits, lanes, i):
-    """Return the Footing of lane ``i``, of the types that ``traits`` have."""
+    """Return the Footing of lane ``i``, with the types of ``traits``, and its bed."""
     m, bed = get(lanes.model, i, Numbers), lanes.beds[int(lanes.bed.slot[i])]
     return Footing(
         m.half_width, m.height, m.inertia, m.gravity, m.stiffness, m.strength, m.damping, m.strips, m.gap, m.guided, m.rest,

@@ -26,7 +26,7 @@ class Bracket(NamedTuple):
 
 @inlined
 def _trial(bracket):
-    """Return the zero of the chord."""
+    """Return the zero of the chord through both ends."""
     return bracket.low + (bracket.high - bracket.low) * bracket.above / (bracket.above - bracket.below)
 
 
@@ -42,7 +42,7 @@ def _narrowed(bracket, x, value):
 
 @kernel
 def _surplus(m, theta, v, load):
-    """Return by how much the bed bears more than the ``load`` [m/s²] at rotation ``theta`` [rad] and level ``v`` [m]."""
+    """Return the bed's force less the ``load`` [m/s²] at rotation ``theta`` [rad] and level ``v`` [m], at rest."""
     return push(m, sinking(m, State(v, theta, 0.0, 0.0))).force - load
 
 
@@ -65,7 +65,10 @@ def level_at(m, theta, load):
 
 @kernel
 def righting(m, theta, load):
-    """Return the moment [m²/s²] that rights the pier at rest under ``load`` [m/s²] at rotation ``theta`` [rad] to the left."""
+    """Return the moment to the left [m²/s²] on the pier at rest under ``load`` [m/s²] at rotation ``theta`` [rad].
+
+    It is that of the bed less that of the load: positive, it rights a pier that leans to the right.
+    """
     bed = push(m, sinking(m, State(level_at(m, theta, load), theta, 0.0, 0.0)))
     if m.finite is None:
         return bed.moment - m.height * theta * load
@@ -74,7 +77,10 @@ def righting(m, theta, load):
 
 @kernel
 def level_energy(m, theta, load):
-    """Return the least energy [J/kg] that the pier has at rotation ``theta`` [rad], of weight and bed."""
+    """Return the least energy [J/kg] that the pier has at rotation ``theta`` [rad]: of the bed, and of its ``load`` [m/s²] at v.
+
+    In first-order kinematics it is less by ½ ``load`` h θ².
+    """
     v = level_at(m, theta, load)
     energy = load * v + stored(m, sinking(m, State(v, theta, 0.0, 0.0)))
     return energy - 0.5 * load * m.height * theta * theta if m.finite is None else energy
@@ -82,14 +88,14 @@ def level_energy(m, theta, load):
 
 @kernel
 def summit(m, load):
-    """Return the rotation [rad] beyond which no bed holds the pier, (B/2h)(1 − W/Q) or less by as much as the foot sinks."""
+    """Return the rotation [rad] beyond which no bed holds the pier: arctan((b/h)(1 − load/Q)), arctan(b/h) if elastic."""
     share = 1.0 - load / m.strength
     return math.atan(m.half_width / m.height * share)
 
 
 @kernel
 def tilt(m):
-    """Return the tilt [rad] of the line that is next to the plastic set."""
+    """Return the tilt [rad] of the straight line nearest to the plastic set of all nodes, by least squares."""
     across, square = 0.0, 0.0
     for j in range(FIRST, last_node(m) + 1):
         across += m.bed[j, SET] * m.bed[j, POSITION]
@@ -99,7 +105,10 @@ def tilt(m):
 
 @kernel
 def lean(m, load):
-    """Return the rotation [rad] at which the pier rests on its bed, from the bed's tilt to where it leans; NaN for none."""
+    """Return the rotation [rad] at which the pier rests on its bed; NaN if there is none up to π/2.
+
+    It is the first equilibrium from the bed's tilt on, in the direction in which the pier leans there.
+    """
     here = tilt(m)
     back = righting(m, here, load)
     if back == 0.0:

@@ -90,7 +90,7 @@ def last_node(m):
 
 @inlined
 def deflection(m, d, j):
-    """Return the elastic deflection e at node ``j`` [m]."""
+    """Return the elastic deflection e at node ``j`` [m]; negative if it is clear."""
     return d.level + d.slope * m.bed[j, POSITION] - m.bed[j, SET]
 
 
@@ -115,9 +115,9 @@ def _value(m, line, j):
 
 @inlined
 def _beyond(m, line, most, near):
-    """Return the Span of nodes at which a Line exceeds ``most``; if there are none, it begins where the Line is greatest.
+    """Return the Span of nodes at which a Line exceeds ``most``; if there are none, an empty one where the Line is greatest.
 
-    Sought from ``near``, which it mostly is.
+    The search begins at ``near``, which mostly is the result.
     """
     first = _value(m, line, near.first)
     if near.first > near.last:
@@ -130,7 +130,7 @@ def _beyond(m, line, most, near):
 
 @kernel
 def _found(m, line, most, near):
-    """Return the Span that :func:`_beyond` seeks."""
+    """Return the Span that :func:`_beyond` seeks, by a walk over nodes from ``near``."""
     first, last = near.first, max(near.first, near.last)
     while first < last and not _value(m, line, first) > most:
         first += 1
@@ -153,7 +153,7 @@ def _found(m, line, most, near):
 
 @inlined
 def _span(m, line, most, place):
-    """Return the Span of nodes at which a Line exceeds ``most``, sought from the one that is kept at ``place``."""
+    """Return the Span of nodes at which a Line exceeds ``most``, sought from the one kept at ``place``, and keep it there."""
     near = Span(int(m.bed[-1, place]), int(m.bed[-1, place + 1]))
     span = _beyond(m, line, most, near)
     m.bed[-1, place], m.bed[-1, place + 1] = float(span.first), float(span.last)
@@ -162,13 +162,13 @@ def _span(m, line, most, place):
 
 @inlined
 def _total(m, column, first, last):
-    """Return the sum over nodes that follow each other of what a ``column`` of the bed sums up."""
+    """Return the sum over the nodes ``first`` to ``last`` of the quantity whose running sums are in ``column`` of the bed."""
     return m.bed[last + 1, column] - m.bed[first, column]
 
 
 @inlined
 def _sums(m, line, most, first, last):
-    """Return force and moment of the pressures of a Line less ``most``, at nodes that follow each other."""
+    """Return force and moment of the pressures of a Line less ``most``, over the nodes ``first`` to ``last``."""
     level, slope, sets = line.level - most, line.slope, line.sets
     force, moment = level * _total(m, WEIGHTS, first, last), level * _total(m, ARMS, first, last)
     force += slope * _total(m, WEIGHTED_POSITIONS, first, last) - sets * _total(m, WEIGHTED_SETS, first, last)
@@ -180,7 +180,7 @@ def _sums(m, line, most, first, last):
 def _in_part(m, d, p, near, far):
     """Return the Push of the strip between a pressed node ``near`` and a clear one ``far``, less its part of the sum over nodes.
 
-    The pressure is linear in the part that is pressed, between 0 and the strength, dashpots included.
+    ``p`` is the Line of pressures. The pressure is linear in the pressed part, between 0 and the strength, dashpots included.
     """
     e_near, e_far, x = deflection(m, d, near), deflection(m, d, far), m.bed[near, POSITION]
     by_near, by_far, way = _value(m, p, near), _value(m, p, far), m.bed[far, POSITION] - x
@@ -193,7 +193,7 @@ def _in_part(m, d, p, near, far):
 
 @inlined
 def push(m, d):
-    """Return the Push of the bed under the Sinking ``d``."""
+    """Return the Push of the bed, springs and dashpots, under the Sinking ``d``; zeros if the foot is clear."""
     p, pressed = _pressures(m, d), _span(m, Line(d.level, d.slope, 1.0), 0.0, PRESSED)
     first, last = pressed
     if last < first:
@@ -222,7 +222,7 @@ def push(m, d):
 
 @kernel
 def pressed_middle(m, d):
-    """Return the mean position of the nodes that push, 0 if none does [m].
+    """Return the mean position of the nodes that push, weighted by area, 0 if none does [m].
 
     A pivot on a damped spring leaves it when its push is 0, 2ζ/ω_v before its deflection is.
     """
@@ -235,7 +235,10 @@ def pressed_middle(m, d):
 
 @kernel
 def stored(m, d):
-    """Return the elastic energy of the bed [J/kg]: beyond the strength, with the work of the set that takes it there."""
+    """Return the elastic energy of the bed [J/kg].
+
+    Where the deflection exceeds that at the strength, the plastic work on the way from there is included.
+    """
     energy, most = 0.0, m.strength / m.stiffness
     for j in range(FIRST, last_node(m)):
         left, right = deflection(m, d, j), deflection(m, d, j + 1)
@@ -255,15 +258,16 @@ def _energy_at(e, most):
 
 @inlined
 def _deepest(m, slope, near):
-    """Return the node at which a Line of this slope is greatest, sought from ``near``."""
+    """Return the node at which slope x − set is greatest, sought from ``near``."""
     return _beyond(m, Line(0.0, slope, 1.0), math.inf, Span(near, near - 1)).first
 
 
 @inlined
 def settle(m, d, d_end, h):
-    """Bring the plastic set up to a step of ``h`` [s] between two Sinkings: a running maximum. Return whether any has grown.
+    """Raise each node's plastic set to the greatest of d less the yield deflection in a step of ``h`` [s] between two Sinkings.
 
-    What is deepest lies between the nodes that are for the least and the greatest slope in the step, and what yields around it.
+    Return whether any has grown, False for an elastic bed. The deepest node lies between those for the least and the greatest
+    slope in the step, and what yields lies around it.
     """
     if m.strength == math.inf:
         return False
@@ -282,7 +286,7 @@ def settle(m, d, d_end, h):
 
 @kernel
 def _settle_around(m, d, d_end, h, left, right):
-    """Bring the set up to a step, from the nodes ``left`` to ``right`` outwards. Return whether any has grown."""
+    """Raise the set to that of a step, from the nodes ``left`` to ``right`` outwards. Return whether any has grown."""
     first, j, grows = last_node(m) + 1, right, False
     while grows or j >= left:
         grows = _grows(m, d, d_end, h, j)
@@ -298,7 +302,7 @@ def _settle_around(m, d, d_end, h, left, right):
 
 @kernel
 def _grows(m, d, d_end, h, j):
-    """Bring the set of node ``j`` up to a step. Return whether it has grown."""
+    """Raise the set of node ``j`` to its greatest in a step. Return whether it has grown."""
     growth, _ = _growth(m, d, d_end, h, j)
     if growth > 0.0:
         m.bed[j, SET] += growth
@@ -307,7 +311,7 @@ def _grows(m, d, d_end, h, j):
 
 @kernel
 def sum_sets(m, first):
-    """Bring the sums of sets up to those at the node ``first`` and to its right."""
+    """Update the running sums of sets from the node ``first`` to the right edge."""
     for j in range(first, last_node(m) + 1):
         m.bed[j + 1, WEIGHTED_SETS] = m.bed[j, WEIGHTED_SETS] + m.bed[j, WEIGHT] * m.bed[j, SET]
         m.bed[j + 1, ARMED_SETS] = m.bed[j, ARMED_SETS] + m.bed[j, ARM] * m.bed[j, SET]
@@ -315,7 +319,7 @@ def sum_sets(m, first):
 
 @inlined
 def _depths(m, d, d_end, j):
-    """Return the depth at node ``j`` [m] and its rate [m/s] under two Sinkings."""
+    """Return the depth at node ``j`` [m] and its rate [m/s] under the Sinking ``d``, then both under ``d_end``."""
     x = m.bed[j, POSITION]
     start, end = d.level + d.slope * x, d_end.level + d_end.slope * x
     return start, d.level_rate + d.slope_rate * x, end, d_end.level_rate + d_end.slope_rate * x
@@ -323,7 +327,10 @@ def _depths(m, d, d_end, j):
 
 @inlined
 def _growth(m, d, d_end, h, j):
-    """Return by how much the set at node ``j`` grows in a step of ``h`` [s] between two Sinkings, and until when."""
+    """Return the growth [m] of the set at node ``j`` in a step of ``h`` [s] between two Sinkings, and the time of its end [s].
+
+    Zeros if it does not grow.
+    """
     start, rate, end, rate_end = _depths(m, d, d_end, j)
     before = m.bed[j, SET] + m.strength / m.stiffness
     deepest, until = summit_within(start, rate, end, rate_end, h, before)
@@ -332,7 +339,7 @@ def _growth(m, d, d_end, h, j):
 
 @kernel
 def settling_work(m, d, d_end, h):
-    """Return the plastic work [J/kg] of a step that ``settle`` has not brought the set up to.
+    """Return the plastic work [J/kg] of a step, before ``settle`` brings the set up to it.
 
     In a strip of which one end yields the push on that end depends on the other one, so that no function of the set is its work.
     It is integrated over the time in which the node yields, by three points of Gauss.
@@ -363,7 +370,7 @@ def _sinking_at(d, d_end, h, x):
 
 @inlined
 def _push_at(m, d, j, k):
-    """Return the push of the springs of the strip between nodes ``j`` and ``k`` that acts at ``j`` [m/s²]."""
+    """Return the push [m/s²] at node ``j`` of the springs, at most their strength, of the strip to node ``k``, 0 without one."""
     if k < FIRST or k > last_node(m):
         return 0.0
     most, area = m.strength / m.stiffness, m.bed[min(j, k), AREA]
@@ -376,7 +383,7 @@ def _push_at(m, d, j, k):
 
 @kernel
 def lay(m):
-    """Lay an unyielded bed of equal strips, or two narrow ones at the edges."""
+    """Lay an unyielded bed of equal strips or, if ``gap`` is above 0, of two narrow ones about the edges."""
     n, b, last, bed = int(m.strips), m.half_width, last_node(m), m.bed
     for j in range(len(bed)):
         bed[j, POSITION] = b * (2.0 * min(max(j - FIRST, 0), n) / n - 1.0)
@@ -411,6 +418,6 @@ def lay(m):
 
 @kernel
 def plastic_work(m):
-    """Return the plastic work of the bed [J/kg], from its set."""
+    """Return the plastic work of the bed [J/kg], its strength times the mean of its set; 0 if it is elastic."""
     work = m.bed[last_node(m) + 1, WEIGHTED_SETS]
     return m.strength * work if work > 0.0 else 0.0

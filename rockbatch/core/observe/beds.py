@@ -33,7 +33,7 @@ class BedState(NamedTuple):
     force: float  # push over the mass [m/s²]
     moment: float  # Σ P x over the mass [m²/s²]
     touched: float  # share of the area that is pressed
-    stored: float  # kinetic, potential and elastic energy of pier and bed [J/kg]
+    stored: float  # kinetic, potential and elastic energy of pier and bed, relative to the first row [J/kg]
 
 
 BED_STATE = record(BedState)
@@ -80,7 +80,7 @@ def _fastest(m, step):
 
 @forces_at.of(Footing)
 def forces_on_footing(m, deck, now, ground):
-    """Return the Forces in the Moment ``now``; left and right are the forces at both edges that are equal to the push."""
+    """Return the Forces in the Moment ``now``; left and right are forces at the edges equivalent to the push."""
     y, d = now.y, sinking(m, now.y)
     bed = push(m, d)
     v_acceleration, turning = accelerations(m, y, bed, ground)
@@ -162,7 +162,7 @@ def follow_bed(m, rows, out):
 
 @entry
 def ledger_on_footing(m, rows, pulls, ground, dt, out):
-    """Compute the energy balance of a run on a footing ``m``, whose bed is laid here.
+    """Compute the energy balance of a run on a footing ``m``, whose bed is laid here; without terms of impact and constraint.
 
     Otherwise as :func:`rockbatch.core.observe.ledger.ledger_on_springs`.
     """

@@ -74,7 +74,7 @@ class Body(NamedTuple):
 
 @kernel
 def friction_demand(gravity, shear, normal):
-    """Return |V|/N; inf if N is not above 0 by more than rounding."""
+    """Return |V|/N; inf if N/M is not above LIFTED ``gravity``, hence rounding."""
     return abs(shear) / normal if normal > LIFTED * gravity else math.inf
 
 
@@ -143,7 +143,7 @@ def _inertia_of_bending_shaft(shaft, m, deck, y, contact, ground):
 
 @kernel
 def on_springs(m, deck, now, ground):
-    """Return the forces in the Moment ``now``; the deck is at the height ``deck`` [m]."""
+    """Return the Forces in the Moment ``now`` on a pier on springs, whose deck is ``deck`` [m] above its base."""
     y, contact, supports = now
     at, of = geometry(m, y.theta), _inertia_on_springs(m.shaft, m, deck, y, contact, ground)
     pull_left, pull_right = forces(m, y, contact, at)
@@ -171,7 +171,7 @@ def _waits(was, contact, side, waiting, position):
 
 @kernel
 def _at_rest(m, body, y, ground):
-    """Return the forces on a block at rest on both pivots, and the pivot about which it would turn, 0 if it stays.
+    """Return the Forces on a block at rest on both pivots, and the pivot about which it would turn, 0 if it stays.
 
     The pivots carry weight and moment; friction resists the uplift of one of them as far as it can.
     """
@@ -198,7 +198,7 @@ def _at_rest(m, body, y, ground):
 
 @kernel
 def on_block(m, body, now, ground):
-    """Return the forces on a block, rocking about a pivot, in flight or at rest.
+    """Return the Forces on a block, rocking about a pivot, in flight or at rest.
 
     Devices pull along the chord of the arc of their places: cos(θ/2) of their force is vertical.
     """
@@ -244,7 +244,7 @@ def on_block(m, body, now, ground):
 
 @kernel
 def on_flexible_block(m, body, now, ground):
-    """Return the forces on a pier with an elastic shaft, by the motion of its mass; otherwise as :func:`on_block`."""
+    """Return the Forces on a pier with an elastic shaft, by the motion of its mass; otherwise as :func:`on_block`."""
     (y, contact, _), outline, horizontal, vertical = now, body.outline, ground.horizontal, ground.vertical
     side, flies = side_of(contact), airborne(m, contact)
     k, key = rates(m, y, contact, ground), side if side != 0.0 else key_of(m, contact)
@@ -283,7 +283,10 @@ def on_flexible_block(m, body, now, ground):
 
 @hook
 def waiting(m, y, was, contact, supports):
-    """Return the Supports of free pivots in state ``y``, when the contact ``was`` replaced by ``contact``."""
+    """Return the Supports in state ``y``, as the contact changes from ``was`` to ``contact``.
+
+    The unstressed positions of pivots that have just separated are new; without springs there are none.
+    """
 
 
 @waiting.of(Springs)
@@ -306,7 +309,10 @@ waiting.of(FlexibleBlock)(_waiting_ground)
 
 @hook
 def forces_at(m, body, now, ground):
-    """Return the Forces in the Moment ``now``; ``body`` is the height of the deck [m] on springs, a Body on a rigid base."""
+    """Return the Forces in the Moment ``now``.
+
+    ``body`` is the height of the deck above the base [m] on springs and on a footing, a Body on a rigid base.
+    """
 
 
 @forces_at.of(Springs)
@@ -326,7 +332,7 @@ def _forces_on_flexible_block(m, body, now, ground):
 
 @hook
 def fastest_heels(m, step):
-    """Return the shares of a step at which the gaps of the left and the right heel may open fastest; 0 if at its ends."""
+    """Return the shares of a step at which the gaps of the left and the right heel may open fastest; 0 for an end of it."""
 
 
 @kernel

@@ -55,7 +55,10 @@ def _stored(m, y, contact):
 
 @optional_hook
 def _of_modes(shaft, m, y, lever):
-    """Return what the modes of the shaft add to the kinetic, potential and elastic energy [J/kg]; ``lever`` is H [m]."""
+    """Return what the modes of the shaft add to the kinetic, potential and elastic energy [J/kg]; zeros for a rigid one.
+
+    ``lever`` is H [m].
+    """
     return 0.0, 0.0, 0.0
 
 
@@ -106,7 +109,7 @@ def energy_of_rows(m, rows, out):
 
 @optional_hook
 def _damping(y, shaft):
-    """Return the power that the damping of the shaft takes in state ``y`` [W/kg]; ``shaft`` has that of its modes."""
+    """Return the power that the damping of the modes of a ``shaft`` takes in state ``y`` [W/kg]; 0 for a rigid one."""
     return 0.0
 
 
@@ -121,7 +124,10 @@ _damping.of(BentState)(_damping_of_modes)
 
 @kernel
 def _powers(m, y, k, contact, ground):
-    """Return the powers [W/kg] of input, plastic work, P–Δ, constraint and dashpots; 0 for terms that do not occur."""
+    """Return the powers [W/kg] of input, plastic work, P–Δ, constraint and dashpots with the modes' damping.
+
+    Terms that do not occur are 0.
+    """
     at = geometry(m, y.theta)
     left, right = y.v_rate + at.arm_left * y.omega, y.v_rate + at.arm_right * y.omega
     shaken = ground_power(m, y, contact, ground)
@@ -171,7 +177,7 @@ def _recovered(m, contact, y, y_end):
 
 @kernel
 def pulled(m, pulls, i):
-    """Return the pier at the start, in the middle and at the end of the step to row ``i``."""
+    """Return the pier under the ``pulls`` at the start, in the middle (their mean) and at the end of the step to row ``i``."""
     first, last = pulls[i - 1], pulls[i]
     middle = with_pull(m, Pull(0.5 * (first[0] + last[0]), 0.5 * (first[1] + last[1])))
     return with_pull(m, Pull(first[0], first[1])), middle, with_pull(m, Pull(last[0], last[1]))
@@ -187,13 +193,13 @@ def ledger_on_springs(m, rows, pulls, ground, dt, out):
     rows : recarray of recording.Row, shape (n,)
         History as the run wrote it, every step.
     pulls : ndarray, shape (n, 2)
-        Force [m/s²] and moment [m²/s²] of dampers and tendons at every row; what they take and store is not given here.
+        Force [m/s²] and moment [m²/s²] of dampers and tendons at every row; the energy that they take and store is left out.
     ground : ndarray, shape (npts, 4)
         The motion of the run, of :func:`rockbatch.core.ground.ground_rows`.
     dt : float
         Its sampling interval [s].
     out : recarray of Energies, zeros, shape (n,)
-        Filled at every row.
+        Filled at every row but the first, to which all terms are relative.
     """
     y = state_of(m, rows[0])
     kinetic0, potential0, elastic0 = _stored(m, y, contact_of(m, rows[0]))
@@ -239,7 +245,7 @@ def ledger_on_springs(m, rows, pulls, ground, dt, out):
 def ledger_on_rigid_base(m, rows, pulls, ground, dt, out):
     """Compute the energy balance of a run of a Block or FlexibleBlock ``m`` with the history ``rows``.
 
-    Otherwise as :func:`ledger_on_springs`.
+    Otherwise as :func:`ledger_on_springs`, without plastic work, P–Δ and constraint; impact is the kinetic energy lost in events.
     """
     y = state_of(m, rows[0])
     kinetic, potential0, elastic0 = _stored(m, y, contact_of(m, rows[0]))

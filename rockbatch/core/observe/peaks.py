@@ -106,7 +106,10 @@ class Place(NamedTuple):
 
 @kernel
 def _state_within(m, devices, j, place):
-    """Return the state of device ``j`` at a Place, from its states at the ends of the step."""
+    """Return the state of device ``j`` at a Place, from its states at the ends of the step.
+
+    It is linear between them; by a cubic for hysteretic dampers and braced viscous ones.
+    """
     of, level, step, s = devices.elements[j], devices.level, place.step, place.s
     was, now = devices.states[place.i - 1, j], devices.states[place.i, j]
     if of.kind not in (HYSTERETIC, MAXWELL):
@@ -120,7 +123,10 @@ def _state_within(m, devices, j, place):
 
 @kernel
 def recorded_force(of, here, state, goes):
-    """Return the force [m/s²] of an element whose Gap is ``here``, in the mode that its elongation and state ask for."""
+    """Return the force [m/s²] of an element whose Gap is ``here``, in the mode that its elongation and state ask for.
+
+    Of friction it is the strength in the direction ``goes``.
+    """
     if of.kind == CONTACT:
         return stop_force(of, here.elongation, state)
     pull = force(of, here.elongation, here.speed, state, TAUT, goes)
@@ -129,7 +135,7 @@ def recorded_force(of, here, state, goes):
 
 @kernel
 def _pull_within(m, devices, j, at, place, y):
-    """Return the Gap of device ``j`` in state ``y`` at a Place, whose Attitude is ``at``, and its force [m/s²]; 0 of friction."""
+    """Return the Gap of device ``j`` in state ``y`` at a Place, whose Attitude is ``at``, and its force [m/s²], 0 of friction."""
     of = devices.elements[j]
     here = gap_of(m, of, at, y)
     return here, recorded_force(of, here, _state_within(m, devices, j, place), 0.0)
@@ -174,7 +180,10 @@ def _with_devices(devices, m, pulls, place, y):
 
 @kernel
 def _with_across(forces, gravity, shear, moment):
-    """Return the Forces with a ``shear`` [m/s²] and a ``moment`` [m²/s²] that the deck's neighbours take, not the base."""
+    """Return the Forces of the base alone, without devices on the deck, which push it to the left by ``shear`` and ``moment``.
+
+    The shear [m/s²] is added, the moment [m²/s²] subtracted, and the friction demand follows.
+    """
     base = forces.shear + shear
     friction = abs(base) / forces.normal if forces.normal > LIFTED * gravity else math.inf
     return Forces(
@@ -185,7 +194,7 @@ def _with_across(forces, gravity, shear, moment):
 
 @hook
 def _at_base(devices, m, forces, i, y, contact):
-    """Return the Forces at row ``i`` in state ``y`` without what devices on the deck take."""
+    """Return the Forces at row ``i`` in state ``y`` without what devices on the deck take; unchanged if there are none."""
 
 
 @_at_base.of(type(None))
@@ -228,7 +237,7 @@ def _less_deck_within(devices, m, forces, place, y):
 
 @hook
 def push_deck(devices, m, i, y, contact, out):
-    """Write the force to the left [m/s²] of each device on the deck, in state ``y`` at row ``i``."""
+    """Write the force to the left [m/s²] of each device on the deck, in state ``y`` at row ``i``; no other entry of ``out``."""
 
 
 @push_deck.of(type(None))
@@ -247,7 +256,7 @@ def _push_at_row(devices, m, i, y, contact, out):
 
 @hook
 def push_deck_within(devices, m, place, y, out):
-    """Write the force to the left [m/s²] of each device on the deck, in state ``y`` at a Place."""
+    """Write the force to the left [m/s²] of each device on the deck, in state ``y`` at a Place; no other entry of ``out``."""
 
 
 @push_deck_within.of(type(None))
@@ -287,7 +296,10 @@ def _moment(of, s):
 
 @kernel
 def _include(extremes, moment, t, gravity):
-    """Bring the Extremes up to the Forces of a ``moment`` at about ``t`` [s]."""
+    """Raise the Extremes to the magnitudes of the Forces of a ``moment`` at about ``t`` [s].
+
+    While N is below its limit the shear counts for the keys, and no friction demand is taken.
+    """
     limits, greatest, line = extremes.limits, extremes.greatest, extremes.noted[0]
     for j in range(len(greatest)):
         if j != _FRICTION:
@@ -304,7 +316,7 @@ def _include(extremes, moment, t, gravity):
 
 @kernel
 def _passes(of, low, high, limit):
-    """Return the Forces, between the shares ``low`` and ``high`` of a Stretch, where N passes ``limit`` and is just above it."""
+    """Return the Forces, between the shares ``low`` and ``high`` of a Stretch, where N passes ``limit``, on its upper side."""
     above_limit = _moment(of, high)
     rises = above_limit.normal >= limit
     for _ in range(BISECTIONS):
@@ -319,7 +331,10 @@ def _passes(of, low, high, limit):
 
 @kernel
 def _turning(start, middle, end):
-    """Return the share of a step at which the parabola through three values turns, and its value there; else 0.5, ``middle``."""
+    """Return the share of a step at which the parabola through three values turns inside it, and its value there.
+
+    Else 0.5 and ``middle``.
+    """
     slope, bend = end - start, start + end - 2.0 * middle
     if not abs(slope) < 2.0 * abs(bend) < math.inf:
         return 0.5, middle
@@ -328,7 +343,7 @@ def _turning(start, middle, end):
 
 @kernel
 def _look_within(of, t, before, now, extremes):
-    """Bring the Extremes up to the inside of a Stretch until ``t``, with the forces ``before`` and ``now`` at its ends."""
+    """Raise the Extremes to the inside of a Stretch until ``t`` [s], with the Forces ``before`` and ``now`` at its ends."""
     gravity, (limits, greatest, noted) = of.m.gravity, extremes
     middle = _moment(of, 0.5)
     _include(extremes, middle, t, gravity)
@@ -369,15 +384,15 @@ def forces_of_run(m, body, run, extremes, out):
 
     Parameters
     ----------
-    m : Springs or Block
+    m : Springs, Footing, Block or FlexibleBlock
     body : float or Body
-        Of Springs the height of the deck above the pivots [m].
+        Of Springs and Footing the height of the deck above the base [m].
     run : RecordedRun
         With both sides of every event.
     extremes : Extremes
         Filled unless its ``greatest`` has no room.
     out : recarray of Forces, shape (n,) or (0,)
-        Filled at every row.
+        Filled at every row, unless it has none.
     """
     rows, pulls, devices, ground, dt = run
     limits, greatest, noted = extremes

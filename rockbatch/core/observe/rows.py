@@ -77,7 +77,7 @@ contact_of.of(FlexibleBlock)(_stance)
 
 @optional_hook
 def write_bending(y, k, line):
-    """Write the coordinates of a shaft's modes, their rates and accelerations to ``line``; states of a rigid one have none."""
+    """Write the coordinates of a shaft's modes, their rates and accelerations to the rows of ``line``; nothing if rigid."""
 
 
 def _write_bending(y, k, line):
@@ -92,12 +92,12 @@ write_bending.of(BentState)(_write_bending)
 
 @optional_hook
 def begin_at(m, y):
-    """Bring what the pier ``m`` remembers to the start of a run in state ``y``; without it, it remembers nothing."""
+    """Set the bed of a footing ``m`` to that at the start of a run in state ``y``; other piers remember nothing."""
 
 
 @optional_hook
 def remember(m, y, y_end, length):
-    """Bring what the pier ``m`` remembers beside its states up to a step of ``length`` [s] between two of them."""
+    """Bring the plastic set of a footing ``m`` up to a step of ``length`` [s] from ``y`` to ``y_end``; other piers have none."""
 
 
 @kernel
@@ -146,7 +146,7 @@ def ground_within(step, s):
 def cubic(start, rate, end, rate_end, h, s):
     """Return the cubic Hermite polynomial at the share ``s`` of a step of ``h`` [s].
 
-    It is limited to the values at its ends if both rates have the same sign, since a steep end would make it overshoot.
+    It is limited to the values at its ends unless the rates there differ in sign, since a steep end would make it overshoot.
     """
     way = end - start
     value = start + s * (way + (1.0 - s) * ((1.0 - s) * (h * rate - way) - s * (h * rate_end - way)))

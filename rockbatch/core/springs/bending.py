@@ -5,8 +5,13 @@ The pivots and their supports know only the base, v and θ of the straight shaft
 
 from typing import NamedTuple
 
-from rockbatch.core.clock import EVENTFUL
-from rockbatch.core.flexure.displacements import Displacements, displacements_in, displacements_within
+from rockbatch.core.flexure.displacements import (
+    Displacements,
+    displacements_at_end,
+    displacements_in,
+    displacements_within,
+    no_greater_inside,
+)
 from rockbatch.core.flexure.ending import bending_energy, hanging
 from rockbatch.core.flexure.equations import straightening
 from rockbatch.core.flexure.modes import PerMode, deflection_rates, deflections, dot, scaled
@@ -21,8 +26,8 @@ from rockbatch.core.springs.equations import (
     without,
 )
 from rockbatch.core.springs.free_vibration import energy_of_modes, leaning_height
-from rockbatch.core.springs.model import BentState, Shaft, ShaftNumbers, State, shaft_in
-from rockbatch.core.springs.passing import pass_of, pass_with_devices_of
+from rockbatch.core.springs.model import BentState, Shaft, ShaftNumbers, State, shaft_in, state_in
+from rockbatch.core.springs.passing import correct_reversals, nothing_new_of_shaft, take_in_end
 from rockbatch.core.springs.recovery import acceleration_of_top, forces
 from rockbatch.core.springs.transitions import mirrored
 from rockbatch.core.table import along, get, put, taken
@@ -32,7 +37,7 @@ from rockbatch.core.types import LEFT
 
 @inlined
 def bent_state(y, u, u_rate):
-    """Return the state ``y`` of a straight shaft with the coordinates ``u`` of its modes, and their rates; or such rates."""
+    """Return the state ``y`` of a straight shaft with the coordinates ``u`` of its modes and their rates; likewise its rates."""
     return BentState(
         y.v,
         y.theta,
@@ -136,7 +141,7 @@ def _on_bending_pier(shaft, m, y, lever, ground):
 
 @inlined
 def kinetic_of_modes(m, y, lever):
-    """Return the kinetic energy [J/kg] less that of a straight shaft; ``lever`` is H [m]."""
+    """Return the kinetic energy [J/kg] less that of a straight shaft with the same base; ``lever`` is H [m]."""
     u, u_rate = deflections(y), deflection_rates(y)
     to_right, up = velocity_of_centre(m, y, lever)
     by_centre = lever * y.omega * (to_right - lever * y.omega) + y.v_rate * (up - y.v_rate)
@@ -179,31 +184,20 @@ def _mirrored(y):
     return bent_state(straight, scaled(deflections(y), -1.0), scaled(deflection_rates(y), -1.0))
 
 
-@pass_of.of(Shaft)
-def _none_in_a_pass(shaft, traits, lanes, count, substep, settings):
+@correct_reversals.of(Shaft)
+def _repeat_reversals(shaft, traits, lanes, count):
     for i in range(count):
-        lanes.step_status.kind[i] = EVENTFUL
+        lanes.reversals.surely[i] = -1.0
 
 
-@pass_with_devices_of.of(Shaft)
-def _none_with_devices(shaft, traits, lanes, equipment, count, substep, settings):
-    for i in range(count):
-        lanes.step_status.kind[i] = EVENTFUL
+@nothing_new_of_shaft.of(Shaft)
+def _nothing_new_of_shaft(shaft, lanes, i, y, end, h):
+    return no_greater_inside(shaft, y, end, h, get(lanes.displaced, i, Displacements))
 
 
-@hook
-def state_in(shaft, part, i):
-    """Return the state in lane ``i`` of a part of the table."""
-
-
-@state_in.of(type(None))
-def _straight_state_in(shaft, part, i):
-    return get(part, i, State)
-
-
-@state_in.of(Shaft)
-def _bent_state_in(shaft, part, i):
-    return get(part, i, BentState)
+@take_in_end.of(Shaft)
+def _take_in_end(shaft, lanes, i, end, calm):
+    put(lanes.displaced, i, displacements_at_end(shaft, end, calm, get(lanes.displaced, i, Displacements)))
 
 
 @hook
@@ -224,7 +218,7 @@ def _bent_at_start(shaft, m, y):
 
 @optional_hook
 def begin_shaft(shaft, lanes, i, run):
-    """Put the modes of the shaft of a ``run`` into lane ``i``."""
+    """Put the modes of the shaft of a ``run`` into lane ``i``; nothing if it is rigid."""
 
 
 @begin_shaft.of(Shaft)
@@ -234,7 +228,7 @@ def _begin_shaft(shaft, lanes, i, run):
 
 @optional_hook
 def begin_displacements(shaft, lanes, i):
-    """Set the greatest displacements of lane ``i`` to those at its start."""
+    """Set the greatest displacements of lane ``i`` to those at its start; nothing if its shaft is rigid."""
 
 
 @begin_displacements.of(Shaft)
@@ -244,7 +238,7 @@ def _begin_displacements(shaft, lanes, i):
 
 @optional_hook
 def include_bending(shaft, lanes, i, part):
-    """Raise the greatest displacements of lane ``i`` to those of a Part."""
+    """Raise the greatest displacements of lane ``i`` to those of a Part; nothing if its shaft is rigid."""
 
 
 @include_bending.of(Shaft)
@@ -254,7 +248,7 @@ def _include_bending(shaft, lanes, i, part):
 
 @optional_hook
 def write_displacements(shaft, lanes, i, result):
-    """Write the greatest displacements of lane ``i`` into its ``result``."""
+    """Write the greatest displacements of lane ``i`` into its ``result``; nothing if its shaft is rigid."""
 
 
 @write_displacements.of(Shaft)

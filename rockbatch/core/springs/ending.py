@@ -111,7 +111,7 @@ def _tilt(m, now):
 
 @kernel
 def _calm_from(lanes, i):
-    """Return the time [s] one period of rocking after the last contact event and the end of the record."""
+    """Return the time [s] one period of rocking after the last contact event, or after the record if that is later."""
     return max(lanes.tally.moved[i], lanes.clock.npts[i] * lanes.clock.dt[i]) + lanes.waiting.period[i]
 
 
@@ -150,7 +150,7 @@ def _peak_is_final(lanes, i, m, now, devices):
 
 @kernel
 def _read_base(lanes, i, m, now):
-    """Record the positions of the supports, and their drift since the last reading."""
+    """Record the positions of the supports; from the second reading on, also their drift since the last, and foresee the next."""
     waiting, sample = lanes.waiting, lanes.clock.sample[i]
     left, right = base_of(m, now)
     if waiting.read[i] < 0.0:
@@ -168,9 +168,10 @@ def _read_base(lanes, i, m, now):
 
 @kernel
 def _foresee(lanes, i, m):
-    """Set the greatest Drift of the base within half the patience, at the rates between the first two readings and the last two.
+    """Set the greatest Drift of the base within half the patience, on each side by the greater of two rates.
 
-    Twice as far ahead if the springs ratchet.
+    They are those between the first two readings and between the last two. It is FORESEEN = 2 times as far ahead if the
+    springs ratchet.
     """
     waiting = lanes.waiting
     ahead = 0.5 * waiting.patience[i] * lanes.clock.dt[i] * (FORESEEN if m.creep > 0.0 else 1.0)
@@ -208,8 +209,10 @@ def _energy_at_deck(m, devices, y, contact):
 def _set_load_and_energy(lanes, i, m, devices, now):
     """Set the load of the supports at rest [m/s²], and the energy [J/kg] that devices may return beyond its work.
 
-    A tendon's energy is convex in its elongation and lies above any tangent; that at the present settlement is taken. Other
-    devices return their elastic energy, less the energy that springs and stops at the deck store at the peak.
+    Nothing without devices. A tendon's energy is convex in its elongation and lies above any tangent; that at the present
+    settlement is taken. Other devices return their elastic energy, less the energy that springs and stops at the deck store at
+    the peak, or at an unstable equilibrium before it, on the side where it is less. Tendons off the middle add the work of their
+    moment.
     """
     if devices is None:
         return
@@ -297,7 +300,11 @@ def _next_due(lanes, i):
 
 @kernel
 def _given_up(lanes, i, m, now):
-    """Return the status of a run that is still undecided at its longest end; SURVIVED if it has no patience."""
+    """Return the status of a run that is still undecided at its longest end; SURVIVED if it has no patience.
+
+    UNDECIDED beyond the unstable equilibrium; GROWING if, on springs that ratchet, peak and tilt have grown by more than GROWTH α
+    since midway; else RESTLESS.
+    """
     if lanes.waiting.patience[i] == 0.0:
         return SURVIVED
     lean = lean_on(m, _base_and_yield_points(m, now))

@@ -41,7 +41,7 @@ def geometry(m, theta):
 
 @inlined
 def with_forces(pull, force, moment):
-    """Return force, upwards, and moment, to the right, with those of devices added."""
+    """Return ``force``, upwards, and ``moment``, to the right, less the devices' ``pull``, down and to the left (None: 0)."""
     if pull is None:
         return force, moment
     return force - pull.force, moment - pull.moment
@@ -103,7 +103,7 @@ def rates(m, y, contact, ground):
 
 @kernel
 def pivot_acceleration(m, y, contact, side, ground):
-    """Return the vertical acceleration [m/s²] of the pivot on ``side`` (LEFT or RIGHT) relative to a free support."""
+    """Return the upward acceleration [m/s²] of the pivot on ``side`` (LEFT or RIGHT), less that of a free support's top."""
     at = geometry(m, y.theta)
     v_acceleration, theta_acceleration = accelerations_at(m, y, contact, at, ground)
     if side == LEFT:
@@ -115,7 +115,7 @@ def pivot_acceleration(m, y, contact, side, ground):
 
 @system.share.of(Springs)
 def share(m, h):
-    """Return the factor of z after ``h`` [s] of supports without their pivots; 1 if undamped."""
+    """Return the factor by which z of supports without their pivots decays in ``h`` [s]; 1 if undamped."""
     return share_left(m, h)
 
 
@@ -127,7 +127,7 @@ def stage(m, y, start, contact, remaining):
 
 @system.end_step.of(Springs)
 def end_step(m, y, start, contact, remaining):
-    """Return the end of a step, with z limited to −1, and in closed form without pivots."""
+    """Return the end of a step, with z at least −1 on the inelastic branch, and in closed form for supports without pivots."""
     z_left, z_right = within_yield(y.z_left, contact.left_yields), within_yield(y.z_right, contact.right_yields)
     return with_recovery(m, with_z(y, z_left, z_right), start, contact, remaining)
 
@@ -175,7 +175,7 @@ def without(contact, side):
 
 @kernel
 def touching(contact, side, yields):
-    """Return ``contact`` with the pivot on ``side`` on its spring, on the inelastic branch if ``yields`` is 1."""
+    """Return ``contact`` with the pivot on ``side`` on its spring, on the inelastic branch if ``yields`` is 1, elastic if 0."""
     held = 0.0 if contact.held == side else contact.held
     if side == LEFT:
         return Contact(1.0, contact.right, yields, contact.right_yields, held)
@@ -184,7 +184,10 @@ def touching(contact, side, yields):
 
 @kernel
 def holding(contact, side, yields):
-    """Return ``contact`` with the pivot on ``side`` grazing its support; the other one then is in contact if it grazed."""
+    """Return ``contact`` with the pivot on ``side`` grazing its support: free, and ``held``.
+
+    The other pivot, if it grazed, is now on its spring, on the inelastic branch if ``yields`` is 1.
+    """
     if contact.held == -side:
         contact = touching(contact, -side, yields)
     free = without(contact, side)

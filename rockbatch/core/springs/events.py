@@ -64,7 +64,7 @@ def _free_functions(m, side):
 
 @inlined
 def _contact_functions(m, side):
-    """Return values and slopes of the two event functions of a pivot on its spring."""
+    """Return the two event functions of a pivot on its spring, each followed by its slope: separation, and change of branch."""
     z, z_rate, velocity, acceleration = side.z, side.z_rate, side.velocity, side.acceleration
     if abs(velocity) <= m.rest:
         if abs(acceleration) <= NO_ACCELERATION * m.gravity:
@@ -99,7 +99,7 @@ def _sides(m, y, k, contact, supports):
 
 @system.event_functions.of(Springs)
 def event_functions(m, devices, now):
-    """Return Signals, and their slopes."""
+    """Return the Signals of both pivots, and their slopes."""
     y, k, contact, supports, ground = now
     left_side, right_side = _sides(m, y, k, contact, supports)
     left_law, left_law_slope, right_law, right_law_slope = 1.0, 0.0, 1.0, 0.0

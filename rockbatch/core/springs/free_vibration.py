@@ -25,13 +25,16 @@ SEEN = 1e-6
 
 @optional_hook
 def leaning_height(shaft, m):
-    """Return the height [m] that times M g sin θ bounds the weight's moment: that of the centre of mass of a rigid shaft."""
+    """Return the height [m] by which M g sin θ bounds the weight's moment: the centre of mass's, or more if the shaft bends."""
     return m.height
 
 
 @optional_hook
 def energy_of_modes(shaft, m, y, lever):
-    """Return the energy [J/kg] of bending, and what it adds to that of a straight shaft; ``lever`` is H [m]."""
+    """Return the energy [J/kg] that bending adds to that of a straight shaft: elastic, kinetic and of the weight; 0 if rigid.
+
+    ``lever`` is H [m].
+    """
     return 0.0
 
 
@@ -50,7 +53,7 @@ def unstable_equilibrium(m, load):
 
 @kernel
 def rocking_stiffness(m):
-    """Return the restoring moment per rotation in full contact, on elastic springs [m²/s²]."""
+    """Return the restoring moment per rotation in full contact on elastic springs, less that of the weight [m²/s²]."""
     return 2.0 * m.yield_force * m.stiffness * m.half_width * m.half_width - m.gravity * leaning_height(m.shaft, m)
 
 
@@ -68,7 +71,10 @@ def _travel(m, theta):
 
 @kernel
 def _weight_moment(m, travel):
-    """Return the moment of the weight about the centre of the base over g, per b cos θ of the supports' arm [m]."""
+    """Return the weight's moment about the centre of the base over g cos θ [m]: h tan θ, or h θ in first-order kinematics.
+
+    ``travel`` is that of :func:`_travel`.
+    """
     return leaning_height(m.shaft, m) * (travel / math.sqrt(1.0 - travel * travel) if m.finite is not None else travel)
 
 
@@ -173,7 +179,7 @@ def _amplification(m):
 
 @kernel
 def lean_on(m, base):
-    """Return the rotation [rad] at which a pier rests on its ``base``."""
+    """Return the rotation [rad] at which a pier rests on its ``base``, the Supports with both unstressed positions."""
     return 0.5 * (base.left - base.right) / m.half_width * _amplification(m)
 
 
@@ -207,7 +213,7 @@ def peak_is_final(m, now, carried, peak, calm, drift):
     drift_left = drift.left + max(-lean, 0.0) * drift.growth
     if max(lean + drift_right, drift_left - lean) > peak * (
         1.0 + SEEN
-    ):  # first, for it is what most that go on wait for
+    ):  # first, since most runs that go on wait for this
         return False
     unstable = unstable_equilibrium(m, load)
     if max(abs(lean), abs(y.theta)) >= unstable:

@@ -25,7 +25,7 @@ def _arms(m, theta, side):
 
 @kernel
 def land(m, y, side, contact):
-    """Return the state after the pivot on ``side`` (LEFT or RIGHT) has landed on its support, and its velocity [m/s] then.
+    """Return the state after the pivot on ``side`` (LEFT or RIGHT) has landed on its support, and the pivot's velocity then.
 
     By Housner's e the other pivot keeps its velocity if it is ``supported``; otherwise the centre of mass does.
     """

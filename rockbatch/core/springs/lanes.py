@@ -19,7 +19,6 @@ from rockbatch.core.springs.bending import (
     begin_displacements,
     begin_shaft,
     include_bending,
-    state_in,
     write_displacements,
 )
 from rockbatch.core.springs.ending import Waiting, base_of, set_deadline
@@ -40,6 +39,7 @@ from rockbatch.core.springs.model import (
     Supports,
     model_in,
     shaft_numbers,
+    state_in,
 )
 from rockbatch.core.springs.passing import Reversals
 from rockbatch.core.springs.reversal import pivots
@@ -168,8 +168,9 @@ def begin(traits, lanes, i, run):
 
 @inlined
 def _include_extremes(lanes, i, m, part):
-    """Include a Part in the height of flight and the lowest positions."""
+    """Include a Part in the height of flight, the lowest positions of pivots in contact, and displacements of a bent shaft."""
     (y, contact, supports), end, h = part
+    include_bending(m.shaft, lanes, i, part)
     if system.airborne(m, contact):
         include_height(lanes, i, clearances(m, y, supports), clearances(m, end, supports), h)
     left, right = pivots(m, y)
@@ -189,7 +190,6 @@ def _include_extremes(lanes, i, m, part):
 def take_in_part(traits, lanes, i, m, part, after):
     """Record extremes, the starts of the springs' branches, and the plastic work of those that have ended."""
     _include_extremes(lanes, i, m, part)
-    include_bending(m.shaft, lanes, i, part)
     loading, before = get(lanes.loading, i, Loading), part.start.contact
     put(lanes.loading, i, branches(m, loading, before, after.contact, branch_change(m, after.y)))
     _put_moment(lanes, i, after)
@@ -208,7 +208,7 @@ def take_in_step(traits, lanes, i, substep, history):
 
 @kernel
 def _change_branches(lanes, i, m, now, substep, history):
-    """Change the branches of the springs of lane ``i`` whose velocities reversed in its sub-step."""
+    """Change the branches of the springs of lane ``i`` whose velocities reversed in its sub-step, and write their rows."""
     before, at, reversals = now.contact, get(lanes.reversals, i, BranchChange), lanes.reversals
     left, right = before.left_yields, before.right_yields
     left_after = 1.0 - left if reversals.left[i] >= 0.0 else left
@@ -275,7 +275,7 @@ def system_of(m):
     if m.shaft is None:
         return System(SpringTraits(m.exponent, m.finite, m.damped), Line, LANE, State._fields + Contact._fields, PASSED)
     traits = SpringTraits(m.exponent, m.finite, m.damped, LIKE)
-    return System(traits, BendingLine, BENDING_LANE, BentState._fields + Contact._fields)
+    return System(traits, BendingLine, BENDING_LANE, BentState._fields + Contact._fields, PASSED)
 
 
 def line_of(m, *timing):

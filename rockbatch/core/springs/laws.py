@@ -30,7 +30,7 @@ def bouc_wen_loss(m, x):
 
 @kernel
 def _elastic_share(x, n):
-    """Return (1 − x) xⁿ/(1 − xⁿ), smooth through x = 1, where it is 1/n."""
+    """Return (1 − x) xⁿ/(1 − xⁿ), smooth through x = 1, where it is 1/n; n = None stands for 5."""
     xn = power(x, n)
     if n is None:
         square = x * x
@@ -220,7 +220,10 @@ def may_yield(law, yields):
 
 @inlined
 def yield_point(law, point, z):
-    """Return the yield point after a velocity reversal at ``z`` on the inelastic branch; it was at ``point`` before."""
+    """Return the yield point after a velocity reversal at ``z`` on the inelastic branch; it was at ``point`` before.
+
+    It is the lesser of both if the law remembers, else −1.
+    """
     return min(point, z) if remembers(law) != 0.0 else -1.0
 
 
@@ -241,7 +244,11 @@ def after_switch(law, yields, point, z):
 
 @inlined
 def branch_after_jump(law, yields, point, z, velocity, rest):
-    """Return the branch of a spring after a jump to ``velocity`` [m/s]; unchanged if that is at most ``rest``."""
+    """Return the branch of a spring after a jump to ``velocity`` [m/s]; unchanged if that is at most ``rest`` either way.
+
+    Upwards the elastic one (0); downwards the inelastic one (1) by a law without elastic compression or from the yield point on,
+    else unchanged.
+    """
     if abs(velocity) <= rest:
         return yields
     if velocity > 0.0:
@@ -251,7 +258,7 @@ def branch_after_jump(law, yields, point, z, velocity, rest):
 
 @inlined
 def branch_of_landing(m, velocity):
-    """Return the branch of a spring on which a pivot lands at ``velocity`` [m/s], upwards perhaps on a damped support.
+    """Return the branch of a spring on which a pivot lands at ``velocity`` [m/s]: elastic if upwards, as a damped support rises.
 
     A spring with a yield point has been unloaded since, and is elastic.
     """
@@ -260,7 +267,10 @@ def branch_of_landing(m, velocity):
 
 @kernel
 def give(m, force, point):
-    """Return the tangent compliance over the elastic one of a spring under ``force``/F_y, from 0 to 1."""
+    """Return the tangent compliance over the elastic one of a spring in loading, at least 1; ``force`` is over F_y, from 0 to 1.
+
+    1 for elastic springs, and up to the yield ``point`` of laws that have one.
+    """
     if yields_when_pressed(m.law) == 0.0 and (has_point(m.law) == 0.0 or force < -point):
         return 1.0
     return 1.0 / (1.0 - stiffness_loss(m, min(max(force, 0.0), 1.0 - 1e-12)))

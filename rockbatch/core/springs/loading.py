@@ -37,7 +37,10 @@ class Branch(NamedTuple):
 
 @kernel
 def _branch(m, was, now, begun, unstressed, z):
-    """Return the Branch after an event at ``z``; that ``begun`` if the branch does not change, from ``was`` to ``now``."""
+    """Return the Branch after an event at ``z``: ``begun``, the present one, if ``was`` equals ``now``, else a new one.
+
+    The plastic work of an inelastic branch that has ended is added.
+    """
     if was == now:
         return begun
     work = begun.work

@@ -100,7 +100,7 @@ def shaft_numbers(shaft: Shaft) -> tuple[float, ...]:
 
 @hook
 def shaft_in(shaft, lanes, i):
-    """Return the Shaft of lane ``i``, like ``shaft`` of the traits; None of a rigid one."""
+    """Return the Shaft of lane ``i``, of the type of ``shaft`` in the traits; None for a rigid one."""
 
 
 @shaft_in.of(type(None))
@@ -180,6 +180,21 @@ class BentState(NamedTuple):
     u_2_rate: float
     u_3_rate: float
     u_4_rate: float
+
+
+@hook
+def state_in(shaft, part, i):
+    """Return the state in lane ``i`` of a part of the table."""
+
+
+@state_in.of(type(None))
+def _straight_state_in(shaft, part, i):
+    return get(part, i, State)
+
+
+@state_in.of(Shaft)
+def _bent_state_in(shaft, part, i):
+    return get(part, i, BentState)
 
 
 class Contact(NamedTuple):

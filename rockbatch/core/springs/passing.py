@@ -10,15 +10,15 @@ from typing import NamedTuple
 from rockbatch.core import system
 from rockbatch.core.clock import CALM, EVENTFUL, ON_ITS_SIDE, STANDS, UNSET, ground_at, peak_at_end
 from rockbatch.core.devices.passing import integrate, settle
-from rockbatch.core.kernel import hook, inlined, kernel
+from rockbatch.core.kernel import hook, inlined, kernel, optional_hook
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import excess
 from rockbatch.core.springs.laws import kept_sign, may_yield
-from rockbatch.core.springs.model import Contact, SpringTraits, State, model_in
+from rockbatch.core.springs.model import Contact, SpringTraits, State, model_in, state_in
 from rockbatch.core.springs.recovery import lag, top
 from rockbatch.core.springs.reversal import corrected, once, pivot_accelerations, pivots, reversal
 from rockbatch.core.system import rates
-from rockbatch.core.table import ZERO, get, put
+from rockbatch.core.table import ZERO, get, put, selected
 from rockbatch.core.types import Instant
 
 
@@ -106,9 +106,9 @@ def _signs(m, contact):
 
 @inlined
 def _stepped(traits, lanes, i, substep):
-    """Integrate lane ``i`` over the sub-step, on the present branches of its springs."""
+    """Integrate lane ``i`` over the sub-step into ``end``, on the present branches of its springs, and see if they keep them."""
     m, h = model_in(traits, lanes, i), lanes.clock.step[i]
-    y, contact, ground = get(lanes.now, i, State), _free(lanes, i), ground_at(lanes, i, substep * h)
+    y, contact, ground = state_in(traits.shaft, lanes.now, i), _free(lanes, i), ground_at(lanes, i, substep * h)
     k = rates(m, y, contact, ground)
     lanes.rates.v_rate[i], lanes.rates.omega[i] = k.v_rate, k.omega  # corrections need only these
     end = rk4(m, None, Instant(y, k, contact, None, ground), h)
@@ -126,7 +126,7 @@ def _next_turned(lanes, i, count):
 
 
 @kernel
-def correct_reversals(traits, lanes, i):
+def correct_lane(traits, lanes, i):
     """Correct the end of the sub-step of lane ``i`` for the velocity reversals in it."""
     m, h, reversals = model_in(traits, lanes, i), lanes.clock.step[i], lanes.reversals
     y, end, contact = get(lanes.now, i, State), get(lanes.end, i, State), _free(lanes, i)
@@ -142,6 +142,17 @@ def correct_reversals(traits, lanes, i):
     reversals.unstressed_left[i], reversals.unstressed_right[i] = turn_left.unstressed, turn_right.unstressed
 
 
+@optional_hook
+def nothing_new_of_shaft(shaft, lanes, i, y, end, h):
+    """Return a number that is negative if a ``shaft`` that bends may have a greatest displacement inside the sub-step."""
+    return 1.0
+
+
+@optional_hook
+def take_in_end(shaft, lanes, i, end, calm):
+    """Raise the greatest displacements of a ``shaft`` that bends to those at the end of a sub-step, if it is ``calm``."""
+
+
 @inlined
 def _judged(traits, lanes, i, substep, settings, sure):
     """Set the step status of lane ``i``, and advance the lane if its sub-step is calm.
@@ -151,7 +162,7 @@ def _judged(traits, lanes, i, substep, settings, sure):
     """
     m, h, step_status = model_in(traits, lanes, i), lanes.clock.step[i], lanes.step_status
     lowest, supports, low_left, low_right = lanes.lowest, lanes.supports, lanes.lowest.left[i], lanes.lowest.right[i]
-    y, end, contact = get(lanes.now, i, State), get(lanes.end, i, State), _free(lanes, i)
+    y, end, contact = state_in(traits.shaft, lanes.now, i), state_in(traits.shaft, lanes.end, i), _free(lanes, i)
     (left, right), (left_end, right_end), (sign_left, sign_right) = pivots(m, y), pivots(m, end), _signs(m, contact)
     in_left, in_right = _range(m, left, left_end, h), _range(m, right, right_end, h)
     on_left = Support(contact.left, contact.left_yields, supports.left[i], supports.yield_left[i], y.z_left, end.z_left)
@@ -175,6 +186,7 @@ def _judged(traits, lanes, i, substep, settings, sure):
         lanes.peak.theta[i] - beyond if y.omega * end.omega < 0.0 else 1.0,
         _not_lower(contact.left, left, left_end, in_left, low_left),
         _not_lower(contact.right, right, right_end, in_right, low_right),
+        nothing_new_of_shaft(m.shaft, lanes, i, y, end, h),
     )
     to_take_in = max(-nothing_new, 1.0 if turned else 0.0, 0.5 - contact.left - contact.right)
     calm = max(to_take_in, eventful) <= 0.0
@@ -182,53 +194,42 @@ def _judged(traits, lanes, i, substep, settings, sure):
     peak_at_end(lanes, i, tilt_end if calm else 0.0, substep)
     lowest.left[i] = min(low_left, left_end.position if min(contact.left, stays) > 0.0 else math.inf)
     lowest.right[i] = min(low_right, right_end.position if min(contact.right, stays) > 0.0 else math.inf)
-    put(
-        lanes.now,
-        i,
-        State(
-            end.v if calm else y.v,
-            end.theta if calm else y.theta,
-            end.v_rate if calm else y.v_rate,
-            end.omega if calm else y.omega,
-            end.z_left if calm else y.z_left,
-            end.z_right if calm else y.z_right,
-        ),
-    )
+    take_in_end(m.shaft, lanes, i, end, calm)
+    put(lanes.now, i, selected(calm, end, y))
     step_status.kind[i] = max(eventful, CALM if calm else STANDS)
+
+
+@hook
+def correct_reversals(shaft, traits, lanes, count):
+    """Correct lanes with velocity reversals of springs; with a ``shaft`` that bends these are left to scalar code."""
+
+
+@correct_reversals.of(type(None))
+def _correct_reversals(shaft, traits, lanes, count):
+    i = _next_turned(lanes, ZERO, count)
+    while i < count:
+        correct_lane(traits, lanes, i)
+        i = _next_turned(lanes, i + 1, count)
 
 
 @system.one_pass.of(SpringTraits)
 def one_pass(traits, lanes, count, substep, settings):
-    """Integrate the first ``count`` lanes over a sub-step."""
-    pass_of(traits.shaft, traits, lanes, count, substep, settings)
-
-
-@hook
-def pass_of(shaft, traits, lanes, count, substep, settings):
-    """Integrate lanes as :func:`one_pass`; those with a ``shaft`` that bends event by event."""
-
-
-@pass_of.of(type(None))
-def _rigid_pass(shaft, traits, lanes, count, substep, settings):
-    """Integrate lanes with rigid shafts.
+    """Integrate the first ``count`` lanes over a sub-step.
 
     Two loops, since the dependency chain of one would be too long for a processor to overlap two lanes. Lanes with reversals
     of springs, a few in a hundred, are corrected one by one.
     """
     for i in range(count):
         _stepped(traits, lanes, i, substep)
-    i = _next_turned(lanes, ZERO, count)
-    while i < count:
-        correct_reversals(traits, lanes, i)
-        i = _next_turned(lanes, i + 1, count)
+    correct_reversals(traits.shaft, traits, lanes, count)
     for i in range(count):
         _judged(traits, lanes, i, substep, settings, 1.0)
 
 
 @system.in_pass.of(SpringTraits)
 def in_pass(traits, lanes, i):
-    """Return model, state and contact of lane ``i`` without a grazing contact."""
-    return model_in(traits, lanes, i), get(lanes.now, i, State), _free(lanes, i)
+    """Return model, state and contact of lane ``i``; a grazing contact is left out."""
+    return model_in(traits, lanes, i), state_in(traits.shaft, lanes.now, i), _free(lanes, i)
 
 
 @system.gives_way.of(SpringTraits)
@@ -239,22 +240,11 @@ def gives_way(traits):
 
 @system.pass_with_devices.of(SpringTraits)
 def pass_with_devices(traits, lanes, equipment, count, substep, settings):
-    """Integrate the first ``count`` lanes over a sub-step."""
-    pass_with_devices_of(traits.shaft, traits, lanes, equipment, count, substep, settings)
-
-
-@hook
-def pass_with_devices_of(shaft, traits, lanes, equipment, count, substep, settings):
-    """Integrate lanes as :func:`pass_with_devices`; those with a ``shaft`` that bends event by event."""
-
-
-@pass_with_devices_of.of(type(None))
-def _rigid_pass_with_devices(shaft, traits, lanes, equipment, count, substep, settings):
-    """Integrate lanes with rigid shafts; a sub-step in which a spring's velocity reverses is eventful."""
+    """Integrate the first ``count`` lanes over a sub-step; one in which a spring's velocity reverses is eventful."""
     shared = equipment.shared[0]
     whole = integrate(traits, lanes, equipment, count, substep)
     for i in range(whole):
-        m, contact, end = model_in(traits, lanes, i), _free(lanes, i), get(shared.stage, i, State)
+        m, contact, end = model_in(traits, lanes, i), _free(lanes, i), state_in(traits.shaft, shared.stage, i)
         put(lanes.end, i, end)
         (left, right), (sign_left, sign_right) = pivots(m, end), _signs(m, contact)
         keeps = m.rest + min(sign_left * left.velocity, sign_right * right.velocity)

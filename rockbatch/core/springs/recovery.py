@@ -15,7 +15,10 @@ _DEGREE = 15  # of the series for arguments up to 40/2⁶, with an error of 3e-1
 
 @inlined
 def decay(x):
-    """Return e⁻ˣ for x ≥ 0, by arithmetic alone: a call of ``exp`` would keep loops over lanes from being vectorised."""
+    """Return e⁻ˣ for x ≥ 0, e⁻⁴⁰ beyond x = 40, by arithmetic alone.
+
+    A call of ``exp`` would keep loops over lanes from being vectorised.
+    """
     part = -min(x, _LARGEST) / 2**_HALVINGS
     series = 1.0 + part / _DEGREE
     for k in range(_DEGREE - 1, 1, -1):
@@ -40,19 +43,19 @@ def lag(m):
 
 @inlined
 def top(m, unstressed, z):
-    """Return the position [m] of the top of a support without its pivot, from its ``unstressed`` position and z."""
+    """Return the position [m] of the top of a support without its pivot, from its ``unstressed`` position and z (if damped)."""
     return unstressed + m.yield_deflection * z if m.damped is not None else unstressed
 
 
 @inlined
 def velocity_of_top(m, z):
-    """Return the velocity [m/s] of the top of a support without its pivot."""
+    """Return the velocity [m/s] of the top of a support without its pivot; 0 if undamped."""
     return -m.yield_deflection * z * quickness(m) if m.damped is not None else 0.0
 
 
 @inlined
 def acceleration_of_top(m, z):
-    """Return the acceleration [m/s²] of the top of a support without its pivot."""
+    """Return the acceleration [m/s²] of the top of a support without its pivot; 0 if undamped."""
     if m.damped is not None:
         quick = quickness(m)
         return m.yield_deflection * z * quick * quick
@@ -61,19 +64,19 @@ def acceleration_of_top(m, z):
 
 @inlined
 def recovery_rate(m, rate, z, on_spring):
-    """Return the rate of z [1/s]: ``rate`` in contact, that of recovery without the pivot."""
+    """Return the rate of z [1/s]: ``rate`` in contact or if undamped, else that of recovery without the pivot."""
     return rate if m.damped is None or on_spring != 0.0 else -z * quickness(m)
 
 
 @inlined
 def share_left(m, h):
-    """Return the factor of z after ``h`` [s] without the pivot; 1 if undamped."""
+    """Return the factor by which z decays in ``h`` [s] without the pivot; 1 if undamped."""
     return decay(h * quickness(m)) if m.damped is not None else 1.0
 
 
 @inlined
 def with_recovery(m, y, start, contact, share):
-    """Return ``y`` with z of supports without their pivots set to ``share`` times that of ``start``."""
+    """Return ``y`` with z of damped supports without their pivots set to ``share`` times that of ``start``."""
     if m.damped is None:
         return y
     left = y.z_left if contact.left != 0.0 else share * start.z_left

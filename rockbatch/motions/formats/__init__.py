@@ -52,7 +52,6 @@ _FOREIGN = {  # first bytes of files that hold records, but are not read
     b"GSE2 ": "GSE2",
 }
 _LOCATION = 2  # characters of a location code
-_TEXT = ".txt .csv .dat .bbp .acc .sgs .tsv .inp"
 _INSTEAD = "write it as MiniSEED, or as text columns below a line such as # time(s) NS(cm/s2) UD(cm/s2)"
 
 

@@ -63,7 +63,7 @@ def with_advice(error: Unstated, read: Read, options: ReadOptions, gravity: floa
 
 
 def _without_unit(trial: _Trial, read: Read, options: ReadOptions) -> list[Component]:
-    """Return the components to which a stated unit applies, since they have none of their own."""
+    """Return the components to which a stated unit applies, since they have none of their own; [] if no unit is stated."""
     if "unit" not in trial.stated:
         return []
     other = _trial({**trial.stated, "unit": _OTHER_UNIT}, read, options)
@@ -84,13 +84,13 @@ def _trial(statement: Statement, read: Read, options: ReadOptions) -> _Trial:
         except InputError as refusal:
             return _Trial(stated, (), "; ".join(refusal.messages))
         else:
-            reasons = [*_contradictions(readings)]
+            reasons = [*_objections(readings)]
             components = [reading for reading in readings if isinstance(reading, Component)]
             return _Trial(stated, () if reasons else components, "; ".join(reasons))
     return _Trial(stated, (), "it lacks more than can be stated")
 
 
-def _contradictions(readings: Sequence[Component | Unusable]) -> Iterator[str]:
+def _objections(readings: Sequence[Component | Unusable]) -> Iterator[str]:
     """Yield the reasons of unusable readings, and the texts of gross findings on components."""
     for reading in readings:
         if isinstance(reading, Unusable):
@@ -114,7 +114,10 @@ def _advice_text(choice: Statement, trial: _Trial, peak: float, gravity: float) 
 
 
 def _units(peak: float, gravity: float) -> str:
-    """Return the units that make a plausible PGA [g] of numbers with this ``peak``, each with that PGA."""
+    """Return the words "unit = …" with all units in which a ``peak`` is a PGA of 0.001 to 5 g, each with that PGA.
+
+    Imperial units and mg are in it only if no other fits; without any it asks for the unit.
+    """
     for units in _UNITS:
         peaks = {unit: peak * acceleration_factor(unit, gravity) / gravity for unit in units}
         fitting = [f"{shown(unit)} (PGA {pga:.2g} g)" for unit, pga in peaks.items() if LOWEST <= pga <= HIGHEST]

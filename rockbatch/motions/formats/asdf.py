@@ -37,7 +37,10 @@ def is_hdf5(head: bytes) -> bool:
 
 
 def read_asdf(file: RecordFile) -> list[Component | Unusable]:
-    """Return a component per channel and event of an ASDF file; raise ``InputError`` for other HDF5 files, or damaged ones."""
+    """Return a component per channel and event of an ASDF file; if some waveforms have a tag "raw…", of these only, with a note.
+
+    Raises ``InputError`` for other HDF5 files, and for damaged ones.
+    """
     try:
         with h5py.File(io.BytesIO(file.data), "r") as store:
             waveforms = _group(store, "Waveforms")
@@ -87,7 +90,7 @@ def _channels(station: "h5py.Group") -> list[stationxml.Channel]:
 
 
 def _traces(station: "h5py.Group", tags: Container[str]) -> "Iterator[obspy.Trace]":
-    """Yield a station's waveforms with one of the ``tags``; raise ``InputError`` for one that is no series, or too long."""
+    """Yield a station's waveforms with one of the ``tags``; raise ``InputError`` for no even series, too long or too many."""
     for number, name in enumerate(station):
         member, match = _own_member(station, name), _NAME.fullmatch(name)
         if match is None or match["tag"] not in tags or not isinstance(member, h5py.Dataset):

@@ -71,7 +71,7 @@ def _nanoseconds(match: re.Match[str]) -> int:
 
 
 def _start(match: re.Match[str], first: datetime, nanoseconds: int) -> float | None:
-    """Return a time [s since 1970, UTC], with its ``nanoseconds``; ``None`` if it was written without date or zone."""
+    """Return a time [s since 1970, UTC], plus its ``nanoseconds``; ``None`` if written without a zone or a date by year."""
     zone = (match["zone"] or "").strip()
     if match["date"] is None or not zone:
         return None

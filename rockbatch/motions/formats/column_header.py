@@ -94,7 +94,7 @@ class Column:
 
     @property
     def may_be_time(self) -> bool:
-        """Return whether its label is T without a unit: time, or the transverse component."""
+        """Return whether its label is T or Ts without a unit: time, or the transverse component."""
         return self.unit is None and self.label.lower() in ("t", "ts")
 
     @property
@@ -139,8 +139,8 @@ def seconds_in(unit: str) -> float | None:
 def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None:
     """Return the columns if the header states label and unit of all ``width``; else ``None``.
 
-    ``Column 2: North-south acceleration (cm/s/s)``, or in one line ``time(sec) N-S(cm/s/s) …``, or in two, the labels and
-    their units.
+    ``Column 2: North-south acceleration (cm/s/s)``, or in one line ``time(sec) N-S(cm/s/s) …``, the last one counts, or in
+    two, the labels and their units, of which some may be "" or "-".
     """
     numbered = {int(m["at"]): _column(m) for line in header if (m := _NUMBERED.match(line))}
     if sorted(numbered) == list(range(1, width + 1)):
@@ -155,7 +155,10 @@ def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None
 
 
 def _with_unit_row(header: Sequence[str], width: int) -> list[Column] | None:
-    """Return the columns by two neighbouring lines of labels and units, in either order; ``None`` without such lines."""
+    """Return the columns by two neighbouring lines of labels and units, in either order; ``None`` without such lines.
+
+    One unit at least is of acceleration; "" and "-" become None.
+    """
     for pair in pairwise(header):
         for labels, units in (pair, pair[::-1]):
             of_columns = [unit.strip(" ()[]") for unit in _fields(units)]
@@ -193,8 +196,8 @@ def without_index_name(header: Sequence[str]) -> list[str]:
 def columns_without_units(header: Sequence[str], width: int) -> list[Column] | None:
     """Return the columns if the header states the labels of all ``width``, with or without units, ``t, NS, UD``; else None.
 
-    The first is time, or period or frequency of a spectrum, or all are directions or time: other lines of as many words
-    are text, as are lines with a value.
+    A line "channels: NS EW UD" counts first, else the last line whose first label is time, or period or frequency of a spectrum,
+    or whose labels are all directions or time, or a single Sa: other lines of as many words are text, as are lines with a value.
     """
     if named := next((match for line in header if (match := _COMPONENTS.match(line))), None):
         labels = [Column(_short_label(word)) for word in re.split(r"[\s,;]+", named["labels"].strip())]
@@ -237,7 +240,7 @@ def line_about_spectra(header: Sequence[str]) -> str:
 
 
 def stated_unit(header: Sequence[str]) -> str | None:
-    """Return the unit in a line ``unit: cm/s2``, else in one such as ``acceleration in units of cm/s/s``; ``None`` without.
+    """Return the unit in a line ``unit: cm/s2``, else a known one as in ``acceleration in units of cm/s/s``; ``None`` without.
 
     Raises ``NoRecord`` where a record file of MIDAS says that it holds no accelerations.
     """
@@ -287,7 +290,8 @@ class StatedStep:
 def stated_step(header: Sequence[str]) -> StatedStep | None:
     """Return the interval in a line such as ``dt = 0.01 s``, ``Sampling rate: 200 Hz`` or ``NPTS= 4000, DT= .0050 SEC``.
 
-    ``None`` without one. Raises ``InputError`` for two different ones, and for numbers that are no intervals.
+    ``None`` without one. Intervals of other data ("original dt = 0.005") do not count. Raises ``InputError`` for two that
+    differ by over 1 %, and for numbers that are no intervals.
     """
     matches = (match for line in header for match in _STEP.finditer(line))
     steps = [_step(match) for match in matches if not _OF_OTHER_DATA.search(match.string[: match.start()])]
@@ -301,7 +305,7 @@ def stated_step(header: Sequence[str]) -> StatedStep | None:
 
 
 def _step(match: re.Match[str]) -> StatedStep:
-    """Return the interval that a match states, as such or as a rate; raise ``InputError`` for an impossible number."""
+    """Return the interval that a match states, in s without a unit, or by a rate; raise ``InputError`` for impossible numbers."""
     words = match[0].strip()
     unit = (match["behind"] or match["before"] or match["suffix"] or "").lower()
     try:

@@ -47,7 +47,7 @@ def is_columns(head: bytes) -> bool:
 
 
 def holds_table(head: bytes) -> bool:
-    """Return whether the complete lines of the first bytes are a table of three rows or more, with or without a header."""
+    """Return whether the first bytes, less their last line, are a table of three rows or more, with or without a header."""
     try:
         return len(read_table(text_of(head.rpartition(b"\n")[0]))[1]) > 2
     except InputError:
@@ -55,7 +55,7 @@ def holds_table(head: bytes) -> bool:
 
 
 def is_bbp(head: bytes) -> bool:
-    """Return whether the first bytes are comments that name time and three accelerations, each with its unit."""
+    """Return whether the first bytes have comments that name exactly time and three accelerations, each with its unit."""
     lines = [line.lstrip("# \t") for line in head.decode("latin-1").splitlines() if line.startswith("#")]
     columns = columns_with_units(lines, 4) or []
     return (
@@ -145,7 +145,8 @@ def _missing_unit(i: int, column: Column, unit: str) -> str:
 def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[list[Column], tuple[str, ...]]:
     """Return the columns by header and study, and notes on them.
 
-    Raises ``InputError`` for a spectrum, or a table without header for which the study states another number of columns.
+    Raises ``InputError`` for a spectrum, for a table without header for which the study states another number of columns, and
+    as :func:`_guessed_columns` if neither names them.
     """
     width = table.shape[1]
     columns = (
@@ -182,7 +183,8 @@ def _columns_named(header: Sequence[str], width: int) -> list[Column] | None:
 def _behind_an_index(header: Sequence[str], table: Samples) -> list[Column] | None:
     """Return the columns of a table whose first one has no name or is called "index": a row number, or times that grow evenly.
 
-    ``header`` names the others; ``None`` for other tables.
+    The first is then "-" or "time", and ``header`` names the others; ``None`` for other tables, and if the first grows evenly
+    but another column is time.
     """
     if _counts_rows(table[:, 0]):
         return _columns_beside_index(header, table)
@@ -191,7 +193,10 @@ def _behind_an_index(header: Sequence[str], table: Samples) -> list[Column] | No
 
 
 def _columns_beside_index(header: Sequence[str], table: Samples) -> list[Column] | None:
-    """Return the columns of a table whose first one counts its rows, if the header names all others; else ``None``."""
+    """Return the columns of a table whose first one counts its rows, from 0 or 1, if the header names all others; else ``None``.
+
+    The first is returned, too, as a column "-".
+    """
     named = _columns_named(header, table.shape[1] - 1) if _counts_rows(table[:, 0]) else None
     return None if named is None else [Column("-"), *named]
 
@@ -221,7 +226,10 @@ def _merged_column(header: Column, stated: str) -> Column | None:
 
 
 def _with_time(columns: list[Column], table: Samples) -> list[Column]:
-    """Return columns with a label T without unit decided: a time grows, the transverse component does not."""
+    """Return columns in which a label T without unit is time if more than 90 % of its steps are upward, else transverse.
+
+    They are unchanged if another one is time.
+    """
     if any(column.is_time for column in columns):
         return columns
     return [
@@ -260,7 +268,8 @@ def _on_one_step(
 ) -> tuple[float, Samples, tuple[str, ...]]:
     """Return the sampling interval [s], by the column of time or as stated, the table at even times, and notes.
 
-    Raises ``InputError`` for several columns of time, no step at all, or a header that states another step than the times have.
+    Raises ``InputError`` for several columns of time, an unknown unit of time, uneven times that cannot be interpolated, no step
+    at all, or a header that states another step than the times have, unless a manifest states ``dt``.
     """
     times = [i for i, column in enumerate(columns) if column.is_time]
     if len(times) > 1:
@@ -283,7 +292,7 @@ def _on_one_step(
 
 
 def _check_step(stated: StatedStep, dt: float, usual: float) -> None:
-    """Raise ``InputError`` if the header's interval is neither ``dt`` of the samples nor their ``usual`` step [s]."""
+    """Raise ``Contradiction`` if the header's interval is over 1 % off both ``dt`` and the ``usual`` step of the times [s]."""
     if all(abs(stated.dt - step) > SAME_STEP * step for step in (dt, usual)):
         raise Contradiction(
             f'the header says "{stated.words}", {stated.dt:g} s, but time grows by {usual:g} s; correct the one that is '

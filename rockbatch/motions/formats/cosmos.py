@@ -71,7 +71,10 @@ def is_cosmos(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the channels, one after the other; raise ``InputError`` with the line if the file is incomplete."""
+    """Return the channels of acceleration, with velocities and displacements of the same sensor that follow them.
+
+    Raises ``InputError`` with the line if the file is incomplete, and if it holds no accelerations.
+    """
     lines = lines_of(text)
     recordings: list[tuple[Recording, _Header]] = []
     quantities: list[str] = []
@@ -116,7 +119,7 @@ def _with_series(recording: Recording, series: re.Match[str], values: Samples) -
 
 
 def _header(lines: list[str], start: int) -> _Header:
-    """Return the header that begins at ``lines[start]``; raise ``InputError`` with the line if it is incomplete."""
+    """Return the header that begins at ``lines[start]``; raise ``InputError`` with the line if it is incomplete or of spectra."""
     title = match_line(_TITLE, lines, start, "Corrected acceleration    (Format v01.20 with 13 text lines)")
     if "spectr" in title["what"].lower():
         raise NoRecord(f"line {start + 1}: spectra; expected accelerations: take the V2 file of this record")
@@ -163,7 +166,10 @@ def _values(lines: list[str], index: int, series: re.Match[str]) -> tuple[Sample
 
 
 def _recording(header: _Header, series: re.Match[str], values: Samples, index: int) -> Recording:
-    """Return the recording of accelerations declared by ``lines[index]``; raise ``InputError`` for missing values."""
+    """Return the recording of accelerations declared by ``lines[index]``.
+
+    Raises ``InputError`` for missing values and an impossible interval.
+    """
     interval, length, peak, time_of_peak = header.reals[61:65]
     if not 0 < interval < 1e5:
         raise InputError(f"real number 62 of the header says an interval of {interval:g} ms; expected a number above 0")
@@ -207,7 +213,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
 
 
 def _initial(header: _Header) -> Initial | None:
-    """Return the ground's velocity [m/s] and displacement [m] at the first sample; ``None`` if real number 68 is unknown."""
+    """Return the ground's state at the first sample; ``None`` without its velocity (real 68), 0 m without displacement (69)."""
     velocity, displacement = header.reals[67:69]
     if velocity == header.unknown:
         return None
@@ -238,7 +244,8 @@ def _unit(header: _Header, series: re.Match[str], index: int) -> str:
 def _label(header: _Header, channel: str) -> str:
     """Return the direction by the header's text, else by its code (integer 54), else by the SEED channel.
 
-    Raises ``InputError`` if they contradict each other.
+    It is the text, perhaps "", if none of them is known. Raises ``InputError`` if they differ in vertical or horizontal, up or
+    down.
     """
     code, stated = header.integers[53], header.fields["label"]
     by_code = _DIRECTIONS.get(code, str(code) if 1 <= code <= 360 else "")

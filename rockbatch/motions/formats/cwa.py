@@ -27,7 +27,7 @@ def is_cwa(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the three components; raise ``InputError`` if header and columns do not agree."""
+    """Return a component per column after time; raise ``InputError`` if the header does not name as many, or other columns."""
     lines, table = read_table(text)
     header = keys_of(lines)
     unit, _, offset = header.get("AmplitudeUnit", "").partition(".")

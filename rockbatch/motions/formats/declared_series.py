@@ -25,15 +25,18 @@ _FORMAT = re.compile(r"\((?P<per_line>[0-9]{1,2})f(?P<width>[0-9]{1,2})\.[0-9]{1
 
 
 def declares_series(lines: list[str], index: int) -> bool:
-    """Return whether ``lines[index]`` declares a series, as "1887 POINTS OF ACC DATA EQUALLY SPACED AT .020 SEC" does."""
+    """Return whether ``lines[index]`` declares a series, as "1887 POINTS OF ACC DATA EQUALLY SPACED AT .020 SEC" does.
+
+    False after the last line.
+    """
     return _SPACING.match(line_at(lines, index)) is not None
 
 
 def declared_series(lines: list[str], start: int) -> tuple[float, dict[str, Series], int]:
     """Return the interval [s], the series by kind ("acc", "vel", "dis"), and the index of the line after them.
 
-    ``lines[start]`` declares the accelerations; the others are optional. Raises ``InputError`` with the line of an
-    incomplete series.
+    ``lines[start]`` declares the accelerations; velocities and displacements may follow. Raises ``InputError`` with the line of
+    an incomplete series.
     """
     _, dt, accelerations, end = _block(lines, start, ("acc",))
     series = {"acc": accelerations}

@@ -226,7 +226,7 @@ def number_in(field: str, index: int) -> float:
 
 
 def is_cut_short(backwards: Iterable[str]) -> bool:
-    """Return whether the last number has fewer decimals than up to 1000 before it, which agree; False for fewer than 100.
+    """Return whether the last number has fewer decimals than up to 1000 before it, which agree; False for fewer than 100 in all.
 
     A file cut within its last number has the right count, but a wrong value. The numbers come ``backwards``; only two are read
     unless the last one is short.

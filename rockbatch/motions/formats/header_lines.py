@@ -46,7 +46,7 @@ def layout(*lines: tuple[int, str, str]) -> tuple[HeaderLine, ...]:
 
 
 def read_header(lines: Sequence[str], start: int, layout: Sequence[HeaderLine]) -> dict[str, str]:
-    """Return the pattern groups of a header that begins at ``lines[start]``, "" for missing ones.
+    """Return by name the pattern groups of a header that begins at ``lines[start]``, "" for missing ones.
 
     Raises ``InputError`` with the first required line that does not match.
     """
@@ -144,7 +144,7 @@ def date_in(text: str) -> tuple[int, int, int] | None:
 
 
 def moment_of(groups: Mapping[str, str]) -> float | None:
-    """Return the time [s since 1970, UTC] of the groups ``year`` to ``second``; ``None`` if they are no time."""
+    """Return the time [s since 1970, UTC] of the groups ``year`` to ``second``; ``None`` if one is missing or impossible."""
     try:
         year, month, day, hour, minute = (int(groups[name]) for name in ("year", "month", "day", "hour", "minute"))
         return moment(year, month, day, hour, minute, float(groups["second"].replace(",", ".")))

@@ -14,7 +14,7 @@ __all__ = ["is_evt", "read_evt"]
 
 
 def read_evt(file: RecordFile) -> list[Component | Unusable]:
-    """Return a component per channel of a file, each of unknown direction."""
+    """Return a component in m/s² per channel of a file, each of unknown direction."""
     stream = read_stream(file.data, "KINEMETRICS_EVT")
     recordings = []
     for number, trace in enumerate(stream, start=1):

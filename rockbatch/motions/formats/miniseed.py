@@ -97,7 +97,8 @@ def components_of_traces(
 def _channels_broken_off(data: bytes, stream: "obspy.Stream") -> set[str]:
     """Return the channels in which a block follows the one before by its number, but not by its time.
 
-    Between two events numbers are skipped, or begin anew. Files with blocks of several lengths are not checked.
+    Between two events numbers are skipped, or begin anew. Files with blocks of several lengths, or without a channel in pieces,
+    are not checked: set().
     """
     lengths = {trace.stats.mseed.record_length for trace in stream}
     rates = {trace.id: trace.stats.sampling_rate for trace in stream}
@@ -127,14 +128,14 @@ def _channels_broken_off(data: bytes, stream: "obspy.Stream") -> set[str]:
 
 
 def _times(blocks: npt.NDArray[np.void]) -> Samples:
-    """Return the times of the first samples of blocks [s since the last day of 1969], shape (blocks,)."""
+    """Return the times of the first samples of blocks [s since 1969-12-31], shape (blocks,)."""
     midnight = (blocks["year"].astype(int) - 1970).astype("M8[Y]").astype("M8[D]") + blocks["day"].astype(int)
     day, hour, minute = midnight.astype(float), blocks["hour"].astype(float), blocks["minute"].astype(float)
     return ((24.0 * day + hour) * 60.0 + minute) * 60.0 + blocks["second"] + 1e-4 * blocks["fraction"]
 
 
 def _events(traces: "list[obspy.Trace]") -> "list[list[obspy.Trace]]":
-    """Return the pieces of a channel by event, which a gap far longer than the longest piece separates."""
+    """Return the pieces of a channel by event, in time; gaps over a minute and three times the longest piece separate events."""
     ordered = sorted(traces, key=lambda trace: trace.stats.starttime.timestamp)
     longest = max(trace.stats.endtime - trace.stats.starttime for trace in ordered)
     events = [[ordered[0]]]

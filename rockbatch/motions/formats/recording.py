@@ -58,14 +58,14 @@ def reader(parse: Callable[[str], Sequence[Recording]]) -> Callable[[RecordFile]
 
 
 def letters(text: str, most: int = 5) -> str:
-    """Return the first ``most`` ASCII letters and digits of a text, as a SEED code."""
+    """Return the first ``most`` ASCII letters and digits of a text, without other characters: a SEED code."""
     return "".join(c for c in text if c.isascii() and c.isalnum())[:most]
 
 
 def to_components(file: RecordFile, recordings: Sequence[Recording]) -> list[Component | Unusable]:
     """Return the channels of ``file`` in m/s², named by its stem and, if there are several, their labels.
 
-    A channel in an unknown unit becomes an ``Unusable`` beside the others.
+    A channel in an unknown unit, and the recorder's clock, become an ``Unusable`` beside the others.
     """
     readings: list[Component | Unusable] = []
     for recording in recordings:

@@ -117,8 +117,10 @@ def contradictions(statements: Sequence[Stated], sampled: Sampled, gravity: floa
 
 
 def _contradiction(stated: Stated, sampled: Sampled, gravity: float) -> Finding | None:
-    """Return the finding on a statement that the samples contradict; None within its tolerances, and if it is no number.
+    """Return the finding on a statement that the samples contradict; None within its tolerances.
 
+    None also for a text that is no number, a peak in an unknown unit, and a time, step or rate of 0, which programs write for
+    unknown ones.
     Raises ``Truncated`` for another count of samples.
     """
     printed = stated.text.strip()

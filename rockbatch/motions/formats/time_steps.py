@@ -17,7 +17,7 @@ _GROWTH = 20  # greatest ratio of the samples of an even grid to those read
 
 
 def grows_evenly(t: Samples) -> bool:
-    """Return whether times, shape (npts,), rise in even steps within the rounding of their printing."""
+    """Return whether two times or more, shape (npts,), rise in even steps, to 5 % of a step or the rounding of their printing."""
     return _is_growing(t) and _on_grid(t, np.arange(len(t), dtype=float)) is not None
 
 

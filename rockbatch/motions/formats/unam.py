@@ -107,7 +107,7 @@ def parse(text: str) -> list[Recording]:
 
 
 def _header(lines: list[str]) -> dict[str, str]:
-    """Return the values of the keys ``_NEEDED`` and ``_OPTIONAL``, "" without one; raise ``InputError`` for needed ones.
+    """Return the values of the keys ``_NEEDED`` and ``_OPTIONAL``, "" for missing ones; raise ``InputError`` if a needed one is.
 
     Keys are compared without blanks and by their beginnings, since institutes add units such as "(s)".
     """
@@ -123,7 +123,7 @@ def _header(lines: list[str]) -> dict[str, str]:
 
 
 def _value_of_each(header: dict[str, str], key: str, count: int) -> list[str]:
-    """Return the values of all channels, between slashes; raise ``InputError`` for another number of them."""
+    """Return the texts between slashes under ``key``, one per channel; raise ``InputError`` unless there are ``count``."""
     values = [part.strip() for part in header[key].strip("/ ").split("/")]
     if len(values) != count:
         raise InputError(f"the header says {count} channels, but {key}: {header[key][:60]}")
@@ -131,13 +131,13 @@ def _value_of_each(header: dict[str, str], key: str, count: int) -> list[str]:
 
 
 def _texts_of(text: str, count: int) -> list[str]:
-    """Return the values of an optional key for all channels, between slashes; "" for each if there is another number of them."""
+    """Return the texts between slashes, one per channel; ``count`` times "" if there is another number of them."""
     texts = [part.strip() for part in text.strip("/ ").split("/")]
     return texts if len(texts) == count else [""] * count
 
 
 def _time_of_sample(number: str, dt: float) -> str:
-    """Return the time [s] of a sample counted from 1, as text; "" for a text that is no number."""
+    """Return the time [s] of a sample counted from 1, as text, "1.000000"; "" for a text that is no whole number below 10⁹."""
     return f"{(int(number) - 1) * dt:.6f}" if number.isdecimal() and 0 < len(number) < 10 else ""
 
 
@@ -166,7 +166,7 @@ def _first_sample_line(lines: list[str], start: int, labels: list[str]) -> int:
 def _values(lines: list[str], first: int, npts: int, channels: int, layout: str) -> tuple[Samples, int]:
     """Return the samples, shape (npts, channels), and the number of further lines, two at most.
 
-    Raises ``InputError`` for fewer samples or more lines, another format than ``layout`` says, and lines that do not fit it.
+    Raises ``InputError`` for fewer samples or more lines, a ``layout`` that is no format of the channels, and lines unlike it.
     """
     form = _FORMAT.fullmatch(layout.replace(" ", ""))
     if form is None or int(form["per_line"]) != channels or int(form["width"]) < 2:

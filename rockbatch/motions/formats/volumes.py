@@ -169,7 +169,8 @@ def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | Non
 def _start(fields: dict[str, str], begins: float | None) -> float | None:
     """Return the time of the first sample [s since 1970]; ``None`` if unknown.
 
-    Times of pairs count from the trigger time, if the recorder's clock was set.
+    Times of pairs count from the trigger time, if it has a year of four digits and the recorder's clock was set. A start time
+    may have two digits, 1930 to 2029.
     """
     year = fields["year"]
     if fields["began"].lower() != "trigger":
@@ -223,9 +224,10 @@ def _pairs(lines: list[str], first: int, fields: dict[str, str]) -> tuple[_Sampl
 
 
 def _undeclared(lines: list[str], start: int, fields: dict[str, str]) -> tuple[float, dict[str, Series], int]:
-    """Return interval [s], series by kind and end of undeclared samples of Volume II, in the unit of the stated peak.
+    """Return interval [s], series by kind ("acc", "vel", "dis"; the last two if they follow) and end of undeclared samples.
 
-    Raises ``InputError`` for fewer than two points, or with the line of an incomplete series.
+    They are of Volume II, in the unit of the stated peak. Raises ``InputError`` for fewer than two points, or with the line of an
+    incomplete series.
     """
     unit, npts, series, end = _unit_of_peak(fields), int(fields["npts"]), {}, start
     if npts < 2:

@@ -96,7 +96,7 @@ def _tag(data: bytes, at: int) -> tuple[int, int, int]:
 
 
 def check_evt(data: bytes) -> bytes:
-    """Return an .evt unchanged; raise ``InputError`` unless its tags lead from one to the next up to its end."""
+    """Return an .evt unchanged; raise ``InputError`` unless its tags lead from one to the next up to its end, or zeros."""
     at = 0
     while at < len(data):
         if data[at : at + 1] == b"\0" and not any(data[at : at + _TAG]):

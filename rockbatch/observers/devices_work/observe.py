@@ -38,7 +38,10 @@ class DeviceWork:
 
 
 def greatest_of(pier: Pier, base: Base, work: Work) -> DeviceWork:
-    """Return the greatest ``work`` of any damper, and strain of any tendon that can yield; None for either without one."""
+    """Return the greatest travel, work and half cycles of any damper, each by itself, and strain of any tendon that can yield.
+
+    None for those of dampers, and for the strain, without such a device.
+    """
     dampers = np.array([isinstance(device, Damper) for device in base.restraints for _ in places(pier, device)])
     strains = work.strain[np.isfinite(work.strain)]
     strain = float(strains.max()) if len(strains) else None
@@ -59,7 +62,8 @@ OF_WORK = {
 def with_work(outcome: Outcome, fine: DeviceWork, coarse: DeviceWork | None, pier: Pier, chance: float) -> Outcome:
     """Return ``outcome`` with the ``fine`` work of its devices.
 
-    Its ``devices_error`` becomes at least ``chance`` times the change from ``coarse``, by twice the step; unchanged without it.
+    Its ``devices_error`` becomes at least ``chance`` times the greatest relative change from ``coarse``, by twice the step, of
+    the fields in OF_WORK; it stays without ``coarse``, or if it is None.
     """
     worked = outcome.with_observed("devices_work", fine)
     if coarse is None or outcome.devices_error is None:
@@ -79,7 +83,7 @@ class WorkOfDevices(Observer):
         return bool(run.base.restraints)
 
     def read(self, recording: Recording, outcome: Outcome) -> DeviceWork:
-        """Return the greatest work of any damper, and strain of any tendon."""
+        """Return the greatest work of any damper, and strain of any tendon that can yield."""
         run = recording.run
         work = restraints.device_work(run.pier, run.base, recording.rows, self.least_stroke)
         return greatest_of(run.pier, run.base, work)

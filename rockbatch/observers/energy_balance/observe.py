@@ -35,7 +35,7 @@ class EnergyBalance(Observer):
         return False
 
     def read(self, recording: Recording, outcome: Outcome) -> dict[str, float]:
-        """Return each term at the end, and the greatest magnitude of the remainder."""
+        """Return each term at the end by its name, but of the remainder the greatest magnitude on the way."""
         terms = energies(recording.run, recording.rows)
         at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
         return at_end | {"remainder": float(abs(terms[:, -1]).max())}

@@ -216,7 +216,7 @@ def _per_bounce(run: Run, events: np.recarray, after: np.ndarray) -> Samples | f
 
 
 def _first_uplift(run: Run, rows: np.recarray) -> dict[str, float]:
-    """Return fields of PeakForces: time of the first uplift, and horizontal ground acceleration then; empty without uplift."""
+    """Return fields of PeakForces: time and magnitude of the ground acceleration at the first uplift; empty without uplift."""
     lifted = _events(rows, _UPLIFTS)
     if len(lifted) == 0:
         return {}
@@ -225,7 +225,10 @@ def _first_uplift(run: Run, rows: np.recarray) -> dict[str, float]:
 
 
 def _not_followed(run: Run, noted: Noted, peaks: PeakForces, least_normal: float) -> str:
-    """Return a note on sliding, keys that carry the shear, and tension on rigid ground, which the model does not follow."""
+    """Return a note on tension on rigid ground, sliding and keys that carry the shear, which the model does not follow; else "".
+
+    The last two are only said if the base states its friction.
+    """
     notes = []
     if noted.pulls != NEVER and not run.base.on_springs:
         notes.append(
@@ -278,9 +281,9 @@ OF_FORCES = {
 
 
 def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier, chance: float) -> tuple[PeakForces, str]:
-    """Return ``fine`` with ``chance`` times the greatest relative change from ``coarse`` as its error, and a note if it is large.
+    """Return ``fine`` with ``chance`` times the greatest relative change from ``coarse`` added to its error, and a note.
 
-    ``coarse`` are the demands with twice the step.
+    ``coarse`` are the demands with twice the step. The note is "" unless the change is above LARGE_ERROR, 1 %.
     """
     worst, most = greatest_change(OF_FORCES, fine, coarse, pier)
     note = f"forces not settled: halving the step still changed the {worst} by {most:.1%}" if most > LARGE_ERROR else ""

@@ -41,7 +41,7 @@ class Order(NamedTuple):
 
 
 def order_of(measure: Array, theta: Array, status: Sequence[str]) -> Order:
-    """Return how well ``measure`` orders the peaks ``theta``, both shape (n,); failed runs by ``status`` are left out."""
+    """Return how well ``measure`` orders the peaks ``theta``, both shape (n,); failed runs and those with NaN are left out."""
     kinds = np.asarray(status, dtype=object)
     overturned = np.isin(kinds, NO_PEAK)
     peaks = np.where(overturned, math.inf, theta)

@@ -31,7 +31,7 @@ class Envelope(NamedTuple):
 
     @property
     def sizes(self) -> tuple[float, float]:
-        """Greatest |N| and E."""
+        """Return the greatest |N| and E, either LEAST at least."""
         return max(float(np.abs(self.axial).max()), LEAST), max(float(self.effect.max()), LEAST)
 
 
@@ -62,7 +62,7 @@ def _on_the_outside(axial: Values, effect: Values) -> Iterator[tuple[float, floa
 
 
 def thinned(of: Envelope) -> Envelope:
-    """Return an envelope without corners whose absence costs it less than :data:`FLATNESS`, which is added to its error.
+    """Return an envelope without corners whose absence costs it less than :data:`FLATNESS`, which is added to its error, if any.
 
     Both ends and the greatest effect stay.
     """

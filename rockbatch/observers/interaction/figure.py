@@ -48,7 +48,10 @@ def _axis(label: str, marks: Sequence[Mark], along: str) -> Axis:
 
 
 def _drawn(curve: Curve, axial: Values) -> tuple[Values, Values]:
-    """Return the part of a curve near the axial forces that occur, shape (k,) each."""
+    """Return N and the resistance of a curve from below the ``axial`` forces and 0 to above them, shape (k,) each.
+
+    It goes beyond them by BEYOND, 0.3, of the greatest |N|, but not beyond its own ends.
+    """
     room = BEYOND * max(float(np.abs(axial).max()), 1.0)
     low, high = max(min(axial.min(), 0.0) - room, curve[0][0]), min(axial.max() + room, curve[-1][0])
     inner = [point[0] for point in curve if low < point[0] < high]

@@ -36,7 +36,7 @@ def _at_base(recording: Recording) -> Envelope:
 def with_values_between(t: Samples, values: Samples) -> Samples:
     """Return ``values`` at the times ``t`` [s] of rows, and behind them those at the :data:`SHARES` of steps.
 
-    They are cubic through the four rows around a step. Steps beside an event have none.
+    They are cubic through the four rows around a step. Only a step as long as both its neighbours has them: none beside an event.
     """
     steps = np.diff(t)
     even = (steps[1:-1] > 0.0) & np.isclose(steps[:-2], steps[1:-1]) & np.isclose(steps[2:], steps[1:-1])

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from rockbatch.observers.other_law.study import BothLaws
 from rockbatch.outcome.outcome import Outcome
+from rockbatch.pier import Base, YieldingBase
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.runs import Run
 from rockbatch.study import Output
@@ -15,7 +16,8 @@ class OtherLaw(Observer):
 
     def beside(self, run: Run, outcome: Outcome) -> Run | None:
         """Return the run on springs of the other law; None if the springs do not ratchet, or ``run`` was refused."""
-        return replace(run, base=run.base.by_other_law()) if run.base.ratchets and outcome.was_run else None
+        base = by_other_law(run.base)
+        return replace(run, base=base) if base and outcome.was_run else None
 
     def compare(self, outcome: Outcome, other: Outcome) -> Outcome:
         """Return ``outcome`` with the settlement of the ``other`` [m], None if that did not stand, and a note if it failed."""
@@ -25,6 +27,13 @@ class OtherLaw(Observer):
     def reads(self, run: Run, outcome: Outcome) -> bool:
         """Return False: histories are not read."""
         return False
+
+
+def by_other_law(base: Base) -> YieldingBase | None:
+    """Return the base with elastic–perfectly plastic springs for Bouc–Wen ones; None for one that does not ratchet."""
+    if not isinstance(base, YieldingBase) or base.law.creep is None:
+        return None
+    return replace(base, spring=base.law.creep.other)
 
 
 def requested(output: Output) -> OtherLaw | None:

@@ -2,9 +2,12 @@
 
 from typing import Any
 
-from rockbatch.quantities.demands import toe
-from rockbatch.quantities.limits import OTHER_LAW
+from rockbatch.quantities.cases import creeps
+from rockbatch.quantities.demands import OtherEnd, toe
 from rockbatch.quantities.quantity import YIELDING, OfSuite, Quantity, ReportFormat
+
+OTHER_LAW = "settlement_other_law_m"
+"""Column of the settlement by the other spring law."""
 
 
 def _asked(study: Any) -> bool:
@@ -27,5 +30,11 @@ FIRST = (
     ),
 )
 
-BY_OTHER_LAW = {"settlement_m": lambda runs, case: runs.numbers(OTHER_LAW), "toe_settlement_m": toe(OTHER_LAW)}
-"""Values of demands by the other law."""
+OTHER_ENDS = {
+    name: OtherEnd(OTHER_LAW, "both_laws", evaluate, creeps, model="law", models="spring laws")
+    for name, evaluate in {
+        "settlement_m": lambda runs, case: runs.numbers(OTHER_LAW),
+        "toe_settlement_m": toe(OTHER_LAW),
+    }.items()
+}
+"""Ends of the ranges of demands that are by the other law."""

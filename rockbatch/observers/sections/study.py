@@ -19,7 +19,7 @@ class Sections:
 
     @property
     def requested(self) -> int | tuple[float, ...] | None:
-        """Number of the sections, or their heights [m]; None if none are requested."""
+        """Return the number of the sections, or their heights [m]; None if none are requested."""
         return self.sections or self.sections_m or None
 
 

@@ -87,7 +87,8 @@ def _effects(run: Run, outcome: Outcome, rows: np.recarray, peaks: list[tuple[fl
 def _rest_state(run: Run, rows: np.recarray) -> tuple[Samples | None, Samples | None]:
     """Return the static rest rotation [rad] and the mean settlement of the supports [m] at every row.
 
-    The rotation is ``None`` if devices affect it; both are ``None`` on a rigid base.
+    Both are 0 on springs that do not yield, and ``None`` on a rigid base and a footing; the rotation is ``None`` if devices
+    affect it.
     """
     pier, base = run.pier, run.base
     if not isinstance(base, ElasticBase):  # a history does not hold the set of a bed

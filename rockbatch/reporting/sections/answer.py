@@ -36,7 +36,10 @@ DEVICES = {
 
 
 def section(finished: Finished) -> Markup:
-    """Return the first screen: the answer, runs without a result, scorecard or greatest responses, and the peaks by record."""
+    """Return the first screen: the answer, runs without a result, scorecard or greatest responses, and the peaks by record.
+
+    Supports that cannot carry the pier alone come before these, notes before the peaks.
+    """
     weak = weak_supports(finished.info["cases"])
     checked = any(verdict.case for verdict in finished.verdicts)
     card = verdicts.scorecard(finished) if checked else responses(finished)
@@ -60,7 +63,7 @@ def responses_beside_checks(finished: Finished) -> Markup:
 def responses(finished: Finished) -> Markup:
     """Return a table of each case's greatest responses over the runs that end standing, with their records as tooltips.
 
-    Cases with the fewest other runs come first, then those with the smallest rotation.
+    Cases with the fewest other runs come first, then those with the smallest rotation. Empty without runs.
     """
     if finished.runs.empty:
         return Markup("")
@@ -201,7 +204,10 @@ def _standing(finished: Finished) -> str:
 
 
 def _error(finished: Finished) -> str:
-    """Return a sentence on the largest error of rotations, or that none was estimated; "" if no run ended standing."""
+    """Return a sentence on the largest error of rotations, or that it was not estimated, if the step is fixed.
+
+    "" if the step was adapted, and no run that ended standing has an error.
+    """
     numerics = finished.info["numerics"]
     errors = finished.runs.loc[finished.runs["status"] == "ok", "theta_max_error"]
     largest, lacking = errors.max(), int(errors.isna().sum())

@@ -68,7 +68,10 @@ def _ground(cases: Collection[Case]) -> str:
 
 
 def _landings(cases: Collection[Case]) -> str:
-    """Return sentences on how landings lose energy, for each kind of base with its numbers, and its cases unless all."""
+    """Return sentences on how landings lose energy: on rigid ground, and on springs by Housner's factor or by ε.
+
+    Those on springs have their cases unless it is all. "" if no landing is stopped by an impulse.
+    """
     parts = []
     if impulsive := [case for case in cases if lands_by_impulse(case)]:
         given = {case["parameters"].get("restitution") for case in impulsive if not bends(case)}

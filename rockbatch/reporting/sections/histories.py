@@ -99,7 +99,10 @@ def _drawn(series: Series, response: Response) -> Drawn:
 
 
 def _rows_of(finished: Finished, responses: Sequence[Response]) -> list[Row]:
-    """Return the rows of the runs that have histories, without reading the histories."""
+    """Return identity, status, varied values, series and pier of each run that has a history, without reading the history.
+
+    Raises ``InputError`` for a run whose case peaks.csv does not list.
+    """
     if isinstance(responses, Responses):
         runs = as_dicts(responses.runs)
     else:
@@ -136,13 +139,16 @@ def _key(row: Row) -> tuple[object, ...]:
 
 
 def _shown(finished: Finished, rows: Sequence[Row]) -> list[Row]:
-    """Return the runs to draw, in the order of foundations: those on rigid ground and the worst :data:`MOST_TOGETHER` others."""
+    """Return the runs to draw: those on rigid ground, then the first :data:`MOST_TOGETHER` others of ``rows``, worst first.
+
+    Both are in the order of their foundations.
+    """
     rigid = [row for row in rows if finished.series[row["series"]].rigid]
     others = [row for row in rows if row not in rigid][:MOST_TOGETHER]
     return sorted(rigid + others, key=lambda row: (row not in rigid, finished.series[row["series"]].index))
 
 
 def _title(finished: Finished, run: Row) -> str:
-    """Return the name of a run's motion and pier: "Kobe, TAK000, scaled by 2, reversed"."""
+    """Return the name of a run's motion and pier: "Kobe, Takatori, 0° (TAK000), scaled by 2, reversed, p = 1.2 rad/s"."""
     also = [f"scaled by {run['scale']:g}" if run["scale"] != 1 else "", "reversed" if run["polarity"] == "-" else ""]
     return ", ".join(filter(None, [finished.named(run["record"]), *also, finished.piers[run["pier"]]]))

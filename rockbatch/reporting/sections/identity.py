@@ -35,7 +35,7 @@ def section(finished: Finished) -> Markup:
 
 
 def _program(finished: Finished) -> str:
-    """Return the beginning of the digest of all modules that can influence a result."""
+    """Return the beginning of the digest of all modules that can influence a result, "1f2e3d…"; "not noted" if it is unknown."""
     digest = finished.info.get("digest")
     program = digest.get("program") if isinstance(digest, dict) else None
     return f"{program}…" if isinstance(program, str) else "not noted"

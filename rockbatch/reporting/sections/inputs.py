@@ -70,7 +70,10 @@ def section(finished: Finished) -> Markup:
 
 
 def of_rows(rows: Sequence[Mapping[str, object]], name: str, words: Mapping[str, str]) -> Markup:
-    """Return a table of constants with a column for each key of any row, headed by ``words`` or its symbol and unit."""
+    """Return a table of constants with a column for each key that has a number or text in any row.
+
+    A column is headed by the entry of its key in ``words``, or by symbol and unit.
+    """
     keys = [
         key for key in dict.fromkeys(key for row in rows for key in row) if any(_single(row.get(key)) for row in rows)
     ]
@@ -80,7 +83,10 @@ def of_rows(rows: Sequence[Mapping[str, object]], name: str, words: Mapping[str,
 
 
 def _symbol(key: str) -> str:
-    """Return symbol and unit of a key, or the words of its name: "top [m]", "flight limit [mm]"."""
+    """Return symbol and unit of a key, "p [rad/s]".
+
+    Of a key without a symbol it is its words, and the unit at its end if any: "toe level [m]" of "toe_level_m".
+    """
     if symbol(key) != key:
         return symbol(key)
     unit = _UNIT.search(key)

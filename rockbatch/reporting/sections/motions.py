@@ -51,7 +51,10 @@ COLUMNS = (
 
 
 def section(finished: Finished) -> Markup:
-    """Return spectra, table and sources of the usable ground motions, weakest first; empty without any."""
+    """Return spectra, table and sources of the usable ground motions, weakest first; empty without any.
+
+    Spectra are left out if the study has a target, which is compared with them elsewhere.
+    """
     if not finished.info["records"]:
         return Markup("")
     caption = "before the study's scale."

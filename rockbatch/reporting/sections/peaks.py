@@ -3,10 +3,10 @@
 import math
 from typing import TYPE_CHECKING
 
+from rockbatch.common.observers import parts
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import creeps
-from rockbatch.quantities.catalogue import COLUMNS, report_columns
-from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR, OTHER_LAW
+from rockbatch.quantities.catalogue import COLUMNS, DEMANDS, report_columns
+from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.reporting.finished import Finished, worst_first
 from rockbatch.reporting.labels import counted, head, symbol
 from rockbatch.reporting.markup import Markup, join, number, tag
@@ -22,6 +22,8 @@ REMARKS = ("reason", "note")
 """Columns of texts, which are listed below the table."""
 LAST_DIGIT = 1e-5
 """Resolution of θ_max/α in the table."""
+_OTHER_ENDS = {name: end.column for name in COLUMNS if name in DEMANDS and (end := DEMANDS[name].other_end)}
+"""Columns of the other ends of ranges, by those of which they are the end."""
 MOST_OPEN_REMARKS, MOST_REMARKS = 6, 200
 
 
@@ -30,24 +32,22 @@ def section(finished: Finished) -> Markup:
     runs = finished.runs
     if runs.empty:
         return Markup("")
-    gap = (runs["settlement_m"] - runs[OTHER_LAW]).abs() if OTHER_LAW in runs else None
-    widest = None if gap is None or gap.isna().all() else runs.iloc[int(gap.argmax())]
     return render(
         "reporting/sections/peaks.html",
         file=PEAKS,
         runs=runs,
         finished=finished,
         table=_every_run(finished),
-        widest=widest,
+        remarks=[remark(finished) for remark in parts("section.remark")],
         far=int(Rows(runs).facts("beyond_linearised").sum()),
-        one_law=gap is None,
-        ratchets=any(map(creeps, finished.info["cases"])),
-        range=[] if widest is None else sorted(1000 * widest[name] for name in ("settlement_m", OTHER_LAW)),
     )
 
 
 def outcome(run: Row | None, worst: float = math.nan) -> object:
-    """Return θ_max/α of a run, bold if it equals ``worst``; its status and lower bound if it did not stand; "" for None."""
+    """Return θ_max/α of a run, bold if it equals ``worst``, with marks of a flight or a lean; "" for None.
+
+    Of a run that did not stand: its status, with the time of a flight, or the lower bound of one that failed after its motion.
+    """
     if run is None:
         return ""
     status, theta, flight = run["status"], float(run["theta_max_over_alpha"]), run["flight_s"]
@@ -74,7 +74,7 @@ def at_least(run: Row) -> Markup:
 
 
 def _every_run(finished: Finished) -> Markup:
-    """Return the rows of ``peaks.csv``, worst first, with distinct remarks numbered below the table."""
+    """Return the worst :data:`MOST_ROWS` simulated rows of ``peaks.csv``, worst first, with remarks numbered below the table."""
     runs, varied = finished.runs, finished.info["varied"]
     # Shown only if they vary
     also = {"polarity": finished.both_directions, "scale": finished.many_scales}
@@ -86,14 +86,15 @@ def _every_run(finished: Finished) -> Markup:
     columns = {column.name: head(column) for column in report_columns() if column.source and column.name in runs}
     known = {*COLUMNS, *varied, "vertical"}
     columns |= {name: Head(name) for name in map(str, finished.saved.peaks) if name not in known}
-    columns.pop(OTHER_LAW, None)  # shown in the column of settlement, as a range
+    for other in _OTHER_ENDS.values():  # shown as a range in the column of the first
+        columns.pop(other, None)
     columns["status"] = columns["status"]._replace(filter=True)
     remarks: dict[str, int] = {}
     texts = [name for name in REMARKS if columns.pop(name, None)]
 
     def cell(run: Row, name: str) -> object:
-        if name == "settlement_m":
-            return _settlement(run)
+        if name in _OTHER_ENDS:
+            return _range(run, name)
         if name == "theta_max_error":
             return _rounded_up(run[name])
         return (name == "theta_max_over_alpha" and at_least(run)) or _cell(name, run[name])
@@ -108,12 +109,12 @@ def _every_run(finished: Finished) -> Markup:
 
 
 def _rounded_up(error: float) -> float | None:
-    """Round an error up to the digits of the peaks in the table; None for NaN."""
+    """Return an error rounded up to a multiple of :data:`LAST_DIGIT`; None for NaN."""
     return math.ceil(error / LAST_DIGIT) * LAST_DIGIT if error == error else None
 
 
 def _remarks(texts: "Sequence[str]") -> Markup:
-    """Return the numbered list of remarks, folded if long; empty without any."""
+    """Return the numbered list of the first :data:`MOST_REMARKS` remarks, folded if there are more than six; empty for none."""
     if not texts:
         return Markup("")
     listed = tag("ol", *(tag("li", words) for words in texts[:MOST_REMARKS]), class_="remarks")
@@ -125,7 +126,7 @@ def _remarks(texts: "Sequence[str]") -> Markup:
 def every_run(
     finished: Finished, heads: "Sequence[Head]", cells: "Callable[[Row], Sequence[object]]", name: str
 ) -> Markup:
-    """Return a table with a row for each run, worst first; ``cells`` returns a run's cells after its record."""
+    """Return a table of the worst :data:`MOST_ROWS` runs, worst first; ``cells`` returns a run's cells after its record."""
     runs = worst_first(finished.runs, MOST_ROWS)
     rows = ([finished.shown(run["record"]), *cells(run)] for run in as_dicts(runs))
     return table(heads, rows, sortable=True, name=name, worst_of=len(finished.runs))
@@ -137,13 +138,13 @@ def _cell(name: str, value: "float | str | None") -> object:
     return value if isinstance(value, str) else on_scale(name, value)
 
 
-def _settlement(run: Row) -> object:
-    """Return the settlement [mm] of a run, as a range if it was computed by two spring laws."""
-    by_law, by_other = (on_scale(name, run.get(name)) for name in ("settlement_m", OTHER_LAW))
-    if by_law is None or by_other is None:
-        return by_law
-    form = COLUMNS["settlement_m"].page
-    low, high = (number(value, form.form if form else ".2f") for value in sorted((by_law, by_other)))
+def _range(run: Row, name: str) -> object:
+    """Return the value of a run in the unit of the page, as a range if it was computed by two models."""
+    own, other = (on_scale(name, run.get(column)) for column in (name, _OTHER_ENDS[name]))
+    if own is None or other is None:
+        return own
+    form = COLUMNS[name].page
+    low, high = (number(value, form.form if form else ".2f") for value in sorted((own, other)))
     return Markup(low if low == high else f"{low}\u00a0–\u00a0{high}")
 
 

@@ -13,7 +13,10 @@ from rockbatch.results.suite_statistics import NO_PEAK
 
 
 def section(finished: Finished) -> Markup:
-    """Return a table of the study's references beside the runs that match record pattern, case and columns; empty without any."""
+    """Return a table of the study's references beside the runs that match record pattern, case and columns.
+
+    A reference without a run says "no such run"; empty without references.
+    """
     runs, references = finished.runs, finished.info["references"]
     if not references:
         return Markup("")

@@ -26,7 +26,10 @@ Named = Sequence[tuple[str, Statics]]
 
 
 def section(finished: Finished) -> Markup:
-    """Return the statics of each case: numbers, moment–rotation curves and periods; empty if no pier can be rebuilt."""
+    """Return the statics of the first :data:`MOST_CASES` cases: numbers, moment–rotation curves and periods.
+
+    Cases whose pier or base cannot be rebuilt from run.json are left out; empty if all are.
+    """
     sheets: list[tuple[str, Statics]] = []
     devices: list[str] = []
     for case in finished.info["cases"][:MOST_CASES]:
@@ -57,7 +60,7 @@ def _name(case: Case) -> str:
 
 
 def _table(sheets: Named, devices: Sequence[str]) -> Markup:
-    """Return a table with a column for each sheet and a row for each quantity that any of them has."""
+    """Return a table with a column for each sheet and a row for each quantity that any has, for its direction and devices."""
     values = [sheet.row for _, sheet in sheets]
     rows = [[fact.heading, *(fact.written(row[fact.name]) for row in values), fact.meaning] for fact in FACTS]
     turned = ["" if sheet.towards == "either" else f"to the {sheet.towards}" for _, sheet in sheets]

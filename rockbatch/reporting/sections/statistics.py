@@ -32,7 +32,10 @@ WORDS = (
 
 
 def section(finished: Finished) -> Markup:
-    """Return a table for each quantity, a row for each case, with and without the vertical component side by side."""
+    """Return a table for each quantity, with and without the vertical component side by side; empty without runs.
+
+    It has a row for each case, pier and scale, up to MOST_ROWS.
+    """
     if finished.runs.empty:
         return Markup("")
     runs, keys = finished.runs, ["scale", "pier", "series"]

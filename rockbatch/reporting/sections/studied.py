@@ -107,7 +107,7 @@ def in_a_line(finished: Finished) -> str:
 
 
 def _foot(cases: Sequence[Case]) -> dict[str, float]:
-    """Return the width of the foot as ``width_m`` [m] if all ``cases`` have one footing, perhaps wider than the pier; else {}."""
+    """Return the width of the foot as ``width_m`` [m] if all ``cases`` stand on footings of the same width; else {}."""
     widths = {2.0 * case["pier"]["half_width_m"] if case["base"] in FOOTING else None for case in cases}
     (width,) = widths if len(widths) == 1 else (None,)
     return {} if width is None else {"width_m": width}
@@ -130,7 +130,7 @@ def drawings(finished: Finished) -> list[Markup]:
 
 
 def _numbers_of(pier: Row) -> list[str]:
-    """Return the constants of [pier] as given: "height 20 m"; varied keys are left out."""
+    """Return the constants of [pier] as given, "height 20 m", then masses and heights of parts; varied keys are left out."""
     parts = pier.get("part", ())
     words = GIVEN | ({"mass_t": ("shaft", "t")} if "deck_mass_t" in pier else {})
     numbers = []

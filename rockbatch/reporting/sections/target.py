@@ -25,7 +25,10 @@ MET = {PASS: "met", FAIL: "not met", NOT_DECIDED: "not decided"}
 
 
 def section(finished: Finished) -> Markup:
-    """Return the comparison of the suite with its horizontal and vertical target spectra; empty if the study has none."""
+    """Return the comparison of the suite with its horizontal and vertical target spectra.
+
+    Empty if the study has none, or no record, or if the values in run.json are unsound.
+    """
     records = finished.info["records"]
     targets = (finished.info.get(name) for name in ("target", "vertical_target"))
     horizontal, vertical = (target if target is not None and records and _sound(target) else None for target in targets)
@@ -54,7 +57,10 @@ def _of_target(finished: Finished, entry: str) -> list[Verdict]:
 
 
 def _below(finished: Finished, entry: str) -> str:
-    """Return "required" if the suite's mean is below a target at scale 1 alone, else "required, at scale 0.5, 1"; "" if not."""
+    """Return "required" if scale 1 is the only one at which the suite's mean is below a required target, "" if none is.
+
+    Otherwise the scales: "required, at scale 0.5, 1".
+    """
     failing = [verdict for verdict in _of_target(finished, entry) if verdict.verdict == FAIL]
     scales = [verdict.scale for verdict in failing if verdict.demand == MEAN_OVER_TARGET]
     if scales in ([], [1.0]):

@@ -72,7 +72,7 @@ def _line(line: Line) -> Markup:
 
 
 def named_designs(finished: Finished, *, bounds: bool = False) -> Callable[[Verdict | CaseRuns], str]:
-    """Return a function that names the case of a row, without its bound unless ``bounds`` are named apart."""
+    """Return a function that names the case of a row, with its bound only if ``bounds``; a row without a case is the suite."""
     named = finished.named_case if bounds else finished.named_design
     return lambda row: named(row.case, row.columns, finished.info["varied"], row.scale) if row.case else wording.SUITE
 
@@ -89,7 +89,8 @@ def under_each_bound(finished: Finished) -> Markup:
 def scorecard(finished: Finished, *, bounds: bool = False) -> Markup:
     """Return a table of demand, share of the limit and a bar (full at twice the limit), by case and check.
 
-    A design has one row, with the worst of its bounds in each cell, or with ``bounds`` one for each of them.
+    A design has one row, with the worst of its bounds in each cell, or with ``bounds`` one for each of them. Up to
+    :data:`MOST_DRAWN` cases are drawn, the best; the others are only counted.
     """
     card = of_verdicts(
         finished.verdicts, named_designs(finished, bounds=bounds), finished.suites, finished.worst_at_scales
@@ -179,7 +180,7 @@ def _row(
 
 def _cell(finished: Finished, column: Column, cell: Cell | None, *, named: bool) -> Markup:
     """Return a cell: value, sign, share of the limit, bar, the bound of the design if ``named``, the governing run and, on paper,
-    bounds of the demand that differ.
+    bounds of the demand that differ. It is "–" for None and for a check that does not apply.
     """
     check = " ".join(filter(None, (column.check, column.at, column.limit)))
     if cell is None or cell.verdict.verdict == DOES_NOT_APPLY:
@@ -228,7 +229,7 @@ def _tooltip(finished: Finished, verdict: Verdict) -> str:
 
 
 def _requirements(verdicts: Sequence[Verdict]) -> Markup:
-    """Return a table of each check's requirement and reason, and notes on counting."""
+    """Return a table of each check's requirement, its source and reason, and notes on counting and on codes' texts."""
     asked = wording.requirements(verdicts)
     firsts = {name: of_check[0] for name, of_check in grouped(verdicts, wording.name_of).items()}
     rows = [[name, "; ".join(asked[name]), BASIS.get(row.basis, row.basis), row.reason] for name, row in firsts.items()]

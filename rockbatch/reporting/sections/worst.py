@@ -29,7 +29,10 @@ def of_cases(finished: Finished, shown: list[Quantity], name: str) -> Markup:
 
 
 def _worst(column: Quantity, runs: "pd.DataFrame", cut_short: bool) -> object:
-    """Return the worst value of a column, with ≥ or ≤ if runs were ``cut_short``; None without a value."""
+    """Return the worst value of a column in the page's unit, with ≥ or ≤ if runs were ``cut_short``; None without a value.
+
+    The worst is the greatest, or the smallest of a quantity of which the least is worst.
+    """
     values = runs[column.name].dropna()
     if values.empty:
         return None

@@ -15,7 +15,7 @@ from rockbatch.analyses.design.figures import figure_of
 from rockbatch.analyses.design.search import intervals, middles
 from rockbatch.analyses.design.study import DesignSpec, Varied, read_design
 from rockbatch.analyses.design.tables import intervals_table, values_table
-from rockbatch.analyses.design.trials import Design, Judged, Trial
+from rockbatch.analyses.design.trials import Design, Judged, Trial, Written
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
@@ -39,6 +39,18 @@ def study(design=None, *, cases=(RIGID,), check=(ROTATION,), pier=PIER, **more):
 
 def rows(found, *columns):
     return found.design[list(columns)].to_numpy().tolist()
+
+
+def test_both_axes_of_a_pier_are_one_design():
+    """A design for each value of a list, named after the case along the axis."""
+    pier, case = {"width_m": 3.0, "height_m": 14.0}, PADS | {"eta": [2.0, 2.5], "other_width_m": 4.0}
+    motion = rb.Motion("A", 0.01, np.sin(np.arange(50.0)), across=np.cos(np.arange(50.0)))
+    search = {"vary": "pier.height_m", "between": [12.0, 15.0], "find": "greatest", "width": 0.1}
+    text = study_text(pier=pier, pulses=(), cases=[case], check=[ROTATION], design=search)
+    both = rb.Study.from_toml(text, motions=[motion])
+    assert len(both.cases) == 4
+    designs = Written(both, read_design(both)).designs
+    assert designs == [Design("pads", (("eta", eta),)) for eta in (2.0, 2.5)]
 
 
 # The search along a key
@@ -392,6 +404,14 @@ def test_the_figure_has_the_worst_ratio_of_each_check_over_strips_that_pass():
     assert strips == list(zip(passing["low"], passing["high"], strict=True))
     above = [mark for mark in panel.marks if isinstance(mark, Points) and (mark.y > panel.y.last).any()]
     assert [mark.label for mark in above] == ["rotation", "stands"]
+
+
+def test_a_design_without_a_check_has_a_panel_with_the_limit_alone():
+    design = {"between": [1.0, 1.2], "points": 2, "width": 0.1}
+    found = rb.design(study(design, cases=[RIGID, PADS], check=[ROTATION | {"case": RIGID["name"]}]))
+    panels = figure_of(found.info, found.design, found.design_values, found.design_checks).panels
+    lines = {panel.caption: [mark.label for mark in panel.marks if isinstance(mark, Polyline)] for panel in panels}
+    assert lines == {RIGID["name"]: ["rotation"], PADS["name"]: []}
 
 
 def test_the_map_fills_what_fails_and_marks_what_passes_by_the_check_that_governs():

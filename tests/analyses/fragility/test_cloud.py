@@ -277,6 +277,9 @@ def test_the_command_runs_every_record_as_it_is_and_fits_what_its_table_shows(tm
     html = next(path for path in found.save(tmp_path / "out") if path.suffix == ".html").read_text(encoding="utf-8")
     assert "Cloud analysis of records as they are: of the records that stand a line" in Page(html).text
     assert "each counts once at every scale" in found.info["scales"]["said"]
+    levels = list(found.info["levels"])
+    assert levels == sorted(levels)
+    assert levels == pytest.approx(sorted(of_rotation["intensity"].unique()), rel=1e-9)
 
 
 @pytest.mark.parametrize(("beyond", "words"), [

@@ -107,7 +107,7 @@ def test_runs_put_out_what_their_limits_need_and_no_more(tmp_path):
     for name, demand in of_runs.items():
         capacity = ((0.0, 100.0), (1e5, 6e4)) if demand.over_capacity else None
         asked = output(replace(spec, limits=(rotation, Rule("other", name, at_most=0.01, capacity=capacity))), of_study)
-        assert asked.has("both_laws") == bool(demand.other_law)
+        assert asked.has("both_laws") == bool(demand.other_end)
         assert asked.has("interaction_base") == demand.over_capacity
         for need in ("forces", "rocking", "devices_work"):
             assert asked.has(need) == (demand.needs == need), name

@@ -12,7 +12,7 @@ MOST_CASES = 12
 
 
 def section(finished: Finished) -> Markup:
-    """Return a paragraph on each design; empty without checks."""
+    """Return a paragraph on each of the first :data:`MOST_CASES` designs; empty without verdicts on cases."""
     if not any(verdict.case for verdict in finished.verdicts):
         return Markup("")
     first = list(islice(statements(finished), MOST_CASES + 1))

@@ -43,7 +43,7 @@ def sentence(finished: Finished, worst: Verdict, same: Sequence[Verdict]) -> str
     """Return the outcome of a check by its ``worst`` verdict; ``same`` are those under all bounds of the design."""
     said = f"it asks that {worst.words}, of {_records(worst)}"
     if not worst.is_ban:
-        said = f"{_quantity(worst)} {_is(worst, at_worst=len(same) > 1)}{_limit(worst)}"
+        said = f"{_quantity(worst)} {_value_in_words(worst, at_worst=len(same) > 1)}{_limit(worst)}"
     parts = [
         f"{quoted(worst.check)} {VERBS[worst.verdict]}: {said}",
         _by_bound(same),
@@ -68,7 +68,7 @@ def remarks(verdicts: Sequence[Verdict]) -> Iterator[str]:
 
 
 def _bound(verdict: Verdict) -> str:
-    """Return the bound of a verdict in words, also of the nominal design."""
+    """Return the bound of a verdict in words, 'under "stiff ground"'; "nominally" for the nominal design."""
     return f"under {quoted(verdict.columns[BOUND])}" if under(verdict.columns) else "nominally"
 
 
@@ -98,7 +98,7 @@ def _quantity(verdict: Verdict) -> str:
     return f"{words}, {verdict.axes}," if verdict.axes else words
 
 
-def _is(verdict: Verdict, *, at_worst: bool) -> str:
+def _value_in_words(verdict: Verdict, *, at_worst: bool) -> str:
     """Return the value with its verb: "is 0.3 m (between 0.2 m and 0.4 m)", "is at least 0.3 m", "is beyond any limit".
 
     "has no value" if it is NaN. With ``at_worst`` the words "at worst" precede a number, and the bound of the design
@@ -116,14 +116,17 @@ def _is(verdict: Verdict, *, at_worst: bool) -> str:
 
 
 def _number(value: float, verdict: Verdict) -> str:
-    """Return a number with the unit of a verdict, in as many digits as tell it from the limit."""
+    """Return a number with the unit of a verdict, in as many digits as tell it from the limit; "any value" if infinite."""
     if math.isinf(value):
         return "any value"
     return f"{wording.compared(value, verdict.limit)} {verdict.unit}".rstrip()
 
 
 def _limit(verdict: Verdict) -> str:
-    """Return the limit, the share of it that is used, and the margin to it."""
+    """Return the limit, with the share of it that is used and the margin to it in brackets if the share is finite.
+
+    ", where at most 0.3 m is allowed (80 % of the limit, 0.06 m to spare)".
+    """
     allowed = "allowed" if verdict.sense == "at most" else "required"
     said = f", where {verdict.sense} {wording.number(verdict.limit)} {verdict.unit}".rstrip() + f" is {allowed}"
     if math.isfinite(verdict.ratio):
@@ -137,7 +140,10 @@ def _limit(verdict: Verdict) -> str:
 
 
 def _governing(finished: Finished, verdict: Verdict) -> str:
-    """Return the run that governs, has the greatest demand or leaves the check open, with its demand unless it is the value."""
+    """Return the run that governs, has the greatest demand or leaves the check open, with its demand unless it is the value.
+
+    "" if the verdict names no record.
+    """
     if not verdict.record:
         return ""
     run = quoted(finished.named(verdict.record)) + ", reversed" * (verdict.polarity == "-")

@@ -79,7 +79,7 @@ class _Design:
         return worst_by_check(self.verdicts)
 
     def having(self, kind: str) -> list[str]:
-        """Return the names of the checks whose worst verdict is of this kind."""
+        """Return the names of the checks whose worst verdict is ``kind``, such as "fail", the worst check first."""
         return [worst.check for worst, _ in self.checks if worst.verdict == kind]
 
     @property

@@ -1,0 +1,255 @@
+"""The calculation sheet as PDF says what the HTML says, on pages of the size that is asked for."""
+
+import io
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pypdf
+import pytest
+from browser import HOSTILE
+from report_page import Page
+from report_samples import case_entry, write_results
+
+import rockbatch as rb
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
+from rockbatch.pier import Pier, RigidBase
+from rockbatch.reporting import pdf, typeset
+from rockbatch.reporting.finished import read
+from rockbatch.reporting.sheet import sheet_of
+from rockbatch.reporting.typeset import Setting, blocks, parsed
+
+COMMANDS = [
+    "]#panic[",
+    '#read("/etc/hostname")',
+    "$a_b$ *c* _d_ `e` @f <g>",
+    "// h \\",
+    "#let i = 1",
+    '"; j',
+    *HOSTILE[:5],
+]
+"""Names, some of which would be commands of Typst if they were no words."""
+
+
+def without_spaces(text):
+    """Return a text without what a line break of a page may change."""
+    return re.sub(r"[\s\u00ad\u200b-\u2069\ufe0e]", "", text)
+
+
+def text_of(made):
+    """Return the text of each page of a PDF."""
+    return [page.extract_text() for page in pypdf.PdfReader(io.BytesIO(made)).pages]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Write the results of a study with devices, forces, histories and a check."""
+    folder = tmp_path_factory.mktemp("results")
+    pulse = {"name": "sine", "shape": "sine", "amplitude_g": 0.4, "period_s": 0.8, "dt_s": 0.01, "duration_s": 3.0}
+    cases = [
+        {"name": "rock", "base": "rigid", "damper": [{"kind": "friction", "force_kN": 300.0}]},
+        {"name": "bare", "base": "rigid"},
+    ]
+    tables = {
+        "pier": {"width_m": 4.0, "height_m": 20.0, "mass_t": 900.0},
+        "motions": {"pulse": [pulse]},
+        "case": cases,
+        "output": {"forces": True, "histories": "all"},
+        "check": [{"name": "tilt", "demand": "theta_max_rad", "at_most": 0.05, "reason": "made up"}],
+    }
+    rb.run(rb.Study.from_dict(tables), out=folder, jobs=1, progress=False)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def sheet(folder):
+    """Read the sheet of the folder."""
+    return sheet_of(read(folder))
+
+
+@pytest.fixture(scope="module")
+def pages(sheet):
+    """Return the text of each page of the sheet's PDF."""
+    return text_of(sheet.pdf())
+
+
+def test_every_cell_of_every_table_stands_in_the_pdf(sheet, pages):
+    whole = without_spaces("".join(pages))
+    html = Page(sheet.html())
+    cells = {cell for rows in html.tables.values() for row in rows for cell in row if cell}
+    assert len(cells) > 100
+    assert not {cell for cell in cells if without_spaces(cell) not in whole and not _is_dotted(cell)}
+
+
+def _is_dotted(cell):
+    """Return whether a cell has an accent, which a PDF holds as a letter and a mark of its own."""
+    return bool(re.search("[\u0307\u0308]", cell))
+
+
+def test_every_section_has_its_heading_in_the_order_of_the_html(sheet, pages):
+    whole = without_spaces("".join(pages))
+    places = [whole.find(f"{place}{without_spaces(s.heading)}") for place, s in enumerate(sheet.sections, start=1)]
+    assert len(places) > 8
+    assert -1 not in places
+    assert places == sorted(places)
+
+
+def test_each_page_has_study_version_date_and_its_number(sheet, pages):
+    for place, page in enumerate(pages, start=1):
+        assert f"page {place} of {len(pages)}" in page
+        assert f"{sheet.title}: calculation sheet" in page
+        assert sheet.version in page
+        assert sheet.path in page
+    assert re.search(r"rockbatch \d.*, \d{4}-\d\d-\d\d$", sheet.version)
+
+
+@pytest.mark.parametrize(("paper", "size"), [("A4", (595, 842)), ("Letter", (612, 792))])
+def test_pages_have_the_size_of_the_paper(sheet, paper, size):
+    box = pypdf.PdfReader(io.BytesIO(sheet.pdf(paper))).pages[0].mediabox
+    assert (round(box.width), round(box.height)) == size
+
+
+def test_each_picture_that_the_html_shows_stands_in_the_pdf_in_light_colours(sheet):
+    for section in sheet.sections:
+        setting, content = Setting({}), parsed(section.content)
+        blocks(content, setting)
+        hidden = [svg for later in content.iterfind(".//*[@class='histories']/figure") for svg in later.iter("svg")]
+        shown = {id(svg) for svg in content.iter("svg")} - {id(svg) for svg in hidden}
+        assert len(setting.pictures) >= len(shown) - len([svg for svg in content.iter("svg") if svg.find("svg")])
+        for picture in setting.pictures.values():
+            text = picture.decode()
+            ElementTree.fromstring(text)
+            assert "var(" not in text
+            used = set(re.findall(r'href="#([\w-]+)"', text))
+            assert used <= set(re.findall(r'id="([\w-]+)"', text))
+
+
+def test_pictures_have_the_colours_of_the_report(sheet):
+    """Each rule of the style sheet for the marks of pictures holds in them; none of it is lost on the way."""
+    css = (Path(typeset.__file__).parent / "style.css").read_text(encoding="utf-8")
+    wanted = set(re.findall(r"^(\.plot [^:{]*?) *\{", css, re.MULTILINE)) - {".plot text[class^=s]"}
+    kept = typeset._style_of_pictures()
+    assert len(wanted) > 30
+    assert not {rule for rule in wanted if f"{rule} {{" not in kept}
+    assert ".s2 { color: #b4470c; }" in kept
+
+
+def test_names_that_are_commands_of_typst_are_words(tmp_path):
+    names = [(name, 0.4) for name in COMMANDS]
+    cases = [case_entry(name, {}, Pier(alpha=0.13, p=0.38), RigidBase()) for name in COMMANDS[:3]]
+    study = {"path": COMMANDS[1], "title": COMMANDS[0], "notes": COMMANDS[2], "text": COMMANDS[3], "sha256": "0"}
+    write_results(tmp_path, records=names, cases=cases, study=study, created=COMMANDS[1])
+    whole = without_spaces("".join(text_of(sheet_of(read(tmp_path)).pdf())))
+    assert not [name for name in COMMANDS[:6] if without_spaces(name) not in whole]
+
+
+def test_a_sheet_is_written_as_html_and_pdf_and_the_command_names_both(tmp_path, capsys):
+    write_results(tmp_path)
+    assert main(["report", "--sheet", str(tmp_path)]) == 0
+    assert capsys.readouterr().err.split() == [str(tmp_path / "sheet.html"), str(tmp_path / "sheet.pdf")]
+    assert (tmp_path / "sheet.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_a_name_that_ends_in_pdf_asks_for_the_pdf_alone(tmp_path):
+    write_results(tmp_path)
+    out = tmp_path / "Pier 4.PDF"
+    written = rb.report(tmp_path, sheet=True, out=out, paper="Letter")
+    assert (written.path, written.pdf) == (out, out)
+    box = pypdf.PdfReader(written.save(tmp_path / "mail")).pages[0].mediabox
+    assert round(box.width) == 612
+    assert not (tmp_path / "sheet.html").exists()
+
+
+def test_without_typst_the_html_is_written_and_a_pdf_is_refused_with_the_remedy(tmp_path, monkeypatch):
+    write_results(tmp_path)
+    monkeypatch.setattr("rockbatch.reporting.installed", lambda: False)
+    monkeypatch.setattr(pdf, "installed", lambda: False)
+    written = rb.report(tmp_path, sheet=True)
+    assert (written.path.name, written.pdf, (tmp_path / "sheet.pdf").exists()) == ("sheet.html", None, False)
+    with pytest.raises(InputError, match=r'pip install "rockbatch\[pdf\]"'):
+        rb.report(tmp_path, sheet=True, out=tmp_path / "sheet.pdf")
+
+
+def test_an_element_that_is_not_set_yet_is_refused_by_name():
+    for html, name in (("<blockquote>said</blockquote>", "blockquote"), ("<p>some <del>text</del></p>", "del")):
+        with pytest.raises(ValueError, match=f"<{name}>"):
+            blocks(parsed(html), Setting({}))
+
+
+def test_text_before_between_and_after_blocks_is_set_in_its_order():
+    html = "before<ul><li>item<p>within</p>later</li></ul>between<div>part</div><strong>a</strong>fter<br></br>end"
+    set_ = re.sub(r"#\w+|[\[\]()\\\n]", " ", blocks(parsed(html), Setting({})))
+    assert set_.split() == ["before", "item", "within", "later", "between", "part", "a", "fter", "end"]
+
+
+def test_a_span_in_a_cell_keeps_what_its_class_says():
+    """Verdict and colour, the share of a limit, the unit below its head, and a subscript."""
+    cell = (
+        '<td class="fail"><span class="top"><strong>1.2</strong><span class="fail">122 %</span></span>'
+        '<span class="bar" style="--share:61%"></span><small>governs</small></td>'
+    )
+    head = '<th class="n" scope="col">θ<sub>max</sub> <span class="unit">[m]</span></th>'
+    table = f'<table class="card"><thead><tr>{head}</tr></thead><tbody><tr>{cell}</tr></tbody></table>'
+    set_ = blocks(parsed(table), Setting({}))
+    alarm = '"#b3261e"'
+    for wanted in (
+        f"fill: rgb({alarm}).lighten(89%)",
+        "#bar(61%)",
+        "#sub[max]",
+        "align: right + bottom",
+        "align: left + top",
+    ):
+        assert wanted in set_
+    assert f"#text(rgb({alarm}))[122 \\%]" in set_
+    assert r"  \ \[m\]" in set_
+
+
+def test_strips_of_two_columns_share_the_width_and_have_their_heads_above():
+    strip = '<svg class="plot strip"></svg><span class="ends"></span>'
+    row = f'<div class="row"><span class="of">r1</span>{strip}{strip}</div>'
+    heads = '<span class="of"></span><span class="column">left</span><span class="column">right</span>'
+    setting = Setting({})
+    set_ = blocks(parsed(f'<div class="dots" style="--n:2">{heads}{row}</div>'), setting)
+    cells = re.findall(r"(?<=, )\[(.*?)\](?=, \[|\))", set_.replace("\n", ""))
+    assert [cell for cell in cells if cell in ("left", "right", "")][:5] == ["", "left", "", "right", ""]
+    widths = [float(re.search(r' width="([\d.]+)"', picture.decode())[1]) for picture in setting.pictures.values()]
+    assert len(widths) == 2
+    assert sum(widths) < 0.6 * typeset.ACROSS
+
+
+def test_histories_keep_the_room_for_the_labels_of_their_axis():
+    setting = Setting({})
+    blocks(parsed('<div class="timed" style="--h:100px"><svg class="plot"><text x="-34">a</text></svg></div>'), setting)
+    (picture,) = setting.pictures.values()
+    assert b'<svg x="48" width="638" height="100" overflow="visible">' in picture
+
+
+def test_long_names_and_digests_may_be_broken_in_a_cell():
+    cell = "a" * 40 + " records/RSN821_ERZINCAN"
+    set_ = blocks(parsed(f"<table><tbody><tr><td>{cell}</td></tr></tbody></table>"), Setting({}))
+    assert "[" + "a" * 24 + "\u200ba" in set_
+    assert "/\u200bRSN821" in set_
+
+
+def test_words_of_folds_code_and_pictures_of_histories_are_kept():
+    """The summary of a fold, code to its last letter, a break between lines, and the first motion's histories alone."""
+    setting = Setting({})
+    two = "".join(f'<figure><figcaption>{name}</figcaption><svg viewBox="0 0 9 9"></svg></figure>' for name in "ab")
+    fold = "<details><summary>All files</summary><p>a <code>peaks.csv</code><br></br>b</p></details>"
+    html = f'{fold}<div class="histories">{two}</div>'
+    set_ = blocks(parsed(html), setting)
+    assert "#strong[All files]" in set_
+    assert '#raw("peaks.csv") \\ b' in set_
+    assert "[a]" in set_
+    assert "[b]" not in set_
+    assert len(setting.pictures) == 1
+
+
+def test_marks_of_verdicts_have_the_colours_of_the_style_sheet():
+    for name, colour in {"pass": "#1a6b3a", "fail": "#b3261e", "undecided": "#8a5a00"}.items():
+        table = (
+            f'<table class="card"><tbody><tr><td class="{name}"><span class="{name}">x</span></td></tr></tbody></table>'
+        )
+        set_ = blocks(parsed(table), Setting({}))
+        assert set_.count(f'rgb("{colour}")') == 3
