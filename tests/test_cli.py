@@ -4,6 +4,7 @@ import csv
 import errno
 import io
 import json
+import math
 import os
 import re
 import shlex
@@ -17,6 +18,8 @@ from types import SimpleNamespace
 
 import pandas as pd
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from report_samples import write_results
 from studies import RIGID, SINE, study_text, write_study
 
@@ -27,9 +30,11 @@ from rockbatch.commands.motions import _by_reason
 from rockbatch.commands.summary import summary
 from rockbatch.reporting import write_report
 from rockbatch.results.beside_peaks import write_semicolons
+from rockbatch.results.labelled import Labelled
+from rockbatch.results.labels import Series
 from rockbatch.study import load_study
 from rockbatch.terminal import messages
-from rockbatch.terminal.streams import filled, in_width, is_lost, show
+from rockbatch.terminal.streams import filled, in_width, is_lost, shortened, show
 
 STUDY = study_text(title="A <pulse> & a pier")
 
@@ -655,20 +660,69 @@ def test_reading_results_loads_no_record_format():
     assert done.stdout == "[]\n"
 
 
+def two_of_each(values, foundations, piers, **columns):
+    """Return labelled runs from peaks by record and number from 1, that of the foundation, or of the pier if one is alone."""
+    rows = [
+        {"record": record, "series": (place - 1) % len(foundations), "pier": (place - 1) % len(piers), "polarity": "+",
+         "scale": 1.0, "with_vertical": "", "status": "ok", "theta_max_over_alpha": peak, "theta_max_is": ""} | columns
+        for (record, place), peak in values.items()
+    ]  # fmt: skip
+    series = [Series(label, "", False, place) for place, label in enumerate(foundations)]
+    return Labelled(series, piers, {}, {}, pd.DataFrame(rows), {})
+
+
+def test_a_run_without_a_peak_has_its_status_alone_in_the_terminals_table():
+    text = summary(two_of_each({("a", 1): math.nan}, ["pads"], [""], status="failed"), {"a": "first"})
+    assert text.splitlines()[-1].split() == ["first", "failed"]
+
+
+def test_the_terminals_table_says_what_tells_two_runs_of_a_record_apart():
+    runs = two_of_each({("a", 1): 0.1, ("b", 1): 0.2}, ["pads"], [""])
+    runs.runs.loc[1, ["record", "polarity", "scale"]] = ["a", "-", 2.0]
+    lines = summary(runs, {"a": "first"}).splitlines()
+    assert [" ".join(line.split()) for line in lines[-2:]] == [
+        "first, motions scaled by 1 0.1000", "first, reversed, motions scaled by 2 0.2000"
+    ]  # fmt: skip
+
+
 def test_the_terminals_table_has_a_line_a_record_and_a_column_a_value():
-    values = {("b", 1.0): 0.3, ("a", 1.0): 0.1, ("b", 2.0): 0.4, ("a", 2.0): 0.2}
-    table = pd.DataFrame(
-        [
-            {"record": record, "case": "pads", "eta": eta, "polarity": "+", "scale": 1.0, "status": "ok",
-             "theta_max_over_alpha": peak, "theta_max_is": ""}
-            for (record, eta), peak in values.items()
-        ]
-    )  # fmt: skip
-    lines = summary(table, ("eta",), {"a": "first", "b": "second"}).splitlines()
+    values = {("b", 1): 0.3, ("a", 1): 0.1, ("b", 2): 0.4, ("a", 2): 0.2}
+    records = {"a": "first", "b": "second"}
+    lines = summary(two_of_each(values, ["β = 40, η = 1", "β = 40, η = 2"], [""]), records).splitlines()
     assert [line.split() for line in lines[-2:]] == [["first", "0.1000", "0.2000"], ["second", "0.3000", "0.4000"]]
     assert lines[0] == "Peak rotation theta_max/alpha"
-    of_piers = summary(table.rename(columns={"eta": "alpha"}), ("alpha",), {"a": "first", "b": "second"})
+    of_piers = summary(two_of_each(values, ["pads"], ["α = 0.1 rad", "α = 0.2 rad"]), records)
+    assert [block.splitlines()[0].rpartition(", ")[2] for block in of_piers.split("\n\n")] == [
+        "α = 0.1 rad",
+        "α = 0.2 rad",
+    ]
     assert [block.splitlines()[-1].split() for block in of_piers.split("\n\n")] == [
         ["second", "0.3000"],
         ["second", "0.4000"],
     ]
+
+
+def test_shortened_names_still_differ_as_the_names_do():
+    """One of two cases has a tendon in the middle of a long name; both once read alike at 80 columns."""
+    ends = "pads: K = 2 × 10⁶ kN/m, Fy = 40,000 kN, ", "F = 450 kN, C = 900 kN (s/m)^0.3, deck spring 2: gap = 20 mm"
+    names = ["".join(ends), "P0 = 900 kN, ".join(ends), "pads", "".join(ends)]
+    for room in (16, 24, 40, 60):
+        short = shortened(names, room)
+        assert short[0] == short[3]
+        assert len(set(short)) == 3
+        assert short[2] == "pads"
+    assert "P0 = 900 kN" in shortened(names, 40)[1]
+    assert max(map(len, shortened(names, 40))) <= 40
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.lists(st.text("ab, ", max_size=30), min_size=1, max_size=6), st.integers(4, 12))
+def test_any_names_that_differ_differ_when_shortened(names, room):
+    assert len(set(shortened(names, room))) == len(set(names))
+    assert all(short == name for short, name in zip(shortened(names, 30), names, strict=True))
+
+
+def test_a_terminal_without_greek_gets_words_in_its_tables(monkeypatch):
+    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(io.BytesIO(), encoding="ascii"))
+    text = in_width(["case", "θ/α"], [["β\u00a0=\u00a040 …", "∞"]])
+    assert [line.split() for line in text.splitlines()] == [["case", "theta/alpha"], ["beta", "=", "40", "...", "inf"]]

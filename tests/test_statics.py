@@ -570,7 +570,7 @@ def test_the_command_prints_and_writes_what_python_has_without_records(tmp_path,
     assert main(["statics", str(study), "--csv", str(sheet), "--curves", str(curves)]) == 0
     printed = capsys.readouterr().out
     assert "static strength [g]" in printed
-    assert "\n\npads stiffness_kN_m=2e+06\ntheta/alpha" in printed
+    assert "\n\nK = 2 × 10⁶ kN/m\ntheta/alpha" in printed
     monkeypatch.setattr("rockbatch.commands.statics.MOST_CASES", 2)
     assert main(["statics", str(study)]) == 0
     fewer = capsys.readouterr()

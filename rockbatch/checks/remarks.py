@@ -7,6 +7,7 @@ from typing import Any
 from rockbatch.checks.responses import Worst
 from rockbatch.common.grouping import grouped
 from rockbatch.quantities.cases import Case, asks_tension
+from rockbatch.quantities.labels import in_full
 
 MOST_NAMES = 3
 
@@ -92,11 +93,6 @@ def _named(cases: Sequence[Case], among: Sequence[Case]) -> str:
     every = grouped(among, lambda case: str(case["case"]))
     for name, of_name in grouped(cases, lambda case: str(case["case"])).items():
         for case in of_name if len(of_name) < len(every[name]) else of_name[:1]:
-            values = case["columns"].items() if len(of_name) < len(every[name]) else ()
-            names.append(" ".join([name, *(f"{key}={_written(value)}" for key, value in values if value != "")]))
+            values = case["columns"] if len(of_name) < len(every[name]) else {}
+            names.append(in_full(name, values, case))
     return "; ".join(names) if len(names) <= MOST_NAMES else f"{len(cases)} of {len(among)} cases"
-
-
-def _written(value: float | str) -> str:
-    """Return a varied value as text."""
-    return value if isinstance(value, str) else f"{value:g}"

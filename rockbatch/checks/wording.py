@@ -177,13 +177,13 @@ def records_of(verdicts: Iterable[Verdict]) -> str:
     return f"{kinds.pop()}s" if len(kinds) == 1 else "records"
 
 
-def run(verdict: Verdict) -> str:
-    """Return the run that governs, by station, component and polarity: "WTMC, 20161113_110259_WTMC_20.N28W (+)".
+def run(verdict: Verdict, record: str) -> str:
+    """Return the run that governs, by the label ``record`` of its motion, and polarity: "Waiau 2016, Te Mara Farm, N28W (+)".
 
-    The station is left out if it is unknown, or named as the component.
+    A motion without a label of its own follows its station if that is known, and not named as the motion.
     """
-    station = f"{verdict.station}, " if verdict.station and verdict.station != verdict.record else ""
-    return f"{station}{verdict.record} ({verdict.polarity})"
+    known = verdict.station and record == verdict.record != verdict.station
+    return f"{verdict.station}, {record} ({verdict.polarity})" if known else f"{record} ({verdict.polarity})"
 
 
 def is_left_open(verdict: Verdict) -> bool:
@@ -191,8 +191,8 @@ def is_left_open(verdict: Verdict) -> bool:
     return verdict.verdict == NOT_DECIDED and verdict.low <= verdict.limit < verdict.high
 
 
-def governing(verdict: Verdict) -> str:
-    """Return the run that governs, with its own demand; empty if no run does.
+def governing(verdict: Verdict, record: str) -> str:
+    """Return the run that governs, of the motion called ``record``, with its own demand; empty if no run does.
 
     "governs: …", "largest: …" if the statistic differs from its demand, "left open by …" if it leaves the check undecided.
     """
@@ -200,7 +200,7 @@ def governing(verdict: Verdict) -> str:
         return ""
     left_open = is_left_open(verdict)
     alone = verdict.is_ban or verdict.governing == verdict.value
-    text = f"{'left open by' if left_open else 'governs:' if alone else 'largest:'} {run(verdict)}"
+    text = f"{'left open by' if left_open else 'governs:' if alone else 'largest:'} {run(verdict, record)}"
     if verdict.is_ban:
         return text
     if math.isnan(verdict.governing):

@@ -2,9 +2,10 @@
 
 import argparse
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import groupby
 from pathlib import Path
+from typing import NamedTuple
 
 from rockbatch.checks import Verdict, wording, write_verdicts
 from rockbatch.checks.answer import answer
@@ -15,17 +16,25 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.checks.wording import SIGNS, Notes
 from rockbatch.commands import scorecard
 from rockbatch.common.files import is_plain
+from rockbatch.quantities.labels import record_labels
 from rockbatch.reporting import report as make_report
 from rockbatch.reporting import write_report
 from rockbatch.results.checking import verdicts
-from rockbatch.results.labelled import labelled
+from rockbatch.results.labelled import Labelled, labelled
 from rockbatch.results.opened import open_results
 from rockbatch.results.reading import Saved
-from rockbatch.terminal.naming import named
 from rockbatch.terminal.streams import aligned, coloured, filled, say, show, shown, width
 
 WORST = 10
 """Number of verdicts printed in full if there are too many to print all."""
+
+
+class Called(NamedTuple):
+    """Functions that name the case and the record of a verdict."""
+
+    case_of: Callable[[Verdict | CaseRuns], str]
+    record_of: Callable[[Verdict], str]
+
 
 _COLOURS = {PASS: "32", FAIL: "31", NOT_DECIDED: "33"}  # green, red, amber
 _LOUD = {FAIL: "FAIL", NOT_DECIDED: "NOT DECIDED"}
@@ -81,7 +90,8 @@ def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved, whole: bool = Fa
     applicable = [verdict.verdict != DOES_NOT_APPLY for verdict in verdicts if verdict.case]
     idle = bool(applicable) and not any(applicable)
     if whole:
-        show((summed_up(verdicts) if many else table(verdicts)) + "\n")
+        names = called(saved, labelled(saved.peaks, saved.info, saved.directory), bounds=True)
+        show((summed_up if many else table)(verdicts, names) + "\n")
     show(answered(verdicts, saved))
     count = wording.count_of(verdicts)
     say(", ".join(f"{n} {kind}" for kind, n in count.items() if n))
@@ -94,24 +104,17 @@ def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved, whole: bool = Fa
 
 def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
     """Return the scorecard, or without verdicts on cases the greatest responses, and the sentences at the top of the report."""
-    labels = {record["record"]: record.get("label") or record["record"] for record in saved.info["records"]}
     results, varied = labelled(saved.peaks, saved.info, saved.directory), saved.info["varied"]
     suites = runs_of_cases(results.runs, saved.info["cases"], len(saved.info["records"]))
     checked = any(verdict.case for verdict in verdicts)
-
-    def case_of(row: Verdict | CaseRuns) -> str:
-        return results.named_design(row.case, row.columns, varied, row.scale)
-
-    def record_of(verdict: Verdict) -> str:
-        return str(labels.get(verdict.record, verdict.record))
-
+    case_of, record_of = called(saved, results)
     cases = saved.info["cases"]
     worst, at_scales = (worst_of_cases(results.runs, cases, at_each_scale=each) for each in (False, True))
     if checked:
         table = scorecard.of_checks(verdicts, case_of, suites, at_scales, record_of)
     else:
         table = scorecard.of_responses(
-            worst, results.runs, cases, lambda case: results.named_case(case["case"], case["columns"], varied)
+            worst, results.runs, cases, lambda case: results.named_runs(case["case"], case["columns"], varied)
         )
     lines = [table, ""] if table else []
     lines += [filled(words) for words in (weak_supports(cases), pulled_supports(cases)) if words]
@@ -130,35 +133,45 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
     return "\n".join(lines)
 
 
-def table(verdicts: Sequence[Verdict]) -> str:
+def called(saved: Saved, results: Labelled, *, bounds: bool = False) -> Called:
+    """Return the functions that name cases and records of ``saved``, which ``results`` label; cases with bounds on demand."""
+    labels, varied = record_labels(saved.info), saved.info["varied"]
+    named = results.named_runs if bounds else results.named_design
+
+    def case_of(row: Verdict | CaseRuns) -> str:
+        return named(row.case, row.columns, varied, row.scale)
+
+    return Called(case_of, lambda verdict: labels.get(verdict.record, verdict.record))
+
+
+def table(verdicts: Sequence[Verdict], names: Called) -> str:
     """Return a block of lines for each case and scale, then each check's requirement."""
     notes = Notes(verdicts)
-    return "\n\n".join([*_blocks(verdicts, notes), _checks(verdicts, notes)])
+    return "\n\n".join([*_blocks(verdicts, notes, names), _checks(verdicts, notes)])
 
 
-def summed_up(verdicts: Sequence[Verdict]) -> str:
+def summed_up(verdicts: Sequence[Verdict], names: Called) -> str:
     """Return each check's counts of verdicts, the :data:`WORST` verdicts, and each check's requirement."""
     rows = [(name, *map(str, count.values())) for name, count in wording.count_by_check(verdicts).items()]
     parts = ["\n".join([f"{len(verdicts)} verdicts", *aligned([("check", *wording.WAYS), *rows])])]
     notes = Notes(verdicts)
     if worst := wording.worst_first(verdicts)[:WORST]:
-        parts += ["The worst", *_blocks(worst, notes)]
+        parts += ["The worst", *_blocks(worst, notes, names)]
     return "\n\n".join([*parts, _checks(verdicts, notes)])
 
 
-def _blocks(verdicts: Sequence[Verdict], notes: Notes) -> list[str]:
+def _blocks(verdicts: Sequence[Verdict], notes: Notes, names: Called) -> list[str]:
     """Return a block of lines, numbers and remarks, for consecutive verdicts of one case and scale."""
     head, *lines = _numbers(verdicts)
-    many_scales = wording.scaled(verdicts)
     blocks = []
     of_verdicts = zip(verdicts, lines, strict=True)
     by_case = groupby(of_verdicts, key=lambda pair: (pair[0].case, pair[0].columns, pair[0].scale))
-    for (case, columns, scale), block in by_case:
-        values = columns | ({"scale": scale} if many_scales else {})
-        parts = [f"{case or wording.SUITE}  {named(values, values.values())}".rstrip(), head]
-        for verdict, line in block:
+    for (case, _, _), block in by_case:
+        of_case = list(block)
+        parts = [names.case_of(of_case[0][0]) if case else wording.SUITE, head]
+        for verdict, line in of_case:
             parts.append(_coloured(line, verdict.verdict))
-            remarks = (wording.governing(verdict), verdict.counted, notes.about(verdict))
+            remarks = (wording.governing(verdict, names.record_of(verdict)), verdict.counted, notes.about(verdict))
             if verdict.verdict != DOES_NOT_APPLY and any(remarks):
                 parts.append(filled("; ".join(filter(None, remarks)), 6, 6))
         blocks.append("\n".join(parts))

@@ -143,8 +143,9 @@ def _scorecard(records: Sequence[RankedRecord], room: int) -> list[str]:
     letters = min(max((width() or WIDTH) - len(numbers[0]) - 2, least), most)
     labels = [record.label for record in shown]
     named = distinct(labels, lambda i, name: f"{name} {shown[i].values['event'] or ''}".strip())
-    names = ["record", *(shortened(name, letters) for name in named)]
-    table = [f"{name.ljust(letters)}  {line}".rstrip() for name, line in zip(names, numbers, strict=True)]
+    names = ["record", *shortened(named, letters)]
+    edge = max(map(len, names))
+    table = [f"{name.ljust(edge)}  {line}".rstrip() for name, line in zip(names, numbers, strict=True)]
     lines = ["", *filled(_UNITS).split("\n"), "", table[0]]
     for record, line in zip(shown, table[1:], strict=True):
         held = "held back: " if record.use is Use.HELD_BACK else "to check: "

@@ -11,6 +11,7 @@ from rockbatch.commands import check
 from rockbatch.commands.summary import failed_later, flexible, of_targets, summary, warnings
 from rockbatch.quantities.rows import simulated, with_case
 from rockbatch.results.beside_peaks import write_semicolons
+from rockbatch.results.labelled import labelled
 from rockbatch.results.suite_statistics import reasons_of_failure
 from rockbatch.study import Study
 from rockbatch.terminal.messages import Terminal
@@ -77,8 +78,9 @@ def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> i
     peaks = simulated(saved.peaks)
     labels = finished.motions.labels
     names = {m.name: labels[m.name] for m in sorted(finished.motions.motions, key=lambda m: m.pga)}
-    show(summary(peaks, study.varied, names) + "\n")
-    for warning in warnings(peaks.assign(record=peaks["record"].map(names)), study.varied):
+    results = labelled(saved.peaks, saved.info, saved.directory)
+    show(summary(results, names) + "\n")
+    for warning in warnings(results.runs.assign(record=results.runs["record"].map(names)), results.case_of):
         say(warning)
     for warning in (*flexible(study), *of_targets(saved.info)):
         say(warning)

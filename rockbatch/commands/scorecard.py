@@ -15,12 +15,10 @@ from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import Case
 from rockbatch.quantities.rows import rows_of_cases
 from rockbatch.reporting.markup import number
-from rockbatch.terminal.streams import filled, in_width, shown
+from rockbatch.terminal.streams import filled, in_width
 
 MOST_COLUMNS = 5
 """Most columns of the scorecard, unless more checks fail or are undecided."""
-PLAIN = dict(zip(SIGNS.values(), "+x?-", strict=True)) | {"≤": "<=", "≥": ">=", "α": "alpha", "θ": "theta", "∞": "inf"}
-"""ASCII replacements for characters that the terminal cannot show."""
 _WRAPPED = 13  # characters per line of a head
 
 Names = Callable[[Verdict | CaseRuns], str]
@@ -122,13 +120,6 @@ def _table(heads: Sequence[Sequence[str]], rows: Sequence[Sequence[str]]) -> str
     depth = max(map(len, heads), default=0)
     top = [["", *line] for line in zip(*([""] * (depth - len(head)) + list(head) for head in heads), strict=True)]
     kept = rows if len(rows) <= MOST_CASES else rows[:OPEN_CASES]
-    lines = [list(map(_showable, line)) for line in (*top, *kept)]
+    lines = [*top, *kept]
     text = in_width(lines[0], lines[1:]) if top else ""
     return text if len(kept) == len(rows) else f"{text}\n{len(kept)} of {len(rows)} cases, the best first"
-
-
-def _showable(cell: str) -> str:
-    """Return the cell with ASCII in place of the :data:`PLAIN` characters that the terminal cannot show, and plain spaces."""
-    for sign, plain in PLAIN.items():
-        cell = cell.replace(sign, shown(sign, plain))
-    return cell.replace("\u00a0", " ")

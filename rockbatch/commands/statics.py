@@ -13,9 +13,9 @@ from rockbatch.commands.summary import flexible
 from rockbatch.common.files import csv_text, write_output
 from rockbatch.motions import Motion
 from rockbatch.pier.statics import FACTS, Statics, statics
+from rockbatch.results.labelled import names_of
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case, Study, load_study
-from rockbatch.terminal.naming import named
 from rockbatch.terminal.streams import in_width, say, show
 
 MOST_CASES = 12
@@ -33,10 +33,12 @@ def main(arguments: argparse.Namespace) -> int:
     entries = [describe_case(case) for case in study.cases]
     for remark in filter(None, (weak_supports(entries), pulled_supports(entries))):
         show(f"{remark}\n")
-    show(table(sheets))
+    names = names_of(entries, study.varied, study.text)
+    called = [names.named_case(case.name, case.columns, study.varied) for case in study.cases]
+    show(table(called, [sheet for _, sheet in sheets]))
     if len(sheets) <= MOST_CASES:
-        for case, sheet in sheets:
-            show(f"\n{name_of(case)}\n{rotations(sheet)}")
+        for name, (_, sheet) in zip(called, sheets, strict=True):
+            show(f"\n{name}\n{rotations(sheet)}")
     else:
         say(f"{len(sheets)} cases: use --curves FILE for their curves")
     for warning in flexible(study):
@@ -52,19 +54,14 @@ def main(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def name_of(case: Case) -> str:
-    """Return the name of a case with its varied values: "pads beta=40"."""
-    return f"{case.name} {named(case.columns, case.columns.values())}".rstrip()
-
-
-def table(sheets: Sheets) -> str:
+def table(names: Sequence[str], sheets: Sequence[Statics]) -> str:
     """Return the sheets side by side as text: a column for each case, and a line for each quantity that any of them has."""
     lines = []
     for fact in FACTS:
-        values = [sheet.row[fact.name] for _, sheet in sheets]
+        values = [sheet.row[fact.name] for sheet in sheets]
         if any(value is not None for value in values):
             lines.append([fact.heading.replace("θ", "theta").replace("α", "alpha"), *map(fact.written, values)])
-    return in_width(["", *(name_of(case) for case, _ in sheets)], lines)
+    return in_width(["", *names], lines)
 
 
 def rotations(sheet: Statics) -> str:

@@ -1,6 +1,8 @@
 """The table of peaks in the terminal, as in the paper's Fig. 7, and remarks on the runs."""
 
-from collections.abc import Mapping, Sequence
+import textwrap
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,57 +14,62 @@ from rockbatch.outcome.outcome import LEANS, Failure
 from rockbatch.pier.bending import flexural_period
 from rockbatch.pier.laws import without_ratcheting
 from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.labels import scaled_by
 from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR
-from rockbatch.quantities.rows import with_case
-from rockbatch.results.labelled import Item
-from rockbatch.study import PIER_KEYS, Study
-from rockbatch.terminal.naming import named
+from rockbatch.results.labelled import Item, Labelled, Row, as_dicts, names_of
+from rockbatch.results.run_json import describe_case
+from rockbatch.study import Study
 from rockbatch.terminal.streams import in_width
 
 MOST_RUNS = 1000
 """Number of runs above which only the worst are printed."""
+ALSO: Mapping[str, Callable[[Any], str]] = {
+    "polarity": lambda polarity: "reversed" if polarity == "-" else "",
+    "scale": scaled_by,
+    "with_vertical": str,
+}
+"""What tells runs of one record and case apart, by column, in words."""
+_PEAK = ("theta_max_over_alpha", "theta_max_error")
+_WRAPPED = 16  # characters per line of a head
 
 
-def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str, str]) -> str:
+def summary(results: Labelled, records: Mapping[str, str]) -> str:
     """Return θ_max/α as text: a block for each pier, a line for each record, a column for each case.
 
     Of more than :data:`MOST_RUNS` runs, only the ten largest values are listed. ``records`` maps the names of records, in order,
     to labels. A status other than "ok", or "lean" for a peak that is mostly lean, precedes its value.
     """
-    runs = with_case(table)
+    runs = results.runs
     if len(runs) > MOST_RUNS:
-        return _worst(runs.assign(record=runs["record"].map(records)), varied)
+        return _worst(runs, records, results.case_of)
     place = {name: i for i, name in enumerate(records)}
     runs = runs.sort_values("record", key=lambda names: names.map(place), kind="stable")
-    runs = runs.assign(record=runs["record"].map(records))
-    pier_keys = [name for name in varied if name in PIER_KEYS]
-    case_keys = [name for name in varied if name not in PIER_KEYS]
-    rows = ["record", *(name for name in ("polarity", "scale") if runs[name].nunique() > 1)]
-    if not pier_keys:
-        return "Peak rotation theta_max/alpha\n" + _block(runs, rows, case_keys)
+    also = {name: words for name, words in ALSO.items() if runs[name].nunique() > 1}
+    labels = [series.label for series in results.series]
     blocks = []
-    for values, block in runs.groupby(pier_keys, sort=False):
-        title = f"Peak rotation theta_max/alpha, {named(pier_keys, values)}"
-        blocks.append(f"{title}\n{_block(block, rows, case_keys)}")
+    for pier in sorted(runs["pier"].unique()):
+        title = ", ".join(filter(None, ("Peak rotation theta_max/alpha", results.piers[pier])))
+        blocks.append(f"{title}\n{_block(as_dicts(runs[runs['pier'] == pier]), records, also, labels)}")
     return "\n\n".join(blocks)
 
 
-def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
+def _worst(runs: "pd.DataFrame", records: Mapping[str, str], case_of: Callable[[Row], str]) -> str:
     """Return, as text, the number of runs of each status, and a table of the ten runs with the greatest rotations."""
     ended = ", ".join(f"{n} {status}" for status, n in runs["status"].value_counts().items())
-    shown = ["record", "polarity", "scale", "case", *varied, "status", "theta_max_over_alpha", "theta_max_error"]
-    largest = runs.nlargest(10, "theta_max_over_alpha")[shown]
     rows = [
-        ["" if x != x else x if isinstance(x, str) else f"{x:.4g}" for x in row] for row in largest.to_numpy().tolist()
+        [records[run["record"]], case_of(run), run["status"], *(f"{run[name]:.4g}" for name in _PEAK)]
+        for run in as_dicts(runs.nlargest(10, _PEAK[0]))
     ]
-    return f"{len(runs)} runs: {ended}\nThe largest theta_max/alpha\n{in_width(shown, rows)}"
+    rows = [["" if cell == "nan" else cell for cell in row] for row in rows]
+    head = ["record", "case", "status", *_PEAK]
+    return f"{len(runs)} runs: {ended}\nThe largest theta_max/alpha\n{in_width(head, rows, names=2)}"
 
 
-def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
+def warnings(table: "pd.DataFrame", case_of: Callable[["pd.Series[Any]"], str]) -> list[str]:
     """Return a sentence each on runs of ``table`` that an observer warns of, that rotate too far for linearised kinematics,
     lean, or slide; [] for none.
 
-    ``varied`` are the keys by which an observer names a run.
+    ``case_of`` names the case of a run.
     """
 
     def counted(runs: npt.NDArray[np.bool_], singular: str, plural: str) -> str:
@@ -81,7 +88,7 @@ def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
     )
     slides = "more friction than the interface has: the pier would slide, which is not modelled; see the column note"
     sentences = [
-        *(warning(table, varied) for warning in parts("summary.warning")),
+        *(warning(table, case_of) for warning in parts("summary.warning")),
         rotate and f"{rotate} {beyond}",
         lean and f"theta_max/alpha {lean} {leans}",
         slide and f"{slide} {slides}",
@@ -117,26 +124,34 @@ def flexible(study: Study) -> list[str]:
     from rockbatch.pier.statics import flexure, is_too_soft, sheet_of
 
     sheets = [(case, sheet_of(case.pier, case.base)) for case in flexible_cases]
-    warnings = []
-    for case, sheet in sheets:
-        if is_too_soft(sheet):
-            name = f"{case.name} {named(case.columns, case.columns.values())}".rstrip()
-            warnings.append(f"{name}: {flexure(sheet)}".replace("α", "alpha"))
-    return warnings
+    names = names_of(map(describe_case, study.cases), study.varied, study.text)
+    return [
+        f"{names.named_case(case.name, case.columns, study.varied)}: {flexure(sheet)}"
+        for case, sheet in sheets
+        if is_too_soft(sheet)
+    ]
 
 
-def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
-    """Return a table of θ_max/α as text: a line for each set of values of columns ``rows``, a column for each case.
+def _block(
+    runs: Sequence[Row],
+    records: Mapping[str, str],
+    also: Mapping[str, Callable[[Any], str]],
+    labels: Sequence[str],
+) -> str:
+    """Return a table of θ_max/α as text: a line for each record and its values of the columns ``also``, a column for each case.
 
-    A case includes the values of ``case_keys``; a cell without a run is empty.
+    A cell without a run is empty, a run without a peak has its status alone.
     """
-    cells: dict[str, dict[str, str]] = {}
-    for run in runs.to_dict("records"):
-        line = " ".join(f"{run[name]:g}" if name == "scale" else str(run[name]) for name in rows)
-        varied = named(case_keys, [run[name] for name in case_keys])
-        mark = run["theta_max_is"] if run["status"] == "ok" else run["status"]
-        cell = f"{mark} {run['theta_max_over_alpha']:.4f}".lstrip()
-        cells.setdefault(line, {})[f"{run['case']} {varied}".strip()] = cell
-    cases = list(dict.fromkeys(case for line in cells.values() for case in line))
-    lines = [[line, *(of_line.get(case, "") for case in cases)] for line, of_line in cells.items()]
-    return in_width(["", *cases], lines)
+    cells: dict[str, dict[int, str]] = {}
+    for run in runs:
+        line = ", ".join(filter(None, (records[run["record"]], *(words(run[name]) for name, words in also.items()))))
+        mark, peak = run["theta_max_is"] if run["status"] == "ok" else run["status"], run["theta_max_over_alpha"]
+        cells.setdefault(line, {})[run["series"]] = " ".join(
+            filter(None, (mark, "" if peak != peak else f"{peak:.4f}"))
+        )
+    places = sorted({place for of_line in cells.values() for place in of_line})
+    heads = [textwrap.wrap(labels[place], _WRAPPED, break_long_words=False) for place in places]
+    depth = max(map(len, heads))
+    top = [["", *line] for line in zip(*([""] * (depth - len(head)) + head for head in heads), strict=True)]
+    lines = [[line, *(of_line.get(place, "") for place in places)] for line, of_line in cells.items()]
+    return in_width(top[0], [*top[1:], *lines])

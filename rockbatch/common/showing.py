@@ -56,7 +56,7 @@ def _short(value: object) -> str:
     """Return a value as short text: floats with 5 significant digits, items of a tuple separated by semicolons, others by str."""
     if isinstance(value, InNotebook):
         title, facts = value._facts()
-        return f"{title}: " + ", ".join(f"{name} = {words}" for name, words in facts.items())
+        return f"{title}: " + ", ".join(f"{name} = {words}" for name, words in facts.items() if words)
     if isinstance(value, tuple):
         return "; ".join(map(_short, value))
     return f"{value:.5g}" if isinstance(value, float) else str(value)

@@ -5,10 +5,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from rockbatch.common.showing import shown
+from rockbatch.quantities.labels import digits_that_tell
 from rockbatch.quantities.rows import as_in_peaks
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted
-from rockbatch.results.labels import digits_that_tell
 from rockbatch.study.load import SECTIONS
 from rockbatch.toml.section import Section
 

@@ -18,10 +18,11 @@ from rockbatch.common.lazy import pd
 from rockbatch.outcome.response import Response
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case
+from rockbatch.quantities.labels import record_labels
 from rockbatch.quantities.rows import NOT_RUN, counts_as, simulated
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.labels import counted
-from rockbatch.reporting.markup import Markup, join, number, tag
+from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.results.labelled import Labelled, Row, by_pga, foundation_key, groups_of, labelled, pier_key
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.reading import Saved
@@ -152,16 +153,13 @@ class Finished(Contents, Labelled):
         """Yield the runs of each scale, pier and vertical component, after a description such as "p = 1.2 rad/s"."""
         return groups_of(self.runs, self.piers)
 
-    def case_of(self, run: "pd.Series | Row") -> str:
-        """Describe a run without its record: "pads (p = 1.2 rad/s, scale 2, reversed)", or "pads" if nothing of this applies."""
-        also = [self.piers[run["pier"]], f"scale {number(float(run['scale']))}" if run["scale"] != 1 else ""]
-        also += ["reversed" if run["polarity"] == "-" else "", run["with_vertical"]]
-        details = ", ".join(filter(None, also))
-        return self.series[run["series"]].label + (f" ({details})" if details else "")
+    @cached_property
+    def _labels(self) -> dict[str, str]:
+        return record_labels(self.info)
 
     def label(self, record: str) -> str:
         """Return event, station and direction of a record; its name in tables if the file's header gives none."""
-        return str(self.records.get(record, {}).get("label") or record)
+        return self._labels.get(record, record)
 
     def named(self, record: str) -> str:
         """Return a record's label, followed by its name in tables in brackets if different."""

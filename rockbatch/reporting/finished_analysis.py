@@ -13,10 +13,10 @@ import numpy as np
 from rockbatch.common.errors import EditedTable, InputError
 from rockbatch.common.files import read_table, read_text, sha256_of
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.labels import in_full
 from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.results.labelled import Item
-from rockbatch.results.labels import quantity
 
 MOST_NAMES = 60
 
@@ -148,7 +148,5 @@ def sentence(said: str, left_open: Iterable[str] = ()) -> Markup:
 
 
 def named(values: Mapping[str, object], shown: Sequence[str]) -> str:
-    """Describe a panel by its case and the values of the keys ``shown``, without NaN: "pads, β = 40"."""
-    words = [str(values["case"])]
-    words += [quantity(name, values[name]) for name in shown if name != "case" and values[name] == values[name]]
-    return ", ".join(words)
+    """Return the name of a case with its values of the keys ``shown``, without NaN: "pads: β = 40"."""
+    return in_full(str(values["case"]), {name: values[name] for name in shown if name != "case"})

@@ -3,10 +3,10 @@
 import re
 from collections.abc import Sequence
 
+from rockbatch.quantities.labels import symbol_of
 from rockbatch.quantities.quantity import Quantity
 from rockbatch.reporting.markup import Markup, escape, tag
 from rockbatch.reporting.table import Head
-from rockbatch.results.labels import symbol_of
 
 
 def counted(count: int, word: str) -> str:

@@ -62,7 +62,7 @@ def drawn_by_record(
         return (words, comma + end, finished.named(name)) if words else (end, "", finished.named(name))
 
     def description(run: Row) -> str:
-        words = tooltip(finished.series[run["series"]], run, finished.both_directions)
+        words = tooltip(finished.series[run["series"]], run, run["polarity"] if finished.both_directions else "")
         return f"{finished.label(run['record'])}\n{words}"
 
     rows = _rows(columns, "record", single, label, len(names), folded=folded)
@@ -129,7 +129,7 @@ def by_foundation(finished: Finished) -> Markup:
         return finished.series[place].label, "", finished.series[place].label
 
     def description(run: Row) -> str:
-        return tooltip(finished.series[run["series"]], run, True) + f", {finished.label(run['record'])}"
+        return tooltip(finished.series[run["series"]], run, run["polarity"]) + f", {finished.label(run['record'])}"
 
     marks = dots.Marks(None, description, "record")
     order = "foundation, the best first: those that overturn, fly or fail the least often, then by their peaks"

@@ -11,10 +11,10 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.cases import is_across, name_along
 from rockbatch.quantities.design import BOUND
+from rockbatch.quantities.labels import titled, values_in_words
 from rockbatch.reporting.differing import Place, case_values
 from rockbatch.reporting.finished import Finished
 from rockbatch.results.labelled import Item
-from rockbatch.results.labels import quantity
 from rockbatch.study import PIER_KEYS
 
 SIDES = ("A", "B")
@@ -127,7 +127,7 @@ def _labelled_by(study: Finished, keys: list[str]) -> Finished:
     varied = [key for key in study.info["varied"] if key not in PIER_KEYS and key != "vertical"]
     series = []
     for (case, *values), place in study.places.items():
-        pairs = [(name, value) for name, value in zip(varied, values, strict=True) if name in keys and value != ""]
-        words = ", ".join(str(value) if name == BOUND else quantity(name, value) for name, value in pairs)
-        series.append(replace(study.series[place], label=f"{case}: {words}" if words else str(case)))
+        words = values_in_words({name: value for name, value in zip(varied, values, strict=True) if name in keys})
+        label = titled(str(case), words)
+        series.append(replace(study.series[place], label=label, has_values=bool(words)))
     return replace(study, series=series)

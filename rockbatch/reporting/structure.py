@@ -19,7 +19,7 @@ from rockbatch.pier.plausibility import wrong_restraints
 from rockbatch.pier.sizes import USUAL as OF_PIER
 from rockbatch.pier.traits import USUAL as OF_BASE
 from rockbatch.quantities.cases import Case
-from rockbatch.results.labels import DEVICE_SYMBOLS, plain, unit_with_exponent
+from rockbatch.quantities.labels import DEVICE_SYMBOLS, plain, unit_with_exponent
 from rockbatch.study.restraint_keys import KEYS_OF
 
 _PIER = (
@@ -84,7 +84,7 @@ def base_of(case: Case, pier: Pier) -> Base | None:
     return None if problems(pier, rigid) else base
 
 
-def device_in_words(pier: Pier, restraint: Restraint) -> str:
+def device_in_words(pier: Pier, restraint: Restraint, digits: int = 4) -> str:
     """Describe a device: "friction damper at each pivot, F = 450 kN"; over the weight if the pier's mass is not known.
 
     Infinite values are left out.
@@ -99,19 +99,19 @@ def device_in_words(pier: Pier, restraint: Restraint) -> str:
     power = values.pop("exponent", 1.0) if "coefficient_kN_s_m" in values else 1.0
     words = f"{kind} damper" if isinstance(restraint, Damper) else _NAMED.get(kind, kind)
     names = DEVICE_SYMBOLS | _OF_STOP if restraint.what in _NAMED else DEVICE_SYMBOLS
-    numbers = [_parameter(*names[key], value, power) for key, value in values.items() if value < float("inf")]
+    numbers = [_parameter(*names[key], value, power, digits) for key, value in values.items() if value < float("inf")]
     return ", ".join([f"{words} {_place(restraint)}", *numbers])
 
 
-def devices_in_words(case: Case) -> list[str]:
+def devices_in_words(case: Case, digits: int = 4) -> list[str]:
     """Return the devices of a case in words, one text each; [] without devices or for impossible values."""
     pier = pier_of(case)
-    return [device_in_words(pier, device) for device in restraints_of(case)] if pier else []
+    return [device_in_words(pier, device, digits) for device in restraints_of(case)] if pier else []
 
 
-def _parameter(symbol: str, unit: str, value: float, power: float) -> str:
+def _parameter(symbol: str, unit: str, value: float, power: float, digits: int) -> str:
     """Return "C = 900 kN (s/m)^0.3" without line breaks; ``power`` is the exponent in the unit."""
-    return f"{symbol} = {plain(value, 4)} {unit_with_exponent(unit, power)}".strip().replace(" ", "\u00a0")
+    return f"{symbol} = {plain(value, digits)} {unit_with_exponent(unit, power)}".strip().replace(" ", "\u00a0")
 
 
 def _place(restraint: Restraint) -> str:

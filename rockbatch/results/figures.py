@@ -29,6 +29,7 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import is_across
+from rockbatch.quantities.labels import record_labels
 from rockbatch.quantities.rows import counts_as
 from rockbatch.results.labelled import Item, Labelled, Row, as_dicts, by_pga, ceiling, groups_of
 from rockbatch.results.labels import Series
@@ -72,7 +73,7 @@ def peaks(runs: "pd.DataFrame", series: Sequence[Series], records: Mapping[str, 
 def _foundation_marks(one: Series, side: str, sides: list[str], runs: list[Row], top: float) -> Iterator[Mark]:
     """Yield the marks of one foundation and side in a panel; of two sides one has open marks, three or more have colours."""
     place, label = sides.index(side), one.keyed + (f" ({side})" if len(sides) > 1 else "")
-    titles = [tooltip(one, run, len(sides) > 1) for run in runs]
+    titles = [tooltip(one, run, side if len(sides) > 1 else "") for run in runs]
     abscissa = 0.42 if one.rigid else one.index + 1 + SPREAD * ((place + 0.5) / len(sides) - 0.5)
     x = np.full(len(runs), abscissa)
     theta = np.array([run["theta_max_over_alpha"] for run in runs], dtype=float)
@@ -99,12 +100,12 @@ def _foundation_marks(one: Series, side: str, sides: list[str], runs: list[Row],
             yield Points(x[ended], y, None, of_ended, look=sign_of(status), label=words)
 
 
-def tooltip(series: Series, run: Row, several_sides: bool) -> str:
+def tooltip(series: Series, run: Row, side: str) -> str:
     """Return the tooltip of a run's marker: "2: η = 3.5: 0.0617 ± 3e-07", or its status instead of numbers.
 
-    With ``several_sides`` the polarity is behind the label, in brackets.
+    ``side`` is what tells the marks of a foundation apart, and follows the label in brackets; "" for nothing.
     """
-    name = series.label + (f" ({run['polarity']})" if several_sides else "")
+    name = series.label + (f" ({side})" if side else "")
     if run["status"] != "ok":
         return f"{name}: {run['status']}"
     error = run["theta_max_error"]
@@ -123,7 +124,7 @@ def peaks_of_all(results: Labelled, info: Item) -> Figure:
         side = (side + ", " + runs["polarity"]).str.removeprefix(", ")
     names = by_pga(worst_records(runs, MOST_PANELS), info)
     shown = runs.assign(side=side)[runs["record"].isin(names)]
-    labels = {record["record"]: str(record.get("label") or record["record"]) for record in info["records"]}
+    labels = record_labels(info)
     figure = peaks(shown, results.series, {name: (labels.get(name, name), "") for name in names}, ceiling(shown))
     every = runs["record"].nunique()
     more = f" ({len(names)} of {every} records, the worst)" if len(names) < every else ""

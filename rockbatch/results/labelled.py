@@ -2,7 +2,7 @@
 
 import math
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -14,8 +14,9 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import Case, is_across, name_along
 from rockbatch.quantities.design import BOUND, of_design, under
+from rockbatch.quantities.labels import digits_that_tell, quantity, scaled_by, titled, values_in_words
 from rockbatch.quantities.rows import as_in_peaks, simulated, with_case
-from rockbatch.results.labels import Key, Series, digits_that_tell, named, quantity, under_bounds
+from rockbatch.results.labels import Key, Series, named, under_bounds
 from rockbatch.study import PIER_KEYS
 
 Item = Mapping[str, Any]
@@ -26,30 +27,55 @@ Row = dict[str, Any]
 
 
 @dataclass(frozen=True, eq=False)
-class Labelled:
-    """Runs with labels that distinguish them.
+class Names:
+    """Names of the cases of a study, made of the values that distinguish them.
 
     Attributes
     ----------
-    runs : DataFrame
-        The simulated rows of ``peaks.csv``, without mirror images, with further columns: ``series`` and ``pier``, indices
-        into the lists below; ``alpha`` [rad]; ``pga`` of the scaled motion [g]; ``with_vertical``, "" unless the study ran
-        with and without the vertical component.
     series : list of Series
         The foundations.
     piers : list of str
         Descriptions of the varied values of each pier; [""] if none varies.
     places, pier_places : dict
         Index of each foundation in ``series``, and of each pier's varied values in ``piers``.
+    """
+
+    series: list[Series]
+    piers: list[str]
+    places: dict[Key, int]
+    pier_places: dict[Key, int]
+
+    def named_case(self, case: str, columns: Mapping[str, object], varied: Sequence[str], *also: str) -> str:
+        """Return the name of a case on its pier, and what ``also`` tells its runs from others.
+
+        ``columns`` maps the ``varied`` keys to values. A case that is not among the named ones is called by its name and all
+        values of ``columns``.
+        """
+        key, pier = foundation_key(case, columns, varied), pier_key(columns, varied)
+        if key in self.places and pier in self.pier_places:
+            return self.named_place(self.places[key], self.pier_places[pier], *also)
+        return titled(case, filter(None, (*values_in_words(columns), *also)))
+
+    def named_place(self, series: int, pier: int, *also: str) -> str:
+        """Return the name of a foundation on a pier by their indices, and what ``also`` tells its runs from others."""
+        return self.series[series].with_values(filter(None, (self.piers[pier], *also)))
+
+
+@dataclass(frozen=True, eq=False)
+class Labelled(Names):
+    """Runs with labels that distinguish them.
+
+    Attributes
+    ----------
+    runs : DataFrame
+        The simulated rows of ``peaks.csv``, without mirror images, with further columns: ``series`` and ``pier``, indices
+        into the lists of names; ``alpha`` [rad]; ``pga`` of the scaled motion [g]; ``with_vertical``, "" unless the study ran
+        with and without the vertical component. Piers are those with a run.
     cases : dict
         Entries of run.json by the indices (series, pier) of their runs.
     """
 
     runs: "pd.DataFrame"
-    series: list[Series]
-    piers: list[str]
-    places: dict[Key, int]
-    pier_places: dict[Key, int]
     cases: dict[tuple[int, int], Case]
 
     @cached_property
@@ -57,26 +83,48 @@ class Labelled:
         """Return whether several scales were run."""
         return bool(self.runs["scale"].nunique() > 1)
 
-    def named_case(
+    def named_runs(
         self, case: str, columns: Mapping[str, object], varied: Sequence[str], scale: float | None = None
     ) -> str:
-        """Return the label of a case and its pier, with the ``scale`` of its motions if given and if there are several.
-
-        ``columns`` maps the ``varied`` keys to values. A case without runs is called by its name and all values of ``columns``.
-        """
-        key, pier = foundation_key(case, columns, varied), pier_key(columns, varied)
-        if key in self.places and pier in self.pier_places:
-            words = [self.series[self.places[key]].label, self.piers[self.pier_places[pier]]]
-        else:  # without a run
-            words = [case, *(quantity(name, value) for name, value in columns.items() if value != "")]
-        scaled = f"motions scaled by {scale:g}" if self.many_scales and scale is not None else ""
-        return ", ".join(filter(None, (*words, scaled)))
+        """Return the name of a case, with the ``scale`` of its motions if given and if there are several."""
+        scaled = scaled_by(scale) if self.many_scales and scale is not None else ""
+        return self.named_case(case, columns, varied, scaled)
 
     def named_design(
         self, case: str, columns: Mapping[str, object], varied: Sequence[str], scale: float | None = None
     ) -> str:
-        """Return the label of a case as :meth:`named_case`, without the bound under which it ran."""
-        return self.named_case(case, of_design(columns), varied, scale)
+        """Return the name of a case as :meth:`named_runs`, without the bound under which it ran."""
+        return self.named_runs(case, of_design(columns), varied, scale)
+
+    def case_of(self, run: "pd.Series[Any] | Row") -> str:
+        """Return the name of a run without its record: "pads: β = 40, motions scaled by 2, reversed"."""
+        scaled = scaled_by(run["scale"]) if run["scale"] != 1 else ""
+        turned = "reversed" if run["polarity"] == "-" else ""
+        return self.named_place(run["series"], run["pier"], scaled, turned, run["with_vertical"])
+
+
+def names_of(cases: Iterable[Case], varied: Sequence[str], text: str) -> Names:
+    """Return the names of ``cases``, entries of run.json, of a study with this ``text`` and these ``varied`` keys."""
+    grouped: dict[Key, list[Case]] = {}
+    piers: dict[Key, int] = {}
+    given = _keys_given(text)
+    for case in cases:
+        grouped.setdefault(foundation_key(case["case"], case["columns"], varied), []).append(case)
+        piers.setdefault(pier_key(case["columns"], varied), len(piers))
+        if is_across(case):
+            given[case["case"]] = given.get(name_along(case), set())
+    nominal = {key: entries for key, entries in grouped.items() if not under(entries[0]["columns"])}
+    series = named(nominal, [key for key in varied if _of_foundation(key)], given)
+    series = under_bounds(series, grouped) if BOUND in varied else series
+    places = {key: place for place, key in enumerate(series)}
+    return Names(list(series.values()), _words_of(piers, varied), places, piers)
+
+
+def _words_of(piers: Collection[Key], varied: Sequence[str]) -> list[str]:
+    """Return the varied values of each pier in words; [""] without piers."""
+    keys = [key for key in varied if key in PIER_KEYS]
+    digits = [digits_that_tell(values) for values in zip(*piers, strict=True)]
+    return [", ".join(map(quantity, keys, values, digits)) for values in piers] or [""]
 
 
 def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
@@ -85,19 +133,8 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
     Raises ``InputError`` if the two do not belong together.
     """
     varied = info["varied"]
-    grouped: dict[Key, list[Case]] = {}
-    entries: dict[tuple[Key, Key], Case] = {}
-    for case in info["cases"]:
-        key = foundation_key(case["case"], case["columns"], varied)
-        grouped.setdefault(key, []).append(case)
-        entries[key, pier_key(case["columns"], varied)] = case
-    given = _keys_given(info["study"]["text"])
-    given |= {case["case"]: given.get(name_along(case), set()) for case in info["cases"] if is_across(case)}
-    nominal = {key: cases for key, cases in grouped.items() if not under(cases[0]["columns"])}
-    series = named(nominal, [key for key in varied if _of_foundation(key)], given)
-    series = under_bounds(series, grouped) if BOUND in varied else series
-    places = {key: place for place, key in enumerate(series)}
-
+    names = names_of(info["cases"], varied, info["study"]["text"])
+    entries = {_pair(case["case"], case["columns"], varied): case for case in info["cases"]}
     runs = simulated(with_case(peaks)).copy(deep=False)
     kinds = runs.groupby(["case", *varied], sort=False, dropna=False).ngroup() if len(runs) else runs["scale"]
     piers: dict[Key, int] = {}
@@ -105,11 +142,11 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
     cases: dict[tuple[int, int], Case] = {}
     unknown = set()
     for row in as_dicts(runs.assign(kind=kinds).drop_duplicates("kind")):
-        pair = foundation_key(row["case"], row, varied), pier_key(row, varied)
+        pair = _pair(row["case"], row, varied)
         if pair not in entries:
             unknown.add(str(row["case"]))
             continue
-        place = places[pair[0]], piers.setdefault(pair[1], len(piers))
+        place = names.places[pair[0]], piers.setdefault(pair[1], len(piers))
         cases[place] = entries[pair]
         facts[row["kind"]] = *place, float(entries[pair]["pier"]["alpha"])
     if unknown:
@@ -126,10 +163,12 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
             ~runs["case"].isin(across), runs["pga_g"]
         )  # run.json has the PGA of the other component
     runs["with_vertical"] = _with_vertical(runs)
-    keys = [key for key in varied if key in PIER_KEYS]
-    digits = [digits_that_tell(values) for values in zip(*piers, strict=True)]
-    words = [", ".join(map(quantity, keys, values, digits)) for values in piers] or [""]
-    return Labelled(runs, list(series.values()), words, places, piers, cases)
+    return Labelled(names.series, _words_of(piers, varied), names.places, piers, runs, cases)
+
+
+def _pair(case: str, columns: Mapping[str, object], varied: Sequence[str]) -> tuple[Key, Key]:
+    """Return the keys of a case's foundation and of its pier."""
+    return foundation_key(case, columns, varied), pier_key(columns, varied)
 
 
 def groups_of(runs: "pd.DataFrame", piers: Sequence[str]) -> "Iterator[tuple[str, pd.DataFrame]]":
@@ -143,7 +182,7 @@ def groups_of(runs: "pd.DataFrame", piers: Sequence[str]) -> "Iterator[tuple[str
     for group in sorted(rows):
         of_group = runs.iloc[rows[group]] if len(rows) > 1 else runs
         first = of_group.iloc[0]
-        scale = f"motions scaled by {float(first['scale']):.4g}" if scaled else ""
+        scale = scaled_by(first["scale"]) if scaled else ""
         words = [piers[first["pier"]], scale, first["with_vertical"]]
         yield ", ".join(filter(None, words)), of_group
 

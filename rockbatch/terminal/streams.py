@@ -15,12 +15,29 @@ from contextlib import suppress
 from typing import TextIO
 
 from rockbatch.common.files import legible
+from rockbatch.common.grouping import grouped
 
 _COLOURS = re.compile(r"(\x1b\[(?:0|31|32|33)m)")
 """ANSI escape sequences of the colours of verdicts."""
 
 WIDTH = 100
 """Characters in a line of prose: the number outside a terminal, and the maximum in one."""
+
+_GREEK = "alpha beta epsilon zeta eta theta lambda mu nu psi omega"
+PLAIN = dict(zip("αβεζηθλμνψω", _GREEK.split(), strict=True)) | {
+    "✓": "+",
+    "✗": "x",
+    "–": "-",
+    "≤": "<=",
+    "≥": ">=",
+    "∞": "inf",
+    "…": "...",
+    "·": "*",
+    "×": "x",
+    "²": "2",
+    "³": "3",
+}
+"""ASCII replacements for characters that a terminal cannot show: signs, and the letters of the field."""
 
 _lost: dict[TextIO, OSError] = {}
 
@@ -82,6 +99,13 @@ def shown(text: str, instead: str) -> str:
     return text
 
 
+def showable(text: str) -> str:
+    """Return ``text`` with :data:`PLAIN` words for the characters that stdout cannot show, and plain spaces."""
+    for sign, plain in PLAIN.items():
+        text = text.replace(sign, shown(sign, plain)) if sign in text else text
+    return text.replace("\u00a0", " ")
+
+
 def coloured(text: str, colour: str | None) -> str:
     """Return ``text`` in an ANSI ``colour`` such as "31"; plain for None, NO_COLOR, TERM=dumb, or if stdout is no terminal."""
     plain = "NO_COLOR" in os.environ or os.environ.get("TERM") == "dumb" or not sys.stdout.isatty()
@@ -121,7 +145,11 @@ def _wrapped(text: str, most: int) -> str:
 
 
 def aligned(lines: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> list[str]:
-    """Return lines of cells as text in columns two blanks apart, those at ``left`` flush left, the others flush right."""
+    """Return lines of cells as text in columns two blanks apart, those at ``left`` flush left, the others flush right.
+
+    Cells are made :func:`showable`.
+    """
+    lines = [list(map(showable, line)) for line in lines]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     pads = [str.ljust if i in left else str.rjust for i in range(len(widths))]
     return ["  ".join(pad(cell, w) for pad, cell, w in zip(pads, line, widths, strict=True)) for line in lines]
@@ -141,8 +169,10 @@ def in_width(
     Outside a terminal a line has up to ``most`` characters.
     """
     edge, left = width() or most, {*range(names), *left}
-    room = edge // (2 * names)
-    lines = [[*(shortened(cell, room) for cell in line[:names]), *line[names:]] for line in (head, *rows)]
+    lines = [list(map(showable, line)) for line in (head, *rows)]
+    for place in range(names):
+        for line, cell in zip(lines, shortened([line[place] for line in lines], edge // (2 * names)), strict=True):
+            line[place] = cell
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     blocks = [list(range(names))]
     for place in range(names, len(head)):
@@ -156,6 +186,33 @@ def in_width(
     return "\n\n".join("\n".join(line.rstrip() for line in table) for table in tables)
 
 
-def shortened(text: str, room: int) -> str:
-    """Return ``text`` with its middle replaced by "…" if it is longer than ``room``, since names differ at their ends."""
+def shortened(texts: Sequence[str], room: int) -> list[str]:
+    """Return texts of at most ``room`` characters, so far as texts that differ still do: "…" replaces what is left out.
+
+    Of a longer one the middle goes, since names differ at their ends; of several that would then read alike, the parts between
+    commas that all of them have. If neither tells them apart, the room grows.
+    """
+    while True:
+        short = {text: _cut(text, room) for text in texts}
+        for alike in grouped(short, short.__getitem__).values():
+            if len(alike) > 1:
+                short |= {text: _cut(apart, room) for text, apart in zip(alike, _parts_apart(alike), strict=True)}
+        if len(set(short.values())) == len(short):
+            return [short[text] for text in texts]
+        room += 1
+
+
+def _cut(text: str, room: int) -> str:
+    """Return ``text`` with its middle replaced by "…" if it is longer than ``room``."""
     return text if len(text) <= room else f"{text[: room // 4]}…{text[room // 4 + 1 - room :]}"
+
+
+def _parts_apart(texts: Sequence[str]) -> list[str]:
+    """Return each text without the parts between commas that all ``texts`` have, each run of them replaced by "…"."""
+    parts = [text.split(", ") for text in texts]
+    shared = set(parts[0]).intersection(*parts[1:])
+    own = [["…" if part in shared else part for part in of_text] for of_text in parts]
+    return [
+        ", ".join(part for i, part in enumerate(of_text) if part != "…" or of_text[i - 1 : i] != ["…"])
+        for of_text in own
+    ]

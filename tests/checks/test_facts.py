@@ -85,7 +85,7 @@ def test_words_of_notes_and_reasons_decide_nothing_in_random_tables(results, tab
         if seed % 50 == 0:
             first, second = (
                 [answered(before, replace(results, peaks=table)), answered([], replace(results, peaks=table)),
-                 warnings(table, ()), failed_later(table)]
+                 warnings(table, lambda run: run["case"]), failed_later(table)]
                 for table in both
             )  # fmt: skip
             assert first == second, seed

@@ -121,7 +121,7 @@ def test_a_step_in_the_header_beside_a_time_column_that_contradicts_it_is_refuse
 def test_a_lost_sample_does_not_make_the_headers_step_wrong(tmp_path):
     t = np.delete(0.01 * np.arange(121), 60)
     write(tmp_path, "# sampling rate: 100 Hz\n# time(s) N(g)", t, A)
-    assert "1 samples put between, none lost" in one(tmp_path).notes[0]
+    assert "1 sample put between, none lost" in one(tmp_path).notes[0]
 
 
 @pytest.mark.parametrize("stated", ["gal", "cm/s2", "m/s2", "g/10"])

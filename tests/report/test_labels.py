@@ -10,9 +10,9 @@ from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.pier import RigidBase, Tendon, YieldingBase
+from rockbatch.quantities.labels import digits_that_tell, in_full, quantity
 from rockbatch.reporting.finished import read
-from rockbatch.results.labels import digits_that_tell, named, quantity
-from rockbatch.terminal.naming import named as named_in_terminal
+from rockbatch.results.labels import named
 
 MASS = {"width_m": 4.0, "height_m": 20.0, "mass_t": 1000.0}
 
@@ -76,16 +76,19 @@ def test_varied_values_are_called_by_symbol_and_unit(key, value, words):
     assert quantity(key, value).replace("\u00a0", " ") == words
 
 
-def test_the_terminal_names_the_device_of_a_varied_key_in_words():
+def test_a_case_is_called_by_its_name_and_all_its_varied_values_in_words():
     values = {
         "damper_1_f": 0.05,
         "deck_spring_2_gap_mm": 20.0,
         "beta": 80.0,
         "kinematics": "finite",
         "tendon_1_psi": math.nan,
+        "bound": "stiff",
+        "scale": "",
     }
-    words = "damper f=0.05 deck spring 2 gap_mm=20 beta=80 kinematics=finite"
-    assert named_in_terminal(values, values.values()) == words
+    words = "pads: f = 0.05, deck spring 2: gap = 20 mm, β = 80, kinematics finite, stiff"
+    assert in_full("pads", values).replace("\u00a0", " ") == words
+    assert in_full("pads", {}) == "pads"
 
 
 PAD, HARD, SOFT = YieldingBase(50.0, eta=2.5), RigidBase(), RigidBase(restitution=0.5)
@@ -123,7 +126,7 @@ def test_a_run_says_what_else_than_its_foundation_tells_it_from_others_of_its_re
     run = finished.runs[finished.runs["scale"] == 2.0].iloc[0].to_dict()
     turned = finished.case_of(run | {"polarity": "-"})
     assert finished.case_of(run | {"polarity": "+"}) == turned.replace(", reversed", "")
-    assert "scale 2, reversed" in turned
+    assert "motions scaled by 2, reversed" in turned
 
 
 @pytest.mark.parametrize(

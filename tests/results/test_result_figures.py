@@ -249,8 +249,8 @@ def test_a_case_without_runs_is_named_by_its_own_values(results):
     other = own(results).named_case("rock", {"p": 9.0}, ["p", "beta"])
     assert [name.replace("\u00a0", " ") for name in (known, gone, other)] == [
         "pads: β = 30, p = 1 rad/s",
-        "gone, p = 1 rad/s, β = 30",
-        "rock, p = 9 rad/s",
+        "gone: p = 1 rad/s, β = 30",
+        "rock: p = 9 rad/s",
     ]
 
 
@@ -267,9 +267,11 @@ def test_rigid_bases_beyond_the_first_have_dashes_of_their_own(results):
 def test_the_tooltip_of_a_marker_has_value_error_and_side_or_how_the_run_ended(results):
     one = own(results).series[-1]
     run = {"status": "ok", "theta_max_over_alpha": 0.06166, "theta_max_error": 3.2e-7, "polarity": "-"}
-    assert tooltip(one, run, False) == f"{one.label}: 0.0617 ± 3e-07"
-    assert tooltip(one, run | {"theta_max_error": math.nan}, True) == f"{one.label} (-): 0.0617"
-    assert tooltip(one, run | {"status": "flight"}, True) == f"{one.label} (-): flight"
+    assert tooltip(one, run, "") == f"{one.label}: 0.0617 ± 3e-07"
+    assert (
+        tooltip(one, run | {"theta_max_error": math.nan}, "p = 1 rad/s, -") == f"{one.label} (p = 1 rad/s, -): 0.0617"
+    )
+    assert tooltip(one, run | {"status": "flight"}, "-") == f"{one.label} (-): flight"
 
 
 def test_on_self_similar_axes_a_run_that_did_not_move_is_none_that_stood_or_fell(results):

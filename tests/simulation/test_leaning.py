@@ -19,6 +19,8 @@ from rockbatch.observers.rocking.observe import Rocking
 from rockbatch.pier import ElasticBase, Pier, YieldingBase
 from rockbatch.reporting.sections.peaks import outcome
 from rockbatch.results.columns import StudyRun, as_table, row
+from rockbatch.results.labelled import Labelled
+from rockbatch.results.labels import Series
 from rockbatch.results.run_json import describe_case
 from rockbatch.simulation import Run, Stop, run_all_to_tolerance, run_fixed, run_to_tolerance
 from rockbatch.simulation.leaning import PARTS, greatest_swing, lean_of, unstressed, with_lean
@@ -196,9 +198,10 @@ def test_a_check_may_ask_for_the_rocking_and_the_tables_mark_the_lean(tmp_path):
     verdicts = judge(study.checks, runs, [describe_case(one)])
     assert [verdict.verdict for verdict in verdicts] == ["fail", "pass"]
     assert verdicts[1].value == runs["theta_rocking_over_alpha"][0]
-    shown = summary(runs, (), {"shaken": "shaken"})
+    labels = Labelled([Series("pads", "", False, 0)], [""], {}, {}, runs.assign(series=0, pier=0, with_vertical=""), {})
+    shown = summary(labels, {"shaken": "shaken"})
     assert f"lean {runs['theta_max_over_alpha'][0]:.4f}" in shown
-    assert "of 1 run, marked lean, is mostly the lean" in " ".join(warnings(runs, ()))
+    assert "of 1 run, marked lean, is mostly the lean" in " ".join(warnings(runs, labels.case_of))
     assert "lean</sup>" in outcome(runs.iloc[0].to_dict())
 
 

@@ -6,10 +6,10 @@ from rockbatch.analyses.fragility.figures import label
 from rockbatch.analyses.fragility.quantities import FEW, Curve, bound_in_words, level_of, percent, power
 from rockbatch.common.analyses import Entry
 from rockbatch.common.grouping import grouped
+from rockbatch.quantities.labels import plain
 from rockbatch.reporting.finished_analysis import answered, sentence
 from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, join
-from rockbatch.results.labels import plain
 
 NOTABLE = 0.2
 """Share of a rate that rests on an extrapolation, from which the answer says so."""

@@ -9,10 +9,10 @@ from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.tables import RUNS
 from rockbatch.batch.listening import count
 from rockbatch.common.analyses import Entry
+from rockbatch.quantities.labels import in_full
 from rockbatch.reporting.table import Head
 from rockbatch.study import Study
 from rockbatch.terminal.analysis import analysis_arguments, in_lines, print_files
-from rockbatch.terminal.naming import named
 from rockbatch.terminal.options import folder
 from rockbatch.terminal.streams import say, show
 
@@ -78,7 +78,7 @@ def risk_lines(info: Entry) -> str:
 
 
 def _case(curve: Curve) -> str:
-    return f"{curve['case']} {named(curve['columns'], curve['columns'].values())}".strip()
+    return in_full(curve["case"], curve["columns"])
 
 
 def _name(curve: Curve) -> str:

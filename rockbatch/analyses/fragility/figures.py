@@ -23,7 +23,7 @@ from rockbatch.common.figures.description import (
     sign_of,
 )
 from rockbatch.common.grouping import grouped
-from rockbatch.results.labels import quantity
+from rockbatch.quantities.labels import in_full
 
 STRIP = 0.03
 """Height of a strip above the axes, in probability."""
@@ -35,8 +35,8 @@ Curve = Entry
 
 
 def label(entry: Curve) -> str:
-    words = [quantity(name, value) for name, value in entry["columns"].items()]
-    return f"{entry['case']}: {', '.join(words)}" if words else entry["case"]
+    """Return the name of a curve's case with its varied values."""
+    return in_full(entry["case"], entry["columns"])
 
 
 def in_brackets(unit: str) -> str:

@@ -5,9 +5,9 @@ from collections.abc import Callable
 
 from rockbatch.analyses.fragility.figures import in_brackets
 from rockbatch.common.analyses import Entry
+from rockbatch.quantities.labels import plain
 from rockbatch.reporting.markup import Markup, interval
 from rockbatch.reporting.table import Head
-from rockbatch.results.labels import plain
 
 Curve = Entry
 """One of ``curves`` of fragility.json."""

@@ -6,12 +6,12 @@ from rockbatch.analyses.sensitivity.figures import symbol, written
 from rockbatch.common.analyses import Entry
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.labels import plain
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting.finished_analysis import answered, named, sentence
 from rockbatch.reporting.labels import counted, heading
 from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.results.labelled import as_dicts
-from rockbatch.results.labels import plain
 
 HARDLY = 0.05
 """Total index below which an input hardly matters."""

@@ -5,11 +5,11 @@ import argparse
 from rockbatch.analyses.sensitivity.analysis import sensitivity
 from rockbatch.analyses.sensitivity.quantities import QUANTITIES
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.labels import in_full
 from rockbatch.reporting.table import Head
 from rockbatch.results.labelled import as_dicts
 from rockbatch.study import Study
 from rockbatch.terminal.analysis import analysis_arguments, in_lines, print_files
-from rockbatch.terminal.naming import named
 from rockbatch.terminal.streams import say, show
 
 
@@ -30,6 +30,6 @@ def shown(swings: "pd.DataFrame", shares: "pd.DataFrame", varied: tuple[str, ...
     heads, blocks = [Head("input", value="parameter"), *QUANTITIES], []
     for names, of_case in swings.groupby(keys, sort=False, dropna=False):
         rows = as_dicts(of_case.merge(shares, on=[*keys, "parameter"]))
-        title = f"{names[0]} {named(varied, names[1:])}".rstrip()
+        title = in_full(str(names[0]), dict(zip(varied, names[1:], strict=True)))
         blocks.append(f"{title}: theta_max/alpha one at a time, and Sobol indices\n{in_lines(heads, rows)}")
     return "\n\n".join(blocks)

@@ -8,10 +8,10 @@ import numpy as np
 from rockbatch.common.analyses import Entry
 from rockbatch.common.figures.description import Area, Axis, Figure, Look, Mark, Panel, Polyline, Rule, Words, spanning
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.labels import SYMBOLS
 from rockbatch.reporting.finished_analysis import named
 from rockbatch.reporting.markup import number
 from rockbatch.results.labelled import as_dicts
-from rockbatch.results.labels import SYMBOLS
 
 ROW = 30.0
 """Height of an input [px]."""

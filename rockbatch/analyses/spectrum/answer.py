@@ -9,12 +9,12 @@ import numpy as np
 from rockbatch.analyses.spectrum.figures import ACROSS
 from rockbatch.common.analyses import Entry
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.labels import plain, quantity
 from rockbatch.reporting.finished_analysis import answered, named
 from rockbatch.reporting.labels import counted, symbol
 from rockbatch.reporting.markup import Markup, escape
 from rockbatch.reporting.table import sub
 from rockbatch.results.labelled import as_dicts
-from rockbatch.results.labels import plain, quantity
 
 MOST_SLENDERNESSES = 4
 """Most slendernesses of which the answer says what overturns; of more it says so of the first and the last."""

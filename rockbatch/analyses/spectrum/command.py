@@ -6,13 +6,13 @@ import numpy as np
 
 from rockbatch.analyses.spectrum.analysis import spectrum
 from rockbatch.analyses.spectrum.rocking_spectrum import OWN, groups
-from rockbatch.analyses.spectrum.study import INTENSITY, SELF_SIMILAR, SpectrumSpec
+from rockbatch.analyses.spectrum.study import SELF_SIMILAR, SpectrumSpec
 from rockbatch.batch.listening import count
 from rockbatch.common.grouping import spread
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.labels import in_full
 from rockbatch.study import Study
 from rockbatch.terminal.analysis import analysis_arguments, print_files
-from rockbatch.terminal.naming import named
 from rockbatch.terminal.streams import in_width, say, show
 
 MOST_LINES = 12
@@ -44,7 +44,7 @@ def shown(suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
     columns: dict[str, dict[str, str]] = {}
     for names, of_suite in suite[suite[axis].isin(lines)].groupby(keys, sort=False, dropna=False):
         values = dict(zip(keys, names, strict=True))
-        heading = f"{names[0]} {named(labels, [values[name] for name in labels])}".replace(INTENSITY, "A")
+        heading = in_full(str(names[0]), {name: values[name] for name in labels})
         columns[heading] = {
             f"{value:.4g}": "" if np.isnan(median) else "∞" if np.isinf(median) else f"{median:.4f}"
             for value, median in zip(of_suite[axis], of_suite["median"], strict=True)
@@ -56,9 +56,7 @@ def shown(suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
     text = f"Median of theta_max/alpha{share}; ∞: overturned or ended by flight\n{in_width([axis, *columns], rows)}"
     if axis == SELF_SIMILAR and len(suite):
         sizes, scales = (f"{suite[f'least_{name}'].min():.3g} to {suite[f'greatest_{name}'].max():.3g}" for name in OWN)
-        text += (
-            f"\nA = PGA/(g tan alpha), omega_g = PGA/PGV of each record; piers with R0 = {sizes} m, factors {scales}"
-        )
+        text += f"\nomega_g = PGA/PGV of each record; piers with R0 = {sizes} m, factors {scales}"
     return text
 
 
@@ -72,7 +70,8 @@ def shown_maps(table: "pd.DataFrame", varied: tuple[str, ...]) -> str:
     """Return the regions of every map for a terminal, a line for each of up to MOST_LINES, 12, frequencies."""
     blocks = []
     for names, of_map in table.groupby(["map", "case", *varied], sort=False, dropna=False):
-        lines = [f"{names[0]}, {names[1]} {named(varied, names[2:])}".rstrip() + ": outcome by a_p/(g tan alpha)"]
+        case = in_full(str(names[1]), dict(zip(varied, names[2:], strict=True)))
+        lines = [f"{names[0]}, {case}; outcome by a_p/(g tan alpha)"]
         for frequency in _evenly(of_map["omega_p_over_p"].unique()):
             column = of_map[of_map["omega_p_over_p"] == frequency]
             regions = "; ".join(

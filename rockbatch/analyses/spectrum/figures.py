@@ -9,9 +9,9 @@ from rockbatch.analyses.spectrum.map_regions import Outline, areas, between, ins
 from rockbatch.common.analyses import Entry
 from rockbatch.common.figures.description import COLOURS, Area, Axis, Figure, Look, Mark, Panel, Points, Polyline, Span
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.labels import quantity
 from rockbatch.reporting.finished_analysis import named
 from rockbatch.reporting.labels import symbol
-from rockbatch.results.labels import quantity
 
 ROW = 0.06
 """Height of a row of marks of overturned runs over that of the axes: one for each slenderness, or they would hide each other."""

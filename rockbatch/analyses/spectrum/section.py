@@ -3,11 +3,11 @@
 from rockbatch.analyses.spectrum.answer import answer, of_maps, of_spectra
 from rockbatch.analyses.spectrum.figures import QUANTILES, maps, spectra
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.labels import plain
 from rockbatch.reporting.finished_analysis import FinishedAnalysis, of_analysis
 from rockbatch.reporting.labels import heading
 from rockbatch.reporting.markup import Markup, figure, join, paragraphs, tag
 from rockbatch.reporting.svg import drawn
-from rockbatch.results.labels import plain
 
 COUNTS = ("overturned", "flight", "failed")
 

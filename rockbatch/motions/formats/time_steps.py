@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from rockbatch.common.errors import InputError
+from rockbatch.common.showing import several
 from rockbatch.motions.motion import Samples
 
 _EVEN = 0.05  # of the step: deviation of clocks and printing from an even grid; a lost sample deviates by 1
@@ -51,7 +52,7 @@ def on_even_steps(t: Samples, values: Samples) -> tuple[float, Samples, tuple[st
         if dt is not None:
             added = int(counts[-1]) + 1 - len(t)
             even = _interpolated(np.arange(counts[-1] + 1), counts, values)
-            return dt, even, (_note(shortest, longest, dt, f"{added} samples put between, none lost"),)
+            return dt, even, (_note(shortest, longest, dt, f"{several(added, 'sample')} put between, none lost"),)
     count = int(np.ceil((t[-1] - t[0]) / shortest * (1 - 1e-9)))
     if count > _GROWTH * len(t):
         raise InputError(

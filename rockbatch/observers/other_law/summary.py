@@ -1,17 +1,20 @@
 """The warning in the terminal that a settlement is a range."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from rockbatch.batch.listening import count
 from rockbatch.common.lazy import pd
 from rockbatch.observers.other_law.quantities import OTHER_LAW
-from rockbatch.terminal.naming import named
 
 
-def warning(table: "pd.DataFrame", varied: Sequence[str]) -> str:
-    """Return a warning if settlements by the two spring laws differ by over 10 % and 1 mm in a run; else ""."""
+def warning(table: "pd.DataFrame", case_of: Callable[["pd.Series[Any]"], str]) -> str:
+    """Return a warning if settlements by the two spring laws differ by over 10 % and 1 mm in a run; else "".
+
+    ``case_of`` names the case of a run.
+    """
     if OTHER_LAW not in table:
         return ""
     of_case, by_other = table["settlement_m"], table[OTHER_LAW]
@@ -20,8 +23,7 @@ def warning(table: "pd.DataFrame", varied: Sequence[str]) -> str:
     if not differ.any():
         return ""
     worst = table.iloc[int(np.nanargmax(gap.to_numpy()))]
-    keys = ["scale", *varied] if table["scale"].nunique() > 1 else varied
-    run = f"{worst['record']}, {worst['case']} {named(keys, [worst[name] for name in keys])}".rstrip()
+    run = f"{worst['record']}, {case_of(worst)}"
     mm = [1000 * worst[name] for name in ("settlement_m", OTHER_LAW)]
     law = "Bouc–Wen" if mm[0] > mm[1] else "elastic–perfectly plastic"
     return (

@@ -4,13 +4,11 @@ from collections.abc import Sequence
 
 from rockbatch.pier.figures import Sheet, statics
 from rockbatch.pier.statics import FACTS, Statics, flexure, is_too_soft, sheet_of
-from rockbatch.quantities.cases import Case
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, join, paragraphs, tag
 from rockbatch.reporting.structure import base_of, device_in_words, pier_of
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import Head, alarm, table
-from rockbatch.results.labels import quantity
 
 MOST_CASES, ABREAST = 16, 8
 """Most cases with a statics sheet, since each takes some milliseconds, and columns of one table."""
@@ -36,7 +34,8 @@ def section(finished: Finished) -> Markup:
         pier = pier_of(case)
         base = None if pier is None else base_of(case, pier)
         if pier is not None and base is not None:
-            sheets.append((_name(case), sheet_of(pier, base)))
+            name = finished.named_case(case["case"], case["columns"], finished.info["varied"])
+            sheets.append((name, sheet_of(pier, base)))
             devices.append("; ".join(device_in_words(pier, device) for device in base.restraints))
     if not sheets:
         return Markup("")
@@ -53,10 +52,6 @@ def section(finished: Finished) -> Markup:
         tag("p", LEGEND, class_="legend"),
         paragraphs(f"The first {MOST_CASES} cases are shown; `rockbatch statics` shows all." if omitted > 0 else ""),
     )
-
-
-def _name(case: Case) -> str:
-    return " ".join([str(case["case"]), *(quantity(key, value, case=case) for key, value in case["columns"].items())])
 
 
 def _table(sheets: Named, devices: Sequence[str]) -> Markup:

@@ -7,15 +7,15 @@ from rockbatch.checks.coverage import stations_of
 from rockbatch.pier.restraints import KINDS
 from rockbatch.quantities.cases import Case, is_across, top
 from rockbatch.quantities.design import BOUND
+from rockbatch.quantities.labels import plain
 from rockbatch.quantities.quantity import FOOTING
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted, symbol
-from rockbatch.reporting.markup import Markup, join
+from rockbatch.reporting.markup import Markup, join, number
 from rockbatch.reporting.structure import devices_in_words
 from rockbatch.reporting.table import Head, sub, table
 from rockbatch.reporting.templates import render
 from rockbatch.results.labelled import Row
-from rockbatch.results.labels import plain
 from rockbatch.study import PIER_KEYS
 
 GIVEN = {
@@ -162,15 +162,35 @@ def _foundations(finished: Finished) -> Markup:
     names = ("beta", "eta", *in_kilonewtons, *keys)
     further = _further(finished.info["cases"], {*names, "delta_s_m", "delta_y_m"})
     rows = []
-    for case in finished.info["cases"]:
+    devices = _devices(finished.info["cases"])
+    for case, of_case in zip(finished.info["cases"], devices, strict=True):
         values = case["parameters"]
         deflections = [values.get(key) for key in ("delta_s_m", "delta_y_m")]
         millimetres = [None if metres is None else 1000 * metres for metres in deflections]
         own = [case["columns"].get(key) for key in varied]
         name = ", ".join(filter(None, (case["case"], case["columns"].get(BOUND))))
         cells = [name, *own, case["base"], *(values.get(key) for key in names), *millimetres]
-        rows.append([*cells, *(values.get(key) for key in further), "; ".join(devices_in_words(case))])
-    return table([*heads, *map(Head, further.values()), Head("devices")], rows, name="Foundations")
+        rows.append([*cells, *(values.get(key) for key in further), of_case])
+    heads += [*map(Head, further.values()), Head("devices")]
+    columns = zip(*rows, strict=True)
+    heads = [head._replace(form=_telling(head.form, cells)) for head, cells in zip(heads, columns, strict=True)]
+    return table(heads, rows, name="Foundations")
+
+
+def _telling(form: str, cells: Sequence[object]) -> str:
+    """Return the format of a column, or one of ten digits if numbers that differ would read alike in it."""
+    numbers = {float(f"{cell:.10g}") for cell in cells if isinstance(cell, float)}
+    return form if len({number(value, form) for value in numbers}) == len(numbers) else ".10g"
+
+
+def _devices(cases: Sequence[Case]) -> list[str]:
+    """Return the devices of each case in words, with as many digits as tell them apart, from 4 on; "" for impossible values."""
+
+    def in_words(digits: int) -> list[str]:
+        return ["; ".join(devices_in_words(case, digits)) for case in cases]
+
+    most = len(set(in_words(10)))
+    return next(words for digits in range(4, 11) if len(set(words := in_words(digits))) == most)
 
 
 def _further(cases: Sequence[Case], shown: Collection[str]) -> dict[str, str]:

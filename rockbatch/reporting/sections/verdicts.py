@@ -73,7 +73,7 @@ def _line(line: Line) -> Markup:
 
 def named_designs(finished: Finished, *, bounds: bool = False) -> Callable[[Verdict | CaseRuns], str]:
     """Return a function that names the case of a row, with its bound only if ``bounds``; a row without a case is the suite."""
-    named = finished.named_case if bounds else finished.named_design
+    named = finished.named_runs if bounds else finished.named_design
     return lambda row: named(row.case, row.columns, finished.info["varied"], row.scale) if row.case else wording.SUITE
 
 
@@ -263,8 +263,17 @@ def _every(finished: Finished, verdicts: Sequence[Verdict], notes: wording.Notes
         limit = "" if math.isnan(row.value) else wording.limit(row)
         numbers = wording.demanded(row), _between(row), limit, wording.margin(row), row.unit, row.records or None
         remarks = "; ".join(filter(None, (row.counted, notes.about(row))))
-        verdict = mark(row.verdict, row.verdict)
-        rows.append([wording.name_of(row), case_of(row), verdict, *numbers, wording.governing(row), remarks])
+        verdict, governing = mark(row.verdict, row.verdict), wording.governing(row, finished.label(row.record))
+        rows.append(
+            [
+                wording.name_of(row),
+                case_of(row),
+                verdict,
+                *numbers,
+                governing,
+                remarks,
+            ]
+        )
     return table(heads, rows, sortable=True, prose=True, name="Verdicts", worst_of=len(verdicts))
 
 

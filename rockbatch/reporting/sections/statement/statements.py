@@ -20,6 +20,7 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import distinct, grouped
 from rockbatch.quantities.cases import Case, is_across, name_along
 from rockbatch.quantities.design import of_design, under
+from rockbatch.quantities.labels import in_full
 from rockbatch.quantities.rows import with_case
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted
@@ -33,7 +34,6 @@ from rockbatch.reporting.sections.statement.check_sentences import (
     worst_by_check,
 )
 from rockbatch.results.labelled import Item, foundation_key, pier_key
-from rockbatch.results.labels import quantity
 
 SHORT = 16
 """Characters of a digest that are printed; the calculation sheet has all."""
@@ -152,12 +152,12 @@ def _names(finished: Finished, designs: Mapping[str, Sequence[CaseRuns]]) -> lis
     """Return the labels of designs, with case and varied values where labels are alike."""
     firsts = [runs[0] for runs in designs.values()]
 
-    def in_full(place: int, label: str) -> str:
-        values = [quantity(key, value) for key, value in of_design(firsts[place].columns).items()]
-        return ", ".join((f"{label}: case {firsts[place].case}", *values))
+    def told_apart(place: int, label: str) -> str:
+        name = in_full(firsts[place].case, of_design(firsts[place].columns))
+        return f"{label} (case {name})"
 
     labels = [finished.named_design(its.case, its.columns, finished.info["varied"], its.scale) for its in firsts]
-    return distinct(labels, in_full)
+    return distinct(labels, told_apart)
 
 
 def _result(design: _Design, stations: Stations) -> str:
