@@ -85,7 +85,7 @@ def read_again(
 ) -> Mapping[str, Rows]:
     """Return the rows of each table of ``observers`` for a run, by name, repeated with the steps of its ``row`` of peaks.csv.
 
-    Its results are bitwise those of the row; one that an observer does not read, as it is too long, has no rows in its table.
+    The run's results are bitwise those of the row. An observer that does not read the run, as it is too long, gives no rows.
     """
     (run,) = simulations([planned])
     outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), numerics.quiet_s)

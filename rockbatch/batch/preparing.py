@@ -189,7 +189,10 @@ def check_records(records: Collection[str], motions: MotionSet) -> None:
 
 
 def share_of(runs: int, share: int, shares: int) -> range:
-    """Return the indices of the ``share``-th of ``shares`` (from 1) of ``runs``; ``InputError`` for more shares than runs."""
+    """Return the indices of the ``share``-th (from 1) of ``shares`` consecutive parts of ``runs``, equal to within one run.
+
+    Raises ``InputError`` for more shares than runs.
+    """
     if shares > runs:
         raise InputError(f"--shard {share}/{shares}: the study has {count(runs, 'run')}; make as many shares or fewer")
     return range(runs * (share - 1) // shares, runs * share // shares)

@@ -358,7 +358,10 @@ class _Cases:
         return sentences
 
     def _reason_of_verdict(self, verdict: Verdict) -> str:
-        """Return a sentence on why a check is not decided: its note, then the limit and run if bounds straddle the limit."""
+        """Return why a check is not decided: "drift in pads: between 0.2 and 0.6, limit 0.5 m, left open by Te Mara."
+
+        The case is left out if it is the only one; limit (not of a ban) and run follow the note if bounds straddle the limit.
+        """
         case = " ".join(
             filter(None, (f" in {self.case_of(verdict)}" if len(self.every) > 1 else "", under(verdict.columns)))
         )

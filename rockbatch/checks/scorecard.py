@@ -140,7 +140,7 @@ def scorecard(
 
 
 def _under_failing_suite(verdict: Verdict) -> Verdict:
-    """Return the verdict under a suite that fails its own check: a pass becomes undecided."""
+    """Return the verdict under a suite that fails its own check: a pass becomes undecided, and nothing else changes."""
     return replace(verdict, verdict=NOT_DECIDED) if verdict.verdict == PASS else verdict
 
 

@@ -102,7 +102,10 @@ def shard(text: str) -> tuple[int, int]:
 
 
 def case_pair(text: str) -> tuple[str, str]:
-    """Return the two names of "A=B". Raises ``ArgumentTypeError`` for other texts, with "A=B" for "A:B", "A,B" or "A==B"."""
+    """Return the names before and after the first "=" of "A=B". Raises ``ArgumentTypeError`` if there are no two.
+
+    The error proposes "A=B" for "A:B", "A,B", "A->B", "A=>B" and "A==B".
+    """
     first, sign, second = text.partition("=")
     if first and sign and second and not second.startswith(("=", ">")):
         return first, second

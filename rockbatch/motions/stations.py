@@ -72,7 +72,8 @@ def _by_header(components: Iterable[Component]) -> Iterator[list[Component]]:
 def _by_time(group: list[Component]) -> list[list[Component]]:
     """Return the components of a station by record: each overlaps in time with others of its record.
 
-    Without times and events, a repeated direction means several recordings: then each file, or each site, is one.
+    If some have no time, all are one record, unless a direction repeats and an event is missing: then each file of several
+    components is one, and of the other components each site.
     """
     if not all(component.dated for component in group):
         if all(component.event for component in group) or len(_directions(group)) == len(group):

@@ -145,7 +145,7 @@ def spring_of(pier: Pier, base: ElasticBase) -> Spring:
 
 
 class SlowTurn:
-    """A pier on a base that is turned slowly from rest, to the right (``side`` 1) or to the left (−1).
+    """A pier with a straight shaft on a base, turned slowly from rest to the right (``side`` 1) or to the left (−1).
 
     ``restraints`` are the acting devices: all of the base by default. Impossible values were refused before.
     """
@@ -207,7 +207,7 @@ class SlowTurn:
         return distance * np.cos(theta) / np.cos(0.5 * theta) + 0.5 * np.tan(0.5 * theta) * elongation
 
     def _toe_arm(self, theta: Array) -> Array:
-        """Return the arm of the weight about the toe [m]."""
+        """Return the arm of the weight about the toe [m]; negative when the centre of mass is past the toe."""
         if not self.finite:
             return self.b - self.h * theta
         return self.b * np.cos(theta) - self.h * np.sin(theta)

@@ -56,7 +56,7 @@ class Smooth:
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:
-        """Forces/F_y, in ever smaller steps towards 1, and the spring's deflections/δ_y there, without the brace."""
+        """Forces/F_y from 0 to 1, closer and closer near 1, and the spring's deflections/δ_y there, without the brace."""
         deficit = np.unique(np.concatenate((np.geomspace(1.0, 1e-15, 1200), np.linspace(1.0, 0.1, 300))))[::-1]
         steps = self._between(deficit[:-1], deficit[1:])
         return 1.0 - deficit, np.concatenate(([0.0], np.cumsum(steps)))

@@ -63,7 +63,10 @@ def _alike(finished: Finished, case: Case) -> Alike:
 
 
 def _title(finished: Finished, one: Alike, several: bool) -> str:
-    """Return the varied values of the pier, or the names of the cases; both if ``several`` drawings are of this pier."""
+    """Return the varied values of the pier, or the names of the cases; "pier, names" if ``several`` drawings are of it.
+
+    At most :data:`MOST_NAMES` cases are named.
+    """
     case = one.cases[0]
     place = finished.pier_places.get(pier_key(case["columns"], finished.info["varied"]))
     pier = "" if place is None else finished.piers[place]
@@ -72,7 +75,10 @@ def _title(finished: Finished, one: Alike, several: bool) -> str:
 
 
 def _lines(finished: Finished, cases: Sequence[Case], known: Collection[str]) -> list[str]:
-    """Return the devices of cases that share a drawing, but ``known`` ones; one that some cases lack follows their names."""
+    """Return the devices of cases that share a drawing, but ``known`` ones; "B: damper" for a device that only case B has.
+
+    At most :data:`MOST_LINES`, then one that says how many more there are.
+    """
     having: dict[str, list[str]] = {}
     for case in cases:
         for words in dict.fromkeys(devices_in_words(case)):

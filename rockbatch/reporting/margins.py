@@ -54,7 +54,11 @@ def _passing(study: Finished, rows: Sequence[Row], share: str, several: bool) ->
 
 
 def _failing(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
-    """Return which checks cases fail, the worst first, with its share of the limit: "fails the anchor at 196 %"."""
+    """Return the worst failing check, its demand over limit and place, and how many other checks fail.
+
+    "fails anchor at 196 % (Te Mara) and 2 more in 2 of 3 cases"; ``share``, " in 2 of 3 cases", says how many cases fail, and
+    the place begins with the case if ``several``. A ratio that is not known is left out.
+    """
     cells = [(row, cell) for row, cell in _cells(rows) if cell.verdict.verdict == FAIL]
     row, cell = _worst(cells) or cells[0]
     others = len({cell.verdict.check for _, cell in cells}) - 1

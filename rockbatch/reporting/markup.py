@@ -31,7 +31,7 @@ _PLAIN = re.compile(r"[A-Za-z0-9_Α-ω\xa0 .,:;/()+−–-]*")
 
 
 def join(*children: object, between: str = "") -> Markup:
-    """Concatenate the children, escaped, with ``between`` between them."""
+    """Concatenate the children, escaped, with ``between``, not escaped, between them."""
     return Markup(between.join([escape(child) for child in children]))
 
 

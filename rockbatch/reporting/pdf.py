@@ -40,7 +40,7 @@ def frame(title: str, top: tuple[str, str], bottom: str, size: str, margin: str 
     """Return the rules that a document begins with.
 
     ``top`` are the texts at the head of each page, left and right, and ``bottom`` the one at its foot, beside its number.
-    ``size`` and ``margin`` are lengths of Typst, of the text and on both of its sides; ``paper`` is one of :data:`PAPERS`.
+    ``size`` of the text and ``margin`` on its left and right are lengths of Typst; ``paper`` is one of :data:`PAPERS`.
     """
     return _FRAME.format(
         title=string(title),

@@ -119,7 +119,10 @@ def _of_line(info: Entry, rows: Sequence[Entry], tried: Sequence[Entry]) -> Iter
 
 
 def _interval(row: Entry) -> str:
-    """Return an interval in words with what governs its ends: "4 to 6 (below: end of the scan; above it fails: drift)"."""
+    """Return an interval in words with what governs its ends: "4 to 6 (below: end of the scan; above it fails: drift)".
+
+    An interval of a single value is "4 to 4".
+    """
     ends = []
     for end in ("below", "above"):
         state = (

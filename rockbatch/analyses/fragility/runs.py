@@ -84,7 +84,7 @@ class LevelPlan(NamedTuple):
         return self.earlier[motion] * self.scale(motion, intensity)
 
     def number(self, motion: int, intensity: float) -> int:
-        """Return the number, from 0, of the level among all of a motion at which it is run with an intensity."""
+        """Return which of a motion's levels, from 0 in rising order and with unused ones, is run with an intensity."""
         levels = sorted(self.used[motion] | self.not_used[motion])
         return next(n for n, level in enumerate(levels) if self.used[motion].get(level) == intensity)
 
@@ -216,7 +216,7 @@ class RecordRuns:
         return values
 
     def states(self, requested: Sequence[tuple[Rule, Point]]) -> list[int]:
-        """Return the state of each run, all of the last wave, with respect to its limit."""
+        """Return the state of each run, all of the last wave, with respect to its limit: LEFT_OUT to EXCEEDED, in this order."""
         result = np.full(len(requested), LEFT_OUT)
         for rule, numbers in grouped(range(len(requested)), lambda number: requested[number][0]).items():
             for drawn, places, runs in self._together([requested[number][1] for number in numbers]):

@@ -311,7 +311,7 @@ def _finite(bounds: tuple[float, float]) -> list[float | None]:
 
 
 def note(curve: Curve, spec: FragilitySpec) -> str:
-    """Return remarks on a curve, or the bound of its median or why there is none, parted by semicolons; "" without any."""
+    """Return the remarks on a curve, parted by semicolons, with the bound of a median that has no value, or why; "" for none."""
     fitted = curve.fitted
     notes = [_about_undecided(curve)]
     if isinstance(fitted, NoCurve):

@@ -75,7 +75,10 @@ def _index(row: Entry) -> str:
 
 
 def _doubt(first: Entry, shown: Rows) -> Iterator[str]:
-    """Yield advice to take more samples if errors leave the order of the inputs open, or are over half of the first index."""
+    """Yield advice to take more samples if errors leave open which input is first, else if its error is over half its index.
+
+    ``first`` has the greatest total index; ``shown`` are the inputs that are compared with it.
+    """
     least = first["total"] - first["total_error"]
     alike = [symbol(row["parameter"]) for row in shown if row["total"] + row["total_error"] >= least]
     if alike:

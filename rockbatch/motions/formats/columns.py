@@ -127,7 +127,10 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
 
 
 def _unit_of(column: Column, of_all: str | None, options: ReadOptions) -> str:
-    """Return a column's unit, else that ``of_all``, else ""; the study's, if stated, in place of a unit of no acceleration."""
+    """Return a column's unit, else that ``of_all``, else "".
+
+    A column's own unit that is not one of acceleration gives way to the study's, if stated.
+    """
     if column.unit and not is_acceleration(column.unit) and options.unit:
         return options.unit
     return column.unit or of_all or ""

@@ -113,9 +113,10 @@ def _counted(
 
 
 def _count_and_step(numbers: Sequence[float]) -> tuple[float, str] | None:
-    """Return the count in one to three numbers, with a step before or after it, and both as a header line; else None.
+    """Return the count of samples and its header line: (4000.0, "NPTS = 4000"), with ", DT = 0.005 s" if a step is given.
 
-    A third number, such as RspMatch's count of leading zeros, is ignored.
+    The ``numbers`` are the count, alone or with the step [s] before or after it; a third one, such as RspMatch's count of
+    leading zeros, is ignored. None if the count is not whole or below 2, or the step not between 0 and 1 s.
     """
     first, *others = numbers
     step = others[0] if others else None

@@ -98,7 +98,7 @@ def _form(rows: Sequence[Mapping[str, object]], key: str) -> str:
 
 
 def _single(value: object) -> bool:
-    """Return whether a value is a number or a text, or a list of at least one of these."""
+    """Return whether a value is a number or a text, or a list, not empty, of only these, nested or not."""
     if isinstance(value, list):
         return bool(value) and all(map(_single, value))
     return isinstance(value, int | float | str)

@@ -232,7 +232,7 @@ def _events(records: Sequence[Item]) -> str:
 def _conforming(info: Item, verdicts: Sequence[Verdict]) -> str:
     """Return sentences on the conditions of target spectra: "The suite meets all 3 conditions of …", or which it does not meet.
 
-    Without ``verdicts`` on it, that it was only compared with a target, or has none.
+    Without ``verdicts``, returns the sentence that the suite was only compared with a target, or has none.
     """
     if not verdicts:
         target = info.get("target")
