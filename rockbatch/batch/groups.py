@@ -38,7 +38,7 @@ def groups(runs: Sequence[StudyRun], numerics: Numerics, jobs: int, most: int = 
 
 
 def least_steps(run: StudyRun, numerics: Numerics) -> float:
-    """Return the least number of steps that a run takes: at its fixed step, or at the first trial's step and at half of it."""
+    """Return the least number of steps of a run: at its fixed step, or in the first two trials, the second at half the step."""
     substeps = numerics.substeps or 3 * first_substeps(run.case.pier, run.case.base, run.record.dt)
     return steps_of(run.record, substeps, numerics.quiet_s)
 

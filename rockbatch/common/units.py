@@ -202,7 +202,7 @@ class Usual(NamedTuple):
     least: float = 0.0
 
     def holds(self, value: float) -> bool:
-        """Return whether the size of a value is from ``least`` to ``most``; True for 0 and for what is no number."""
+        """Return whether the size of a value is from ``least`` to ``most``; True for 0 and for texts and None, False for NaN."""
         return not isinstance(value, int | float) or value == 0 or self.least <= abs(value) <= self.most
 
     def doubts(self, name: str, value: float) -> list[Problem]:

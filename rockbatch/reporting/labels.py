@@ -21,7 +21,7 @@ def symbol(key: str) -> str:
 
 
 def heading(words: str) -> Markup:
-    """Return words as HTML, with small letters after "_" as a subscript, as "max" in "θ_max/α"."""
+    """Return words as HTML, with small letters and 0 after "_" as a subscript, as "max" in "θ_max/α"."""
     return Markup(re.sub(r"_([a-z0]+)", lambda match: tag("sub", match[1]), escape(words)))
 
 

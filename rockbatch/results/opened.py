@@ -225,7 +225,7 @@ def open_results(directory: str | os.PathLike[str]) -> Results:
 
 
 def _candidates(fitting: "pd.DataFrame", criteria: dict[str, float | str]) -> str:
-    """List up to eight runs in words, by the values that distinguish them, apart from the ``criteria`` already used."""
+    """List runs in words, by the values that distinguish them and are no ``criteria``: the first eight, then "and 2 more"."""
     apart = [name for name in fitting.columns if name not in ("status", *criteria) and fitting[name].nunique() > 1]
     runs = [{name: value for name, value in run.items() if value == value} for run in fitting[apart].to_dict("records")]
     return _listed(", ".join(f"{name} = {shown(value)}" for name, value in run.items()) for run in runs)

@@ -145,7 +145,7 @@ def _with_residuals_of(probe: Outcome, outcome: Outcome, tolerance: float, pier:
 
 
 def _residual_difference(one: Outcome, other: Outcome, pier: Pier) -> float:
-    """Return the greatest difference of residual rotation [rad] and of settlement over half the width between two outcomes."""
+    """Return how far two outcomes differ in residual rotation [rad] or settlement over half the width, whichever is more."""
     return max(_difference(one, other, "theta_res"), _difference(one, other, "settlement") / pier.half_width)
 
 

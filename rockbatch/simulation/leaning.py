@@ -33,7 +33,7 @@ class Apart(NamedTuple):
 
     @property
     def leans(self) -> bool:
-        """Return True if the peak is mostly lean, with far less rocking than the greatest."""
+        """Return True if lean is MOSTLY, half, of the peak or more, and its rocking less than half of the greatest."""
         return self.lean >= MOSTLY * (self.lean + self.rocking_then) and self.rocking_then < MOSTLY * self.rocking
 
 

@@ -122,7 +122,10 @@ class TomlFile:
             self.problems.append(problem)
 
     def adopt(self, other: "TomlFile", key_path: KeyPath) -> None:
-        """Add the mistakes of another file, in its order, to the problems, at the line of the ``key_path`` that names it."""
+        """Add the mistakes of another file, in its order, to the problems, at the line of the ``key_path`` that names it.
+
+        They are cut off at :data:`MOST_REPORTED` problems in all.
+        """
         line = self.lines.get(key_path, 0)
         in_order = sorted(other.problems, key=lambda problem: (problem[0], str(problem[1])))
         self.problems += [(line, problem) for _, problem in in_order][: MOST_REPORTED - len(self.problems)]

@@ -128,7 +128,7 @@ def references(
 
 
 def _scattered(i: int) -> float:
-    """Return a key that sorts a range so that its first few are spread over all of it: multiples of the golden section."""
+    """Return the fraction of i times the golden section: sorted by it, the first few of a range are spread over all of it."""
     return i * 0.6180339887498949 % 1.0
 
 

@@ -53,7 +53,7 @@ class Level:
 
     @property
     def milliseconds(self) -> str:
-        """Return the time per run [ms] as text: "1.23", from 100 on without decimals; empty if it was not measured."""
+        """Return the time per run [ms] as text, of three digits or, from 100 on, whole: "1.23"; empty if it was not measured."""
         return "" if self.seconds_per_run is None else f"{self.time:.0f}" if self.time >= 100 else f"{self.time:.3g}"
 
 

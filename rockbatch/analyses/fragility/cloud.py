@@ -230,7 +230,7 @@ class Demands:
 
     @property
     def of_station(self) -> Numbers:
-        """Return the number of the station of each run, shape (n,)."""
+        """Return the number of the station of each run, shape (n,): ``station``, else its own for each run."""
         return _alone(self.x) if self.station is None else self.station
 
 

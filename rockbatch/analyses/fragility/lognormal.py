@@ -514,7 +514,7 @@ def _intervals(edge: Values) -> tuple[tuple[float, float], tuple[float, float]]:
 
 
 def _crossings(a: Values, b: Values) -> list[float]:
-    """Return a where the closed edge crosses b = 0."""
+    """Return the values of ``a`` at which the closed polygon of points (a, b) crosses b = 0."""
     a2, b2 = np.roll(a, -1), np.roll(b, -1)
     crosses = (b > 0) != (b2 > 0)
     return list((a * b2 - a2 * b)[crosses] / (b2 - b)[crosses])

@@ -140,7 +140,7 @@ def _level_plan(
 
 
 def first_intensities(spec: FragilitySpec, plan: LevelPlan, motion: int, case: Case) -> dict[float, float]:
-    """Return the intensities of a motion's runs that depend on no others, by level; allowed ones in windows by themselves."""
+    """Return the intensities of a motion's runs that depend on no others, by level; in windows the allowed, by themselves."""
     used, earlier = plan.used[motion], plan.earlier[motion]
     around = (x for level in used for x in samples(level, spec.window_on(case.base)))
     return used | {x: x for x in around if spec.allows(earlier * plan.scale(motion, x))}

@@ -190,5 +190,5 @@ def _check_measured(table: Table, spec: ReleaseSpec, study: Study) -> None:
 
 
 def _numbered(values: Iterable[float]) -> list[tuple[int, float]]:
-    """Return the values that were measured, with their numbers from 1."""
+    """Return number and value of those that are not NaN; the numbers, from 1, count the others, too."""
     return [(n, value) for n, value in enumerate(values, 1) if not math.isnan(value)]

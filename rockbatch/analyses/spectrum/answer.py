@@ -86,7 +86,7 @@ def _greatest(info: Info, suite: "pd.DataFrame") -> Iterator[str]:
 
 
 def _apart(info: Info, suite: "pd.DataFrame") -> list[str]:
-    """Return the columns by which the panels of the figure differ."""
+    """Return "case", and the columns of scale and varied keys with several values, but for alpha and the axis of sizes."""
     names = [name for name in ("scale", *info["varied"]) if name not in ("alpha", info["axis"]) and name in suite]
     return ["case", *(name for name in names if suite[name].nunique(dropna=False) > 1)]
 

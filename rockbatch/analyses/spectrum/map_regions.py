@@ -94,7 +94,7 @@ def _kind(strip: Strip, edge: int) -> tuple[str, ...]:
 
 
 def _nearest(height: float, kind: tuple[str, ...], strip: Strip, edges: Array) -> int:
-    """Return the nearest edge of another strip with the same outcomes on both sides; 0 if there is none."""
+    """Return the index of the edge of another ``strip`` that has the outcomes ``kind`` and is nearest in height; 0 for none."""
     candidates = [i for i in range(1, len(strip.outcomes)) if _kind(strip, i) == kind]
     return min(candidates, key=lambda i: abs(edges[i] - height), default=0)
 

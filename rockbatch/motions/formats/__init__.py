@@ -115,7 +115,7 @@ def is_usual(suffix: str) -> bool:
 
 
 def format_of(suffix: str, head: bytes) -> Format | None:
-    """Return the format of a file with this suffix (with its dot, any case) and these first bytes; ``None`` if none."""
+    """Return the first of ``FORMATS`` for a suffix (with its dot, any case) and the first bytes of a file; ``None`` if none."""
     return next(
         (form for form in FORMATS if (form.anywhere or suffix.lower() in form.suffixes) and form.matches(head[:HEAD])),
         None,
