@@ -104,7 +104,7 @@ def _by_file(record: list[Component]) -> Iterator[list[Component]]:
 
 
 def _by_name(record: list[Component]) -> list[list[Component]]:
-    """Return the components by site, if directions repeat but not within sites of two or more components; else all together."""
+    """Return the components by site if directions repeat, but not within any site, and none has just one; else all together."""
     sites = grouped(record, lambda c: c.site)
     if len(_directions(record)) == len(record) or len(sites) < 2:
         return [record]

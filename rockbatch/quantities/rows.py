@@ -26,7 +26,7 @@ def simulated(runs: "pd.DataFrame") -> "pd.DataFrame":
 
 
 def as_in_peaks(value: object) -> object:
-    """Return a value as peaks.csv has it: a number as a float of ten digits, "" for None and NaN, others unchanged."""
+    """Return a value as peaks.csv has it: a number as a float of ten digits, True as 1.0, "" for None and NaN, text as is."""
     if value is None or value != value:
         return ""
     return float(f"{value:.10g}") if isinstance(value, float | int) else value

@@ -169,7 +169,7 @@ def _named(place: Place) -> str:
 def _shown(value: object, digits: int) -> str:
     """Return a value in words, a number with so many ``digits``; "–" for None, a key not written and without a default.
 
-    Of a list the first :data:`MOST_VALUES` values are shown, then "…".
+    Of a list the first :data:`MOST_VALUES` values are shown, then "…"; its numbers always have ten digits.
     """
     if value is None:
         return "–"

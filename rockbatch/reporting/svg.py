@@ -231,7 +231,7 @@ def _beside(mark: Points | Words, view: Axis, box: Box) -> Markup:
 
 
 def _boxes(rows: Sequence[Sequence[Panel]]) -> tuple[list[Box], float]:
-    """Lay rows of panels out in a picture; return their boxes and its height [px]."""
+    """Lay rows of panels out in a picture; return their boxes and its height [px]. A panel without a frame is alone in it."""
     boxes, height, width = [], 0.0, max(sum(panel.width for panel in row) for row in rows)
     left = max(_room_left(row[0]) for row in rows)
     if not rows[0][0].framed:

@@ -120,7 +120,7 @@ def _instead_of(directory: Path) -> str:
 
 
 def _other_version(directory: Path) -> list[str]:
-    """Return a sentence on the version that wrote a folder; empty if it was this one or is unknown."""
+    """Return a sentence on the other version that wrote a folder, in a list; [] if it was this one or is unknown."""
     try:
         version = str(json.loads(read_text(directory / INFO))["rockbatch"])
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
@@ -233,7 +233,7 @@ def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
 
 
 def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[str]:
-    """Return a message with its line for each wrong row length, number, status and missing scale, 20 at most; [] for none."""
+    """Return a message with its line for each wrong row length, number, status and missing scale, up to 20, then "and more"."""
     bad: list[str] = []
     try:
         with opened_text(path) as file:

@@ -89,8 +89,8 @@ def under_each_bound(finished: Finished) -> Markup:
 def scorecard(finished: Finished, *, bounds: bool = False) -> Markup:
     """Return a table of demand, share of the limit and a bar (full at twice the limit), by case and check.
 
-    A design has one row, with the worst of its bounds in each cell, or with ``bounds`` one for each of them. Up to
-    :data:`MOST_DRAWN` cases are drawn, the best; the others are only counted.
+    A design has one row, with the worst of its bounds in each cell, or with ``bounds`` one for each of them, in
+    their order. Up to :data:`MOST_DRAWN` cases are drawn, the best, or the first with ``bounds``; the others are counted.
     """
     card = of_verdicts(
         finished.verdicts, named_designs(finished, bounds=bounds), finished.suites, finished.worst_at_scales
