@@ -140,7 +140,10 @@ def test_kilonewtons_need_a_pier_whose_mass_is_known():
 @pytest.mark.parametrize(
     ("dt", "said"),
     [
-        (100.0, "dt = 100: more than 0.2 s: records have 0.002 to 0.05 s from sample to sample; if it is a rate in Hz"),
+        (
+            100.0,
+            "records have 0.002 to 0.05 s from sample to sample; if it is in ms, write dt = 0.1; if it is a rate in Hz",
+        ),
         (200.0, "if it is a rate in Hz, write dt = 0.005"),
         (1.0, "dt = 1: more than 0.2 s"),
         (0.25, "dt = 0.25: more than 0.2 s"),

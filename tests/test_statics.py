@@ -570,7 +570,7 @@ def test_the_command_prints_and_writes_what_python_has_without_records(tmp_path,
     assert main(["statics", str(study), "--csv", str(sheet), "--curves", str(curves)]) == 0
     printed = capsys.readouterr().out
     assert "static strength [g]" in printed
-    assert "\n\nK = 2 × 10⁶ kN/m\ntheta/alpha" in printed
+    assert "\n\npads: K = 2 × 10⁶ kN/m\ntheta/alpha" in printed
     monkeypatch.setattr("rockbatch.commands.statics.MOST_CASES", 2)
     assert main(["statics", str(study)]) == 0
     fewer = capsys.readouterr()
@@ -601,13 +601,13 @@ def test_a_pier_that_is_not_rigid_is_warned_of_by_the_sheet_and_by_a_run(tmp_pat
         assert main(command) == 0
         warned = [line for line in capsys.readouterr().err.splitlines() if "not rigid" in line]
         assert len(warned) == 1
-        assert warned[0].startswith("rock flexural_period_s=2: fixed at its base the pier has 0.66 of")
+        assert warned[0].startswith("rock: flexural period = 2 s: fixed at its base the pier has 0.66 of")
 
 
 @pytest.mark.parametrize(
     ("pier", "case", "words"),
     [
-        (BRIDGE | {"flexural_period_s": 600.0}, {}, "bridge piers have 0.1 to 3; check the unit; if it is"),
+        (BRIDGE | {"flexural_period_s": 600.0}, {}, "have 0.1 to 3; if it is in ms, write flexural_period_s = 0.6; check"),
         (BRIDGE | {"flexural_period_s": 0.0}, {}, "flexural_period_s = 0"),
         (BRIDGE, {"area_m2": 60000.0}, "area_m2 = 60000"),
         (BRIDGE, {"area_m2": -6.0}, "area_m2 = -6"),

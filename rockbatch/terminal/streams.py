@@ -68,7 +68,7 @@ def tell(stream: TextIO | None, text: str) -> None:
         return
     terminal = stream.isatty()
     parts = _COLOURS.split(_wrapped(text, shutil.get_terminal_size().columns)) if terminal else [text]
-    safe = "".join(part if i % 2 else legible(part, keep="\n") for i, part in enumerate(parts))
+    safe = "".join(part if i % 2 else legible(part, keep="\n") for i, part in enumerate(parts)).replace("\u00a0", " ")
     encoding = stream.encoding or "utf-8"
     try:
         print(safe.encode(encoding, "backslashreplace").decode(encoding), file=stream, flush=True)

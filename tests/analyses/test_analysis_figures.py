@@ -286,7 +286,7 @@ def test_panels_are_named_by_what_differs_between_them():
     points = points.assign(scale=1.0, alpha=0.2, count=1, median=[0.4, 0.3, np.inf, 0.2])
     info = {"axis": "p", "varied": ["beta", "alpha", "p"]}
     panels = spectra(points, None, info).panels
-    assert [panel.caption.replace("\u00a0", " ") for panel in panels] == ["rigid", "pads, β = 40"]
+    assert [panel.caption.replace("\u00a0", " ") for panel in panels] == ["rigid", "pads: β = 40"]
     assert [mark.label.replace("\u00a0", " ") for mark in of_kind(panels[0].marks, Polyline)] == ["α = 0.2 rad"]
     twice = pd.concat([points, points.assign(scale=2.0)])
     assert len({panel.caption for panel in spectra(twice, None, info).panels}) == 4

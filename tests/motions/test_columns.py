@@ -217,7 +217,7 @@ def test_lost_samples_are_filled_linearly_and_it_is_said(tmp_path, lost):
     filled[lost] = (NS[lost - 1] + NS[lost + 1]) / 2
     assert motion.dt == 0.005
     np.testing.assert_allclose(motion.horizontal, filled / 100, rtol=1e-6, atol=1e-12)
-    assert any(f"{len(lost)} samples put between, none lost" in note for note in motion.notes)
+    assert any(f"{len(lost)} sample{'s' * (len(lost) > 1)} put between, none lost" in note for note in motion.notes)
 
 
 @pytest.mark.parametrize(

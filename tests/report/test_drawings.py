@@ -84,7 +84,7 @@ def test_of_one_pier_with_different_devices_only_these_are_labelled_again(tmp_pa
     assert [len(own) > 0 for own in words] == [True, False, False]
 
 
-def test_a_device_that_all_have_is_labelled_once_and_one_that_some_lack_with_their_names(tmp_path):
+def test_a_device_that_some_cases_lack_is_labelled_with_the_others_names(tmp_path):
     firm = rb.Damper.viscous(TOWER, coefficient_kN_s_m=3000.0, exponent=0.3)
     captions, _ = drawn(
         tmp_path, case("soft", OIL), case("firm", firm), case("tied", OIL, STRAND), case("too", OIL, STRAND)

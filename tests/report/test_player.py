@@ -181,7 +181,7 @@ def test_pier_and_ground_follow_the_history_in_one_clock(tmp_path):
 
 
 @needs_chromium
-def test_nothing_moves_by_itself_and_where_reduced_motion_is_asked_for_only_step_by_step(tmp_path):
+def test_nothing_moves_by_itself_and_with_reduced_motion_only_step_by_step(tmp_path):
     page, _ = pages(tmp_path)
     ask_for = """
     const [play, back, on] = document.querySelectorAll(".buttons button"), calm = document.querySelector(".buttons .muted");

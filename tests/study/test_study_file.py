@@ -284,7 +284,7 @@ p = 0.5
         6: "[pier]: p = -0.38: expected a number above 0",
         7: "[pier]: mu = nan: expected a finite number",
         10: '[motions]: polarity = "x": expected one of "+", "-"',
-        12: '[motions]: vertical = "yes": expected true, false or "required"',
+        12: '[motions]: vertical = "yes": did you mean true? expected true, false or "required"',
         13: '[motions]: unit = "furlong": expected one of g, ',
         16: '[[motions.pulse]] "a": shape = "sinus": did you mean "sine"? expected one of "sine", "cosine", ',
         17: '[[motions.pulse]] "a": amplitude_g = 0: expected a number other than 0',
@@ -382,7 +382,7 @@ def test_a_pier_is_given_in_one_way_that_can_be(tmp_path, keys, said):
         (case("beta = 40", "eta = 2", "n = 0.5"), 5, "n = 0.5: the Bouc–Wen exponent must be at least 1"),
         (case("beta = 40", "eta = 2", "bta = 3"), 5, "bta: unknown key; did you mean beta?"),
         (case("beta = 40", "eta = 2", "quiet_s = 3"), 5, "quiet_s: unknown key; it belongs under [numerics]"),
-        (case("beta = 40", "eta = 2", 'name = ["a"]'), 5, 'name = ["a"]: expected one value, not a list'),
+        (case("beta = 40", "eta = 2", 'name = ["a"]'), 5, 'name = ["a"]: did you mean "a"? expected one value, not a list'),
         ('[case]\nbase = "rigid"\n', 1, "case: expected a list of tables; write [[case]] above each one"),
     ],
 )  # fmt: skip
@@ -478,10 +478,10 @@ def test_without_a_readable_pier_a_base_is_still_checked_but_not_against_a_pier(
         ("target = { pga_g = 1, period_s = 1 }", "5: [motions.target]: period_s: is for sa_g only"),
         ("[motions.target]\npga_g = -1", "6: [motions.target]: pga_g = -1: expected a number above 0"),
         ('vertical = "always"', '5: [motions]: vertical = "always": expected true, false or "required"'),
-        ("vertical = 1", '5: [motions]: vertical = 1: expected true, false or "required"'),
+        ("vertical = 1", '5: [motions]: vertical = 1: did you mean true? expected true, false or "required"'),
         ("confirm = [1]", "5: [motions]: confirm = 1: expected text in quotes"),
         ('columns = ["time", "-"]', "5: [motions]: columns = ['time', '-']: no component among them"),
-        ('strict = "yes"', '5: [motions]: strict = "yes": expected true or false'),
+        ('strict = "yes"', '5: [motions]: strict = "yes": did you mean true? expected true or false'),
     ],
 )  # fmt: skip
 def test_what_makes_a_suite_is_checked_with_its_line(tmp_path, keys, said):

@@ -174,7 +174,7 @@ def test_limits_near_what_is_there_are_accepted(tmp_path):
         (
             "period_s",
             1000.0,
-            "have 0.5 to 10; if it is in ms, write period_s = 1; check",
+            "more than 100 s: pulses of near-fault records have 0.5 to 10; if it is in ms, write period_s = 1; check",
         ),
         ("period_s", 1e-3, "less than 0.01 s"),
     ],

@@ -172,8 +172,7 @@ def _foundations(finished: Finished) -> Markup:
         cells = [name, *own, case["base"], *(values.get(key) for key in names), *millimetres]
         rows.append([*cells, *(values.get(key) for key in further), of_case])
     heads += [*map(Head, further.values()), Head("devices")]
-    columns = zip(*rows, strict=True)
-    heads = [head._replace(form=_telling(head.form, cells)) for head, cells in zip(heads, columns, strict=True)]
+    heads = [head._replace(form=_telling(head.form, [row[i] for row in rows])) for i, head in enumerate(heads)]
     return table(heads, rows, name="Foundations")
 
 

@@ -186,8 +186,8 @@ def test_other_lists_make_designs_and_a_list_of_the_key_is_replaced():
     columns = ["verdict", "low", "high", "below", "above"]
     second = found.design[found.design["alpha"] == 0.22][columns].reset_index(drop=True)
     pd.testing.assert_frame_equal(second, alone.design[columns])
-    leading = [words.split(":")[0].replace("\u00a0", " ") for words in found.answer[:2]]
-    assert leading == ["rigid, α = 0.2 rad", "rigid, α = 0.22 rad"]
+    leading = [words.replace("\u00a0", " ").split(": ")[:2] for words in found.answer[:2]]
+    assert leading == [["rigid", "α = 0.2 rad"], ["rigid", "α = 0.22 rad"]]
 
 
 def test_a_case_without_the_key_is_left_out_and_named():
