@@ -9,7 +9,7 @@ from unittest import mock
 
 import numpy as np
 import pytest
-from core_runs import devices_of
+from core_runs import SYSTEM, devices_of
 
 import rockbatch as rb
 from rockbatch.common.units import GRAVITY
@@ -25,7 +25,9 @@ from rockbatch.core.devices.events import (
     reset_device_modes,
     settle_friction,
 )
+from rockbatch.core.devices.lanes import equipment_of
 from rockbatch.core.devices.laws import FRICTION, STICKS
+from rockbatch.core.devices.passing import _judge_grip
 from rockbatch.core.devices.pull import START, device_rates, step_resolving_devices
 from rockbatch.core.springs.lanes import LANE, static_contact, static_state
 from rockbatch.core.system import rates, status_at_sample
@@ -206,6 +208,21 @@ def held_motion(m, y, contact, ground, rubs):
     devices.goes[:] = STICKS
     under, *forces = device_rates(m, devices, now, devices.x, ground, START)
     return HeldMotion(rates(m, y, contact, ground), rates(under, y, contact, ground), tuple(map(float, forces)))
+
+
+def doubts_of_grips(lanes):
+    """Return by lane whether the pass doubts that friction of strength 1 sticks, and whether it has a force at the end.
+
+    ``lanes`` are the direction of each damper and its force at the start, in three stages and at the end of a sub-step.
+    """
+    equipment = equipment_of(SYSTEM, [([IDLE._replace(kind=FRICTION)], (), 0.0)])
+    line, verdict = equipment.lanes[0], equipment.shared[0].verdict
+    line.element.strength[:] = 1.0
+    for i, (goes, forces) in enumerate(lanes):
+        line.mode.goes[i] = goes
+        equipment.grips.first[:, i] = forces
+    _judge_grip(equipment, equipment.shared[0], len(lanes))
+    return [(bool(verdict.doubts[i]), bool(verdict.holds[i])) for i in range(len(lanes))]
 
 
 def rows_by_pass_and_by_events(found, substeps):
