@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from core_samples import FIG5, after_event, device_signals, friction_signals, longest_step, values_of
+from core_samples import FIG5, after_event, device_signals, friction_signals, held_motion, longest_step, values_of
 
 from rockbatch.core.block.model import Rocking, Stance
 from rockbatch.core.devices.laws import (
@@ -22,7 +22,7 @@ from rockbatch.core.devices.laws import (
     YIELDING,
 )
 from rockbatch.core.types import Ground, Moment
-from rockbatch.pier import RigidBase
+from rockbatch.pier import Pier, RigidBase
 from rockbatch.simulation import block
 from rockbatch.simulation.models import IDLE
 
@@ -80,9 +80,12 @@ THETA, OMEGA = 0.1, 0.2
 RIGHT, LEFT = Stance(0.0, 1.0, 1.0, 1.0), Stance(1.0, 0.0, -1.0, -1.0)
 
 
-def rocking(omega: float) -> Moment:
+M = block(FIG5, RigidBase())
+
+
+def rocking(omega: float, m=M) -> Moment:
     """A block on its right pivot: a device at its left one lengthens."""
-    b, h = FIG5.half_width, FIG5.height
+    b, h = m.half_width, m.height
     v = b * math.sin(THETA) - h * (1.0 - math.cos(THETA))
     return Moment(Rocking(v, THETA, (b * math.cos(THETA) - h * math.sin(THETA)) * omega, omega), RIGHT, None)
 
@@ -141,22 +144,41 @@ def test_a_device_is_behind_an_event_what_it_has_become(of, mode, goes, state, w
     assert found == pytest.approx(after, rel=1e-9)
 
 
+FRAME = Pier.frame(Pier.rectangle(2.0, 12.0, mass_t=60.0), 4, 180.0)
+
+
+@pytest.mark.parametrize("pier", [FIG5, FRAME], ids=["block", "frame"])
 @pytest.mark.parametrize("offset", [-1.0, 0.0])
 @pytest.mark.parametrize("push", [0.0, 3.0, -5.0])
-def test_friction_holds_a_block_until_weight_and_ground_exceed_it(offset, push, uncompiled):
-    """F 2d cos(θ/2)/2 = −(g + v̈_g) ∂v/∂θ − ü_g H about the pivot, d away; it lets go towards what exceeds it."""
-    m, b, h, y = block(FIG5, RigidBase()), FIG5.half_width, FIG5.height, rocking(0.0).y
+def test_friction_holds_a_block_until_weight_and_ground_exceed_it(offset, push, pier, uncompiled):
+    """F 2d cos(θ/2)/2 = −(g + v̈_g) ∂v/∂θ − ü_g H about the pivot, d away; it lets go towards what exceeds it.
+
+    Of a frame, d is measured on a column, narrower than the equivalent block.
+    """
+    m = block(pier, RigidBase())
+    b, h, y, width = m.half_width, m.height, rocking(0.0, m).y, pier.half_width
     ground = Ground(push, 7.0, 0.4, -2.0)
     slope, height = b * math.cos(THETA) - h * math.sin(THETA), h * math.cos(THETA) + b * math.sin(THETA)
-    arm = (1.0 - offset) * b * math.cos(0.5 * THETA)
-    holds = -((FIG5.gravity + 0.4) * slope + push * height) / arm
+    arm = (1.0 - offset) * width * math.cos(0.5 * THETA)
+    holds = -((pier.gravity + 0.4) * slope + push * height) / arm
     change = -(-2.0 * slope + 7.0 * height) / arm
     for factor in (0.999, 1.001):
         strength = factor * abs(holds)
-        values, slopes, goes = uncompiled(friction_signals, m, y, RIGHT, ground, offset * b, strength)
+        values, slopes, goes = uncompiled(friction_signals, m, y, RIGHT, ground, offset * width, strength)
         assert values == pytest.approx([1.0] * 6 + [strength - abs(holds)], rel=1e-9, abs=1e-9)
         assert slopes == pytest.approx([0.0] * 6 + [-math.copysign(change, holds * change)], rel=1e-3)
         assert goes == (STICKS if factor > 1.0 else math.copysign(1.0, holds))
+
+
+@pytest.mark.parametrize("offset", [-1.0, 0.0])
+def test_the_force_of_friction_that_holds_is_a_tension_where_a_device_would_lengthen(offset, uncompiled):
+    """The weight closes a tilted block, so friction pushes; a ground that accelerates to the left opens it."""
+    rubs, y = RUBS._replace(offset=offset * FIG5.half_width), rocking(0.0).y
+    for push, sign in ((0.0, -1.0), (-5.0, 1.0)):
+        motion = uncompiled(held_motion, M, y, RIGHT, Ground(push, 0.0, 0.0, 0.0), [rubs])
+        assert motion.free.omega * sign > 0.0
+        assert motion.forces[0] * sign > 0.0
+        assert motion.held.omega == pytest.approx(0.0, abs=1e-12)
 
 
 B = FIG5.half_width

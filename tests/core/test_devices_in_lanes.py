@@ -4,12 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from core_samples import FIG5
+from core_samples import FIG5, doubts_of_grips, rows_by_pass_and_by_events, values_of
 
+from rockbatch.core.devices.elongation import Gap
+from rockbatch.core.devices.lanes import Mode
+from rockbatch.core.devices.laws import OPENS, SLACK, STICKS, TAUT, TENDON, YIELDING, Use
+from rockbatch.core.devices.passing import Course
 from rockbatch.core.table import LANES
 from rockbatch.motions import Motion
-from rockbatch.pier import Damper, RigidBase, Tendon, YieldingBase
+from rockbatch.pier import Damper, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import Run, Stop, run_all_fixed, runs
+from rockbatch.simulation.models import IDLE
 from rockbatch.simulation.runs import written_runs
 
 VISCOUS, SLIDING = Damper("viscous", nu=0.2), Damper("friction", f=0.05)
@@ -98,6 +103,86 @@ def test_histories_by_the_pass_are_those_found_event_by_event(base, without_a_pa
         for (_, rows), (_, rows_by_pass) in zip(written_runs(found, 4, 1.0, 2000), by_pass, strict=True):
             assert rows.tobytes() == rows_by_pass.tobytes()
             assert rows.input.any()
+
+
+SHAKES = [Motion(f"noise × {a}", 0.01, a * shaken(i).horizontal[20:35]) for i, a in ((1, 0.5), (2, 2.5))]
+FRAME = replace(Pier.frame(Pier.rectangle(2.0, 12.0, mass_t=60.0), 4, 180.0), initial_rotation_rad=0.1)
+MIDDLE = (Damper("friction", f=0.5, at=0.0),)
+HELD = {
+    "large rotations": (FIG5, YieldingBase(50.0, 0.1, eta=2.3, flight="guided", kinematics="finite")),
+    "frame": (FRAME, RigidBase()),
+}
+
+
+@pytest.mark.parametrize("case", HELD)
+def test_the_pass_holds_by_friction_what_is_held_event_by_event(case, uncompiled):
+    """By the kinematics of large rotations, and below the columns of a frame."""
+    pier, base = HELD[case]
+    found = [Run(pier, replace(base, restraints=MIDDLE), motion) for motion in SHAKES]
+    (by_pass, repeated), (by_events, all_repeated) = uncompiled(rows_by_pass_and_by_events, found, 2)
+    assert by_pass == by_events
+    assert repeated < all_repeated
+
+
+def test_each_lane_judges_by_its_own_forces_whether_friction_may_slip(uncompiled):
+    """Friction of strength 1 may slip if the least reserve is below twice the range of its force; one that slips has none."""
+    lanes = [
+        (STICKS, [0.5, 0.5, 0.5, 0.5, 0.6]),
+        (STICKS, [0.5, 0.5, 0.5, 0.5, 1.1]),
+        (STICKS, [-0.6, -0.7, -0.7, -0.7, -0.8]),
+        (STICKS, [0.2, 0.2, 0.9, 0.2, 0.2]),
+        (STICKS, [0.0] * 5),
+        (OPENS, [0.0] * 5),
+    ]
+    found = uncompiled(doubts_of_grips, lanes)
+    assert found == [(False, True), (True, True), (True, True), (True, True), (False, False), (False, False)]
+    assert uncompiled(doubts_of_grips, lanes[::-1]) == found[::-1]
+
+
+TIE = IDLE._replace(kind=TENDON, strength=4.0, stiffness=30.0, prestress=1.0)
+NO_USE = Use(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def course(start, end, h=0.1):
+    """The Course of a tendon between two pairs of elongation [m] and speed [m/s]."""
+    ends = (Gap(*each, 1.0, 0.0, 0.0, 0.0) for each in (start, end))
+    return Course(*ends, 0.0, 0.0, 0.0, 0.0, 0.0, h, h, 1e-9, 1e-9, 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "mode", "keeps"),
+    [
+        ((0.05, 0.2), (0.06, -0.2), TAUT, True),
+        ((0.09, 1.0), (0.09, -1.0), TAUT, False),  # 3.7 at both ends, but 4.7 by the cubic's inner points
+        ((-0.02, -1.0), (-0.02, 1.0), TAUT, False),  # 0.4 at both ends, slack between
+        ((-0.05, 0.2), (-0.06, -0.2), SLACK, True),
+        ((-0.05, 1.0), (-0.05, -1.0), SLACK, False),
+        ((0.12, 0.2), (0.13, 0.2), YIELDING, False),
+    ],
+)
+def test_the_pass_leaves_a_tendon_that_may_yield_or_slacken_inside_to_scalar_code(start, end, mode, keeps, uncompiled):
+    """Its force is 1 + 30 e, and it yields at 4."""
+    (sure,) = uncompiled(values_of, [("devices.passing", "_keeps_mode", TIE, mode, course(start, end))])
+    assert (sure > 0.0) == keeps
+
+
+def test_the_pass_leaves_a_greatest_force_inside_a_sub_step_to_scalar_code(uncompiled):
+    """Of a tendon that turns after it is drawn out; not of one that goes on, nor if a greater force was before."""
+    turns, goes_on = course((0.05, 1.0), (0.05, -1.0)), course((0.05, 1.0), (0.09, 1.0))
+    calls = [
+        ("devices.passing", "_most_of_tendon", TIE, Mode(TAUT, OPENS), c, NO_USE._replace(most=most), NO_USE)
+        for c, most in ((turns, 0.0), (goes_on, 0.0), (turns, 3.9))
+    ]
+    found = uncompiled(values_of, calls)
+    assert [most for most, _ in found] == pytest.approx([2.5, 3.7, 3.9])
+    assert [stronger > 0.0 for _, stronger in found] == [True, False, False]
+
+
+def test_a_hysteretic_damper_counts_as_plastic_within_rounding(uncompiled):
+    """At the end of a sub-step of the pass: its z approaches 1 exponentially, and would never reach it."""
+    ends = (1.0 - 5e-15, 5e-15 - 1.0, 1.0 - 1e-13, 1e-13 - 1.0, 0.3)
+    found = uncompiled(values_of, [("devices.passing", "_snapped", z) for z in ends])
+    assert found == [1.0, -1.0, *ends[2:]]
 
 
 def share_repeated(base, name, monkeypatch):

@@ -5,8 +5,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from core_samples import gaps_of, held_pivots
+from core_samples import gaps_of, held_motion, held_pivots
 
+from rockbatch.core.devices.laws import FRICTION
+from rockbatch.core.springs.model import Contact, State
+from rockbatch.core.types import Ground
 from rockbatch.pier import ElasticBase, Pier
 from rockbatch.simulation.models import IDLE, springs
 from rockbatch.simulation.starting import _deck_elongation
@@ -64,3 +67,27 @@ def test_friction_holds_the_pivot_that_does_not_accelerate(uncompiled):
     still = [(y, SimpleNamespace(v_rate=0.0, omega=0.0)) for y in STATES]
     found = uncompiled(held_pivots, PIER, base, moved + still)
     assert found == [(True, False), (False, True)] * len(STATES) + [(True, True)] * len(STATES)
+
+
+@pytest.mark.parametrize("kinematics", ["first-order", "finite"])
+@pytest.mark.parametrize("offsets", [(0.7,), (-0.4, 0.9), (0.7, 0.7)])
+def test_an_elongation_that_friction_holds_does_not_accelerate(offsets, kinematics, uncompiled):
+    """By the second difference of its closed form along the motion on springs, to 1e-5 of some m/s² without friction."""
+    m, short, contact = springs(PIER, ElasticBase(50.0, kinematics=kinematics)), 1e-4, Contact(1.0, 1.0, 0.0, 0.0, 0.0)
+    rubs = [IDLE._replace(kind=FRICTION, strength=2.0 + i, offset=s) for i, s in enumerate(offsets)]
+
+    def acceleration(of, y, k):
+        moved = [
+            (y.theta + t * y.omega + 0.5 * t * t * k.omega, y.v + t * y.v_rate + 0.5 * t * t * k.v_rate)
+            for t in (-short, 0.0, short)
+        ]
+        finite = kinematics == "finite"
+        e = [elongation(m, of, *each) if finite else each[1] - of.offset * each[0] for each in moved]
+        return (e[0] - 2.0 * e[1] + e[2]) / short**2
+
+    for at in STATES[:5]:
+        y = State(theta=at.theta, v=at.v, omega=at.omega, v_rate=at.v_rate, z_left=-0.4, z_right=-0.9)
+        motion = uncompiled(held_motion, m, y, contact, Ground(3.0, 0.0, 0.5, 0.0), rubs)
+        for of in rubs:
+            assert abs(acceleration(of, y, motion.free)) > 0.1
+            assert acceleration(of, y, motion.held) == pytest.approx(0.0, abs=1e-5)

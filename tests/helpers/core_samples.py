@@ -4,10 +4,12 @@ import importlib
 import math
 from collections.abc import Iterable
 from types import SimpleNamespace
+from typing import NamedTuple
+from unittest import mock
 
 import numpy as np
 import pytest
-from core_runs import devices_of
+from core_runs import SYSTEM, devices_of
 
 import rockbatch as rb
 from rockbatch.common.units import GRAVITY
@@ -23,7 +25,9 @@ from rockbatch.core.devices.events import (
     reset_device_modes,
     settle_friction,
 )
-from rockbatch.core.devices.laws import FRICTION
+from rockbatch.core.devices.lanes import equipment_of
+from rockbatch.core.devices.laws import FRICTION, STICKS
+from rockbatch.core.devices.passing import _judge_grip
 from rockbatch.core.devices.pull import START, device_rates, step_resolving_devices
 from rockbatch.core.springs.lanes import LANE, static_contact, static_state
 from rockbatch.core.system import rates, status_at_sample
@@ -31,6 +35,7 @@ from rockbatch.core.table import put, table
 from rockbatch.core.types import OF_PIER, Ground, Instant, Moment
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
+from rockbatch.simulation import runs
 from rockbatch.simulation.models import IDLE, springs, system_of
 from rockbatch.simulation.sections import InSection, in_body, in_section, recorded
 
@@ -187,6 +192,48 @@ def longest_step(m, now, of, dt):
     under, *_ = device_rates(m, devices, now, devices.x, still, START)
     start = Instant(now.y, rates(under, now.y, now.contact, still), now.contact, None, still)
     return float(step_resolving_devices(under, devices, start, dt, dt))
+
+
+class HeldMotion(NamedTuple):
+    """Rates of a pier without and with friction that sticks, and the forces [m/s²] of the first two such dampers."""
+
+    free: tuple[float, ...]
+    held: tuple[float, ...]
+    forces: tuple[float, float]
+
+
+def held_motion(m, y, contact, ground, rubs):
+    """Return the HeldMotion of a pier in state ``y``, all of whose friction dampers ``rubs`` stick."""
+    devices, now = devices_of(rubs, (), 0.0), Moment(y, contact, None)
+    devices.goes[:] = STICKS
+    under, *forces = device_rates(m, devices, now, devices.x, ground, START)
+    return HeldMotion(rates(m, y, contact, ground), rates(under, y, contact, ground), tuple(map(float, forces)))
+
+
+def doubts_of_grips(lanes):
+    """Return by lane whether the pass doubts that friction of strength 1 sticks, and whether it has a force at the end.
+
+    ``lanes`` are the direction of each damper and its force at the start, in three stages and at the end of a sub-step.
+    """
+    equipment = equipment_of(SYSTEM, [([IDLE._replace(kind=FRICTION)], (), 0.0)])
+    line, verdict = equipment.lanes[0], equipment.shared[0].verdict
+    line.element.strength[:] = 1.0
+    for i, (goes, forces) in enumerate(lanes):
+        line.mode.goes[i] = goes
+        equipment.grips.first[:, i] = forces
+    _judge_grip(equipment, equipment.shared[0], len(lanes))
+    return [(bool(verdict.doubts[i]), bool(verdict.holds[i])) for i in range(len(lanes))]
+
+
+def rows_by_pass_and_by_events(found, substeps):
+    """Return histories of runs as bytes and the sub-steps repeated in all, by the pass and event by event throughout."""
+    made, results = runs.equipment_of, []
+    for passes in (True, False):
+        with mock.patch.object(runs, "equipment_of", lambda *given: made(*given)._replace(passes=passes)):  # noqa: B023
+            written = runs.written_runs(found, substeps, 0.0, 100, wait=False)
+        histories = [rows[: result.rows].tobytes() for result, rows in written]
+        results.append((histories, sum(int(result.repeated) for result, _ in written)))
+    return results
 
 
 def rate_of_normal(m, now, of):
