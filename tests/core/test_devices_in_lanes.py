@@ -25,6 +25,7 @@ RESTRAINTS = {
     "tendon": (Tendon(psi=0.1, lam=0.5),),
     "weak tendon": (Tendon(lam=0.5, strength=0.02),),
     "friction": (SLIDING,),
+    "middle": (Damper("friction", f=0.5, at=0.0),),
     "hysteretic": (Damper("hysteretic", f=0.05, yield_m=0.005),),
     "braced": (Damper("hysteretic", f=0.05, yield_m=0.005, brace=5.0),),
     "several": (VISCOUS, Tendon(psi=0.1, lam=0.5), Damper("hysteretic", f=0.02, yield_m=0.01, at=0.0)),

@@ -296,3 +296,4 @@ def _move_nothing(equipment, i, j):
 def _move(equipment, i, j):
     move(equipment.cells, i, j)
     move(equipment.shared_cells, i, j)
+    put(equipment.grips[0], j, get(equipment.grips[0], i, Grip))
