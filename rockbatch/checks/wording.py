@@ -79,7 +79,10 @@ def is_nothing(value: float, limit: float) -> bool:
 
 
 def against(verdict: Verdict) -> str:
-    """Return demand and limit with their sign and unit: "1.486 m > 0.5 m"; the sign is that of the value, whatever its bounds."""
+    """Return demand and limit with unit and the sign of the value, whatever its bounds: "1.486 m > 0.5 m".
+
+    A demand known as a lower bound keeps its own sign: "≥ 1.2 m > 0.5 m".
+    """
     at_most = verdict.sense == "at most"
     signs, met = ("≤>", verdict.value <= verdict.limit) if at_most else ("≥<", verdict.value >= verdict.limit)
     words = f"{demanded(verdict)} {verdict.unit}".strip(), f"{number(verdict.limit)} {verdict.unit}".strip()

@@ -239,7 +239,7 @@ class SpectrumTarget:
         )
 
     def _components_mean(self, motions: Sequence[Motion], gravity: float) -> dict[str, object]:
-        """Return the mean spectrum of the components that are run, if measures of pairs are fitted; else {}."""
+        """Return under "components_sa_g" the mean spectrum [g] of components, if pairs are fitted; {} else or without."""
         if self.pairs not in TWO_COMPONENT_RULES or not motions:
             return {}
         return {"components_sa_g": _rounded(replace(self, pairs="apart").mean(motions, self.periods, gravity))}

@@ -134,7 +134,7 @@ class Entry(NamedTuple):
 
 
 def key(legend: Sequence[Entry]) -> Markup:
-    """Draw a legend; empty without entries."""
+    """Return a legend as an HTML list, a small drawing and words for each entry; empty without entries."""
     entries = []
     for entry in legend:
         drawn = map(_in_key, sorted(entry.marks, key=lambda mark: isinstance(mark, Points)))

@@ -248,7 +248,7 @@ def _vertical_target(study: Study, motions: MotionSet, gravity: float) -> Row:
 
 
 def describe_case(case: Case) -> Row:
-    """Return the entry of a case in run.json, with ``across_of`` only if it is across the axis of another."""
+    """Return the entry of a case in run.json: name, columns, pier, base and its parameters; ``across_of`` only of one across."""
     pier = case.pier
     return {
         "case": case.name,

@@ -123,7 +123,7 @@ def _of_check(path: str, place: int, check: str, rows: Sequence[Entry], top: flo
 
 
 def _in_words(row: Entry) -> str:
-    """Return a verdict in words, for a tooltip: "drift 101 % under soft ground, fail"."""
+    """Return a verdict in words, for a tooltip: "drift 101 % under soft ground, fail"; without its bound if it has none."""
     bound = f" under {row['bound']}" if row.get("bound") and row["bound"] == row["bound"] else ""
     return f"{row['check']} {percent(row['ratio'])}{bound}, {row['verdict']}".replace("\u00a0", " ")
 

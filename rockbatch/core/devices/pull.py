@@ -132,9 +132,18 @@ def _with_friction(m, devices, at, now, ground):
     other = second if second != NO_EVENT else first
     here, there = gap_of(m, elements[first], at, now.y), gap_of(m, elements[other], at, now.y)
     strengths, pull = (elements[first].strength, elements[other].strength), m.pull
-    k = rates(m, now.y, now.contact, ground)
-    k_first = rates(with_pull(m, pushed(pull, here)), now.y, now.contact, ground)
-    k_second = k_first if second == NO_EVENT else rates(with_pull(m, pushed(pull, there)), now.y, now.contact, ground)
+    k, k_first, k_second = now.y, now.y, now.y
+    for unit in range(2 if second == NO_EVENT else 3):  # a loop, since three calls would be much machine code
+        arm = 0.0 if unit == 0 else (here.arm if unit == 1 else there.arm)
+        down = 0.0 if unit == 0 else (here.by_v if unit == 1 else there.by_v)
+        under = with_pull(m, Pull(pull.force + down, pull.moment + arm))
+        found = rates(under, now.y, now.contact, ground)
+        if unit == 0:
+            k = found
+        elif unit == 1:
+            k_first = k_second = found
+        else:
+            k_second = found
     one, two = forces_that_hold(here, there, k, k_first, k_second, strengths)
     down = one * here.by_v + two * there.by_v
     return with_pull(m, Pull(m.pull.force + down, m.pull.moment + one * here.arm + two * there.arm)), one, two

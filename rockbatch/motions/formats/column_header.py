@@ -240,9 +240,10 @@ def line_about_spectra(header: Sequence[str]) -> str:
 
 
 def stated_unit(header: Sequence[str]) -> str | None:
-    """Return the unit in a line ``unit: cm/s2``, else a known one as in ``acceleration in units of cm/s/s``; ``None`` without.
+    """Return the unit as written in a line ``unit: cm/s2``, else a known one as in ``acceleration in units of cm/s/s``.
 
-    Raises ``NoRecord`` where a record file of MIDAS says that it holds no accelerations.
+    A record file of MIDAS has that of its line *UNIT&TYPE, and raises ``NoRecord`` if this is of no accelerations. None without
+    any.
     """
     if midas := next((match for line in header if (match := _MIDAS.match(line))), None):
         if not midas["kind"].upper().startswith("ACC"):

@@ -55,7 +55,10 @@ _UNIT = re.compile("_(" + "|".join(unit for unit in ("mm", "m2", "kN_m", "MPa", 
 
 
 def section(finished: Finished) -> Markup:
-    """Return the drawings of the piers and a table each of piers, parts, foundations and devices."""
+    """Return the drawings of the piers, and tables of the pier as given, parts, piers as computed, foundations and devices.
+
+    Empty tables are left out.
+    """
     tables: tuple[tuple[str, list[Row], Mapping[str, str]], ...] = (
         ("Pier as given", [finished.pier_as_given], {}),
         ("Parts of the pier", _parts(finished), {}),

@@ -94,7 +94,7 @@ class _Design:
 
 
 def statements(finished: Finished) -> Iterator[Statement]:
-    """Yield a statement on each design at each scale, in the order of the study."""
+    """Yield a statement on each design at each scale, also without checks, in the order of the study; none without runs."""
     stations = stations_of(finished.info)
     for design in _designs(finished, stations):
         sentences = tuple(_sentences(finished, design, stations))
@@ -296,7 +296,7 @@ def _not_covered(design: _Design, stations: Stations) -> Iterator[str]:
 
 
 def _identity(info: Item) -> str:
-    """Return program, date, study and results with the beginnings of their digests."""
+    """Return program, date, study and results with the beginnings of their digests; results without a noted one are left out."""
     commit = info["versions"].get("commit", "")
     program = f"rockbatch {info['rockbatch']}" + (f" (commit {commit})" if commit else "")
     results = str((info.get("peaks") or {}).get("sha256", ""))[:SHORT]
