@@ -172,7 +172,8 @@ def test_statistics_are_over_the_pairs_and_separate_by_the_vertical_component(tm
 
 
 def test_a_folder_without_results_is_refused_in_words(tmp_path, capsys):
-    assert main(["report", str(tmp_path)]) == 2
+    (tmp_path / "alone").mkdir()
+    assert main(["report", str(tmp_path / "alone")]) == 2
     assert "without results of `rockbatch run`; give a folder that it has written" in capsys.readouterr().err
 
 
