@@ -103,8 +103,13 @@ def outcomes_of(found, leaves_out=()):
     return [repr(replace(outcome, **dict.fromkeys(leaves_out))) for outcome in outcomes]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("base", BASES.values(), ids=list(BASES))
+@pytest.mark.parametrize(
+    "base",
+    [
+        pytest.param(base, id=name, marks=pytest.mark.slow if name == "bouc-wen" else pytest.mark.thorough)
+        for name, base in BASES.items()
+    ],
+)
 def test_a_run_that_bends_is_the_same_to_the_bit_in_any_company(base):
     found = crowd(base)
     assert outcomes_of(found) == [outcome for run in found for outcome in outcomes_of([run])]

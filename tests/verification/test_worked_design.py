@@ -19,7 +19,7 @@ WITHIN = {"base_shear_kN": 0.035, "section_moment_at_mid_height_kNm": 0.015}
 """Of blows: halving the step changes them by up to 2 % in OpenSees; 1 % of all others."""
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_governing_runs_of_the_worked_design_are_those_of_opensees():
     for bound, record, ours, theirs in OPENSEES.beside():
         for name, own, other in zip(OPENSEES.QUANTITIES, ours, theirs, strict=True):
