@@ -28,7 +28,7 @@ ALSO: Mapping[str, Callable[[Any], str]] = {
     "scale": scaled_by,
     "with_vertical": str,
 }
-"""What tells runs of one record and case apart, by column, in words."""
+"""Words for the columns in which runs of one record and case differ."""
 _PEAK = ("theta_max_over_alpha", "theta_max_error")
 _WRAPPED = 16  # characters per line of a head
 

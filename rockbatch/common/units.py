@@ -86,7 +86,7 @@ _SIZES = {
     **dict(MPa=("stress", 1.0), kPa=("stress", 1e-3), GPa=("stress", 1e3), Pa=("stress", 1e-6)),
     **dict(g=("acceleration", 1.0), gal=("acceleration", 0.01 / GRAVITY), percent=("", 0.01), pct=("", 0.01)),
 }
-"""What the words at the ends of keys measure, and how much of it: kN and m of stiffness_kN_m."""
+"""Quantity and size of each unit at the end of a key, such as kN and m of stiffness_kN_m."""
 
 _UNITS_OF = {"alpha": "rad", "axis": "deg", "azimuth": "deg", "dt": "s"}
 """Units of keys that do not end in them."""
