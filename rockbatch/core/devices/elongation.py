@@ -48,7 +48,7 @@ def put_gap(line, at):
 
 @inlined
 def attitude(m, y, contact, level):
-    """Return the Attitude in state ``y``; at rest the pier is at v = ``level`` [m]."""
+    """Return the Attitude in state ``y``; its rise is above ``level`` [m], v at rest."""
     return _tilted(m, y, contact, level, sine_and_cosine(y.theta))
 
 

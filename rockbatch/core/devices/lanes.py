@@ -124,7 +124,7 @@ def signature(elements):
 
 
 def _rubbing(elements):
-    """Return the numbers of one or two friction dampers, of one twice; none of more."""
+    """Return the numbers of a run's two friction dampers, the same one twice if there is one; [] for none or more than two."""
     numbers = [j for j, of in enumerate(elements) if of.kind == FRICTION]
     return np.array(numbers[:1] + numbers[-1:] if len(numbers) in (1, 2) else [], np.int64)
 

@@ -88,7 +88,9 @@ def _stage_pier(traits, lanes, shared, i, y):
 
 @inlined
 def _leave_start(traits, lanes, each, shared, count):
-    """Set the pier's stage to half a step after the start, and sums of the rates at inner stages to 0."""
+    """Set the stage of the pier in each of ``count`` lanes to half a step after the start, and sums of the rates at inner stages
+    to 0.
+    """
     for i in range(count):
         m, y, contact = in_pass(traits, lanes, i)
         h, k = lanes.clock.step[i], get(lanes.rates, i, y)
