@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
+from rockbatch.checks.rules import Rule
 from rockbatch.common.errors import InputError
 
 G = 9.81
@@ -35,6 +36,36 @@ def tied(*devices):
 
 SOFT = rb.ElasticBase(2.0)
 BED = rb.FootingBase(2.0, 3.0)
+
+
+def with_capacity(*points):
+    """Return a function that makes a check with this capacity of moments over axial forces."""
+    return lambda: Rule("shaft", "section_moment_over_capacity", 1.0, at_m=3.0, capacity=points)
+
+
+def released(times, amplitudes):
+    """Return a function that reads a study of a release from 0.12 rad with these impacts."""
+    measured = {"impact_s": times, "amplitude_rad": amplitudes}
+    measured = {key: value for key, value in measured.items() if value}
+    pier = {"alpha": 0.2, "p": 1.0, "initial_rotation_rad": 0.12}
+    tables = {
+        "pier": pier,
+        "motions": {"still_s": 5.0},
+        "case": [{"name": "rigid", "base": "rigid"}],
+        "release": measured,
+    }
+    return lambda: rb.release(rb.Study.from_dict(tables))
+
+
+def designed(width, between, points=10):
+    """Return a function that reads a study of a damper's strength in this range."""
+    case = {"name": "tied", "base": "rigid", "damper": [{"kind": "friction", "f": 0.1}]}
+    design = {"vary": "case.damper.f", "between": between, "find": "least", "width": width, "points": points}
+    check = {"name": "peak", "demand": "theta_max_over_alpha", "at_most": 0.3, "reason": "made up"}
+    tables = {"pier": {"alpha": 0.2, "p": 1.0}, "case": [case], "design": design, "check": [check]}
+    return lambda: rb.design(rb.Study.from_dict(tables, motions=SHAKEN))
+
+
 SHAKEN = rb.Motion("shaken", 0.01, A)
 MESSAGES: dict[str, tuple[Callable[[], object], list[float]]] = {
     "a fast viscous damper": (tied(rb.Damper("viscous", nu=400.0)), [400.0, 1000.0 * G / (400.0 * P)]),
@@ -118,6 +149,20 @@ MESSAGES: dict[str, tuple[Callable[[], object], list[float]]] = {
         lambda: rb.sequence([SHAKEN, rb.Motion("fine", 1e-5, 0.1 * A)], name="twice"),
         [1e-5, 0.01, 20.0],
     ),
+    "a capacity with a moment below 0": (with_capacity([-5.0, 1.0], [0.0, 3.0], [9.0, -2.0]), [0.0, 9.0, -2.0, 0.0]),
+    "a capacity that goes back": (
+        with_capacity([-5.0, 1.0], [7.0, 4.0], [6.0, 3.0]),
+        [7.0, 4.0, 6.0, 3.0, 0.0],
+    ),
+    "a capacity with a hollow": (
+        with_capacity([-5.0, 1.0], [1.0, 2.0], [10.0, 31.0]),
+        [1.0, 2.0, -5.0, 1.0, 10.0, 31.0, 1.0 + 30.0 * 6.0 / 15.0],
+    ),
+    "impacts that do not follow each other": (released([0.5, 1.9, 1.2], []), [3.0, 1.2, 2.0, 1.9]),
+    "an amplitude above the release": (released([], [0.13, 0.05, 0.04]), [1.0, 0.13, 0.12]),
+    "too few impacts": (released([0.5], []), [1.0, 3.0]),
+    "a design narrower than a millionth": (designed(1e-9, [0.02, 0.2]), [1e-9, 2e-7]),
+    "a design wider than its scan": (designed(0.1, [0.02, 0.2], points=10), [0.1, 0.02, 0.0025]),
     "a pulse with a step above its period": (
         lambda: rb.pulse("sine", name="s", amplitude=3.0, period=0.5, dt=0.7, duration=4.0),
         [0.7, 0.5],
