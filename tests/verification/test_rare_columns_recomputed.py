@@ -250,7 +250,10 @@ OF_DAMPERS = "damper_force_over_weight", "damper_stroke_m", "damper_speed_m_s", 
 
 
 def test_errors_of_a_row_are_its_changes_when_the_step_is_halved():
-    """Of residuals, twice the drift between two readings is added; of forces and dampers it is four times the change."""
+    """Of residuals, twice the drift between two readings is added, here a period of rocking in full contact apart.
+
+    Of forces and dampers it is four times the change.
+    """
     fine, coarse = with_half_the_steps(SMALL, SPRUNG, shaking(0.0).times(0.5), forces=True)
     row = fine.row
     for name in ("theta_max", "theta_max_in_motion"):
@@ -258,7 +261,9 @@ def test_errors_of_a_row_are_its_changes_when_the_step_is_halved():
     assert row["forces_error"] == pytest.approx(4.0 * greatest_change(fine, coarse, FORCES), rel=1e-3)
     assert row["devices_error"] == pytest.approx(4.0 * greatest_change(fine, coarse, OF_DAMPERS), rel=1e-3)
     seconds = (row["theta_res_error"] - change(fine, coarse, "theta_res_over_alpha")) / row["theta_res_drift_per_s"]
-    assert 0.5 < seconds < 5.0
+    b, h, k = SMALL.half_width, SMALL.height, 0.5 * (SPRUNG.beta * SMALL.p) ** 2
+    rocking = math.sqrt((2.0 * k * b**2 - G * h) / (SMALL.size**2 / 3.0 + h**2))
+    assert seconds == pytest.approx(2.0 * math.ceil(2.0 * math.pi / rocking / STEP) * STEP, rel=1e-6)
     of_settlement = change(fine, coarse, "settlement_m") + row["settlement_drift_m_s"] * seconds
     assert row["settlement_error_m"] == pytest.approx(of_settlement, rel=1e-9)
 
