@@ -53,7 +53,10 @@ def hold(traits, lanes, equipment, count, steps, part, number):
 
 @kernel
 def judge_grip(equipment, shared, count):
-    """Count lanes in which friction that sticks may slip: its least reserve of strength does not exceed twice its range."""
+    """Add a doubt to each lane in which friction that sticks may slip, and set its ``holds`` to 1 if it has a force at the end.
+
+    It may slip if its least reserve of strength does not exceed twice the range of its force in the step.
+    """
     a, b = equipment.lanes[equipment.rubs[0]], equipment.lanes[equipment.rubs[1]]
     for i in range(count):
         sticks, other_sticks = a.mode.goes[i] == STICKS, b.mode.goes[i] == STICKS
