@@ -226,7 +226,7 @@ def _change_branches(lanes, i, m, now, substep, history):
 
 @system.finish.of(SpringTraits)
 def finish(traits, lanes, i, t, result):
-    """Write residuals, extremes and plastic work of the run in lane ``i``; residuals never read are those at the end, ``t`` [s]."""
+    """Write residuals, extremes and plastic work of the run in lane ``i``; those never read are as at the end, ``t`` [s]."""
     m, now = pier_in(traits, lanes, i)
     waiting, lowest = lanes.waiting, lanes.lowest
     t_read, base_left, base_right = waiting.read[i] * lanes.clock.dt[i], waiting.read_left[i], waiting.read_right[i]
