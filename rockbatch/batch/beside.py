@@ -24,7 +24,7 @@ Rows = list[Row]
 
 
 def packed(run: StudyRun, table: str) -> str:
-    """Return the rows of a finished run in ``table`` as one cell without commas; "" without that table or with too many rows."""
+    """Return the rows of a run in ``table`` as one cell without commas; "" without that table, or beyond MOST_OF_A_CELL."""
     rows = None if run.outcome is None else run.outcome.tables.get(table)
     if rows is None:
         return ""
@@ -49,7 +49,7 @@ def rows_beside(
 ) -> dict[str, Rows]:
     """Return the rows of each table of ``observers`` for finished ``runs``, whose rows in ``peaks`` come first.
 
-    ``first`` is the number of ``runs[0]`` in the journal.
+    ``first`` is the number of ``runs[0]`` in the journal. Each row begins with the columns that name its run.
     Mirror images have none. Runs whose rows the ``journal`` lacks, for example because they were finished before the table
     was requested, are repeated.
     """

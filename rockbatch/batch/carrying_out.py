@@ -11,7 +11,7 @@ from rockbatch.results.labelled import Row
 
 
 def execute(batch: Batch, requested: range, journal: Journal, engine: Engine) -> Row:
-    """Carry out the ``requested`` runs that the journal lacks; return ``jobs`` and ``kept`` for run.json."""
+    """Carry out the ``requested`` runs that the journal lacks; return ``jobs`` and ``kept``, those finished before."""
     runs, listener = batch.runs, batch.listener
     every, remaining = (len(to_simulate(runs, requested, finished)) for finished in ((), journal))
     n_finished = every - remaining

@@ -151,7 +151,10 @@ class Dask:
 
     @property
     def jobs(self) -> int:
-        """Return the number of threads of all workers that the scheduler last reported; 0 before it did."""
+        """Return the number of threads of all workers; 0 before the scheduler has reported them, and while disconnected.
+
+        If it does not answer, or once the context has ended, it is the last number.
+        """
         if self._client is not None:
             with suppress(OSError):
                 self._threads = sum(worker["nthreads"] for worker in _workers(self._client).values())

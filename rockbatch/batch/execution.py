@@ -30,11 +30,11 @@ class InMemory(dict[int, Values]):
         self.columns = columns
 
     def add_all(self, rows: Mapping[int, Values]) -> None:
-        """Add rows as :meth:`Journal.add_all`."""
+        """Add rows by the numbers of their runs, as they are."""
         self.update(rows)
 
     def add_columns(self, numbers: Sequence[int], columns: Mapping[str, Sequence[object]]) -> None:
-        """Add rows as :meth:`Journal.add_columns`."""
+        """Add rows as :meth:`Journal.add_columns`; missing columns stay missing."""
         rows = zip(*columns.values(), strict=True)
         self.update((number, dict(zip(columns, row, strict=True))) for number, row in zip(numbers, rows, strict=True))
 
@@ -73,9 +73,10 @@ def execute_runs(
 
 
 def to_simulate(runs: Runs, requested: range, journal: Container[int] = (), first: int = 0) -> "array[int]":
-    """Return the indices of the runs to simulate for all that are ``requested`` and not in ``journal``, mirror images once.
+    """Return the indices of the runs to simulate for all that are ``requested`` and not in ``journal``.
 
-    Raises ``InputError`` for more than :data:`MOST_RUNS`.
+    Of two mirror images it is the index of the one that is simulated for both, once, requested itself or not. Raises
+    ``InputError`` if ``runs`` are more than :data:`MOST_RUNS`, however many are requested.
     """
     if len(runs) > MOST_RUNS:
         raise InputError(

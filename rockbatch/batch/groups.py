@@ -23,7 +23,10 @@ Group = dict[int, StudyRun]
 
 
 def groups(runs: Sequence[StudyRun], numerics: Numerics, jobs: int, most: int = MOST_GROUP) -> Iterator[Group]:
-    """Split runs, in order, into groups small enough for ``jobs`` threads, of at most ``most`` runs and a second of work."""
+    """Split runs, in order, into groups of a third of the share of each of ``jobs`` threads, but 32 to ``most`` runs.
+
+    A group also ends when it reaches a second of work, :data:`STEPS_OF_A_GROUP` steps, and the last where the runs end.
+    """
     share = len(runs) // (3 * jobs)
     most = min(max(share, LEAST_GROUP), most)
     group, work = Group(), 0.0

@@ -117,7 +117,7 @@ class _Rows:
         return damaged
 
     def _number(self, body: bytes | None) -> int | None:
-        """Return the number of the run of a row; None if ``body`` is not a row of this table."""
+        """Return the number of the run of a row; None if ``body`` is not a row of this table, or of no run that it can have."""
         match = _NUMBER.match(body or b"")
         if body is None or not match or int(match[1]) >= self.runs:
             return None
@@ -239,7 +239,7 @@ class Journal:
         return iter(self._rows)
 
     def __getitem__(self, number: int) -> dict[str, str]:
-        """Return the cells of a finished run as texts, "" for None; raise ``KeyError`` for an unfinished one."""
+        """Return all cells of a finished run as texts, also those beside, "" for None; ``KeyError`` for an unfinished one."""
         if number not in self:
             raise KeyError(number)
         (cells,) = csv.reader(io.StringIO(self._rows.row(number).decode(), newline=""))
@@ -257,7 +257,10 @@ class Journal:
         return ((number, self[number]) for number in self)
 
     def add_all(self, rows: Mapping[int, Mapping[str, object]]) -> None:
-        """Save rows by the numbers of their runs; they are on disk on return."""
+        """Save rows by the numbers of their runs; they are on disk on return.
+
+        Columns that a row lacks are empty; its further keys are left out.
+        """
         self.add_columns(list(rows), {name: [row.get(name) for row in rows.values()] for name in self.columns})
 
     def add_columns(self, numbers: Sequence[int], columns: Mapping[str, Sequence[object]]) -> None:
@@ -267,7 +270,8 @@ class Journal:
     def add_from(self, path: Path) -> None:
         """Add the rows of another journal of the same digest and columns, for example of another machine.
 
-        Raises ``InputError`` if its digest differs, or if a run has different rows in both.
+        Raises ``InputError`` for rows of another digest, or if a run has different rows in both; damaged lines are reported and
+        skipped.
         """
         mine = self._rows
         source = _Rows(path, mine.columns, mine.digest, mine.runs, "undo that, or have its share run again")
@@ -349,7 +353,10 @@ _NUMBER = re.compile(rb"(\d{1,15}),")
 
 
 def _whole_lines(file: io.FileIO) -> Iterator[tuple[int, bytes]]:
-    """Yield the end [bytes] of each line, and the line, b"" if too long; an incomplete last line is left out."""
+    """Yield the end [bytes] of each line, and the line with its line break, b"" if it is over MOST_OF_A_LINE, 1 MiB.
+
+    An incomplete last line is left out.
+    """
     end, whole = 0, True
     with os.fdopen(os.dup(file.fileno()), "rb") as buffered:
         buffered.seek(0)
@@ -362,7 +369,7 @@ def _whole_lines(file: io.FileIO) -> Iterator[tuple[int, bytes]]:
 
 
 def _sealed(body: bytes, seed: int = 0) -> bytes:
-    """Return a line of the file: a checksum and ``body``, its line breaks escaped."""
+    """Return a line of the file: a checksum and ``body``, its line breaks and backslashes escaped."""
     folded = body.replace(b"\\", b"\\\\").replace(b"\n", b"\\n")
     return b"%08x %b\n" % (zlib.crc32(folded, seed), folded)
 

@@ -66,8 +66,8 @@ class Kept:
 def to_keep(study: Study, runs: Sequence[StudyRun], table: "pd.DataFrame", records: Collection[str] = ()) -> Kept:
     """Choose the runs whose histories the study requests, and all of ``records``, except runs that were refused.
 
-    ``table`` has a row for each of ``runs``. With histories = "worst", runs are taken by decreasing rotation until the file
-    would exceed ``histories_MB``; one history is kept whatever its size.
+    ``table`` has a row for each of ``runs``. With histories = "worst", the :func:`worst` run of each case is taken, by decreasing
+    rotation, until the file would exceed ``histories_MB``, but one whatever its size; ``records`` are taken whatever their size.
     """
     output, ran = study.output, table["theta_max_over_alpha"].notna()
     if output.histories == "all":

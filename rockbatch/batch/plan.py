@@ -84,7 +84,7 @@ class Plan(Runs):
         return self._length
 
     def run(self, number: int) -> StudyRun:
-        """Return run ``number``, with the polarity that it mirrors if another is simulated for both."""
+        """Return run ``number``, from 0; its ``mirror_of`` is the polarity that is simulated for both, "" for that itself."""
         rest, case = divmod(number, len(self.cases))
         rest, scale = divmod(rest, len(self.scale))
         motion, polarity = divmod(rest, len(self.polarity))

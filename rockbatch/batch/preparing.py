@@ -125,9 +125,10 @@ def run_info(study: Study, motions: MotionSet, runs: Plan, digest: dict[str, str
 
 
 def cost_of_finished(directory: Path, info: Row) -> Row | None:
-    """Return the cost of the finished results in ``directory`` if they are exactly those of ``info``; else None.
+    """Return the cost of the finished results in ``directory``, or None.
 
-    Raises ``InputError`` if they are but their table was edited, so that it is not overwritten.
+    They count if digests, runs, varied keys and unusable files are those of ``info``. Raises ``InputError`` if they are, but
+    their table was edited, so that it is not overwritten.
     """
     try:
         earlier = json.loads(read_text(directory / INFO))
@@ -167,7 +168,10 @@ def to_be_replaced(directory: Path, study: Study) -> str | None:
 
 
 def run_count(study: Study, motions: MotionSet) -> str:
-    """Return the number of runs as a product: "2 records × 5 cases = 10 runs"; with scales if several, no mirror images."""
+    """Return the number of runs as a product: "4 records of 2 stations × 5 cases = 20 runs".
+
+    Stations are named if fewer than the records, scales if several; mirror images are not counted, :func:`once` says so.
+    """
     factors = {"record": len(motions.motions), "scale": len(study.motions.scale), "case": len(study.cases)}
     counted = [count(n, noun) for noun, n in factors.items() if n > 1 or noun in ("record", "case")]
     stations = len({motion.of_station for motion in motions.motions})

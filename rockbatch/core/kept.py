@@ -58,7 +58,10 @@ def folder() -> Path:
 
 
 def read(name: str, identity: str) -> bytes | None:
-    """Return the content kept for ``identity``, and mark it as used; None if it is missing, unreadable, damaged or distrusted."""
+    """Return the content kept for ``identity``; None if it is missing, unreadable, damaged or distrusted.
+
+    Mark it as used, unless it was within a day.
+    """
     try:
         path = _trusted(folder()) / f"{name}{_SUFFIX}"
         with open(os.open(path, os.O_RDONLY | _PLAIN_ONLY), "rb") as file:

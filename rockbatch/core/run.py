@@ -155,7 +155,11 @@ def _flight_status(context, i, m, y):
 
 @kernel
 def _count(lanes, i, event, t):
-    """Add an event, a Transition at ``t`` [s], to the counts and times of lane ``i``."""
+    """Add an event, a Transition at ``t`` [s], to the counts and times of lane ``i``.
+
+    ``t_impact`` is the time of the last landing, ``moved`` that of the last landing, uplift or take-off, and ``t_rest`` that at
+    which a REST is complete, NaN again after a lift-off or take-off.
+    """
     tally, landed = lanes.tally, event.kind in (IMPACT_LEFT, IMPACT_RIGHT, IMPACT_BOTH, REST)
     tally.impacts[i] += event.impacts
     tally.uplifts[i] += event.uplifts
@@ -229,7 +233,7 @@ def _clear_of_zero(functions):
 
 @inlined_once
 def _step_by_events(context, i, substep):
-    """Integrate lane ``i`` over a sub-step event by event; return status, SURVIVED unless it ends, and time [s]."""
+    """Integrate lane ``i`` over a sub-step event by event; return status, SURVIVED unless the run ends, and time reached [s]."""
     traits, lanes, history, marks = context.traits, context.lanes, context.history, context.marks
     devices = devices_in(context.equipment, lanes, i)
     fetch(context.equipment, devices, i)

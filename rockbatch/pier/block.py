@@ -420,9 +420,9 @@ def unlikely_mass(pier: Pier, confirm: Collection[str], name: str = "mass_t") ->
 
 
 def described(pier: Pier) -> dict[str, float]:
-    """Return a pier by the keys of run.json; mass, γ, deck, period and shaft only if given, θ0 unless it is 0.
+    """Return a pier by the keys of run.json; mass, γ, deck and period only if given, θ0 unless it is 0.
 
-    ``top_m`` is the height at which drift is read, whether it was given or not.
+    ``top_m`` is the height at which drift is read, whether it was given or not; ``shaft_share`` is there of a pier of parts.
     """
     values = {
         "alpha": pier.alpha,

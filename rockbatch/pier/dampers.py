@@ -91,7 +91,7 @@ class Damper(Device):
         """Return a friction damper of the force F_d [kN] under ``pier``; ``rest``: ``at`` and ``confirm``.
 
         Here and in the other constructors from kN, raises ``InputError`` if the mass of the pier is not known, or for
-        impossible values.
+        values that are impossible, or unusual and not confirmed.
         """
         return cls("friction", **over_weight(pier, force_kN=force_kN), **rest)._usual_under(pier)
 
@@ -159,7 +159,7 @@ class Damper(Device):
         yield from self._brace_doubts(pier)
 
     def _brace_doubts(self, pier: Pier) -> Iterator[Doubt]:
-        """Yield the doubt about a brace that is too stiff, too soft, or of no effect."""
+        """Yield the doubt about a brace that is too stiff, too soft, or of no effect; none about a rigid one."""
         if self.brace == math.inf:
             return
         stiffness = self.brace * pier.gravity * pier.size / pier.half_width**2

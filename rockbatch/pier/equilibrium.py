@@ -79,7 +79,7 @@ class Place:
     def pull(self, elongation: Array, since: float) -> Array:
         """Return the tension over the weight at an ``elongation`` [m], reached monotonically from ``since``, and that from 0.
 
-        Friction has its full force in the direction of motion since then.
+        A tendon has 0 if slack, its strength at most. Friction has its full force in the direction of motion from ``since``.
         """
         device = self.device
         if isinstance(device, Tendon):
@@ -139,7 +139,7 @@ class Equilibria:
 
 
 def spring_of(pier: Pier, base: ElasticBase) -> Spring:
-    """Return one support of ``base`` under ``pier``: stiffness and strength over the weight; inf if it does not yield."""
+    """Return one support of ``base`` under ``pier``: stiffness and strength over the weight, the strength inf if elastic."""
     strength = 0.5 * base.eta if isinstance(base, YieldingBase) else math.inf
     return Spring(0.5 / static_deflection(pier, base), strength, base.first_loading)
 

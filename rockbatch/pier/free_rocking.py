@@ -34,7 +34,7 @@ class Swings(NamedTuple):
 class FreeRocking:
     """A pier that rocks freely on a base between equal rotations to both sides.
 
-    ``even`` is False if tendons or stops on one side make the swings uneven: amplitude and period are then undefined.
+    ``even`` is False if tendons, stops or deck springs on one side make the swings uneven, without amplitude and period.
     """
 
     def __init__(self, pier: Pier, base: Base) -> None:

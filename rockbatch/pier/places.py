@@ -52,7 +52,7 @@ def prestress_over_weight(pier: Pier, restraints: tuple[Restraint, ...]) -> floa
 
 
 def holds_a_tilt(restraints: tuple[Restraint, ...]) -> bool:
-    """Return True if a friction or hysteretic damper is among them, which keeps a force at rest and may hold a tilt."""
+    """Return True if a friction or hysteretic damper of f > 0 is among them, which keeps a force at rest and may hold a tilt."""
     return any(isinstance(device, Damper) and device.f > 0 for device in restraints)
 
 

@@ -62,7 +62,10 @@ def enough_eta(pier: Pier, base: Base) -> float:
 
 
 def problems(pier: Pier, base: Base) -> list[Problem]:
-    """Return a problem, with the limit, for each value that is impossible for ``pier`` on ``base``."""
+    """Return a problem, with the limit, for each value that is impossible for ``pier`` on ``base``; [] if all are possible.
+
+    A frame that is not on rigid ground has that problem alone. Tendons are held against each other if nothing else is wrong.
+    """
     if base.on_springs and pier.deck_over_columns is not None:
         text = (
             f"a rocking frame is solved on rigid ground only, and this base is {base.name}. On springs each column "

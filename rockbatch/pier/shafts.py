@@ -25,7 +25,7 @@ class WithShaft(Traits):
         return self.shaft == "elastic"
 
     def modes(self, pier: Pier) -> Modes:
-        """Return the modes of an elastic shaft of ``pier`` that a run follows: ``flexural_modes``, or at most four."""
+        """Return the modes of an elastic shaft that a run follows: ``flexural_modes``, 4 by default, or all if it has fewer."""
         return modes_of(pier, self.flexural_modes or MOST_MODES)
 
     def damping_ratios(self, pier: Pier) -> npt.NDArray[np.float64]:

@@ -237,9 +237,9 @@ class Statics(Shown):
     def swings(self) -> "pd.DataFrame":
         """Return free rocking over its amplitude as a table.
 
-        ``amplitude_rad``, ``amplitude_over_alpha``; ``period_s``, undamped, NaN if tendons on one side make the swings uneven;
-        ``impact_damping``, the viscous damping ratio of the same decay as by impacts, NaN on springs, where it has no closed
-        form: landings lose energy by ε, ζ and vertical vibration.
+        ``amplitude_rad``, ``amplitude_over_alpha``; ``period_s``, undamped, NaN if tendons, stops or deck springs on one side
+        make the swings uneven; ``impact_damping``, the viscous damping ratio of the same decay as by impacts, NaN on springs and
+        footings, where it has no closed form: landings lose energy by ε, ζ and vertical vibration.
         """
         swings = self.swings_at
         columns = {"amplitude_rad": swings.amplitude, "amplitude_over_alpha": swings.amplitude / self.pier.alpha}

@@ -119,7 +119,7 @@ class Traits(InNotebook):
     confirm: Sequence[str]
 
     def _check(self) -> None:
-        """Raise ``InputError`` with every field that is impossible, or unusual and not confirmed."""
+        """Raise ``InputError`` with every field that is impossible; if none is, with those unusual and not confirmed."""
         values = {attribute.name: getattr(self, attribute.name) for attribute in fields(self)}  # type: ignore[arg-type]
         wrong = []
         for name in filter(values.__contains__, BOUNDS):
@@ -161,7 +161,7 @@ class Traits(InNotebook):
 
     @property
     def has_residual(self) -> bool:
-        """Return True if the pier may come to rest tilted: on yielding springs, or with friction or hysteretic dampers."""
+        """Return True if the pier may come to rest tilted: on a base that yields, or with dampers that :func:`holds_a_tilt`."""
         return self.yields or holds_a_tilt(self.restraints)
 
 

@@ -90,7 +90,8 @@ def look_for_chaos(
 def _with_peak_of(probe: Trial, fine: Trial, outcome: Outcome, tolerance: float, pier: Pier, changed: str) -> Outcome:
     """Return ``outcome`` with the error of θ_max raised by ``probe``, a run under a motion ``changed`` as in "1e-08 weaker".
 
-    The error is withdrawn if that moves the peak by more than the tolerance; if ``probe`` overturns, ``may_overturn`` is set.
+    It is withdrawn if :data:`MARGIN` times the change exceeds the ``tolerance`` of θ/α, if another extreme comes as near, or if
+    ``probe`` ends otherwise; so is that within the motion by its change. ``may_overturn`` is set if only ``probe`` overturns.
     """
     tolerance *= pier.alpha
     if outcome.change_in_motion is not None:
@@ -131,7 +132,10 @@ def without_error(outcome: Outcome, reason: str) -> Outcome:
 
 
 def _with_residuals_of(probe: Outcome, outcome: Outcome, tolerance: float, pier: Pier) -> Outcome:
-    """Return ``outcome`` with the errors of its residuals raised by ``probe``; withdrawn if they are chaotic."""
+    """Return ``outcome`` with errors of its residuals of at least :data:`MARGIN` times their change by ``probe``.
+
+    They are withdrawn, as chaotic, if that exceeds the ``tolerance`` of θ/α; without them ``outcome`` is unchanged.
+    """
     if outcome.theta_res_error is None:
         return outcome
     if MARGIN * _residual_difference(probe, outcome, pier) > tolerance * pier.alpha:

@@ -463,7 +463,10 @@ def _vibration(pier: Pier, base: RigidBase, turning: float) -> float:
 
 @lru_cache(maxsize=4096)
 def fastest_rate(pier: Pier, base: Base) -> float:
-    """Return the greatest rate [1/s] of a model: of springs, vibration against devices, or decay by linear dampers."""
+    """Return the greatest rate [1/s] of a model: of springs, vibration against devices, or decay by linear dampers.
+
+    On rigid ground with a viscous damper of exponent < 1 it is at least STEEP p.
+    """
     stiff, slows, relaxes, steep = 0.0, 0.0, 0.0, False
     for law in elements(pier, base):
         lever = _accelerance(pier, base, law)
@@ -517,7 +520,7 @@ def readings(pier: Pier, base: Base, dt: float) -> tuple[int, int]:
     """Return the samples of ``dt`` [s] from the end of the record to the first reading of residuals, and on to the second.
 
     The first comes :data:`READ_AFTER` periods of vertical vibration after the record; the second, at least as much later, gives
-    their drift over whole periods of full-contact rocking. 0 and 0 unless the springs yield.
+    their drift over whole periods of full-contact rocking. 0 and 0 on other bases than yielding springs.
     """
     if not isinstance(base, YieldingBase):
         return 0, 0

@@ -77,9 +77,9 @@ def _room(run: Run, outcome: Outcome, every_step: bool, until: float = math.inf)
 def recorded_side_by_side(
     runs: Sequence[Run], outcomes: Sequence[Outcome], quiet_s: float, wait: bool = True, stop: Stop | None = None
 ) -> Iterator[tuple[int, Recording]]:
-    """Yield number and history, at samples and events, of each run, short ones first; those of over MOST_ROWS are left out.
+    """Yield number and history, at samples and events, of each run; those of over MOST_ROWS are left out.
 
-    Runs that come after ``stop`` are left out, too.
+    Runs alike in system and step follow each other, short ones first. Runs that come after ``stop`` are left out, too.
     """
     ends = [math.inf if wait else run.motion.duration + quiet_s for run in runs]
     room = [_room(run, o, False, end) for run, o, end in zip(runs, outcomes, ends, strict=True)]

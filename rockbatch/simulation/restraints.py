@@ -48,7 +48,10 @@ def names(pier: Pier, base: Base) -> list[str]:
 
 
 def apart(base: Base, rows: np.recarray) -> tuple[np.recarray, Samples]:
-    """Return ``rows`` without the columns of devices, and their total force [m/s²] and moment [m²/s²] per row, shape (n, 2)."""
+    """Return ``rows`` without the columns of devices, and their total force [m/s²] and moment [m²/s²] per row, shape (n, 2).
+
+    Without devices ``rows`` themselves, and zeros.
+    """
     if not base.restraints:
         return rows, np.zeros((len(rows), 2))
     names = rows.dtype.names or ()
@@ -100,7 +103,7 @@ class DeviceHistories(NamedTuple):
 
 
 def device_histories(pier: Pier, base: Base, rows: np.recarray) -> DeviceHistories:
-    """Return elongation, its rate, force and stored energy of each device at each row."""
+    """Return elongation, speed without a brace, force and stored energy of each device at each row."""
     devices = recorded(pier, base, rows)
     histories = DeviceHistories(*(np.zeros((len(rows), len(devices.elements))) for _ in DeviceHistories._fields))
     moves = AT_REST * pier.size * pier.alpha * pier.p
@@ -172,7 +175,8 @@ def rests_at(
 def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Samples, sticks: np.ndarray) -> float:
     """Return the rotation [rad] at which devices hold a pier that is not at rest upright; 0 if they do not hold it.
 
-    Friction holds the final rotation; other devices deform elastically until weight and devices balance, between 0 and that.
+    Friction off the pivot holds the final rotation. Other devices deform elastically until weight and devices balance, between 0
+    and the final rotation, which is returned if there they still outweigh the weight.
     """
     theta, b = result.theta_end, pier.half_width
     laws = elements(pier, base)

@@ -20,7 +20,7 @@ _STANDING = Start()
 
 @lru_cache(maxsize=4096)
 def start_of(pier: Pier, base: Base) -> Start:
-    """Return the initial state of a run; that of a pier without an initial rotation is all 0, ``level`` NaN."""
+    """Return the initial state of a run: all 0 without an initial rotation, and on a footing but for ``theta``, ``level`` NaN."""
     theta = pier.initial_rotation_rad
     if theta == 0.0:
         return _STANDING

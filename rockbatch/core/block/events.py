@@ -120,7 +120,7 @@ WEIGHTLESS = 1e-13
 
 @inlined
 def _weightless(m, ground):
-    """Return True if the ground falls as fast as the block, to the rounding of a sample; False if it falls faster.
+    """Return True if the ground falls as fast as the block, to the rounding of a sample; False if it falls slower or faster.
 
     The block takes off only once the ground falls faster.
     """

@@ -125,7 +125,10 @@ def take_in_step(traits, lanes, i, substep, history):
 
 @system.take_in_part.of(BlockTraits)
 def take_in_part(traits, lanes, i, m, part, after):
-    """Record the height of flight, and set state and stance."""
+    """Record the height of flight, and set the lane to the state and stance of the Moment ``after``.
+
+    A frame's deck that lay on both corners as it took off now rests on that to which the block leans.
+    """
     if system.airborne(m, part.start.contact):
         start, top = part.start, part.start.contact.top
         include_height(lanes, i, clearances(m, start.y, top), clearances(m, part.end, top), part.length)

@@ -73,14 +73,14 @@ def keeps_way(of, mode, c):
 
 @inlined
 def keeps_steep(of, mode, c):
-    """Return a number that is positive if a viscous damper keeps its direction, and its step is short enough by GROWTH."""
+    """Return a number that is positive if a viscous damper keeps its direction, and, of exponent < 1, its step obeys GROWTH."""
     near = GROWTH * max(abs(c.start.speed), of.linear_below) / (c.steepest * c.dt)
     return -1.0 if of.exponent < 1.0 and near < 1.0 else _keeps_direction(mode.goes, c)
 
 
 @inlined
 def keeps_branch(of, mode, c):
-    """Return a number that is positive if a hysteretic damper keeps its direction, and its step is short enough by TRAVEL."""
+    """Return a number that is positive if a hysteretic damper keeps its direction, and, unless plastic, its step obeys TRAVEL."""
     way = (abs(c.start.speed) + c.steepest * c.h) * c.dt * of.stiffness
     return -1.0 if mode.goes * c.state < 1.0 and TRAVEL / way < 1.0 else _keeps_direction(mode.goes, c)
 
@@ -95,7 +95,7 @@ def _greatest(f0, d0, f1, d1, h, best):
 
 @inlined
 def most_of_linear(of, mode, c, use, before):
-    """Return the greatest |force| [m/s²] of a linear damper with its stroke and speed in ``use``, and −1: it is not exceeded."""
+    """Return the greatest |force| [m/s²] of a linear damper so far, by its speed in ``use``, and −1: it is not exceeded."""
     return max(use.most, of.slope * use.speed), -1.0
 
 
@@ -107,19 +107,22 @@ def most_of_powers(of, mode, c, use, before):
 
 @inlined
 def most_of_friction(of, mode, c, use, before):
-    """Return the greatest |force| [m/s²] of a friction damper, and −1."""
+    """Return the greatest |force| [m/s²] so far: the strength once a friction damper has slipped; and −1."""
     return max(use.most, abs(of.strength * mode.goes)), -1.0
 
 
 @inlined
 def most_of_hysteretic(of, mode, c, use, before):
-    """Return the greatest |force| [m/s²] of a hysteretic damper, and −1."""
+    """Return the greatest |force| [m/s²] of a hysteretic damper so far, and −1."""
     return max(use.most, of.strength * max(abs(c.state), abs(c.state_end))), -1.0
 
 
 @inlined
 def most_of_tendon(of, mode, c, use, before):
-    """Return the greatest |force| [m/s²] of a tendon or a spring, and a number that is positive if it may be exceeded inside."""
+    """Return the greatest |force| [m/s²] of a tendon or a spring so far, and a number positive if it may be exceeded inside.
+
+    A tendon that is not taut adds nothing.
+    """
     longest = max(c.start.elongation, c.end.elongation)
     early, late = inner_points(c.start.elongation, c.start.speed, c.end.elongation, c.end.speed, c.h)
     taut, turns = mode.mode == TAUT, min(c.start.speed, -c.end.speed) > 0.0

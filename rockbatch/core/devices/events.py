@@ -236,7 +236,10 @@ def _consistent(m, devices, now, x, ground, pair):
 
 @kernel
 def settle_friction(m, devices, now, x, ground):
-    """Set the directions of up to two friction dampers without velocity: STICKS if they can hold, else a consistent pair."""
+    """Set the directions of the first two friction dampers that stick: STICKS if they can hold, else a consistent pair.
+
+    Also STICKS if, by rounding, no pair is consistent.
+    """
     first = sticking(devices, NO_EVENT)
     if first == NO_EVENT:
         return
@@ -332,7 +335,7 @@ def device_event(m, devices, now, ground, h, which):
 def reset_device_modes(m, devices, now, ground):
     """Set directions and modes of devices from the velocities after an event at a pivot, where these may have jumped.
 
-    Devices without velocity keep theirs, but for friction, which sticks or begins to slip.
+    Devices without velocity, and all braced viscous dampers, keep theirs, but for friction, which sticks or begins to slip.
     """
     if devices is None:
         return

@@ -209,7 +209,7 @@ def _devices_in(equipment, lanes, i):
 
 @hook
 def fetch(equipment, devices, i):
-    """Copy the numbers of lane ``i`` that the pass advances to the ``devices`` of its run; nothing if it takes none."""
+    """Copy the numbers of lane ``i`` that the pass advances to the ``devices`` of its run; nothing if no pass takes these."""
 
 
 @fetch.of(type(None))
@@ -246,8 +246,8 @@ def _copy_to_run(devices, each, shared, i):
 def stow(equipment, devices, i, smooth, event):
     """Copy the ``devices`` of a run to its lane ``i`` after scalar code, which ended with an ``event`` or not.
 
-    The pass takes the next sub-step if that may be ``smooth``, and at most two friction dampers can hold the pier; nothing is
-    copied for devices that no pass takes.
+    The pass takes the next sub-step if that may be ``smooth`` and there was an event, no friction holds with a force, or the run
+    has one or two friction dampers. Nothing is copied for devices that no pass takes.
     """
 
 

@@ -143,7 +143,7 @@ def hysteretic(of, elongation, speed, z, mode, goes):
 
 @inlined
 def _braced_hysteretic(of, speed, z, goes):
-    """Return the Response of a hysteretic damper with or without a brace."""
+    """Return the Response of a hysteretic damper with or without a brace; ``speed`` is that of both together."""
     pull, share = of.strength * z, _unyielded(z, goes)
     return Response(pull, speed * of.stiffness * share / (1.0 + of.give * share), pull * speed)
 
@@ -213,7 +213,10 @@ def own_speed(of, speed, state):
 
 @kernel
 def stored(of, elongation, state):
-    """Return the elastic energy [J/kg] of a tendon, stop, spring or viscous damper's brace; 0 for other dampers."""
+    """Return the elastic energy [J/kg] of a tendon, stop, spring or viscous damper's brace; 0 for other dampers.
+
+    A tendon stores nothing while slack, and without stiffness its prestress times the elongation, with its sign.
+    """
     if of.kind == CONTACT:
         pull = stop_force(of, elongation, state)
         return 0.5 * pull * pull * of.returned / of.stiffness
@@ -232,7 +235,7 @@ def mode_of(of, elongation, state, goes):
     """Return the mode of a tendon or a stop at an ``elongation`` that ``goes`` OPENS or CLOSES; TAUT for other devices.
 
     A tendon is SLACK in compression, YIELDING from its strength on if it OPENS; a stop is SLACK if open, else in first loading,
-    YIELDING. At zero force both are SLACK unless they open.
+    YIELDING. At zero force both are SLACK unless ``goes`` is OPENS, by which the elongation grows.
     """
     if of.kind == CONTACT:
         depth = elongation - of.start

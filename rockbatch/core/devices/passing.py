@@ -145,7 +145,7 @@ def _rates_under_devices(traits, lanes, shared, i, steps, part):
 
 @inlined
 def _to_next_stage(traits, lanes, shared, count, steps, part, part_next):
-    """Set the pier's stage to ``part_next`` of a step after the start, by the rates in the present one."""
+    """Set the pier's stage to ``part_next`` of a step after the start, by the rates in the present one, and add these to sums."""
     for i in range(count):
         k, power = _rates_under_devices(traits, lanes, shared, i, steps, part)
         m, y, contact = in_pass(traits, lanes, i)
@@ -159,7 +159,7 @@ def _to_next_stage(traits, lanes, shared, count, steps, part, part_next):
 
 @inlined
 def _to_end(traits, lanes, shared, count, steps):
-    """Set the pier's stage to the end of the step."""
+    """Set the pier's stage, and its Works, to the end of the step."""
     for i in range(count):
         k, power = _rates_under_devices(traits, lanes, shared, i, steps, 1.0)
         m, y, contact = in_pass(traits, lanes, i)
@@ -173,7 +173,10 @@ def _to_end(traits, lanes, shared, count, steps):
 
 @inlined
 def _evaluate_end(traits, lanes, shared, count, steps):
-    """Set the rates at the end of the step, and the numbers by which devices are judged to their first values."""
+    """Set the pier's rates, and the powers of its Works, at the end of the step in each of ``count`` lanes.
+
+    Begin each lane's Verdict anew: no holds, no extremes, and no doubts, or one if the lane is not ``smooth``.
+    """
     for i in range(count):
         k, power = _rates_under_devices(traits, lanes, shared, i, steps, 1.0)
         put(shared.rates, i, k)

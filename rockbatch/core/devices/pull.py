@@ -102,7 +102,7 @@ def pushed(pull, place):
 
 @inlined
 def forces_that_hold(first, second, k, k_first, k_second, strengths):
-    """Return the friction forces per mass [m/s²] at two places, with the Gaps given, that stop their motion.
+    """Return the friction forces per mass [m/s²] at two places, with the Gaps given, under which neither accelerates.
 
     ``k`` are the pier's rates under all other forces, ``k_first`` and ``k_second`` those with a unit force more at either place:
     accelerations are linear in the friction forces. A force is 0 where it moves nothing, as at a pivot on the ground, and the
@@ -154,7 +154,7 @@ def device_rates(m, devices, now, x, ground, place):
     """Return the pier ``m`` under all devices, and the forces [m/s²] of the first two sticking friction dampers.
 
     Write the rates of the devices' states ``x`` and those forces to their row ``place``, and the gaps, except for stages inside
-    a step.
+    a step. At END also set ``ended``: whether the next step continues from there, and the pull.
     """
     y, n, k, at = now.y, len(devices.elements), devices.rates[place], attitude(m, now.y, now.contact, devices.level[0])
     total, moment, one, two, holds = 0.0, 0.0, 0.0, 0.0, False
@@ -243,7 +243,7 @@ def _loaded_soon(devices, m, now, soon, ground, near):
 def about_to_turn(devices, m, y, contact, sense):
     """Return the pier ``m`` at rest under its devices as it begins to move with the ``contact`` to come; ``m`` without any.
 
-    ``sense`` is OPENS or, for a block about to land, CLOSES. Friction resists with its full force.
+    ``sense`` is OPENS or, for a block about to land, CLOSES. Friction resists with its full force, but for 0 right at the pivot.
     """
 
 

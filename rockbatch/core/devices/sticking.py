@@ -28,7 +28,10 @@ def friction_holds(traits, equipment, runs):
 
 @kernel
 def hold(traits, lanes, equipment, count, steps, part, number):
-    """Add the forces of friction that sticks to the pull in stage ``number``, ``part`` of a step after its start."""
+    """Add the forces of friction that sticks to the pull in a stage, ``part`` of a step after its start.
+
+    Keep them in the Grip ``number``, of the start (0), a stage (1 to 3) or the end (4) of the step; 0 in lanes without.
+    """
     shared, grip = equipment.shared[0], equipment.grips[number]
     a, b = equipment.lanes[equipment.rubs[0]], equipment.lanes[equipment.rubs[1]]
     for i in range(count):
@@ -53,7 +56,10 @@ def hold(traits, lanes, equipment, count, steps, part, number):
 
 @kernel
 def judge_grip(equipment, shared, count):
-    """Count lanes in which friction that sticks may slip: its least reserve of strength does not exceed twice its range."""
+    """Add a doubt to each lane in which friction that sticks may slip, and set its ``holds`` to 1 if it has a force at the end.
+
+    It may slip if its least reserve of strength does not exceed twice the range of its force in the step.
+    """
     a, b = equipment.lanes[equipment.rubs[0]], equipment.lanes[equipment.rubs[1]]
     for i in range(count):
         sticks, other_sticks = a.mode.goes[i] == STICKS, b.mode.goes[i] == STICKS

@@ -15,7 +15,7 @@ def _greatest(f0, d0, f1, d1, h, best):
 
 @kernel
 def _include_braced_viscous(devices, j, h):
-    """Include a smooth part of ``h`` [s] in the Use of a braced viscous damper; return its greatest |force| there [m/s²].
+    """Include a smooth part of ``h`` [s] in stroke and speed of a braced viscous damper; return the greatest |force| [m/s²].
 
     Stroke and speed are those of the damper itself, without its brace.
     """

@@ -115,7 +115,7 @@ def _impact(m, y, side):
 
 @kernel
 def _landing(m, y, contact, pivot):
-    """Return state, stance and kind as ``pivot`` lands from flight; the other may land at the same instant."""
+    """Return state, stance and kind as ``pivot`` lands from flight, without rebound; at rest on both if the other lands, too."""
     left, right, left_velocity, right_velocity = clearances(m, y, contact.top)
     other, other_velocity = (right, right_velocity) if pivot == LEFT else (left, left_velocity)
     key = key_of(m, contact)

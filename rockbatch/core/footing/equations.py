@@ -30,7 +30,7 @@ class Lever(NamedTuple):
 
 @inlined
 def lever(m, y):
-    """Return the Lever in state ``y``."""
+    """Return the Lever in state ``y``; with ``shifting`` its length and slope are about the :func:`pressed_middle`."""
     if m.finite is None:
         length = m.height
         if m.shifting is not None:

@@ -179,7 +179,7 @@ def _clearances(m, d):
 
 @kernel
 def take_in(lanes, i, m, part, t):
-    """Keep extremes and plastic set of a Part that ends at ``t`` [s], and put its end into the lane; return the Push there."""
+    """Advance lane ``i`` to the end of a Part at ``t`` [s], with extremes, uplifts and plastic set; return the Push there."""
     before, y, end, tally, demands = part.start.contact, part.start.y, part.end, lanes.tally, lanes.demands
     include_bending(m.shaft, lanes, i, part)
     d, d_end = sinking(m, y), sinking(m, end)
@@ -206,7 +206,7 @@ def take_in(lanes, i, m, part, t):
 
 @system.take_in_part.of(FootingTraits)
 def take_in_part(traits, lanes, i, m, part, after):
-    """Keep extremes and plastic set of a Part."""
+    """Advance lane ``i`` to the end of a Part, with extremes, uplifts and plastic set; ``after`` is not read: nothing jumps."""
     take_in(lanes, i, m, part, lanes.bed.time[i] + part.length)
 
 
@@ -242,7 +242,10 @@ def one_pass(traits, lanes, count, substep, settings):
 
 @system.finish.of(FootingTraits)
 def finish(traits, lanes, i, t, result):
-    """Write the residuals, and the demands on the bed, of the run in lane ``i``; residuals are 0 if nothing has yielded."""
+    """Write the residuals, and the demands on the bed, of the run in lane ``i``; residuals are 0 if nothing has yielded.
+
+    Lean and settlement are NaN if the pier has no rest on its bed.
+    """
     m, _ = pier_in(traits, lanes, i)
     demands, load = lanes.demands, lanes.ending.load[i]
     result.base_left, result.base_right = m.bed[FIRST, SET], m.bed[last_node(m), SET]

@@ -33,7 +33,10 @@ def _trial(bracket):
 
 @inlined
 def _narrowed(bracket, x, value):
-    """Return the Bracket with a trial as an end; the other end counts half if it has stayed before (Illinois method)."""
+    """Return the Bracket with a trial ``x`` as its low end if ``value`` > 0, else as its high end.
+
+    The value at the other end counts half if that end has stayed before (Illinois method).
+    """
     if value > 0.0:
         below = bracket.below * (0.5 if bracket.side == 1.0 else 1.0)
         return Bracket(x, value, bracket.high, below, 1.0)

@@ -298,7 +298,8 @@ def _moment(of, s):
 def _include(extremes, moment, t, gravity):
     """Raise the Extremes to the magnitudes of the Forces of a ``moment`` at about ``t`` [s].
 
-    While N is below its limit the shear counts for the keys, and no friction demand is taken.
+    While N is below its limit the shear counts for the keys, too, and no friction demand is taken. Note when friction first
+    exceeds its limit, and when N is first negative.
     """
     limits, greatest, line = extremes.limits, extremes.greatest, extremes.noted[0]
     for j in range(len(greatest)):

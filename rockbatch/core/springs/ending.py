@@ -69,7 +69,10 @@ class Waiting(NamedTuple):
 
 @kernel
 def set_deadline(lanes, i, m, run):
-    """Set the longest end of the run of the pier ``m`` in lane ``i``, and the samples at which residuals are read."""
+    """Set the sample at which the run in lane ``i`` ends at the latest, and those from which residuals may and must be read.
+
+    Clear all readings.
+    """
     waiting, last, samples = lanes.waiting, lanes.clock.npts[i] - 1.0, lanes.clock.samples[i]
     waiting.earliest[i] = last + run.read_after
     waiting.patience[i] = run.patience
@@ -150,7 +153,10 @@ def _peak_is_final(lanes, i, m, now, devices):
 
 @kernel
 def _read_base(lanes, i, m, now):
-    """Record the positions of the supports; from the second reading on, also their drift since the last, and foresee the next."""
+    """Record the unstressed positions of both supports; from the second reading on, also their drift since the last.
+
+    Foresee further drift by it.
+    """
     waiting, sample = lanes.waiting, lanes.clock.sample[i]
     left, right = base_of(m, now)
     if waiting.read[i] < 0.0:
@@ -249,7 +255,10 @@ def status_at_sample(traits, lanes, i, devices):
 
 @kernel
 def _status(traits, lanes, i, devices):
-    """Return the status of the run in lane ``i``, RUNNING unless it ends; read residuals when due."""
+    """Return the status of the run in lane ``i``, RUNNING unless it ends; read residuals when due.
+
+    SURVIVED from the end of the tail on, once the peak is final and residuals are read; :func:`_given_up` at the latest end.
+    """
     waiting, sample = lanes.waiting, lanes.clock.sample[i]
     samples, longest = lanes.clock.samples[i], waiting.longest[i]
     if sample < waiting.earliest[i]:

@@ -157,7 +157,7 @@ def clearances(m, y, supports):
 
 @kernel
 def without(contact, side):
-    """Return ``contact`` with the pivot on ``side`` free."""
+    """Return ``contact`` with the pivot on ``side`` free, and not grazing."""
     held = 0.0 if contact.held == side else contact.held
     if side == LEFT:
         return Contact(0.0, contact.right, 0.0, contact.right_yields, held)

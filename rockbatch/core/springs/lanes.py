@@ -175,7 +175,10 @@ def _include_extremes(lanes, i, m, part):
 
 @system.take_in_part.of(SpringTraits)
 def take_in_part(traits, lanes, i, m, part, after):
-    """Record extremes, the starts of the springs' branches, and the plastic work of those that have ended."""
+    """Set lane ``i`` to the Moment ``after`` a Part and its event.
+
+    Record extremes, the starts of the springs' branches, and the plastic work of those that have ended.
+    """
     _include_extremes(lanes, i, m, part)
     loading, before = get(lanes.loading, i, Loading), part.start.contact
     put(lanes.loading, i, branches(m, loading, before, after.contact, branch_change(m, after.y)))
@@ -210,7 +213,7 @@ def _change_branches(lanes, i, m, now, substep, history):
 
 @system.finish.of(SpringTraits)
 def finish(traits, lanes, i, t, result):
-    """Write residuals, extremes and plastic work of the run in lane ``i``."""
+    """Write residuals, extremes and plastic work of the run in lane ``i``; those never read are as at the end, ``t`` [s]."""
     m, now = pier_in(traits, lanes, i)
     waiting, lowest = lanes.waiting, lanes.lowest
     t_read, base_left, base_right = waiting.read[i] * lanes.clock.dt[i], waiting.read_left[i], waiting.read_right[i]

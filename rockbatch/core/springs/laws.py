@@ -258,9 +258,10 @@ def branch_after_jump(law, yields, point, z, velocity, rest):
 
 @inlined
 def branch_of_landing(m, velocity):
-    """Return the branch of a spring on which a pivot lands at ``velocity`` [m/s]: elastic if upwards, as a damped support rises.
+    """Return the branch (0 elastic, 1 inelastic) of a spring on which a pivot lands at ``velocity`` [m/s].
 
-    A spring with a yield point has been unloaded since, and is elastic.
+    Elastic if upwards, as a damped support rises, and for a spring with a yield point, which has been unloaded since; else that
+    of the law when pressed.
     """
     return 0.0 if m.damped is not None and velocity > 0.0 else yields_when_pressed(m.law)
 

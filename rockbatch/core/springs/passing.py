@@ -106,7 +106,10 @@ def _signs(m, contact):
 
 @inlined
 def _stepped(traits, lanes, i, substep):
-    """Integrate lane ``i`` over the sub-step into ``end``, on the present branches of its springs, and see if they keep them."""
+    """Integrate lane ``i`` over the sub-step into ``end``, on the present branches of its springs.
+
+    Set ``keeps``, negative if the velocity of a spring has reversed.
+    """
     m, h = model_in(traits, lanes, i), lanes.clock.step[i]
     y, contact, ground = state_in(traits.shaft, lanes.now, i), _free(lanes, i), ground_at(lanes, i, substep * h)
     k = rates(m, y, contact, ground)

@@ -33,7 +33,7 @@ class Reversal(NamedTuple):
 
 @inlined
 def pivots(m, y):
-    """Return the left and the right Pivot in state ``y``."""
+    """Return the Pivots of the left and the right side in state ``y``: vertical position [m] and velocity [m/s]."""
     at = geometry(m, y.theta)
     return (
         Pivot(y.v + at.lift_left, y.v_rate + at.arm_left * y.omega),
@@ -52,7 +52,7 @@ def pivot_accelerations(m, y, k):
 
 @inlined
 def _size(z):
-    """Return |z| of compression, limited to 0 to 1."""
+    """Return −z within 0 to 1: |z| in compression, where z is negative, and 0 in tension."""
     return min(max(-z, 0.0), 1.0)
 
 

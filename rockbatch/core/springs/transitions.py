@@ -153,7 +153,10 @@ def _transition_of_left(m, now, of_law, ground):
 
 @kernel
 def _separation(m, now, ground):
-    """Return Moment and kind as the left pivot separates; a damped support begins to recover as fast as the pivot rises."""
+    """Return Moment and kind as the left pivot separates; HELD_LEFT if accelerations keep it in contact or grazing.
+
+    A damped support begins to recover as fast as the pivot rises.
+    """
     y, contact, supports = now
     at = geometry(m, y.theta)
     velocity = y.v_rate + at.arm_left * y.omega
