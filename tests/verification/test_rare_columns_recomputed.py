@@ -225,10 +225,12 @@ def test_forces_in_a_section_are_those_that_move_what_is_above_it(height):
     moment = np.abs(share * ((middle - height) * of_part + inertia * turning))
     stands = table.base_moment.to_numpy() != 0.0  # at rest both feet bear
     expected = {
-        "shear": np.abs(share * of_part)[stands].max(), "moment": moment[stands].max(),
-        "axial_least": axial[stands].min(), "axial_greatest": axial[stands].max(),
+        "shear": np.abs(share * of_part)[stands].max(),
+        "moment": moment[stands].max(),
+        "axial_least": axial[stands].min(),
+        "axial_greatest": axial[stands].max(),
         "axial_at_moment": axial[stands][moment[stands].argmax()],
-    }  # fmt: skip
+    }
     (row,) = response.sections.to_dict("records")
     for name, value in expected.items():
         over_mass = "m2_s2" if name == "moment" else "m_s2"
@@ -274,10 +276,22 @@ def test_the_top_of_a_bending_shaft_goes_as_far_as_its_history_says():
 
 
 FORCES = (
-    "base_shear_m_s2", "normal_force_m_s2", "friction_demand", "pivot_force_left", "pivot_force_right", "heel_gap_left_m",
-    "heel_gap_right_m", "heel_speed_left_m_s", "heel_speed_right_m_s", "deck_acceleration_m_s2", "landing_velocity_m_s",
-    "impulse_m_s", "impact_friction_demand", "omega_max_over_p", "base_moment_m2_s2",
-)  # fmt: skip
+    "base_shear_m_s2",
+    "normal_force_m_s2",
+    "friction_demand",
+    "pivot_force_left",
+    "pivot_force_right",
+    "heel_gap_left_m",
+    "heel_gap_right_m",
+    "heel_speed_left_m_s",
+    "heel_speed_right_m_s",
+    "deck_acceleration_m_s2",
+    "landing_velocity_m_s",
+    "impulse_m_s",
+    "impact_friction_demand",
+    "omega_max_over_p",
+    "base_moment_m2_s2",
+)
 OF_DAMPERS = "damper_force_over_weight", "damper_stroke_m", "damper_speed_m_s", "damper_energy_J_kg"
 
 
@@ -414,9 +428,13 @@ ELSEWHERE = {
 }
 """Columns that other tests hold to values of their own."""
 NAMED = (
-    ("{side}", ("left", "right")), ("{kind}", ("damper", "stop")), ("{what}", ("ductility", "dissipated")), ("{term}", LEDGER),
-    ("{name}", ("theta_max", "theta_max_in_motion")), ("{unit}", ("", "_J_kg")),
-)  # fmt: skip
+    ("{side}", ("left", "right")),
+    ("{kind}", ("damper", "stop")),
+    ("{what}", ("ductility", "dissipated")),
+    ("{term}", LEDGER),
+    ("{name}", ("theta_max", "theta_max_in_motion")),
+    ("{unit}", ("", "_J_kg")),
+)
 """Parts of names that tests put together."""
 
 
