@@ -311,10 +311,10 @@ def _picture(svg: Element, setting: Setting, size: tuple[float, float] | None = 
     that, but at most as its column. Typst scales the width of a line with its path, and markers are no part of a plot: so
     coordinates are scaled here.
     """
-    for path in svg.iter("path"):
-        if scale := _SCALE.fullmatch(path.get("transform", "")):
-            del path.attrib["transform"]
-            path.set("d", _NUMBER.sub(lambda number: f"{float(number[0]) * float(scale[1]):g} ", path.get("d", "")))
+    for line in svg.iter("path"):
+        if scale := _SCALE.fullmatch(line.get("transform", "")):
+            del line.attrib["transform"]
+            line.set("d", _NUMBER.sub(lambda number: f"{float(number[0]) * float(scale[1]):g} ", line.get("d", "")))
     box = [float(value) for value in svg.get("viewBox", "").split()]
     if size is None:
         size = (float(svg.get("width", box[2])), float(svg.get("height", box[3])))
