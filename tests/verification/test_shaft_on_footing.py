@@ -358,6 +358,8 @@ def test_runs_of_a_shaft_on_a_bed_are_repeated_with_fewer_modes_and_with_fewer_s
     assert fewer == [(8, 3), (4, 4)]
     assert [other.base.strips for other in coarser(replace(run, base=replace(run.base, shaft="rigid")))] == [4]
     assert coarser(replace(run, base=rb.RigidBase())) == []
+    ten = replace(run, base=replace(run.base, shaft="rigid", strips=10))
+    assert [other.base.strips for other in coarser(ten)] == [4]  # five would be refused
 
 
 def random_pier(number: int):
