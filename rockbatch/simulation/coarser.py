@@ -64,10 +64,10 @@ STEPS = 0.1
 
 
 def with_fewer_strips(run: Run) -> Run | None:
-    """Return a run on half as many strips of its bed; None if it has none."""
+    """Return a run on half as many strips of its bed, rounded down to an even number; None if it has none."""
     if not isinstance(run.base, FootingBase):
         return None
-    return Run(run.pier, replace(run.base, strips=run.base.strips // 2), run.motion)
+    return Run(run.pier, replace(run.base, strips=2 * (run.base.strips // 4)), run.motion)
 
 
 def coarser(run: Run) -> list[Run]:

@@ -92,3 +92,15 @@ def run(of, foot, ground, dt, until, rtol=1e-10):
         if abs(y[1]) > 0.5 * math.pi:
             break
     return Course(np.array(out), sets, flew)
+
+
+def fastest(of, foot, q) -> float:
+    """Return the greatest rate [1/s] of small motions about a state at rest: the eigenvalues of differences."""
+    n, still, step = len(q), np.zeros(len(q)), 1e-7
+    system = np.zeros((2 * n, 2 * n))
+    system[:n, n:] = np.eye(n)
+    for j, each in enumerate(step * np.eye(n)):
+        for k, (way, speed) in enumerate(((each, still), (still, each))):
+            ends = [accelerations(of, foot, q + s * way, s * speed, 0.0 * foot.nodes, (0.0, 0.0)) for s in (-1.0, 1.0)]
+            system[n:, k * n + j] = (ends[1] - ends[0]) / (2.0 * step)
+    return float(abs(np.linalg.eigvals(system)).max())

@@ -30,13 +30,13 @@ from rockbatch.core.devices.laws import FRICTION, STICKS
 from rockbatch.core.devices.pull import START, device_rates, step_resolving_devices
 from rockbatch.core.devices.sticking import judge_grip
 from rockbatch.core.springs.lanes import LANE, static_contact, static_state
-from rockbatch.core.system import rates, status_at_sample
+from rockbatch.core.system import begin, rates, status_at_sample
 from rockbatch.core.table import put, table
 from rockbatch.core.types import OF_PIER, Ground, Instant, Moment
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
 from rockbatch.simulation import runs
-from rockbatch.simulation.models import IDLE, springs, system_of
+from rockbatch.simulation.models import IDLE, model, springs, system_of
 from rockbatch.simulation.sections import InSection, in_body, in_section, recorded
 
 FIG5 = Pier(alpha=0.20, p=1.0)
@@ -304,3 +304,14 @@ def sections_at(run, rows, samples, heights):
     body = in_body(recorded(run, rows), samples, np.ones(len(samples)))
     forces = [in_section(run.pier, body, height) for height in heights]
     return [[InSection(*(float(values[i]) for values in each)) for each in forces] for i in range(len(samples))]
+
+
+def displaced_at_start(run, stale):
+    """Return the greatest displacements that a run begins with in a lane where another had left ``stale`` ones."""
+    system = system_of(model(run.pier, run.base))
+    lanes, line = table(system.lane)[0][0], runs._line(run.pier, run.base, float(run.motion.dt), 4, 0.0, True)
+    lanes.displaced.deflection[0] = lanes.displaced.drift[0] = stale
+    begin(
+        system.traits, lanes, 0, np.array([tuple(line)], [(name, "f8") for name in line._fields]).view(np.recarray)[0]
+    )
+    return float(lanes.displaced.deflection[0]), float(lanes.displaced.drift[0])

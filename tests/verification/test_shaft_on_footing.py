@@ -5,12 +5,13 @@ Fast tests run the kernels uncompiled.
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import bending_on_bed_reference as reference
 import numpy as np
 import pytest
 from bending_piers import DT, TOWER, G, pier_of, points_of
-from core_samples import values_on_beds
+from core_samples import displaced_at_start, values_on_beds
 from scipy.optimize import fsolve
 from supported_reference import drift_of, places
 
@@ -20,10 +21,12 @@ from rockbatch.core.footing.model import Touch
 from rockbatch.core.types import SAMPLE, Ground, Moment, Pull
 from rockbatch.motions.motion import Motion
 from rockbatch.outcome.outcome import BedDemands
+from rockbatch.pier import vertical_frequency
 from rockbatch.simulation import Run, run_fixed, written_run
 from rockbatch.simulation.coarser import coarser, with_modes_error, with_strips_error
 from rockbatch.simulation.histories import of_modes
 from rockbatch.simulation.models import fastest_rate, first_substeps, footing
+from rockbatch.simulation.restraints import rests_at
 from rockbatch.simulation.runs import _BLANK as BLANK
 from rockbatch.simulation.runs import Trial
 
@@ -204,6 +207,63 @@ def test_the_least_energy_at_a_rotation_is_that_of_the_pier_held_there(uncompile
     np.testing.assert_allclose(of_states, energy, rtol=1e-12)
 
 
+def test_beyond_its_summit_no_bed_holds_a_pier_whose_shaft_hangs_over(uncompiled):
+    """A stiff bed still rights it where a run takes its summit to be, and no longer at that of a rigid one."""
+    soft = pier_of(*TOWER[:4], 2.5)
+    base = base_of(pier=soft, stiffness=6e5, safety_factor=None, confirm=("beta",))
+    m, rigid = footing(soft, base), footing(soft, replace(base, shaft="rigid"))
+    level = [("footing.strips", "lay", each) for each in (m, rigid)]
+    calls = [*level, *(("footing.statics", "summit", each, G) for each in (m, rigid))]
+    own, straight = uncompiled(values_on_beds, calls)[2:]
+    assert straight == pytest.approx(soft.alpha, rel=1e-3)
+    short = 0.995  # the bed bears on more than its edge
+    calls = [*level, *(("footing.statics", "righting", m, short * theta, G) for theta in (own, straight))]
+    held, lost = uncompiled(values_on_beds, calls)[2:]
+    assert lost < 0.0 < held < 0.02 * G * soft.half_width
+
+
+def test_a_pier_that_is_let_go_begins_with_its_own_displacements(uncompiled):
+    """Its shaft hangs over, and what another run left in its lane is gone."""
+    held = replace(PIER, initial_rotation_rad=0.01)
+    run = Run(held, base_of(), Motion("still", DT, np.zeros(3)))
+    modes, s = run.base.modes(held), math.sin(0.01)
+    u = G * s * modes.share / modes.frequency**2
+    bent, way = (float(modes.at(height) @ u) for height in (held.highest, held.top))
+    found = uncompiled(displaced_at_start, run, 9.0)
+    assert found == pytest.approx((bent, held.top * s + way * math.cos(0.01)), rel=1e-9)
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.3])
+def test_steps_on_a_bed_resolve_the_fastest_motion_of_the_mass_points(zeta):
+    """Pressed everywhere, in part, and in the air."""
+    base, of = base_of(safety_factor=None, zeta=zeta), points_of(*TOWER, ROCK)
+    foot, still = foot_under(of, base), np.zeros(4)
+    states = [(-foot.settlement, 0.0), (0.0, 0.001), (0.002, 0.001), (0.05, 0.0)]
+    rates = [reference.fastest(of, foot, np.array([*state, *still])) for state in states]
+    assert 0.99 * max(rates) < fastest_rate(PIER, base) < 1.1 * max(rates)
+
+
+@pytest.mark.parametrize("kind", ["bed", "springs"])
+def test_devices_hold_a_pier_that_hangs_over_with_its_shaft(kind):
+    """Without any it rests at K tilt = (K − g h′) θ, h′ with the shaft's overhang."""
+    soft = pier_of(*TOWER[:4], 2.5)
+    beds = base_of(pier=soft)
+    two = rb.YieldingBase.from_stiffness(soft, 1e6, zeta=0.2, eta=2.2, kinematics="finite", shaft="elastic")
+    base = beds if kind == "bed" else two
+    tilt, omega_v, b = 1e-4, vertical_frequency(soft, base), soft.half_width
+    ends = {
+        "v_end": 0.0,
+        "theta_end": 0.0,
+        "settled": 0.0,
+        "bed_tilt": tilt,
+        "base_left": tilt * b,
+        "base_right": -tilt * b,
+    }
+    rocking = omega_v**2 * b**2 * base.rocking_share
+    rest = rests_at(soft, base, SimpleNamespace(**ends), 0.0, np.zeros(0), np.zeros(0, bool))
+    assert rest == pytest.approx(tilt * rocking / (rocking - G * base.leaning_height(soft)), rel=1e-9)
+
+
 def hard(seconds: float = 1.0, amplitude: float = 5.0, upwards: float = 0.0) -> Motion:
     """One cycle of a sine of 0.9 s, with one of 0.37 s up and down."""
     t = np.arange(0.0, seconds, DT)
@@ -298,6 +358,8 @@ def test_runs_of_a_shaft_on_a_bed_are_repeated_with_fewer_modes_and_with_fewer_s
     assert fewer == [(8, 3), (4, 4)]
     assert [other.base.strips for other in coarser(replace(run, base=replace(run.base, shaft="rigid")))] == [4]
     assert coarser(replace(run, base=rb.RigidBase())) == []
+    ten = replace(run, base=replace(run.base, shaft="rigid", strips=10))
+    assert [other.base.strips for other in coarser(ten)] == [4]  # five would be refused
 
 
 def random_pier(number: int):
