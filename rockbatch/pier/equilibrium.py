@@ -357,7 +357,10 @@ class SlowTurn:
 
     @cached_property
     def unstable(self) -> float | None:
-        """The rotation from which on the righting moment is negative [rad]; None if there is none up to π/2."""
+        """The rotation from which on the righting moment is negative [rad].
+
+        If there is none up to π/2, it is None with devices, and π/2 without.
+        """
         if not self.places:  # a toe that cannot carry the weight alone yields, and carries its strength only
             share = 1.0 if self.spring is None else min(1.0, 2.0 * self.spring.strength - 1.0)
             tangent = share * math.tan(self.pier.alpha)
