@@ -112,10 +112,11 @@ COMMANDS = {
 }
 
 
-def started(words: tuple[str, ...], folder: Path) -> subprocess.Popen:
+def started(words: tuple[str, ...], folder: Path, limited: tuple[str, ...] = ()) -> subprocess.Popen:
+    """Return the process of a command, behind the words of a program that limits it."""
     environment = os.environ | {"PYTHONPATH": str(Path(rockbatch.__file__).parents[1])}
     return subprocess.Popen(
-        [sys.executable, "-m", "rockbatch", *words],
+        [*limited, sys.executable, "-m", "rockbatch", *words],
         cwd=folder,
         env=environment,
         stdout=subprocess.DEVNULL,
@@ -185,6 +186,11 @@ def failures_of_kill(command: Command, folder: Path, wanted: Reference, instant:
     except ProcessLookupError:
         alive = False
     process.communicate()
+    return failures_of_repetition(command, folder, wanted), alive
+
+
+def failures_of_repetition(command: Command, folder: Path, wanted: Reference) -> list[str]:
+    """Return what is wrong after a command is repeated where it was disturbed."""
     rows = finished_rows(folder)
     status, messages, _ = carried_out(command.words, folder)
     found = files(folder)
@@ -196,7 +202,7 @@ def failures_of_kill(command: Command, folder: Path, wanted: Reference, instant:
     ]
     if finished_rows(folder) < rows:
         failures.append(f"{rows} rows before the repetition, {finished_rows(folder)} after it")
-    return failures, alive
+    return failures
 
 
 def main() -> int:

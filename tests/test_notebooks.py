@@ -2,13 +2,18 @@
 
 import ast
 import importlib.util
+import json
+import os
 import re
+import time
 import tomllib
 from pathlib import Path
 
 import nbformat
 import pytest
 from jsonschema import Draft7Validator
+from jupyter_client.manager import start_new_kernel
+from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.study.schema import STUDY, schema_of
@@ -87,3 +92,31 @@ def test_the_bar_of_a_notebook_warns_of_nothing(executed):
     errors = "".join(output.text for output in executed if output.output_type == "stream" and output.name == "stderr")
     assert "Warning" not in errors
     assert "/30 [" in errors
+
+
+@pytest.mark.slow
+def test_an_interrupted_cell_ends_and_the_same_cell_goes_on_in_the_same_kernel(tmp_path):
+    """No finished run is lost, and the table has the bytes of a run that nobody interrupted."""
+    scales = [0.2 + 0.0005 * i for i in range(4000)]
+    study = write_study(tmp_path, study_text(cases=(RIGID,), motions={"scale": scales}, output={"histories": "none"}))
+    part, top = tmp_path / "out" / "peaks.csv.part", str(Path(rb.__file__).parents[1])
+    manager, client = start_new_kernel(cwd=str(tmp_path), env=os.environ | {"PYTHONPATH": top})
+    try:
+        assert client.execute("import rockbatch as rb", reply=True, timeout=120)["content"]["status"] == "ok"
+        cell = 'table = rb.run("study.toml", "out", jobs=1)'
+        asked, until = client.execute(cell), time.monotonic() + 120
+        while not part.exists() or part.read_bytes().count(b"\n") < 2:
+            assert time.monotonic() < until
+            time.sleep(0.01)
+        manager.interrupt_kernel()
+        reply = client.get_shell_msg(timeout=60)
+        assert (reply["parent_header"]["msg_id"], reply["content"]["ename"]) == (asked, "KeyboardInterrupt")
+        finished = part.read_bytes().count(b"\n") - 1
+        assert 0 < finished < len(scales)
+        assert client.execute(cell, reply=True, timeout=120)["content"]["status"] == "ok"
+    finally:
+        client.stop_channels()
+        manager.shutdown_kernel(now=True)
+    assert json.loads((tmp_path / "out" / "run.json").read_text(encoding="utf-8"))["kept"] >= finished
+    rb.run(study, tmp_path / "whole")
+    assert (tmp_path / "out" / "peaks.csv").read_bytes() == (tmp_path / "whole" / "peaks.csv").read_bytes()

@@ -9,7 +9,7 @@ import pytest
 import rockbatch as rb
 from rockbatch.common.figures.description import Area, Points, Polyline, Rule, Words
 from rockbatch.pier import Place
-from rockbatch.pier.figures import APART, ASIDE, MOST_PIERS, SPRING, Sheet, sketches, statics
+from rockbatch.pier.figures import APART, ASIDE, MOST_PIERS, SPRING, STRIPS, Sheet, sketches, statics
 
 PIER = {"alpha": math.atan(0.2), "half_width_m": 4.0, "height_m": 20.0}
 
@@ -215,3 +215,16 @@ def test_statics_show_shares_of_one_pier_and_a_curve_each_of_several():
     several = statics([sheet("a"), sheet("b", flexural_period_s=1.5)])
     assert [[mark.name for mark in panel.marks] for panel in several.panels] == [["a", "b"]] * 3
     assert list(several.legend) == ["a", "b"]
+
+
+@pytest.mark.parametrize(
+    ("bases", "springs", "words"),
+    [({"rigid"}, 0, "rigid ground"), ({"rigid", "elastic"}, 2, "two springs"), ({"footing"}, STRIPS, "a bed of strips"),
+     ({"footing", "elastic"}, 2, "two springs")],
+)  # fmt: skip
+def test_a_footing_stands_on_a_bed_and_other_bases_on_two_springs(bases, springs, words):
+    (figure,) = sketches([PIER], bases)
+    turns = [mark for mark in marks(figure, "rigid") if len(mark.x) == 7 and np.ptp(mark.y) == SPRING]
+    width, _ = outline(figure)
+    assert sorted(float(mark.x[0]) for mark in turns) == pytest.approx(np.linspace(-0.5, 0.5, springs) * width)
+    assert f"to scale on {words}:" in figure.description

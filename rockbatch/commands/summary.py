@@ -88,7 +88,7 @@ def warnings(table: "pd.DataFrame", case_of: Callable[["pd.Series[Any]"], str]) 
     )
     slides = "more friction than the interface has: the pier would slide, which is not modelled; see the column note"
     sentences = [
-        *(warning(table, case_of) for warning in parts("summary.warning")),
+        *(warning(table, case_of) for warning in parts("section.warning")),
         rotate and f"{rotate} {beyond}",
         lean and f"theta_max/alpha {lean} {leans}",
         slide and f"{slide} {slides}",

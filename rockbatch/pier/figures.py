@@ -46,6 +46,8 @@ MOST_SECTIONS = 5
 """Most sections whose heights are written; of more only the lowest and the highest."""
 SPRING = 20.0
 """Height of a support's spring [px]: not to scale, it has none."""
+STRIPS = 5
+"""Springs that stand for the strips of a footing's bed."""
 ASIDE = 9.0
 """Distance of a damper outside its pivot [px]."""
 MOST_PIERS = 4
@@ -160,31 +162,37 @@ class _Shape(NamedTuple):
 def sketches(piers: Sequence[Mapping[str, Any]], bases: Collection[str]) -> list[Figure]:
     """Return sketches of the first four possible piers, at one scale; ``piers`` as in run.json, ``bases`` the kinds of bases.
 
-    All stand on springs if any base is not "rigid". A pier with impossible values is left out, since run.json may come from
-    anybody; [] if none is left. One whose ``labels`` are False shows its devices alone, beside a labelled one of its shape.
+    All stand on springs if any base is not "rigid", on a bed of them if every base is a footing. A pier with impossible values
+    is left out, since run.json may come from anybody; [] if none is left. One whose ``labels`` are False shows its devices alone,
+    beside a labelled one of its shape.
     """
     shapes = [shape for shape in map(_Shape.of, piers) if shape.possible][:MOST_PIERS]
     if not shapes:
         return []
     scale = HEIGHT / max(max(shape.top, shape.drift) for shape in shapes)
-    return [_sketch(shape, scale, any(base != "rigid" for base in bases)) for shape in shapes]
+    springs = 2 if any(base != "rigid" for base in bases) else 0
+    springs = STRIPS if bases and all(base == "footing" for base in bases) else springs
+    return [_sketch(shape, scale, springs) for shape in shapes]
 
 
-def _sketch(pier: _Shape, scale: float, springs: bool) -> Figure:
-    """Return the sketch of a pier on ``springs`` or rigid ground, in pixels from the middle of its base, ``scale`` [px/m]."""
+def _sketch(pier: _Shape, scale: float, springs: int) -> Figure:
+    """Return the sketch of a pier on so many ``springs``, 0 on rigid ground, in pixels from the middle of its base.
+
+    ``scale`` is in px/m.
+    """
     b, h, top = (scale * length for length in (pier.half_width, pier.height, pier.top))
     side, high = max(b, 30.0), max(top, h, scale * pier.drift * pier.labels) + ABOVE
     marks: list[Mark] = [
         Area(np.array([-b, -b, b, b]), np.array([0.0, top, top, 0.0]), look=Look("band")),
         _stroke("rigid", (-b, 0.0), (-b, top), (b, top), (b, 0.0), (-b, 0.0)),
         Points(np.zeros(1), np.array([h]), look=Look("peak", shape="dot")),
-        *(mark for x in (-b, b) for mark in _support(x, springs)),
+        *(mark for x in np.linspace(-b, b, max(springs, 2)).tolist() for mark in _support(x, springs > 0)),
         *_deck(pier, b, scale),
         *(mark for kind, place in pier.devices for mark in _device(kind, place, scale, top)),
     ]
     if pier.labels:
         marks += [*_dimensions(pier, b, h), *_heights(pier, b, scale)]
-    support = "two springs" if springs else "rigid ground"
+    support = {0: "rigid ground", 2: "two springs"}.get(springs, "a bed of strips")
     words = (
         f"The pier to scale on {support}: {2.0 * pier.half_width:.3g} m between its pivots, centre of mass "
         f"{pier.height:.3g} m above them, slenderness {pier.alpha:.3g} rad, drift read at {pier.drift:.3g} m"

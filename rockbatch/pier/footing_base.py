@@ -12,8 +12,9 @@ from rockbatch.common.units import MOST, POSITIVE, Bounds
 from rockbatch.pier.block import Pier
 from rockbatch.pier.frequencies import rocking_frequency, static_deflection, vertical_frequency
 from rockbatch.pier.restraints import Restraint, described_restraints
+from rockbatch.pier.shafts import WithShaft
 from rockbatch.pier.soil import FORMULAS, Formula, Soil, bed_stiffness, radiated
-from rockbatch.pier.traits import BETA, FLIGHT_LIMIT_MM, Flight, Kinematics, Traits, interface
+from rockbatch.pier.traits import BETA, FLIGHT_LIMIT_MM, Flight, Kinematics, interface
 
 MOST_STRIPS = 160
 """Greatest number of strips of a footing's bed; the core has room for no more."""
@@ -30,7 +31,7 @@ STRIPS = 40
 
 @checked
 @dataclass(frozen=True)
-class FootingBase(Traits):
+class FootingBase(WithShaft):
     """A rigid foot on a bed of strips that push and never pull, elastic, then yielding (THEORY.md, A footing).
 
     The foot is as wide as the pier: ``Pier`` takes its width from it.
@@ -51,6 +52,8 @@ class FootingBase(Traits):
         An even number of them.
     vertical_over_formula : float, optional
         Vertical stiffness of the bed over that of the soil's formula, whose rocking stiffness it has.
+    shaft, flexural_damping, flexural_damping_kind, flexural_modes
+        Of a pier that bends, as on a rigid base (:class:`RigidBase`); it takes finite kinematics.
     friction, restraints, flight_limit_mm, confirm
         As on springs. The run goes on while all strips are clear.
 
@@ -111,6 +114,7 @@ class FootingBase(Traits):
         values |= {name: getattr(self, name) for name in given if getattr(self, name) is not None}
         values |= {"kinematics": self.kinematics, "strips": self.strips, "flight_limit_mm": self.flight_limit_mm}
         values |= {"omega_v": vertical_frequency(pier, self), "delta_s_m": static_deflection(pier, self)}
+        values |= self.of_shaft(pier)
         return values | interface(self.friction, self.area_m2) | described_restraints(self.restraints)
 
     @classmethod

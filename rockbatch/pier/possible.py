@@ -22,9 +22,7 @@ def least_beta(pier: Pier, base: Base) -> float:
     loading, and all of it in unloading; as a pair in rotation the springs have 2r/(1 + r) of the elastic stiffness. A shaft that
     bends hangs over as it leans.
     """
-    over = 1.0
-    if isinstance(base, ElasticBase) and base.bends and not bending_problems(pier):
-        over = math.sqrt(base.leaning_height(pier) / pier.height)
+    over = _over(pier, base) if base.on_springs else 1.0
     if not (isinstance(base, YieldingBase) and base.eta > 1 and base.n >= 1):
         return over * pier.least_beta
     carried = base.eta / (1.0 + prestress_over_weight(pier, base.restraints))
@@ -32,6 +30,13 @@ def least_beta(pier: Pier, base: Base) -> float:
         return over * pier.least_beta
     softer = float(base.first_loading.tangent(np.array(1.0 / carried)))
     return over * pier.least_beta * math.sqrt((1.0 + softer) / (2.0 * softer))
+
+
+def _over(pier: Pier, base: ElasticBase | FootingBase) -> float:
+    """Return the least β that holds a shaft which hangs over as it leans, over that of a rigid one; 1 for a rigid one."""
+    if not base.bends or bending_problems(pier):
+        return 1.0
+    return math.sqrt(base.leaning_height(pier) / pier.height)
 
 
 def least_eta(pier: Pier, base: Base) -> float:
@@ -92,12 +97,13 @@ def problems(pier: Pier, base: Base) -> list[Problem]:
 
 
 def _wrong_footing(pier: Pier, base: FootingBase) -> list[Problem]:
-    least, psi = pier.least_beta / math.sqrt(base.rocking_share), prestress_over_weight(pier, base.restraints)
-    wrong = []
+    rigid, psi = pier.least_beta / math.sqrt(base.rocking_share), prestress_over_weight(pier, base.restraints)
+    wrong, least = [], rigid * _over(pier, base)
     if not base.beta > least:
+        over = "" if base.beta <= rigid else ", and by more under a shaft, which hangs over as it leans"
         text = (
-            f"the bed is too soft to hold the pier upright, K_θ = ω_v² b²/3 must be above g h; beta must be above {least:.4g}, "
-            f"the bed {(least / base.beta) ** 2:.3g} times as stiff"
+            f"the bed is too soft to hold the pier upright, K_θ = ω_v² b²/3 must be above g h{over}; beta must be above "
+            f"{least:.4g}, the bed {(least / base.beta) ** 2:.3g} times as stiff"
         )
         wrong.append(Problem("beta", base.beta, text, kind=OutOfRange))
     if base.safety_factor is not None and not base.safety_factor > 1.0 + psi:
@@ -115,7 +121,7 @@ def _wrong_bending(pier: Pier, base: Base) -> list[Problem]:
     if any(place.height != 0.0 for device in base.restraints for place in places(pier, device)):
         text = 'devices on the deck are of a rigid shaft; leave them out, or write shaft = "rigid"'
         wrong.append(Problem("shaft", "elastic", text, kind=Contradiction))
-    if isinstance(base, ElasticBase):
+    if base.on_springs:
         wrong += [Problem("shaft", "elastic", text, kind=Contradiction) for text in _wrong_under_shaft(base)]
     if isinstance(base, RigidBase) and base.restitution is not None:
         text = "what a blow takes of a shaft that bends follows from the momenta of its modes; leave it out"
@@ -123,10 +129,10 @@ def _wrong_bending(pier: Pier, base: Base) -> list[Problem]:
     return wrong
 
 
-def _wrong_under_shaft(base: ElasticBase) -> list[str]:
-    """Return a text for each property of two springs that a shaft that bends cannot have under it."""
+def _wrong_under_shaft(base: ElasticBase | FootingBase) -> list[str]:
+    """Return a text for each property of springs or a bed that a shaft that bends cannot have under it."""
     texts = []
-    if not base.zeta:
+    if base.two_springs and not base.zeta:
         texts.append(
             "a landing on undamped springs is an impulse, which bending does not follow; write zeta, for example 0.2"
         )

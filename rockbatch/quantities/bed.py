@@ -58,7 +58,7 @@ OF_FOOTING = (
     _quantity("contact_least", "least share of the foot that was pressed", _of_bed("contact_least"), "1",
         ReportFormat("least contact", ".3f", behind="settlement_m")),
     _quantity("bed_force_over_weight", "greatest push of the bed over the pier's weight, dashpots included", _push, "1",
-        ReportFormat("push/(M g)", ".3f", behind="contact_least"),
+        ReportFormat("push/(M\u00a0g)", ".3f", behind="contact_least"),
         limits=(Limit(ceiling=Ceiling(always(MOST_PUSH), "is more than a landing presses")),)),
     _quantity("bed_force_s", "time of it", _of_bed("t_force"), "s"),
     _quantity("bed_pressure_MPa", "greatest pressure at an edge", _of_bed("pressure"), "MPa",

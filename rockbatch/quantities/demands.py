@@ -46,11 +46,13 @@ class OtherEnd(NamedTuple):
     """The other end of a demand's range: its values in the same runs by another model, which an observer brings.
 
     ``column`` of peaks.csv has them, with the key ``needs`` of [output], and ``evaluate`` returns the demand by them, shape (n,),
-    for a case that ``has_range``. ``model`` and ``models`` are the words for one model, and for both.
+    for a case that ``has_range``. With the key ``asked_by`` of a check nothing passes without them. ``model`` and ``models`` are
+    the words for one model, and for both.
     """
 
     column: str
     needs: str
+    asked_by: str
     evaluate: Callable[[Rows, Case], Values]
     has_range: Callable[[Case], bool]
     model: str

@@ -6,6 +6,8 @@ from typing import NamedTuple
 from rockbatch.common.grouping import grouped
 from rockbatch.pier.figures import devices, sketches
 from rockbatch.quantities.cases import Case, top
+from rockbatch.quantities.design import BOUND, of_design
+from rockbatch.quantities.labels import titled
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import first_of
 from rockbatch.reporting.markup import Markup, join, tag
@@ -65,29 +67,32 @@ def _alike(finished: Finished, case: Case) -> Alike:
 def _title(finished: Finished, one: Alike, several: bool) -> str:
     """Return the varied values of the pier, or the names of the cases; "pier, names" if ``several`` drawings are of it.
 
-    At most :data:`MOST_NAMES` cases are named.
+    A case has the name of its bound if the drawing is not that of its nominal design. At most :data:`MOST_NAMES` are named.
     """
     case = one.cases[0]
     place = finished.pier_places.get(pier_key(case["columns"], finished.info["varied"]))
     pier = "" if place is None else finished.piers[place]
-    names = first_of(list(dict.fromkeys(str(case["case"]) for case in one.cases)), MOST_NAMES)
+    bounds = {str(case["case"]): str(case["columns"].get(BOUND, "")) for case in one.cases[::-1]}
+    names = first_of([titled(name, [bound] if bound else []) for name, bound in list(bounds.items())[::-1]], MOST_NAMES)
     return ", ".join(filter(None, (pier, names))) if several or not pier else pier
 
 
 def _lines(finished: Finished, cases: Sequence[Case], known: Collection[str]) -> list[str]:
     """Return the devices of cases that share a drawing, but ``known`` ones; "B: damper" for a device that only case B has.
 
-    At most :data:`MOST_LINES`, then one that says how many more there are.
+    A case under a bound is named only if its device is not that of its design. At most :data:`MOST_LINES`, then one that says
+    how many more there are.
     """
+    firsts: dict[object, list[str]] = {}
     having: dict[str, list[str]] = {}
     for case in cases:
-        for words in dict.fromkeys(devices_in_words(case)):
-            if words not in known:
+        own = devices_in_words(case)
+        of_design_ = firsts.setdefault((case["case"], str(of_design(case["columns"]))), own)
+        for words in dict.fromkeys(own):
+            if words not in known and (own is of_design_ or words not in of_design_):
                 name = finished.named_case(case["case"], case["columns"], finished.info["varied"])
                 having.setdefault(words, []).append(name)
-    lines = [
-        words if len(names) == len(cases) else f"{first_of(names, MOST_NAMES)}: {words}"
-        for words, names in having.items()
-    ]
+    of_all = set.intersection(*map(set, firsts.values()))
+    lines = [words if words in of_all else f"{first_of(names, MOST_NAMES)}: {words}" for words, names in having.items()]
     left_out = len(lines) - MOST_LINES
     return lines[:MOST_LINES] + [f"{left_out} more in the table of foundations"] * (left_out > 0)

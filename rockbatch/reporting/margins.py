@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from rockbatch.checks import Verdict, wording
+from rockbatch.checks import Verdict
 from rockbatch.checks.scorecard import Cell, Row, scorecard
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import grouped
@@ -109,7 +109,10 @@ def _place(study: Finished, cell: Cell, case: str = "") -> list[str]:
 
 
 class Side(NamedTuple):
-    """The cells of a design of one study by the names of their checks, with the limit of each, and the design's label."""
+    """The cells of a design of one study by the names of their checks, with the limit of each, and the design's label.
+
+    The limit of a ban is "".
+    """
 
     label: str
     cells: dict[str, tuple[Cell, str]]
@@ -127,7 +130,7 @@ def margins(pair: Pair) -> Markup:
             cells = [design.cells.get(check) if design else None for design in designs]
             written = [list(_written(study, cell)) for study, cell in zip(pair.studies, cells, strict=True)]
             limits = list(dict.fromkeys(limit for _, limit in filter(None, cells)))
-            words = f"{check} {limits[0]}" + (f", in B {limits[1]}" if len(limits) > 1 else "")
+            words = f"{check} {limits[0]}".rstrip() + (f", in B {limits[1]}" if len(limits) > 1 else "")
             rows.append([" / ".join(labels), words, *written[0], *written[1], _change(cells)])
     if not rows:
         return Markup("")
@@ -148,8 +151,11 @@ def _designs(pair: Pair, place: int) -> dict[tuple[object, ...], Side]:
         if key in found:  # only one study varies the value that tells them apart: they have no counterpart
             key = (*key, SIDES[place], label)
         card = scorecard(verdicts, of_label)
-        cells = zip(card.columns, card.rows[0].cells, strict=True)
-        found[key] = Side(label, {column.check: (cell, column.limit) for column, cell in cells if cell is not None})
+        pairs = zip(card.columns, card.rows[0].cells, strict=True)
+        cells = [
+            (column, cell, "" if cell.verdict.is_ban else column.limit) for column, cell in pairs if cell is not None
+        ]
+        found[key] = Side(label, {column.check: (cell, limit) for column, cell, limit in cells})
     return found
 
 
@@ -170,7 +176,7 @@ def _written(study: Finished, cell: tuple[Cell, str] | None) -> Iterator[object]
     own, _ = cell
     verdict = own.verdict
     yield own.value
-    yield mark(verdict.verdict, own.percent or wording.SIGNS[DOES_NOT_APPLY] * (verdict.verdict == DOES_NOT_APPLY))
+    yield mark(verdict.verdict, own.percent)
     yield tag("span", ", ".join(_place(study, own)), title=study.named(verdict.record))
 
 

@@ -404,6 +404,7 @@ for (const player of document.querySelectorAll(".player")) {
     const points = pointsOf(group.querySelector("path")).map(([x, y]) => [t0 + (x - left) / width * (t1 - t0), y1 - (y - top) / height * (y1 - y0)]);
     return {
       outer,
+      end: points[points.length - 1][0],
       at: (t) => {
         const x = left + (t - t0) / (t1 - t0) * width;
         for (const [key, value] of [["x1", x], ["x2", x], ["y1", top], ["y2", top + height]]) clock.setAttribute(key, value);
@@ -430,7 +431,8 @@ for (const player of document.querySelectorAll(".player")) {
         const theta = rotation.at(this.now), g = ground.at(this.now), long = g * Number(push), head = 4 * Math.sign(long);
         moves.setAttribute("transform", `rotate(${theta * Number(turn)} ${Math.sign(theta) * Number(half)} 0)`);
         arrow.setAttribute("d", `${foot}h${long}` + (Math.abs(long) > 4 ? `m${-head} -3l${head} 3l${-head} 3` : ""));
-        return `t = ${this.now.toFixed(2)} s, θ/α = ${theta.toFixed(4)}, ground ${g.toFixed(3)} g`;
+        const ended = this.now > rotation.end + 0.1 ? "the curve ended at " : "";
+        return `t = ${this.now.toFixed(2)} s, ${ended}θ/α = ${theta.toFixed(3)}, ground ${g.toFixed(3)} g`;
       },
     };
   })());

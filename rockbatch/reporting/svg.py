@@ -155,7 +155,7 @@ def _in_key(mark: Mark) -> Markup:
         return marker(mark.look, 11, 7)
     if isinstance(mark, Area | Span):
         return tag("rect", x=1, y=1, width=20, height=12, class_=classes(mark.look))
-    if mark.look.kind == "limit":  # with serifs, to differ from the stroke of a rigid base
+    if isinstance(mark, Rule) and mark.look.kind == "limit":  # with serifs, to differ from the stroke of a rigid base
         return tag("path", d="M11 0v14M7 0h8M7 14h8", class_=classes(mark.look))
     if isinstance(mark, Rule) and mark.axis == "x":
         return tag("line", x1=11, x2=11, y1=0, y2=14, class_=classes(mark.look))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from xml.etree import ElementTree
 
 from rockbatch.reporting.svg import markers
-from rockbatch.reporting.table import WRAPPED
+from rockbatch.reporting.table import GAP, PAPER, WRAPPED
 from rockbatch.reporting.templates import styles
 
 Element = ElementTree.Element
@@ -27,10 +27,12 @@ _BREAKS = re.compile(r"(?<=[/_])(?=\w)|(?<=\w{24})(?=\w{4})")
 _DOTTED = re.compile(
     "θ(\N{COMBINING DOT ABOVE}|\N{COMBINING DIAERESIS})"
 )  # the text's font draws the dots into the letter
+_SCALE = re.compile(r"scale\(([\d.]+)\)")
+_NUMBER = re.compile(r"-?\d+(\.\d+)?")
 _SHRUNK = 0.82
 """Share of its width to which a panel may shrink, as on the screen."""
 _NARROW = 24
-"""Characters: columns of no more keep their width, the others share the rest; in a table of runs it is ``WRAPPED``."""
+"""Characters: in a wide table columns of no more keep their width, and the others share the rest."""
 
 
 class Setting(NamedTuple):
@@ -121,7 +123,10 @@ def _of_text(element: Element, setting: Setting) -> str:
             return _paragraph(_inline(element))
         case "ul" | "ol":
             kind = {"ul": "list", "ol": "enum"}[element.tag]
-            return f"\n#{kind}({', '.join(f'[{blocks(item, setting)}]' for item in element)})\n"
+            items = f"{kind}({', '.join(f'[{blocks(item, setting)}]' for item in element)})"
+            return (
+                f"\n#text(8pt, {_colour('--muted')}, {items})\n" if "legend" in _classes(element) else f"\n#{items}\n"
+            )
         case "summary":
             return f"\n#strong[{_inline(element)}]\n"
     return f"\n#text(8pt)[{_inline(element)}]\n"
@@ -153,8 +158,11 @@ def _chosen(element: Element, setting: Setting) -> str:
 
 
 def _timed(element: Element, setting: Setting) -> str:
-    """Return stacked histories, whose time axis is as wide as the text."""
+    """Return stacked histories, whose time axis is as wide as the text, in the first view of those that the page shows."""
     height = _length(element, "--h")
+    for parent in list(element.iter()):
+        for child in [child for child in parent if "v1" in _classes(child)]:
+            parent.remove(child)
     return "".join(f"\n#{_picture(svg, setting, (ACROSS, height), 48.0)}\n" for svg in element)
 
 
@@ -166,7 +174,9 @@ def _dots(element: Element, setting: Setting) -> str:
     for child in element:
         for cell in child if "row" in _classes(child) else [child]:
             strip = cell.tag == "svg"
-            cells.append(f"[#{_picture(cell, setting, (wide, 20.0))}]" if strip else f"[{_with_signs(cell, setting)}]")
+            cells.append(
+                f"[#{_picture(cell, setting, (wide, 20.0), 14.0)}]" if strip else f"[{_with_signs(cell, setting)}]"
+            )
     if any("column" in _classes(cell) for cell in element):  # their heads stand over the strips only
         heads = next(place for place, cell in enumerate(element) if "row" in _classes(cell))
         cells[1:heads] = [entry for head in cells[1:heads] for entry in (head, "[]")]
@@ -196,7 +206,7 @@ def _table(table: Element, setting: Setting) -> str:
     body = ", ".join(_cell(cell, setting, card) for row in rows if not _of_heads(row) for cell in row)
     above = ", ".join(_cell(cell, setting, card) for row in heads for cell in row)
     texts = [["".join(cell.itertext()) for cell in row] for row in rows if len(row) == across and row not in heads]
-    widths = ", ".join(["1.4fr"] + ["1fr"] * (across - 1) if card else _widths(texts, _is_prose(table)))
+    widths = ", ".join(["1.4fr"] + ["1fr"] * (across - 1) if card else _widths(texts))
     return f"\n#table(columns: ({widths},), table.header({above}), {body})\n"
 
 
@@ -204,24 +214,17 @@ def _of_heads(row: Element) -> bool:
     return all(cell.tag == "th" and cell.get("scope") != "row" for cell in row)
 
 
-def _is_prose(table: Element) -> bool:
-    """Return whether columns share the width by the length of their texts: True but for a table that readers can sort."""
-    return "sortable" not in _classes(table)
-
-
-def _widths(cells: Sequence[Sequence[str]], prose: bool) -> Iterator[str]:
+def _widths(cells: Sequence[Sequence[str]]) -> Iterator[str]:
     """Yield the width of each column by the texts below its head: "auto" for short ones, else a share such as "7fr".
 
-    Short are texts of up to ``_NARROW`` characters, or ``WRAPPED`` without ``prose``. The share is the fourth root of the sum of
-    squared lengths, so that a long text counts more than many short ones.
+    Short are texts of up to ``WRAPPED`` characters, or ``_NARROW`` if the table would not fit on the paper then. The share is the
+    fourth root of the sum of squared lengths, so that a long text counts more than many short ones.
     """
-    for column in zip(*cells, strict=True):
-        lengths = list(map(len, column))
-        yield (
-            "auto"
-            if max(lengths) <= (_NARROW if prose else WRAPPED)
-            else f"{sum(n * n for n in lengths) ** 0.25:.0f}fr"
-        )
+    columns = [[len(text) for text in column] for column in zip(*cells, strict=True)]
+    fits = sum(GAP + min(max(lengths), WRAPPED) for lengths in columns) <= PAPER
+    for lengths in columns:
+        short = max(lengths) <= (WRAPPED if fits else _NARROW)
+        yield "auto" if short else f"{sum(n * n for n in lengths) ** 0.25:.0f}fr"
 
 
 def _cell(cell: Element, setting: Setting, card: bool) -> str:
@@ -304,9 +307,14 @@ def _picture(svg: Element, setting: Setting, size: tuple[float, float] | None = 
     """Return the code that shows an SVG, which is added to the pictures as a file that stands for itself.
 
     It has the style sheet's colours and the markers. ``size`` [px] is that of a picture without a view box, in which positions
-    are shares of the width; there ``left`` [px] stay free for labels. One with a view box is as wide as that, but at most as
-    its column.
+    are shares of the width; there ``left`` [px] stay free for labels, and 14 at the right. One with a view box is as wide as
+    that, but at most as its column. Typst scales the width of a line with its path, and markers are no part of a plot: so
+    coordinates are scaled here.
     """
+    for line in svg.iter("path"):
+        if scale := _SCALE.fullmatch(line.get("transform", "")):
+            del line.attrib["transform"]
+            line.set("d", _NUMBER.sub(lambda number: f"{float(number[0]) * float(scale[1]):g} ", line.get("d", "")))
     box = [float(value) for value in svg.get("viewBox", "").split()]
     if size is None:
         size = (float(svg.get("width", box[2])), float(svg.get("height", box[3])))
@@ -318,9 +326,9 @@ def _picture(svg: Element, setting: Setting, size: tuple[float, float] | None = 
         )
     colour = next((f"color:{_colours()[f'--{name}']}" for name in _classes(svg) if f"--{name}" in _colours()), "")
     whole = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view}" width="{size[0]:g}" height="{size[1]:g}" class="plot" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view}" width="{size[0]:g}" height="{size[1]:g}" '
         f'font-family="Libertinus Serif" font-size="11.5" fill="currentColor" style="{colour}">'
-        f"<style>{_style_of_pictures()}</style>{_markers()}{inner}</svg>"
+        f'<style>{_style_of_pictures()}</style>{_markers()}<g class="plot">{inner}</g></svg>'
     )
     path = f"picture-{len(setting.pictures)}.svg"
     setting.pictures[path] = whole.encode()

@@ -14,7 +14,7 @@ from rockbatch.simulation.agreement import Tolerances, windows
 from rockbatch.simulation.runs import Run, Trial
 
 FEWER_MODES = "with one mode of the shaft fewer it ends as {status}: no error of it is claimed"
-_OF_SHAFT = ("theta_max", "deflection_max", "top_drift_max")
+_OF_SHAFT = ("theta_max", "deflection_max", "top_drift_max", "theta_res", "settlement")
 
 
 def with_fewer_modes(run: Run) -> Run | None:
@@ -39,9 +39,9 @@ def with_modes_error(outcome: Outcome, other: Outcome, chance: float) -> Outcome
         return outcome.noted(FEWER_MODES.format(status=other.status), **unknown)
     more: dict[str, Any] = {}
     for name in _OF_SHAFT:
-        own, others, error = getattr(outcome, name), getattr(other, name), getattr(outcome, f"{name}_error")
+        error = getattr(outcome, f"{name}_error")
         if error is not None:
-            more[f"{name}_error"] = error + chance * abs(own - others)
+            more[f"{name}_error"] = error + chance * _change(outcome, other, name)
     return outcome.changed(**more)
 
 
@@ -70,9 +70,9 @@ def with_fewer_strips(run: Run) -> Run | None:
     return Run(run.pier, replace(run.base, strips=run.base.strips // 2), run.motion)
 
 
-def coarser(run: Run) -> Run | None:
-    """Return the run of a coarser model, of one mode fewer or half as many strips; None if there is none."""
-    return with_fewer_modes(run) or with_fewer_strips(run)
+def coarser(run: Run) -> list[Run]:
+    """Return the runs of coarser models, of one mode fewer and of half as many strips; [] if there is none."""
+    return [other for other in (with_fewer_modes(run), with_fewer_strips(run)) if other is not None]
 
 
 class StripsShare(NamedTuple):
@@ -83,6 +83,8 @@ class StripsShare(NamedTuple):
     settlement: float  # [m]
     extremes: Samples  # of each window [rad]
     pressure: float | None  # [MPa]
+    deflection: float  # of the top of a shaft that bends [m]
+    drift: float  # [m]
 
 
 def share_of_strips(own: Trial, fewer: Trial, half_width: float) -> StripsShare | None:
@@ -104,6 +106,8 @@ def share_of_strips(own: Trial, fewer: Trial, half_width: float) -> StripsShare 
         settlement=UNEVEN * sinks,
         extremes=EXTREMES * change,
         pressure=UNEVEN * abs(pressures[0] - pressures[1]) if pressures else None,
+        deflection=UNEVEN * _change(*ends, "deflection_max"),
+        drift=UNEVEN * _change(*ends, "top_drift_max"),
     )
 
 
@@ -134,13 +138,15 @@ def with_strips_error(outcome: Outcome, own: Trial, fewer: Trial, half_width: fl
         return outcome
     share = share_of_strips(own, fewer, half_width)
     if share is None:
-        unknown = dict.fromkeys(("theta_max_error", "theta_res_error", "settlement_error"))
+        unknown = {f"{name}_error": None for name in _OF_SHAFT}
         return outcome.noted(FEWER_STRIPS.format(status=fewer.outcome.status), **unknown)
     more: dict[str, Any] = {"bed": replace(outcome.bed, strips_error=share.peak, pressure_error=share.pressure)}
     for name, of_strips in (
         ("theta_max_error", share.peak),
         ("theta_res_error", share.residual),
         ("settlement_error", share.settlement),
+        ("deflection_max_error", share.deflection),
+        ("top_drift_max_error", share.drift),
     ):
         error = getattr(outcome, name)
         more[name] = None if error is None else UNEVEN * error + of_strips

@@ -1,6 +1,7 @@
 """The core's numbers for piers, bases and motions, and the steps that these need."""
 
 import math
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -10,7 +11,7 @@ from rockbatch.core.block import lanes as block_lanes
 from rockbatch.core.block.model import Block
 from rockbatch.core.devices.laws import CONTACT, DAMPERS, HYSTERETIC, MAXWELL, SPRING, TENDON, VISCOUS, Element
 from rockbatch.core.flexure import lanes as flexible_lanes
-from rockbatch.core.flexure.model import FlexibleBlock
+from rockbatch.core.flexure.model import FlexibleBlock, Shaft
 from rockbatch.core.flexure.modes import PerMode
 from rockbatch.core.footing import lanes as footing_lanes
 from rockbatch.core.footing.model import BEDS, Footing
@@ -18,7 +19,7 @@ from rockbatch.core.ground import ground_rows
 from rockbatch.core.powers import LARGEST_WHOLE
 from rockbatch.core.springs import lanes as spring_lanes
 from rockbatch.core.springs.laws import CODES
-from rockbatch.core.springs.model import IMPACTS, Shaft, Springs
+from rockbatch.core.springs.model import IMPACTS, Springs
 from rockbatch.core.system import System
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
@@ -146,12 +147,14 @@ def springs(pier: Pier, base: ElasticBase) -> Springs:
         exponent=exponent,
         finite=True if base.kinematics == "finite" else None,
         damped=True if base.zeta else None,
-        shaft=_shaft(pier, base) if base.bends else None,
+        shaft=_shaft(pier, base),
     )
 
 
-def _shaft(pier: Pier, base: ElasticBase) -> Shaft:
-    """Return the core's numbers for the modes of ``pier``."""
+def _shaft(pier: Pier, base: ElasticBase | FootingBase) -> Shaft | None:
+    """Return the core's numbers for the modes of ``pier``; None if its shaft is rigid."""
+    if not base.bends:
+        return None
     modes = base.modes(pier)
     return Shaft(
         share=per_mode(modes.share),
@@ -256,6 +259,7 @@ def footing(pier: Pier, base: FootingBase) -> Footing:
         finite=True if base.kinematics == "finite" else None,
         shifting=None,
         bed=np.zeros(BEDS),
+        shaft=_shaft(pier, base),
     )
 
 
@@ -380,20 +384,50 @@ def _fastest(pier: Pier, base: Base) -> float:
     """Return the greatest frequency or decay rate [1/s] on springs, without devices; on rigid ground the bound STEEP p."""
     if not base.on_springs:
         return STEEP * pier.p
-    return _fastest_on_springs(springs(pier, base)) if base.bends else fastest(pier, base)
+    if not base.bends:
+        return fastest(pier, base)
+    if isinstance(base, FootingBase):
+        return _fastest_bending(footing(pier, base), _parts_of_bed(pier, base))
+    m = springs(pier, base)
+    both = [Support(side * m.half_width, m.yield_force * m.stiffness, m.damping) for side in (-1.0, 1.0)]
+    return _fastest_bending(m, (both, both[1:], []))
 
 
-def _fastest_on_springs(m: Springs) -> float:
-    """Return the greatest rate [1/s] of a pier whose shaft bends, on both springs, on one, and in flight."""
+class Support(NamedTuple):
+    """A spring with a dashpot under a pier, per unit mass."""
+
+    place: float  # to the right of the middle of the base [m]
+    stiffness: float  # [1/s²]
+    damping: float  # [1/s]
+
+
+PRESSED = (1.0, 0.8, 0.6, 0.4, 0.2, 0.1, 0.05, 0.0)
+"""Shares of a bed, from an edge on, for which the greatest rate of a pier whose shaft bends is looked for."""
+
+
+def _parts_of_bed(pier: Pier, base: FootingBase) -> Iterator[list[Support]]:
+    """Yield, for each share of a bed (:data:`PRESSED`), two supports with its stiffness and damping, vertical and in rocking."""
+    omega_v, b = vertical_frequency(pier, base), pier.half_width
+    for share in PRESSED:
+        middle, apart = b * (1.0 - share), b * share / math.sqrt(3.0)
+        stiffness, damping = 0.5 * share * omega_v**2, share * base.zeta * omega_v
+        yield [Support(float(middle + side * apart), float(stiffness), float(damping)) for side in (-1.0, 1.0)]
+
+
+def _fastest_bending(m: Springs | Footing, contacts: Iterable[Sequence[Support]]) -> float:
+    """Return the greatest rate [1/s] of a pier whose shaft bends, on the supports of any of ``contacts``."""
     shaft, greatest = m.shaft, 0.0
     assert shaft is not None
     n = 2 + len(shaft.share)
     masses = np.diag([1.0, m.inertia + m.height**2, *np.ones(n - 2)])
     masses[1, 2:] = masses[2:, 1] = np.array(shaft.lever) + m.height * np.array(shaft.share)
-    for pivots in ((-1.0, 1.0), (1.0,), ()):
-        arms = np.array([[1.0, -pivot * m.half_width, *np.zeros(n - 2)] for pivot in pivots]).reshape(-1, n)
-        stiffness = np.diag([0.0, 0.0, *np.square(shaft.frequency)]) + m.yield_force * m.stiffness * arms.T @ arms
-        damping = np.diag([0.0, 0.0, *shaft.damping]) + m.damping * arms.T @ arms
+    for supports in contacts:
+        stiffness = np.diag([0.0, 0.0, *np.square(shaft.frequency)])
+        damping = np.diag([0.0, 0.0, *shaft.damping])
+        for support in supports:
+            arm = np.array([1.0, -support.place, *np.zeros(n - 2)])
+            stiffness += support.stiffness * np.outer(arm, arm)
+            damping += support.damping * np.outer(arm, arm)
         rates = np.linalg.solve(masses, np.hstack((stiffness, damping)))
         system = np.vstack((np.hstack((np.zeros((n, n)), np.eye(n))), -rates))
         greatest = max(greatest, float(np.abs(np.linalg.eigvals(system)).max()))

@@ -69,7 +69,7 @@ class Observer:
         """Return the results of a history, of the type that :meth:`add` takes."""
 
     def beyond(self, run: Run, fine: Any, fewer: Any) -> Any:
-        """Return the results ``fine`` with what a coarser model changes as a part of their errors: one mode or half the strips.
+        """Return the results ``fine`` with what a coarser model changes in their errors: one mode fewer, or half the strips.
 
         Unchanged unless a class overrides it.
         """
@@ -118,23 +118,19 @@ def observed(
         if chosen and outcomes[i].substeps % 2 == 0:
             claiming[i] = chosen
     coarse = _read_all(runs, halved, claiming, quiet_s, wait, stop, longer=False)
-    models = [coarser(run) for run in runs] if claiming else []
-    of_models = {i: chosen for i, chosen in claiming.items() if models[i] is not None}
-    fewer = _read_all(
-        [own or run for own, run in zip(models, runs, strict=True)] if of_models else runs,
-        outcomes,
-        of_models,
-        quiet_s,
-        wait,
-        stop,
-        longer=False,
-    )
+    models = {i: coarser(runs[i]) for i in claiming}
+    fewer = list[dict[int, Readings]]()
+    for n in range(max(map(len, models.values()), default=0)):
+        of_models = {i: chosen for i, chosen in claiming.items() if n < len(models[i])}
+        others = [models[i][n] if i in of_models else run for i, run in enumerate(runs)]
+        fewer.append(_read_all(others, outcomes, of_models, quiet_s, wait, stop, longer=False))
     done = list(outcomes)
     for i, run in enumerate(runs):
         for observer in observers:
-            read, of_twice, of_fewer = (found.get(i, {}).get(observer) for found in (fine, coarse, fewer))
-            if of_fewer is not None:
-                read = observer.beyond(run, read, of_fewer)
+            read, of_twice = (found.get(i, {}).get(observer) for found in (fine, coarse))
+            for of_model in fewer:
+                if (of_fewer := of_model.get(i, {}).get(observer)) is not None:
+                    read = observer.beyond(run, read, of_fewer)
             done[i] = observer.add(run, done[i], read, of_twice)
     return done
 

@@ -148,17 +148,17 @@ def rests_at(
     sticking friction damper holds its place. ``level`` is v of the pier at rest at the start [m]; ``states`` and ``sticks``,
     shape (devices,), are the state of each device at the end, and True for a friction damper that sticks then.
     """
-    v, theta = result.v_end, result.theta_end
+    v, theta, leaning = result.v_end, result.theta_end, pier.gravity * base.leaning_height(pier)
     if isinstance(base, FootingBase):
         bed = footing(pier, base)
         k, rocking = 0.5 * bed.stiffness, bed.stiffness * base.rocking_share * bed.half_width**2
-        stiffness = np.array([[2.0 * k, 0.0], [0.0, rocking - bed.gravity * bed.height]])
+        stiffness = np.array([[2.0 * k, 0.0], [0.0, rocking - leaning]])
         load = np.array([-2.0 * k * result.settled - bed.gravity, rocking * result.bed_tilt])
     else:
         m = springs(pier, base)
-        k, b, h = m.yield_force * m.stiffness, m.half_width, m.height
+        k, b = m.yield_force * m.stiffness, m.half_width
         unstressed = level + 0.5 * (m.gravity + prestress(pier, base)) / k  # at the start
-        stiffness = np.array([[2.0 * k, 0.0], [0.0, 2.0 * k * b * b - m.gravity * h]])
+        stiffness = np.array([[2.0 * k, 0.0], [0.0, 2.0 * k * b * b - leaning]])
         left, right = result.base_left, result.base_right
         load = np.array([k * (2.0 * unstressed + left + right) - m.gravity, k * b * (left - right)])
     for law, state, holding in zip(elements(pier, base), states, sticks, strict=True):

@@ -117,7 +117,7 @@ BASE_KEYS = {
         '"first-order"',
         'The paper\'s equations, "first-order", or equations for rotations of any size.',
         many=True,
-        only=_ON_SPRINGS,
+        only=_ON_GROUND_THAT_GIVES,
     ),
     "eta": Key(
         within(BOUNDS["eta"]),
@@ -183,30 +183,29 @@ BASE_KEYS = {
         choice(*WORDS["shaft"]),
         '"rigid"',
         'Whether the shaft bends: "elastic" follows its modes besides, the first of the period `flexural_period_s` of '
-        '`[pier]`; on springs with `zeta` and `kinematics = "finite"`.',
+        '`[pier]`; on springs with `zeta` and `kinematics = "finite"`, on a footing with the latter.',
         many=True,
-        only=_NOT_ON_A_BED,
     ),
     "flexural_damping": Key(
         within(BOUNDS["flexural_damping"]),
         "0.05",
         "Damping ratio of the first mode, of the pier fixed at its base.",
         many=True,
-        only=_NOT_ON_A_BED | {"shaft": ("elastic",)},
+        only={"shaft": ("elastic",)},
     ),
     "flexural_damping_kind": Key(
         choice(*WORDS["flexural_damping_kind"]),
         '"modal"',
         'Damping of the higher modes: "modal", the same ratio as of the first, or "stiffness", in proportion to their frequency.',
         many=True,
-        only=_NOT_ON_A_BED | {"shaft": ("elastic",)},
+        only={"shaft": ("elastic",)},
     ),
     "flexural_modes": Key(
         Whole(1, f"a whole number, 1 to {MOST_MODES}", MOST_MODES),
         "4",
         "Number of modes of the shaft; default: four, or as many as its masses have. Errors include what one fewer would change.",
         many=True,
-        only=_NOT_ON_A_BED | {"shaft": ("elastic",)},
+        only={"shaft": ("elastic",)},
     ),
     "flexural_impact": Key(
         Other('"momentum"', _impact_rule, {"enum": ["momentum"]}),

@@ -14,7 +14,10 @@ from rockbatch.toml.kinds import Kind, Whole, boolean, choice, not_negative, pos
 from rockbatch.toml.section import Key
 
 ON_FOOTING = {"base": ("footing",)}
-_FIELDS = ("zeta", "kinematics", "friction", "flight_limit_mm", "strips", "length_m", "safety_factor", "beta")
+_FIELDS = (
+    *("zeta", "kinematics", "friction", "flight_limit_mm", "strips", "length_m", "safety_factor", "beta"),
+    *("shaft", "flexural_damping", "flexural_damping_kind", "flexural_modes"),
+)
 
 _WAYS = {
     "beta": ("beta",),

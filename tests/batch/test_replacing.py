@@ -38,7 +38,7 @@ def test_another_study_of_the_same_name_does_not_take_its_place(finished, tmp_pa
     study, out = finished
     (tmp_path / "other").mkdir()
     other = write_study(
-        tmp_path / "other", study_text(title="Pier 4", pier={"alpha": 0.3, "p": 1.0}, **SMALL), "pier.toml"
+        tmp_path / "other", study_text(title="Pier 5", pier={"alpha": 0.3, "p": 1.0}, **SMALL), "pier.toml"
     )
     before = {path.name: path.read_bytes() for path in out.iterdir()}
     capsys.readouterr()

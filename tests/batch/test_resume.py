@@ -186,6 +186,35 @@ def test_an_interrupt_says_what_is_kept_and_the_same_command_goes_on(study, tmp_
     assert f"{kept // 2} runs had been finished earlier" in (out / "report.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.usefixtures("pages")
+def test_a_part_by_another_version_is_refused_and_kept_until_fresh_starts_over(
+    study, tmp_path, undisturbed, monkeypatch, capsys
+):
+    """Rows of two programs never stand in one table."""
+    real, groups, out = rockbatch.batch.threads.outcomes_of, [], tmp_path / "out"
+
+    def interrupted(runs, *arguments):
+        groups.append(runs)
+        if len(groups) == 3:
+            raise KeyboardInterrupt
+        return real(runs, *arguments)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(rockbatch.batch.threads, "outcomes_of", interrupted)
+        patch.setattr(rockbatch.batch.digests, "program", lambda: "0123456789abcdef")
+        assert main(["run", str(study), "--out", str(out), "--jobs", "1"]) == 130
+    part = (out / "peaks.csv.part").read_bytes()
+    capsys.readouterr()
+    assert main(["run", str(study), "--out", str(out)]) == 2
+    told = capsys.readouterr().err
+    assert f"{finished_in(out)} finished runs, but" in told
+    assert "changed since (program)" in told
+    assert "start over with --fresh" in told
+    assert (out / "peaks.csv.part").read_bytes() == part
+    assert main(["run", str(study), "--out", str(out), "--fresh"]) == 0
+    assert (out / "peaks.csv").read_bytes() == undisturbed
+
+
 @unix
 def test_a_file_that_may_not_grow_is_reported_and_with_room_the_command_continues(study, tmp_path, undisturbed, capsys):
     """In the middle of the runs, by a limit on the size of files."""

@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import zipfile
+from dataclasses import fields, replace
 from pathlib import Path
 
 import pandas as pd
@@ -31,9 +32,10 @@ def test_every_config_is_an_example_and_the_first_study_comes_first():
 def test_a_copy_is_the_same_study_on_its_own_records(name, tmp_path):
     written = copy(name, tmp_path / "mine", "pier.toml")
     own, original = load_study(written[0]), load_study(CHECKOUT / "configs" / f"{name}.toml")
-    assert own.cases == original.cases
-    assert own.numerics == original.numerics
-    assert own.checks == original.checks
+    for field in fields(original):
+        if field.name not in ("title", "notes", "path", "text", "motions", "check_files"):  # what names files
+            assert getattr(own, field.name) == getattr(original, field.name), field.name
+    assert replace(own.motions, paths=()) == replace(original.motions, paths=())
     for path in own.motions.paths:
         assert path.is_relative_to(tmp_path)
         assert path.is_dir()

@@ -127,4 +127,4 @@ def test_a_geonet_file_begins_with_its_title_whatever_stands_below():
 
 def test_a_key_of_unam_that_has_no_value_for_each_channel_says_nothing():
     assert _texts_of("/a/ b /c/", 3) == ["a", "b", "c"]
-    assert _texts_of("/a/b/", 3) == ["", "", ""]
+    assert _texts_of("/a/b/", 3) == _texts_of("/a/b/c/d/", 3) == ["", "", ""]

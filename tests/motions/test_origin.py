@@ -17,7 +17,7 @@ from studies import FOLDER_STUDY, write_study
 from rockbatch.commands.cli import main
 from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
 from rockbatch.motions.component import Sensor
-from rockbatch.motions.orientation import orientation_of, unknown
+from rockbatch.motions.orientation import Orientation, orientation_of, unknown
 from rockbatch.motions.origin import Origin, origin_of, with_direction
 
 ROOT = Path(__file__).parents[2]
@@ -69,6 +69,7 @@ def test_directions_are_three_digits_or_what_the_header_has():
         orientation = orientation_of(label)
         assert orientation is not None
         assert with_direction(Origin("e"), orientation).direction == called
+    assert with_direction(Origin("e"), Orientation("", azimuth=5.0)).direction == "005"
     assert with_direction(Origin("e"), unknown()).direction == ""
 
 

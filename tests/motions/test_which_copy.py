@@ -115,6 +115,9 @@ def test_neither_of_copies_a_unit_apart_is_used_until_one_is_named(tmp_path, fac
         assert all("a unit, which one of them states wrongly" in unusable.reason for unusable in found.unusable)
         (right,) = read_motions(tmp_path, vertical=False, confirmed=["one_000"]).motions
         assert right.source == "one_000.AT2"
+    said = [one.reason if waits else one.notes[-1] for one in (found.unusable if waits else found.motions)]
+    for text, (other, times) in zip(said, (("two", factor), ("one", 1.0 / factor)), strict=True):
+        assert f"{other}_000.AT2 has the same samples times {times:.4g}" in text
 
 
 def test_a_sound_copy_is_used_instead_of_one_in_a_wrong_unit(tmp_path):

@@ -347,3 +347,19 @@ def test_on_paper_stands_the_motion_that_is_shown_and_every_one_if_all_is_asked_
         page.write_text(page.read_text(encoding="utf-8").replace('<html lang="en">', words), encoding="utf-8")
         sheets.append(printed(page).count(b"/MediaBox"))
     assert sheets[1] >= sheets[0] + 1
+
+
+def test_value_and_share_of_seven_checks_stand_in_one_line_at_1280_px(tmp_path):
+    write_results(tmp_path)
+    values = [(0.692, 0.77), (0.0909, 0.02), (19.2, 2.4), (0.389, 0.43), (1060.0, 0.53), (273.0, 5.46), (2.04, 0.98)]
+    numbers = [{"value": value, "limit": value / ratio, "ratio": ratio, "unit": "t"} for value, ratio in values]
+    write_verdicts(
+        tmp_path, [verdict("c", "not decided", check=f"foot of the shaft {k}", **of) for k, of in enumerate(numbers)]
+    )
+    act = """
+    found.apart = [...document.querySelectorAll("#answer .card .top")].map((top) => {
+      const [value, share] = [...top.children].map((node) => node.getBoundingClientRect());
+      return share.top < value.bottom && share.left >= value.right;
+    });
+    """
+    assert browse(write_report(tmp_path, []), act, size=(1280, 900))["apart"] == 7 * [True]

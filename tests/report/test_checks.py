@@ -3,13 +3,16 @@
 import math
 import re
 
+import numpy as np
 from check_samples import verdict
 from report_page import Page
 from report_samples import FIG7, FOUNDATIONS, case_entry, write_results
 
 from rockbatch.checks import Verdict, write_verdicts
+from rockbatch.common.figures.description import Look, Polyline, Rule
 from rockbatch.pier import Pier
 from rockbatch.reporting import write_report
+from rockbatch.reporting.svg import Entry, key
 
 GOVERNING = ("theta_max_over_alpha", "toe_settlement_m", "ductility")
 """Demands whose limits bound all that governs a pier on yielding springs: the settlement of the toe has the tilt in it."""
@@ -271,3 +274,24 @@ def test_cases_at_several_scales_are_distinguished_by_these(tmp_path):
     shown = page(tmp_path, *at_scales, scales=(1.0, 2.0))
     names = [row[0].split("motions scaled by ")[1][:1] for row in shown.tables["answer"][1:]]
     assert names == ["1", "2"]
+
+
+def test_each_remark_on_the_checks_is_a_line_of_its_own(tmp_path):
+    write_results(tmp_path)
+    remarks = {"push": ("no error estimate",), "drift": ("no error estimate", "fewer than 7 records")}
+    write_verdicts(
+        tmp_path, [verdict(f"c{i}", "pass", check=k, remarks=of) for i in range(3) for k, of in remarks.items()]
+    )
+    text = write_report(tmp_path, []).read_text(encoding="utf-8").partition('<section id="checks"')[2]
+    listed = re.search(r'<ul class="legend">(.*?)</ul>', text, re.DOTALL)[1]
+    lines = re.findall(r"<li>(.*?)</li>", listed)
+    assert {"push, drift: no error estimate.", "drift: fewer than 7 records."} <= set(lines)
+
+
+def test_the_legend_draws_a_line_of_limits_as_a_line_and_a_limit_of_rotations_upright():
+    x = np.array([0.0, 1.0])
+    entries = [
+        Entry("capacity", [Polyline(x, x, look=Look("limit"))]),
+        Entry("limit", [Rule("x", x[:1], look=Look("limit"))]),
+    ]
+    assert re.findall(r"<(line|path)", key(entries)) == ["line", "path"]

@@ -424,3 +424,13 @@ def test_every_key_that_was_changed_at_random_differs_and_no_other(tmp_path, see
         assert ("passes all" in words) == (value <= limit)
         percent = int(words.split(" %")[0].rsplit(" ", 1)[1].split(".")[0])
         assert math.isclose(percent, 100 * value / limit, abs_tol=1.0)
+
+
+def test_a_ban_is_its_name_and_what_does_not_apply_is_one_dash(tmp_path):
+    never = {"name": "stands", "demand": "overturned", "at_most": 0.9, "reason": "agreed"}
+    ductile = {"name": "ductile", "demand": "ductility", "at_most": 3.0, "reason": "agreed"}
+    folders = two(tmp_path, tables(), tables(check=[never, ductile], case=[{"name": "springs", "base": "rigid"}]))
+    rows = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["answer"]
+    cells = {row[1].replace("\u00a0", " "): row for row in rows if len(row) > 5}
+    assert cells["stands"][-3:-1] == ["none", "✓"]
+    assert cells["ductile ≤ 3"][-2] == "–"

@@ -2,12 +2,16 @@
 
 import io
 import re
+import tempfile
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pypdf
 import pytest
+import typst
 from browser import HOSTILE
+from PIL import Image
 from report_page import Page
 from report_samples import case_entry, write_results
 
@@ -253,3 +257,67 @@ def test_marks_of_verdicts_have_the_colours_of_the_style_sheet():
         )
         set_ = blocks(parsed(table), Setting({}))
         assert set_.count(f'rgb("{colour}")') == 3
+
+
+CURVES = """<svg class="plot" viewBox="0 0 100 60"><path class="curve ink" transform="scale(0.1)" d="M0 100l1000 0"></path>
+<path class="curve ink" d="M0 30H100"></path><use class="ink" href="#m-square" x="50" y="50"></use></svg>"""
+
+
+def dark_rows(picture, x):
+    """Return the darkness of each pixel of a column of a picture of 100 by 60 px, drawn by Typst with 10 dots a px."""
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, "a.svg").write_bytes(picture)
+        page = '#set page(width: 75pt, height: 45pt, margin: 0pt)\n#image("a.svg", width: 75pt)'
+        Path(folder, "a.typ").write_text(page, encoding="utf-8")
+        drawn = typst.compile(Path(folder, "a.typ"), format="png", ppi=960.0)
+    return 1.0 - np.asarray(Image.open(io.BytesIO(drawn)).convert("L"))[:, round(10 * x)] / 255.0
+
+
+def test_curves_are_as_thick_as_on_the_screen_and_markers_are_filled():
+    """A line of 1.3 px at 10 px and at 30 px, as thick, and a square of 6.6 px by 6.6 px about (50, 50)."""
+    setting = Setting({})
+    blocks(parsed(CURVES), setting)
+    (picture,) = setting.pictures.values()
+    column = dark_rows(picture, 20.0)
+    first, second = (column[10 * (y - 5) : 10 * (y + 5)].sum() / column.max() / 10 for y in (10, 30))
+    assert first == pytest.approx(second, rel=0.02) == pytest.approx(1.3, rel=0.1)
+    square = dark_rows(picture, 50.0)[400:]
+    assert square.sum() / square.max() / 10 == pytest.approx(6.6, abs=0.7)
+
+
+def test_histories_are_drawn_in_one_of_their_views():
+    views = '<g class="v0"><text>a</text></g><g class="v1"><text>b</text></g>'
+    html = f'<div class="timed" style="--h:9px"><svg class="plot">{views}</svg></div>'
+    setting = Setting({})
+    blocks(parsed(html), setting)
+    (picture,) = setting.pictures.values()
+    assert re.findall(r"<text>(.)</text>", picture.decode()) == ["a"]
+
+
+def test_the_first_number_of_an_axis_of_peaks_is_not_cut_off():
+    setting = Setting({})
+    row = '<span class="of"></span><svg class="plot strip"><text x="0%">0.00</text></svg><span class="ends"></span>'
+    blocks(parsed(f'<div class="dots" style="--n:1"><div class="row">{row}</div></div>'), setting)
+    (picture,) = setting.pictures.values()
+    left = float(re.search(r'<svg x="([\d.]+)"', picture.decode())[1])
+    assert left > 0.5 * 4 * 6.0  # half of four digits
+
+
+def widths_of(*rows):
+    """Return the widths of the columns of a table as it is set."""
+    cells = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows)
+    set_ = blocks(parsed(f'<table class="sortable"><tbody>{cells}</tbody></table>'), Setting({}))
+    return re.search(r"columns: \((.*?),?\), table", set_)[1].split(", ")
+
+
+def test_columns_keep_their_width_if_the_paper_has_it_and_share_it_if_not():
+    name, remark = "n" * 40, "r" * 200
+    assert widths_of([name, "1", name]) == ["auto"] * 3
+    wide = widths_of(*10 * [[name, name, name, "1", ""]], [name, name, name, "1", remark])
+    assert wide[3] == "auto"
+    shares = [float(width.removesuffix("fr")) for width in (*wide[:3], wide[4])]
+    assert max(shares) < 1.5 * min(shares)  # one long remark has the room of names
+
+
+def test_a_list_in_a_legend_is_as_small_as_the_legend():
+    assert blocks(parsed('<ul class="legend"><li>a</li></ul>'), Setting({})).startswith("\n#text(8pt, ")

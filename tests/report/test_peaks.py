@@ -183,3 +183,11 @@ def test_the_worst_comes_first_overturned_flight_failed_then_rotation(tmp_path):
     assert order[:4] == [("RRS228", "1"), ("SYL360", "3"), ("CPM000", "4"), ("ERZ-NS", "2")]
     rotations = [float(row[head.index("θmax/α")]) for row in rows[3:]]
     assert rotations == sorted(rotations, reverse=True)
+
+
+def test_runs_of_the_nominal_design_are_called_so_where_others_have_their_bound(tmp_path):
+    cases = [
+        case_entry("pads", {"bound": bound}, Pier(alpha=0.13, p=0.38), FOUNDATIONS[1][1]) for bound in ("", "stiff")
+    ]
+    head, *rows = Page(report(tmp_path, cases=cases, varied=("bound",))).tables["peaks"]
+    assert {row[head.index("bound")] for row in rows} == {"nominal", "stiff"}

@@ -90,3 +90,14 @@ def test_cases_that_differ_in_one_key_of_a_device_have_rows_that_differ(device, 
 
 
 _UNUSED = {"friction": ("nu", "yield_m", "exponent"), "viscous": ("f", "yield_m"), "hysteretic": ("nu", "exponent")}
+
+
+def test_a_case_under_a_bound_has_the_name_that_it_has_on_the_scorecard():
+    cases = [describe_case(Case("pads", PIER, BASES[0], {"bound": bound})) for bound in ("", "stiff")]
+    page = Page(_foundations(SimpleNamespace(info={"cases": cases, "varied": ["bound"]})))
+    assert [row[0] for row in page.tables[""][-2:]] == ["pads", "pads: stiff"]
+
+
+def test_numbers_without_a_format_of_their_own_have_six_digits():
+    bases = [replace(FOOT, safety_factor=factor) for factor in (4.123456789, 5.0)]
+    assert "4.12346" in rows(*bases)[0]

@@ -187,7 +187,7 @@ def test_on_a_footing_the_answer_says_that_strips_leave_more_than_the_steps(tmp_
         "0.0007 α (0.0001 α allowed, besides what the strips of a footing leave)."
         in Page(section_of(results, answer)).text
     )
-    said = "is at most 0.0001, on a footing, or a tenth of what its strips leave."
+    said = "is at most 0.0001, or on a footing a tenth of the error of its strips."
     assert said in Page(page(read(results, ()))).text
 
 
@@ -195,6 +195,9 @@ def test_the_answer_says_which_peaks_have_errors_and_which_runs_remarks(tmp_path
     noted = {("ERZ-NS", "1"): {"note": "impacts not settled: 8 or 9"}, ("RRS228", "2"): {"note": "flew up to 9 mm"}}
     write_results(tmp_path, changes=noted)
     assert "2 runs have remarks." in Page(section_of(tmp_path, answer)).text
+    (tmp_path / "one").mkdir()
+    write_results(tmp_path / "one", changes={("ERZ-NS", "1"): {"note": "flew up to 9 mm"}})
+    assert ". One run has remarks." in Page(section_of(tmp_path / "one", answer)).text
     assert "30 runs, all end standing" in page(read(tmp_path, ()))
     write_results(tmp_path, changes={("SYL360", "1"): {"theta_max_error": ""}})
     told = Page(section_of(tmp_path, answer)).text

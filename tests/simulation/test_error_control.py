@@ -138,13 +138,13 @@ def test_no_error_is_claimed_where_rotations_before_the_peak_have_not_settled(mo
 def test_a_run_that_never_settles_says_what_each_halving_still_changed(monkeypatch):
     fallen = {"status": "overturned", "theta_max": math.pi / 2, "impacts": 4, "separations": 5}
     for either, other, words in (
-        (ok(0.1), fallen, "halving the step still changed the outcome, from (ok to overturned|overturned to ok)"),
+        (ok(0.1), fallen, "halving the step still changed the outcome, from overturned to ok; at 512 substeps: ok"),
         (ok(0.1), ok(0.11), r"halving the step still changed theta_max by 1\.0e-02 rad"),
         (ok(0.1, theta_res=0.01), ok(0.11, theta_res=0.03), "theta_max by 1.0e-02 rad and theta_res by 2.0e-02 rad"),
         (
             fallen | {"t_end": 4.0},
             fallen | {"t_end": 6.0},
-            "changed the time of overturning, from (4|6).00 to (6|4).00 s",
+            "changed the time of overturning, from 6.00 to 4.00 s; at 512 substeps: overturned",
         ),
     ):
         scripted(monkeypatch, *([either, other] * 20))

@@ -313,8 +313,37 @@ def test_tables_say_the_units_of_their_columns():
     response = rb.simulate(PIER, BASES["elastic"], PULSE, forces=True)
     units = response.history.attrs["units"]
     assert list(units) == list(response.history)
-    assert (units["theta"], units["v_left"], units["ag_h"]) == ("rad", "m", "m/s^2")
-    assert response.forces.attrs["units"]["heel_speed_left"] == "m/s"
+    assert dict(units) == {
+        "t": "s",
+        "theta": "rad",
+        "omega": "rad/s",
+        "v": "m",
+        "z_left": "1",
+        "z_right": "1",
+        "v_left": "m",
+        "v_right": "m",
+        "force_left": "N/kg",
+        "force_right": "N/kg",
+        "energy": "J/kg",
+        "ag_h": "m/s^2",
+        "ag_v": "m/s^2",
+    }
+    assert dict(response.forces.attrs["units"]) == {
+        "t": "s",
+        "base_shear": "m/s^2",
+        "normal_force": "m/s^2",
+        "base_moment": "m^2/s^2",
+        "friction": "1",
+        "pivot_left": "1",
+        "pivot_right": "1",
+        "heel_gap_left": "m",
+        "heel_gap_right": "m",
+        "heel_speed_left": "m/s",
+        "heel_speed_right": "m/s",
+        "deck_acceleration": "m/s^2",
+    }
+    of_impacts = {"t": "s", "landing_velocity": "m/s", "impulse_horizontal": "m/s", "impulse_vertical": "m/s"}
+    assert dict(response.impacts.attrs["units"]) == of_impacts
     assert response.history["theta"].attrs["units"] == units
 
 

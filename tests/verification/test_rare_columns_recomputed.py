@@ -204,6 +204,40 @@ def test_a_footing_comes_to_rest_where_its_final_bed_carries_the_weight(on_bed):
         assert row[f"settlement_{side}_m"] == pytest.approx(edge, rel=1e-9)
 
 
+# Sections
+
+
+@pytest.mark.parametrize("height", [0.0, 10.0])
+def test_forces_in_a_section_are_those_that_move_what_is_above_it(height):
+    """By Newton and Euler, of the forces at the foot: along the tilted axis, across it, about the middle of the section."""
+    response = rb.simulate(PIER, rb.RigidBase(), shaking(0.3), forces=True, sections=[height])
+    table, history = response.forces, response.history
+    theta, omega = (history[name].to_numpy() for name in ("theta", "omega"))
+    shear, normal = (table[name].to_numpy() for name in ("base_shear", "normal_force"))
+    across = shear * np.cos(theta) - normal * np.sin(theta)
+    along = shear * np.sin(theta) + normal * np.cos(theta)
+    at_foot = 0.5 * WIDTH * np.sign(table.base_moment.to_numpy()) * along
+    turning = -(across * RISE + at_foot) / (SIZE**2 / 3.0)
+    length, middle = 2.0 * RISE - height, 0.5 * height + RISE
+    share, inertia = length / (2.0 * RISE), (length**2 + WIDTH**2) / 12.0
+    of_part = across + (middle - RISE) * turning
+    axial = share * (along - (middle - RISE) * omega**2)
+    moment = np.abs(share * ((middle - height) * of_part + inertia * turning))
+    stands = table.base_moment.to_numpy() != 0.0  # at rest both feet bear
+    expected = {
+        "shear": np.abs(share * of_part)[stands].max(),
+        "moment": moment[stands].max(),
+        "axial_least": axial[stands].min(),
+        "axial_greatest": axial[stands].max(),
+        "axial_at_moment": axial[stands][moment[stands].argmax()],
+    }
+    (row,) = response.sections.to_dict("records")
+    for name, value in expected.items():
+        over_mass = "m2_s2" if name == "moment" else "m_s2"
+        assert row[f"section_{name}_{over_mass}"] == pytest.approx(value, rel=2e-3), name
+        assert row[f"section_{name}_kN{'m' * (name == 'moment')}"] == pytest.approx(PIER.mass_t * value, rel=2e-3), name
+
+
 # Errors: what a row changes by when the step is halved
 
 
@@ -242,23 +276,45 @@ def test_the_top_of_a_bending_shaft_goes_as_far_as_its_history_says():
 
 
 FORCES = (
-    "base_shear_m_s2", "normal_force_m_s2", "friction_demand", "pivot_force_left", "pivot_force_right", "heel_gap_left_m",
-    "heel_gap_right_m", "heel_speed_left_m_s", "heel_speed_right_m_s", "deck_acceleration_m_s2", "landing_velocity_m_s",
-    "impulse_m_s", "impact_friction_demand", "omega_max_over_p", "base_moment_m2_s2",
-)  # fmt: skip
+    "base_shear_m_s2",
+    "normal_force_m_s2",
+    "friction_demand",
+    "pivot_force_left",
+    "pivot_force_right",
+    "heel_gap_left_m",
+    "heel_gap_right_m",
+    "heel_speed_left_m_s",
+    "heel_speed_right_m_s",
+    "deck_acceleration_m_s2",
+    "landing_velocity_m_s",
+    "impulse_m_s",
+    "impact_friction_demand",
+    "omega_max_over_p",
+    "base_moment_m2_s2",
+)
 OF_DAMPERS = "damper_force_over_weight", "damper_stroke_m", "damper_speed_m_s", "damper_energy_J_kg"
 
 
 def test_errors_of_a_row_are_its_changes_when_the_step_is_halved():
-    """Of residuals, twice the drift between two readings is added; of forces and dampers it is four times the change."""
-    fine, coarse = with_half_the_steps(SMALL, SPRUNG, shaking(0.0).times(0.5), forces=True)
+    """Of residuals, twice the drift between two readings is added, here a period of rocking in full contact apart.
+
+    Of forces and dampers it is four times the change.
+    """
+    fine, coarse = with_half_the_steps(SMALL, SPRUNG, shaking(0.0).times(0.5), forces=True, sections=[0.5])
     row = fine.row
     for name in ("theta_max", "theta_max_in_motion"):
         assert row[f"{name}_error"] == pytest.approx(change(fine, coarse, f"{name}_over_alpha"), rel=1e-6)
     assert row["forces_error"] == pytest.approx(4.0 * greatest_change(fine, coarse, FORCES), rel=1e-3)
     assert row["devices_error"] == pytest.approx(4.0 * greatest_change(fine, coarse, OF_DAMPERS), rel=1e-3)
+    least_axial, greatest_axial = (f"section_axial_{end}_m_s2" for end in ("least", "greatest"))
+    of_section = "section_shear_m_s2", "section_moment_m2_s2", least_axial, greatest_axial
+    (own,), (other,) = (response.sections.to_dict("records") for response in (fine, coarse))
+    changed = max(abs(own[name] / other[name] - 1.0) for name in of_section)
+    assert own["sections_error"] == pytest.approx(4.0 * changed, rel=1e-2)
     seconds = (row["theta_res_error"] - change(fine, coarse, "theta_res_over_alpha")) / row["theta_res_drift_per_s"]
-    assert 0.5 < seconds < 5.0
+    b, h, k = SMALL.half_width, SMALL.height, 0.5 * (SPRUNG.beta * SMALL.p) ** 2
+    rocking = math.sqrt((2.0 * k * b**2 - G * h) / (SMALL.size**2 / 3.0 + h**2))
+    assert seconds == pytest.approx(2.0 * math.ceil(2.0 * math.pi / rocking / STEP) * STEP, rel=1e-6)
     of_settlement = change(fine, coarse, "settlement_m") + row["settlement_drift_m_s"] * seconds
     assert row["settlement_error_m"] == pytest.approx(of_settlement, rel=1e-9)
 
@@ -372,9 +428,13 @@ ELSEWHERE = {
 }
 """Columns that other tests hold to values of their own."""
 NAMED = (
-    ("{side}", ("left", "right")), ("{kind}", ("damper", "stop")), ("{what}", ("ductility", "dissipated")), ("{term}", LEDGER),
-    ("{name}", ("theta_max", "theta_max_in_motion")), ("{unit}", ("", "_J_kg")),
-)  # fmt: skip
+    ("{side}", ("left", "right")),
+    ("{kind}", ("damper", "stop")),
+    ("{what}", ("ductility", "dissipated")),
+    ("{term}", LEDGER),
+    ("{name}", ("theta_max", "theta_max_in_motion")),
+    ("{unit}", ("", "_J_kg")),
+)
 """Parts of names that tests put together."""
 
 

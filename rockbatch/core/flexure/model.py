@@ -1,9 +1,10 @@
-"""A pier on a rigid base whose shaft bends in up to four modes, and its state (THEORY.md, A shaft that bends)."""
+"""A pier on a rigid base whose shaft bends in up to four modes, its state, and a shaft on ground that gives (THEORY.md)."""
 
+from itertools import repeat
 from typing import NamedTuple
 
 from rockbatch.core.flexure.modes import PerMode
-from rockbatch.core.kernel import inlined
+from rockbatch.core.kernel import hook, inlined
 from rockbatch.core.table import get
 from rockbatch.core.types import Pull
 
@@ -95,9 +96,12 @@ def numbers_of(m: FlexibleBlock) -> tuple[float, ...]:
 
 
 class Flexing(NamedTuple):
-    """State of a FlexibleBlock; also its rates. While it rocks, v follows from θ."""
+    """State of a FlexibleBlock, or of a pier on a footing whose shaft bends; also its rates.
 
-    v: float  # rise of the centre of mass of a straight shaft above rest [m]
+    While a FlexibleBlock rocks, v follows from θ.
+    """
+
+    v: float  # rise of the centre of mass of a straight shaft above rest, or above an unstressed bed [m]
     theta: float  # rotation of the base, positive to the right [rad]
     v_rate: float  # [m/s]
     omega: float  # [rad/s]
@@ -118,3 +122,59 @@ class Grounded(NamedTuple):
     right: float
     bore: float
     top: float
+
+
+class Shaft(NamedTuple):
+    """Modes of a shaft that bends on ground that gives, of the pier fixed at its foot; ∫φ_i φ_j dm/M is 1 or 0."""
+
+    share: PerMode  # μ_i = ∫φ_i dm/M
+    lever: PerMode  # λ_i − h μ_i = ∫φ_i (z − h) dm/M [m]
+    frequency: PerMode  # ω_i [rad/s]
+    damping: PerMode  # 2 ζ_i ω_i [1/s]
+    end_shape: PerMode  # φ_i at the highest point
+    top_shape: PerMode  # where drift is read
+    deck_shape: PerMode  # and at the deck
+    top: float  # height at which drift is read [m]
+
+
+OF_MODES = Shaft._fields[: Shaft._fields.index("top")]
+"""Fields of a Shaft that have a number of each mode."""
+
+SHAFT_NUMBERS = (*((f"{name}_{mode}", float) for name in OF_MODES for mode in PerMode._fields), ("top", float))
+
+ShaftNumbers = NamedTuple("ShaftNumbers", SHAFT_NUMBERS)  # type: ignore[misc]
+"""Numbers of a Shaft that lanes hold."""
+
+
+def shaft_numbers(shaft: Shaft) -> tuple[float, ...]:
+    """Return the numbers of ``shaft`` in the order of ShaftNumbers."""
+    return *(number for name in OF_MODES for number in getattr(shaft, name)), shaft.top
+
+
+LIKE = Shaft(*repeat(PerMode(0.0, 0.0, 0.0, 0.0), len(OF_MODES)), top=0.0)  # type: ignore[arg-type, misc]
+"""Trait of all piers whose shafts bend on ground that gives: its value does not matter."""
+
+
+@hook
+def shaft_in(shaft, lanes, i):
+    """Return the Shaft of lane ``i``, of the type of ``shaft`` in the traits; None for a rigid one."""
+
+
+@shaft_in.of(type(None))
+def _rigid_shaft(shaft, lanes, i):
+    return None
+
+
+@shaft_in.of(Shaft)
+def _bending_shaft(shaft, lanes, i):
+    m = get(lanes.shaft, i, ShaftNumbers)
+    return Shaft(
+        PerMode(m.share_first, m.share_second, m.share_third, m.share_fourth),
+        PerMode(m.lever_first, m.lever_second, m.lever_third, m.lever_fourth),
+        PerMode(m.frequency_first, m.frequency_second, m.frequency_third, m.frequency_fourth),
+        PerMode(m.damping_first, m.damping_second, m.damping_third, m.damping_fourth),
+        PerMode(m.end_shape_first, m.end_shape_second, m.end_shape_third, m.end_shape_fourth),
+        PerMode(m.top_shape_first, m.top_shape_second, m.top_shape_third, m.top_shape_fourth),
+        PerMode(m.deck_shape_first, m.deck_shape_second, m.deck_shape_third, m.deck_shape_fourth),
+        m.top,
+    )

@@ -5,8 +5,8 @@ from typing import NamedTuple
 from rockbatch.core import system
 from rockbatch.core.block.ending import stored_by_devices
 from rockbatch.core.clock import ground_rests
-from rockbatch.core.footing.equations import energies
-from rockbatch.core.footing.model import FootingTraits, State
+from rockbatch.core.footing.equations import at_rest, energies
+from rockbatch.core.footing.model import FootingTraits
 from rockbatch.core.footing.statics import level_at, level_energy, summit
 from rockbatch.core.kernel import kernel
 from rockbatch.core.system import pier_in
@@ -52,7 +52,7 @@ def cannot_turn_further(m, devices, now, load, peak):
         energy -= 0.5 * load * m.height * y.theta * y.theta
     for side in (-1.0, 1.0):
         theta = side * limit
-        there, _ = _kept(m, devices, State(level_at(m, theta, load), theta, 0.0, 0.0), now.contact)
+        there, _ = _kept(m, devices, at_rest(m.shaft, m, level_at(m, theta, load), theta), now.contact)
         if not energy <= level_energy(m, theta, load) - (load - m.gravity) * level_at(m, theta, load) + there:
             return False
     return True

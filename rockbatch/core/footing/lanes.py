@@ -16,8 +16,11 @@ from rockbatch.core.clock import (
     include_peak,
     note_flight,
 )
-from rockbatch.core.footing import equations
+from rockbatch.core.flexure.displacements import Displacements
+from rockbatch.core.flexure.model import LIKE, SHAFT_NUMBERS, Flexing, ShaftNumbers, shaft_numbers
+from rockbatch.core.flexure.shaft import begin_displacements, begin_shaft, include_bending, write_displacements
 from rockbatch.core.footing.ending import Ending, set_deadline
+from rockbatch.core.footing.equations import at_rest, rates_under
 from rockbatch.core.footing.model import (
     BED_OF_LANES,
     FIRST,
@@ -30,6 +33,7 @@ from rockbatch.core.footing.model import (
     State,
     Touch,
     model_in,
+    state_in,
 )
 from rockbatch.core.footing.statics import lean, level_at, tilt
 from rockbatch.core.footing.strips import deflection, last_node, lay, plastic_work, pressure, push, settle, sinking
@@ -55,10 +59,28 @@ class Demands(NamedTuple):
     yield_time: float  # when it first did [s]; NaN before that
 
 
-LANE = with_beds(lanes_of(COMMON | {
-    "model": Numbers, "now": State, "end": State, "rates": State, "contact": Touch, "bed": Place, "demands": Demands,
+LANE_PARTS = COMMON | {
+    "model": Numbers,
+    "now": State,
+    "end": State,
+    "rates": State,
+    "contact": Touch,
+    "bed": Place,
+    "demands": Demands,
     "ending": Ending,
-}), BED_OF_LANES)  # fmt: skip
+}
+
+LANE = with_beds(lanes_of(LANE_PARTS), BED_OF_LANES)
+
+BENDING_LANE = with_beds(
+    lanes_of(
+        LANE_PARTS
+        | dict.fromkeys(("now", "end", "rates"), Flexing)
+        | {"shaft": ShaftNumbers, "displaced": Displacements}
+    ),
+    BED_OF_LANES,
+)
+"""A table of piers whose shafts bend."""
 
 
 LINE = (
@@ -70,11 +92,13 @@ LINE = (
 
 Line = NamedTuple("Line", LINE)  # type: ignore[misc]
 
+BendingLine = NamedTuple("BendingLine", (*LINE, *SHAFT_NUMBERS))  # type: ignore[misc]
+
 
 @system.pier_in.of(FootingTraits)
 def pier_in(traits, lanes, i):
     """Return the Footing of lane ``i``, and its Moment; the bed is part of the pier."""
-    return model_in(traits, lanes, i), Moment(get(lanes.now, i, State), get(lanes.contact, i, Touch), None)
+    return model_in(traits, lanes, i), Moment(state_in(traits.shaft, lanes.now, i), get(lanes.contact, i, Touch), None)
 
 
 @kernel
@@ -108,15 +132,17 @@ def start_on_bed(m, y):
 def begin(traits, lanes, i, run):
     """Put the model of ``run`` into lane ``i``, at rest, or held at a rotation to which it was pushed from rest."""
     put(lanes.model, i, taken(run, Numbers))
+    begin_shaft(traits.shaft, lanes, i, run)
     put(lanes.bed, i, Place(_free_slot(lanes, i), 0.0))
     m, load = model_in(traits, lanes, i), run.gravity + run.prestress
     lay(m)
-    y = State(level_at(m, run.theta, load), run.theta, 0.0, 0.0)
+    y = at_rest(m.shaft, m, level_at(m, run.theta, load), run.theta)
     d = sinking(m, y)
     start_on_bed(m, y)
     put(lanes.now, i, y)
+    begin_displacements(traits.shaft, lanes, i, y)
     put(lanes.contact, i, touch(m, d, push(m, d)))
-    put(lanes.rates, i, State(math.nan, math.nan, math.nan, math.nan))
+    lanes.rates.omega[i] = math.nan  # unknown
     put(lanes.demands, i, Demands(1.0, 0.0, 0.0, 0.0, load, 0.0, 0.0, 0.0, math.nan))
     set_deadline(lanes, i, run)
 
@@ -155,6 +181,7 @@ def _clearances(m, d):
 def take_in(lanes, i, m, part, t):
     """Advance lane ``i`` to the end of a Part at ``t`` [s], with extremes, uplifts and plastic set; return the Push there."""
     before, y, end, tally, demands = part.start.contact, part.start.y, part.end, lanes.tally, lanes.demands
+    include_bending(m.shaft, lanes, i, part)
     d, d_end = sinking(m, y), sinking(m, end)
     if part.length > 0.0 and settle(m, d, d_end, part.length):
         demands.yielding[i] += 1.0 - demands.yields[i]
@@ -198,7 +225,7 @@ def one_pass(traits, lanes, count, substep, settings):
     for i in range(count):
         m, now = pier_in(traits, lanes, i)
         h, ground = lanes.clock.step[i], ground_at(lanes, i, substep * lanes.clock.step[i])
-        k = get(lanes.rates, i, State)
+        k = state_in(traits.shaft, lanes.rates, i)
         if not abs(k.omega) < math.inf:
             k = rates(m, now.y, now.contact, ground)
         end = rk4(m, None, Instant(now.y, k, now.contact, None, ground), h)
@@ -209,8 +236,7 @@ def one_pass(traits, lanes, count, substep, settings):
         include_peak(lanes, i, part, substep * h, 0.0)
         t = lanes.clock.sample[i] * lanes.clock.dt[i] + (substep + 1.0) * h
         bed = take_in(lanes, i, m, part, t)
-        v_rate, omega = equations.accelerations(m, end, bed, later(ground, h))
-        put(lanes.rates, i, State(end.v_rate, end.omega, v_rate, omega))
+        put(lanes.rates, i, rates_under(m.shaft, m, end, bed, later(ground, h)))
         lanes.step_status.kind[i] = CALM
 
 
@@ -235,13 +261,18 @@ def finish(traits, lanes, i, t, result):
     result.pressure_side = demands.pressure_side[i]
     result.bed_force, result.t_force = demands.force[i], demands.force_time[i]
     result.yielding_rocks, result.t_yield = demands.yielding[i], demands.yield_time[i]
+    write_displacements(traits.shaft, lanes, i, result)
 
 
 def system_of(m):
     """Return the System of the pier ``m`` (Footing)."""
-    return System(FootingTraits(m.finite, m.shifting), Line, LANE, State._fields + Touch._fields)
+    if m.shaft is None:
+        return System(FootingTraits(m.finite, m.shifting), Line, LANE, State._fields + Touch._fields)
+    traits = FootingTraits(m.finite, m.shifting, LIKE)
+    return System(traits, BendingLine, BENDING_LANE, Flexing._fields + Touch._fields)
 
 
 def line_of(m, prestress, theta, *timing):
     """Return the Line of a run of the pier ``m`` (Footing); ``timing`` is what Line has from ``dt`` on."""
-    return Line(*m[: len(NUMBERS)], *timing, prestress, theta)
+    numbers = *m[: len(NUMBERS)], *timing, prestress, theta
+    return Line(*numbers) if m.shaft is None else BendingLine(*numbers, *shaft_numbers(m.shaft))

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.core.kernel import inlined
+from rockbatch.core.flexure.model import Flexing, Shaft, shaft_in
+from rockbatch.core.kernel import hook, inlined
 from rockbatch.core.table import LANES, get
 from rockbatch.core.types import Pull
 
@@ -57,6 +58,7 @@ class Footing(NamedTuple):
     )  # True: the lever follows the pressed part, as on two springs, for tests; None: one for all contacts
     bed: np.ndarray  # shape BEDS
     pull: Pull | None = None  # of dampers and tendons; None: there are none
+    shaft: Shaft | None = None  # one that bends, in finite kinematics; None: it is rigid
 
 
 class FootingTraits(NamedTuple):
@@ -64,6 +66,7 @@ class FootingTraits(NamedTuple):
 
     finite: bool | None
     shifting: bool | None
+    shaft: Shaft | None = None
     pull: Pull | None = None
 
 
@@ -80,6 +83,21 @@ class State(NamedTuple):
     theta: float  # rotation, positive to the right [rad]
     v_rate: float  # [m/s]
     omega: float  # [rad/s]
+
+
+@hook
+def state_in(shaft, part, i):
+    """Return the state in lane ``i`` of a part of the table: State, or Flexing if the ``shaft`` bends."""
+
+
+@state_in.of(type(None))
+def _straight_state_in(shaft, part, i):
+    return get(part, i, State)
+
+
+@state_in.of(Shaft)
+def _bent_state_in(shaft, part, i):
+    return get(part, i, Flexing)
 
 
 class Touch(NamedTuple):
@@ -103,5 +121,5 @@ def model_in(traits, lanes, i):
     m, bed = get(lanes.model, i, Numbers), lanes.beds[int(lanes.bed.slot[i])]
     return Footing(
         m.half_width, m.height, m.inertia, m.gravity, m.stiffness, m.strength, m.damping, m.strips, m.gap, m.guided, m.rest,
-        traits.finite, traits.shifting, bed, traits.pull,
+        traits.finite, traits.shifting, bed, traits.pull, shaft_in(traits.shaft, lanes, i),
     )  # fmt: skip

@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from rockbatch.core.flexure.shaft import leaning_height, overhang
 from rockbatch.core.footing.model import FIRST, POSITION, SET, State
 from rockbatch.core.footing.strips import last_node, push, sinking, stored
 from rockbatch.core.kernel import inlined, kernel
@@ -70,30 +71,37 @@ def level_at(m, theta, load):
 def righting(m, theta, load):
     """Return the moment to the left [m²/s²] on the pier at rest under ``load`` [m/s²] at rotation ``theta`` [rad].
 
-    It is that of the bed less that of the load: positive, it rights a pier that leans to the right.
+    It is that of the bed less that of the load: positive, it rights a pier that leans to the right. A bending shaft hangs over.
     """
     bed = push(m, sinking(m, State(level_at(m, theta, load), theta, 0.0, 0.0)))
     if m.finite is None:
         return bed.moment - m.height * theta * load
-    return bed.moment * math.cos(theta) - m.height * math.sin(theta) * load
+    sine, cosine = math.sin(theta), math.cos(theta)
+    return bed.moment * cosine - m.height * sine * load - m.gravity * overhang(m.shaft, m) * sine * cosine
 
 
 @kernel
 def level_energy(m, theta, load):
-    """Return the least energy [J/kg] that the pier has at rotation ``theta`` [rad]: of the bed, and of its ``load`` [m/s²] at v.
+    """Return the least energy [J/kg] of the pier at rotation ``theta`` [rad]: of bed and shaft, and of ``load`` [m/s²] at v.
 
     In first-order kinematics it is less by ½ ``load`` h θ².
     """
     v = level_at(m, theta, load)
     energy = load * v + stored(m, sinking(m, State(v, theta, 0.0, 0.0)))
-    return energy - 0.5 * load * m.height * theta * theta if m.finite is None else energy
+    if m.finite is None:
+        return energy - 0.5 * load * m.height * theta * theta
+    sine = math.sin(theta)
+    return energy - 0.5 * m.gravity * overhang(m.shaft, m) * sine * sine
 
 
 @kernel
 def summit(m, load):
-    """Return the rotation [rad] beyond which no bed holds the pier: arctan((b/h)(1 − load/Q)), arctan(b/h) if elastic."""
+    """Return the rotation [rad] beyond which no bed holds the pier: arctan((b/h)(1 − load/Q)), arctan(b/h) if elastic.
+
+    Of a pier whose shaft bends a lesser one, which the bed holds.
+    """
     share = 1.0 - load / m.strength
-    return math.atan(m.half_width / m.height * share)
+    return math.atan(m.half_width / leaning_height(m) * share)
 
 
 @kernel

@@ -5,17 +5,29 @@ The plastic set is no column of a history: it follows from the states at every s
 
 from typing import NamedTuple
 
-from rockbatch.core.footing.equations import accelerations, energies, lever
+from rockbatch.core.flexure.model import Shaft
+from rockbatch.core.footing.equations import accelerations, bent_accelerations, energies, lever
 from rockbatch.core.footing.lanes import start_on_bed
 from rockbatch.core.footing.model import FIRST, Footing, State, Touch
 from rockbatch.core.footing.strips import Push, deflection, last_node, push, settle, settling_work, sinking
-from rockbatch.core.kernel import entry, kernel
-from rockbatch.core.observe.forces import Forces, fastest_heels, forces_at, friction_demand, waiting
-from rockbatch.core.observe.ledger import pulled
+from rockbatch.core.kernel import entry, hook, kernel
+from rockbatch.core.observe.forces import (
+    Foot,
+    Forces,
+    Inertia,
+    fastest_heels,
+    forces_at,
+    friction_demand,
+    inertia_of_bent,
+    waiting,
+)
+from rockbatch.core.observe.ledger import power_of_damping, pulled
 from rockbatch.core.observe.rows import (
     begin_at,
     contact_of,
     cubic,
+    cubics,
+    flexing_in,
     ground_within,
     remember,
     state_of,
@@ -39,9 +51,24 @@ class BedState(NamedTuple):
 BED_STATE = record(BedState)
 
 
+@hook
+def _row_on_bed(shaft, row):
+    """Return the state of a pier on a footing in a row, with the coordinates of the modes if its ``shaft`` bends."""
+
+
+@_row_on_bed.of(type(None))
+def _straight_row(shaft, row):
+    return State(row.v, row.theta, row.v_rate, row.omega)
+
+
+@_row_on_bed.of(Shaft)
+def _bent_row(shaft, row):
+    return flexing_in(row)
+
+
 @state_of.of(Footing)
 def _state(m, row):
-    return State(row.v, row.theta, row.v_rate, row.omega)
+    return _row_on_bed(m.shaft, row)
 
 
 @contact_of.of(Footing)
@@ -51,7 +78,11 @@ def _contact(m, row):
 
 @within.of(Footing)
 def _within(m, step, s):
-    y, k, end, k_end, h = step.start, step.rates, step.end, step.rates_end, step.length
+    return cubics(step.start, step.rates, step.end, step.rates_end, step.length, s)
+
+
+@cubics.of(State)
+def _cubics(y, k, end, k_end, h, s):
     return State(
         cubic(y.v, k.v, end.v, k_end.v, h, s), cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
         cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s), cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
@@ -78,11 +109,13 @@ def _fastest(m, step):
     return 0.0, 0.0
 
 
-@forces_at.of(Footing)
-def forces_on_footing(m, deck, now, ground):
-    """Return the Forces in the Moment ``now``; left and right are forces at the edges equivalent to the push."""
-    y, d = now.y, sinking(m, now.y)
-    bed = push(m, d)
+@hook
+def _inertia_on_bed(shaft, m, deck, y, bed, ground):
+    """Return the Inertia of a pier on a bed with this Push, whose ``shaft`` is None if it is rigid."""
+
+
+@_inertia_on_bed.of(type(None))
+def _inertia_of_rigid_shaft(shaft, m, deck, y, bed, ground):
     v_acceleration, turning = accelerations(m, y, bed, ground)
     at, squared = lever(m, y), y.omega * y.omega
     along, bend, swung = m.height * turning, 0.0, (deck - m.height) * turning
@@ -92,16 +125,33 @@ def forces_on_footing(m, deck, now, ground):
         swung = (deck - m.height) * (cosine * turning - sine * squared)
     shear = ground.horizontal + along + bend
     moment = at.lean * (m.gravity + ground.vertical + v_acceleration) - at.length * shear - m.inertia * turning
+    return Inertia(shear, moment, shear + swung, at.length * y.omega, y.v_rate)
+
+
+@_inertia_on_bed.of(Shaft)
+def _inertia_of_bending_shaft(shaft, m, deck, y, bed, ground):
+    at = lever(m, y)
+    return inertia_of_bent(
+        m, deck, y, bent_accelerations(m, y, bed, ground), Foot(at.length, at.slope, 0.0, at.length), ground
+    )
+
+
+@forces_at.of(Footing)
+def forces_on_footing(m, deck, now, ground):
+    """Return the Forces in the Moment ``now``; left and right are forces at the edges equivalent to the push."""
+    y, d = now.y, sinking(m, now.y)
+    bed = push(m, d)
+    of = _inertia_on_bed(m.shaft, m, deck, y, bed, ground)
     of_edges = bed.moment / m.half_width
     left, right = deflection(m, d, FIRST), deflection(m, d, last_node(m))
     free_left, free_right = 1.0 if left < 0.0 else 0.0, 1.0 if right < 0.0 else 0.0
     gap_left, gap_right = -free_left * left, -free_right * right
     b = m.half_width
     return Forces(
-        shear, bed.force, moment, 0.5 * (bed.force - of_edges), 0.5 * (bed.force + of_edges), gap_left, gap_right,
+        of.shear, bed.force, of.moment, 0.5 * (bed.force - of_edges), 0.5 * (bed.force + of_edges), gap_left, gap_right,
         -free_left * (d.level_rate - b * d.slope_rate), -free_right * (d.level_rate + b * d.slope_rate),
-        shear + swung, at.length * y.omega, y.v_rate, y.omega,
-        friction_demand(m.gravity, shear, bed.force), min(gap_left, gap_right),
+        of.deck, of.along, of.up, y.omega,
+        friction_demand(m.gravity, of.shear, bed.force), min(gap_left, gap_right),
     )  # fmt: skip
 
 
@@ -121,14 +171,14 @@ def _powers(m, y, contact, ground):
     more = Push(bed.force - spring.force, bed.moment - spring.moment, 0.0)
     p_delta = m.height * y.theta * bed.force * y.omega if m.finite is None else 0.0
     damping = more.force * d.level_rate + more.moment * d.slope_rate
-    return Powers(ground_power(m, y, contact, ground), p_delta, damping)
+    return Powers(ground_power(m, y, contact, ground), p_delta, damping + power_of_damping(y, m.shaft))
 
 
 @kernel
 def _undamped(m):
     return Footing(
         m.half_width, m.height, m.inertia, m.gravity, m.stiffness, m.strength, 0.0, m.strips, m.gap, m.guided, m.rest, m.finite,
-        m.shifting, m.bed, m.pull,
+        m.shifting, m.bed, m.pull, m.shaft,
     )  # fmt: skip
 
 

@@ -6,13 +6,13 @@ from typing import NamedTuple
 from rockbatch.core.block.equations import arms_about, clearances, key_of, on_side, side_of
 from rockbatch.core.block.model import Block
 from rockbatch.core.flexure.equations import bent_across, masses_about, rise_of_bending, velocity_of_centre
-from rockbatch.core.flexure.model import FlexibleBlock
+from rockbatch.core.flexure.model import FlexibleBlock, Shaft
 from rockbatch.core.flexure.modes import PerMode, deflection_rates, deflections, dot
-from rockbatch.core.kernel import hook, kernel
+from rockbatch.core.flexure.shaft import velocity_of_centre as velocity_of_bent_centre
+from rockbatch.core.kernel import hook, inlined, kernel
 from rockbatch.core.springs.bending import accelerations
-from rockbatch.core.springs.bending import velocity_of_centre as velocity_on_springs
 from rockbatch.core.springs.equations import accelerations_at, geometry
-from rockbatch.core.springs.model import Shaft, Springs, Supports
+from rockbatch.core.springs.model import Springs, Supports
 from rockbatch.core.springs.recovery import forces, quickness, top, velocity_of_top
 from rockbatch.core.system import airborne, rates, shift
 from rockbatch.core.table import along, record
@@ -88,6 +88,15 @@ class Inertia(NamedTuple):
     up: float
 
 
+class Foot(NamedTuple):
+    """Lever of the ground's acceleration, and the point of the base that does not slide."""
+
+    lever: float  # H [m]
+    slope: float  # dH/dθ [m]
+    side: float  # of that point: −1 or 1 for the left or right pivot alone, 0 for the middle
+    middle: float  # H of the middle [m]
+
+
 @hook
 def _inertia_on_springs(shaft, m, deck, y, contact, ground):
     """Return the Inertia of a pier on springs, whose ``shaft`` is None if it is rigid."""
@@ -117,9 +126,17 @@ def _inertia_of_rigid_shaft(shaft, m, deck, y, contact, ground):
 @_inertia_on_springs.of(Shaft)
 def _inertia_of_bending_shaft(shaft, m, deck, y, contact, ground):
     at, side = geometry(m, y.theta), contact.right - contact.left
-    k, squared = accelerations(m, y, contact, at, ground), y.omega * y.omega
-    sine, cosine = sine_and_cosine(y.theta)
     lever, bend = at.lever + side * at.swing, at.lever_slope + side * at.swing_slope
+    return inertia_of_bent(
+        m, deck, y, accelerations(m, y, contact, at, ground), Foot(lever, bend, side, at.lever), ground
+    )
+
+
+@inlined
+def inertia_of_bent(m, deck, y, k, foot, ground):
+    """Return the Inertia of a pier whose shaft bends, with the Accelerations ``k``, and its deck ``deck`` [m] above its base."""
+    shaft, squared, lever, bend = m.shaft, y.omega * y.omega, foot.lever, foot.slope
+    sine, cosine = sine_and_cosine(y.theta)
     weight, u, u_rate = m.gravity + ground.vertical, deflections(y), deflection_rates(y)
     to_right, up = ground.horizontal + lever * k.theta + bend * squared, weight + k.v
     moved, speed, pushed = dot(shaft.share, u), dot(shaft.share, u_rate), dot(shaft.share, k.u)
@@ -127,7 +144,7 @@ def _inertia_of_bending_shaft(shaft, m, deck, y, contact, ground):
     normal = up - sine * pushed - 2.0 * cosine * y.omega * speed - moved * (cosine * k.theta - sine * squared)
     spun = (m.inertia + dot(u, u)) * k.theta + dot(shaft.lever, k.u) + 2.0 * dot(u, u_rate) * y.omega
     spun -= moved * (sine * to_right + cosine * up)
-    moment = (side * m.half_width - bend) * normal - lever * shear - spun
+    moment = (foot.side * m.half_width - bend) * normal - lever * shear - spun
     # What the base does in an instant reaches the shaft by its modes alone
     followed = along(along(k.u, shaft.share, cosine * lever * k.theta - sine * k.v), shaft.lever, k.theta)
     steady = cosine * (ground.horizontal + bend * squared)
@@ -136,7 +153,7 @@ def _inertia_of_bending_shaft(shaft, m, deck, y, contact, ground):
     deck_across = steady - sine * ground.vertical + dot(shaft.deck_shape, followed) - bent * squared
     deck_along = sine * to_right + cosine * (up - m.gravity) - (deck - m.height) * squared
     deck_along -= 2.0 * bent_rate * y.omega + bent * k.theta
-    moves = velocity_on_springs(m, y, at.lever)
+    moves = velocity_of_bent_centre(m, y, foot.middle)
     shaken = cosine * deck_across + sine * deck_along
     return Inertia((across + sine * normal) / cosine, moment, shaken, moves[0], moves[1])
 

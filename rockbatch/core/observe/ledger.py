@@ -10,15 +10,15 @@ from typing import NamedTuple
 from rockbatch.core.block.equations import lever
 from rockbatch.core.block.model import Block
 from rockbatch.core.flexure.ending import bending_energy, kinetic_and_potential
-from rockbatch.core.flexure.model import FlexibleBlock, Flexing
+from rockbatch.core.flexure.model import FlexibleBlock, Flexing, Shaft
 from rockbatch.core.flexure.modes import deflection_rates, deflections, dot, times
+from rockbatch.core.flexure.shaft import energies_of_modes
 from rockbatch.core.kernel import entry, hook, kernel, optional_hook
 from rockbatch.core.observe.rows import contact_of, ground_within, state_of, step_between, within
-from rockbatch.core.springs.bending import accelerations, kinetic_of_modes, momenta
+from rockbatch.core.springs.bending import accelerations, momenta
 from rockbatch.core.springs.equations import accelerations_at, geometry
-from rockbatch.core.springs.free_vibration import energy_of_modes
 from rockbatch.core.springs.impact import loss
-from rockbatch.core.springs.model import BentState, Contact, Shaft, Springs
+from rockbatch.core.springs.model import BentState, Contact, Springs
 from rockbatch.core.springs.recovery import forces
 from rockbatch.core.system import ground_power, rates
 from rockbatch.core.table import along, record, with_pull
@@ -53,25 +53,10 @@ def _stored(m, y, contact):
     """Return the kinetic, potential and elastic energy of the pier, without its devices [J/kg]."""
 
 
-@optional_hook
-def _of_modes(shaft, m, y, lever):
-    """Return what the modes of the shaft add to the kinetic, potential and elastic energy [J/kg]; zeros for a rigid one.
-
-    ``lever`` is H [m].
-    """
-    return 0.0, 0.0, 0.0
-
-
-@_of_modes.of(Shaft)
-def _of_bending(shaft, m, y, lever):
-    elastic, kinetic = bending_energy(shaft, deflections(y)), kinetic_of_modes(m, y, lever)
-    return kinetic, energy_of_modes(shaft, m, y, lever) - kinetic - elastic, elastic
-
-
 @_stored.of(Springs)
 def _stored_on_springs(m, y, contact):
     lever = _lever(geometry(m, y.theta), contact) if m.finite is not None else m.height
-    by_motion, by_height, by_bending = _of_modes(m.shaft, m, y, lever)
+    by_motion, by_height, by_bending = energies_of_modes(m.shaft, m, y, lever)
     kinetic = 0.5 * y.v_rate * y.v_rate + 0.5 * (m.inertia + lever * lever) * y.omega * y.omega
     elastic = 0.5 * m.yield_force * m.yield_deflection * (y.z_left * y.z_left + y.z_right * y.z_right)
     return kinetic + by_motion, m.gravity * y.v + by_height, elastic + by_bending
@@ -108,7 +93,7 @@ def energy_of_rows(m, rows, out):
 
 
 @optional_hook
-def _damping(y, shaft):
+def power_of_damping(y, shaft):
     """Return the power that the damping of the modes of a ``shaft`` takes in state ``y`` [W/kg]; 0 for a rigid one."""
     return 0.0
 
@@ -118,8 +103,8 @@ def _damping_of_modes(y, shaft):
     return dot(times(shaft.damping, u_rate), u_rate)
 
 
-_damping.of(Flexing)(_damping_of_modes)
-_damping.of(BentState)(_damping_of_modes)
+power_of_damping.of(Flexing)(_damping_of_modes)
+power_of_damping.of(BentState)(_damping_of_modes)
 
 
 @kernel
@@ -142,7 +127,7 @@ def _powers(m, y, k, contact, ground):
     if contact.held != 0:
         released = Contact(contact.left, contact.right, contact.left_yields, contact.right_yields, 0)
         constraint = _holding(m.shaft, m, y, k, released, ground)
-    return shaken, plastic, p_delta, constraint, damping + _damping(y, m.shaft)
+    return shaken, plastic, p_delta, constraint, damping + power_of_damping(y, m.shaft)
 
 
 @hook
@@ -216,7 +201,7 @@ def ledger_on_springs(m, rows, pulls, ground, dt, out):
                 was, now = _lever(at, contact_of(m, rows[i - 1])), _lever(at, contact)
                 both = at.lever * at.lever * (y_end.omega * y_end.omega - y.omega * y.omega)
                 constraint += 0.5 * (now * now * y_end.omega * y_end.omega - was * was * y.omega * y.omega - both)
-                constraint += _of_modes(m.shaft, m, y_end, now)[0] - _of_modes(m.shaft, m, y, was)[0]
+                constraint += energies_of_modes(m.shaft, m, y_end, now)[0] - energies_of_modes(m.shaft, m, y, was)[0]
         else:
             start, half_way, stop = pulled(m, pulls, i)
             step = step_between(start, stop, rows[i - 1], rows[i], ground, dt)
@@ -263,7 +248,11 @@ def ledger_on_rigid_base(m, rows, pulls, ground, dt, out):
             s1 = ground_power(m, middle, contact, ground_within(step, 0.5))
             s2 = ground_power(m, y_end, contact, step.ground_end)
             shaken += step.length / 6.0 * (s0 + 4.0 * s1 + s2)
-            damping += step.length / 6.0 * (_damping(y, m) + 4.0 * _damping(middle, m) + _damping(y_end, m))
+            damping += (
+                step.length
+                / 6.0
+                * (power_of_damping(y, m) + 4.0 * power_of_damping(middle, m) + power_of_damping(y_end, m))
+            )
         line = out[i]
         line.kinetic, line.potential, line.elastic = kinetic_end - kinetic0, potential - potential0, elastic - elastic0
         line.input, line.impact, line.damping = shaken, impact, damping

@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 from rockbatch.core.block.model import Block, Rocking, Stance
 from rockbatch.core.flexure.equations import flexing
-from rockbatch.core.flexure.model import FlexibleBlock, Flexing
+from rockbatch.core.flexure.model import FlexibleBlock, Flexing, Shaft
 from rockbatch.core.flexure.modes import MOST_MODES, PerMode, deflection_rates, deflections
 from rockbatch.core.kernel import hook, inlined, kernel, optional_hook
 from rockbatch.core.springs.bending import bent_state
-from rockbatch.core.springs.model import BentState, Contact, Shaft, Springs, State
+from rockbatch.core.springs.model import BentState, Contact, Springs, State
 from rockbatch.core.system import rates, share, stage
 from rockbatch.core.types import Ground
 
@@ -51,10 +51,16 @@ def _modes_in(row):
     return PerMode(row.u_1, row.u_2, row.u_3, row.u_4), u_rate
 
 
-@state_of.of(FlexibleBlock)
-def _state_of_flexible_block(m, row):
+@inlined
+def flexing_in(row):
+    """Return the Flexing in a row."""
     u, u_rate = _modes_in(row)
     return flexing(row.v, row.theta, row.v_rate, row.omega, u, u_rate)
+
+
+@state_of.of(FlexibleBlock)
+def _state_of_flexible_block(m, row):
+    return flexing_in(row)
 
 
 @hook
@@ -168,7 +174,7 @@ def _within_on_springs(m, step, s):
 
 @hook
 def cubics(y, k, end, k_end, h, s):
-    """Return :func:`cubic` of each variable of a state on springs."""
+    """Return :func:`cubic` of each variable of a state."""
 
 
 @cubics.of(State)
@@ -208,9 +214,8 @@ def _within_of_block(m, step, s):
     )
 
 
-@within.of(FlexibleBlock)
-def _within_of_flexible_block(m, step, s):
-    y, k, end, k_end, h = step.start, step.rates, step.end, step.rates_end, step.length
+@cubics.of(Flexing)
+def _flexing_cubics(y, k, end, k_end, h, s):
     u, u_rate = _cubics_of_modes(y, k, end, k_end, h, s)
     return flexing(
         cubic(y.v, k.v, end.v, k_end.v, h, s),
@@ -220,6 +225,11 @@ def _within_of_flexible_block(m, step, s):
         u,
         u_rate,
     )
+
+
+@within.of(FlexibleBlock)
+def _within_of_flexible_block(m, step, s):
+    return cubics(step.start, step.rates, step.end, step.rates_end, step.length, s)
 
 
 @inlined

@@ -2,6 +2,7 @@
 
 from rockbatch.core import system
 from rockbatch.core.clock import Clearances
+from rockbatch.core.flexure.shaft import power_of_ground
 from rockbatch.core.kernel import hook, inlined, kernel
 from rockbatch.core.springs.laws import within_yield, z_rate
 from rockbatch.core.springs.model import Contact, Geometry, Springs, State
@@ -130,16 +131,6 @@ def end_step(m, y, start, contact, remaining):
     """Return the end of a step, with z at least −1 on the inelastic branch, and in closed form for supports without pivots."""
     z_left, z_right = within_yield(y.z_left, contact.left_yields), within_yield(y.z_right, contact.right_yields)
     return with_recovery(m, with_z(y, z_left, z_right), start, contact, remaining)
-
-
-@hook
-def power_of_ground(shaft, m, y, lever, ground):
-    """Return the power of the ground's inertia forces [W/kg]; the centre of a straight shaft moves at ``lever`` [m] θ̇."""
-
-
-@power_of_ground.of(type(None))
-def _on_rigid_pier(shaft, m, y, lever, ground):
-    return -ground.horizontal * lever * y.omega - ground.vertical * y.v_rate
 
 
 @system.ground_power.of(Springs)

@@ -8,7 +8,8 @@ mass [J/kg]. ``load`` is the load of the supports at rest [m/s²]: g and the ten
 import math
 from typing import NamedTuple
 
-from rockbatch.core.kernel import kernel, optional_hook
+from rockbatch.core.flexure.shaft import energies_of_modes, leaning_height
+from rockbatch.core.kernel import kernel
 from rockbatch.core.springs.equations import geometry
 from rockbatch.core.springs.laws import give, limited
 from rockbatch.core.springs.model import HOUSNER
@@ -23,21 +24,6 @@ SEEN = 1e-6
 """Relative amount by which the extremes of a sampled vibration may lie below its amplitude."""
 
 
-@optional_hook
-def leaning_height(shaft, m):
-    """Return the height h [m] for which the weight's moment is at most M g h sin θ: the centre's, or more if the shaft bends."""
-    return m.height
-
-
-@optional_hook
-def energy_of_modes(shaft, m, y, lever):
-    """Return the energy [J/kg] that bending adds to that of a straight shaft: elastic, kinetic and of the weight; 0 if rigid.
-
-    ``lever`` is H [m].
-    """
-    return 0.0
-
-
 @kernel
 def _capacity(m, load):
     """Return the supports' greatest moment about the base's centre over load · b; below 1 if one cannot carry all."""
@@ -47,14 +33,14 @@ def _capacity(m, load):
 @kernel
 def unstable_equilibrium(m, load):
     """Return the unstable equilibrium: the rotation [rad] at which the weight's moment equals the greatest of the supports."""
-    tangent = _capacity(m, load) * (load / m.gravity) * m.half_width / leaning_height(m.shaft, m)
+    tangent = _capacity(m, load) * (load / m.gravity) * m.half_width / leaning_height(m)
     return math.atan(tangent) if m.finite is not None else tangent
 
 
 @kernel
 def rocking_stiffness(m):
     """Return the restoring moment per rotation in full contact on elastic springs, less that of the weight [m²/s²]."""
-    return 2.0 * m.yield_force * m.stiffness * m.half_width * m.half_width - m.gravity * leaning_height(m.shaft, m)
+    return 2.0 * m.yield_force * m.stiffness * m.half_width * m.half_width - m.gravity * leaning_height(m)
 
 
 @kernel
@@ -75,7 +61,7 @@ def _weight_moment(m, travel):
 
     ``travel`` is that of :func:`_travel`.
     """
-    return leaning_height(m.shaft, m) * (travel / math.sqrt(1.0 - travel * travel) if m.finite is not None else travel)
+    return leaning_height(m) * (travel / math.sqrt(1.0 - travel * travel) if m.finite is not None else travel)
 
 
 @kernel
@@ -89,7 +75,7 @@ def _climb(m, lean, target, load, point):
     """
     if lean >= target:
         return -math.inf
-    b, weight, height = m.half_width, m.gravity / load, leaning_height(m.shaft, m)
+    b, weight, height = m.half_width, m.gravity / load, leaning_height(m)
     static_force = 0.5 * load / m.yield_force
     deflection = static_force * m.yield_deflection
     capacity = _capacity(m, load)
@@ -163,7 +149,7 @@ def further(m, right, left, sinking):
     right, left = max(right * amplification, 0.0), max(left * amplification, 0.0)
     if m.creep == 0.0:
         return Drift(right, left, 0.0)
-    grows = m.creep * leaning_height(m.shaft, m) * amplification * sinking / (m.half_width * m.half_width)
+    grows = m.creep * leaning_height(m) * amplification * sinking / (m.half_width * m.half_width)
     if grows <= 1e-6:
         return Drift(right, left, 0.0)
     growth = math.expm1(min(grows, 50.0))
@@ -174,7 +160,7 @@ def further(m, right, left, sinking):
 def _amplification(m):
     """Return the rotation of a pier at rest over the tilt of its base, above 1 by its P–Δ moment."""
     stiffness = rocking_stiffness(m)
-    return (stiffness + m.gravity * leaning_height(m.shaft, m)) / stiffness
+    return (stiffness + m.gravity * leaning_height(m)) / stiffness
 
 
 @kernel
@@ -218,7 +204,7 @@ def peak_is_final(m, now, carried, peak, calm, drift):
     unstable = unstable_equilibrium(m, load)
     if max(abs(lean), abs(y.theta)) >= unstable:
         return False
-    b, h, g, limit = m.half_width, leaning_height(m.shaft, m), m.gravity, min(peak, unstable)
+    b, h, g, limit = m.half_width, leaning_height(m), m.gravity, min(peak, unstable)
     stiffness = rocking_stiffness(m)
     softness = 0.5 * load / (m.yield_force * m.stiffness)  # static deflection
     middle = 0.5 * (base.left + base.right)
@@ -245,7 +231,8 @@ def peak_is_final(m, now, carried, peak, calm, drift):
         lever = at.lever + (contact.right - contact.left) * at.swing
         gained, at_lean = (load - g) * _drop(m.height, y.theta), -g * _drop(h, lean)
     kinetic = 0.5 * y.v_rate * y.v_rate + 0.5 * (m.inertia + lever * lever) * y.omega * y.omega
-    kinetic += energy_of_modes(m.shaft, m, y, lever)
+    by_motion, by_height, by_bending = energies_of_modes(m.shaft, m, y, lever)
+    kinetic += by_motion + by_bending + by_height
     spring = m.yield_force * m.yield_deflection
     stored = load * y.v + gained + 0.5 * spring * (y.z_left * y.z_left + y.z_right * y.z_right) + carried.stored
     at_lean += load * (middle - softness) + 0.5 * load * softness * (1.0 + uneven * uneven)

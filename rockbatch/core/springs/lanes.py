@@ -1,44 +1,33 @@
 """Lanes of piers on springs: their table, and the start and the results of their runs."""
 
-from itertools import repeat
 from typing import NamedTuple
 
 from rockbatch.core import system
 from rockbatch.core.clock import COMMON, TIMING, ground_at, include_height
 from rockbatch.core.devices.laws import PASSED
 from rockbatch.core.flexure.displacements import Displacements
-from rockbatch.core.flexure.modes import PerMode
+from rockbatch.core.flexure.model import LIKE, SHAFT_NUMBERS, ShaftNumbers, shaft_numbers
+from rockbatch.core.flexure.shaft import begin_displacements, begin_shaft, include_bending, write_displacements
 from rockbatch.core.ground import later
 from rockbatch.core.history import Stamp, write
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import lowest_within
 from rockbatch.core.springs import events  # noqa: F401  hooks of the springs
-from rockbatch.core.springs.bending import (
-    at_start,
-    begin_displacements,
-    begin_shaft,
-    include_bending,
-    write_displacements,
-)
+from rockbatch.core.springs.bending import at_start
 from rockbatch.core.springs.ending import Waiting, base_of, set_deadline
 from rockbatch.core.springs.equations import clearances
 from rockbatch.core.springs.laws import yield_point, yields_at_first, yields_when_pressed
 from rockbatch.core.springs.loading import BranchChange, Loading, branch_change, branches
 from rockbatch.core.springs.model import (
     NUMBERS,
-    OF_MODES,
-    SHAFT_NUMBERS,
     BentState,
     Contact,
     Numbers,
-    Shaft,
-    ShaftNumbers,
     SpringTraits,
     State,
     Supports,
     model_in,
-    shaft_numbers,
     state_in,
 )
 from rockbatch.core.springs.passing import Reversals
@@ -95,9 +84,6 @@ LINE = (
 Line = NamedTuple("Line", LINE)  # type: ignore[misc]
 
 BendingLine = NamedTuple("BendingLine", (*LINE, *SHAFT_NUMBERS))  # type: ignore[misc]
-
-LIKE = Shaft(*repeat(PerMode(0.0, 0.0, 0.0, 0.0), len(OF_MODES)), top=0.0)  # type: ignore[arg-type, misc]
-"""Trait of all piers whose shafts bend: its value does not matter."""
 
 
 @system.pier_in.of(SpringTraits)
@@ -159,8 +145,9 @@ def begin(traits, lanes, i, run):
     left, right = pivots(pier, y)
     unstressed_left = left.position - run.yield_deflection * y.z_left
     unstressed_right = right.position - run.yield_deflection * y.z_right
-    _put_moment(lanes, i, Moment(at_start(pier.shaft, pier, y), contact, supports))
-    begin_displacements(traits.shaft, lanes, i)
+    bent = at_start(pier.shaft, pier, y)
+    _put_moment(lanes, i, Moment(bent, contact, supports))
+    begin_displacements(traits.shaft, lanes, i, bent)
     put(lanes.loading, i, Loading(unstressed_left, y.z_left, 0.0, unstressed_right, y.z_right, 0.0))
     put(lanes.lowest, i, Lowest(min(level, left.position), min(level, right.position), plastic))
     set_deadline(lanes, i, pier, run)

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from rockbatch.core.flexure.modes import PerMode
+from rockbatch.core.flexure.model import Shaft, shaft_in
 from rockbatch.core.kernel import hook, inlined
 from rockbatch.core.table import get
 from rockbatch.core.types import Pull
@@ -13,19 +13,6 @@ HOUSNER = 1.0
 
 IMPACTS = {"landing": LANDING, "housner": HOUSNER}
 """Rules of impact by the names in studies."""
-
-
-class Shaft(NamedTuple):
-    """Modes of a shaft that bends, of the pier fixed at its foot; ∫φ_i φ_j dm/M is 1 or 0."""
-
-    share: PerMode  # μ_i = ∫φ_i dm/M
-    lever: PerMode  # λ_i − h μ_i = ∫φ_i (z − h) dm/M [m]
-    frequency: PerMode  # ω_i [rad/s]
-    damping: PerMode  # 2 ζ_i ω_i [1/s]
-    end_shape: PerMode  # φ_i at the highest point
-    top_shape: PerMode  # where drift is read
-    deck_shape: PerMode  # and at the deck
-    top: float  # height at which drift is read [m]
 
 
 class Springs(NamedTuple):
@@ -82,45 +69,6 @@ def _typed(exponent, value):
     if isinstance(exponent, float):
         return value
     return None
-
-
-OF_MODES = Shaft._fields[: Shaft._fields.index("top")]
-"""Fields of a Shaft that have a number of each mode."""
-
-SHAFT_NUMBERS = (*((f"{name}_{mode}", float) for name in OF_MODES for mode in PerMode._fields), ("top", float))
-
-ShaftNumbers = NamedTuple("ShaftNumbers", SHAFT_NUMBERS)  # type: ignore[misc]
-"""Numbers of a Shaft that lanes hold."""
-
-
-def shaft_numbers(shaft: Shaft) -> tuple[float, ...]:
-    """Return the numbers of ``shaft`` in the order of ShaftNumbers."""
-    return *(number for name in OF_MODES for number in getattr(shaft, name)), shaft.top
-
-
-@hook
-def shaft_in(shaft, lanes, i):
-    """Return the Shaft of lane ``i``, of the type of ``shaft`` in the traits; None for a rigid one."""
-
-
-@shaft_in.of(type(None))
-def _rigid_shaft(shaft, lanes, i):
-    return None
-
-
-@shaft_in.of(Shaft)
-def _bending_shaft(shaft, lanes, i):
-    m = get(lanes.shaft, i, ShaftNumbers)
-    return Shaft(
-        PerMode(m.share_first, m.share_second, m.share_third, m.share_fourth),
-        PerMode(m.lever_first, m.lever_second, m.lever_third, m.lever_fourth),
-        PerMode(m.frequency_first, m.frequency_second, m.frequency_third, m.frequency_fourth),
-        PerMode(m.damping_first, m.damping_second, m.damping_third, m.damping_fourth),
-        PerMode(m.end_shape_first, m.end_shape_second, m.end_shape_third, m.end_shape_fourth),
-        PerMode(m.top_shape_first, m.top_shape_second, m.top_shape_third, m.top_shape_fourth),
-        PerMode(m.deck_shape_first, m.deck_shape_second, m.deck_shape_third, m.deck_shape_fourth),
-        m.top,
-    )
 
 
 @inlined

@@ -38,7 +38,7 @@ class PeaksOfForces(Observer):
         return peak_forces(recording.run, recording.rows, self.least_normal)
 
     def beyond(self, run: Run, fine: Peaks, fewer: Peaks) -> Peaks:
-        """Return ``fine`` with the change by ``fewer`` modes or strips as its error; NaN if the last mode is damped strongly."""
+        """Return ``fine`` with the change by ``fewer`` modes or strips in its error; NaN if the last mode is damped strongly."""
         return with_model_error(run, fine[0], fewer[0], CHANCE), fine[1]
 
     def add(self, run: Run, outcome: Outcome, fine: Peaks | None, coarse: Peaks | None) -> Outcome:

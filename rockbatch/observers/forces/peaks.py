@@ -291,11 +291,12 @@ def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier, chance: float) 
 
 
 def with_model_error(run: Run, fine: PeakForces, fewer: PeakForces, chance: float) -> PeakForces:
-    """Return ``fine`` with ``chance`` times the greatest relative change from ``fewer`` modes or strips as its error.
+    """Return ``fine`` with ``chance`` times the greatest relative change from ``fewer`` modes or strips added to its error.
 
     NaN if the last mode has more than :data:`rockbatch.simulation.coarser.MOST_DAMPING`. The friction demand of impacts is
     left out: each further mode takes about half of a landing's horizontal impulse, so that this demand falls to 0 with more
     modes, and is too great with any number of them.
     """
     of_modes = {name: sized for name, sized in OF_FORCES.items() if name != OF_IMPACTS}
-    return replace(fine, error=of_model(run, greatest_change(of_modes, fine, fewer, run.pier)[1], chance))
+    of_fewer = of_model(run, greatest_change(of_modes, fine, fewer, run.pier)[1], chance)
+    return replace(fine, error=(fine.error or 0.0) + of_fewer)

@@ -40,7 +40,7 @@ def _tables(finished: Finished, order: "pd.DataFrame") -> tuple[Markup, Markup]:
     lines: list[list[object]] = []
     for key, group in order.groupby(["case", *varied, "scale"], sort=False, dropna=False):
         series, pier = finished.place(str(key[0]), dict(zip(varied, key[1:-1], strict=True)))
-        words = ", ".join(filter(None, (finished.series[series].label, finished.piers[pier])))
+        words = finished.named_place(series, pier)
         by_measure = group.set_index("measure")
         rho, sigma, first = by_measure["rank_correlation"], by_measure["dispersion"], by_measure.iloc[0]
         case = [words, float(first["scale"]) if many_scales else None]

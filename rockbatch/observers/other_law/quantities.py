@@ -31,7 +31,7 @@ FIRST = (
 )
 
 OTHER_ENDS = {
-    name: OtherEnd(OTHER_LAW, "both_laws", evaluate, creeps, model="law", models="spring laws")
+    name: OtherEnd(OTHER_LAW, "both_laws", "other_law", evaluate, creeps, model="law", models="spring laws")
     for name, evaluate in {
         "settlement_m": lambda runs, case: runs.numbers(OTHER_LAW),
         "toe_settlement_m": toe(OTHER_LAW),

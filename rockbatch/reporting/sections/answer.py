@@ -81,7 +81,7 @@ def responses(finished: Finished) -> Markup:
     rows = []
     for series, pier in sorted(planned, key=lambda place: (fallen[place], _rotation(by_case.get(place, [])))):
         by_demand = {worst.demand: worst for worst in by_case.get((series, pier), [])}
-        name = finished.series[series].label + (f", {finished.piers[pier]}" if finished.piers[pier] else "")
+        name = finished.named_place(series, pier)
         cells: list[object] = []
         for demand in present:
             worst = by_demand.get(demand)
@@ -198,7 +198,9 @@ def _notes(finished: Finished, checked: bool) -> Iterator[object]:
     noted = int((finished.runs.loc[finished.runs["status"] == "ok", "note"] != "").sum())
     if noted:
         yield join(
-            " ", tag("a", f"{counted(noted, 'run')} {'has' if noted == 1 else 'have'} remarks", href="#peaks"), "."
+            " ",
+            tag("a", f"{counted(noted, 'run').capitalize()} {'has' if noted == 1 else 'have'} remarks", href="#peaks"),
+            ".",
         )
 
 

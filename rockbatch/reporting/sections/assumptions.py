@@ -152,7 +152,7 @@ def _numerics(numerics: Any, cases: Collection[Case]) -> str:
     kept = f"Runs go on for at least {number(float(numerics['quiet_s']))} s beyond the record, until nothing can exceed the peak"
     if numerics["tolerance"]:
         largest = number(float(numerics["tolerance"]))
-        strips = ", on a footing, or a tenth of what its strips leave" * any(case["base"] in FOOTING for case in cases)
+        strips = ", or on a footing a tenth of the error of its strips" * any(case["base"] in FOOTING for case in cases)
         return f"{kept}; the step is halved until the estimated error of θ/α is at most {largest}{strips}."
     return f"{kept}; the step is fixed, and its error was not estimated."
 

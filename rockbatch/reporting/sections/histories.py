@@ -87,9 +87,9 @@ def _pictures(finished: Finished) -> tuple[list[Picture], list[Played]]:
 
 def _played(finished: Finished, row: Row, run: Drawn, pier: Pier, pictures: Sequence[Picture], curve: int) -> Played:
     """Return a run that can be played: it is drawn as this ``curve`` of the last of ``pictures``."""
-    case = ", ".join(filter(None, (finished.series[row["series"]].label, finished.piers[row["pier"]])))
+    case = finished.named_place(row["series"], row["pier"])
     shown = pictures[-1].cut or pictures[-1].whole
-    return Played(case, pictures[-1].title, run, pier, len(pictures) - 1, curve, (shown.low, shown.high))
+    return Played(case, _of_motion(finished, row), run, pier, len(pictures) - 1, curve, (shown.low, shown.high))
 
 
 def _picture(title: str, runs: Sequence[Drawn], left_out: int) -> Picture:
@@ -176,5 +176,10 @@ def _shown(finished: Finished, rows: Sequence[Row]) -> list[Row]:
 
 def _title(finished: Finished, run: Row) -> str:
     """Return the name of a run's motion and pier: "Kobe, Takatori, 0° (TAK000), scaled by 2, reversed, p = 1.2 rad/s"."""
+    return ", ".join(filter(None, [_of_motion(finished, run), finished.piers[run["pier"]]]))
+
+
+def _of_motion(finished: Finished, run: Row) -> str:
+    """Return the name of a run's motion: "Kobe, Takatori, 0° (TAK000), scaled by 2, reversed"."""
     also = [f"scaled by {run['scale']:g}" if run["scale"] != 1 else "", "reversed" if run["polarity"] == "-" else ""]
-    return ", ".join(filter(None, [finished.named(run["record"]), *also, finished.piers[run["pier"]]]))
+    return ", ".join(filter(None, [finished.named(run["record"]), *also]))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from rockbatch.common.observers import parts
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import COLUMNS, DEMANDS, report_columns
+from rockbatch.quantities.design import BOUND
 from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.reporting.finished import Finished, worst_first
 from rockbatch.reporting.labels import counted, head, symbol
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 
 REMARKS = ("reason", "note")
 """Columns of texts, which are listed below the table."""
+NOMINAL = "nominal"
+"""Word for runs of the nominal design, whose bound is empty."""
 LAST_DIGIT = 1e-5
 """Resolution of θ_max/α in the table."""
 _OTHER_ENDS = {name: end.column for name in COLUMNS if name in DEMANDS and (end := DEMANDS[name].other_end)}
@@ -101,7 +104,11 @@ def _every_run(finished: Finished) -> Markup:
 
     def cells(run: Row) -> list[object]:
         own = [remarks.setdefault(run[name], len(remarks) + 1) for name in texts if run[name]]
-        return [*(run[name] for name in names), *(cell(run, name) for name in columns), " ".join(map(str, own))]
+        return [
+            *(NOMINAL if name == BOUND and not run[name] else run[name] for name in names),
+            *(cell(run, name) for name in columns),
+            " ".join(map(str, own)),
+        ]
 
     heads = [head(COLUMNS["record"]), *names.values(), *columns.values(), Head("remark")]
     drawn = every_run(finished, heads, cells, "Every run")

@@ -7,7 +7,7 @@ from rockbatch.checks.coverage import stations_of
 from rockbatch.pier.restraints import KINDS
 from rockbatch.quantities.cases import Case, is_across, top
 from rockbatch.quantities.design import BOUND
-from rockbatch.quantities.labels import plain
+from rockbatch.quantities.labels import plain, titled
 from rockbatch.quantities.quantity import FOOTING
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted, symbol
@@ -168,10 +168,10 @@ def _foundations(finished: Finished) -> Markup:
         deflections = [values.get(key) for key in ("delta_s_m", "delta_y_m")]
         millimetres = [None if metres is None else 1000 * metres for metres in deflections]
         own = [case["columns"].get(key) for key in varied]
-        name = ", ".join(filter(None, (case["case"], case["columns"].get(BOUND))))
+        name = titled(case["case"], filter(None, [case["columns"].get(BOUND)]))
         cells = [name, *own, case["base"], *(values.get(key) for key in names), *millimetres]
         rows.append([*cells, *(values.get(key) for key in further), of_case])
-    heads += [*map(Head, further.values()), Head("devices")]
+    heads += [*(Head(words, ".6g") for words in further.values()), Head("devices")]
     heads = [head._replace(form=_telling(head.form, [row[i] for row in rows])) for i, head in enumerate(heads)]
     return table(heads, rows, name="Foundations")
 

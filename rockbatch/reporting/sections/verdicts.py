@@ -238,7 +238,7 @@ def _requirements(verdicts: Sequence[Verdict]) -> Markup:
     sentences = (f"{name}: {words}." for name, words in rests.items() if words)
     drawn = table([*heads], rows, prose=True, name="Requirements")
     notes = [*wording.Notes(verdicts).common(), *wording.counting(verdicts), *sentences]
-    return join(drawn, tag("p", " ".join(notes), class_="legend"))
+    return join(drawn, tag("ul", *(tag("li", note) for note in notes), class_="legend") if notes else "")
 
 
 def _every(finished: Finished, verdicts: Sequence[Verdict], notes: wording.Notes) -> Markup:

@@ -1,0 +1,187 @@
+"""Numbers in messages, read back in their order and held to what each of them names."""
+
+import math
+import re
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import rockbatch as rb
+from rockbatch.checks.rules import Rule
+from rockbatch.common.errors import InputError
+
+G = 9.81
+PIER = rb.Pier.from_size(0.2, 15.0, 3.0, G)  # I0/M = R0²/3
+B, H = 15.0 * math.sin(0.2), 15.0 * math.cos(0.2)
+P = math.sqrt(0.75 * G / 15.0)
+TENDON = G * 15.0 / B**2
+"""Stiffness of a device of λ = 1 per unit mass of the pier [1/s²]."""
+A = np.sin(0.1 * np.arange(400))
+
+
+def least_beta(pier):
+    """Return the least β that keeps the pier upright: (β p)² b² = g h of two springs, with 1/p² = 4 R0/3g."""
+    return math.sqrt(G * pier.height / pier.half_width**2) / pier.p
+
+
+def on(base, pier=PIER):
+    """Return a function that asks for the statics of a pier on a base."""
+    return lambda: rb.statics(pier, base)
+
+
+def tied(*devices):
+    return on(rb.RigidBase(restraints=devices))
+
+
+SOFT = rb.ElasticBase(2.0)
+BED = rb.FootingBase(2.0, 3.0)
+
+
+def with_capacity(*points):
+    """Return a function that makes a check with this capacity of moments over axial forces."""
+    return lambda: Rule("shaft", "section_moment_over_capacity", 1.0, at_m=3.0, capacity=points)
+
+
+def released(times, amplitudes):
+    """Return a function that reads a study of a release from 0.12 rad with these impacts."""
+    measured = {"impact_s": times, "amplitude_rad": amplitudes}
+    measured = {key: value for key, value in measured.items() if value}
+    pier = {"alpha": 0.2, "p": 1.0, "initial_rotation_rad": 0.12}
+    tables = {
+        "pier": pier,
+        "motions": {"still_s": 5.0},
+        "case": [{"name": "rigid", "base": "rigid"}],
+        "release": measured,
+    }
+    return lambda: rb.release(rb.Study.from_dict(tables))
+
+
+def designed(width, between, points=10):
+    """Return a function that reads a study of a damper's strength in this range."""
+    case = {"name": "tied", "base": "rigid", "damper": [{"kind": "friction", "f": 0.1}]}
+    design = {"vary": "case.damper.f", "between": between, "find": "least", "width": width, "points": points}
+    check = {"name": "peak", "demand": "theta_max_over_alpha", "at_most": 0.3, "reason": "made up"}
+    tables = {"pier": {"alpha": 0.2, "p": 1.0}, "case": [case], "design": design, "check": [check]}
+    return lambda: rb.design(rb.Study.from_dict(tables, motions=SHAKEN))
+
+
+SHAKEN = rb.Motion("shaken", 0.01, A)
+MESSAGES: dict[str, tuple[Callable[[], object], list[float]]] = {
+    "a fast viscous damper": (tied(rb.Damper("viscous", nu=400.0)), [400.0, 1000.0 * G / (400.0 * P)]),
+    "a weak viscous damper": (tied(rb.Damper("viscous", nu=1e-4)), [1e-4, 1.0, 100.0 * 1e-4 * P / G]),
+    "a strong friction damper": (tied(rb.Damper("friction", f=3.5)), [3.5, 3.5]),
+    "a weak friction damper": (tied(rb.Damper("friction", f=1e-6)), [1e-6, 1e-4]),
+    "a hysteretic damper that yields late": (
+        tied(rb.Damper("hysteretic", f=0.1, yield_m=2.0)),
+        [2.0, 2000.0, 1.0, 20.0],
+    ),
+    "a stiff brace": (
+        tied(rb.Damper("viscous", nu=0.1, brace=1e5)),
+        [1e5, 1000.0 * G / (1e5 * TENDON)],
+    ),
+    "a soft brace": (tied(rb.Damper("viscous", nu=0.1, brace=1e-7)), [1e-7, 2e-5]),
+    "a strong tendon": (tied(rb.Tendon(psi=0.1, lam=0.5, strength=40.0)), [40.0, 40.0]),
+    "a tendon that yields by its prestress": (lambda: rb.Tendon(psi=0.3, lam=0.5, strength=0.2), [0.2, 0.3]),
+    "a stop far away": (tied(rb.Stop(7.0, 20.0, 0.6)), [7.0, 7.0]),
+    "a stop next to the base": (tied(rb.Stop(2e-4, 20.0, 0.6)), [2e-4, 0.2]),
+    "a device beside the base": (tied(rb.Damper("friction", f=0.1, at=7.0)), [7.0, 2.0 * B]),
+    "a deck spring far below the deck": (
+        tied(rb.DeckSpring(lam=0.3, height_m=1.0)),
+        [1.0, 1.0 / (2.0 * H), 2.0 * H],
+    ),
+    "soft springs": (on(SOFT), [2.0, 1.0, least_beta(PIER)]),
+    "a soft bed": (
+        on(BED),
+        [2.0, 3.0, math.sqrt(3.0) * least_beta(PIER), 3.0 * (least_beta(PIER) / 2.0) ** 2],
+    ),
+    "springs that cannot carry a tendon": (
+        on(rb.YieldingBase(50.0, eta=1.2, restraints=(rb.Tendon(psi=0.4, lam=0.1),))),
+        [1.2, 0.4, 1.0, 1.4],
+    ),
+    "a bed that cannot carry a tendon": (
+        on(rb.FootingBase(50.0, 1.2, restraints=(rb.Tendon(psi=0.4, lam=0.1),))),
+        [1.2, 0.4, 1.4],
+    ),
+    "a release beyond the edge": (lambda: rb.Pier(0.2, 1.0, initial_rotation_rad=0.3), [0.3, 0.2]),
+    "a pier wider than high": (
+        lambda: rb.Pier.with_deck(width_m=36.0, height_m=30.0, mass_t=2000.0, deck_mass_t=1000.0),
+        [36.0, 30.0, 36.0 / 30.0],
+    ),
+    "a light deck": (
+        lambda: rb.Pier.with_deck(width_m=6.0, height_m=30.0, mass_t=2000.0, deck_mass_t=2.0),
+        [2.0, 0.001, 2000.0],
+    ),
+    "a heavy block": (
+        lambda: rb.Pier.from_size(0.2, 5.0, 3.0, G, mass_t=1e5),
+        [1e5, 2.0 / 3.0 * B, 2.0 / 3.0 * H, 1e5, 27e5 / (8.0 * B**2 * H)],
+    ),
+    "a motion without a step": (lambda: rb.Motion("m", 0.0, A), [0.0, 0.0]),
+    "a motion with a sample that is no number": (
+        lambda: rb.Motion("m", 0.01, np.where(np.arange(400) == 37, np.nan, A)),
+        [37.0, 0.37],
+    ),
+    "a motion of two lengths": (lambda: rb.Motion("m", 0.01, A, A[:-3]), [400.0, 397.0]),
+    "a motion in a table": (lambda: rb.Motion("m", 0.01, A.reshape(2, 200)), [2.0, 200.0]),
+    "a motion in gal": (
+        lambda: rb.simulate(PIER, rb.RigidBase(), rb.Motion("m", 0.01, 300.0 * A)),
+        [300.0 / G, 2.0, 4.0, 0.01],
+    ),
+    "a pier of which the shaft ends too low": (
+        lambda: rb.Pier.with_deck(width_m=6.0, height_m=30.0, mass_t=2000.0, deck_mass_t=1000.0, deck_height_m=90.0),
+        [90.0, 3.0, 30.0],
+    ),
+    "a part that reaches below the pivots": (
+        lambda: rb.Pier.of_parts(6.0, [rb.Part(100.0, 10.0, 4000.0, length_m=24.0)]),
+        [24.0, 10.0, 20.0],
+    ),
+    "a part with less inertia than a rod": (
+        lambda: rb.Pier.of_parts(6.0, [rb.Part(100.0, 10.0, 700.0, length_m=10.0)]),
+        [10.0, 12.0, 100.0 * 10.0**2 / 12.0, 700.0],
+    ),
+    "sections": (lambda: rb.simulate(PIER, rb.RigidBase(), SHAKEN, sections=1), [1.0, 2.0]),
+    "a sequence with a factor of 0": (
+        lambda: rb.sequence([SHAKEN, SHAKEN], name="twice", factors=[1.0, -2.0]),
+        [-2.0, 0.0],
+    ),
+    "a sequence without a pause": (lambda: rb.sequence([SHAKEN, SHAKEN], name="twice", pause=-3.0), [-3.0, 0.0]),
+    "a sequence of unlike steps": (
+        lambda: rb.sequence([SHAKEN, rb.Motion("fine", 1e-5, 0.1 * A)], name="twice"),
+        [1e-5, 0.01, 20.0],
+    ),
+    "a capacity with a moment below 0": (with_capacity([-5.0, 1.0], [0.0, 3.0], [9.0, -2.0]), [0.0, 9.0, -2.0, 0.0]),
+    "a capacity that goes back": (
+        with_capacity([-5.0, 1.0], [7.0, 4.0], [6.0, 3.0]),
+        [7.0, 4.0, 6.0, 3.0, 0.0],
+    ),
+    "a capacity with a hollow": (
+        with_capacity([-5.0, 1.0], [1.0, 2.0], [10.0, 31.0]),
+        [1.0, 2.0, -5.0, 1.0, 10.0, 31.0, 1.0 + 30.0 * 6.0 / 15.0],
+    ),
+    "impacts that do not follow each other": (released([0.5, 1.9, 1.2], []), [3.0, 1.2, 2.0, 1.9]),
+    "an amplitude above the release": (released([], [0.13, 0.05, 0.04]), [1.0, 0.13, 0.12]),
+    "too few impacts": (released([0.5], []), [1.0, 3.0]),
+    "a design narrower than a millionth": (designed(1e-9, [0.02, 0.2]), [1e-9, 2e-7]),
+    "a design wider than its scan": (designed(0.1, [0.02, 0.2], points=10), [0.1, 0.02, 0.0025]),
+    "a pulse with a step above its period": (
+        lambda: rb.pulse("sine", name="s", amplitude=3.0, period=0.5, dt=0.7, duration=4.0),
+        [0.7, 0.5],
+    ),
+    "a pulse that is cut": (
+        lambda: rb.pulse("sine", name="s", amplitude=3.0, period=2.5, dt=0.01, duration=1.0),
+        [1.0, 2.5],
+    ),
+}
+
+
+def numbers_in(text):
+    """Return the numbers of a text, but for those in names such as R0."""
+    return [float(number) for number in re.findall(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", text.replace(",", ""))]
+
+
+@pytest.mark.parametrize("name", MESSAGES)
+def test_numbers_of_a_message_are_those_of_what_it_names(name):
+    call, expected = MESSAGES[name]
+    with pytest.raises(InputError) as refused:
+        call()
+    assert numbers_in(str(refused.value)) == pytest.approx(expected, rel=0.05)
