@@ -126,7 +126,7 @@ class Dask:
         return self
 
     def _check_workers(self, client: "Client") -> None:
-        """Raise ``InputError`` for workers without rockbatch, whose tasks would never finish."""
+        """Raise ``InputError``, once the engine is closed, for workers without rockbatch, whose tasks would never finish."""
         specs = client.run(find_spec, "rockbatch", on_error="return")
         lacking = [address for address, spec in specs.items() if spec is None or isinstance(spec, Exception)]
         if lacking:

@@ -40,7 +40,7 @@ def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
 
 
 def sources() -> Iterator[Path]:
-    """Yield the modules that can influence a row, in a fixed order."""
+    """Yield the modules that can influence a row, in a fixed order: all but :data:`SHOW`, and :data:`OF_SLICES` of slices."""
     for path in sorted(_TOP.rglob("*.py")):
         module = path.relative_to(_TOP)
         shows = module.parts[0] in SHOW or module.as_posix() in SHOW

@@ -106,7 +106,7 @@ def worst(table: "pd.DataFrame", cases: int) -> list[int]:
 
 
 def _response(study: Study, planned: StudyRun, row: "pd.Series") -> Response:
-    """Repeat a run with the steps of its ``row``, and return its histories."""
+    """Repeat a run with the steps of its ``row``, and return its histories; ``InputError`` if they are too long for memory."""
     (run,), case = simulations([planned]), planned.case
     observers = [o for o in observers_of(study.output) if o.column and has_value(row, o.column)]
     counts = int(row["impacts"]), int(row["separations"])

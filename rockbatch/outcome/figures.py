@@ -165,7 +165,10 @@ def _moving(t: Array, theta: Array) -> tuple[float, float]:
 
 
 def _thinned(t: Array, y: Array, moving: tuple[float, float], pixels: int) -> tuple[Array, Array]:
-    """Return times and values of a history thinned to ``pixels`` while the pier moves, outside as if the record had so many."""
+    """Return times and values of a history thinned to ``pixels`` while the pier moves.
+
+    What is before and after that is thinned to ``pixels`` times its share of the whole time.
+    """
     first, last = np.searchsorted(t, moving)
     parts = []
     for part in (slice(0, first), slice(first, last + 1), slice(last + 1, len(t))):
@@ -266,7 +269,7 @@ def _scale(histories: Sequence[History], row: int) -> Axis:
 
 
 def _lane(runs: int) -> float:
-    """Return the height of the strokes of one pier's events, as a share of the panel; 0 for more than four runs."""
+    """Return the height of the strokes of one pier's events over that of the panel: 0.05 of one run, 0.03 up to four, then 0."""
     return 0.05 if runs == 1 else 0.03 if runs <= MOST_LANES else 0.0
 
 

@@ -259,11 +259,11 @@ class Outcome:
         return self.changed(note="; ".join(filter(None, (self.note, *remarks))), **fields)
 
     def with_observed(self, observer: str, results: object) -> "Outcome":
-        """Return the outcome with the ``results`` of an observer."""
+        """Return a copy with the ``results`` of an observer by its name, in place of earlier ones."""
         return self.changed(observed={**self.observed, observer: results})
 
     def with_table(self, file: str, rows: object) -> "Outcome":
-        """Return the outcome with the ``rows`` of the table ``file`` beside peaks.csv."""
+        """Return a copy with the ``rows`` of the table ``file`` beside peaks.csv, in place of earlier ones."""
         return self.changed(tables={**self.tables, file: rows})
 
     def mirrored(self) -> "Outcome":

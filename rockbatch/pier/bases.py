@@ -189,7 +189,7 @@ class ElasticBase(WithShaft):
         return self.impact in ASKING_TENSION
 
     def parameters(self, pier: Pier) -> dict[str, object]:
-        """Return these springs under ``pier`` by the keys of run.json."""
+        """Return these springs under ``pier`` by the keys of run.json, without what is not given or has no effect."""
         landing: dict[str, object] = {"impact": self.impact} if self.zeta is None else {"zeta": self.zeta}
         if self.has_epsilon:
             landing["epsilon"] = self.epsilon
@@ -267,7 +267,7 @@ class YieldingBase(ElasticBase):
         return self.law.creep is not None
 
     def parameters(self, pier: Pier) -> dict[str, object]:
-        """Return these springs under ``pier`` by the keys of run.json."""
+        """Return the keys of :meth:`ElasticBase.parameters`, η, the law, ``n`` if the law has it, and δ_y."""
         values = super().parameters(pier) | {"eta": self.eta, "spring": self.spring}
         if self.has_exponent:
             values["n"] = self.n

@@ -178,7 +178,7 @@ class SlowTurn:
         return self.b * (np.sin(theta) if self.finite else theta)
 
     def elongation(self, place: Place, theta: Array, depth: Array) -> Array:
-        """Return the elongation of a device [m] with the toe at a ``depth`` [m]."""
+        """Return the elongation of a device since rest [m] at rotation ``theta`` [rad], with the toe at a ``depth`` [m]."""
         if place.height:
             if not self.finite:
                 return place.way * place.height * theta
@@ -197,7 +197,7 @@ class SlowTurn:
         return 1.0 / np.cos(0.5 * theta) if self.finite else np.ones_like(theta)
 
     def _arm(self, place: Place, theta: Array, elongation: Array) -> Array:
-        """Return the arm of a device's tension about the toe [m]."""
+        """Return the arm of a device's tension about the toe [m], positive where it rights the pier."""
         if place.height:
             height = place.height * np.cos(theta) + self._swing * np.sin(theta) if self.finite else place.height
             return np.full_like(theta, place.way) * height
@@ -357,7 +357,10 @@ class SlowTurn:
 
     @cached_property
     def unstable(self) -> float | None:
-        """The rotation from which on the righting moment is negative [rad]; None if there is none up to π/2."""
+        """The rotation from which on the righting moment is negative [rad].
+
+        If there is none up to π/2, it is None with devices, and π/2 without.
+        """
         if not self.places:  # a toe that cannot carry the weight alone yields, and carries its strength only
             share = 1.0 if self.spring is None else min(1.0, 2.0 * self.spring.strength - 1.0)
             tangent = share * math.tan(self.pier.alpha)

@@ -75,7 +75,7 @@ class Smooth:
         return deflections[i] + self._between(1.0 - forces[i], 1.0 - force) + self.give * force
 
     def deflection(self, force: float) -> float:
-        """Return the deflection/δ_y under a ``force``/F_y < 1."""
+        """Return the deflection/δ_y, brace included, under a ``force``/F_y < 1."""
         return float(self._deflections(np.array([force]))[0])
 
     def force(self, deflection: Array) -> Array:

@@ -108,7 +108,7 @@ class FootingBase(WithShaft):
         return self.zeta * share / (omega_v * omega_r)
 
     def parameters(self, pier: Pier) -> dict[str, Any]:
-        """Return this footing under ``pier`` by the keys of run.json."""
+        """Return this footing under ``pier`` by the keys of run.json, without what is not given."""
         values: dict[str, Any] = {"beta": self.beta, "zeta": self.zeta, "zeta_rocking": self.zeta_rocking(pier)}
         given = ("safety_factor", "length_m", "vertical_over_formula")
         values |= {name: getattr(self, name) for name in given if getattr(self, name) is not None}

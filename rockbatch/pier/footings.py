@@ -86,7 +86,7 @@ class SlowFooting(SlowTurn):
 
 
 def slow_turn(pier: Pier, base: Base, restraints: tuple[Restraint, ...] | None = None, side: float = 1.0) -> SlowTurn:
-    """Return the pier that is turned slowly on its base."""
+    """Return the pier turned slowly on its ``base``: a SlowFooting on a footing, else a SlowTurn, with their arguments."""
     if isinstance(base, FootingBase):
         return SlowFooting(pier, base, restraints, side)
     return SlowTurn(pier, base, restraints, side)

@@ -64,7 +64,7 @@ def enough_eta(pier: Pier, base: Base) -> float:
 def problems(pier: Pier, base: Base) -> list[Problem]:
     """Return a problem, with the limit, for each value that is impossible for ``pier`` on ``base``; [] if all are possible.
 
-    A frame that is not on rigid ground has that problem alone. Tendons are held against each other if nothing else is wrong.
+    A frame that is not on rigid ground has that problem alone. Lopsided tendons on springs are named if all else is right.
     """
     if base.on_springs and pier.deck_over_columns is not None:
         text = (

@@ -320,7 +320,10 @@ KINDS: dict[str, type[Restraint]] = {kind.what: kind for kind in (Damper, Tendon
 
 
 def what_of(values: Mapping[str, object]) -> str:
-    """Return the kind of device, a key of :data:`KINDS`, by the names of its fields in run.json; "tendon" if no other fits."""
+    """Return the kind of device, a key of :data:`KINDS`, by the names of its fields in run.json.
+
+    With ``side`` it is a deck spring, else with ``kind`` a damper, with ``gap_m`` a stop, and with none of them a tendon.
+    """
     if "side" in values:
         return "deck_spring"
     return "damper" if "kind" in values else "stop" if "gap_m" in values else "tendon"

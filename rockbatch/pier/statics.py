@@ -308,7 +308,7 @@ def in_words(sheet: Statics) -> dict[str, str]:
 
 
 def is_too_soft(sheet: Statics) -> bool:
-    """Return True if the flexural period is too long for a shaft taken as rigid; False if it is unknown, or the shaft bends."""
+    """Return True if the flexural period is over a third of that of rocking at 0.1 α; False if unknown, or if the shaft bends."""
     return (sheet.flexural_over_rocking or 0.0) > MOST_FLEXURE and not sheet.base.bends
 
 

@@ -84,7 +84,10 @@ def agreement(fine: Trial, coarse: Trial, tolerances: Tolerances, pier: Pier) ->
 
 
 def converged_extent(agreements: Sequence[Agreement]) -> Agreement:
-    """Return the extent to which a run has converged by its ``agreements``, one per halving; NONE if it has not."""
+    """Return the greatest extent that the last of a run's ``agreements``, as many as :data:`PAIRS` asks for, all reach.
+
+    There is an agreement for each halving; NONE if the run has not converged.
+    """
     for least, pairs in PAIRS.items():
         last = agreements[-pairs:]
         if len(last) == pairs and min(last) >= least:
@@ -109,7 +112,7 @@ def windows(fine: Trial, coarse: Trial) -> tuple[Samples, Samples]:
 
 
 def far_below(greatest: Samples, change: Samples, differs: npt.NDArray[np.bool_], peak: float) -> bool:
-    """Return True if the extremes that differ are below the ``peak`` by :data:`FAR_BELOW` times their change."""
+    """Return True if all extremes that differ are below the ``peak`` by :data:`FAR_BELOW` times their change or more."""
     return bool((FAR_BELOW * change[differs] <= peak - greatest[differs]).all())
 
 

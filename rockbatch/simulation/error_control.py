@@ -148,7 +148,7 @@ def _steps_of_next(run: Run, levels: Sequence[Trial], quiet_s: float) -> float:
 
 
 def _least_error(base: Base) -> float:
-    """Return the least error of θ/α that is claimed on ``base``."""
+    """Return the least error of θ/α that is claimed: ROUGH with a viscous damper of exponent < 1 on ``base``, else ROUNDING."""
     rough = any(isinstance(d, Damper) and d.kind == "viscous" and d.exponent < 1.0 for d in base.restraints)
     return ROUGH if rough else ROUNDING
 

@@ -169,7 +169,7 @@ def _shaft(pier: Pier, base: ElasticBase | FootingBase) -> Shaft | None:
 
 
 def _exponent(n: float) -> float | int | None:
-    """Return n as None for 5, int for other small whole numbers and float otherwise: the type selects the compiled code."""
+    """Return n as None for 5, int for 1 to LARGEST_WHOLE = 10 if whole, else float: the type selects the compiled code."""
     if n == 5:
         return None
     return int(n) if n in range(1, LARGEST_WHOLE + 1) else float(n)
@@ -353,7 +353,7 @@ def _damper(pier: Pier, base: Base, damper: Damper, element: Element) -> Element
 
 
 def _braced(pier: Pier, damper: Damper, element: Element) -> Element:
-    """Return the Element of a damper on a brace at the place of ``element``."""
+    """Return the Element of a damper on a brace at the place of ``element``; an idle one for a viscous damper without force."""
     stiffness = float(damper.brace * pier.gravity * pier.size / pier.half_width**2)
     if damper.kind == "hysteretic":
         force, soft = float(pier.gravity * damper.f), float(1.0 / damper.yield_m)
@@ -435,7 +435,10 @@ def _fastest_bending(m: Springs | Footing, contacts: Iterable[Sequence[Support]]
 
 
 def _accelerance(pier: Pier, base: Base, element: Element) -> float:
-    """Return the acceleration at a device by a unit force there per unit mass: on springs in full contact, else about a pivot."""
+    """Return the acceleration at a device by a unit force there per unit mass.
+
+    On a rigid base it is that about the farther pivot, else that in full contact.
+    """
     if element.height != 0.0:
         inertia = pier.inertia + pier.height**2 if base.on_springs else pier.inertia_about_pivot
         return (element.height**2 + element.swing**2) / inertia
@@ -517,10 +520,10 @@ def patience(pier: Pier, dt: float) -> int:
 
 @lru_cache(maxsize=4096)
 def readings(pier: Pier, base: Base, dt: float) -> tuple[int, int]:
-    """Return the samples of ``dt`` [s] from the end of the record to the first reading of residuals, and on to the second.
+    """Return the samples of ``dt`` [s] from the record's end to the first reading of residuals, and from that to the second.
 
-    The first comes :data:`READ_AFTER` periods of vertical vibration after the record; the second, at least as much later, gives
-    their drift over whole periods of full-contact rocking. 0 and 0 on other bases than yielding springs.
+    The first comes :data:`READ_AFTER` periods of vertical vibration after the record; the second, at least as long after the
+    first, gives their drift over whole periods of full-contact rocking. 0 and 0 on other bases than yielding springs.
     """
     if not isinstance(base, YieldingBase):
         return 0, 0

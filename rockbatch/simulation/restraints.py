@@ -175,8 +175,8 @@ def rests_at(
 def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Samples, sticks: np.ndarray) -> float:
     """Return the rotation [rad] at which devices hold a pier that is not at rest upright; 0 if they do not hold it.
 
-    Friction off the pivot holds the final rotation. Other devices deform elastically until weight and devices balance, between 0
-    and the final rotation, which is returned if there they still outweigh the weight.
+    Friction that sticks off the pivot holds the final rotation. Other devices deform elastically until weight and devices
+    balance, between 0 and the final rotation, which is returned if devices still outweigh the weight there.
     """
     theta, b = result.theta_end, pier.half_width
     laws = elements(pier, base)

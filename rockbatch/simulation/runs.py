@@ -455,5 +455,5 @@ def _not_run(failure: Failure, reason: str, substeps: int) -> Trial:
 
 
 def steps_of(motion: Motion, substeps: int, quiet_s: float) -> float:
-    """Return the number of steps of a run to the end of its tail of ``quiet_s`` [s]."""
+    """Return the number of steps of a run to the end of its tail of ``quiet_s`` [s], with a sample to spare."""
     return substeps * (motion.npts + quiet_s / motion.dt)

@@ -172,7 +172,7 @@ def in_body(of: Recorded, numbers: Places, shares: Samples) -> InBody:
 
 
 def _by_modes_alone(pier: Pier, body: InBody, across: Samples) -> InBody:
-    """Return ``body`` with v̈ and θ̈ of its base, ``across`` the axis at the centre of mass, as far as modes follow them.
+    """Return ``body`` without its base's acceleration ``across`` the axis and in rotation, which its modes take over as they can.
 
     The modes that are left out would give way to what a dashpot does in an instant, where a stiff shaft would follow.
     """

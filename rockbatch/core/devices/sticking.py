@@ -30,7 +30,7 @@ def friction_holds(traits, equipment, runs):
 def hold(traits, lanes, equipment, count, steps, part, number):
     """Add the forces of friction that sticks to the pull in a stage, ``part`` of a step after its start.
 
-    Keep them in the Grip ``number``, of the start (0), a stage (1 to 3) or the end (4) of the step; 0 in lanes without.
+    Keep them in the Grip ``number``, 1 to 3 of a stage inside, 4 of the end; zeros in lanes without such friction.
     """
     shared, grip = equipment.shared[0], equipment.grips[number]
     a, b = equipment.lanes[equipment.rubs[0]], equipment.lanes[equipment.rubs[1]]

@@ -155,7 +155,7 @@ def _peak_is_final(lanes, i, m, now, devices):
 def _read_base(lanes, i, m, now):
     """Record the unstressed positions of both supports; from the second reading on, also their drift since the last.
 
-    Foresee further drift by it.
+    By that, :func:`_foresee` further drift.
     """
     waiting, sample = lanes.waiting, lanes.clock.sample[i]
     left, right = base_of(m, now)
