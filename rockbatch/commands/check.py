@@ -76,7 +76,7 @@ def report(arguments: argparse.Namespace) -> int:
 
 
 def mark(verdict: str) -> str:
-    """Return sign and word of a verdict: "✗ FAIL"; an ASCII sign if the terminal cannot show it."""
+    """Return sign and word of a verdict: "✓ pass", "✗ FAIL"; an ASCII sign, "+" or "x", if stdout cannot show it."""
     return f"{shown(SIGNS[verdict], _PLAIN[verdict])} {_LOUD.get(verdict, verdict)}"
 
 

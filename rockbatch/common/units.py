@@ -218,7 +218,7 @@ class Usual(NamedTuple):
 
 
 def in_other_units(name: str, value: float, holds: Callable[[float], bool], most: float = 0.0) -> str:
-    """Return "; if it is in mm, write width_m = 4" for each unit of _OTHERS, in which ``value`` converted ``holds``; "" for none.
+    """Return "; if it is in mm, write width_m = 4" for each unit of _OTHERS if ``value``, converted, ``holds``; "" for none.
 
     A value of 10 or above may be in percent, if the key has the unit g, or none and usual values to 10, its ``most``.
     """

@@ -48,7 +48,7 @@ class Series:
     has_values: bool = False
 
     def with_values(self, words: Iterable[str]) -> str:
-        """Return the label followed by further values: "pads: β = 40, p = 1 rad/s"."""
+        """Return the label followed by further values: "pads: β = 40, p = 1 rad/s", or "pads: p = 1 rad/s" of "pads"."""
         return ", ".join((self.label, *words)) if self.has_values else titled(self.label, words)
 
     @property

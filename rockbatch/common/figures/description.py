@@ -188,7 +188,7 @@ def subscripts(label: str) -> Iterator[tuple[str, bool]]:
 
 
 def spanning(label: str, *arrays: Array, margin: float = 0.06, about: int = 5) -> Axis:
-    """Return an axis that holds every finite value, and zero, with a ``margin`` of its length, none below if none is negative.
+    """Return an axis that holds every finite value, and zero, with a share ``margin`` beyond, none below if none is negative.
 
     It is from −1 to 1 without a value other than 0.
     """
