@@ -78,7 +78,14 @@ def test_varied_values_are_called_by_symbol_and_unit(key, value, words):
 
 @pytest.mark.parametrize(
     ("value", "written"),
-    [(999.7, "1000"), (9999.6, "10,000"), (99999.6, "100,000"), (4500.4, "4500"), (-3.21e-7, "-3.21 × 10⁻⁷"), (0.0, "0")],
+    [
+        (999.7, "1000"),
+        (9999.6, "10,000"),
+        (99999.6, "100,000"),
+        (4500.4, "4500"),
+        (-3.21e-7, "-3.21 × 10⁻⁷"),
+        (0.0, "0"),
+    ],
 )
 def test_no_number_is_written_with_an_e_however_few_its_digits(value, written):
     assert plain(value, 3) == written
