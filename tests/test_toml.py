@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rockbatch.common.errors import InputError
-from rockbatch.toml.csv_columns import columns_of
+from rockbatch.toml.csv_columns import MOST_ROWS, columns_of
 from rockbatch.toml.kinds import Choice, KindError, Number, boolean
 from rockbatch.toml.lines import key_lines
 from rockbatch.toml.meant import known_as, names
@@ -208,6 +208,13 @@ def test_columns_of_a_small_file_are_numbers_or_the_line_says_why_not(tmp_path, 
         assert found in caught.value.messages[0]
     else:
         assert str(columns_of(path, kinds, gaps=gaps)) == str(found)  # NaN equals itself so
+
+
+def test_a_small_file_of_too_many_lines_is_refused_with_their_number(tmp_path):
+    path = tmp_path / "x.csv"
+    path.write_text("a\n" + "1\n" * MOST_ROWS, encoding="utf-8")
+    with pytest.raises(InputError, match=r"x\.csv: 100,001 lines; at most 100,000 are read"):
+        columns_of(path, {"a": Number()})
 
 
 @pytest.mark.parametrize(

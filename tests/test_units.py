@@ -76,7 +76,8 @@ def test_every_key_of_a_study_that_ends_in_a_unit_has_it_known_and_readable():
     units = {unit_of(key) for key in keys} - {""}
     assert {"m", "mm", "t", "kN", "kN_m", "kN_s_m", "s", "g", "deg", "rad", "m_s", "t_m2"} <= units
     assert all(factor_between(unit, unit) == 1.0 for unit in units)
-    assert [unit_in_words(unit) for unit in ("kN_s_m", "m_s2", "MN_m3")] == ["kN s/m", "m/s²", "MN/m³"]
+    read = {"kN_s_m": "kN s/m", "m_s2": "m/s²", "MN_m3": "MN/m³", "m_s": "m/s", "t_m3": "t/m³", "t_m2": "t m²"}
+    assert {unit: unit_in_words(unit) for unit in read} == read
 
 
 @pytest.mark.parametrize("unit", ["m/s", "cm", "counts", "V", "", "m/s3", "nm/s"])

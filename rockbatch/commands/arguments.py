@@ -65,7 +65,7 @@ class Command:
 
 
 def _study(arguments: argparse.Namespace) -> "Study":
-    """Return the study file with --motions and --strict applied. Raises ``InputError`` with its mistakes."""
+    """Return the study, read from its file, with --motions and --strict applied. Raises ``InputError`` with its mistakes."""
     from rockbatch.study import load_study
 
     study = load_study(arguments.study, motions=arguments.motions)

@@ -56,7 +56,7 @@ def main(arguments: argparse.Namespace) -> int:
 def report(arguments: argparse.Namespace) -> int:
     """Rewrite the report of results, write their calculation sheet, or compare two studies; return 0.
 
-    The path is printed, after the answer of a comparison.
+    The paths are printed on stderr, after the answer of a comparison, which is left out if the page goes to stdout.
     """
     made = make_report(
         arguments.directory,
@@ -76,7 +76,7 @@ def report(arguments: argparse.Namespace) -> int:
 
 
 def mark(verdict: str) -> str:
-    """Return sign and word of a verdict: "✗ FAIL"; an ASCII sign if the terminal cannot show it."""
+    """Return sign and word of a verdict: "✓ pass", "✗ FAIL"; an ASCII sign, "+" or "x", if stdout cannot show it."""
     return f"{shown(SIGNS[verdict], _PLAIN[verdict])} {_LOUD.get(verdict, verdict)}"
 
 
@@ -134,7 +134,10 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
 
 
 def called(saved: Saved, results: Labelled, *, bounds: bool = False) -> Called:
-    """Return the functions that name cases and records of ``saved``, which ``results`` label; cases with bounds on demand."""
+    """Return the functions that name cases and records of ``saved``, which ``results`` label.
+
+    Cases are named without the bounds under which they ran, unless ``bounds``.
+    """
     labels, varied = record_labels(saved.info), saved.info["varied"]
     named = results.named_runs if bounds else results.named_design
 

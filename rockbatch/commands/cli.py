@@ -102,7 +102,7 @@ def parser() -> argparse.ArgumentParser:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit code (:data:`EXIT_CODES`); without a command, list the commands and return 2.
 
-    Wrong arguments end the process (``SystemExit``) with 2.
+    0 becomes 1 if the output could not be printed. Wrong arguments end the process (``SystemExit``) with 2.
     """
     open_missing()
     root = parser()
@@ -123,9 +123,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Sequence[str]:
-    """Return the arguments, with "help run" as "run --help", "version" as --version; exit with 2 for an unknown command.
+    """Return the arguments, with "help run" as "run --help", "version" as --version.
 
-    The message suggests a command that may be meant.
+    Exits with 2 for an unknown command, with one that may be meant, and for options before the command.
     """
     word, *rest = arguments or [""]
     if word in COMMANDS or not word:
@@ -152,8 +152,8 @@ def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Se
 def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
     """Return the end of a message on ``unknown`` arguments: "; did you mean --jobs?", or that the command takes no options.
 
-    A word without "--" after a study may be meant for --out or --motions, an option that is a key of the study for that key;
-    "" if nothing is similar.
+    A word without "--" after a study may be meant for --out or --motions, an option that is a key of the study for that key, or
+    it is an option of other commands; "" if nothing is similar.
     """
     options = [name for name in COMMANDS[command].arguments if name.startswith("-")] if command else ["--version"]
     if not options:
@@ -176,7 +176,10 @@ def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
 
 
 def _with_dashes(word: str, options: Sequence[str]) -> str:
-    """Return an option that is written as "out=DIR", "/out", "—out" or "-j4" as it has to be; "" for another word."""
+    """Return an option as it has to be written: "--out=DIR" of "out=DIR", "--out" of "/out" or "—out", "--jobs 4" of "-j4".
+
+    "" for another word, and for one that begins with "--".
+    """
     joined = re.fullmatch(r"(-[a-z])([0-9]+)", word)
     if joined and (name := _other_word(joined[1], options)):
         return f"{name} {joined[2]}"
@@ -188,7 +191,8 @@ def _with_dashes(word: str, options: Sequence[str]) -> str:
 def _key_meant(unknown: Sequence[str]) -> str:
     """Return the end of a message on an option that is a key of a study: "; it is a key of the study: write p = 1 under [pier]".
 
-    "" if the first of the ``unknown`` is no such key. A value that is neither a number nor a truth value becomes an example.
+    "" if the first of the ``unknown`` is no such key, or one of a text. A value that is neither a number nor a truth value
+    becomes an example.
     """
     from rockbatch.study.load import SECTIONS
     from rockbatch.toml.kinds import text
@@ -219,7 +223,10 @@ def _similar(word: str, options: Sequence[str]) -> str | None:
 
 
 def _exit_code(parsed: argparse.Namespace) -> int:
-    """Run a command and return its exit code; 2 after wrong input or errors of files, 130 after Ctrl-C, with a message."""
+    """Run a command and return its exit code; 2 after wrong input, errors of files or lack of memory, 130 after Ctrl-C.
+
+    These are said on stderr.
+    """
     is_taken = any(isinstance(value, Path) and is_stdout(value) for value in vars(parsed).values())
     try:
         with redirect_stdout(sys.stderr) if is_taken else nullcontext(), warnings.catch_warnings():

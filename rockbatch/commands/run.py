@@ -58,7 +58,7 @@ def _expect(study: Study, arguments: argparse.Namespace) -> int:
 
 
 def in_words(seconds: float) -> str:
-    """Return a time rounded for people: "less than 1 s", "about 40 s", "about 12 min", "about 3.5 h"."""
+    """Return a time rounded for people: "less than 1 s", "about 40 s", from 90 s "about 12 min", from 90 min "about 3.5 h"."""
     if seconds < 1.0:
         return "less than 1 s"
     if seconds < 90.0:

@@ -72,7 +72,8 @@ def of_responses(
 ) -> str:
     """Return the greatest responses of each case as text.
 
-    Cases with the fewest runs that do not end standing come first, then those with the smallest rotation.
+    Cases with the fewest runs that do not end standing come first, of these the one with the smallest rotation; cases without
+    runs are left out.
     """
     heights = heights_of(worst)
     names = [name for name in RESPONSES if name in heights]

@@ -30,10 +30,10 @@ def whole(text: str) -> int:
 
 
 def number(text: str) -> float:
-    """Return a number; raise ``ArgumentTypeError`` for another text.
+    """Return a number, "inf" and "nan" too; raise ``ArgumentTypeError`` for another text.
 
-    The error has the number that is probably meant: that before a unit, with a point for a decimal comma, of a rate in Hz the
-    interval [s].
+    The error has the number that is probably meant, if any: that before "s" or "counts", another time in seconds, a point for a
+    decimal comma, the interval [s] of a rate in Hz.
     """
     with suppress(ValueError):
         return float(text)
@@ -48,7 +48,7 @@ def number(text: str) -> float:
 
 
 def seconds(text: str) -> float:
-    """Return a number above 0; raise ``ArgumentTypeError`` for another text."""
+    """Return a number above 0, or inf; raise ``ArgumentTypeError`` for another text."""
     if (value := number(text)) > 0:
         return value
     raise argparse.ArgumentTypeError(f"{text}: must be above 0")

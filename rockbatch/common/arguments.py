@@ -115,7 +115,8 @@ def _first_taken(value: object, alternatives: tuple[object, ...]) -> object:
 def _take(value: Any, kind: Any) -> object:
     """Return ``value`` converted to the type ``kind``, or itself if it is of this type; else _REFUSED.
 
-    Of a ``Literal`` any value of the type of one of its values is accepted.
+    A boolean is no number; a ``timedelta64``, a whole number beyond ±10¹⁸, and a text that no file can have as its name are
+    refused. Of a ``Literal`` any value of the type of one of its values is accepted.
     """
     plain = get_origin(kind) or kind
     fits = False

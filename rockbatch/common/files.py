@@ -91,7 +91,8 @@ def opened(path: Path, mode: Literal["rb", "r+b"] = "rb") -> io.FileIO:
 def opened_input(path: Path) -> io.FileIO:
     """Open a file that a user or a folder of records names, without a buffer; links are followed.
 
-    A named pipe that nobody writes into is empty, instead of keeping whoever opens it waiting for ever.
+    A named pipe that nobody writes into is empty, instead of keeping whoever opens it waiting for ever. Raises ``OSError`` for
+    a folder, or if there is no such file.
     """
     handle = _open_at_once(path, os.O_RDONLY)
     try:
@@ -185,7 +186,7 @@ def replacing(path: Path) -> Iterator[Path]:
     """Context manager: yield a temporary file that takes the place of ``path`` at the block's end, or is removed on an error.
 
     A reader finds the earlier file or the new one, never a part. Raises ``InputError`` if something else than a regular file
-    stands there.
+    stands there, or the disk is full.
     """
     refuse_irregular(path)
     with naming_full_disk(path):
@@ -256,7 +257,7 @@ def is_stdout(path: Path) -> bool:
 
 @contextmanager
 def naming_full_disk(path: Path, assurance: str = "what was finished before is kept") -> Iterator[None]:
-    """Context manager: turn the operating system's error for a full disk, or a quota, into an ``InputError`` about ``path``."""
+    """Context manager: turn the error for a full disk, a quota or a limit on sizes into an ``InputError`` about ``path``."""
     try:
         yield
     except OSError as error:
@@ -302,8 +303,8 @@ def only_writer(folder: Path) -> Iterator[None]:
 def legible(text: str, keep: str = "") -> str:
     """Return ``text`` with control and invisible characters, and bytes of a file's name that are no text, written as ``\\x1b``.
 
-    It can be printed, stays on its line and goes into UTF-8. ``keep`` are characters that stay, such as line breaks of a text of
-    several lines.
+    Signs that join letters or emoji stay. It can be printed, stays on its line and goes into UTF-8. ``keep`` are characters
+    that stay, such as line breaks of a text of several lines.
     """
 
     def escaped(match: re.Match[str]) -> str:

@@ -30,7 +30,10 @@ class ReportPart(NamedTuple):
 
 
 def from_observer(name: str, function: str) -> Any:
-    """Return the attribute of an observer, such as "observe.requested", importing its module; ``AttributeError`` without it."""
+    """Return the attribute of an observer, such as "observe.requested", importing its module.
+
+    Raises ``AttributeError`` for an unknown observer or attribute.
+    """
     if name not in OBSERVERS:
         raise AttributeError(f"there is no observer {name}")
     module, _, attribute = function.partition(".")

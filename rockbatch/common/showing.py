@@ -53,7 +53,10 @@ class Shown(InNotebook, ABC):
 
 
 def _short(value: object) -> str:
-    """Return a value as short text: floats with 5 significant digits, items of a tuple separated by semicolons, others by str."""
+    """Return a value as short text: floats with 5 significant digits, items of a tuple separated by semicolons, others by str.
+
+    An :class:`InNotebook` is its title and facts, "Pier: alpha = 0.13".
+    """
     if isinstance(value, InNotebook):
         title, facts = value._facts()
         return f"{title}: " + ", ".join(f"{name} = {words}" for name, words in facts.items() if words)

@@ -54,8 +54,9 @@ class Bounds:
     def message(self, value: float) -> str:
         """Return the message about a value that is out of bounds, to follow "name = value: ".
 
-        "must be a number above 0" if the value is not and has to be; else ``why``, or "must be within 0 and 1", with the value to
-        write if it is probably in percent.
+        "must be a number above 0" if the value is not and has to be; "must be 1e+15 at most" for a greater one, if that is the
+        bound; else ``why``, or "must be within 0 and 1". If the value is probably in percent, and ``why`` no function, the
+        value to write follows.
         """
         if value <= 0.0 <= self.low and 0.0 not in self:
             return f"must be a number above 0{self.unit}"
@@ -110,7 +111,7 @@ _MOST_SHARE = 10.0  # greatest usual value of a key without unit that may be wri
 
 
 def unit_of(name: str) -> str:
-    """Return the words of a key that are its unit: "kN_m" of "stiffness_kN_m"; "" if it has none."""
+    """Return the words of a key that are its unit: "kN_m" of "stiffness_kN_m", "rad" of "alpha"; "" if it has none."""
     words = name.split("_")
     end = len(words)
     while end > 1 and re.sub(r"\d$", "", words[end - 1]) in _SIZES:
@@ -119,8 +120,9 @@ def unit_of(name: str) -> str:
 
 
 def unit_in_words(unit: str) -> str:
-    """Return a unit of a key as it is read: "kN_m" as "kN/m", "m_s2" as "m/s²"."""
-    return re.sub(r"_(?=mm|cm|m|s2)", "/", unit).replace("_", " ").replace("2", "²").replace("3", "³")
+    """Return a unit of a key as it is read: "kN_m" as "kN/m", "m_s2" as "m/s²", "t_m2", of an inertia, as "t m²"."""
+    unit = re.sub(r"(?<=[tg])_(?=[cm]?m2)", " ", unit)
+    return re.sub(r"_(?=mm|cm|m|s2)|(?<=m)_(?=s)", "/", unit).replace("_", " ").replace("2", "²").replace("3", "³")
 
 
 def factor_between(unit: str, own: str) -> float | None:
@@ -216,7 +218,7 @@ class Usual(NamedTuple):
 
 
 def in_other_units(name: str, value: float, holds: Callable[[float], bool], most: float = 0.0) -> str:
-    """Return "; if it is in mm, write width_m = 4" for each unit in which ``value`` would be one that ``holds``; "" for none.
+    """Return "; if it is in mm, write width_m = 4" for each unit of _OTHERS if ``value``, converted, ``holds``; "" for none.
 
     A value of 10 or above may be in percent, if the key has the unit g, or none and usual values to 10, its ``most``.
     """

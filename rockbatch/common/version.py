@@ -10,7 +10,10 @@ _TOP = Path(__file__).parents[2]
 
 @cache
 def commit() -> str:
-    """Return the digest of the commit that runs, 12 digits, with "+" if any tracked file differs; "" but in a checkout."""
+    """Return the digest of the commit that runs, 12 digits, with "+" if any tracked file differs.
+
+    "" outside of a checkout, or if Git cannot tell.
+    """
     if not (_TOP / ".git").exists():
         return ""
     import subprocess  # a few milliseconds, for the two that ask

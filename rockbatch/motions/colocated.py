@@ -41,9 +41,9 @@ def with_gains_compared(components: Sequence[Component]) -> list[Component]:
 
 
 def _side_by_side(components: Sequence[Component]) -> Iterator[tuple[int, int, float]]:
-    """Yield places i < j of two dated components of one station and line that overlap in time, and the sign of their directions.
+    """Yield places i < j of two components of one station that overlap in time, and 1 for equal or −1 for opposite directions.
 
-    The sign is −1 if these are opposite; their sensors have different location codes.
+    Both have a date, and their sensors have location codes, which differ.
     """
     coded = [(i, c) for i, c in enumerate(components) if c.sensor.number and c.sensor.location is not None and c.dated]
     for of_station in grouped(coded, lambda pair: (pair[1].sensor.network, pair[1].sensor.number)).values():
@@ -67,7 +67,8 @@ def _sign_between(a: Component, b: Component) -> float:
 def _gain_ratio(a: Component, b: Component, sign: float) -> float | None:
     """Return the amplitude of ``b`` over that of ``a``, negative if the signs of their motions differ from ``sign``.
 
-    ``None`` for a correlation below 0.98, fewer than 100 common samples, a component at rest, and a ratio from 0.8 to 1.25.
+    ``None`` for a correlation below 0.98, steps or lengths too unlike, fewer than 100 common samples, a component at rest, and
+    a ratio from 0.8 to 1.25.
     """
     if too_unlike(a, b):
         return None

@@ -103,7 +103,7 @@ def _copies_as_their_originals(station: Sequence[Component]) -> list[Component]:
 
 
 def _contradiction(component: Component) -> str:
-    """Return the first two contradictory statements of a component in words; "" if none, or if the user states its direction.
+    """Return the first two contradictory statements of a component in words; "" for none, or if :func:`_by_user`.
 
     Angles of 0°, which may be defaults, and weak statements do not count.
     """

@@ -110,7 +110,7 @@ class HazardCurve:
 
     @property
     def _slopes(self) -> Values:
-        """Return the slopes k between the points, shape (points − 1,); the given slope alone for a single point."""
+        """Return the slopes k between the points, shape (points − 1,); the slope alone, shape (1,), if it is given."""
         if self.slope is not None:
             return np.array([self.slope])
         return -np.diff(np.log(self.rates)) / np.diff(np.log(self.levels))

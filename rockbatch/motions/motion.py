@@ -449,7 +449,7 @@ class Motion(Shown):
     def times(self, factor: float, reverse: bool = False) -> "Motion":
         """Return the motion with all components ``factor`` times as large, and the horizontal one reversed if ``reverse``.
 
-        So is its initial state. Raises ``InputError`` if a component overflows.
+        So is its initial state; ``across`` is not reversed. Raises ``InputError`` if a component overflows.
         """
         along = -factor if reverse else factor
         times = copy(self)  # without the checks of __init__: the product is finite unless it overflows

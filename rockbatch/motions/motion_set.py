@@ -96,7 +96,10 @@ class MotionSet(Shown):
 
     @property
     def labels(self) -> dict[str, str]:
-        """Return names for people by names in tables; shared ones in full length, then with the name in tables behind them."""
+        """Return a label for people, "Imperial Valley 1979, Meloland, 270", by each name in tables.
+
+        A label that several motions share is in full length, and if that is shared, too, the name follows in brackets.
+        """
         labels = {motion.name: motion.label for motion in self.motions}
         for longer in (lambda motion: motion.origin.full_label or motion.label, lambda motion: motion.named):
             times = Counter(labels.values())

@@ -254,7 +254,7 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
 
 
 def _with_unique_names(motions: Sequence[Motion], folders: Sequence[str]) -> list[Motion]:
-    """Return the motions with unique names: equal ones get their files' suffix, then their folder, then a number."""
+    """Return the motions with unique names: equal ones get the suffixes of files in one folder, then folders, then numbers."""
     in_folder = Counter((folder, motion.name) for folder, motion in zip(folders, motions, strict=True))
 
     def with_suffix(i: int, name: str) -> str:

@@ -176,8 +176,8 @@ def scale_verticals(
     """Return motions whose vertical components have their own factor, the same for all components of a station.
 
     ``recorded`` has the vertical components before scaling, by the motions' names. They are scaled to ``target``, or without
-    one by the factor of their horizontals, and by ``scale``. As by :func:`at_target`, a motion is unusable if its vertical
-    component needs more than :data:`MOST_FACTOR` to meet a spectrum.
+    one by the factor of their horizontals, and by ``scale``; without a target and with ``scale`` 1 nothing changes. As by
+    :func:`at_target`, a motion is unusable if its vertical component needs more than :data:`MOST_FACTOR` to meet a spectrum.
     """
     if target is None and scale == 1.0:
         return motion_set

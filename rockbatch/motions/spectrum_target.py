@@ -176,7 +176,7 @@ class SpectrumTarget:
         return [station_spectra(station, periods, self.spectrum.damping)[self.pairs] / gravity for station in stations]
 
     def remarks(self, motions: Sequence[Motion]) -> list[str]:
-        """Return a sentence on a limit of the code that the target exceeds, and on pairs judged apart; [] for none."""
+        """Return a sentence on a limit of the code that the target exceeds, and on pairs judged apart by a code; [] for none."""
         paired = any(len(station) == 2 for station in _stations(motions))
         apart = self.pairs == "apart" and self.spectrum.code and paired
         return list(filter(None, (self.spectrum.beyond, _APART if apart else "")))
@@ -239,7 +239,7 @@ class SpectrumTarget:
         )
 
     def _components_mean(self, motions: Sequence[Motion], gravity: float) -> dict[str, object]:
-        """Return under "components_sa_g" the mean spectrum [g] of components, if pairs are fitted; {} else or without."""
+        """Return {"components_sa_g": mean spectrum [g] of components}; {} without motions, or if ``pairs`` needs no two."""
         if self.pairs not in TWO_COMPONENT_RULES or not motions:
             return {}
         return {"components_sa_g": _rounded(replace(self, pairs="apart").mean(motions, self.periods, gravity))}

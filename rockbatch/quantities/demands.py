@@ -185,10 +185,10 @@ def magnitude(runs: Rows, columns: tuple[str, ...]) -> Values:
 
 
 def largest_force(columns: tuple[str, ...], times: Lever, share: str) -> Evaluate:
-    """Return the evaluation of the largest of some columns of forces, times a factor of the case.
+    """Return the evaluation of the largest magnitude of some columns of forces, times a factor of the case.
 
-    The value is 0 for a run with forces but without this one, such as one without impacts; NaN in results of an earlier version
-    without the column.
+    ``share`` is the column of its relative error. The value is 0 for a run with forces but without this one, such as one
+    without impacts; NaN in results of an earlier version without the column.
     """
 
     def evaluate(runs: Rows, case: Case) -> Estimated:

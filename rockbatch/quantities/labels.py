@@ -58,7 +58,7 @@ DEVICE_SYMBOLS = {
 exponent."""
 _OF_DEVICE = re.compile(r"(damper|tendon|stop|deck_spring)_(\d+)_(.+)")
 
-_RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def in_full(case: str, columns: Mapping[str, object], entry: Case | None = None) -> str:
@@ -76,7 +76,10 @@ def titled(case: str, words: Iterable[str]) -> str:
 
 
 def values_in_words(columns: Mapping[str, object], entry: Case | None = None) -> list[str]:
-    """Return varied values in words, in their order, without those that are NaN or "": ["β = 40", "kinematics finite"]."""
+    """Return varied values in words, in their order, without NaN, None and "": ["β = 40", "kinematics finite"].
+
+    A bound is its name alone.
+    """
     given = {key: value for key, value in columns.items() if value == value and value not in ("", None)}
     return [str(value) if key == BOUND else quantity(key, value, case=entry) for key, value in given.items()]
 
@@ -92,7 +95,7 @@ def record_labels(info: Mapping[str, Any]) -> dict[str, str]:
 
 
 def quantity(key: str, value: object, digits: int = 10, case: Case | None = None) -> str:
-    """Describe a value of a study key without line breaks: "β = 40", "Fy = 45,000 kN", "kinematics finite".
+    """Describe a value of a study key: "β = 40", "Fy = 45,000 kN", with no-break spaces, or "kinematics finite".
 
     ``case``, from run.json, supplies the exponent in a viscous damper's unit: "C = 900 kN (s/m)^0.3".
     """
@@ -146,12 +149,13 @@ def _exponent(case: Case, kind: str, number: int) -> float:
 def plain(value: float, digits: int) -> str:
     """Format a number to ``digits`` significant digits without an "e": "0.35", "4500", "45,000", "2.5 × 10⁶".
 
-    Up to six integer digits are kept in full, with a comma from five on; numbers with more are written with a power of ten.
+    Up to six integer digits are kept in full, with a comma from five on; numbers with more, or below 1e-4, are written with a
+    power of ten.
     """
     whole = len(str(int(abs(value))))
-    if whole <= 6:
-        written = f"{value:.{max(digits, whole)}g}"
-        return f"{float(written):,.10g}" if whole > 4 else written
+    if whole <= 6 and not 0.0 < abs(value) < 1e-4:
+        rounded = float(f"{value:.{max(digits, whole)}g}")
+        return f"{rounded:,.10g}" if abs(rounded) >= 1e4 else f"{rounded:.10g}"
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     return f"{float(mantissa):.10g} × 10{str(int(exponent)).translate(_RAISED)}"
 

@@ -28,7 +28,7 @@ LARGEST = "9,99E+307"
 
 
 class SimulatedRun(NamedTuple):
-    """A simulated run: its identity and peak as in peaks.csv, its motion before ``scale`` is applied, and its pier."""
+    """A simulated run: its identity and peak as in peaks.csv, its motion along the axis of its case, unscaled, and its pier."""
 
     row: Row
     motion: Motion

@@ -46,7 +46,7 @@ class Names:
     pier_places: dict[Key, int]
 
     def named_case(self, case: str, columns: Mapping[str, object], varied: Sequence[str], *also: str) -> str:
-        """Return the name of a case on its pier, and what ``also`` tells its runs from others.
+        """Return the name of a case on its pier, with ``also``, words on its runs: "pads: β = 40, p = 1 rad/s, reversed".
 
         ``columns`` maps the ``varied`` keys to values. A case that is not among the named ones is called by its name and all
         values of ``columns``.
@@ -57,7 +57,10 @@ class Names:
         return titled(case, filter(None, (*values_in_words(columns), *also)))
 
     def named_place(self, series: int, pier: int, *also: str) -> str:
-        """Return the name of a foundation on a pier by their indices, and what ``also`` tells its runs from others."""
+        """Return "pads: β = 40, p = 1 rad/s, reversed": a foundation and a pier, by index, and ``also``, words on its runs.
+
+        Empty words are left out.
+        """
         return self.series[series].with_values(filter(None, (self.piers[pier], *also)))
 
 
@@ -97,7 +100,10 @@ class Labelled(Names):
         return self.named_runs(case, of_design(columns), varied, scale)
 
     def case_of(self, run: "pd.Series[Any] | Row") -> str:
-        """Return the name of a run without its record: "pads: β = 40, motions scaled by 2, reversed"."""
+        """Return the name of a run without its record: "pads: β = 40, motions scaled by 2, reversed".
+
+        Whether it is with or without the vertical component follows, if the study ran both.
+        """
         scaled = scaled_by(run["scale"]) if run["scale"] != 1 else ""
         turned = "reversed" if run["polarity"] == "-" else ""
         return self.named_place(run["series"], run["pier"], scaled, turned, run["with_vertical"])
@@ -167,7 +173,10 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
 
 
 def _pair(case: str, columns: Mapping[str, object], varied: Sequence[str]) -> tuple[Key, Key]:
-    """Return the keys of a case's foundation and of its pier."""
+    """Return :func:`foundation_key` and :func:`pier_key` of a case: ("pads", 40.0) and (1.0,).
+
+    They are ("pads",) and () if nothing varies.
+    """
     return foundation_key(case, columns, varied), pier_key(columns, varied)
 
 

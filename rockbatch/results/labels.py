@@ -48,7 +48,7 @@ class Series:
     has_values: bool = False
 
     def with_values(self, words: Iterable[str]) -> str:
-        """Return the label followed by further values: "pads: β = 40, p = 1 rad/s"."""
+        """Return the label followed by further values: "pads: β = 40, p = 1 rad/s", or "pads: p = 1 rad/s" of "pads"."""
         return ", ".join((self.label, *words)) if self.has_values else titled(self.label, words)
 
     @property
@@ -62,9 +62,10 @@ def named(
 ) -> dict[Key, Series]:
     """Return a series for each foundation, labelled by its case and the values that distinguish it from others of its kind.
 
-    The case is left out if all share it and values distinguish them. A tick is a letter, or the name of the case if all names are
-    short and different. ``cases`` maps each foundation to its entries in run.json,
-    one for each pier; ``given`` maps case names to the keys that the study gives.
+    The case is left out if all share it and values distinguish them. A tick is a letter, or the name of the case if all names
+    differ and have three characters at most. ``cases`` maps each foundation to its entries in run.json, one for each pier;
+    ``given`` maps case names to the keys that the study gives. Rigid ground without devices is a line, ``rigid``, unless all
+    of several foundations are.
     """
     constants = {key: _constants(of_foundation, given.get(str(key[0]), ())) for key, of_foundation in cases.items()}
     # The rocking block itself, drawn as a line to compare others with: on rigid ground and without devices
@@ -97,9 +98,10 @@ def named(
 
 
 def under_bounds(designs: Mapping[Key, Series], keys: Iterable[Key]) -> dict[Key, Series]:
-    """Return a series for each of the ``keys``, which end with a bound: the label of its design, and the bound after a comma.
+    """Return a series for each of the ``keys``, which end with a bound: the label of its design and the bound.
 
-    The nominal design, whose bound is "", keeps its label. Letters are given anew.
+    It is "pads: stiff ground", or "pads: β = 40, stiff ground" if the label has values. The nominal design, whose bound is "",
+    keeps its label. Letters are given anew.
     """
     series: dict[Key, Series] = {}
     count = {True: 0, False: 0}

@@ -178,7 +178,10 @@ class Results(Shown, Saved):
         return f"results of {self.info['study']['title']!r} in {self.directory}", facts
 
     def _beneath(self) -> "pd.DataFrame":
-        """Return the table below the facts in a notebook: record, case, varied keys and results of simulated runs."""
+        """Return the table below the facts in a notebook: record, case, varied keys and results of simulated runs.
+
+        Unusable files have rows in it, too.
+        """
         results = ["status", "theta_max_over_alpha", "theta_max_error", "settlement_m"]
         return simulated(self.peaks)[["record", "case", *self.info["varied"], *results]]
 

@@ -111,7 +111,10 @@ def read_saved(directory: Path) -> Saved:
 
 
 def _instead_of(directory: Path) -> str:
-    """Return advice for a folder without runs: the page of its analyses if it has one, else to give a folder that has runs."""
+    """Return advice for a folder without runs: the page of its analyses if it has one, else a folder with runs of similar name.
+
+    Without either it is to give a folder that has runs.
+    """
     path = directory / ANALYSES_PAGE
     if path.exists():
         return f"its analyses are in {path}"
@@ -163,7 +166,7 @@ def _as_input_error(path: Path, line: str, kind: str, *damages: type[Exception])
 
 
 def _read_info(path: Path) -> dict[str, Any]:
-    """Read run.json; raise ``InputError`` with every part that does not fit :data:`SHAPE`."""
+    """Read run.json; raise ``InputError`` with the parts that do not fit :data:`SHAPE`, up to :data:`MOST_PROBLEMS`."""
     with _as_input_error(path, ":1", "JSON", ValueError, RecursionError):
         info: Any = _legible(json.loads(read_text(path)))
     misfits = list(unfit(info, SHAPE, MOST_PROBLEMS))
@@ -185,7 +188,7 @@ def _legible(value: Any) -> Any:
 
 
 def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
-    """Read peaks.csv with the types of its columns; raise ``InputError`` with every bad cell and its line."""
+    """Read peaks.csv with the types of its columns; raise ``InputError`` with the bad cells of :func:`_bad_cells`."""
     with _as_input_error(path, ":1", "a table", UnicodeDecodeError, csv.Error), opened_text(path) as file:
         head = next(csv.reader(file), [])
     if missing := [name for name in (*names(FIXED), *varied) if name not in head]:

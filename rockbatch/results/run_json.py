@@ -194,7 +194,7 @@ def _not_used(file: Unusable) -> Row:
 
 
 def describe_study(study: Study) -> dict[str, str]:
-    """Return path, title, notes and text of a study, and the digest that identifies its results."""
+    """Return path, title, notes and text of a study, and the SHA-256 of the text, which identifies its results."""
     sha256 = hashlib.sha256(study.text.encode()).hexdigest()
     named = {"path": str(study.path), "title": study.title, "notes": study.notes}
     return named | {"text": study.text, "sha256": sha256}

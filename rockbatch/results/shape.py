@@ -88,9 +88,9 @@ def _unfit_object(value: object, shape: dict[object, object], place: str) -> Ite
 
 
 def _fits_at_once(value: object, shape: object) -> bool:
-    """Return True for a float or str that fits ``shape``; False leaves the decision to :func:`_unfit`.
+    """Return True for a float or str if ``shape``, or its first alternative, is that type; a float has to be within ±MOST.
 
-    A shortcut, since files may hold millions of numbers.
+    A shortcut, since files may hold millions of numbers: False leaves the decision to :func:`_unfit`.
     """
     if type(shape) is tuple:
         shape = shape[0]

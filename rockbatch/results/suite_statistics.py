@@ -16,7 +16,7 @@ NO_PEAK = ("overturned", "flight")
 
 
 def worst_records(runs: "pd.DataFrame", most: int) -> list[str]:
-    """Return the ``most`` worst records: those with a run without a peak first, then by decreasing rotation."""
+    """Return the ``most`` worst records: first those with a run in :data:`NO_PEAK`, then by decreasing rotation, then others."""
     badness = runs["theta_max_over_alpha"].where(~runs["status"].isin(NO_PEAK), math.inf)
     worst = badness.groupby(runs["record"]).max().sort_values(ascending=False, kind="stable")
     return list(worst.index[:most])

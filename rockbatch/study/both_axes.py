@@ -67,7 +67,7 @@ def _obstacles(case: Case, motions: MotionSpec, names: Container[object]) -> Ite
 
 
 def _case_across(table: Table, case: Case) -> list[Case]:
-    """Return the case across the axis of ``case`` in a list; [] if its pier is impossible, and a problem is added."""
+    """Return the case across the axis of ``case`` in a list; [] if its pier or base is impossible or unusual, with problems."""
     width = float(case.columns[KEY])
     pier_table = table.file.table("pier")
     confirmed = {name.replace(KEY, "width_m") for name in table.confirmed}

@@ -98,7 +98,10 @@ def ranges(of: str = "", kind: Kind | None = None) -> dict[str, Key]:
 
 
 def varied(case: Case, values: KeyValues) -> Case:
-    """Return the case with other ``values`` of its pier, base and devices. Raises :class:`InputError` for impossible ones."""
+    """Return the case with other ``values`` of its pier, base and devices, by names of :func:`values_of`; unusual ones pass.
+
+    Raises :class:`InputError` for impossible ones.
+    """
     arguments = dict(values)
     of_pier = {name: arguments.pop(name) for name in OF_PIER if name in arguments}
     # The author of the study means its ranges: none of their values needs to be confirmed

@@ -50,7 +50,7 @@ class Grid:
 
 
 def too_many(number: int, what: str) -> str:
-    """Return a message about more than :data:`MOST_CASES` cases or piers (``what``); empty for fewer."""
+    """Return a message about more than :data:`MOST_CASES` cases or piers (``what``); "" for no more."""
     if number <= MOST_CASES:
         return ""
     return (

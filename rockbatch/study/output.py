@@ -60,7 +60,10 @@ class Output:
         return self.with_keys(**known | {key: True for key in keys if known.get(key) is False})
 
     def only(self, keys: Collection[str]) -> "Output":
-        """Return the output of these ``keys`` alone, without histories; keys that apply only with these keep their values."""
+        """Return the output with those of ``keys`` that are yes or no switched on alone, without histories.
+
+        Keys that apply only with these keep their values.
+        """
         known = self.keys
         chosen = {key: True for key in keys if isinstance(known.get(key), bool)}
         settings = {key: value for key, value in known.items() if OUTPUT[key].only.keys() & chosen.keys()}

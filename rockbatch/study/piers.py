@@ -407,7 +407,7 @@ def _pier_of(table: Table, chosen: Chosen, parts: int) -> tuple[Pier, Values] | 
 
 
 def has_mass(file: TomlFile) -> bool:
-    """Return whether [pier] states the mass, itself, by parts, or probably by a misspelt name."""
+    """Return whether [pier] states the mass, itself or by parts; True if mass_t, or [pier], is probably misspelt."""
     return file.has(("pier", "mass_t")) or bool(file.value(("pier", "part"))) or ("pier",) in file.misspelt
 
 

@@ -34,7 +34,10 @@ def is_of_restraint(name: str) -> bool:
 
 
 def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter]:
-    """Return all parameters of devices that are finite, with their places and fields, by names with numbers: "damper_1.f"."""
+    """Return all parameters of devices that are finite, with their places and fields, by names with numbers: "damper_1.f".
+
+    Those in kN are of a pier of known mass only.
+    """
     parameters_by_name: dict[str, Parameter] = {}
     counts: Counter[str] = Counter()
     given_by = fields_of(pier)

@@ -325,9 +325,10 @@ class Device:
 
 
 def read_devices(case: Table) -> tuple[list[Device], Grid]:
-    """Return the devices of a case, and the values of their keys, called "damper_1_f" for the first damper.
+    """Return the devices of a case as they are written, and all values of their keys, called "damper_1_f" for the first damper.
 
-    A damper of no known kind is left out; mistakes become problems of the file.
+    :meth:`Device.made` makes one of them with one value of each key. A damper of no known kind is left out; mistakes become
+    problems of the file.
     """
     devices: list[Device] = []
     grid = Grid()

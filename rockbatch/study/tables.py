@@ -51,10 +51,10 @@ def plain_table(table: Mapping[str, object], *place: str) -> TomlTable:
 
 
 def changed(table: TomlTable, changes: Mapping[str, object], *place: str) -> TomlTable:
-    """Return a table of a study with ``changes`` key by key; None takes a key away. ``InputError`` for an unknown name.
+    """Return a table of a study with ``changes`` key by key; None takes a key away, and a new key is added.
 
     Of a list of tables, such as the cases, a name or a list of names keeps those tables, and a mapping changes some of them by
-    their names.
+    their names: ``InputError`` for a name that none of them has.
     """
     result = dict(table)
     for key, change in changes.items():

@@ -26,12 +26,12 @@ class AnalysisArguments(TypedDict):
 
 
 def analysis_arguments(arguments: argparse.Namespace) -> AnalysisArguments:
-    """Return the folder, engine and listener of an analysis, by the names of its parameters."""
+    """Return the folder, engine, --fresh and a listener for an analysis, by the names of its parameters."""
     return {"out": folder(arguments), "jobs": engine(arguments), "fresh": arguments.fresh, "progress": Terminal()}
 
 
 def print_files(analysis: Analysis) -> None:
-    """Print the paths of the files that were written."""
+    """Print the paths of the files that were written on stderr, a line each."""
     for path in analysis.files:
         say(str(path))
 

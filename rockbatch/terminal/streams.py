@@ -60,9 +60,10 @@ def show(text: str) -> None:
 
 
 def tell(stream: TextIO | None, text: str) -> None:
-    """Print ``text`` to a stream, with escapes for characters it cannot encode; give the stream up if it fails.
+    """Print ``text`` and a line break to a stream; give the stream up if it fails.
 
-    A stream that is None, or was given up, gets nothing.
+    Escapes stand for control characters and those it cannot encode; lines are wrapped to the width of a terminal. A stream that
+    is None, or was given up, gets nothing.
     """
     if stream is None or stream in _lost:
         return
@@ -77,7 +78,7 @@ def tell(stream: TextIO | None, text: str) -> None:
 
 
 def give_up(stream: TextIO, error: OSError) -> None:
-    """Stop writing to a stream that failed: a pipe closed by its reader, or a full disk."""
+    """Stop writing to a stream that failed, as a pipe closed by its reader; say so of stdout if it failed otherwise."""
     _lost[stream] = error
     with suppress(OSError, ValueError):  # its remaining buffer must not fail again on closing
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
@@ -100,7 +101,7 @@ def shown(text: str, instead: str) -> str:
 
 
 def showable(text: str) -> str:
-    """Return ``text`` with :data:`PLAIN` words for the characters that stdout cannot show, and plain spaces."""
+    """Return ``text`` with plain spaces, and :data:`PLAIN` words for those of their characters that stdout cannot show."""
     for sign, plain in PLAIN.items():
         text = text.replace(sign, shown(sign, plain)) if sign in text else text
     return text.replace("\u00a0", " ")
@@ -128,7 +129,7 @@ def filled(text: str, first: int = 0, rest: int = 2) -> str:
 
 
 def _in_lines(text: str, most: int, first: str, rest: str) -> str:
-    """Return prose wrapped to lines of at most ``most`` characters; longer words, such as paths, stay whole."""
+    """Return prose, its line breaks as blanks, wrapped to lines of at most ``most`` characters; longer words stay whole."""
     return textwrap.fill(
         text, most, initial_indent=first, subsequent_indent=rest, break_long_words=False, break_on_hyphens=False
     )

@@ -16,12 +16,12 @@ MOST_ROWS = 100_000
 
 
 def columns_of(path: Path, kinds: Mapping[str, Kind], *, gaps: bool = False) -> dict[str, list[Any]]:
-    """Return the columns of a CSV file by the names in its first line, of equal length, with values of these ``kinds``.
+    """Return the columns of a CSV file by the names in its heading, of equal length, with values of these ``kinds``.
 
-    Lines that begin with # are comments, and lines of empty cells alone are skipped. With semicolons between the cells, decimals
-    may have commas. With ``gaps`` a cell that is empty or "nan" is NaN. Raises ``InputError`` with the file and the lines for an
-    unknown or repeated column, cells that are not of their kind, lines with fewer or more cells than names (20 at most), and a
-    file without a row below its heading. A column of ``kinds`` that the file lacks is no error.
+    Lines that begin with # are comments, and rows of empty cells alone are skipped. With semicolons between the cells, decimals
+    may have commas. With ``gaps`` a cell that is empty or "nan" is NaN. Raises ``InputError`` for an unknown or repeated
+    column, with the first 20 cells that are not of their kind and lines with fewer or more cells than names, for a file without
+    a row below its heading, and as :meth:`TomlFile.text_of`. A column of ``kinds`` that the file lacks is no error.
     """
     rows, delimiter = _rows(path)
     names = _names(path, *rows[0], kinds)
@@ -44,19 +44,25 @@ def columns_of(path: Path, kinds: Mapping[str, Kind], *, gaps: bool = False) -> 
 
 
 def heading_of(path: Path) -> list[str]:
-    """Return the names of the columns of a CSV file, as its first line has them. Raises ``InputError`` without a row below it."""
+    """Return the names of the columns of a CSV file, as its first line that is no comment has them, unchecked.
+
+    Raises ``InputError`` without a row below it.
+    """
     return _rows(path)[0][0][1]
 
 
 def _rows(path: Path) -> tuple[list[tuple[int, list[str]]], str]:
     """Return the numbers and cells of the lines that are neither blank nor comments, the heading first, and the delimiter.
 
-    Raises ``InputError`` for a file without a row below its heading, or of more than :data:`MOST_ROWS` lines.
+    That is a semicolon if the heading has one, else a comma. Cells have no blanks at their ends. Raises ``InputError`` for a
+    file without a row below its heading, or of more than :data:`MOST_ROWS` lines.
     """
     numbered = enumerate(TomlFile.text_of(path).splitlines(), 1)
     lines = [(number, line) for number, line in numbered if line.strip() and not line.lstrip().startswith("#")]
-    if len(lines) < 2 or len(lines) > MOST_ROWS:
+    if len(lines) < 2:
         raise InputError(f"{path}: expected a line of column names, and a line for each row below it")
+    if len(lines) > MOST_ROWS:
+        raise InputError(f"{path}: {len(lines):,} lines; at most {MOST_ROWS:,} are read")
     delimiter = ";" if ";" in lines[0][1] else ","
     return [
         (number, [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]) for number, line in lines
@@ -76,7 +82,10 @@ def _names(path: Path, number: int, names: Sequence[str], known: Collection[str]
 
 
 def _value(cell: str, kind: Kind, delimiter: str, gaps: bool) -> object:
-    """Return the value of a cell; with ``gaps`` "" and "nan" are NaN. Raises :class:`KindError` for one of another ``kind``."""
+    """Return the value of a cell; with ``gaps`` "" and "nan" are NaN. Raises :class:`KindError` for one of another ``kind``.
+
+    With the ``delimiter`` ";" a number may have a decimal comma. "1_0" is no number.
+    """
     if gaps and cell.lower() in ("", "nan"):
         return math.nan
     if isinstance(kind, Text):

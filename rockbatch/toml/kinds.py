@@ -174,7 +174,11 @@ class Choice:
         raise KindError(words, " or ".join(map(shown, self._meant(value))))
 
     def _meant(self, value: object) -> list[object]:
-        """Return the options that a misspelt word, or a number in quotes, may stand for; [] for none, and for other values."""
+        """Return the options that a wrong ``value`` may stand for; [] for none.
+
+        These are numbers and truth values that its last word spells, a single letter that is its last word, or else the words
+        of :func:`rockbatch.toml.meant.words_meant`.
+        """
         last = str(value).strip().split(" ")[-1]
         if same := [option for option in self.options if not isinstance(option, str) and _is_spelt(option, last)]:
             return same
@@ -217,7 +221,7 @@ _NUMBER = re.compile(r"[-+]?\d+(\.\d+)?([eE][-+]?\d+)?")
 
 
 def _finite_float(value: object) -> float:
-    """Return a number as a float. Raises :class:`KindError` for text, a boolean, NaN or an infinite one."""
+    """Return a number as a float. Raises :class:`KindError` for anything else, text and booleans too, NaN and infinity."""
     if isinstance(value, str):
         raise KindError("a number (without quotes)", value.strip() if _NUMBER.fullmatch(value.strip()) else None)
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -237,7 +241,7 @@ def choice(*options: str, called: Mapping[str, object] | None = None) -> Choice:
 
 
 def within(bounds: Bounds) -> Number:
-    """Return the kind of a number within ``bounds``; if these are above 0, a number that is not gets "a number above 0"."""
+    """Return the kind of a number within ``bounds``; bounds that exclude 0 refuse 0 and below with "a number above 0"."""
     return replace(positive, bounds=bounds) if bounds.low > 0 or bounds.above else Number(bounds=bounds)
 
 

@@ -34,10 +34,10 @@ class TooDeepError(ValueError):
 
 
 def key_lines(text: str) -> dict[KeyPath, int]:
-    """Return the line (from 1) of every table, key and list element in ``text``.
+    """Return the line (from 1) of every table and key in ``text``, and of the first 10 000 elements of each list.
 
-    Raises :class:`TooDeepError` for nesting that would take a parser long, ``ValueError`` where the scan cannot go on;
-    other mistakes are left to the parser.
+    Raises :class:`TooDeepError` for a place more than 32 deep, ``ValueError`` where the scan cannot go on; other mistakes are
+    left to the parser.
     """
     scan = _Scan(text)
     scan.document()
@@ -55,7 +55,7 @@ class _Scan:
         self.last_element: dict[KeyPath, int] = {}  # of each array of tables
 
     def take(self, token: str) -> str:
-        """Return the text of a token at this position, and move behind it. Raises ``ValueError`` if there is none."""
+        """Return the text at this position that matches ``token``, a name of _TOKENS, and move behind it; else ``ValueError``."""
         match = _TOKENS[token].match(self.text, self.here)
         if match is None:
             raise ValueError(f"line {self.line()}: not valid TOML")
@@ -96,7 +96,7 @@ class _Scan:
                 self.pair(table)
 
     def header(self) -> KeyPath:
-        """Scan "[a.b]" or "[[a.b]]", and return its place, with the index of an array's element."""
+        """Scan "[a.b]" or "[[a.b]]", keep its line, and return its place, with an index behind each array of tables."""
         line = self.line()
         brackets = 2 if self.text.startswith("[[", self.here) else 1
         self.here += brackets
@@ -114,7 +114,7 @@ class _Scan:
         return key_path
 
     def pair(self, table: KeyPath) -> None:
-        """Scan a key of a table with its value."""
+        """Scan a key of a table with its value, and keep its line."""
         line = self.line()
         key_path = table + self.dotted_key()
         self.mark(key_path, line)

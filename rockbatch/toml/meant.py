@@ -26,21 +26,26 @@ def plain(name: str) -> str:
 
 
 def without_unit(name: str) -> Iterator[str]:
-    """Yield the plain name, then without its last word, its last two, and so on: "heightknm", "heightkn", "height"."""
+    """Yield the plain name, then without its last word, its last two, and so on.
+
+    "height_kN_m" gives "heightknm", "heightkn" and "height".
+    """
     words = name[:_LONGEST].replace("-", "_").split("_")
     return (plain("_".join(words[:n])) for n in range(len(words), 0, -1))
 
 
 def _stem(key: str) -> str:
-    """Return the plain key without its unit: "stiffness_kN_m" gives "stiffness"."""
+    """Return the plain key without its unit or "years": "stiffness_kN_m" gives "stiffness"."""
     stem = key.removesuffix("_years")
     return plain(stem.removesuffix(f"_{unit_of(stem)}"))
 
 
 def known_as(name: str, keys: Iterable[str], also: Mapping[str, Also], table: str = "") -> str:
-    """Return the key that ``name`` means, by its spelling but for case and unit, or by ``also``; empty if none is similar.
+    """Return the key that ``name`` means; "" if none is similar.
 
-    The name of its ``table`` may stand before a key: "pier_height_m" is height_m in [pier], and not deck_height_m.
+    It is the same key but for case and signs, else a very similar one (0.85), else the same without its unit or that of
+    ``also``, else a similar one (0.75). The name of its ``table`` may stand before a key: "pier_height_m" is height_m in
+    [pier], and not deck_height_m.
     """
     keys = list(keys)
     if same := next((key for key in keys if plain(key) == plain(name)), ""):

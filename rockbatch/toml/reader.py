@@ -140,7 +140,10 @@ class TomlFile:
         return len(self.problems) == before and not self.is_full
 
     def finish(self) -> None:
-        """Raise :class:`InputError` with all mistakes, in the order of the file; return if there are none."""
+        """Raise :class:`InputError` with all mistakes, in the order of the file; return if there are none.
+
+        The last one of a full file says that there may be more.
+        """
         in_order = [problem for _, problem in sorted(self.problems, key=lambda problem: problem[0])]
         if self.is_full:
             more = f"{MOST_REPORTED} mistakes are reported at once; there may be more"
@@ -150,7 +153,8 @@ class TomlFile:
     def table(self, *key_path: str | int, required: str = "") -> "Table | None":
         """Return the table ``[key_path]``, or None.
 
-        A value that is no table becomes a problem, and so does a missing table if ``required`` gives an example of one.
+        A value that is no table becomes a problem, and so does a table that is missing, not misspelt, if ``required`` gives an
+        example of one.
         """
         name = ".".join(map(str, key_path))
         value = self.value(key_path)
@@ -169,7 +173,7 @@ class TomlFile:
     def tables(self, *key_path: str | int, title: str) -> list["Table"]:
         """Return the tables ``[[key_path]]``, [] if missing, or with a problem for another value.
 
-        The key ``title`` of each names it in messages.
+        The key ``title`` of each names it in messages, or else its number.
         """
         name = ".".join(part for part in key_path if isinstance(part, str))
         value = self.value(key_path)
@@ -227,7 +231,7 @@ class Table:
         return [*self.data, *(str(key_path[-1]) for key_path in self.file.misspelt if key_path[:-1] == self.key_path)]
 
     def has(self, name: str) -> bool:
-        """Return whether the key ``name`` is written, if perhaps misspelt."""
+        """Return whether the key ``name`` is written, or probably misspelt."""
         return name in self.data or (*self.key_path, name) in self.file.misspelt
 
     @property
@@ -249,8 +253,8 @@ class Table:
         """Return the usable values by key, in the order of the file; what is unusable, unknown or missing becomes a problem.
 
         A caller may go on checking with what is left: :meth:`TomlFile.finish` raises in the end. ``unfit`` gives reasons why keys
-        of other tables do not apply here; ``other`` keys are read elsewhere. The value of a key that takes a list is a tuple, or
-        with ``places`` a list of :class:`Setting`. ``confirm`` is left to :attr:`confirmed`.
+        of other tables do not apply here; ``other`` keys are read elsewhere. The value of a key that takes a list or a
+        range is a tuple, or with ``places`` a list of :class:`Setting`. ``confirm`` is left to :attr:`confirmed`.
         """
         unfit = unfit or {}
         usable: dict[str, list[Setting]] = {}
@@ -295,7 +299,10 @@ class Table:
                 self.complain(_problem(Contradiction, f"{named}{clash.message}"), clash.at or first)
 
     def _not_applying(self, keys: Mapping[str, Key], name: str) -> str:
-        """Return why the key ``name`` does not apply beside the values of other keys; "" if it does, or these are not known."""
+        """Return why the key ``name`` does not apply beside the values of other keys; "" if it does.
+
+        A key that is not written has its default; one that is required, or has an unknown value, is a mistake by itself.
+        """
         for other, values in keys[name].only.items():
             instead = " or ".join(f"{other} = {shown(value)}" for value in values)
             if other not in self.data:
@@ -312,7 +319,10 @@ class Table:
         return ""
 
     def _note_doubts(self, keys: Mapping[str, Key], usable: dict[str, list[Setting]]) -> None:
-        """Add problems of confirmed keys that the table lacks, and of unusual values; take ``confirm`` out of ``usable``."""
+        """Add problems of confirmed keys that the table lacks, and of unusual values that are not confirmed.
+
+        ``confirm`` is taken out of ``usable``.
+        """
         if keys.get("confirm") is CONFIRM["confirm"]:
             present = [shown(name) for name in self.data if name in keys and name != "confirm"]
             for setting in usable.pop("confirm", ()):
@@ -326,7 +336,10 @@ class Table:
                     self.complain_about(setting, in_table(problem))
 
     def _usable(self, name: str, key: Key, value: object) -> list[Setting]:
-        """Return the usable values of a key with their places, of a range both ends or none; others become problems."""
+        """Return the usable values of a key with their places, of a range both ends or none; others become problems.
+
+        So does a repeated value of a list that has to be distinct, which is returned nevertheless.
+        """
         whole = Setting(value, (*self.key_path, name))
         items = [whole]
         if isinstance(value, list):
@@ -422,7 +435,8 @@ class Table:
 def _with_value(name: str, value: Any, meant: str, advice: str) -> str:
     """Return what to write for an unknown key: the key ``meant``, with its value if the units differ, and the ``advice``.
 
-    width_mm = 4000 gives "write width_m = 4, in m"; with advice there is a value only if a weight is written for a mass.
+    width_mm = 4000 gives "write width_m = 4, in m", and widht_m "did you mean width_m?"; with advice there is a value only if a
+    weight is written for a mass.
     """
     if not meant:
         return advice
@@ -452,7 +466,10 @@ def _problem(kind: type[InputError], message: str) -> Problem:
 
 
 def in_table(problem: Problem, table: str = "this table") -> Problem:
-    """Return a problem whose sentence ends with the ``table`` in which to confirm it; one that cannot be confirmed as it is."""
+    """Return a problem whose sentence ends with "in" and the ``table`` in which to confirm it.
+
+    A problem that cannot be confirmed is returned unchanged.
+    """
     return _problem(Unusual, f"{problem} in {table}") if problem.confirm else problem
 
 
@@ -500,9 +517,10 @@ def _spelt_out(path: Path, written: str) -> str | None:
 
 
 def nearby(path: Path, written: str) -> str:
-    """Return "; did you mean …?" with a file of similar name beside ``path``, in the form of ``written``; empty if none.
+    """Return "; did you mean …?" with the path that is probably meant, in the form of ``written``; "" for none.
 
-    Backslashes begin other characters in a text of TOML, and are meant as slashes.
+    It is ``written`` with slashes if it has backslashes, which begin other characters in a text of TOML, whether there is such a
+    file or not; else that of :func:`_spelt_out`; else a file of similar name beside ``path``.
     """
     if (slashed := with_slashes(written)) != written:
         return f"; did you mean {shown(slashed)}? Slashes do on every system"

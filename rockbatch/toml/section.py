@@ -62,7 +62,7 @@ class Key:
 
 
 def options(key: Key) -> tuple[object, ...]:
-    """Return the values between which a key chooses; empty for one that is no choice."""
+    """Return the values between which a key chooses, without those of ``also``; () for a key that is no choice."""
     return key.kind.options if isinstance(key.kind, Choice) else ()
 
 
@@ -212,7 +212,7 @@ _GENERAL = {
 def home(sections: Iterable[Section], name: str, place: tuple[str, ...]) -> str:
     """Return the headers of tables but that at ``place`` that list a key ``name``: "[pier] or [[case]]"; "" for none.
 
-    "" also for names that mean something else in other tables, such as "file".
+    "" also for names that mean something else in other tables, such as "file". Tables with free keys do not count.
     """
     others = (section for section in sections if section.at and section.at != place)
     headers = dict.fromkeys(section.header for section in others if name in section and not section.free)

@@ -30,7 +30,8 @@ _DECIMAL = r"\d+\.\d*(?:[eE]\+?\d+)?"
 def syntax_error(path: Path, text: str, error: str, sections: "Iterable[Section]" = ()) -> str:
     """Return the message about a text that the parser refuses with ``error``: its line, and what was meant or TOML's rules.
 
-    A line that is the name of one of ``sections``, with other brackets or a colon, was meant as its header.
+    Of a key that is given before in its table it says where. A line that is the name of one of ``sections``, with other
+    brackets or a colon, was meant as its header.
     """
     place = re.search(r" *\(at (?:line (\d+), column \d+|end of document)\)", error)
     reason = error[: place.start()] if place else error
@@ -97,9 +98,9 @@ def _given_before(lines: list[str]) -> int:
 
 
 def _header(line: str, headers: Mapping[str, str]) -> str:
-    """Return the header of the table that a line of brackets, or one that ends in a colon, names; "" for another line.
+    """Return the header of the table that a line of brackets, or one that ends in a colon, names.
 
-    ``headers`` has those of all tables by their names.
+    "" for another line, an unknown name, or if the line is this header. ``headers`` has those of all tables by their names.
     """
     match = re.fullmatch(r"([\[({<]*)[ \t]*([A-Za-z_][\w.]*)[ \t]*([\])}>]*:?)", line)
     name = match[2].lower() if match and (match[1] or match[3]) else ""
@@ -121,13 +122,19 @@ def _backslashes(value: str) -> str:
 
 
 def _quotes(value: str) -> str:
-    """Return a text with the same quotes at both ends; a value without quotes, or with quotes inside, as it is."""
+    """Return a text with quotes of any kind at either end in double ones, without a prefix such as r, and with slashes.
+
+    A value without such quotes, or with ", ', “ or ” inside, is returned as it is.
+    """
     inside = re.sub(r"^[rbuf](?=[\"'])", "", value).strip("\"'“”‘’„«»")
     return f'"{_backslashes(inside)}"' if inside != value and not re.search("[\"'“”]", inside) else value
 
 
 def _word(value: str) -> str:
-    """Return a truth value, as "yes" or "Off", in TOML's words, another single word or path in quotes, and all else as it is."""
+    """Return a truth value, as "yes" or "Off", in TOML's words; another single word, or a path, in quotes; others unchanged.
+
+    Backslashes of a path become slashes. A word begins with a letter, a path with that of a drive or as a word.
+    """
     truth = {"true": "true", "yes": "true", "on": "true", "false": "false", "no": "false", "off": "false"}
     if value.lower() in truth:
         return truth[value.lower()]
@@ -135,9 +142,10 @@ def _word(value: str) -> str:
 
 
 def _number(value: str) -> str:
-    """Return a number as TOML writes it: digits around the point, no blanks or commas between thousands; others as they are.
+    """Return a number as TOML writes it: digits around the point, no blanks, ' or commas between thousands, e for × 10^ and d.
 
-    A single comma may be one of decimals or of a list, or of thousands, and stays.
+    A single comma without a point behind it may be one of decimals, of a list or of thousands: that number, as other values, is
+    returned as it is.
     """
     number = re.sub(r"(?<=\d)[ '](?=\d{3}\b)", "", value)
     number = re.sub(r"[ ]*[×x*·][ ]*10[ ]*(?:\^|\*\*)[ ]*(?=[-+]?\d)", "e", number)
@@ -154,16 +162,16 @@ def _in_its_unit(key: str, value: str) -> str:
 
 
 def _written(number: str) -> str:
-    """Return a number with a digit at each side of its point, and no zeros before it, which TOML refuses."""
+    """Return a number with a digit at each side of its point, and without leading zeros but one, as TOML requires."""
     number = re.sub(r"(?<!\d)\.", "0.", re.sub(r"\.(?!\d)", ".0", number))
     return re.sub(r"^([-+]?)0+(?=\d)", r"\1", number)
 
 
 def _values(value: str) -> str:
-    """Return several values as a list: in brackets, with a comma between each two; a single value, or another, as it is.
+    """Return several numbers or texts in quotes as a list: in brackets, with a comma between each two; others as they are.
 
-    Without brackets, a comma and a space have to separate them: "1,5" may be a number, and "1 800" too; "0.4-4.0" and
-    "0.4 4.0" are two numbers.
+    Without brackets, a comma or semicolon and a space have to separate them: "1,5" may be a number, and "1 800" too; "0.4-4.0"
+    and "0.4 4.0" are two numbers.
     """
     if ends := re.fullmatch(rf"({_DECIMAL})(?:[ ]*(?:-|–|\.\.|:|to)[ ]*|[ ]+)({_DECIMAL})", value):
         value = f"[{ends[1]}, {ends[2]}]"

@@ -150,8 +150,8 @@ def run_into(
     """Carry out the unfinished runs of ``study`` and write its results into ``directory``; return them, None for a share.
 
     ``command`` holds the words after ``rockbatch`` that repeat it, for run.json. With ``share`` (i, n) only the i-th of n
-    shares is carried out, and stays in its journal. All histories of ``records`` are kept in addition to the study's.
-    Raises ``InputError`` as :func:`run`.
+    shares is carried out, and stays in its journal, unless the folder has all results already: they are returned. All histories
+    of ``records`` are kept in addition to the study's. Raises ``InputError`` as :func:`run`.
     """
     started = time.monotonic()
     batch = prepare(directory, study, listener, command, records=records, later=(CHECKS, REPORT))
@@ -223,7 +223,7 @@ def _check_and_report(batch: Batch, written: Written) -> FinishedBatch:
 
 
 def _unchanged(batch: Batch) -> FinishedBatch | None:
-    """Return the results in the folder of a finished ``batch`` if writing them again would change nothing; else None."""
+    """Return the results of a finished ``batch`` if its tables are as written, and checks and report are there; else None."""
     if not (written := unchanged(batch)):
         return None
     try:

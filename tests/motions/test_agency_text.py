@@ -295,6 +295,13 @@ def test_a_record_of_unam_with_an_impossible_time_begins_at_none(key):
     assert read(unam_text(**{key: "23:75:00"}), "x.012")[0].start is None
 
 
+@pytest.mark.parametrize(("peaks", "doubted"), [("//9999/9999", "bc"), ("/9999/9999//", "ab"), ("/9999/9999/", "")])
+def test_a_channel_of_unam_without_a_stated_peak_leaves_the_others_theirs(peaks, doubted):
+    components = read(unam_text(**{"ACEL. MAX.(Gal), C1-C6": peaks}), "x.191")
+    of_peak = [any("peak of 9999" in finding.text for finding in component.findings) for component in components]
+    assert of_peak == [channel in doubted for channel in "abc"]
+
+
 def test_usc_times_from_film_are_interpolated_across_marks():
     times = np.cumsum([0, *np.random.default_rng(1).integers(4, 7, NPTS - 1)]) / 1000
     channels = [usc_channel("N90E", A / 100, times, ("/& END",)), usc_channel("DOWN", C / 100, times)]

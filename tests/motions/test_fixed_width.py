@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from motion_files import e15_7
 
-from rockbatch.motions.formats.fixed_width import _ends_within_a_column, aligned_numbers
+from rockbatch.common.errors import InputError
+from rockbatch.motions.formats.fixed_width import _ends_within_a_column, aligned_numbers, fixed_numbers
 
 LAYOUTS = {
     "F8.3": (8, lambda x: f"{x:8.3f}"),
@@ -70,3 +71,21 @@ def test_lines_of_other_lengths_and_numbers_of_more_digits_are_left_to_it(lines)
 ])  # fmt: skip
 def test_a_whole_number_that_has_lost_digits_ends_before_its_column(lines, per_line, cut):
     assert _ends_within_a_column(lines, per_line) == cut
+
+
+@pytest.mark.parametrize("blanks", ["", "   ", " " * 40])
+def test_blanks_may_follow_the_columns_of_fixed_numbers(blanks):
+    lines = ["header", *(line + blanks for line in in_lines([f"{x:10.5f}" for x in range(7)]))]
+    values, end = fixed_numbers(lines, 1, 7, 10, 5)
+    assert values.tolist() == list(range(7))
+    assert end == 3
+
+
+@pytest.mark.parametrize(
+    ("written", "per_line", "found"),
+    [("9.5f", 5, "45 characters; expected 5 values of 10"), ("10.5f", 4, "40 characters; expected 5 values of 10")],
+)
+def test_columns_of_another_width_or_number_than_declared_are_refused_with_the_line(written, per_line, found):
+    lines = in_lines([format(float(x), written) for x in range(11)], per_line)
+    with pytest.raises(InputError, match=rf"line 1: found .* {found}"):
+        fixed_numbers(lines, 0, 11, 10, 5)

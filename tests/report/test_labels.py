@@ -10,7 +10,7 @@ from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.pier import RigidBase, Tendon, YieldingBase
-from rockbatch.quantities.labels import digits_that_tell, in_full, quantity
+from rockbatch.quantities.labels import digits_that_tell, in_full, plain, quantity
 from rockbatch.reporting.finished import read
 from rockbatch.results.labels import named
 
@@ -69,11 +69,26 @@ def test_a_footing_on_soil_is_called_by_its_safety_factor():
         ("tendon_1_psi", 0.5, "ψ = 0.5"), ("deck_spring_2_gap_mm", 20.0, "deck spring 2: gap = 20 mm"),
         ("damper_1_kind", "viscous", "kind viscous"), ("beta", 50.65704515, "β = 50.65704515"),
         ("yield_kN", 999.0, "Fy = 999 kN"), ("yield_kN", 37000.0, "Fy = 37,000 kN"),
-        ("stiffness_kN_m", 2.5e6, "K = 2.5 × 10⁶ kN/m"),
+        ("stiffness_kN_m", 2.5e6, "K = 2.5 × 10⁶ kN/m"), ("zeta", 0.00005, "ζ = 5 × 10⁻⁵"), ("zeta", 0.0001, "ζ = 0.0001"),
     ],
 )  # fmt: skip
 def test_varied_values_are_called_by_symbol_and_unit(key, value, words):
     assert quantity(key, value).replace("\u00a0", " ") == words
+
+
+@pytest.mark.parametrize(
+    ("value", "written"),
+    [
+        (999.7, "1000"),
+        (9999.6, "10,000"),
+        (99999.6, "100,000"),
+        (4500.4, "4500"),
+        (-3.21e-7, "-3.21 × 10⁻⁷"),
+        (0.0, "0"),
+    ],
+)
+def test_no_number_is_written_with_an_e_however_few_its_digits(value, written):
+    assert plain(value, 3) == written
 
 
 def test_a_case_is_called_by_its_name_and_all_its_varied_values_in_words():

@@ -41,17 +41,17 @@ class Look:
 
 
 def line_of(place: int, kind: str = "level") -> Look:
-    """Return the look of a line among several: 28 differ in colour or dashes, so that neighbours differ in grey, too."""
+    """Return the look of the line at ``place``, from 0: 28 differ in colour or dashes, neighbours in both; then they repeat."""
     return Look(kind, place % COLOURS + 1, place % DASHES)
 
 
 def marks_of(place: int, is_open: bool = False) -> Look:
-    """Return the look of marks among several: 70 differ in colour or shape, whose numbers have no common factor."""
+    """Return the look of the marks at ``place``, from 0: 70 differ in colour or shape, neighbours in both; then they repeat."""
     return Look("", place % COLOURS + 1, shape=SHAPES[place % len(SHAPES)], open=is_open)
 
 
 def sign_of(status: str) -> Look:
-    """Return the look of a run without a largest rotation: the mark of its ``status``, plain if it failed, else in alarm."""
+    """Return the look of a run without a largest rotation: the shape of its ``status``, in alarm unless it failed."""
     return Look("none" if status == "failed" else "alarm", shape=status)
 
 
@@ -148,7 +148,7 @@ class Axis:
         return (values - self.low) / (self.high - self.low)
 
     def ticks(self) -> dict[float, str]:
-        """Return the values with ticks, and their labels: ``names`` if given, else round ones, on a log axis :meth:`_powers`."""
+        """Return the labels of ticks by their values: ``names`` if given, else round steps, on a ``log`` axis :meth:`_powers`."""
         if self.names is not None:
             return dict(self.names)
         places = self._powers() if self.log else self._steps()
@@ -188,7 +188,7 @@ def subscripts(label: str) -> Iterator[tuple[str, bool]]:
 
 
 def spanning(label: str, *arrays: Array, margin: float = 0.06, about: int = 5) -> Axis:
-    """Return an axis that holds every finite value, and zero, with a margin, none below if no value is negative.
+    """Return an axis that holds every finite value, and zero, with a share ``margin`` beyond, none below if none is negative.
 
     It is from −1 to 1 without a value other than 0.
     """

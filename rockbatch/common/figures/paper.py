@@ -162,7 +162,7 @@ def panel_in(figure: Figure, ax: Axes | None, name: str = "") -> Axes:
     """Draw one panel of a figure into ``ax``, or into a figure of one column of a paper; return the axes.
 
     It is the first panel, or the first with the caption ``name``. The legend stands below the axes, where it covers nothing.
-    Raises ``InputError`` for an unknown caption, with those of the figure.
+    Raises ``InputError`` for an unknown caption, with those of the figure, and for an ``ax`` that is no Axes.
     """
     _check_axes(ax)
     panels = [panel for panel in figure.panels if name in ("", panel.caption)]
@@ -217,7 +217,7 @@ def _alone(axes: Axes, figure: Figure, width_mm: float) -> None:
 
 
 def _drawn_in(place: FigureBase, figure: Figure, width_mm: float, tallest: float) -> float:
-    """Draw a figure in ``place``, its panels ``tallest`` mm high together if that can be; return its height [mm]."""
+    """Draw a figure in ``place``; return its height [mm]. Panels over ``tallest`` mm together are lowered, within limits."""
     rows, heights, across = _arranged(figure, width_mm, tallest)
     spare = MM * min((panel.height for panel in figure.panels), default=0.0) * (LEAST_SIZE if across else 0.8) - LOWEST
     lower = min(max(sum(heights) - tallest, 0.0) / len(rows), spare)
@@ -355,7 +355,7 @@ def _label(scale: Axis) -> str:
 
 
 def _text(words: str) -> str:
-    """Return text that matplotlib shows as it is: no formulas, and no label that it hides."""
+    """Return text that matplotlib shows as it is: $ begins no formula, _ hides no label. θ̇ alone is set as a formula."""
     return (" " * words.startswith("_") + words).replace("$", r"\$").replace("θ̇", r"$\dot{\theta}$")
 
 

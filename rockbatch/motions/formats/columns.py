@@ -82,7 +82,11 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
 
 
 def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[Recording]:
-    """Return the columns of acceleration; raise ``InputError`` if they, their unit or their step are unknown."""
+    """Return the columns of acceleration; one in an unknown unit, beside others in known ones, is returned with it.
+
+    Raises ``InputError`` for a single row, unknown columns or step, a column without a unit, no unit that is one of
+    acceleration, and a header that states another count or step.
+    """
     text, start = in_seconds(text)
     header, table = read_table(text, options.layout == "wrapped", named="layout" not in options.instead, stated=beside)
     if len(table) < 2:

@@ -51,7 +51,7 @@ def lines_of(text: str) -> list[str]:
 
 
 def without_end_marks(text: str) -> str:
-    """Return a text without end marks in its last lines: "*** End Data ***", "*ENDDATA", "<EOF>", "====="."""
+    """Return a text without blanks and up to ten end marks at its end: "*** End Data ***", "*ENDDATA", "<EOF>", "====="."""
     for _ in range(_MOST_MARKS):
         text = text.rstrip()
         last = text[-_LONGEST_MARK:].splitlines()[-1:]
@@ -83,8 +83,8 @@ def one_after_another(text: str, channel: Callable[[list[str], int], tuple[T, in
 def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_line: int) -> tuple[Samples, int]:
     """Return ``count`` numbers from ``lines[first]`` on, shape (count,), and the index of the line after them.
 
-    There are ``per_line`` of ``width`` characters each: every line is full but the last, which has exactly the rest. Raises
-    ``InputError`` with the line for anything else, before memory is allocated for more numbers than there are lines.
+    There are ``per_line`` of ``width`` characters each: every line is full but the last, which has exactly the rest; blanks may
+    follow. Raises ``InputError`` with the line for anything else, before memory is allocated for a count beyond the lines.
     """
     needed = -(-count // per_line)
     if len(lines) - first < needed:
@@ -102,14 +102,23 @@ def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_
             )
         return [line[k : k + width] for k in range(0, len(line), width)]
 
-    return _numbers(lines[first : first + needed], first, count, per_line, fields), first + needed
+    return _numbers(lines[first : first + needed], first, count, per_line, width, fields), first + needed
 
 
 def _numbers(
-    lines: Sequence[str], first: int, count: int, per_line: int, fields: Callable[[str, int, int], list[str]]
+    lines: Sequence[str],
+    first: int,
+    count: int,
+    per_line: int,
+    width: int,
+    fields: Callable[[str, int, int], list[str]],
 ) -> Samples:
-    """Return the numbers of lines, the first of index ``first``; ``fields`` splits a line, given its index and count."""
-    aligned = aligned_numbers(lines, len(lines[0]) // min(per_line, count)) if count else None
+    """Return the numbers of lines, the first of index ``first``; ``fields`` splits a line, given its index and count.
+
+    Lines of aligned columns of ``width`` characters, full but for the last, are parsed without it.
+    """
+    full = bool(count) and len(lines[0]) == min(per_line, count) * width
+    aligned = aligned_numbers(lines, width) if full else None
     if aligned is not None and len(aligned) == count and (np.abs(aligned) < HUGE).all():
         return aligned
     values = np.empty(count)
@@ -194,7 +203,8 @@ def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) 
             raise InputError(f"line {index + 1}: found {len(row)} numbers; expected {expected}")
         return row
 
-    values = _numbers(lines[first:end], first, count, per_line, fields)
+    width = len(lines[first]) // min(per_line, count)
+    values = _numbers(lines[first:end], first, count, per_line, width, fields)
     backwards = (field for index in range(end - 1, first - 1, -1) for field in reversed(lines[index].split()))
     if is_cut_short(backwards) or _ends_within_a_column(lines[first:end], per_line):
         raise Truncated(

@@ -131,8 +131,8 @@ def _value_of_each(header: dict[str, str], key: str, count: int) -> list[str]:
 
 
 def _texts_of(text: str, count: int) -> list[str]:
-    """Return the texts between slashes, one per channel; ``count`` times "" if there is another number of them."""
-    texts = [part.strip() for part in text.strip("/ ").split("/")]
+    """Return the texts between slashes, perhaps "", one per channel; ``count`` times "" if there is another number of them."""
+    texts = [part.strip() for part in text.strip().removeprefix("/").removesuffix("/").split("/")]
     return texts if len(texts) == count else [""] * count
 
 
