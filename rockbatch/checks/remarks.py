@@ -66,7 +66,7 @@ def bounds_in_words(info: Mapping[str, Any]) -> list[str]:
 
 
 def changes_of(bound: Mapping[str, Any]) -> str:
-    """Return the changes of a bound in run.json with commas, and its source, if any, in brackets."""
+    """Return the changes of a bound in run.json, and its source, if any: "case.beta × 1.2, pier.mass_t = 950 (site report)"."""
     return ", ".join(bound["changes"]) + (f" ({bound['source']})" if bound["source"] else "")
 
 
