@@ -123,7 +123,7 @@ def of_rates(info: Entry, written: Callable[[float], str]) -> list[Head]:
 
 
 def _drawn(curve: Curve) -> Entry:
-    """Return the contribution of drawn inputs to a curve; {} if nothing is drawn, or if it is unknown."""
+    """Return the entry ``drawn`` of a curve, with ``dispersion`` and its interval; {} if nothing is drawn, or it is unknown."""
     contribution: Entry = curve.get("drawn", {})
     return contribution
 

@@ -44,7 +44,8 @@ def scales(
 def described_scales(plans: Sequence[LevelPlan], spec: FragilitySpec, names: Sequence[str]) -> dict[str, object]:
     """Return the factors for fragility.json: for each record those at all levels, None where it is not meant for one.
 
-    There are no records of a cloud, nor of a measure relative to a pier: then it is only what is ``said`` in words.
+    The keys are ``records``, ``factors``, ``used``, ``limits`` and ``said``, in words; the first three are [] for a cloud, and
+    for a measure relative to a pier.
     """
     if spec.method == "cloud" or spec.of_pier:
         return {"records": [], "factors": [], "used": [], "limits": [None, None], "said": in_words(plans, spec)}

@@ -36,7 +36,7 @@ SAMPLES = 80
 
 
 def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) -> "pd.DataFrame":
-    """Return fragility.csv: a row for each curve and level, with the counts of :class:`Stripe` as columns.
+    """Return fragility.csv: a row for each curve and level, with the counts of :class:`Stripe` as columns, ``records`` as ``n``.
 
     ``p`` is the curve there; it is between ``p_low`` and ``p_high``, whatever the undecided runs of all levels come to.
     ``p_total`` is the curve with the dispersion that the study adds, if it does. Of incremental dynamic analysis
@@ -343,7 +343,10 @@ def note(curve: Curve, spec: FragilitySpec) -> str:
 
 
 def _about_undecided(curve: Curve) -> str:
-    """Return the number of undecided runs and the medians with them within and beyond the limit; empty without any."""
+    """Return the number of undecided runs and the medians with them beyond and within the limit; empty without any.
+
+    If all of them are above the first exceedance of their record, it says that they change nothing.
+    """
     remark = curve.undecided.words
     if not remark:
         return ""

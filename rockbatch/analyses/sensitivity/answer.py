@@ -88,7 +88,7 @@ def _doubt(first: Entry, shown: Rows) -> Iterator[str]:
 
 
 def _in_most(cases: Sequence[Rows]) -> Markup:
-    """Return the rest of a sentence about many cases: which input comes first in how many."""
+    """Return the rest of a sentence about many cases: which input comes first in how many, for up to four inputs."""
     known = [rows[0] for rows in cases if rows[0]["total"] == rows[0]["total"]]
     groups = sorted(grouped(known, lambda row: symbol(row["parameter"])).items(), key=lambda group: -len(group[1]))
     parts = []

@@ -96,7 +96,7 @@ def _ends(slendernesses: Sequence[float]) -> list[float]:
 
 
 def _of_runs(suite: "pd.DataFrame") -> Iterator[str]:
-    """Yield remarks on runs without a peak."""
+    """Yield a remark on runs that flight ended, and one on runs that failed, each if there are any."""
     flight, failed = int(suite["flight"].sum()), int(suite["failed"].sum())
     runs = counted(int(suite["count"].sum()) + failed, "run")
     if flight:
@@ -106,7 +106,7 @@ def _of_runs(suite: "pd.DataFrame") -> Iterator[str]:
 
 
 def _order(axis: str) -> str:
-    """Return the column in whose order piers are larger: p falls with the size."""
+    """Return the column that grows with the size: ``axis`` itself, but "two_pi_over_p_s" for "p", which falls."""
     return "two_pi_over_p_s" if axis == "p" else axis
 
 
