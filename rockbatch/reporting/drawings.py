@@ -77,7 +77,7 @@ def _title(finished: Finished, one: Alike, several: bool) -> str:
 def _lines(finished: Finished, cases: Sequence[Case], known: Collection[str]) -> list[str]:
     """Return the devices of cases that share a drawing, but ``known`` ones; "B: damper" for a device that only case B has.
 
-    At most :data:`MOST_LINES`, then one that says how many more there are.
+    At most :data:`MOST_LINES`, six, then one that says how many more there are.
     """
     having: dict[str, list[str]] = {}
     for case in cases:

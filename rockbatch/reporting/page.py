@@ -125,7 +125,7 @@ PARTS_OF_TWO = (
 
 
 def sections(contents: Contents) -> list[Section]:
-    """Draw the sections of one folder, without empty ones."""
+    """Draw the sections of one folder, without empty ones: without results those of analyses, notes and the study file."""
     parts = PARTS if isinstance(contents, Finished) else (*PARTS, ALONE)
     fitting = [part for part in parts if isinstance(contents, part.kind)]
     drawn = (Section(part.heading, part.anchor, part.content(contents), part.folded) for part in fitting)

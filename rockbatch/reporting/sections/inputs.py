@@ -135,7 +135,7 @@ def _piers(finished: Finished) -> list[Row]:
 
 
 def _foundation(finished: Finished, case: Case) -> Row:
-    """Return the label, base and every parameter of a foundation but its devices."""
+    """Return the name of a foundation as ``case``, its ``base``, and every parameter but its devices by its key."""
     parameters = {key: value for key, value in case["parameters"].items() if key != "restraints"}
     return {"case": _name(finished, case), "base": case["base"]} | parameters
 

@@ -146,7 +146,7 @@ def _card(
 
 
 def statistics_in_words(finished: Finished) -> str:
-    """Return a sentence on the statistic that each check uses, and on the bars; empty without a statistic."""
+    """Return "Median over stations (drift, uplift). The mark on a bar is the limit.", by statistic; empty if no check has one."""
     with_statistic = (v for v in finished.verdicts if v.case and not v.is_ban and v.statistic)
     checks_of: dict[str, dict[str, None]] = {}
     for verdict in with_statistic:
@@ -205,7 +205,7 @@ def _cell(finished: Finished, column: Column, cell: Cell | None, *, named: bool)
 
 
 def _governs(finished: Finished, verdict: Verdict) -> str:
-    """Return the record that governs, with its polarity and scale if the study has several."""
+    """Return the record that governs, with polarity and scale if the study has several: "Kobe, Takatori, 0° (+) × 2"."""
     polarity = f"({verdict.polarity})" if finished.both_directions else ""
     scale = f"× {verdict.scale:g}" if finished.many_scales else ""
     return " ".join(filter(None, (finished.label(verdict.record), polarity, scale)))
