@@ -120,6 +120,7 @@ def _line_under_failing_suite(line: Line | None, below: Sequence[Verdict]) -> Li
 def missing_stations(stations: Stations) -> Line | None:
     """Return the line on stations without a usable motion, or with unusable files beside usable ones; None if there are none.
 
+    Its text is "8 of 10 stations; A, 2 files of B could not be used", without the numbers if stations are not known.
     A single reason follows the text; of several, up to three are details, and how many more. The last detail is the key that
     leaves these stations out.
     """
@@ -276,7 +277,7 @@ class _Cases:
         )
 
     def _omitted(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence for each omission in the demands of the checks that these cases pass; () for none."""
+        """Return a sentence, "drift, uplift: REMARK.", for each omission in demands of checks that these cases pass; or ()."""
         passed = [(name, verdict.check) for verdict in self._of(names, PASS) for name in verdict.omitted]
         checks = grouped(passed, lambda pair: pair[0])
         sentences = []
@@ -286,7 +287,7 @@ class _Cases:
         return tuple(sentences)
 
     def _left_out(self) -> tuple[str, ...]:
-        """Return a sentence on stations, and files of used stations, that are left out by name; () for none."""
+        """Return "Left out by name: A, 2 files of B." for stations, and files of used stations, left out so; () for none."""
         names = _wholly_or_in_part(self.stations.left_out, self.stations.used)
         return (f"Left out by name: {_listed(names, ', ')}.",) if names else ()
 
@@ -326,7 +327,10 @@ class _Cases:
         return " under every bound" if any(under(verdict.columns) for verdict in self._of(self.every)) else ""
 
     def _failing_bounds(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence each for up to three cases that fail under bounds but not nominally, with the bounds; () for none."""
+        """Return "pads fails under soft, stiff only." for each of up to three cases that fail under bounds but not nominally.
+
+        Without the name of a case that is the only one; () for none.
+        """
         sentences = []
         for name in names:
             failing = dict.fromkeys(verdict.columns.get(BOUND, "") for verdict in self._of([name], FAIL))

@@ -13,7 +13,7 @@ MOST_NAMES = 3
 
 
 def weak_supports(cases: Sequence[Case]) -> str:
-    """Return a sentence on cases in which one support cannot carry the pier, so that it cannot step; empty for none."""
+    """Return "pads: one support cannot carry the full weight (40 %): it yields …", with the cases of which it is true; or ""."""
     shares = {i: share for i, case in enumerate(cases) if (share := _borne_alone(case)) < 1.0}
     if not shares:
         return ""

@@ -248,7 +248,7 @@ def unchecked(verdict: Verdict) -> str:
 
 
 def both_axes(verdicts: Iterable[Verdict]) -> str:
-    """Return how the checks combine the two axes of a pier, in a sentence; empty if none does."""
+    """Return "Two planar models of each pier, …, combined: SRSS of both axes (drift).", the checks by way; empty for none."""
     ways = {verdict.check: verdict.axes for verdict in verdicts if verdict.axes}
     by_way = grouped(ways, ways.__getitem__)
     listed = "; ".join(f"{way} ({', '.join(names)})" for way, names in by_way.items())

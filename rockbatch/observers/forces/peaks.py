@@ -256,7 +256,7 @@ def _not_followed(run: Run, noted: Noted, peaks: PeakForces, least_normal: float
 
 
 def _in_kilonewtons(pier: Pier, force: float) -> str:
-    """Return a force per unit mass [m/s²] as text in kN, after a comma; "" if the mass is not known."""
+    """Return a force per unit mass [m/s²] as text in kN, after a comma: ", 1,234 kN"; "" if the mass is not known."""
     return "" if pier.mass_t is None else f", {pier.mass_t * force:,.0f} kN"
 
 
