@@ -36,7 +36,7 @@ class Varied:
 
     @property
     def values(self) -> list[float]:
-        """Return the values of the scan, which are evenly spaced."""
+        """Return the values of the scan, evenly spaced from ``low`` to ``high``, both included, to ten digits."""
         return [rounded(value) for value in np.linspace(self.low, self.high, self.points).tolist()]
 
     @property

@@ -60,7 +60,7 @@ def described_scales(plans: Sequence[LevelPlan], spec: FragilitySpec, names: Seq
 
 
 def in_words(plans: Sequence[LevelPlan], spec: FragilitySpec) -> str:
-    """Return the range of scale factors in words, or that records are taken as recorded if all are 1.
+    """Return "records are scaled by 0.5 to 4 (median 1.5)", or that they are taken as they were recorded if all factors are 1.
 
     With it are the levels that lose records to the limits on factors, and how many they keep, and the levels that given factors
     miss by more than FAR, a tenth.

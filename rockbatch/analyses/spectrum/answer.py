@@ -70,7 +70,10 @@ def _overturning(info: Info, suite: "pd.DataFrame", fallen: "pd.DataFrame") -> I
 
 
 def _greatest(info: Info, suite: "pd.DataFrame") -> Iterator[str]:
-    """Yield a sentence on the greatest median rotation of the piers that stand, and where it is; nothing if none stands."""
+    """Yield "The greatest median rotation is θ_max/α = 0.5 (16 to 84 %: …), at 2π/p = 4 s, α = 0.15 rad.".
+
+    It is over the piers with a finite median; nothing if there are none.
+    """
     standing = as_dicts(suite[np.isfinite(suite["median"])])
     if not standing:
         return
@@ -156,7 +159,10 @@ def _worst(regions: "pd.DataFrame") -> "pd.DataFrame":
 
 
 def _least_of(regions: "pd.DataFrame", keys: list[str], of: str) -> str:
-    """Return a sentence on the least pulse of a map that overturns the pier, or that none does."""
+    """Return "The least sine that overturns the pier has a_p/(g tan α) = 2.1, at ω_p/p = 3.", or that none of the map does.
+
+    "sine" is the name of the map; of several cases it says for which, or for how many, and ``of`` stands at the end.
+    """
     name, worst, cases = regions["map"].iloc[0], _worst(regions), regions.groupby(keys, dropna=False).ngroups
     if worst.empty:
         ends = f"ω_p/p = {_span(regions['omega_p_over_p'])}, up to a_p/(g tan α) = {plain(float(regions['high'].max()), 3)}"
