@@ -75,7 +75,10 @@ def _change(first: float, second: float) -> float:
 
 
 def _pairs(pair: Pair) -> str:
-    """Return a sentence on how many pairs have a smaller and a larger rotation in B, and the range of B/A; "" without a ratio."""
+    """Return how many pairs have a smaller and a larger rotation in B, and the range of B/A; "" if no pair has a ratio.
+
+    A pair has one if both runs end standing and the rotation of A is above 0; the number of the others is in brackets.
+    """
     a, b = pair.runs
     first, second = (runs["theta_max_over_alpha"].where(runs["status"] == "ok").to_numpy(float) for runs in (a, b))
     comparable = (first > 0) & (second >= 0)

@@ -66,7 +66,7 @@ def _of_analysis(name: str, function: str, contents: Contents) -> Markup:
 
 
 def _with_observers(own: Iterable[Part]) -> Iterator[Part]:
-    """Yield the sections of the page, each followed by observers' sections, whose modules load when drawn."""
+    """Yield the sections of the page, each followed by those of observers that stand behind it; modules load when drawn."""
     for part in own:
         yield part
         for name, more in report_parts():
