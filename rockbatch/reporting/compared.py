@@ -210,7 +210,7 @@ def only_in_one(pair: Pair) -> Markup:
 
 
 def studies(pair: Pair) -> Markup:
-    """Return the number of pairs of runs, then both studies, one after the other: greatest responses, inputs and statics."""
+    """Return the number of pairs of runs, then both studies: greatest responses, drawings, what was studied, and statics."""
     parts: list[object] = [
         tag("p", f"{counted(len(pair.runs[0]), 'pair')} of runs of paired cases under the same ground motion.")
     ]

@@ -94,9 +94,9 @@ def reference(run: StudyRun, quiet_s: float, seconds: float = math.inf) -> Refer
 def references(
     study: Study, motions: MotionSet, most: int, listener: Listener, clock: Clock | None = None
 ) -> list[Reference]:
-    """Return converged references of at most ``most`` runs of the study, as many as half the time of the clock allows.
+    """Return converged references of at most ``most`` runs of the study, as many as the time of the clock allows.
 
-    The whole time goes into the first one; raises ``InputError`` if there is none.
+    Until one has converged they may take the whole time, then no more than half. Raises ``InputError`` if none converges.
     """
     clock = clock or Clock()
     runs = Plan(study, motions)

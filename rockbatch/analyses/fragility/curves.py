@@ -91,7 +91,10 @@ class Readings(NamedTuple):
 
     @property
     def medians(self) -> tuple[float, float]:
-        """Return both medians, the lower first; without a curve the bound, 0 or infinite if there is none."""
+        """Return both medians, the lower first; without a curve the lower bound of ``exceeded``, 0 if there is none.
+
+        Or the upper bound of ``withstood``, infinite if there is none.
+        """
         low = self.exceeded.above if isinstance(self.exceeded, NoCurve) else self.exceeded.median
         high = self.withstood.below if isinstance(self.withstood, NoCurve) else self.withstood.median
         return min(low, high), max(low, high)

@@ -109,7 +109,7 @@ class FragilitySpec:
 
     @property
     def label(self) -> str:
-        """Return the measure in words: "Sa(1 s, 5 %)"."""
+        """Return the measure in words: "Sa(1 s, 5 %)", "PGA/(g tan α)", or the name of an own one."""
         if self.own:
             return self.own.name
         if self.measure == "Sa":
@@ -123,7 +123,7 @@ class FragilitySpec:
 
     @property
     def power(self) -> float:
-        """Return the power by which the measure grows with the scale of a motion."""
+        """Return the power by which the measure grows with the scale of a motion: 1 but for an own measure."""
         return self.own.power if self.own else 1.0
 
 

@@ -45,9 +45,10 @@ def of_spectra(info: Info, suite: "pd.DataFrame") -> tuple[list[str], list[str]]
 
 
 def _overturning(info: Info, suite: "pd.DataFrame", fallen: "pd.DataFrame") -> Iterator[str]:
-    """Yield a sentence on the largest piers that overturn under one motion or more, and under half of them, for each slenderness.
+    """Yield a sentence on the largest piers that overturn under one motion or more, and under half of them.
 
-    If none overturns it says that.
+    It has a size for each slenderness, of over MOST_SLENDERNESSES, 4, for the least and the greatest alone. If no pier
+    overturns it says that.
     """
     axis, motions, many = info["axis"], counted(info["motions"], "motion"), info["motions"] > 1
     if fallen.empty:

@@ -108,7 +108,7 @@ def _single(value: object) -> bool:
 
 
 def _written(value: object) -> object:
-    """Return a value as a cell: a list as its values with commas, true and false in lower case; None for TOML tables."""
+    """Return a value as a cell: a list as its values with commas, a single true or false in lower case; None for TOML tables."""
     if not _single(value):
         return None
     if isinstance(value, list):

@@ -212,7 +212,11 @@ def _governs(finished: Finished, verdict: Verdict) -> str:
 
 
 def _tooltip(finished: Finished, verdict: Verdict) -> str:
-    """Return requirement, demand against limit, bounds, governing record and remarks, a line each."""
+    """Return what a cell says on hovering, a line each, without those that are empty.
+
+    They are requirement, demand against limit, bound on an input, bounds of the demand, governing record, number of runs
+    that ended early, and remarks.
+    """
     between = f"between {_between(verdict)}" if _between(verdict) else ""
     record = f"{finished.label(verdict.record)} ({verdict.polarity})" if verdict.record else ""
     against = "" if verdict.is_ban or math.isnan(verdict.value) else wording.against(verdict)
