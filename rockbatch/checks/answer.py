@@ -120,6 +120,7 @@ def _line_under_failing_suite(line: Line | None, below: Sequence[Verdict]) -> Li
 def missing_stations(stations: Stations) -> Line | None:
     """Return the line on stations without a usable motion, or with unusable files beside usable ones; None if there are none.
 
+    Its text is "8 of 10 stations; A, 2 files of B could not be used", without the numbers if stations are not known.
     A single reason follows the text; of several, up to three are details, and how many more. The last detail is the key that
     leaves these stations out.
     """
@@ -143,7 +144,7 @@ def missing_stations(stations: Stations) -> Line | None:
 
 
 def _reason_of_file(file: File) -> str:
-    """Return the reason why a file could not be used, after the file's name unless the reason has it."""
+    """Return why a file could not be used: "a.at2: no unit", the reason alone if it has the file's name; no full stop."""
     source, reason = str(file["source"]).split(", ")[0].rpartition("/")[2], str(file["reason"]).rstrip(".")
     return reason if str(file["name"]) in reason or source in reason else f"{source}: {reason}"
 
@@ -242,7 +243,10 @@ class _Cases:
         return Line(NOT_DECIDED, _capital(text), self._with_ends(names), ())
 
     def _with_ends(self, names: Sequence[str]) -> str:
-        """Return up to three names of cases, "and 2 more", most runs cut short first: "pads, 2 of 10 runs overturned; piles"."""
+        """Return up to three names of cases, most runs cut short first: "pads, 2 of 10 runs overturned; piles".
+
+        Of more follows "; and 2 more", and how many of these have runs that do not end standing, if any.
+        """
         runs = {name: joined(self.runs[name]) for name in names if name in self.runs}
         ends = {name: runs[name].in_words if name in runs else "" for name in names}
         order = sorted(names, key=lambda name: -sum(runs[name].ended.values()) if ends[name] else 0)
@@ -253,7 +257,7 @@ class _Cases:
         )
 
     def _cut_short(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence on those of the cases with runs that do not end standing; () if every run of all stands."""
+        """Return a sentence on the cases with runs that do not end standing, by :meth:`_with_ends`; () if all runs stand."""
         ended = [name for name in names if any(runs.ended for runs in self.runs.get(name, ()))]
         return (f"Not every run ends standing: {self._with_ends(ended)}.",) if ended else ()
 
@@ -273,7 +277,7 @@ class _Cases:
         )
 
     def _omitted(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence for each omission in the demands of the checks that these cases pass; () for none."""
+        """Return a sentence, "drift, uplift: REMARK.", for each omission in demands of checks that these cases pass; or ()."""
         passed = [(name, verdict.check) for verdict in self._of(names, PASS) for name in verdict.omitted]
         checks = grouped(passed, lambda pair: pair[0])
         sentences = []
@@ -283,7 +287,7 @@ class _Cases:
         return tuple(sentences)
 
     def _left_out(self) -> tuple[str, ...]:
-        """Return a sentence on stations, and files of used stations, that are left out by name; () for none."""
+        """Return "Left out by name: A, 2 files of B." for stations, and files of used stations, left out so; () for none."""
         names = _wholly_or_in_part(self.stations.left_out, self.stations.used)
         return (f"Left out by name: {_listed(names, ', ')}.",) if names else ()
 
@@ -319,11 +323,14 @@ class _Cases:
 
     @property
     def _under_every_bound(self) -> str:
-        """Words to follow what passes: that it does under every bound of the design; empty without bounds."""
+        """Words to follow what passes: " under every bound"; empty without bounds of the design."""
         return " under every bound" if any(under(verdict.columns) for verdict in self._of(self.every)) else ""
 
     def _failing_bounds(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence each for up to three cases that fail under bounds but not nominally, with the bounds; () for none."""
+        """Return "pads fails under soft, stiff only." for each of up to three cases that fail under bounds but not nominally.
+
+        Without the name of a case that is the only one; () for none.
+        """
         sentences = []
         for name in names:
             failing = dict.fromkeys(verdict.columns.get(BOUND, "") for verdict in self._of([name], FAIL))
@@ -334,7 +341,10 @@ class _Cases:
         return (*(_capital(words) if len(self.every) == 1 else words for words in few),)
 
     def undecided(self, names: Sequence[str], failing: Sequence[str]) -> Line | None:
-        """Return the line on undecided cases with reasons, and open checks of ``failing`` cases in a list; None for neither."""
+        """Return the line on undecided cases ``names`` with reasons, and undecided checks of ``failing`` ones; None for neither.
+
+        All omissions without an upper bound are reasons, and the first three other checks, with "and 2 more." behind.
+        """
         idle = ", ".join(dict.fromkeys(verdict.check for verdict in self._of(failing, NOT_DECIDED)))
         if not names:
             return Line(NOT_DECIDED, "Left undecided", f"{idle}, in cases that fail anyway", ()) if idle else None
@@ -349,7 +359,7 @@ class _Cases:
         return Line(NOT_DECIDED, _capital(f"{self._among(names)} cannot be decided"), _few(names), tuple(details))
 
     def _reasons_without_bound(self, verdicts: Sequence[Verdict]) -> list[str]:
-        """Return a sentence for each omission that leaves demands without an upper bound."""
+        """Return a sentence for each omission that leaves demands without an upper bound; [] for none."""
         by_cause = grouped((verdict for verdict in verdicts if verdict.left_open), lambda verdict: verdict.left_open)
         sentences = []
         for name, of_cause in by_cause.items():
@@ -389,7 +399,10 @@ class _Cases:
 
 
 def _excess(verdict: Verdict) -> float:
-    """Return demand over limit of a failing check; infinite for events that must not occur, and for a ratio of NaN."""
+    """Return the ratio of a failing check, above 1: demand over limit, or limit over demand if it asks for a least value.
+
+    Infinite for events that must not occur, and for a ratio of NaN.
+    """
     return math.inf if verdict.is_ban or math.isnan(verdict.ratio) else verdict.ratio
 
 

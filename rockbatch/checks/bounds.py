@@ -61,7 +61,7 @@ class OfSuite(NamedTuple):
 
     ``records`` have the bounds of each record, ``axes`` the demands of runs on one or both axes of a pier, ``counting`` the runs
     that count, shape (n,). ``governing`` is the place of the run that demands most, or may where the limit is within the bounds,
-    and ``demanded`` its demand; None and NaN if no run demands anything.
+    and ``demanded`` its demand; None and NaN if no run demands anything, NaN also if nothing is known of its demand.
     """
 
     value: float
@@ -118,7 +118,7 @@ def _of_records(rule: Rule, records: Bounds) -> tuple[float, float, float]:
 
 
 def _statistic(rule: Rule, values: Values) -> float:
-    """Return the statistic of values, shape (n,), or with "count" the number above the rule's threshold; NaN for n = 0."""
+    """Return the statistic of values, shape (n,), or with "count" the number above the rule's ``above``, or 0; NaN for n = 0."""
     if len(values) == 0:
         return math.nan
     statistic = STATISTICS[rule.statistic or "max"]
@@ -171,9 +171,9 @@ def lacking(counting: npt.NDArray[np.bool_], counted_as: Texts) -> dict[str, tup
 def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
     """Return the demand of a rule in the runs of a case, with its bounds, chaotic runs and omissions.
 
-    Bounds are value ∓ error; from the value up to infinite where the error is; from 0 up to infinite where the value is NaN; a
-    factor of :data:`SCATTER` for chaotic runs. Runs cut short count by the rule's ``ways``. An event is 0 or 1; its upper
-    bound is 1 where it may have followed.
+    Bounds are value ∓ error, not below 0; the value itself where the error is NaN; from the value up to infinite where the error
+    is infinite; from 0 up to infinite where the value is NaN; a factor of :data:`SCATTER` for chaotic runs. Of two models the
+    worse counts. Runs cut short count by the rule's ``ways``. An event is 0 or 1; its upper bound is 1 if it may have followed.
     """
     demand = DEMANDS[rule.demand]
     value, error = demand.evaluate(runs, case)

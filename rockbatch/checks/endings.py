@@ -86,7 +86,7 @@ def _reason(verdict: Verdict, suites: Sequence[Rows], ended: Mapping[str, Sequen
 def _numbers(
     ended: Mapping[str, Sequence[npt.NDArray[np.bool_]]], names: Sequence[npt.NDArray[np.object_]]
 ) -> Iterator[tuple[str, int]]:
-    """Yield each ending that occurs with the number of records that have such runs."""
+    """Yield each ending that occurs, "flight", with the number of records that have such runs, on either axis."""
     for name, of_suites in ended.items():
         records = {*np.concatenate([of_runs[runs] for runs, of_runs in zip(of_suites, names, strict=True)])}
         if records:

@@ -17,7 +17,10 @@ class OfEvent(NamedTuple):
 
     @property
     def remarks(self) -> list[str]:
-        """Remarks on records of one event: "3 of 8 stations are of one event, Kaikoura 2016"; and on unknown events."""
+        """Remarks on records of one event, if it has several: "3 of 8 stations are of one event, Kaikoura 2016".
+
+        And on unknown events, if some are unknown but not all; [] for neither.
+        """
         parts = []
         if self.records > 1:
             parts.append(f"{self.records} of {self.total} stations are of one event, {self.event}")

@@ -140,7 +140,7 @@ def judge(
 def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", fit: Fitted) -> Rows:
     """Return runs with the forces in the section or base of a rule, from the table that it needs; NaN for a run without them.
 
-    Raises ``InputError`` if a run has two sections at the height of the rule.
+    Raises ``InputError`` if a run has two sections at the height of the rule; of a rule with a capacity the worse counts.
     """
     its = sections[sections["height_m"].isin(fit.sections)]
     if fit.rule.curve is not None:
@@ -363,7 +363,7 @@ def _remarks_on_ends(rule: Rule, demanded: Demanded, suite: Rows, deciding: int 
 
 
 def _remark_on_chaos(runs: int) -> str:
-    """Return the remark on this number of chaotic runs, which have no error estimate; empty for 0."""
+    """Return the remark on this number of chaotic runs: "2 runs are chaotic, and are known to a factor of 2"; empty for 0."""
     if not runs:
         return ""
     words = "1 run is chaotic, and is" if runs == 1 else f"{runs} runs are chaotic, and are"

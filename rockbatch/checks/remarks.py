@@ -13,7 +13,7 @@ MOST_NAMES = 3
 
 
 def weak_supports(cases: Sequence[Case]) -> str:
-    """Return a sentence on cases in which one support cannot carry the pier, so that it cannot step; empty for none."""
+    """Return "pads: one support cannot carry the full weight (40 %): it yields …", with the cases of which it is true; or ""."""
     shares = {i: share for i, case in enumerate(cases) if (share := _borne_alone(case)) < 1.0}
     if not shares:
         return ""
@@ -66,7 +66,7 @@ def bounds_in_words(info: Mapping[str, Any]) -> list[str]:
 
 
 def changes_of(bound: Mapping[str, Any]) -> str:
-    """Return the changes of a bound in run.json with commas, and its source, if any, in brackets."""
+    """Return the changes of a bound in run.json, and its source, if any: "case.beta × 1.2, pier.mass_t = 950 (site report)"."""
     return ", ".join(bound["changes"]) + (f" ({bound['source']})" if bound["source"] else "")
 
 

@@ -152,9 +152,9 @@ def worst_of_all(worst: Iterable[Worst]) -> dict[str, Worst]:
 def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst]:
     """Return the worst responses of a case that govern its design and that no check bounds; [] if all are bounded.
 
-    Rotation always governs, and stands for drift and uplift; the drift of a shaft that bends governs beside it; settlement,
-    tilt and ductility do where a support yields, the residual rotation where dampers hold the pier at one on rigid ground.
-    ``worst`` and ``verdicts`` are those of the case.
+    Rotation always governs, and is bounded by a check of drift or uplift, too; the drift of a shaft that bends governs beside it;
+    settlement, tilt and ductility do if the ductility is above 1, the residual rotation on rigid ground above 10⁻⁴ α.
+    ``worst`` and ``verdicts`` are those of the case; a check that does not apply bounds nothing.
     """
     checked = {verdict.demand for verdict in verdicts if verdict.verdict != DOES_NOT_APPLY}
     yielded = any(peak.demand == "ductility" and peak.value > 1.0 for peak in worst)
@@ -169,7 +169,7 @@ def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst
 def in_words(worst: Worst) -> str:
     """Return the value of a response with its units: a drift "1.49 m (1486 mm) at 30 m", a rotation in α, degrees and rad.
 
-    One that two models give is a range in mm; other lengths are in mm, tilts in mrad and degrees.
+    A settlement of two models is a range in mm; other lengths are in mm, tilts in mrad and degrees, a ductility is a number.
     """
     value, pier = worst.value, worst.case["pier"]
     if worst.demand == "theta_max_over_alpha":

@@ -123,7 +123,7 @@ def _rules(
     """Return the rules of the sound [[check]] tables, and the ``usual`` values with those of [suite] in their place.
 
     ``section`` has the keys of [suite]. Mistakes become problems of ``file``, such as a name that is among ``names``, to which
-    those of the tables are added.
+    those of the tables are added. Rules with problems by ``unmet`` are among those returned.
     """
     suite = file.table("suite")
     usual = usual | (suite.read(section) if suite else {})

@@ -68,7 +68,10 @@ class Row(NamedTuple):
 
     @property
     def in_words(self) -> str:
-        """The verdict on the case in words: "fails 2 checks", "2 checks not decided", "no limit on drift", "not checked"."""
+        """The verdict on the case in words: "passes 3 checks", "fails 1 check", "2 checks not decided", "no limit on drift".
+
+        "not decided, under a suite that fails"; "not checked", or "no run ends standing" if checks pass.
+        """
         if self.verdict == DOES_NOT_APPLY:
             return "not checked" if not self.count(PASS) else "no run ends standing"
         if self.unlimited:
@@ -172,7 +175,10 @@ def _column(verdicts: Sequence[Verdict]) -> Column:
 
 
 def _cell(verdict: Verdict, column: Column) -> Cell:
-    """Return a verdict in a column; without numbers if it does not apply or its value is NaN, "none" or "some" for a ban."""
+    """Return a verdict in a column, without numbers if it does not apply or its value is NaN.
+
+    Of a ban "none", "some" or "not known" in place of the value, and no share of the limit.
+    """
     named = str(verdict.columns.get(BOUND, ""))
     if verdict.verdict == DOES_NOT_APPLY or math.isnan(verdict.value):
         return Cell(verdict, "", "")

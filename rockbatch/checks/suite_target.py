@@ -78,7 +78,7 @@ class Condition(NamedTuple):
 def suite_verdicts(info: Mapping[str, Any], scales: Iterable[float]) -> list[Verdict]:
     """Return the verdict on every condition on the suite, at each of the ``scales``, by the targets in run.json (``info``).
 
-    None on a target that is only compared (``required`` false), or without a fitted record. Without ``scales``, at scale 1.
+    A target that is only compared (``required`` false), or without a fitted record, has none. Without ``scales``, at scale 1.
     """
     targets = {name: info.get(key) for key, name in NAMES.items()}
     verdicts: list[Verdict] = []

@@ -183,7 +183,7 @@ def _table(verdicts: Iterable[Verdict]) -> tuple[list[str], list[dict[str, objec
 
 
 def write_verdicts(directory: Path, verdicts: Iterable[Verdict]) -> Path:
-    """Write checks.csv into ``directory``, whole or not at all."""
+    """Write checks.csv into ``directory``, whole or not at all; return its path."""
     path = Path(directory) / CHECKS
     write_whole(path, csv_text(*_table(verdicts)))
     return path

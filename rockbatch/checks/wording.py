@@ -44,7 +44,7 @@ def scaled(verdicts: Iterable[Verdict]) -> bool:
 
 
 def count_of(verdicts: Iterable[Verdict]) -> dict[str, int]:
-    """Return the number of verdicts of each kind, 0 included, in the order of ``WAYS``."""
+    """Return the number of verdicts of each kind, 0 included, in the order of ``WAYS``: {"pass": 3, "fail": 0, …}."""
     count = Counter(verdict.verdict for verdict in verdicts)
     return {kind: count[kind] for kind in WAYS}
 
@@ -57,7 +57,7 @@ def count_by_check(verdicts: Iterable[Verdict]) -> dict[str, dict[str, int]]:
 def number(value: float, neighbour: float = math.nan, least: int = 4) -> str:
     """Return a value with ``least`` significant digits, or up to ten, until it differs from its ``neighbour``: "1,234".
 
-    "∞" or "-∞" if it is infinite, "" for NaN.
+    "∞" or "-∞" if it is infinite, "" for NaN; with an exponent below 10⁻⁴ and from 10⁷ on.
     """
     if math.isnan(value):
         return ""
@@ -195,7 +195,7 @@ def is_left_open(verdict: Verdict) -> bool:
 
 
 def governing(verdict: Verdict, record: str) -> str:
-    """Return the run that governs, of the motion called ``record``, with its own demand; empty if no run does.
+    """Return the run that governs, of the motion called ``record``, with its own demand unless of a ban; empty if no run does.
 
     "governs: …", "largest: …" if the statistic differs from its demand, "left open by …" if it leaves the check undecided.
     """
@@ -248,7 +248,7 @@ def unchecked(verdict: Verdict) -> str:
 
 
 def both_axes(verdicts: Iterable[Verdict]) -> str:
-    """Return how the checks combine the two axes of a pier, in a sentence; empty if none does."""
+    """Return "Two planar models of each pier, …, combined: SRSS of both axes (drift).", the checks by way; empty for none."""
     ways = {verdict.check: verdict.axes for verdict in verdicts if verdict.axes}
     by_way = grouped(ways, ways.__getitem__)
     listed = "; ".join(f"{way} ({', '.join(names)})" for way, names in by_way.items())

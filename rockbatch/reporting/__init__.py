@@ -119,7 +119,10 @@ class Report:
         return f"<{'sheet' if self.is_sheet else 'report'} of {' and '.join(map(str, self.folders))}: {self.path}>"
 
     def save(self, folder: str | os.PathLike[str]) -> Path:
-        """Write the page, made anew from the results, into ``folder`` under its present name; return its path."""
+        """Write the page, made anew from the results, into ``folder`` under its present name; return its path.
+
+        Of a sheet this is the HTML or the PDF alone, as ``path`` is; sections are folded as by default.
+        """
         directory = made_folder(Path(folder))
         contents, target = _contents(self.folders, self.pairs), directory / self.path.name
         if isinstance(contents, Finished) and self.is_sheet:

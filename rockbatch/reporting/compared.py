@@ -28,7 +28,8 @@ INDEPENDENT = ("theta_max_over_alpha", "settlement_m", "base_tilt_rad", "ductili
 def answer(pair: Pair) -> Markup:
     """Return which study passes and by how much, then margins by check, and the worst responses and rotations of both.
 
-    Responses are over the runs that end standing in both, the change of the rotation over pairs of runs.
+    Responses are over the runs that end standing in both, the change of the rotation over pairs of runs. Without a run in
+    common it says so in place of both.
     """
     lead = tag("div", tag("strong", headline(pair)), class_="lead")
     in_common = zip(pair.studies, pair.runs, strict=True)
@@ -48,7 +49,10 @@ def answer(pair: Pair) -> Markup:
 
 
 def _responses(studies: list[Finished], responses: list[dict[str, Worst]], stood: int) -> str:
-    """Return a sentence on the worst responses' change from A to B, over the ``stood`` runs that end standing in both."""
+    """Return a sentence on the worst responses' change from A to B, over the ``stood`` runs that end standing in both.
+
+    One before it has the numbers of runs that do not end standing, if any; if none stands in both, it says so instead.
+    """
     lost = [int(study.runs["status"].isin((*NO_PEAK, "failed")).sum()) for study in studies]
     total = counted(len(studies[0].runs), "run")
     ended = f"Of {total} in common {lost[0]} of A and {lost[1]} of B do not end standing. " if any(lost) else ""
@@ -71,7 +75,10 @@ def _change(first: float, second: float) -> float:
 
 
 def _pairs(pair: Pair) -> str:
-    """Return a sentence on how many pairs have a smaller and a larger rotation in B, and the range of B/A; "" without a ratio."""
+    """Return how many pairs have a smaller and a larger rotation in B, and the range of B/A; "" if no pair has a ratio.
+
+    A pair has one if both runs end standing and the rotation of A is above 0; the number of the others is in brackets.
+    """
     a, b = pair.runs
     first, second = (runs["theta_max_over_alpha"].where(runs["status"] == "ok").to_numpy(float) for runs in (a, b))
     comparable = (first > 0) & (second >= 0)
@@ -120,7 +127,10 @@ def checks(pair: Pair) -> Markup:
 
 
 def inputs(pair: Pair) -> Markup:
-    """Return a table of the inputs that differ: keys of the studies, by value, and motions; with the cases paired by inputs."""
+    """Return a table of the inputs that differ: keys of the studies, by value, and motions; or a sentence that none does.
+
+    Pairs of cases with different names stand above it.
+    """
     others = [f"{first} with {second}" for second, first in pair.names.items() if first != second]
     words = tag("p", f"Paired cases of A and B: {'; '.join(others)}.") if others else ""
     rows = differences(*pair.studies, pair.names)
@@ -185,7 +195,10 @@ def suites(pair: Pair) -> Markup:
 
 
 def only_in_one(pair: Pair) -> Markup:
-    """Return a table of the cases with unmatched runs, with their number and up to six records each; empty without any."""
+    """Return a table of the cases with unmatched runs, a row for each polarity and scale, with up to six records each.
+
+    Empty without any.
+    """
     rows: list[list[object]] = []
     for name, study, runs in zip(SIDES, pair.studies, pair.only, strict=True):
         for _, group in runs.groupby(["series", "pier", "scale", "polarity", "with_vertical"], sort=False):
@@ -197,7 +210,7 @@ def only_in_one(pair: Pair) -> Markup:
 
 
 def studies(pair: Pair) -> Markup:
-    """Return the number of pairs of runs, then both studies, one after the other: greatest responses, inputs and statics."""
+    """Return the number of pairs of runs, then both studies: greatest responses, drawings, what was studied, and statics."""
     parts: list[object] = [
         tag("p", f"{counted(len(pair.runs[0]), 'pair')} of runs of paired cases under the same ground motion.")
     ]

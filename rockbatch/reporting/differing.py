@@ -52,7 +52,10 @@ _NO_SECTION = Section((), "", {})
 
 
 def differences(a: Finished, b: Finished, names: Mapping[str, str]) -> list[Difference]:
-    """Return the inputs that differ between two studies; ``names`` are cases of A by those of B with which they are paired."""
+    """Return the inputs that differ between two studies; ``names`` are cases of A by those of B with which they are paired.
+
+    A table of a list that only one of them has, such as a case or a damper, is a single input, "written" against "–".
+    """
     sides = written(a.study), written(b.study, names)
     places = dict.fromkeys(place for side in sides for place in side.values)
     only = [sides[0].listed - sides[1].listed, sides[1].listed - sides[0].listed]

@@ -108,7 +108,7 @@ def _grid(ticks: Iterable[float], limits: Sequence[Limit], top: float) -> list[M
 
 
 def _pga(runs: "Sequence[pd.DataFrame]") -> str | None:
-    """Return the largest PGA [g] of a row's motions, by which the page's script sorts; None if unknown."""
+    """Return the largest PGA [g] of a row's motions, "0.4317", by which the page's script sorts; None if unknown."""
     values = [float(of_column["pga"].max()) for of_column in runs if len(of_column)]
     return f"{max(values):.4g}" if values and not math.isnan(max(values)) else None
 

@@ -80,8 +80,8 @@ def _title(finished: Finished, one: Alike, several: bool) -> str:
 def _lines(finished: Finished, cases: Sequence[Case], known: Collection[str]) -> list[str]:
     """Return the devices of cases that share a drawing, but ``known`` ones; "B: damper" for a device that only case B has.
 
-    A case under a bound is named only if its device is not that of its design. At most :data:`MOST_LINES`, then one that says
-    how many more there are.
+    A case under a bound is named only if its device is not that of its design. At most :data:`MOST_LINES`, six, then one
+    that says how many more there are.
     """
     firsts: dict[object, list[str]] = {}
     having: dict[str, list[str]] = {}

@@ -158,11 +158,11 @@ class Finished(Contents, Labelled):
         return record_labels(self.info)
 
     def label(self, record: str) -> str:
-        """Return event, station and direction of a record; its name in tables if the file's header gives none."""
+        """Return a record's event, station and direction, "Kobe, Takatori, 0°"; its name in tables if its header gives none."""
         return self._labels.get(record, record)
 
     def named(self, record: str) -> str:
-        """Return a record's label, followed by its name in tables in brackets if different."""
+        """Return a record's label, and its name in tables if different: "Kobe, Takatori, 0° (TAK000)"."""
         label = self.label(record)
         return label if label == record else f"{label} ({record})"
 

@@ -44,7 +44,7 @@ class FinishedAnalysis:
     info: Item
 
     def provenance(self) -> Markup:
-        """Return the analysis's ground motions and package versions as HTML; empty if NAME.json has neither."""
+        """Return the analysis's ground motions, up to 60 by name, and versions of packages as HTML; empty if it has neither."""
         motions = [str(motion["label"]) for motion in self.info.get("under", ())]
         versions = {"rockbatch": self.info["rockbatch"], **self.info["versions"]} if "versions" in self.info else {}
         parts = []
@@ -143,7 +143,7 @@ def answered(*paragraphs: str, remarks: Iterable[str] = ()) -> Markup:
 
 
 def sentence(said: str, left_open: Iterable[str] = ()) -> Markup:
-    """Return a sentence followed by its reservations, marked as undecided, with semicolons between them."""
+    """Return a sentence, its reservations behind it after semicolons, marked as undecided, and a full stop at the end."""
     return join(said, *(join("; ", tag("span", words, class_="undecided")) for words in left_open), ".")
 
 

@@ -21,14 +21,20 @@ DIGITS = 1e-3
 
 
 def headline(pair: Pair) -> str:
-    """Return which study passes, by how much, and which fails what: "A passes all, closest 83 % (…); B fails …"."""
+    """Return which study passes, by how much, and which fails what: "A passes all, closest 83 % (…); B fails ….".
+
+    If no verdict of either is on a case, it says that neither study has limits.
+    """
     if not any(verdict.case for study in pair.studies for verdict in study.verdicts):
         return "Neither study has limits, so that neither passes or fails."
     return "; ".join(_state(side, study) for side, study in zip(SIDES, pair.studies, strict=True)) + "."
 
 
 def _state(side: str, study: Finished) -> str:
-    """Return what a study comes to: "A passes all in 2 of 3 cases, closest 83 % (…), and fails …"; "A has no limits"."""
+    """Return what a study comes to: "A passes all in 2 of 3 cases, closest 83 % (…), and fails …"; "A has no limits".
+
+    Cases that pass come first, then those that fail, are not decided, are not checked; a suite that fails comes last.
+    """
     if not any(verdict.case for verdict in study.verdicts):
         return f"{side} has no limits"
     rows = scorecard(study.verdicts, named_designs(study), study.suites, study.worst_at_scales).rows
@@ -44,7 +50,10 @@ def _state(side: str, study: Finished) -> str:
 
 
 def _passing(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
-    """Return that cases pass, with the check that is closest to its limit: "passes all, closest 83 % (uplift, Te Mara)"."""
+    """Return that cases pass, with the check that is closest to its limit: "passes all, closest 83 % (uplift, Te Mara)".
+
+    "passes all" and the ``share`` of the cases alone if no check has a share of its limit, as bans.
+    """
     closest = _worst(list(_cells(rows)))
     if closest is None:
         return f"passes all{share}"
@@ -54,10 +63,10 @@ def _passing(study: Finished, rows: Sequence[Row], share: str, several: bool) ->
 
 
 def _failing(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
-    """Return the worst failing check, its demand over limit and place, and how many other checks fail.
+    """Return the failing check with the greatest finite share of its limit, else the first, that share and its place.
 
-    "fails anchor at 196 % (Te Mara) and 2 more in 2 of 3 cases"; ``share``, " in 2 of 3 cases", says how many cases fail, and
-    the place begins with the case if ``several``. A ratio that is not known is left out.
+    "fails anchor at 196 % (Te Mara) and 2 more in 2 of 3 cases": 2 other checks fail; ``share``, " in 2 of 3 cases", says how
+    many cases fail, and the place begins with the case if ``several``. A share that is not known is left out.
     """
     cells = [(row, cell) for row, cell in _cells(rows) if cell.verdict.verdict == FAIL]
     row, cell = _worst(cells) or cells[0]

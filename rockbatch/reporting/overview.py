@@ -49,8 +49,8 @@ def drawn_by_record(
 ) -> Markup:
     """Return the figure of runs in rows by record; ``columns`` are (caption, runs), ``limits`` those of each column.
 
-    Of more than :data:`MOST_ROWS` records the least bad ones share a row, and have a folded one each unless there are very many
-    runs.
+    Of more than :data:`MOST_ROWS`, 14, records all but the worst 13 share a row, and have a folded one each if there are up to
+    :data:`MOST_MARKS` runs.
     """
     runs = pd.concat([of_column for _, of_column in columns]) if len(columns) > 1 else columns[0][1]
     names = groups_worst_first(runs, "record")
@@ -87,7 +87,7 @@ def _marks_in_words(finished: Finished) -> Iterator[str]:
 
 
 def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
-    """Return the limits of rotation checks as θ/α, ascending, but of checks that count records.
+    """Return the limits of checks of rotation, drift or uplift as θ/α, ascending, but of checks that count records.
 
     [] if the column has several piers, whose limits differ.
     """

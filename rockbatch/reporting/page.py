@@ -66,7 +66,7 @@ def _of_analysis(name: str, function: str, contents: Contents) -> Markup:
 
 
 def _with_observers(own: Iterable[Part]) -> Iterator[Part]:
-    """Yield the sections of the page, each followed by observers' sections, whose modules load when drawn."""
+    """Yield the sections of the page, each followed by those of observers that stand behind it; modules load when drawn."""
     for part in own:
         yield part
         for name, more in report_parts():
@@ -125,7 +125,7 @@ PARTS_OF_TWO = (
 
 
 def sections(contents: Contents) -> list[Section]:
-    """Draw the sections of one folder, without empty ones."""
+    """Draw the sections of one folder, without empty ones: without results those of analyses, notes and the study file."""
     parts = PARTS if isinstance(contents, Finished) else (*PARTS, ALONE)
     fitting = [part for part in parts if isinstance(contents, part.kind)]
     drawn = (Section(part.heading, part.anchor, part.content(contents), part.folded) for part in fitting)

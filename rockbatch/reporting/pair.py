@@ -54,7 +54,8 @@ def pair(a: Finished, b: Finished, asked: Mapping[str, str] | None = None) -> Pa
     """Match the runs of two studies by record, polarity, scale, case and the values of the keys that both vary.
 
     Cases are paired as ``asked``, of B by those of A; then by their names; and those that are left by the inputs that differ
-    least. Of a study with bounds beside one without, the nominal design is matched. Runs alike in all of these are not matched.
+    least. Of a study with bounds beside one without, the nominal design is matched, and runs with a vertical component if both
+    say which have it. Runs alike in all of these are not matched. Raises ``InputError`` for ``asked`` as :func:`paired_cases`.
     """
     names = paired_cases(a, b, asked or {})
     in_both = [key for key in a.info["varied"] if key in b.info["varied"] and key != "vertical"]
@@ -81,7 +82,7 @@ def pair(a: Finished, b: Finished, asked: Mapping[str, str] | None = None) -> Pa
 def paired_cases(a: Finished, b: Finished, asked: Mapping[str, str]) -> dict[str, str]:
     """Return the name of the case of A for each case of B that is paired with one; ``asked`` are those of B by those of A.
 
-    Raises ``InputError`` for a name that is not there, or that is asked for twice.
+    Raises ``InputError`` for a name of ``asked`` that is not there, or a case of B that is asked for twice.
     """
     left, right = ([name for name, case in _firsts(study).items() if not is_across(case)] for study in (a, b))
     wrong = [_no_case(name, "A", left) for name in asked if name not in left]
@@ -111,7 +112,7 @@ def _firsts(study: Finished) -> dict[str, Item]:
 
 
 def _no_case(name: str, side: str, names: Sequence[str]) -> str:
-    """Return the message about a case that a study does not have."""
+    """Return the message about a case that a study does not have: "B has no case "pads"; did you mean "pad"?"."""
     near = closest(name, names)
     hint = f"did you mean {shown(near)}?" if near else f"there is {', '.join(map(shown, names))}"
     return f"{side} has no case {shown(name)}; {hint}"

@@ -37,7 +37,7 @@ def installed() -> bool:
 
 
 def frame(title: str, top: tuple[str, str], bottom: str, size: str, margin: str = "1.2cm", paper: str = "A4") -> str:
-    """Return the rules that a document begins with.
+    """Return the rules in Typst's markup that a document begins with.
 
     ``top`` are the texts at the head of each page, left and right, and ``bottom`` the one at its foot, beside its number.
     ``size`` of the text and ``margin`` on its left and right are lengths of Typst; ``paper`` is one of :data:`PAPERS`.

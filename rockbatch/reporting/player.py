@@ -107,6 +107,6 @@ class _Drawing:
 
 
 def arrow(push: float) -> str:
-    """Return the path of an arrow from the middle of the base, ``push`` px to the right."""
+    """Return the path of an arrow from the middle of the base, ``push`` px to the right; without a head up to 4 px."""
     head = math.copysign(4.0, push)
     return f"M0 {GROUND_AT}h{push:.1f}" + (f"m{-head} -3l{head} 3l{-head} 3" if abs(push) > 4.0 else "")

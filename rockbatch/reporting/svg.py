@@ -120,7 +120,7 @@ def _caption(panel: Panel) -> Markup:
 
 
 def _description(figure: Figure, panel: Panel) -> str:
-    """Return the description of one panel of a figure."""
+    """Return the description of one panel of a figure: that of the figure and the panel's caption, with a comma, if any."""
     return ", ".join(filter(None, (figure.description, panel.caption)))
 
 
@@ -288,7 +288,7 @@ def _panel(box: Box, captioned: bool) -> Iterator[Markup]:
 
 
 def _frame(box: Box) -> Markup:
-    """Draw axes, grid and numbers; an axis of names has no grid lines, and only as many of its names as have room."""
+    """Draw axes, grid and numbers; an axis of names has no grid lines, and along x only as many names as have room."""
     x, y = box.panel.x, box.panel.y
     columns, rows = x.ticks(), y.ticks()
     lines = "".join(
@@ -444,7 +444,7 @@ def _short(value: float | str) -> str:
 
 
 def curve(x: Array, y: Array, class_: str, name: str | None = None, title: str = "") -> Markup:
-    """Draw a curve through points in pixels, interrupted at NaN; ``name`` is its name in the script."""
+    """Draw a curve through points in pixels, interrupted at NaN and beyond ±10⁶; ``name`` is its name in the script."""
     tooltip = tag("title", title) if title else ""
     return tag("path", tooltip, d=_relative(x, y), transform=f"scale({1 / FINE:g})", class_=class_, data_name=name)
 

@@ -185,7 +185,7 @@ def _dots(element: Element, setting: Setting) -> str:
 
 
 def _with_signs(element: Element, setting: Setting) -> str:
-    """Return an element's text with its pictures in the line, each in a box."""
+    """Return the Typst markup of an element's text, with its SVG pictures in the line, each in a box."""
     written = words(element.text or "")
     for child in element:
         if child.tag == "svg":
@@ -345,7 +345,7 @@ def _markers() -> str:
 
 @cache
 def _colours() -> dict[str, str]:
-    """Return the style sheet's variables for light paper."""
+    """Return the style sheet's variables for light paper, by names such as "--good"."""
     first = styles("style.css").partition("}")[0]
     return {name: value.strip() for name, value in re.findall(r"(--[\w-]+):([^;]+);", first)}
 
@@ -371,8 +371,8 @@ def _classes(element: Element) -> frozenset[str]:
 
 
 def _style(element: Element) -> dict[str, str]:
-    """Return the declarations in an element's own style."""
-    pairs = (part.partition(":") for part in element.get("style", "").split(";"))
+    """Return the declarations in an element's own style: {"width": "460px"}; {} without one."""
+    pairs = (part.partition(":") for part in element.get("style", "").split(";") if part.strip())
     return {name.strip(): value.strip() for name, _, value in pairs}
 
 

@@ -139,6 +139,12 @@ def test_pictures_have_the_colours_of_the_report(sheet):
     assert ".s2 { color: #b4470c; }" in kept
 
 
+def test_an_empty_part_of_a_style_is_no_declaration():
+    of_one, without = parsed('<p style="width: 3px;">a</p><p>b</p>')
+    assert typeset._style(of_one) == {"width": "3px"}
+    assert typeset._style(without) == {}
+
+
 def test_names_that_are_commands_of_typst_are_words(tmp_path):
     names = [(name, 0.4) for name in COMMANDS]
     cases = [case_entry(name, {}, Pier(alpha=0.13, p=0.38), RigidBase()) for name in COMMANDS[:3]]

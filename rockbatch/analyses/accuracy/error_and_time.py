@@ -94,9 +94,9 @@ def reference(run: StudyRun, quiet_s: float, seconds: float = math.inf) -> Refer
 def references(
     study: Study, motions: MotionSet, most: int, listener: Listener, clock: Clock | None = None
 ) -> list[Reference]:
-    """Return converged references of at most ``most`` runs of the study, as many as the clock allows.
+    """Return converged references of at most ``most`` runs of the study, as many as the time of the clock allows.
 
-    Raises ``InputError`` if there is none.
+    Until one has converged they may take the whole time, then no more than half. Raises ``InputError`` if none converges.
     """
     clock = clock or Clock()
     runs = Plan(study, motions)
@@ -128,7 +128,7 @@ def references(
 
 
 def _scattered(i: int) -> float:
-    """Return the fraction of i times the golden section: sorted by it, the first few of a range are spread over all of it."""
+    """Return the fractional part of i × 0.618…, the golden section: by it, the first few of a range are spread over all of it."""
     return i * 0.6180339887498949 % 1.0
 
 

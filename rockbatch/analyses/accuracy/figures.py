@@ -22,10 +22,10 @@ ERRORS = {
 
 
 def error_and_time(levels: Sequence[Level]) -> Figure:
-    """Return a figure of error against time per run, both logarithmic, with a star at the setting of this study.
+    """Return a figure of error against time per run, both logarithmic, with a star at the setting of this study, if measured.
 
-    The line of the largest error is solid, of the 95 % quantile dashed, of the median dotted. Levels without a time are left out;
-    errors below LEAST are drawn there.
+    The line of the largest error is solid, of the 95 % quantile dashed, of the median dotted; a thin one is at the study's
+    tolerance. Levels without a time are left out; errors below LEAST are drawn there.
     """
     timed = [level for level in levels if level.seconds_per_run]
     errors = [max(error, LEAST) for level in timed for name in ERRORS if (error := getattr(level, name)) is not None]

@@ -265,7 +265,7 @@ def _on_suite(study: Study, motions: MotionSet) -> Callable[[Sequence[Case]], li
 
 
 def _described(trials: Trials, spec: DesignSpec, written: Written, study: Study) -> dict[str, Any]:
-    """Return the entries of design.json beside those of every analysis."""
+    """Return the entries of design.json beside those of every analysis: settings, designs, and numbers of values tried."""
     passing = [found for found in trials.judged.values() if found.verdict == PASS]
     refused = [*refusals(trials.judged)]
     return {

@@ -51,7 +51,7 @@ def with_labels(info: Entry, table: "pd.DataFrame") -> list[dict[str, Any]]:
 
 
 def by_design(info: Entry, rows: Sequence[Entry]) -> dict[str, list[Entry]]:
-    """Return the rows of a table by the words for their design, in the order of the study; [] for a design without rows."""
+    """Return the rows of a table by their design, "pads: β = 40", in the order of the study; [] for one without rows."""
     keys = ["case", *info["varied"]]
     by_name = grouped(rows, lambda row: named(row, keys))
     names = [
@@ -83,7 +83,10 @@ def governs(row: Entry, end: str = "", short: bool = False) -> str:
 
 
 def _of_line(info: Entry, rows: Sequence[Entry], tried: Sequence[Entry]) -> Iterator[Said]:
-    """Yield sentences on the passing values of one key."""
+    """Yield sentences on the passing values of one key: the least or greatest, the neighbour that does not pass, and gaps.
+
+    If none passes, a single one says so, with the value that is nearest to passing.
+    """
     path, find = info["vary"][0]["path"], info["find"]
     passing = [row for row in rows if row["verdict"] == PASS]
     if not passing:
@@ -147,7 +150,7 @@ def _verdict_without_pass(rows: Sequence[Entry]) -> str:
 
 
 def _nearest(tried: Sequence[Entry], path: str) -> str:
-    """Return the value nearest to passing, with what governs it, to follow a sentence; empty if all are refused.
+    """Return the value nearest to passing: "; nearest is 4, which fails: drift at 120 %, in LGP000"; empty if all are refused.
 
     A value that is not decided is nearer than one that fails, then one with a lower ratio.
     """
@@ -160,7 +163,10 @@ def _nearest(tried: Sequence[Entry], path: str) -> str:
 
 
 def _of_map(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
-    """Yield sentences on the passing values of two keys: the extreme of the first over all of the second; where none passes."""
+    """Yield sentences on the passing values of two keys: the least or greatest of the first over all values of the second.
+
+    Then at how many values of the second none passes, if any; a single sentence if no pair passes.
+    """
     (path, other), find = (varied["path"] for varied in info["vary"]), info["find"]
     passing, number = [row for row in rows if row["verdict"] == PASS], len({row[other] for row in rows})
     if not passing:
@@ -185,7 +191,10 @@ def _of_map(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
 
 
 def _remarks(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
-    """Yield what the answer leaves open, and what was left out."""
+    """Yield what the answer leaves open: steps without a run, responses without a limit, omissions of demands, unusable files.
+
+    Then, without a verdict, how many values are refused, with the first reason, and which cases lack the keys.
+    """
     widest = max((row["widest_step"] for row in rows), default=0.0)
     if widest > info["width"]:
         yield (

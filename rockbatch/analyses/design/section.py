@@ -31,7 +31,7 @@ TWO = (
 def section(
     analysis: FinishedAnalysis, intervals: "pd.DataFrame", values: "pd.DataFrame", checks: "pd.DataFrame"
 ) -> Markup:
-    """Return the report's section of a design."""
+    """Return the report's section of a design: the answer, the figure, the table of intervals, and how it was computed."""
     info = analysis.info
     said = answer(info, intervals, values)
     lead = [f"{SIGNS[verdict]} {words}" for verdict, words in said if verdict in (PASS, FAIL)]

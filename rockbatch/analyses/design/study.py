@@ -36,7 +36,7 @@ class Varied:
 
     @property
     def values(self) -> list[float]:
-        """Return the values of the scan, which are evenly spaced."""
+        """Return the values of the scan, evenly spaced from ``low`` to ``high``, both included, to ten digits."""
         return [rounded(value) for value in np.linspace(self.low, self.high, self.points).tolist()]
 
     @property
@@ -217,7 +217,7 @@ def _why_not_over(path: str, low: float, high: float) -> str:
 def _having(table: Table, study: Study, paths: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the names of the cases that have all keys at these ``paths``, and of the others.
 
-    A key that no case has becomes a problem of the file, and both are empty.
+    A key that no case has becomes a problem of the file, and both are empty; so does that no case has all keys, and the first is.
     """
     tables: dict[str, Any] = tomllib.loads(study.text)
     having = {name_of(case): [with_value(tables, path, name_of(case), 1.0) is not None for path in paths]

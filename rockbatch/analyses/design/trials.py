@@ -134,7 +134,7 @@ class Trials:
         self.omitted: dict[str, dict[str, None]] = {}
 
     def execute(self, requested: Iterable[Trial]) -> None:
-        """Run and judge those trials that are not judged yet; one with which the study is refused is not run."""
+        """Run and judge those trials that are not judged yet; one with which the study is refused is REFUSED without a run."""
         trials = [trial for trial in dict.fromkeys(requested) if trial not in self.judged]
         for trial in trials:
             if reason := self.written.refusal(trial):
@@ -149,7 +149,7 @@ class Trials:
             self._judge(name, {trial: cases[trial] for trial in of_name}, peaks)
 
     def _judge(self, name: str, cases: Mapping[Trial, Sequence[Case]], peaks: "pd.DataFrame") -> None:
-        """Judge the trials of a case by the checks that are about it."""
+        """Judge the trials of a case by the checks that are about it, and note ``free`` and ``omitted`` of those that pass."""
         study, motions = self.waves.study, self.motions.motions
         described = [describe_case(case) for of_trial in cases.values() for case in of_trial]
         names = frozenset(case.name_along for case in self.written.study.cases)
@@ -194,7 +194,7 @@ class Trials:
 
 
 def _values(columns: Mapping[str, Any], spec: DesignSpec) -> tuple[tuple[float, ...], Columns]:
-    """Return the values of the varied keys in the columns of a case, and those of its design."""
+    """Return the values of the varied keys in the columns of a case, and its other columns as pairs, without the bound."""
     others = {name: value for name, value in of_design(columns).items() if name not in spec.paths}
     return tuple(float(columns[path]) for path in spec.paths), tuple(others.items())
 

@@ -202,7 +202,7 @@ def fragility(
 
 
 def _of_pier(spec: FragilitySpec) -> bool:
-    """Return whether the two axes of a pier share a curve, as intensities over g tan α do."""
+    """Return whether cases across a pier's axis are taken, too: if the measure is over g tan α, so that axes share a curve."""
     return spec.of_pier
 
 

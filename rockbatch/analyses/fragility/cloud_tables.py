@@ -57,7 +57,10 @@ def counts(run: CloudPoint, curve: Curve, spec: FragilitySpec) -> str:
 
 
 def described_cloud(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
-    """Return the entry of a curve's cloud in fragility.json: its runs, its line and its logistic part, None for what it lacks."""
+    """Return the entry of a curve's cloud in fragility.json: limit, floor, demand, line, logistic and runs.
+
+    Line and logistic part are None if the curve lacks them, the floor for an event.
+    """
     fitted = curve.fitted
     line = fitted.line if isinstance(fitted, Cloud) else None
     share = fitted.overturning if isinstance(fitted, Cloud) else None
@@ -80,7 +83,7 @@ def described_cloud(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
 
 
 def note_on_cloud(curve: Curve, spec: FragilitySpec) -> list[str]:
-    """Return remarks on a curve of a cloud: fewer than FEW, 3, records beyond the limit, none overturns, some count as small."""
+    """Return remarks on a cloud's curve, if fewer than FEW, 3, records exceed the limit, none overturns, some count as small."""
     notes = []
     beyond = sum(run.state == EXCEEDED for run in curve.cloud)
     if beyond < FEW:

@@ -91,7 +91,10 @@ class Readings(NamedTuple):
 
     @property
     def medians(self) -> tuple[float, float]:
-        """Return both medians, the lower first; without a curve the bound, 0 or infinite if there is none."""
+        """Return both medians, the lower first; without a curve the lower bound of ``exceeded``, 0 if there is none.
+
+        Or the upper bound of ``withstood``, infinite if there is none.
+        """
         low = self.exceeded.above if isinstance(self.exceeded, NoCurve) else self.exceeded.median
         high = self.withstood.below if isinstance(self.withstood, NoCurve) else self.withstood.median
         return min(low, high), max(low, high)
@@ -186,7 +189,7 @@ class Curve:
         return levels, beyond / n, (beyond + open_) / n
 
     def identity(self, varied: Sequence[str]) -> dict[str, object]:
-        """Return the columns that identify it in tables: its case with the ``varied`` values, and its limit."""
+        """Return the columns that identify it in tables: ``case``, the ``varied`` values or None, and ``limit_state``."""
         columns = {name: self.case.columns.get(name) for name in varied}
         return {"case": self.case.name, **columns, "limit_state": self.limit.name}
 
@@ -206,8 +209,9 @@ def assess(
     """Return the fragility curves of every case for every limit that applies to it.
 
     Every record is run at the levels of ``plans``, one for each case (:func:`level_plans` if they are not given). With method
-    "ida" it is run in the windows about them, too; below its first exceedance so far it is then run between the levels, in one
-    wave, and the first exceedance is bisected, in several.
+    "ida" it is also run in windows about them and, in one wave, between the levels below its first exceedance so far, both on
+    rigid ground or where the study asks for it; then the first exceedance is bisected, in several. Piers share a curve if the
+    measure is relative to them (:func:`_shared_by`).
 
     ``simulate`` is called once for the levels and windows, and once for every wave.
     """
@@ -252,7 +256,7 @@ class Member(NamedTuple):
 
 
 def _shared_by(case: Case, spec: FragilitySpec) -> Hashable:
-    """Return a key shared by cases with one curve: their name and values that are not the pier's, over what lifts a pier off.
+    """Return a key that cases with one curve share: name and values that are not the pier's, if the measure is relative to piers.
 
     With another measure each case has its own.
     """
@@ -277,7 +281,10 @@ _Key = tuple[int, Rule, int]
 def _curve(
     runs: RecordRuns, spec: FragilitySpec, rule: Rule, members: Sequence[Member], looks: Sequence[Looks]
 ) -> Curve:
-    """Return the curve fitted to the states (``looks``) of every member: to brackets with method "ida", else to stripes."""
+    """Return the curve fitted to the states (``looks``) of every member: to brackets with method "ida", else to stripes.
+
+    It has the windows, if the base of the first case has some, and the contribution of drawn inputs.
+    """
     on_levels = np.array([[states.get(x, LEFT_OUT) for x in spec.levels] for states in looks], dtype=np.int8)
     undecided, station = _undecided(runs, members, looks), _stations(runs, members)
     capacities: tuple[tuple[Member, Capacity], ...] = ()
@@ -340,7 +347,10 @@ def _with_share(curve: Curve, runs: RecordRuns, intervals: Sequence[Interval], c
 
 
 def _of_cloud(runs: RecordRuns, spec: FragilitySpec, numbers: Sequence[int], rule: Rule) -> Curve:
-    """Return the curve through the demands of all runs of the cases ``numbers``."""
+    """Return the curve through the demands of the runs of the cases ``numbers``, without those left out or doubtful.
+
+    If some are doubtful, its ``readings`` are the curves with these counted as overturned, and as within the limit.
+    """
     points = sorted(
         (Point(m, x, c) for c in numbers for m, used in enumerate(runs.plans[c].used) for x in used),
         key=lambda run: run.intensity,

@@ -35,7 +35,7 @@ Curve = Entry
 
 
 def label(entry: Curve) -> str:
-    """Return the name of a curve's case with its varied values."""
+    """Return the name of a curve's case with its varied values: "pads: β = 40"."""
     return in_full(entry["case"], entry["columns"])
 
 

@@ -67,7 +67,10 @@ def of_curves(info: Entry) -> list[Head]:
 
 
 def bound_in_words(bound: Entry, measure: str, unit: str, every: str = "there") -> str:
-    """Return the bound of a median: "below PGV 1.5 m/s: every record exceeds it there"; ``every`` is where records count."""
+    """Return the bound of a median: "below PGV 1.5 m/s: every record exceeds it there", or "3 of 20 records exceed it there".
+
+    Likewise "above …: no record exceeds it there", and "between … and …: …"; ``every``, in place of "there", is where they count.
+    """
 
     def intensity(end: str) -> str:
         return f"{measure} {plain(bound[end], 3)} {unit}".strip()
@@ -123,7 +126,7 @@ def of_rates(info: Entry, written: Callable[[float], str]) -> list[Head]:
 
 
 def _drawn(curve: Curve) -> Entry:
-    """Return the contribution of drawn inputs to a curve; {} if nothing is drawn, or if it is unknown."""
+    """Return the entry ``drawn`` of a curve, with ``dispersion`` and its interval; {} if nothing is drawn, or it is unknown."""
     contribution: Entry = curve.get("drawn", {})
     return contribution
 

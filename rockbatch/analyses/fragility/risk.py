@@ -323,7 +323,10 @@ def deaggregated(risk: Risk, spec: FragilitySpec) -> list[tuple[float, float, st
 
 
 def described_hazard(spec: FragilitySpec) -> dict[str, object] | None:
-    """Return the hazard's entry in fragility.json: its points, and the curve through them; None without a hazard."""
+    """Return the hazard's entry in fragility.json: its points as ``levels`` and ``rates``, its settings, and ``drawn``.
+
+    That is the curve through them, 60 points ``x`` and ``rate`` over levels of hazard and fragility; None without a hazard.
+    """
     if spec.hazard is None:
         return None
     curve = spec.hazard.curve

@@ -44,7 +44,8 @@ def scales(
 def described_scales(plans: Sequence[LevelPlan], spec: FragilitySpec, names: Sequence[str]) -> dict[str, object]:
     """Return the factors for fragility.json: for each record those at all levels, None where it is not meant for one.
 
-    There are no records of a cloud, nor of a measure relative to a pier: then it is only what is ``said`` in words.
+    The keys are ``records``, ``factors``, ``used``, ``limits`` and ``said``, in words; the first three are [] for a cloud, and
+    for a measure relative to a pier.
     """
     if spec.method == "cloud" or spec.of_pier:
         return {"records": [], "factors": [], "used": [], "limits": [None, None], "said": in_words(plans, spec)}
@@ -59,7 +60,7 @@ def described_scales(plans: Sequence[LevelPlan], spec: FragilitySpec, names: Seq
 
 
 def in_words(plans: Sequence[LevelPlan], spec: FragilitySpec) -> str:
-    """Return the range of scale factors in words, or that records are taken as recorded if all are 1.
+    """Return "records are scaled by 0.5 to 4 (median 1.5)", or that they are taken as they were recorded if all factors are 1.
 
     With it are the levels that lose records to the limits on factors, and how many they keep, and the levels that given factors
     miss by more than FAR, a tenth.

@@ -86,13 +86,13 @@ class FragilitySpec:
 
     def step_on(self, base: Base) -> float | None:
         """Return the relative steps of the hunt between the levels on ``base``: the given ones, else HUNT_STEP, 0.0025, on rigid
-        ground, and None, the levels alone, on springs.
+        ground, and None, the levels alone, on springs or a footing.
         """
         return HUNT_STEP if self.hunt_step is None and not base.on_springs else self.hunt_step
 
     def window_on(self, base: Base) -> float | None:
         """Return the relative half-width of the windows about the levels on ``base``: the given one, else WINDOW, 0.02, on rigid
-        ground, and None, no windows, on springs; None unless the method is "ida".
+        ground, and None, no windows, on springs or a footing; None unless the method is "ida".
         """
         if self.method != "ida":
             return None
@@ -109,7 +109,7 @@ class FragilitySpec:
 
     @property
     def label(self) -> str:
-        """Return the measure in words: "Sa(1 s, 5 %)"."""
+        """Return the measure in words: "Sa(1 s, 5 %)", "PGA/(g tan α)", or the name of an own one."""
         if self.own:
             return self.own.name
         if self.measure == "Sa":
@@ -123,7 +123,7 @@ class FragilitySpec:
 
     @property
     def power(self) -> float:
-        """Return the power by which the measure grows with the scale of a motion."""
+        """Return the power by which the measure grows with the scale of a motion: 1 but for an own measure."""
         return self.own.power if self.own else 1.0
 
 

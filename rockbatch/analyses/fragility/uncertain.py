@@ -95,14 +95,14 @@ class Uncertain:
 
     @property
     def words(self) -> str:
-        """Return the drawn inputs in words; empty without any."""
+        """Return the drawn inputs in words: "alpha lognormal 0.1, eta uniform 2 to 3; correlated: … (seed 1)"; or ""."""
         inputs = ", ".join(parameter.words for parameter in self.inputs)
         together = "; correlated: " + ", ".join(each.words for each in self.correlations)
         return f"{inputs}{together if self.correlations else ''} (seed {self.seed})" if self.inputs else ""
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Return the columns of their values in the table of runs."""
+        """Return the columns of their values in the table of runs: "drawn_alpha"."""
         return tuple(f"drawn_{name}" for name in self.names)
 
     @property

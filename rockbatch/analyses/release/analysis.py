@@ -253,8 +253,9 @@ class _Test:
         return self.fit(Passages(self.measured.t, nothing) if kind == 0 else Passages(nothing, self.measured.amplitude))
 
     def _differences(self, fit: Fit) -> str:
-        """Return the root mean square of measured less computed values in words: of times in ms, of amplitudes in mrad, whichever
-        are measured.
+        """Return the root mean squares of measured less computed values: "…: times by 3.1 ms (0.012 of a mean half cycle)".
+
+        Amplitudes stand behind, in mrad and over the initial rotation; what was not measured is left out.
         """
         first = float(self.model(fit.value).t.max()) / len(self.measured.t)
         differences = []

@@ -11,8 +11,9 @@ def interval(fit: Entry) -> str:
 
 
 def in_words(fit: Entry) -> str:
-    """Return the fitted value: "restitution = 0.9122 (95 %: 0.9061 to 0.918), Housner's is 0.9118"; then its scatter if above 0.1
-    %.
+    """Return the fitted value: "restitution = 0.9122 (95 %: 0.9061 to 0.918), Housner's is 0.9118".
+
+    Housner's is of a restitution alone; behind stands the scatter from impact to impact if above 0.1 % of the value.
     """
     value, low, high = (number(fit[name], ".4g") for name in ("value", "low", "high"))
     text = f"{fit['parameter']} = {value} ({100.0 * fit['confidence']:g} %: {low} to {high})"

@@ -88,7 +88,7 @@ def _doubt(first: Entry, shown: Rows) -> Iterator[str]:
 
 
 def _in_most(cases: Sequence[Rows]) -> Markup:
-    """Return the rest of a sentence about many cases: which input comes first in how many."""
+    """Return the rest of a sentence about many cases: which input comes first in how many, for up to four inputs."""
     known = [rows[0] for rows in cases if rows[0]["total"] == rows[0]["total"]]
     groups = sorted(grouped(known, lambda row: symbol(row["parameter"])).items(), key=lambda group: -len(group[1]))
     parts = []
@@ -101,7 +101,7 @@ def _in_most(cases: Sequence[Rows]) -> Markup:
 
 
 def _of_runs(info: Info) -> Iterator[str]:
-    """Yield remarks on the numbers of runs that overturned, flew or failed."""
+    """Yield a remark on the number of runs that overturned or flew, with their value, and one on failed runs, each if any."""
     number, runs = info["statuses"], counted(sum(info["statuses"].values()), "run")
     if ended := number.get("overturned", 0) + number.get("flight", 0):
         yield f"{ended} of {runs} overturned or were ended by flight, and count as {info['overturned']:g} here."

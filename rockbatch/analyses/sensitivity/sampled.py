@@ -102,7 +102,7 @@ class Design:
 
 
 def row_of(run: StudyRun) -> dict[str, object]:
-    """Return the row of a finished run in the table of runs: status, peak θ_max/α and reason."""
+    """Return the row of a finished run in the table of runs, by :data:`COLUMNS`, from record to reason."""
     outcome = run.outcome
     assert outcome is not None
     return {

@@ -45,9 +45,10 @@ def of_spectra(info: Info, suite: "pd.DataFrame") -> tuple[list[str], list[str]]
 
 
 def _overturning(info: Info, suite: "pd.DataFrame", fallen: "pd.DataFrame") -> Iterator[str]:
-    """Yield a sentence on the largest piers that overturn under one motion or more, and under half of them, for each slenderness.
+    """Yield a sentence on the largest piers that overturn under one motion or more, and under half of them.
 
-    If none overturns it says that.
+    It has a size for each slenderness, of over MOST_SLENDERNESSES, 4, for the least and the greatest alone. If no pier
+    overturns it says that.
     """
     axis, motions, many = info["axis"], counted(info["motions"], "motion"), info["motions"] > 1
     if fallen.empty:
@@ -70,7 +71,10 @@ def _overturning(info: Info, suite: "pd.DataFrame", fallen: "pd.DataFrame") -> I
 
 
 def _greatest(info: Info, suite: "pd.DataFrame") -> Iterator[str]:
-    """Yield a sentence on the greatest median rotation of the piers that stand, and where it is; nothing if none stands."""
+    """Yield "The greatest median rotation is θ_max/α = 0.5 (16 to 84 %: …), at 2π/p = 4 s, α = 0.15 rad.".
+
+    It is over the piers with a finite median; nothing if there are none.
+    """
     standing = as_dicts(suite[np.isfinite(suite["median"])])
     if not standing:
         return
@@ -96,7 +100,7 @@ def _ends(slendernesses: Sequence[float]) -> list[float]:
 
 
 def _of_runs(suite: "pd.DataFrame") -> Iterator[str]:
-    """Yield remarks on runs without a peak."""
+    """Yield a remark on runs that flight ended, and one on runs that failed, each if there are any."""
     flight, failed = int(suite["flight"].sum()), int(suite["failed"].sum())
     runs = counted(int(suite["count"].sum()) + failed, "run")
     if flight:
@@ -106,7 +110,7 @@ def _of_runs(suite: "pd.DataFrame") -> Iterator[str]:
 
 
 def _order(axis: str) -> str:
-    """Return the column in whose order piers are larger: p falls with the size."""
+    """Return the column that grows with the size: ``axis`` itself, but "two_pi_over_p_s" for "p", which falls."""
     return "two_pi_over_p_s" if axis == "p" else axis
 
 
@@ -156,7 +160,10 @@ def _worst(regions: "pd.DataFrame") -> "pd.DataFrame":
 
 
 def _least_of(regions: "pd.DataFrame", keys: list[str], of: str) -> str:
-    """Return a sentence on the least pulse of a map that overturns the pier, or that none does."""
+    """Return "The least sine that overturns the pier has a_p/(g tan α) = 2.1, at ω_p/p = 3.", or that none of the map does.
+
+    "sine" is the name of the map; of several cases it says for which, or for how many, and ``of`` stands at the end.
+    """
     name, worst, cases = regions["map"].iloc[0], _worst(regions), regions.groupby(keys, dropna=False).ngroups
     if worst.empty:
         ends = f"ω_p/p = {_span(regions['omega_p_over_p'])}, up to a_p/(g tan α) = {plain(float(regions['high'].max()), 3)}"

@@ -62,8 +62,8 @@ OF_WORK = {
 def with_work(outcome: Outcome, fine: DeviceWork, coarse: DeviceWork | None, pier: Pier, chance: float) -> Outcome:
     """Return ``outcome`` with the ``fine`` work of its devices.
 
-    Its ``devices_error`` becomes at least ``chance`` times the greatest relative change from ``coarse``, by twice the step, of
-    the fields in OF_WORK; it stays without ``coarse``, or if it is None.
+    Its ``devices_error``, unless None, becomes at least ``chance`` times the greatest relative change of the fields in OF_WORK
+    from ``coarse``, by twice the step, LEAST at least; it stays without ``coarse``.
     """
     worked = outcome.with_observed("devices_work", fine)
     if coarse is None or outcome.devices_error is None:
@@ -89,7 +89,7 @@ class WorkOfDevices(Observer):
         return greatest_of(run.pier, run.base, work)
 
     def add(self, run: Run, outcome: Outcome, fine: DeviceWork | None, coarse: DeviceWork | None) -> Outcome:
-        """Return ``outcome`` with the work ``fine``, if any; ``devices_error`` grows to its error by ``coarse``."""
+        """Return :func:`with_work` of ``fine``; ``outcome`` unchanged if that is None."""
         return outcome if fine is None else with_work(outcome, fine, coarse, run.pier, CHANCE)
 
 

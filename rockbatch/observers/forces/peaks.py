@@ -188,7 +188,10 @@ def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakF
 
 
 def _hardest(run: Run, events: np.recarray, landings: Impacts) -> dict[str, float]:
-    """Return fields of PeakForces: demands of the fastest landing, and the greatest impact friction; empty without impacts."""
+    """Return fields of PeakForces: demands of the fastest landing, and the greatest impact friction; empty without impacts.
+
+    The landing force is among them on a rigid base with a contact stiffness, the friction if an impact presses upwards.
+    """
     if len(landings.after) == 0:
         return {}
     hardest = int(landings.speed.argmax())
@@ -253,7 +256,7 @@ def _not_followed(run: Run, noted: Noted, peaks: PeakForces, least_normal: float
 
 
 def _in_kilonewtons(pier: Pier, force: float) -> str:
-    """Return a force per unit mass [m/s²] as text in kN, after a comma; "" if the mass is not known."""
+    """Return a force per unit mass [m/s²] as text in kN, after a comma: ", 1,234 kN"; "" if the mass is not known."""
     return "" if pier.mass_t is None else f", {pier.mass_t * force:,.0f} kN"
 
 
@@ -283,7 +286,8 @@ OF_FORCES = {
 def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier, chance: float) -> tuple[PeakForces, str]:
     """Return ``fine`` with ``chance`` times the greatest relative change from ``coarse`` added to its error, and a note.
 
-    ``coarse`` are the demands with twice the step. The note is "" unless the change is above LARGE_ERROR, 1 %.
+    ``coarse`` are the demands with twice the step; a change counts as LEAST at least. The note is "" unless it is above
+    LARGE_ERROR, 1 %.
     """
     worst, most = greatest_change(OF_FORCES, fine, coarse, pier)
     note = f"forces not settled: halving the step still changed the {worst} by {most:.1%}" if most > LARGE_ERROR else ""

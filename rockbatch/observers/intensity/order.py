@@ -25,11 +25,11 @@ class Order(NamedTuple):
     runs, without_peak : int
         Numbers of runs that count, and of those that overturned or stopped in flight, which rank above all others.
     rank_correlation : float
-        Spearman's ρ of the measure and θ_max; NaN with fewer than three runs, or if all are equal.
+        Spearman's ρ of the measure and θ_max; NaN with fewer than three runs, or if all of either are equal.
     fitted : int
         Number of runs that stood and rocked, to which ln θ_max = a + b ln(measure) is fitted by least squares.
     slope, dispersion : float
-        b, and the standard deviation of ln θ_max about the line; NaN with fewer than three runs.
+        b, and the standard deviation of ln θ_max about the line; NaN with fewer than three runs, or if all measures are equal.
     """
 
     runs: int
@@ -41,7 +41,10 @@ class Order(NamedTuple):
 
 
 def order_of(measure: Array, theta: Array, status: Sequence[str]) -> Order:
-    """Return how well ``measure`` orders the peaks ``theta``, both shape (n,); failed runs and those with NaN are left out."""
+    """Return how well ``measure`` orders the peaks ``theta``, both shape (n,); failed runs and those with NaN are left out.
+
+    Runs that overturned or stopped in flight count as an infinite peak, whatever their ``theta``.
+    """
     kinds = np.asarray(status, dtype=object)
     overturned = np.isin(kinds, NO_PEAK)
     peaks = np.where(overturned, math.inf, theta)
@@ -53,7 +56,7 @@ def order_of(measure: Array, theta: Array, status: Sequence[str]) -> Order:
 
 
 def _spearman(x: Array, y: Array) -> float:
-    """Return Spearman's rank correlation, equal values sharing their mean rank; NaN for fewer than three, or if all are equal."""
+    """Return Spearman's rank correlation, equal values sharing a mean rank; NaN for fewer than three, or all x or y equal."""
     if len(x) < LEAST_RUNS:
         return math.nan
     of_x, of_y = _ranks(x), _ranks(y)

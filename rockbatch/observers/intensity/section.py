@@ -21,7 +21,7 @@ SYMBOLS = {
 
 
 def section(finished: Finished) -> Markup:
-    """Return tables of rank correlations and dispersions of each measure; empty without intensity.csv."""
+    """Return tables of rank correlations and dispersions of each measure; empty without intensity.csv, or rows in it."""
     measures = read(finished.directory) if (finished.directory / TABLE).exists() else None
     if measures is None or measures.empty:
         return Markup("")
@@ -64,7 +64,7 @@ def _shown(value: float) -> float | str:
 
 
 def _symbol(name: object) -> str:
-    """Return the symbol of a measure: PGA/(g tan α), SA(0.5 s) for sa_0.5s_g, RotD100(0.5 s) for sa_0.5s_rotd100_g."""
+    """Return the symbol of a column: "PGA/(g tan α)", "CAV"; "SA(0.5 s)" of sa_0.5s_g, "RotD100(0.5 s)" of sa_0.5s_rotd100_g."""
     period, _, rule = str(name).removeprefix("sa_").removesuffix("_g").partition("s_")
     measure = {"geomean": "geometric mean", "rotd50": "RotD50", "rotd100": "RotD100"}.get(rule, "SA")
     return SYMBOLS.get(str(name)) or f"{measure}({period.removesuffix('s')}\u00a0s)"

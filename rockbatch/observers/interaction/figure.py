@@ -48,9 +48,9 @@ def _axis(label: str, marks: Sequence[Mark], along: str) -> Axis:
 
 
 def _drawn(curve: Curve, axial: Values) -> tuple[Values, Values]:
-    """Return N and the resistance of a curve from below the ``axial`` forces and 0 to above them, shape (k,) each.
+    """Return N and the resistance of a curve between the least ``axial`` force, or 0 if that is less, and the greatest.
 
-    It goes beyond them by BEYOND, 0.3, of the greatest |N|, but not beyond its own ends.
+    Both have shape (k,), and go on by BEYOND, 0.3, of the greatest |N|, but not beyond the ends of the curve.
     """
     room = BEYOND * max(float(np.abs(axial).max()), 1.0)
     low, high = max(min(axial.min(), 0.0) - room, curve[0][0]), min(axial.max() + room, curve[-1][0])

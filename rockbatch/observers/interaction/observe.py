@@ -34,9 +34,10 @@ def _at_base(recording: Recording) -> Envelope:
 
 
 def with_values_between(t: Samples, values: Samples) -> Samples:
-    """Return ``values`` at the times ``t`` [s] of rows, and behind them those at the :data:`SHARES` of steps.
+    """Return ``values`` at the times ``t`` [s] of rows, and behind all of them those interpolated at the :data:`SHARES` of steps.
 
-    They are cubic through the four rows around a step. Only a step as long as both its neighbours has them: none beside an event.
+    These are cubic through the four rows around a step, and left out for a step not as long as both its neighbours, as beside an
+    event, and for the first and the last.
     """
     steps = np.diff(t)
     even = (steps[1:-1] > 0.0) & np.isclose(steps[:-2], steps[1:-1]) & np.isclose(steps[2:], steps[1:-1])
@@ -75,7 +76,7 @@ class InteractionInSections(Observer):
         return with_errors(fine, fewer, of_model(run, 1.0, CHANCE))
 
     def add(self, run: Run, outcome: Outcome, fine: list[Envelope] | None, coarse: list[Envelope] | None) -> Outcome:
-        """Return ``outcome`` with a row of the table for each corner of ``fine``, with errors by ``coarse``.
+        """Return ``outcome`` with a row of the table for each corner of ``fine``, thinned, in kN, with errors by ``coarse``.
 
         No rows without ``fine`` or a mass.
         """

@@ -15,7 +15,10 @@ MOST_CHECKS = 8
 
 
 def section(finished: Finished) -> Markup:
-    """Return the report's section of checks of a capacity that depends on the axial force; empty without any."""
+    """Return the report's section of checks of a capacity that depends on the axial force, with a figure of the first eight.
+
+    Empty without such a check, or interaction.csv.
+    """
     path = finished.directory / INTERACTION
     of_checks = grouped((verdict for verdict in finished.verdicts if verdict.capacity), lambda verdict: verdict.check)
     if not (path.exists() and of_checks):

@@ -42,7 +42,7 @@ OUTPUT = Section(
 
 
 def complain(file: TomlFile, settings: Interaction, piers: Iterable[Pier]) -> None:
-    """Add a problem to ``file`` for each reason that some pier lacks a section, and if a pier has no mass for forces in kN."""
+    """Add a problem to ``file`` for each reason that some pier lacks a section, and for each key given if a pier has no mass."""
     asked = {"interaction_m": bool(settings.interaction_m), "interaction_base": settings.interaction_base}
     reasons = []
     if settings.interaction_m:

@@ -30,7 +30,7 @@ class OtherLaw(Observer):
 
 
 def by_other_law(base: Base) -> YieldingBase | None:
-    """Return the base with elastic–perfectly plastic springs for Bouc–Wen ones; None for one that does not ratchet."""
+    """Return a base on Bouc–Wen springs with elastic–perfectly plastic ones; None for another, whose springs do not ratchet."""
     if not isinstance(base, YieldingBase) or base.law.creep is None:
         return None
     return replace(base, spring=base.law.creep.other)

@@ -47,7 +47,10 @@ class Rocking(Observer):
         return apart(recording.run.pier, base, recording.rows)
 
     def add(self, run: Run, outcome: Outcome, fine: Apart | None, coarse: Apart | None) -> Outcome:
-        """Return ``outcome`` with Parts: of ``fine``, or all of θ_max as rocking if the pier could not lean; else unchanged."""
+        """Return ``outcome`` with the Parts and a note of ``fine``; unchanged for a run that was refused, or not read.
+
+        Where nothing was to be read, on a base that does not yield or of a pier that overturned, all of θ_max is rocking.
+        """
         if fine is not None:
             lean = None if outcome.status == "flight" else fine.lean
             parts = Parts(fine.rocking, lean)

@@ -59,7 +59,8 @@ def _peak(rows: np.recarray, start: float, end: float) -> tuple[float, float]:
 def _effects(run: Run, outcome: Outcome, rows: np.recarray, peaks: list[tuple[float, float]]) -> list[ShockOutcome]:
     """Return the effects of each shock, without errors, from the ``rows`` and ``peaks`` of a run with an ``outcome``.
 
-    ``peaks`` are changed in place: the shock of the run's greatest rotation gets that, found over all steps.
+    A shock in which the run ends has its status and peak only, each later one NOT_REACHED alone. ``peaks`` are changed in place:
+    the shock of the run's greatest rotation gets that, found over all steps.
     """
     shocks = run.motion.shocks
     of_run = max(i for i, shock in enumerate(shocks) if shock.start <= outcome.t_max + _AT_ONCE)

@@ -158,7 +158,7 @@ def _numerics(numerics: Any, cases: Collection[Case]) -> str:
 
 
 def _only(some: Collection[Case], cases: Collection[Case]) -> str:
-    """Return the cases of a sentence, " (case pads, piles)"; empty if it is true of all."""
+    """Return the cases of which a sentence is true, " (pads, piles)"; empty if that is all of them."""
     if len(some) == len(cases):
         return ""
     return f" ({', '.join(dict.fromkeys(str(case['case']) for case in some))})"

@@ -24,9 +24,9 @@ LEAST_RECORDS = 3
 
 
 def section(finished: Finished) -> Markup:
-    """Return the caution about single peaks, and a curve for each case if there are enough records; empty without runs.
+    """Return the caution about single peaks, and a curve for each case from three records on; empty without runs.
 
-    Of more than :data:`MOST_CURVES` cases the :data:`BEST` are drawn, in up to :data:`MOST_PANELS` panels.
+    Of more than :data:`MOST_CURVES` cases the :data:`BEST` are drawn; the piers and scales have up to :data:`MOST_PANELS` panels.
     """
     if finished.runs.empty:
         return Markup("")

@@ -108,7 +108,7 @@ def _single(value: object) -> bool:
 
 
 def _written(value: object) -> object:
-    """Return a value as a cell: a list as its values with commas, true and false in lower case; None for TOML tables."""
+    """Return a value as a cell: a list as its values with commas, a single true or false in lower case; None for TOML tables."""
     if not _single(value):
         return None
     if isinstance(value, list):
@@ -135,7 +135,7 @@ def _piers(finished: Finished) -> list[Row]:
 
 
 def _foundation(finished: Finished, case: Case) -> Row:
-    """Return the label, base and every parameter of a foundation but its devices."""
+    """Return the name of a foundation as ``case``, its ``base``, and every parameter but its devices by its key."""
     parameters = {key: value for key, value in case["parameters"].items() if key != "restraints"}
     return {"case": _name(finished, case), "base": case["base"]} | parameters
 

@@ -69,7 +69,7 @@ def outcome(run: Row | None, worst: float = math.nan) -> object:
 
 
 def at_least(run: Row) -> Markup:
-    """Return the lower bound of θ_max/α of a run that failed after its motion: "≥ 0.31240"; empty if it has none."""
+    """Return the lower bound of θ_max/α of a run that failed after its motion: "≥ 0.3124"; empty if it has none."""
     error = run[IN_MOTION_ERROR]
     if run["status"] != "failed" or error != error:
         return Markup("")

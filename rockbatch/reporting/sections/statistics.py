@@ -121,9 +121,10 @@ def _heads(sides: Sequence[str], form: str) -> list[Head]:
 
 
 def _cell(s: Statistics | None, name: str, form: str) -> object:
-    """Return the cell of statistic ``name``; None without statistics, "∞" in bold if infinite, "—" for a mean of no value.
+    """Return the cell of statistic ``name``; None without statistics, "∞" in bold if infinite.
 
-    A mean of fewer records than have an outcome has their number behind it; counts of records without a peak are in bold.
+    A mean of fewer records than have an outcome has their number behind it, or is "—" without any; counts above 0 of records
+    without a peak are in bold.
     """
     if s is None:
         return None

@@ -125,7 +125,10 @@ def _numbers_of(pier: Row) -> list[str]:
 
 
 def _vertical(finished: Finished) -> str:
-    """Return which motions have a vertical component: "with the vertical component", "3 with …", "horizontal component only"."""
+    """Return which motions have a vertical component: "with the vertical component", "3 with …", "horizontal component only".
+
+    "with and without the vertical component" if runs with both were made.
+    """
     records = finished.info["records"]
     if finished.runs["with_vertical"].nunique() > 1:
         return "with and without the vertical component"

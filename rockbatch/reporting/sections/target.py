@@ -69,7 +69,7 @@ def _below(finished: Finished, entry: str) -> str:
 
 
 def _conditions(finished: Finished, entry: str) -> Markup:
-    """Return a table of the conditions on the suite, each met or not; empty for a target that is only compared."""
+    """Return a table of the conditions on the suite, each met, not met or not decided; empty for a target only compared."""
     rows: list[list[object]] = []
     for verdict in _of_target(finished, entry):
         numbers = wording.limit(verdict), wording.demanded(verdict), verdict.unit

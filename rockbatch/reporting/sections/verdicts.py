@@ -146,7 +146,7 @@ def _card(
 
 
 def statistics_in_words(finished: Finished) -> str:
-    """Return a sentence on the statistic that each check uses, and on the bars; empty without a statistic."""
+    """Return "Median over stations (drift, uplift). The mark on a bar is the limit.", by statistic; empty if no check has one."""
     with_statistic = (v for v in finished.verdicts if v.case and not v.is_ban and v.statistic)
     checks_of: dict[str, dict[str, None]] = {}
     for verdict in with_statistic:
@@ -205,14 +205,18 @@ def _cell(finished: Finished, column: Column, cell: Cell | None, *, named: bool)
 
 
 def _governs(finished: Finished, verdict: Verdict) -> str:
-    """Return the record that governs, with its polarity and scale if the study has several."""
+    """Return the record that governs, with polarity and scale if the study has several: "Kobe, Takatori, 0° (+) × 2"."""
     polarity = f"({verdict.polarity})" if finished.both_directions else ""
     scale = f"× {verdict.scale:g}" if finished.many_scales else ""
     return " ".join(filter(None, (finished.label(verdict.record), polarity, scale)))
 
 
 def _tooltip(finished: Finished, verdict: Verdict) -> str:
-    """Return requirement, demand against limit, bounds, governing record and remarks, a line each."""
+    """Return what a cell says on hovering, a line each, without those that are empty.
+
+    They are requirement, demand against limit, bound on an input, bounds of the demand, governing record, number of runs
+    that ended early, and remarks.
+    """
     between = f"between {_between(verdict)}" if _between(verdict) else ""
     record = f"{finished.label(verdict.record)} ({verdict.polarity})" if verdict.record else ""
     against = "" if verdict.is_ban or math.isnan(verdict.value) else wording.against(verdict)

@@ -13,7 +13,7 @@ CUT_SHORT = ("flight", "failed")
 
 
 def of_cases(finished: Finished, shown: list[Quantity], name: str) -> Markup:
-    """Return a table with a row for each case: the worst of its runs, column by column."""
+    """Return a table with a row for each case, pier and scale: the worst of its runs, column by column."""
     rows: list[list[object]] = []
     for words, group in finished.groups():
         for place in group["series"].unique():

@@ -20,13 +20,16 @@ LONGEST = 1000
 
 
 def quoted(text: object) -> str:
-    """Return a text of the user in quotation marks, so that nothing in it can be taken for a sentence of the statement."""
+    """Return a text of the user in quotation marks, those inside as ', so that it cannot be taken for one of the statement.
+
+    After :data:`LONGEST` characters it is cut, with "…".
+    """
     inside = legible(str(text)).replace('"', "'")
     return f'"{inside if len(inside) <= LONGEST else f"{inside[:LONGEST]}…"}"'
 
 
 def listed(names: Sequence[str]) -> str:
-    """Return names in quotation marks, separated by commas, each once."""
+    """Return names in quotation marks, separated by commas, each once: '"drift", "uplift"'."""
     return ", ".join(map(quoted, dict.fromkeys(names)))
 
 
@@ -55,7 +58,10 @@ def sentence(finished: Finished, worst: Verdict, same: Sequence[Verdict]) -> str
 
 
 def remarks(verdicts: Sequence[Verdict]) -> Iterator[str]:
-    """Yield the remarks on the verdicts of a design, each once with its checks, and with its bounds unless it is on all."""
+    """Yield the remarks on the verdicts of a design, each once with its checks: '"drift", "uplift" under "stiff": no error …'.
+
+    A check has its bounds unless the remark is on all; remarks on checks that do not apply are left out.
+    """
     of_checks = grouped((v for v in verdicts if v.verdict != DOES_NOT_APPLY), lambda verdict: verdict.check)
     places: dict[str, list[str]] = {}
     for check, same in of_checks.items():
@@ -73,7 +79,7 @@ def _bound(verdict: Verdict) -> str:
 
 
 def _by_bound(verdicts: Sequence[Verdict]) -> str:
-    """Return under which bounds a check has which verdict, the worst first; empty if it has the same under all."""
+    """Return the verdicts by bound, the worst first: 'it fails under "stiff", and passes nominally'; empty if all are alike."""
     kinds = grouped(sorted(verdicts, key=badness, reverse=True), lambda verdict: verdict.verdict)
     if len(kinds) == 1:
         return ""
@@ -87,7 +93,7 @@ def _records(verdict: Verdict) -> str:
 
 
 def _quantity(verdict: Verdict) -> str:
-    """Return what a check limits: "the maximum over 5 stations of the greatest drift at 25 m"."""
+    """Return what a check limits: "the maximum over 5 stations of the greatest drift at 25 m"; and how two axes combine."""
     meaning = f"{DEMANDS[verdict.demand].meaning}{wording.at(verdict.at_m)}".replace("\u00a0", " ")
     statistic = STATISTICS.get(verdict.statistic)
     words = f"the {meaning}"  # of a property of the case
@@ -101,8 +107,8 @@ def _quantity(verdict: Verdict) -> str:
 def _value_in_words(verdict: Verdict, *, at_worst: bool) -> str:
     """Return the value with its verb: "is 0.3 m (between 0.2 m and 0.4 m)", "is at least 0.3 m", "is beyond any limit".
 
-    "has no value" if it is NaN. With ``at_worst`` the words "at worst" precede a number, and the bound of the design
-    follows whatever is said.
+    "has no value" if it is NaN, "is not known" if its upper bound is infinite, too. With ``at_worst`` the words "at worst"
+    precede a number, and the bound of the design follows whatever is said.
     """
     bound = f", {_bound(verdict)}" if at_worst else ""
     if math.isnan(verdict.value):
@@ -140,9 +146,9 @@ def _limit(verdict: Verdict) -> str:
 
 
 def _governing(finished: Finished, verdict: Verdict) -> str:
-    """Return the run that governs, has the greatest demand or leaves the check open, with its demand unless it is the value.
+    """Return the run that governs, has the greatest demand or leaves the check open: "greatest in "Te Mara": 0.2 m".
 
-    "" if the verdict names no record.
+    Only a greatest demand that is not the value is written behind it. "" if the verdict names no record.
     """
     if not verdict.record:
         return ""

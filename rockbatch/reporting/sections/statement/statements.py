@@ -161,7 +161,10 @@ def _names(finished: Finished, designs: Mapping[str, Sequence[CaseRuns]]) -> lis
 
 
 def _result(design: _Design, stations: Stations) -> str:
-    """Return the first sentence: that the design passes, fails which checks, is not decided and why, or is not checked."""
+    """Return the first sentence: that the design passes, fails which checks, is not decided and why, or is not checked.
+
+    'Case "pads" fails 1 of 3 checks: "drift"; "uplift" is not decided.'
+    """
     subject = f"Case {quoted(design.name)}"
     failing, open_, met = (design.having(kind) for kind in (FAIL, NOT_DECIDED, PASS))
     total = len(design.checks) - len(design.having(DOES_NOT_APPLY))
@@ -181,7 +184,7 @@ def _result(design: _Design, stations: Stations) -> str:
 
 
 def _share(names: Sequence[str], total: int) -> str:
-    """Return the names of some checks of a case after their number: "2 of 3 checks: "drift", "uplift""."""
+    """Return the names of checks after their number: "2 of 3 checks: "drift", "uplift""; "its only check: …" of one in all."""
     return f"{f'{len(names)} of {total} checks' if total > 1 else 'its only check'}: {listed(names)}"
 
 
@@ -296,7 +299,7 @@ def _not_covered(design: _Design, stations: Stations) -> Iterator[str]:
 
 
 def _identity(info: Item) -> str:
-    """Return program, date, study and results with the beginnings of their digests; results without a noted one are left out."""
+    """Return 'Computed by rockbatch 1.0 on 2026-11-29 from "a.toml" (SHA-256 1f2e…, results 3d4e…).', results if noted."""
     commit = info["versions"].get("commit", "")
     program = f"rockbatch {info['rockbatch']}" + (f" (commit {commit})" if commit else "")
     results = str((info.get("peaks") or {}).get("sha256", ""))[:SHORT]
