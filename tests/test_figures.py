@@ -1,5 +1,6 @@
 """Figures are described once: both renderers draw every kind of mark, and a page and ``plot()`` show the same description."""
 
+import itertools
 import math
 import re
 import warnings
@@ -412,6 +413,26 @@ def test_the_legend_of_one_panel_covers_neither_axes_nor_labels_and_is_on_the_pa
         text.get_fontsize() for text in (given.xaxis.label, *given.get_xticklabels(), *given.get_legend().get_texts())
     ]
     assert min(sizes) >= 7.0
+    plt.close(whole)
+
+
+def test_two_panels_in_a_column_of_a_paper_have_their_numbers_apart_and_their_legends_below_them():
+    """Numbers and legends of axes 44 mm wide, which were written over their neighbours."""
+    whole, given = plt.subplots(1, 2, figsize=(88.0 / 25.4, 70.0 / 25.4))
+    label = "stiff, strong: β = 80, η = 3.5 (p = 0.38 rad/s)"
+    for place, axes in enumerate(given):
+        line = Polyline(np.array([0.0, 160.0]), np.array([0.0, 1.0]), look=Look("curve", place + 1), label=label)
+        paper.panel_in(Figure([Panel(Axis("time [s]", 0.0, 160.0), Axis("y", 0.0, 1.0), [line])], "one"), axes)
+    whole.draw_without_rendering()
+    for axes in given:
+        boxes = [text.get_window_extent() for text in axes.get_xticklabels() if text.get_text()]
+        assert len(boxes) >= 3
+        assert all(left.x1 < right.x0 for left, right in itertools.pairwise(boxes))
+        assert axes.get_legend().get_window_extent().y1 <= axes.xaxis.get_tightbbox().y0
+    left, right = (axes.get_legend().get_window_extent() for axes in given)
+    assert left.x1 < given[1].get_window_extent().x0
+    assert right.x1 <= whole.bbox.x1
+    assert "".join(text.get_text() for text in given[0].get_legend().get_texts()).replace("\n", " ") == label
     plt.close(whole)
 
 

@@ -392,7 +392,9 @@ class Response(Shown):
     @property
     def _title(self) -> str:
         sign = f", polarity {self.polarity}" if self.polarity != "+" else ""
-        return f"{self.record} × {self.scale:g}{sign}, {self.case}: {self.status}"
+        scale = f" × {self.scale:g}" if self.scale != 1 else ""
+        status = f": {self.status}" if self.status != "ok" else ""
+        return f"{self.record}{scale}{sign}, {self.case}{status}"
 
     def _of_row(self) -> "pd.Series[Any]":
         """Return the row of peaks.csv; raise ``InputError`` if the response was read without it."""

@@ -24,6 +24,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, NullLocator
+from matplotlib.transforms import ScaledTranslation
 
 from rockbatch.common.errors import InputError, Problem, WrongType, refuse
 from rockbatch.common.figures.description import (
@@ -51,6 +52,8 @@ MM = 0.25
 """Millimetres of the paper for a pixel of the page."""
 LETTERS, BESIDE = 0.62, 10.0
 """Letters in a line of a caption for each millimetre of the axes, and room beside these [mm]."""
+LETTER = 1.4
+"""Width of a letter of numbers and legends [mm]."""
 PROPORTION, NARROWEST, LOWEST = 1.2, 20.0, 9.0
 """Height over width of all panels together, so that the figure fits A4; narrowest panel and lowest axes for its sake [mm]."""
 COLUMN = 88.0
@@ -174,7 +177,7 @@ def panel_in(figure: Figure, ax: Axes | None, name: str = "") -> Axes:
             ax = ShownFigure(figsize=(COLUMN / 25.4, 0.8 * COLUMN / 25.4), layout="constrained").add_subplot()
         elif ax.figure.figure.get_layout_engine() is None:
             ax.figure.figure.set_layout_engine("constrained")  # or the legend below stands beyond the figure
-        width, height = (25.4 / ax.figure.dpi * length for length in (ax.bbox.width, ax.bbox.height))
+        width = 25.4 / ax.figure.dpi * ax.bbox.width
         entries: Entries = {}
         _panel(ax, panels[0], width, entries)
         if not ax.get_title():
@@ -187,13 +190,16 @@ def panel_in(figure: Figure, ax: Axes | None, name: str = "") -> Axes:
         ax.set_axisbelow(True)
         _colour_bar(ax.figure, [ax], replace(figure, panels=panels[:1]))
         if entries:
-            longest = 8.0 + 1.4 * max(map(len, entries))
+            longest = 8.0 + LETTER * max(map(len, entries))
             below = 4.0 + 4.0 * panels[0].x.numbered + 4.0 * bool(panels[0].x.label)
             columns = max(1, min(len(entries), int(width / longest)))
+            letters = max(int((width - 8.0) / LETTER), 12)
+            lines = {"\n".join(textwrap.wrap(words, letters)): artists for words, artists in entries.items()}
             ax.legend(
-                **_legend_of(entries),
+                **_legend_of(lines),
                 loc="upper left",
-                bbox_to_anchor=(0.0, -below / height),
+                bbox_to_anchor=(0.0, 0.0),
+                bbox_transform=ax.transAxes + ScaledTranslation(0.0, -below / 25.4, ax.figure.dpi_scale_trans),
                 ncols=columns,
                 borderaxespad=0.0,
             )
@@ -238,7 +244,7 @@ def _drawn_in(place: FigureBase, figure: Figure, width_mm: float, tallest: float
         place.suptitle("\n".join(map(_text, title)))
     height = sum(heights) + 4.0 * len(title) + 5.0
     if entries:
-        longest = 8.0 + 1.4 * max(map(len, entries))
+        longest = 8.0 + LETTER * max(map(len, entries))
         columns_of_legend = max(1, min(len(entries), int(width_mm / longest)))
         place.legend(**_legend_of(entries), loc="outside lower center", ncols=columns_of_legend)
         height += 4.0 * math.ceil(len(entries) / columns_of_legend)
@@ -325,7 +331,7 @@ def _panel(axes: Axes, panel: Panel, across: float, entries: Entries) -> None:
         if mark.label:
             entries.setdefault(mark.label, {}).setdefault(type(mark), artist)
     for axis, scale in (("x", panel.x), ("y", panel.y)):
-        _axis(axes, axis, scale)
+        _axis(axes, axis, scale, across)
     axes.yaxis.label.set(rotation=0.0, horizontalalignment="left", verticalalignment="bottom")
     axes.yaxis.set_label_coords(0.0, 1.02)
     pad = 1.5 * float(axes.yaxis.label.get_fontsize()) if panel.y.label else 0.0
@@ -335,7 +341,8 @@ def _panel(axes: Axes, panel: Panel, across: float, entries: Entries) -> None:
         axes.set_aspect("equal")
 
 
-def _axis(axes: Axes, which: str, scale: Axis) -> None:
+def _axis(axes: Axes, which: str, scale: Axis, across: float) -> None:
+    """Set limits, ticks and label of an axis; of numbers along an x axis ``across`` mm long as many as have room are written."""
     axis = axes.xaxis if which == "x" else axes.yaxis
     if scale.log:
         # without a fixed locator matplotlib looks for ticks in a range that is not set yet
@@ -344,7 +351,11 @@ def _axis(axes: Axes, which: str, scale: Axis) -> None:
     getattr(axes, f"set_{which}lim")(scale.low, scale.high)
     ticks = scale.ticks()
     axis.set_minor_locator(NullLocator())
-    axis.set_ticks(list(ticks), list(map(_text, ticks.values())) if scale.numbered else [""] * len(ticks))
+    words = list(map(_text, ticks.values())) if scale.numbered else [""] * len(ticks)
+    if which == "x" and scale.names is None and not scale.log and words:
+        every = math.ceil(len(words) * (max(map(len, words)) * LETTER + 1.0) / across)
+        words = [word if place % every == 0 else "" for place, word in enumerate(words)]
+    axis.set_ticks(list(ticks), words)
     axis.set_label_text(_label(scale))
     if scale.names is not None:
         axis.grid(False)
