@@ -191,7 +191,11 @@ def run(verdict: Verdict, record: str) -> str:
 
 def is_left_open(verdict: Verdict) -> bool:
     """Return whether a verdict is not decided because its demand may lie on either side of the limit."""
-    return verdict.verdict == NOT_DECIDED and verdict.low <= verdict.limit < verdict.high
+    low, high = verdict.low, verdict.high
+    if verdict.sense == "at least":
+        low, high = -high, -low
+    limit = verdict.limit if verdict.sense == "at most" else -verdict.limit
+    return verdict.verdict == NOT_DECIDED and low <= limit < high
 
 
 def governing(verdict: Verdict, record: str) -> str:

@@ -135,7 +135,8 @@ class Outcome:
     settlement_drift, theta_res_drift : float or None
         Their rates of change then [m/s, rad/s].
     impacts, separations : int
-        Counts; on the rigid base a separation is a lift-off from rest.
+        Counts; on the rigid base a separation is a lift-off from rest. On springs a pivot that its own impact throws up again
+        has separated, too, without an event of its own.
     t_flight : float or None
         First time at which neither pivot was in contact [s].
     flights : int

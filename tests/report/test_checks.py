@@ -10,6 +10,8 @@ from report_samples import FIG7, FOUNDATIONS, case_entry, write_results
 from rockbatch.checks import Verdict, write_verdicts
 from rockbatch.pier import Pier
 from rockbatch.reporting import write_report
+from rockbatch.reporting.finished import read
+from rockbatch.reporting.sections.verdicts import scorecard
 
 GOVERNING = ("theta_max_over_alpha", "toe_settlement_m", "ductility")
 """Demands whose limits bound all that governs a pier on yielding springs: the settlement of the toe has the tilt in it."""
@@ -271,3 +273,11 @@ def test_cases_at_several_scales_are_distinguished_by_these(tmp_path):
     shown = page(tmp_path, *at_scales, scales=(1.0, 2.0))
     names = [row[0].split("motions scaled by ")[1][:1] for row in shown.tables["answer"][1:]]
     assert names == ["1", "2"]
+
+
+def test_of_very_many_cases_under_bounds_the_first_are_shown_and_it_says_so(tmp_path):
+    page(tmp_path, *(verdict(f"c{i}", "fail", ratio=1.0 + i / 10) for i in range(1, 301)))
+    drawn = str(scorecard(read(tmp_path), bounds=True))
+    assert 'data-button="The first 200 cases"' in drawn
+    assert "cases, in the order of the study. All are in checks.csv." in drawn
+    assert "best" not in drawn
