@@ -110,8 +110,8 @@ def scorecard(finished: Finished, *, bounds: bool = False) -> Markup:
     drawn = _card(finished, card, card.open_columns(MOST_COLUMNS), best, shown, named=not bounds)
     if shown >= len(card.rows):
         return drawn
-    order = "in the order of the study" if bounds else "the best first"
-    words, button = f"{shown} of {len(card.rows):,} cases, {order}.", f"All {len(card.rows)} cases"
+    arranged = "in the order of the study" if bounds else "the best first"
+    words, button = f"{shown} of {len(card.rows):,} cases, {arranged}.", f"All {len(card.rows)} cases"
     if len(best) < len(card.rows):
         words, button = f"{words} All are in {CHECKS}.", f"The {chosen} {len(best)} cases"
     return join(drawn, tag("p", words, class_="legend rest", data_button=button))
