@@ -107,6 +107,25 @@ def gap_of(m, of, at, y):
 
 
 @inlined
+def chosen(first, a, b):
+    """Return the Gap ``a`` if ``first``, else ``b``; fields are selected, since a loop with a branch stays scalar."""
+    return Gap(
+        a.elongation if first else b.elongation,
+        a.speed if first else b.speed,
+        a.by_v if first else b.by_v,
+        a.by_theta if first else b.by_theta,
+        a.bend if first else b.bend,
+        a.arm if first else b.arm,
+    )
+
+
+@inlined
+def gap_in_pass(m, of, at, y):
+    """Return the Gap of the device ``of`` in state ``y`` of a pass, whose Attitude is ``at``."""
+    return chosen(of.height != 0.0, across(m, of, at, y), gap(m, of.offset + at.shift, at, y))
+
+
+@inlined
 def lifted(at, k):
     """Return ë [m/s²] of a device with the Gap ``at``, from the pier's rates ``k``."""
     return at.by_v * k.v_rate + at.by_theta * k.omega + at.bend

@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.core.devices.elongation import GAP, Attitude, Gap, put_gap
+from rockbatch.core.devices.elongation import GAP, Attitude, Gap, gap_in_pass, put_gap
 from rockbatch.core.devices.laws import ELEMENT, FRICTION, USE, Element, Use
 from rockbatch.core.devices.pull import END, Devices, bounds_steps
-from rockbatch.core.kernel import hook, kernel
+from rockbatch.core.kernel import hook, inlined, kernel
+from rockbatch.core.system import in_pass
 from rockbatch.core.table import LANES, get, lanes_of, move, put, taken
 from rockbatch.core.types import Pull
 
@@ -297,3 +298,10 @@ def _move(equipment, i, j):
     move(equipment.cells, i, j)
     move(equipment.shared_cells, i, j)
     put(equipment.grips[0], j, get(equipment.grips[0], i, Grip))
+
+
+@inlined
+def gap_in_stage(traits, lanes, line, shared, i):
+    """Return the Gap of a device of lane ``i`` in the stage of the pass."""
+    m, now, _ = in_pass(traits, lanes, i)
+    return gap_in_pass(m, get(line.element, i, Element), get(shared.attitude, i, Attitude), get(shared.stage, i, now))
