@@ -349,7 +349,10 @@ _NUMBER = re.compile(rb"(\d{1,15}),")
 
 
 def _whole_lines(file: io.FileIO) -> Iterator[tuple[int, bytes]]:
-    """Yield the end [bytes] of each line, and the line, b"" if too long; an incomplete last line is left out."""
+    """Yield the end [bytes] of each line, and the line with its line break; an incomplete last line is left out.
+
+    Of a line over MOST_OF_A_LINE, 1 MiB, it is b"" in place of the line.
+    """
     end, whole = 0, True
     with os.fdopen(os.dup(file.fileno()), "rb") as buffered:
         buffered.seek(0)

@@ -389,7 +389,10 @@ class _Cases:
 
 
 def _excess(verdict: Verdict) -> float:
-    """Return demand over limit of a failing check; infinite for events that must not occur, and for a ratio of NaN."""
+    """Return the ratio of a failing check, above 1: demand over limit, or limit over demand of an "at least".
+
+    It is infinite for events that must not occur, and for a ratio of NaN.
+    """
     return math.inf if verdict.is_ban or math.isnan(verdict.ratio) else verdict.ratio
 
 

@@ -68,7 +68,10 @@ class Row(NamedTuple):
 
     @property
     def in_words(self) -> str:
-        """The verdict on the case in words: "fails 2 checks", "2 checks not decided", "no limit on drift", "not checked"."""
+        """The verdict on the case in words: "passes 3 checks", "fails 1 check", "2 checks not decided", "no limit on drift".
+
+        Also "not decided, under a suite that fails", "not checked", and "no run ends standing" of one whose checks pass.
+        """
         if self.verdict == DOES_NOT_APPLY:
             return "not checked" if not self.count(PASS) else "no run ends standing"
         if self.unlimited:

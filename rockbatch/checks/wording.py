@@ -111,7 +111,10 @@ def limit(verdict: Verdict, signs: Sequence[str] = ("≤", "≥")) -> str:
 
 
 def ratio(verdict: Verdict) -> str:
-    """Return demand over limit: "0.87", "0.9987" near 1, "≥ 1.20" for a lower bound, "∞"; empty for NaN and for a ban."""
+    """Return demand over limit, or limit over demand of an "at least": "0.87", "0.9987" near 1, "≥ 1.20" for a lower bound, "∞".
+
+    Empty for NaN and for a ban.
+    """
     if math.isnan(verdict.ratio) or verdict.is_ban:
         return ""
     if math.isinf(verdict.ratio):

@@ -41,9 +41,9 @@ def with_gains_compared(components: Sequence[Component]) -> list[Component]:
 
 
 def _side_by_side(components: Sequence[Component]) -> Iterator[tuple[int, int, float]]:
-    """Yield places i < j of two dated components of one station and line that overlap in time, and the sign of their directions.
+    """Yield places i < j of two dated components of one station that point along one line and overlap in time, and a sign.
 
-    The sign is −1 if these are opposite; their sensors have different location codes.
+    Their sensors have different location codes. The sign is that of their directions: −1 if these are opposite.
     """
     coded = [(i, c) for i, c in enumerate(components) if c.sensor.number and c.sensor.location is not None and c.dated]
     for of_station in grouped(coded, lambda pair: (pair[1].sensor.network, pair[1].sensor.number)).values():

@@ -359,5 +359,5 @@ def confirmation_request(name: str, findings: Sequence[Finding], confirmed: Coll
 
 
 def matches_any(name: str, patterns: Sequence[str]) -> bool:
-    """Return whether a record's name is one of ``patterns``, or matches one with ``*`` and ``?``."""
+    """Return whether a record's name is one of ``patterns``, or matches one as a glob."""
     return any(fits(name, pattern) for pattern in patterns)

@@ -99,8 +99,9 @@ def flexural_period(pier: Pier) -> float | None:
 def modes_of(pier: Pier, most: int = MOST_MODES) -> Modes:
     """Return the lowest modes of ``pier``, ``most`` or as many as its masses have.
 
-    By its flexural period its shaft has the same flexural rigidity everywhere; by rigidities that of its parts, and is rigid
-    above the highest of them. Its sections do not turn in space when it bends, so that they have no inertia of their own.
+    Given its flexural period, its shaft has the same flexural rigidity everywhere; given rigidities of its parts, it has these,
+    and is rigid above the highest of them. Its sections do not turn in space when it bends, so that they have no inertia of
+    their own.
     """
     heights, masses = (np.concatenate(values) for values in zip(*map(_points, parts_of(pier)), strict=True))
     total, stretches = masses.sum(), _stretches(pier)

@@ -139,7 +139,7 @@ class Equilibria:
 
 
 def spring_of(pier: Pier, base: ElasticBase) -> Spring:
-    """Return one support of ``base`` under ``pier``: stiffness and strength over the weight; inf if it does not yield."""
+    """Return one support of ``base`` under ``pier``: stiffness and strength over the weight, the strength inf if none yields."""
     strength = 0.5 * base.eta if isinstance(base, YieldingBase) else math.inf
     return Spring(0.5 / static_deflection(pier, base), strength, base.first_loading)
 

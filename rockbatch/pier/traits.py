@@ -161,7 +161,9 @@ class Traits(InNotebook):
 
     @property
     def has_residual(self) -> bool:
-        """Return True if the pier may come to rest tilted: on yielding springs, or with friction or hysteretic dampers."""
+        """Return True if the pier may come to rest tilted: on a base that yields, or with friction or hysteretic dampers of a
+        force.
+        """
         return self.yields or holds_a_tilt(self.restraints)
 
 

@@ -54,7 +54,7 @@ def _passing(study: Finished, rows: Sequence[Row], share: str, several: bool) ->
 
 
 def _failing(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
-    """Return the worst failing check, its demand over limit and place, and how many other checks fail.
+    """Return the worst failing check, its percentage and place, and how many other checks fail.
 
     "fails anchor at 196 % (Te Mara) and 2 more in 2 of 3 cases"; ``share``, " in 2 of 3 cases", says how many cases fail, and
     the place begins with the case if ``several``. A ratio that is not known is left out.

@@ -54,7 +54,9 @@ def pair(a: Finished, b: Finished, asked: Mapping[str, str] | None = None) -> Pa
     """Match the runs of two studies by record, polarity, scale, case and the values of the keys that both vary.
 
     Cases are paired as ``asked``, of B by those of A; then by their names; and those that are left by the inputs that differ
-    least. Of a study with bounds beside one without, the nominal design is matched. Runs alike in all of these are not matched.
+    least. Runs with and without the vertical component are told apart if both studies have both. Of a study with bounds beside
+    one without, the nominal design is matched. Runs alike in all of these are not matched. Raises ``InputError`` for a name in
+    ``asked`` that is not there, or a case of B that is asked for twice.
     """
     names = paired_cases(a, b, asked or {})
     in_both = [key for key in a.info["varied"] if key in b.info["varied"] and key != "vertical"]

@@ -444,7 +444,7 @@ def _short(value: float | str) -> str:
 
 
 def curve(x: Array, y: Array, class_: str, name: str | None = None, title: str = "") -> Markup:
-    """Draw a curve through points in pixels, interrupted at NaN; ``name`` is its name in the script."""
+    """Draw a curve through points in pixels, interrupted at NaN and far points; ``name`` is its name in the script."""
     tooltip = tag("title", title) if title else ""
     return tag("path", tooltip, d=_relative(x, y), transform=f"scale({1 / FINE:g})", class_=class_, data_name=name)
 

@@ -175,7 +175,7 @@ def _dots(element: Element, setting: Setting) -> str:
 
 
 def _with_signs(element: Element, setting: Setting) -> str:
-    """Return an element's text with its pictures in the line, each in a box."""
+    """Return an element's text as Typst, with its pictures in the line, each in a box."""
     written = words(element.text or "")
     for child in element:
         if child.tag == "svg":

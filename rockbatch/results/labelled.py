@@ -57,7 +57,10 @@ class Names:
         return titled(case, filter(None, (*values_in_words(columns), *also)))
 
     def named_place(self, series: int, pier: int, *also: str) -> str:
-        """Return the name of a foundation on a pier by their indices, and what ``also`` tells its runs from others."""
+        """Return the name of a foundation on a pier by their indices: "pads: β = 40, p = 1 rad/s, reversed".
+
+        After the label come the values of the pier and those of ``also`` that are not "", such as words on scale and polarity.
+        """
         return self.series[series].with_values(filter(None, (self.piers[pier], *also)))
 
 
@@ -167,7 +170,9 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
 
 
 def _pair(case: str, columns: Mapping[str, object], varied: Sequence[str]) -> tuple[Key, Key]:
-    """Return the keys of a case's foundation and of its pier."""
+    """Return :func:`foundation_key` and :func:`pier_key` of a case: ("pads", 40.0) and (1.2,); ("pads",) and () if nothing is
+    varied.
+    """
     return foundation_key(case, columns, varied), pier_key(columns, varied)
 
 

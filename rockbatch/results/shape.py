@@ -88,9 +88,10 @@ def _unfit_object(value: object, shape: dict[object, object], place: str) -> Ite
 
 
 def _fits_at_once(value: object, shape: object) -> bool:
-    """Return True for a float or str that fits ``shape``; False leaves the decision to :func:`_unfit`.
+    """Return True if the first alternative of ``shape`` is float and ``value`` a float below MOST, or str and a text; else
+    False.
 
-    A shortcut, since files may hold millions of numbers.
+    False leaves the decision to :func:`_unfit`, also on what fits. A shortcut, since files may hold millions of numbers.
     """
     if type(shape) is tuple:
         shape = shape[0]

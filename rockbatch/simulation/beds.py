@@ -9,7 +9,11 @@ from rockbatch.pier import FootingBase, Pier
 
 
 def of_bed(pier: Pier, base: FootingBase, result: Result, survived: bool) -> dict[str, Any]:
-    """Return what only piers on a footing have, by fields of Outcome: residuals if they ``survived``, demands on the bed."""
+    """Return what only piers on a footing have, by fields of Outcome: ``bed``, the demands on it, and residuals.
+
+    These, settlement, tilt and rotation, and the settlements of both edges in ``bed``, are missing unless the pier ``survived``
+    and has a rest.
+    """
     more: dict[str, Any] = {}
     edges: dict[str, float] = {}
     if survived and math.isfinite(result.lean):

@@ -480,10 +480,11 @@ def patience(pier: Pier, dt: float) -> int:
 
 @lru_cache(maxsize=4096)
 def readings(pier: Pier, base: Base, dt: float) -> tuple[int, int]:
-    """Return the samples of ``dt`` [s] from the end of the record to the first reading of residuals, and on to the second.
+    """Return the samples of ``dt`` [s] from the end of the record to the first reading of residuals, and from that to the
+    second.
 
-    The first comes :data:`READ_AFTER` periods of vertical vibration after the record; the second, at least as much later, gives
-    their drift over whole periods of full-contact rocking. 0 and 0 unless the springs yield.
+    The first comes :data:`READ_AFTER` periods of vertical vibration after the record; the second, as much after the first or
+    more, gives their drift over whole periods of full-contact rocking. 0 and 0 unless the springs yield.
     """
     if not isinstance(base, YieldingBase):
         return 0, 0

@@ -255,7 +255,7 @@ def _at_instants(of: Recorded, at_ends: InBody, middles: InBody, steps: Places, 
 
 
 def _let_go(rows: np.recarray, forces: InSection) -> None:
-    """Set the forces in all rows of the instant at which a block leaves its rest to those after it.
+    """Set the forces in all rows of the instant at which a block lifts off or takes off to those after it.
 
     They differ if a motion begins with a jump, against which the ground cannot hold the block.
     """

@@ -325,7 +325,8 @@ class Device:
 
 
 def read_devices(case: Table) -> tuple[list[Device], Grid]:
-    """Return the devices of a case, and the values of their keys, called "damper_1_f" for the first damper.
+    """Return the devices of a case as written, each its table and name, and the values of their keys, by names such as
+    "damper_1_f".
 
     A damper of no known kind is left out; mistakes become problems of the file.
     """

@@ -121,7 +121,11 @@ def _backslashes(value: str) -> str:
 
 
 def _quotes(value: str) -> str:
-    """Return a text with the same quotes at both ends; a value without quotes, or with quotes inside, as it is."""
+    """Return a text with quotes of any kind at an end in double quotes, without a prefix such as r, and with slashes for
+    backslashes.
+
+    A value without quotes, or with ", ', “ or ” inside, is returned as it is.
+    """
     inside = re.sub(r"^[rbuf](?=[\"'])", "", value).strip("\"'“”‘’„«»")
     return f'"{_backslashes(inside)}"' if inside != value and not re.search("[\"'“”]", inside) else value
 

@@ -202,7 +202,7 @@ def fragility(
 
 
 def _of_pier(spec: FragilitySpec) -> bool:
-    """Return whether the two axes of a pier share a curve, as intensities over g tan α do."""
+    """Return whether the two axes of a pier share a curve, as they do if the study's intensities are over g tan α."""
     return spec.of_pier
 
 

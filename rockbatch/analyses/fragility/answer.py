@@ -23,9 +23,10 @@ Info = Entry
 
 
 def of_curves(info: Info) -> Markup:
-    """Return sentences on the weakest case for overturning and for the limit exceeded first, if that is lower; and remarks.
+    """Return sentences on the weakest case for overturning and on another limit, and remarks.
 
-    If it is not, the sentence says that no other limit is exceeded, or has a lower median.
+    The other limit is the one exceeded first, if its median is lower, or below all levels; else the sentence says that none is
+    exceeded, or has a lower median. Without other limits it is missing.
     """
     overturning, *others = grouped(info["curves"], lambda curve: curve["limit_state"]).values()
     sentences = [_of_limit(info, overturning, _capital(overturning[0]["limit_state"]))]

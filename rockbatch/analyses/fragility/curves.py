@@ -203,11 +203,12 @@ def assess(
     simulate: Simulate,
     plans: Sequence[LevelPlan] | None = None,
 ) -> list[Curve]:
-    """Return the fragility curves of every case for every limit that applies to it.
+    """Return the fragility curves of every case for every limit that applies to it; piers with intensities over g tan α share
+    one.
 
     Every record is run at the levels of ``plans``, one for each case (:func:`level_plans` if they are not given). With method
-    "ida" it is run in the windows about them, too; below its first exceedance so far it is then run between the levels, in one
-    wave, and the first exceedance is bisected, in several.
+    "ida" it is also run, on rigid ground or if the study asks for it, in the windows about them and then, below its first
+    exceedance so far, between the levels in one wave; in further waves the first exceedance is bisected.
 
     ``simulate`` is called once for the levels and windows, and once for every wave.
     """

@@ -82,7 +82,11 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
 
 
 def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[Recording]:
-    """Return the columns of acceleration; raise ``InputError`` if they, their unit or their step are unknown."""
+    """Return the columns of acceleration; a column in an unknown unit beside others in known ones is among them.
+
+    Raises ``InputError`` for a single row, columns or a step that are unknown, a column without a unit, units of which none is
+    one of acceleration, and a header that states another number of samples or another step.
+    """
     text, start = in_seconds(text)
     header, table = read_table(text, options.layout == "wrapped", named="layout" not in options.instead, stated=beside)
     if len(table) < 2:

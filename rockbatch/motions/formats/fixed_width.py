@@ -83,8 +83,9 @@ def one_after_another(text: str, channel: Callable[[list[str], int], tuple[T, in
 def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_line: int) -> tuple[Samples, int]:
     """Return ``count`` numbers from ``lines[first]`` on, shape (count,), and the index of the line after them.
 
-    There are ``per_line`` of ``width`` characters each: every line is full but the last, which has exactly the rest. Raises
-    ``InputError`` with the line for anything else, before memory is allocated for more numbers than there are lines.
+    There are ``per_line`` of ``width`` characters each: every line is full but the last, which has exactly the rest. Lines whose
+    numbers are all printed alike may have another width. Raises ``InputError`` with the line for anything else, and at once if
+    there are fewer lines than the numbers take, so that no memory is allocated for them.
     """
     needed = -(-count // per_line)
     if len(lines) - first < needed:

@@ -131,7 +131,10 @@ def _value_of_each(header: dict[str, str], key: str, count: int) -> list[str]:
 
 
 def _texts_of(text: str, count: int) -> list[str]:
-    """Return the texts between slashes, one per channel; ``count`` times "" if there is another number of them."""
+    """Return the texts between slashes, one per channel; ``count`` times "" if there is another number of them.
+
+    Empty texts at either end are not counted.
+    """
     texts = [part.strip() for part in text.strip("/ ").split("/")]
     return texts if len(texts) == count else [""] * count
 
