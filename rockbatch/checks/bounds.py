@@ -194,7 +194,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
     by_other = None
     if (end := demand.other_end) and end.column in runs and end.has_range(case):  # the worse end counts
         by_other = end.evaluate(runs, case)
-        high = np.where(np.isnan(by_other) & (rule.required_end is not None), np.inf, np.fmax(high, by_other))
+        high = np.where(np.isnan(by_other) & getattr(rule, end.asked_by), np.inf, np.fmax(high, by_other))
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
     if rule.ways["overturned"] == "infinite":
         high = np.where(runs.facts("may_overturn"), np.inf, high)

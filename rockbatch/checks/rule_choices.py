@@ -95,8 +95,8 @@ def _unavailable(rule: Rule, matches: Mapping[str, Collection[str]], available: 
         if not _is_among(scale, scales):
             text = f"the motions are scaled by {', '.join(f'{factor:g}' for factor in scales)} only"
             yield Problem("scale", scale, text, kind=UnknownKey)
-    needs, end = DEMANDS[rule.demand].needs, rule.required_end
-    if end is not None and end.needs not in available.output:
+    needs, end = DEMANDS[rule.demand].needs, DEMANDS[rule.demand].other_end
+    if end and getattr(rule, end.asked_by) and end.needs not in available.output:
         text = (
             f"there is no {rule.demand} by the other {end.model}; write {end.needs} = true under [output] of the study and run "
             f"it, or leave {end.asked_by} out"

@@ -12,7 +12,6 @@ from rockbatch.common.errors import Contradiction, Problem, WrongType, refuse
 from rockbatch.common.grouping import grouped
 from rockbatch.common.showing import shown
 from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.quantities.demands import OtherEnd
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.toml.kinds import Choice, KindError, Other, boolean, choice, count, not_negative, number, positive, text
 from rockbatch.toml.meant import names
@@ -164,12 +163,6 @@ class Rule:
         if not DEMANDS[self.demand].over_capacity or self.capacity is None:
             return None
         return capacity.line(self.capacity) if isinstance(self.capacity, float) else self.capacity
-
-    @property
-    def required_end(self) -> OtherEnd | None:
-        """The other end of the demand's range if the rule asks for it, so that nothing passes without it; else None."""
-        end = DEMANDS[self.demand].other_end
-        return end if end is not None and getattr(self, end.asked_by) else None
 
     @property
     def sense(self) -> str:

@@ -111,7 +111,10 @@ def limit(verdict: Verdict, signs: Sequence[str] = ("≤", "≥")) -> str:
 
 
 def ratio(verdict: Verdict) -> str:
-    """Return demand over limit: "0.87", "0.9987" near 1, "≥ 1.20" for a lower bound, "∞"; empty for NaN and for a ban."""
+    """Return demand over limit, or limit over demand of an "at least": "0.87", "0.9987" near 1, "≥ 1.20" for a lower bound, "∞".
+
+    Empty for NaN and for a ban.
+    """
     if math.isnan(verdict.ratio) or verdict.is_ban:
         return ""
     if math.isinf(verdict.ratio):
@@ -191,7 +194,11 @@ def run(verdict: Verdict, record: str) -> str:
 
 def is_left_open(verdict: Verdict) -> bool:
     """Return whether a verdict is not decided because its demand may lie on either side of the limit."""
-    return verdict.verdict == NOT_DECIDED and verdict.low <= verdict.limit < verdict.high
+    low, high = verdict.low, verdict.high
+    if verdict.sense == "at least":
+        low, high = -high, -low
+    limit = verdict.limit if verdict.sense == "at most" else -verdict.limit
+    return verdict.verdict == NOT_DECIDED and low <= limit < high
 
 
 def governing(verdict: Verdict, record: str) -> str:

@@ -7,11 +7,18 @@ import sys
 from pathlib import Path
 
 from rockbatch.commands.example_studies import CHECKS, FIRST, copy, examples
+from rockbatch.common.errors import InputError
 from rockbatch.terminal.streams import show
 
 
 def init(arguments: argparse.Namespace) -> int:
-    """Copy an example study with its records and checks, print the paths and the next steps, and return 0."""
+    """Copy an example study with its records and checks, print the paths and the next steps, and return 0.
+
+    Raises ``InputError`` if the folder has the name of an example and none is chosen.
+    """
+    word = str(arguments.folder)
+    if arguments.example == FIRST != word and word in {example.name for example in examples()}:
+        raise InputError(f"{word}: is an example; write rockbatch init {word} --example {word}, or give another folder")
     study = "pier.toml" if arguments.example == FIRST else f"{arguments.example}.toml"
     for path in copy(arguments.example, arguments.folder, study):
         show(str(path))

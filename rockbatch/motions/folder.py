@@ -175,6 +175,8 @@ def _package_components(roots: Sequence[Path], fema: Sequence[tuple[str, float]]
             neighbours = [entry.name for entry in path.parent.iterdir()] if path.parent.is_dir() else []
             close = difflib.get_close_matches(path.name, neighbours, 1)
             hint = f"; did you mean {path.parent / close[0]}?" if close else ""
+            if any(sign in path.name for sign in "*?[") and path.parent.is_dir():
+                hint = f"; no file fits this pattern: give the folder, {path.parent}, which is read with all in it"
             text = f"no such file or folder (looked for {path.absolute()}){hint}"
             problems.append(Problem("", None, text, f"{path}", kind=NotFound))
     for station, azimuth in fema:

@@ -120,7 +120,7 @@ def scale_as_listed(motion_set: MotionSet) -> MotionSet:
     none = 'has no scale factor: scale = "list" takes those of PEER\'s _SearchResults.csv in its folder'
     several = 'has no scale factor that all its records share: scale them by its factors, and leave out scale = "list"'
     unusable = [
-        Unusable(m.name, m.files, f"{m.label} {several if len(m.shocks) > 1 else none}", station=m.of_station)
+        Unusable(m.name, m.files, f"{m.label} {several if len(m.records) > 1 else none}", station=m.of_station)
         for m in lacking
     ]
     scaled = []

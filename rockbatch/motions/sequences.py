@@ -6,7 +6,7 @@ ends with 0. P is long, so that this is far below the acceleration that lifts a 
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
@@ -141,6 +141,7 @@ def sequence(
     pause: float = PAUSE,
     factors: Sequence[float] | None = None,
     polarity: Sequence[str] | None = None,
+    confirm: Collection[str] = (),
 ) -> Motion:
     """Return shocks as one motion, one after the other.
 
@@ -157,13 +158,17 @@ def sequence(
         On all components of each shock.
     polarity : sequence of str, optional
         "+" or "-" for each shock: "-" reverses its horizontal component.
+    confirm : sequence of str
+        Names of values of the sequence that are right though unusual, as of a :class:`Motion`; those that all shocks confirm are
+        confirmed.
 
     Returns
     -------
     Motion
         With the times of its ``shocks``. Its sampling interval is the least of theirs; records with a longer one are interpolated
         linearly, which changes nothing for a multiple. If some shocks have a vertical component, the others get zeros, with a
-        note; it has a component ``across`` if all have. A sequence of one has the record's samples.
+        note; it has a component ``across`` if all have. Its ``factor`` is that of all shocks, 1 if theirs differ. A sequence of
+        one has the record's samples.
 
     Raises ``InputError`` for no motions, sequences among them, lists of other lengths, values other than above, sampling
     intervals too far apart, too many samples, and more than 0.005 g needed to bring the ground to rest.
@@ -214,6 +219,7 @@ def sequence(
         vertical=vertical,
         notes=tuple(notes),
         shocks=tuple(shocks),
+        confirm=tuple(sorted({*confirm}.union(set.intersection(*({*part.confirm} for part in parts))))),
     )
     return whole if len(parts) == 1 else _with_common_origin(parts, whole)
 
@@ -314,6 +320,8 @@ def _with_common_origin(parts: Sequence[Motion], whole: Motion) -> Motion:
         distance_km=_common(part.distance_km for part in parts),
         processed=_common(part.processed for part in parts),
         listed=_listed_of_all([part.listed for part in parts]),
+        factor=_common(part.factor for part in parts) or 1.0,
+        vertical_factor=_common(part.vertical_factor for part in parts),
     )
 
 

@@ -124,18 +124,19 @@ class Outcome:
     theta_max_is : str
         "lean" if ``theta_max`` is mostly the lean of a base that has yielded; empty if the pier rocks.
     theta_max_error, theta_res_error, settlement_error : float or None
-        Estimated errors of ``theta_max`` and ``theta_res`` [rad], and of ``settlement`` on yielding springs [m]; errors of
+        Estimated errors of ``theta_max`` and ``theta_res`` [rad], and of ``settlement`` on a base that yields [m]; errors of
         residuals include their drift while they were read. ``None`` with a fixed step, or if the result is chaotic.
     theta_res, base_tilt : float or None
         Residual rotation, static on the deformed base, and tilt of the base itself [rad].
     settlement : float or None
         Mean plastic settlement of the supports since the start [m].
     t_read : float or None
-        Time at which residual rotation, tilt and settlement of a yielding base were read [s] (THEORY.md, Results of a run).
+        Time at which residual rotation, tilt and settlement on yielding springs were read [s] (THEORY.md, Results of a run).
     settlement_drift, theta_res_drift : float or None
         Their rates of change then [m/s, rad/s].
     impacts, separations : int
-        Counts; on the rigid base a separation is a lift-off from rest.
+        Counts; on the rigid base a separation is a lift-off from rest. On springs a pivot that its own impact throws up again
+        has separated, too, without an event of its own.
     t_flight : float or None
         First time at which neither pivot was in contact [s].
     flights : int

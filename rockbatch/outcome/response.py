@@ -103,8 +103,9 @@ class Response(Shown):
     forces : DataFrame or None
         Design forces at the rows of ``history``, if requested (THEORY.md, Forces): ``base_shear`` V/M, to the right on
         the pier, ``normal_force`` N/M [m/s²], ``base_moment`` over M about the middle of the base, of supports, dampers and
-        tendons [m²/s²], positive as the right support bears more, ``friction`` |V|/N, ``pivot_…``, the supports'
-        forces over half the weight, ``heel_gap_…`` [m], ``heel_speed_…`` [m/s], opening, ``deck_acceleration`` [m/s²].
+        tendons [m²/s²], positive as the right support bears more, ``friction`` |V|/N, at every row
+        (``friction_demand`` is the greatest while N is above a share of the weight), ``pivot_…``, the supports' forces over half
+        the weight, ``heel_gap_…`` [m], ``heel_speed_…`` [m/s], opening, ``deck_acceleration`` [m/s²].
     impacts : DataFrame or None
         With the forces: of each impact ``t`` [s], the ``pivot`` that lands, ``landing_velocity`` [m/s], down, and the
         impulse on the pier per unit mass, ``impulse_horizontal``, to the right, and ``impulse_vertical`` [m/s].

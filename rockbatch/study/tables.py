@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from typing import TypeAlias, TypeGuard
 
 from rockbatch.common.errors import InputError
-from rockbatch.common.grouping import closest
+from rockbatch.common.grouping import closest, grouped
 from rockbatch.common.naming import chosen
 from rockbatch.common.showing import shown
 
@@ -74,34 +74,32 @@ def _changed_value(old: TomlValue | None, new: object, *place: str) -> TomlValue
             return _changed_by_name(old, new, *place)
         names = [new] if isinstance(new, str) else new
         if isinstance(names, list | tuple) and all(isinstance(name, str) for name in names):
-            by_name = _named(old, names, *place)
-            return [by_name[name] for name in names]
+            _check_names(old, names, *place)
+            of_name = grouped(old, name_of)
+            return [table for name in names for table in of_name[name]]
     return plain(new, *place)
 
 
 def _changed_by_name(tables: list[TomlTable], changes: Mapping[str, object], *place: str) -> list[TomlValue]:
     """Return all tables in their order, with the changes of those that are named, without those whose change is None."""
-    result: list[TomlValue] = []
-    for name, table in _named(tables, changes, *place).items():
-        change = changes.get(name, {})
-        if change is not None:
-            result.append(_changed_value(table, change, *place, name))
-    return result
+    _check_names(tables, changes, *place)
+    named = [(name_of(table), table) for table in tables]
+    changed_tables = [(name, table, changes.get(name, {})) for name, table in named]
+    return [_changed_value(table, new, *place, name) for name, table, new in changed_tables if new is not None]
 
 
-def _named(tables: list[TomlTable], names: Iterable[str], *place: str) -> dict[str, TomlTable]:
-    """Return all ``tables`` by their names. Raises ``InputError`` if one of ``names`` is not among these."""
-    by_name = {name_of(table): table for table in tables}
+def _check_names(tables: list[TomlTable], names: Iterable[str], *place: str) -> None:
+    """Raise ``InputError`` with all of ``names`` that none of the ``tables`` has."""
+    known = dict.fromkeys(map(name_of, tables))
     problems = []
     for name in names:
-        if name not in by_name:
-            nearest = closest(str(name), filter(None, by_name))
-            names_shown = ", ".join(map(shown, filter(None, by_name))) or "none that has one; give a list of all tables"
+        if name not in known:
+            nearest = closest(str(name), filter(None, known))
+            names_shown = ", ".join(map(shown, filter(None, known))) or "none that has one; give a list of all tables"
             instead = f"did you mean {shown(nearest)}?" if nearest else f"there is {names_shown}"
             problems.append(f"{'.'.join(place)} = {shown(name)}: no table has this name; {instead}")
     if problems:
         raise InputError(*problems)
-    return by_name
 
 
 def name_of(table: Mapping[str, TomlValue]) -> str:

@@ -38,7 +38,7 @@ MEASURE = {
         positive,
         "0.4",
         "Peak ground acceleration of the horizontal component.",
-        usual=Usual(5.0, "g: the strongest earthquakes had 2 to 4 g", 0.005),
+        usual=Usual(2.0, "g: few records exceed 1 g, and the strongest had 2 to 4 g", 0.005),
     ),
     "pgv_m_s": Key(
         positive,

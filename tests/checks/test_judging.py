@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from check_samples import ELASTIC, PADS, case, judged, runs
+from check_samples import ELASTIC, PADS, case, judged, runs, verdict
 
-from rockbatch.checks import Rule
+from rockbatch.checks import Rule, wording
 from rockbatch.checks.bounds import of_runs
 from rockbatch.common.errors import InputError
 from rockbatch.pier import ElasticBase, RigidBase
@@ -179,3 +179,20 @@ def test_a_pier_that_overturns_under_a_motion_a_hair_weaker_passes_nothing(deman
     found = judged(table, demand=demand, at_most=limit)
     assert found.verdict == "not decided"
     assert judged(runs([0.1, 0.3], theta_max_error=1e-6), demand=demand, at_most=limit).verdict == "pass"
+
+
+@pytest.mark.parametrize(
+    ("sense", "low", "high", "is_open"),
+    [
+        ("at most", 0.5, 0.6, True),
+        ("at most", 0.4, 0.5, False),
+        ("at least", 0.4, 0.5, True),
+        ("at least", 0.5, 0.6, False),
+        ("at least", 0.4, 0.6, True),
+        ("at least", 0.2, 0.3, False),
+    ],
+)
+def test_bounds_leave_open_what_they_do_not_decide_also_where_one_equals_the_limit(sense, low, high, is_open):
+    one = verdict("pads", "not decided", sense=sense, low=low, high=high, limit=0.5)
+    assert wording.is_left_open(one) is is_open
+    assert not wording.is_left_open(verdict("pads", "pass", sense=sense, low=low, high=high, limit=0.5))

@@ -177,3 +177,11 @@ def test_a_wheel_has_them(tmp_path):
     assert len(list((report / "sections").glob("*.html"))) == len(
         list((CHECKOUT / "rockbatch/reporting/sections").glob("*.html"))
     )
+
+
+def test_init_into_a_folder_with_the_name_of_an_example_asks_which_is_meant(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "near_fault"]) == 2
+    assert "write rockbatch init near_fault --example near_fault, or give another folder" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+    assert main(["init", "near_fault", "--example", "near_fault"]) == 0

@@ -368,3 +368,15 @@ def test_components_without_both_starts_begin_together(first, second, delay):
         for name, start in (("000", first), ("090", second))
     )
     assert common_span._offset(one, other, "090") == (delay, [])
+
+
+def test_a_pattern_that_nothing_fits_is_answered_with_its_folder(tmp_path):
+    (tmp_path / "records").mkdir()
+    with pytest.raises(
+        InputError, match=r"no file fits this pattern: give the folder, .*records, which is read"
+    ) as error:
+        read_motions(tmp_path / "records" / "*.AT2")
+    assert "did you mean" not in str(error.value)
+    with pytest.raises(InputError) as error:
+        read_motions(tmp_path / "nowhere" / "*.AT2")
+    assert "fits this pattern" not in str(error.value)

@@ -9,6 +9,7 @@ import rockbatch as rb
 from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, measures, read_motions
 from rockbatch.motions.motion import Initial
+from rockbatch.motions.plausible import unlikely_samples
 from rockbatch.motions.sequences import MOST_IN_PAUSE, ShockSequence
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.study import load_study
@@ -257,3 +258,19 @@ def test_a_manifest_with_a_record_that_is_not_there_says_so_and_the_rest_is_used
     assert found.unusable[0].source.endswith("motions.toml")
     with pytest.raises(InputError, match=r"motions.toml:3: .*pause_s = -1: expected a number above 0"):
         manifest(tmp_path, '[[sequence]]\nname = "b"\npause_s = -1\nrecords = ["RSN1_A_000"]\n')
+
+
+def test_a_sequence_has_the_factors_and_confirmations_that_all_its_shocks_share():
+    one, other = record("a", factor=2.0, vertical_factor=3.0, confirm=("pga",)), record("b", seed=2, factor=1.5)
+    both = rb.sequence([one, other])
+    assert (both.factor, both.vertical_factor, tuple(both.confirm)) == (1.0, None, ())
+    twice = rb.sequence([one, one])
+    assert (twice.factor, twice.vertical_factor, tuple(twice.confirm)) == (2.0, 3.0, ("pga",))
+
+
+def test_a_strong_sequence_can_be_confirmed_as_a_whole():
+    strong = record("a", size=800.0, confirm=("pga",))
+    weak = record("b", seed=2)
+    (said,) = unlikely_samples(rb.sequence([strong, weak]), 9.81)
+    assert said.endswith('write confirm = ["pga"]')
+    assert unlikely_samples(rb.sequence([strong, weak], confirm=["pga"]), 9.81) == []

@@ -20,7 +20,7 @@ from rockbatch.reporting.finished import read
 from rockbatch.reporting.finished_analysis import Contents, FinishedAnalysis
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.page import PARTS, PARTS_OF_TWO, page, sections
-from rockbatch.reporting.sections import answer
+from rockbatch.reporting.sections import answer, inputs
 from rockbatch.reporting.sheet import AFTER, BEFORE
 from rockbatch.reporting.templates import Section, document
 from rockbatch.results.run_json import describe_case, describe_study
@@ -275,3 +275,19 @@ def test_a_table_of_an_analysis_that_is_empty_or_lacks_a_column_is_left_out(tmp_
     analysis = FinishedAnalysis(tmp_path, {"files": ["x.csv"]})
     assert (analysis.table("x.csv", ("a", "b")) is not None) == whole
     assert analysis.table("y.csv", ()) is None
+
+
+@pytest.mark.parametrize(
+    ("key", "words"),
+    [
+        ("toe_level_m", "toe level [m]"),
+        ("impulse_kN_s", "impulse [kN s]"),
+        ("spring_kN_m", "spring [kN/m]"),
+        ("rate_per_s", "rate [1/s]"),
+        ("speed_m_s", "speed [m/s]"),
+        ("push_m_s2", "push [m/s²]"),
+        ("colour", "colour"),
+    ],
+)
+def test_keys_without_a_symbol_have_their_unit_as_people_write_it(key, words):
+    assert inputs._symbol(key) == words

@@ -7,6 +7,7 @@ from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.study.suite import ground_motions
+from rockbatch.study.tables import changed
 
 TABLES = {
     "title": "Pier 4",
@@ -217,3 +218,12 @@ def test_an_analysis_of_a_study_from_tables_reports_its_mistakes_without_lines(p
     assert problems(rb.fragility, study) == [
         "study.toml: [fragility]: levels_g = [0.2]: one level does not determine a dispersion; write at least two"
     ]
+
+
+def test_tables_of_one_name_are_changed_and_kept_alike():
+    tables = {"reference": [{"base": "rigid", "x": 1}, {"base": "rigid", "x": 2}, {"name": "a", "x": 3}]}
+    other = changed(tables, {"reference": {"a": {"x": 4}}})["reference"]
+    assert [table["x"] for table in other] == [1, 2, 4]
+    assert [table["x"] for table in changed(tables, {"reference": {"rigid": {"x": 5}}})["reference"]] == [5, 5, 3]
+    assert [table["x"] for table in changed(tables, {"reference": {"rigid": None}})["reference"]] == [3]
+    assert [table["x"] for table in changed(tables, {"reference": ["a", "rigid"]})["reference"]] == [3, 1, 2]

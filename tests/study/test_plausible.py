@@ -323,7 +323,7 @@ def test_a_pulse_that_is_none_is_refused(tmp_path, old, new, key, said):
 @pytest.mark.parametrize(
     ("key", "said"),
     [
-        ("target = { pga_g = 40CONFIRM }", "pga_g = 40: more than 5 g: the strongest earthquakes had 2 to 4 g"),
+        ("target = { pga_g = 40CONFIRM }", "pga_g = 40: more than 2 g: few records exceed 1 g, and the strongest had 2 to 4 g"),
         ("target = { pgv_m_s = 80CONFIRM }", "pgv_m_s = 80: more than 5 m/s"),
         ('target = { spectrum = "EN 1998-1", type = 1, ground = "B", period_range_s = [0.4, 4], ag_g = 3.5CONFIRM }',
          "ag_g = 3.5: more than 2 g"),
@@ -381,3 +381,8 @@ def test_values_of_design_spectra_are_doubted_beyond_these_bounds(keys, name, le
     doubts = keys[name].usual.doubts
     assert doubts(name, 1.01 * least) == doubts(name, 0.99 * most) == []
     assert len(doubts(name, 0.99 * least)) == len(doubts(name, 1.01 * most)) == 1
+
+
+def test_a_target_of_0_4_g_in_metres_per_second_squared_is_noticed(tmp_path):
+    (problem,) = problems_of(written_with(tmp_path, "[motions]\ntarget = { pga_g = 3.924 }\n"))
+    assert "; if it is in m/s², write pga_g = 0.4" in problem

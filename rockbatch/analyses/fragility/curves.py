@@ -206,7 +206,8 @@ def assess(
     simulate: Simulate,
     plans: Sequence[LevelPlan] | None = None,
 ) -> list[Curve]:
-    """Return the fragility curves of every case for every limit that applies to it.
+    """Return the fragility curves of every case for every limit that applies to it; piers with intensities over g tan α share
+    one.
 
     Every record is run at the levels of ``plans``, one for each case (:func:`level_plans` if they are not given). With method
     "ida" it is also run in windows about them and, in one wave, between the levels below its first exceedance so far, both on

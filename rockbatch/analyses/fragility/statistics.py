@@ -154,7 +154,8 @@ def rate_bounds(levels: npt.ArrayLike, least: npt.ArrayLike, most: npt.ArrayLike
         Annual rates at which the levels are exceeded.
 
     The least takes 0 below the lowest level, and between two levels the share at the lower; the greatest that at the upper,
-    and 1 above the highest. It is infinite if ``most`` is above 0 at the lowest level: weaker motions are not bounded.
+    and 1 above the highest. It is infinite if ``most`` is above 0 at the lowest level: weaker motions are not bounded. Raises
+    ``InputError`` for arrays of different lengths, or empty ones.
 
     Examples
     --------
@@ -164,7 +165,8 @@ def rate_bounds(levels: npt.ArrayLike, least: npt.ArrayLike, most: npt.ArrayLike
     """
     passed = -np.diff(np.append(np.asarray(rates, dtype=np.float64), 0.0))  # motions from each level up to the next
     low, high = (np.maximum.accumulate(np.asarray(shares, dtype=np.float64)) for shares in (least, most))
-    assert len(low) == len(high) == len(passed) == len(np.asarray(levels))
+    if not len(low) == len(high) == len(passed) == len(np.asarray(levels)) > 0:
+        raise InputError("levels, least, most and rates: must be of one length, with one level at least")
     greatest = math.inf if high[0] > 0 else float(np.append(high[1:], 1.0) @ passed)
     return float(low @ passed), greatest
 

@@ -66,15 +66,15 @@ def parse(text: str) -> list[Recording]:
     return recordings
 
 
-def _labels(sequence: str) -> list[str]:
+def _labels(order: str) -> list[str]:
     """Return the directions of the columns after time, all with positive sign: ["U", "N", "E"] of "Time U(+); N(+); E(+)".
 
     Raises ``InputError`` for another text.
     """
-    time, _, remainder = sequence[:200].strip().partition(" ")
+    time, _, remainder = order[:200].strip().partition(" ")
     matches = [_LABEL.fullmatch(part) for part in remainder.split(";")]
     if time.lower() != "time" or None in matches:
-        raise InputError(f'the header says DataSequence: "{sequence[:60]}"; expected e.g. "Time U(+); N(+); E(+)"')
+        raise InputError(f'the header says DataSequence: "{order[:60]}"; expected e.g. "Time U(+); N(+); E(+)"')
     return [match["label"] for match in matches if match]
 
 

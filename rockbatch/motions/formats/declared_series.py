@@ -73,7 +73,7 @@ def equal_columns(
     """Return ``npts`` ≥ 1 numbers from ``lines[start]`` on, shape (npts,), and the index of the line after them.
 
     ``columns`` are their width and number per line; by default eight, with the width from the first line: 8F9.6 or 8F10.3. Every
-    line is full but the last. Raises ``InputError`` with the line for anything else.
+    line is full but the last. Raises ``InputError`` with the line as :func:`fixed_numbers` does.
     """
     width, per_line = columns or (len(line_at(lines, start).rstrip()) // min(_PER_LINE, npts), _PER_LINE)
     if per_line < 1 or width < 2:

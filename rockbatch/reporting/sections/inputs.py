@@ -7,7 +7,7 @@ from typing import Any
 from rockbatch.pier import Damper, Pier, Restraint
 from rockbatch.pier.restraints import FIELDS
 from rockbatch.quantities.cases import Case
-from rockbatch.quantities.quantity import ENDINGS
+from rockbatch.quantities.quantity import ENDINGS, in_print
 from rockbatch.reporting.drawings import drawings
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import heading, symbol
@@ -50,8 +50,10 @@ OF_DEVICE = {
     "height_m": "height [m]",
 }
 """Fields of devices and their heads, in the order of the table."""
-_UNIT = re.compile("_(" + "|".join(unit for unit in ("mm", "m2", "kN_m", "MPa", *ENDINGS.values(), "t", "GPa")) + ")$")
-"""Unit at the end of a key that has no symbol of its own."""
+_UNITS = {ending: in_print(unit) for unit, ending in ENDINGS.items()}
+_UNITS |= {"mm": "mm", "m2": "m²", "kN_m": "kN/m", "t": "t", "GPa": "GPa"}
+"""Units as people write them by the ends of keys that have no symbol of their own."""
+_UNIT = re.compile(f"_({'|'.join(_UNITS)})$")
 
 
 def section(finished: Finished) -> Markup:
@@ -92,7 +94,7 @@ def _symbol(key: str) -> str:
         return symbol(key)
     unit = _UNIT.search(key)
     words = key[: unit.start()] if unit else key
-    return words.replace("_", " ") + (f" [{unit[1].replace('kN_m', 'kN/m').replace('_s', '/s')}]" if unit else "")
+    return words.replace("_", " ") + (f" [{_UNITS[unit[1]]}]" if unit else "")
 
 
 def _form(rows: Sequence[Mapping[str, object]], key: str) -> str:

@@ -98,21 +98,22 @@ def scorecard(finished: Finished, *, bounds: bool = False) -> Markup:
     if bounds:  # a design with its bounds, which all are listed
         order = list(dict.fromkeys(map(named_designs(finished, bounds=True), finished.verdicts)))
         card.rows.sort(key=lambda row: order.index(row.name) if row.name in order else len(order))
-    best = card.rows[:MOST_DRAWN]
+    best, chosen = card.rows[:MOST_DRAWN], "first" if bounds else "best"
     if for_paper():
         places = range(len(card.columns))
         parts = [places[i : i + COLUMNS_ABREAST] for i in places[::COLUMNS_ABREAST]]
         tables = [_card(finished, card, part, best, len(best), named=not bounds, of_all=False) for part in parts]
-        left_out = f"The best {len(best)} of {len(card.rows):,} cases are shown; all are in {CHECKS}."
+        left_out = f"The {chosen} {len(best)} of {len(card.rows):,} cases are shown; all are in {CHECKS}."
         return join(*tables, tag("p", left_out, class_="legend") if len(best) < len(card.rows) else "")
     shown = MOST_CASES if len(card.rows) <= MOST_CASES else OPEN_CASES
     shown = MOST_DRAWN if bounds else shown
     drawn = _card(finished, card, card.open_columns(MOST_COLUMNS), best, shown, named=not bounds)
     if shown >= len(card.rows):
         return drawn
-    words, button = f"{shown} of {len(card.rows):,} cases, the best first.", f"All {len(card.rows)} cases"
+    arranged = "in the order of the study" if bounds else "the best first"
+    words, button = f"{shown} of {len(card.rows):,} cases, {arranged}.", f"All {len(card.rows)} cases"
     if len(best) < len(card.rows):
-        words, button = f"{words} All are in {CHECKS}.", f"The best {len(best)} cases"
+        words, button = f"{words} All are in {CHECKS}.", f"The {chosen} {len(best)} cases"
     return join(drawn, tag("p", words, class_="legend rest", data_button=button))
 
 

@@ -143,3 +143,11 @@ def test_records_count_by_earthquake_where_five_are_known_and_else_by_station(ev
 def test_shares_at_levels_bound_a_rate(least, most, bounds):
     """By hand: 9e-3 a year between the levels, 1e-3 beyond; shares that fall again bound no less."""
     assert rate_bounds([0.5, 1.0], least, most, [1e-2, 1e-3]) == pytest.approx(bounds)
+
+
+@pytest.mark.parametrize(
+    "arrays", [([0.5], [0.0, 0.0], [0.0], [1e-2]), ([0.5, 1.0], [0.0] * 2, [0.0] * 2, [1e-2]), ([],) * 4]
+)
+def test_bounds_of_a_rate_are_of_arrays_of_one_length(arrays):
+    with pytest.raises(InputError, match="must be of one length, with one level at least"):
+        rate_bounds(*arrays)
