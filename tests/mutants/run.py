@@ -53,9 +53,8 @@ class Place(NamedTuple):
 
     @property
     def package(self) -> str:
-        """Return the package of the file; readers of formats count by themselves."""
-        parts = self.file.split("/")[1:-1]
-        return "/".join(parts) if parts[:2] == ["motions", "formats"] else parts[0] if parts else "rockbatch"
+        """Return the package of the file."""
+        return _package(self.file)
 
     @property
     def name(self) -> str:
@@ -68,6 +67,12 @@ class Place(NamedTuple):
         return range(self.mutant.line, self.mutant.line + self.mutant.before.count("\n") + 1)
 
 
+def _package(file: str) -> str:
+    """Return the package of a file; readers of formats count by themselves."""
+    parts = file.split("/")[1:-1]
+    return "/".join(parts) if parts[:2] == ["motions", "formats"] else parts[0] if parts else "rockbatch"
+
+
 @functools.cache
 def _lines(file: str) -> list[str]:
     return (TOP / file).read_text(encoding="utf-8").splitlines()
@@ -76,9 +81,9 @@ def _lines(file: str) -> list[str]:
 def drawn(seed: int, count: int, only: str = "", without: str = "") -> list[Place]:
     """Return so many places at random, of one package or of all others if one is named."""
     files = sorted(path.relative_to(TOP).as_posix() for path in (TOP / "rockbatch").rglob("*.py"))
-    every = [Place(file, mutant) for file in files for mutant in mutants((TOP / file).read_text(encoding="utf-8"))]
-    chosen = [place for place in every if place.package != without and (not only or place.package == only)]
-    return random.Random(seed).sample(chosen, min(count, len(chosen)))
+    asked = [file for file in files if _package(file) != without and (not only or _package(file) == only)]
+    places = [Place(file, mutant) for file in asked for mutant in mutants((TOP / file).read_text(encoding="utf-8"))]
+    return random.Random(seed).sample(places, min(count, len(places)))
 
 
 def _digest(*folders: str) -> str:
