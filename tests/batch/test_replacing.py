@@ -34,11 +34,12 @@ def test_an_earlier_version_is_named(finished, capsys):
     assert "replaced" not in capsys.readouterr().err  # nothing is left to run
 
 
-def test_another_study_of_the_same_name_does_not_take_its_place(finished, tmp_path, capsys):
+@pytest.mark.parametrize("title", ["Pier 4", "Pier 5"])
+def test_another_study_of_the_same_name_does_not_take_its_place(finished, tmp_path, capsys, title):
     study, out = finished
     (tmp_path / "other").mkdir()
     other = write_study(
-        tmp_path / "other", study_text(title="Pier 5", pier={"alpha": 0.3, "p": 1.0}, **SMALL), "pier.toml"
+        tmp_path / "other", study_text(title=title, pier={"alpha": 0.3, "p": 1.0}, **SMALL), "pier.toml"
     )
     before = {path.name: path.read_bytes() for path in out.iterdir()}
     capsys.readouterr()
