@@ -101,33 +101,38 @@ def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], *, at_each_scale
     """
     worst = []
     stood, table = standing(runs), Rows(runs)
-    scale_of = table.numbers("scale")
+    scale_of = table.numbers("scale") if at_each_scale else np.full(len(runs), math.nan)
     for case, of_case in rows_of_cases(runs, cases):
-        suites = {math.nan: of_case}
-        if at_each_scale:
-            suites = {scale: of_case[scale_of[of_case] == scale] for scale in np.unique(scale_of[of_case]).tolist()}
-        for scale, places in suites.items():
-            for name, value, place in _greatest(table.at(places[stood[places]]), case):
-                worst.append(Worst(name, value, case, runs, place, scale))
+        places = of_case[stood[of_case]]
+        places = places[np.argsort(scale_of[places], kind="stable")]
+        scales, firsts = np.unique(scale_of[places], return_index=True)
+        responses = [*_greatest(table.at(places), case, firsts)] if len(places) else []
+        for number, scale in enumerate(scales.tolist()):
+            for name, values, greatest in responses:
+                if not math.isnan(value := values[number]):
+                    worst.append(Worst(name, value, case, runs, greatest[number], scale))
     return worst
 
 
-def _greatest(rows: Rows, case: Case) -> Iterator[tuple[str, float, int]]:
-    """Yield each response of a case, its greatest value in these rows, and the place of that row in the whole table.
+def _greatest(rows: Rows, case: Case, firsts: npt.NDArray[np.intp]) -> Iterator[tuple[str, list[float], list[int]]]:
+    """Yield each response of a case, with its greatest value in each suite, and the place of that row in the whole table.
 
-    Responses that the case does not have, and those without a finite value, are left out; settlements and tilts below
-    :data:`ROUNDING` are 0.
+    ``firsts`` are the first of the ``rows`` of each suite. Responses that the case does not have are left out; the value is NaN
+    for a suite without a finite one, and 0 for settlements and tilts below :data:`ROUNDING`.
     """
-    for name in RESPONSES if len(rows) else ():
+    for name in RESPONSES:
         if not DEMANDS[name].applies_to(case) or (name == "theta_res_rad" and case["base"] != "rigid"):
             continue
         if name in PERMANENT and case["base"] not in SETTLING:
             continue
         values = DEMANDS[name].evaluate(rows, case).value
-        if np.isfinite(values).any():
-            greatest = int(np.nanargmax(values))
-            value = float(values[greatest])
-            yield name, 0.0 if name in PERMANENT and value < ROUNDING else value, int(rows.places[greatest])
+        known = np.where(np.isnan(values), -math.inf, values)
+        greatest = np.maximum.reduceat(known, firsts)
+        reached = np.flatnonzero(known == np.repeat(greatest, np.diff(firsts, append=len(rows))))
+        least = ROUNDING if name in PERMANENT else -math.inf
+        greatest = np.where(greatest < least, 0.0, greatest)
+        greatest[~np.logical_or.reduceat(np.isfinite(values), firsts)] = math.nan
+        yield name, greatest.tolist(), rows.places[reached[np.searchsorted(reached, firsts)]].tolist()
 
 
 def heights_of(worst: Iterable[Worst]) -> dict[str, set[float]]:

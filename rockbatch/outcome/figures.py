@@ -131,9 +131,10 @@ def reduced(response: Response, look: Look, pixels: int = 900, most_devices: int
     worst = int(np.nanargmax(np.abs(theta)))
     moving = _moving(t, theta)
     grain = max(moving[1] - moving[0], 1e-9) / pixels
+    events = [*zip(response.events["t"], response.events["kind"], strict=True)]
 
     def times(*kinds: str) -> Array:
-        moments = response.events["t"][response.events["kind"].isin(kinds)].to_numpy(dtype=np.float64)
+        moments = np.array([moment for moment, kind in events if kind in kinds])
         return np.unique(np.rint(moments / grain)) * grain
 
     return History(

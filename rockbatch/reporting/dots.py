@@ -196,11 +196,11 @@ def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
     if foundations have no marks of their own.
     """
     shown: list[Markup] = []
-    statuses = set(runs["status"])
-    for status, words in ENDED.items() if statuses != {"ok"} else ():
-        ended = runs[runs["status"] == status]
-        if status in statuses:
-            series = [] if marks.series is None else [marks.series[place] for place in dict.fromkeys(ended["series"])]
+    statuses, places = (runs[column].to_numpy() for column in ("status", "series"))
+    for status, words in ENDED.items():
+        ended = places[statuses == status].tolist()
+        if ended:
+            series = [] if marks.series is None else [marks.series[place] for place in dict.fromkeys(ended)]
             names = ", ".join(strip.label if strip.rigid else strip.tick for strip in series)
             names = names if 0 < len(names) <= MOST_LETTERS else str(len(ended))
             sign = tag(

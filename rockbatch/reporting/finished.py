@@ -5,6 +5,7 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from rockbatch.checks import Verdict, read_verdicts
 from rockbatch.checks.coverage import CaseRuns, runs_of_cases
 from rockbatch.checks.responses import Worst, worst_of_cases
 from rockbatch.common.errors import InputError
+from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.outcome.response import Response
 from rockbatch.quantities.arrays import Rows
@@ -69,7 +71,7 @@ class Finished(Contents, Labelled):
             return {}
         return pier if isinstance(pier, dict) else {}
 
-    @property
+    @cached_property
     def count(self) -> str:
         """Return the unit of counting, "station" or "component"; "component" as well if stations are unknown."""
         count = str(self.info.get("count", "station"))
@@ -99,12 +101,18 @@ class Finished(Contents, Labelled):
     def section_heights(self, case: Case) -> tuple[float, ...]:
         """Return the heights [m] of a case's sections, of sections.csv and of its checks, ascending."""
         name, rows = case["case"], self.sections
-        heights = {one.at_m for one in self.verdicts if one.case == name and not math.isnan(one.at_m)}
+        heights = self._checked_heights.get(name, frozenset())
         if len(rows):
             own = {"case": name} | case["columns"]
             alike = [rows[key] == value for key, value in own.items() if key in rows]
             heights |= set(rows.loc[np.logical_and.reduce(alike), "height_m"])
         return tuple(sorted(heights))
+
+    @cached_property
+    def _checked_heights(self) -> dict[str, frozenset[float]]:
+        """Return the heights [m] that the checks of each case name."""
+        of_cases = grouped(self.verdicts, attrgetter("case"))
+        return {case: frozenset(one.at_m for one in own if not math.isnan(one.at_m)) for case, own in of_cases.items()}
 
     @cached_property
     def not_run(self) -> int:

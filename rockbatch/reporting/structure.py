@@ -1,6 +1,8 @@
 """The pier, base and devices of a case, rebuilt from run.json, and devices in words."""
 
 from dataclasses import fields, replace
+from functools import lru_cache
+from typing import Any
 
 from rockbatch.common.errors import InputError
 from rockbatch.pier import (
@@ -52,9 +54,14 @@ def pier_of(case: Case) -> Pier | None:
     if "highest_m" in case["pier"]:  # the deck may be the highest point; parts are not in run.json
         values.setdefault("deck_height_m", case["pier"]["highest_m"])
     try:
-        return Pier(**values, confirm=tuple(OF_PIER))
+        return _pier(**values)
     except (InputError, TypeError, ValueError):
         return None
+
+
+@lru_cache(maxsize=1024, typed=True)  # many sections ask for the pier of every case
+def _pier(**values: Any) -> Pier:
+    return Pier(**values, confirm=tuple(OF_PIER))
 
 
 def restraints_of(case: Case) -> tuple[Restraint, ...]:

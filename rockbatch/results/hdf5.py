@@ -11,6 +11,8 @@ import numpy as np
 
 from rockbatch.common.lazy import h5py
 
+_TYPES = {"f": np.float64, "i": np.int64, "S": np.str_}
+
 MOST_OF_A_TEXT = 10_000_000
 """Most characters of an attribute; the longest is the study's text."""
 
@@ -26,10 +28,10 @@ def group_in(group: "h5py.Group", name: str) -> "h5py.Group":
 def array_in(
     group: "h5py.Group", name: str, kind: str, length: int | None = None, *, finite: bool = True
 ) -> "np.ndarray":
-    """Return the one-dimensional dataset ``name`` of ``group``: floats, integers or texts for ``kind`` "f", "i" or "S".
+    """Return the one-dimensional dataset ``name`` of ``group``: float64, int64 or ASCII texts for ``kind`` "f", "i" or "S".
 
     Raises ``ValueError`` if it is missing, stored elsewhere or in chunks, larger than the file, of another kind or ``length``, or
-    has infinite values that ``finite`` excludes; NaN is allowed. Texts are returned as ``str``.
+    has infinite values that ``finite`` excludes; NaN is allowed.
     """
     member = _member(group, name)
     if not isinstance(member, h5py.h5d.DatasetID) or member.rank != 1 or (dtype := member.dtype).kind != kind:
@@ -42,13 +44,11 @@ def array_in(
         raise ValueError(f"{name} claims {size} values, more than the file holds")
     if length is not None and size != length:
         raise ValueError(f"{name} has {size} values instead of {length}")
-    if kind == "S":
-        return np.asarray(h5py.Dataset(member).asstr()[:])
     values = np.empty(size, dtype)
     member.read(h5py.h5s.ALL, h5py.h5s.ALL, values)
     if kind == "f" and finite and np.isinf(values).any():
         raise ValueError(f"{name} has infinite values")
-    return values
+    return values.astype(_TYPES[kind], copy=False)
 
 
 def attributes_of(item: "h5py.Group") -> dict[str, Any]:
@@ -64,11 +64,10 @@ def attribute(item: "h5py.Group", name: str) -> Any:
     stored = h5py.h5a.open(item.id, encoded)
     if stored.shape != () or (dtype := stored.dtype).kind not in "fiubO":
         raise ValueError(f"the attribute {name} is neither a number nor a text")
-    if dtype.kind == "O":
-        value = item.attrs[name]
-    else:
-        stored.read(number := np.zeros((), dtype))
-        value = number.item()
+    stored.read(content := np.zeros((), dtype))
+    value = content.item()
+    if isinstance(value, bytes):
+        value = value.decode(errors="surrogateescape")
     if not isinstance(value, str | int | float) or (isinstance(value, str) and len(value) > MOST_OF_A_TEXT):
         raise ValueError(f"the attribute {name} is neither a number nor a text")
     return value

@@ -37,7 +37,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.files import opened, replacing, state_of
 from rockbatch.common.lazy import h5py, pd
 from rockbatch.outcome.outcome import TERMS
-from rockbatch.outcome.response import EVENT_TYPES, FORCE_UNITS, HISTORY_UNITS, IMPACT_UNITS, Response
+from rockbatch.outcome.response import FORCE_UNITS, HISTORY_UNITS, IMPACT_UNITS, Response
 from rockbatch.pier import (
     Base,
     Part,
@@ -304,14 +304,14 @@ def _read(group: "h5py.Group") -> Response:
             tables[name] = _table(datasets, dict.fromkeys(present, "f"), len(t))
             tables[name].insert(0, "t", t)
     if "forces" in group:
-        tables["impacts"] = _table(group_in(group, "impacts"), _IMPACTS).astype({"pivot": "str"})
+        tables["impacts"] = _table(group_in(group, "impacts"), _IMPACTS)
     return Response(
         **_run(group),
         columns=attributes_of(group_in(group, "varied")),
         pier=Pier(**pier, confirm=tuple(PIERS)),
         base=kind(**before | base, confirm=tuple(OF_BASES)),
         history=history.reindex(columns=[name for name in HISTORY_UNITS if bends or name != "deflection"]),
-        events=events.astype(EVENT_TYPES),
+        events=events,
         **tables,
     )
 

@@ -46,6 +46,28 @@ def test_the_worst_of_every_response_is_found_whatever_is_checked():
     assert in_words(found["top_drift_m"]) == "1.73 m (1,731 mm) at 14.422\u00a0m"
 
 
+def test_the_worst_at_each_scale_is_that_of_its_runs_alone():
+    """Two of these scales have a tie, one no ductility, one no run that ends standing; the rows are in no order."""
+    of_scales = {
+        2.0: runs(**YIELDED),
+        0.5: runs((0.3, 0.3, 0.1, 0.2), **SETTLED | {"settlement_m": [1e-12, 0.0, 0.0, 0.0]}),
+        1.0: runs((0.4, math.nan, 0.4, 0.2), **YIELDED, status=["ok", "failed", "ok", "overturned"]),
+        1.5: runs(**YIELDED, status="overturned"),
+    }
+    tables = [table.assign(scale=scale) for scale, table in of_scales.items()]
+    shuffled = pd.concat(tables).sort_values(["record", "scale"], kind="stable").reset_index(drop=True)
+
+    def found(table, **how):
+        worst = worst_of_cases(table, [case()], **how)
+        return [(one.demand, one.value, one.run["record"], float(one.run["scale"])) for one in worst]
+
+    alone = [one for scale in (0.5, 1.0, 2.0) for one in found(shuffled[shuffled["scale"] == scale])]
+    assert found(shuffled, at_each_scale=True) == alone
+    scales = [one.scale for one in worst_of_cases(shuffled, [case()], at_each_scale=True)]
+    assert scales == [0.5] * 5 + [1.0] * 6 + [2.0] * 6
+    assert [value for name, value, _, scale in alone if (name, scale) == ("settlement_m", 0.5)] == [0.0]
+
+
 def test_the_worst_settlement_of_springs_that_creep_is_a_range():
     found = worst_of_all(worst(**YIELDED, settlement_other_law_m=[0.01, 0.02, 0.0, 0.0]))
     assert in_words(found["settlement_m"]) == "20 to 381 mm, by both spring laws"

@@ -6,7 +6,7 @@ from studies import study_text, write_study
 
 import rockbatch as rb
 from rockbatch.pier import described
-from rockbatch.reporting.structure import base_of, restraints_of
+from rockbatch.reporting.structure import base_of, pier_of, restraints_of
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 
@@ -62,6 +62,14 @@ def test_the_statics_of_all_cases_stand_beside_each_other_with_their_devices(rep
     assert rows["direction"] == ["", "", "to the left"]
     assert not {"settlement at rest [m]", "vertical period [s]"} & set(rows)
     assert page.text.count("not rigid, bending adds") == 3
+
+
+def test_a_value_that_is_no_number_makes_no_pier_though_an_equal_one_does():
+    """True equals 1.0, also as a key."""
+    pier = described(rb.Pier(0.2, 1.0))
+    assert pier_of({"pier": pier}).p == 1.0
+    assert pier_of({"pier": pier | {"p": True}}) is None
+    assert pier_of({"pier": pier | {"p": [1.0]}}) is None
 
 
 def test_a_base_that_cannot_be_has_no_statics():

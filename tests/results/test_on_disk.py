@@ -225,6 +225,21 @@ def test_forces_of_an_earlier_version_have_no_base_moment(tmp_path, results):
     pd.testing.assert_frame_equal(responses[0].forces, response.forces.drop(columns="base_moment"))
 
 
+def test_numbers_of_half_their_size_come_back_in_the_types_of_a_response(tmp_path, results):
+    response = results.responses[0]
+    responses = stored(tmp_path, response)
+    with altered(tmp_path / "histories.h5") as file:
+        group = file["runs/000000"]
+        for name, kind in {"theta": "f4", "events/t": "f4", "events/after": "i4"}.items():
+            values = group[name][:].astype(kind)
+            del group[name]
+            group[name] = values
+    read = responses[0]
+    pd.testing.assert_series_equal(read.events.dtypes, response.events.dtypes)
+    pd.testing.assert_series_equal(read.history.dtypes, response.history.dtypes)
+    np.testing.assert_array_equal(read.theta, response.theta.astype(np.float32))
+
+
 # The file, as others read it
 
 
