@@ -209,7 +209,10 @@ def remedy(name: str) -> str:
 
 @contextmanager
 def starting_threads(otherwise: str = "") -> Iterator[None]:
-    """Context manager: turn the failure to start a thread into ``InputError``, with advice besides raising the limit."""
+    """Context manager: turn the failure to start a thread into ``InputError``; other errors pass.
+
+    ``otherwise`` ends the message: advice besides raising the limit.
+    """
     try:
         yield
     except RuntimeError as error:

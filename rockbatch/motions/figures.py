@@ -10,7 +10,7 @@ from rockbatch.common.units import GRAVITY
 
 
 def record(components: Mapping[str, npt.NDArray[np.float64]], dt: float, title: str) -> Figure:
-    """Return a figure of the accelerations [g] of a motion's components against time, on one scale."""
+    """Return a figure of the accelerations [g] of components against time: a panel for each, one scale for all."""
     y = spanning("", *(samples / GRAVITY for samples in components.values()))
     panels = []
     for place, (name, samples) in enumerate(components.items(), 1):

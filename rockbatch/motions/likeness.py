@@ -333,7 +333,10 @@ class _Table:
         return not distinct and turned and all(self._joinable(i, j).all() for i in first)
 
     def copies(self, i: int) -> list[int]:
-        """Return later components with the same samples that may be of the same sensor, event and direction."""
+        """Return later components with the same samples that may be of the same sensor, event and direction.
+
+        What is unknown may be the same.
+        """
         j = i + 1 + np.flatnonzero(self.samples[i + 1 :] == self.samples[i])
         j = j[~self._differ(self.event, i, j)]
         this, copies = self.components[i], []

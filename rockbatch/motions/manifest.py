@@ -259,7 +259,10 @@ def apply_entries(
 
 
 def _apply_entry(component: Component, entry: Entry, gravity: float) -> Component:
-    """Return a component with the values of an entry, and notes on its changed samples."""
+    """Return a component with the values of an entry, and notes on its changed samples.
+
+    Another unit or time step than the component's leaves its initial values unknown.
+    """
     values, file = entry.values, entry.table.file.path.name
     notes = list(component.notes)
     factor = 1.0

@@ -165,7 +165,7 @@ class MotionSet(Shown):
         )
 
     def _facts(self) -> tuple[str, dict[str, str]]:
-        """Return the title and, by name, the facts that :class:`Shown` prints: records, PGA, verticals, files not used."""
+        """Return the title and, by name, the facts that :class:`Shown` prints: records, PGA, files not used or left out."""
         pga = sorted(motion.pga / GRAVITY for motion in self.motions)
         vertical = sum(motion.vertical is not None for motion in self.motions)
         return several(len(self), "ground motion") or "no ground motions", {

@@ -56,7 +56,7 @@ class Origin:
 
     @property
     def short_event(self) -> str:
-        """Return the event in 34 characters at most, cut before its year."""
+        """Return the event in 34 characters at most, cut with "…" at its end, or before a year that ends it."""
         if len(self.event) <= _EVENT:
             return self.event
         if _YEAR.match(self.event[-4:]):

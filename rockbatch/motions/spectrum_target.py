@@ -89,7 +89,7 @@ class SpectrumTarget:
 
     @property
     def share(self) -> float:
-        """Return the share of the target that the mean must reach everywhere in the range."""
+        """Return the share of the target that the mean must reach in the whole range: ``at_least``, or that of PAIRS."""
         return PAIRS[self.pairs] if self.at_least is None else self.at_least
 
     def __str__(self) -> str:

@@ -14,7 +14,10 @@ LENGTHS = (Limit(ceiling=WIDER), _IN_MM)
 
 
 def rotation(of: str, name: str, unit: str, times: Lever, words: str = "") -> Limit:
-    """Return a limit on |θ|/α times a factor, from the columns OF_over_alpha and OF_error."""
+    """Return a limit on |θ|/α times a factor, from the columns OF_over_alpha and OF_error.
+
+    Only that on ``theta_max`` is looked up in a motion, too.
+    """
     reached = largest((IN_MOTION,), times, IN_MOTION_ERROR) if of == "theta_max" else None
     evaluate = largest((f"{of}_over_alpha",), times, f"{of}_error")
     return Limit(name, unit, times, Ceiling(times, OVERTURNS), words, evaluate=evaluate, reached=reached)

@@ -317,7 +317,10 @@ def _read(group: "h5py.Group") -> Response:
 
 
 def _table(group: "h5py.Group", kinds: Mapping[str, str], rows: int | None = None) -> "pd.DataFrame":
-    """Read columns by their kinds into a table of ``rows``, by default as many as the group's ``t`` has."""
+    """Read columns by their kinds into a table of ``rows``, by default as many as the group's ``t`` has.
+
+    Only ``friction`` may hold values that are not finite.
+    """
     rows = len(array_in(group, "t", "f")) if rows is None else rows
     columns = {name: array_in(group, name, kind, rows, finite=name != "friction") for name, kind in kinds.items()}
     return pd.DataFrame(columns)

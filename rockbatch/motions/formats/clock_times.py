@@ -52,7 +52,10 @@ def in_seconds(text: str) -> tuple[str, float | None]:
 
 
 def _has_decimal_commas(text: str, start: int) -> bool:
-    """Return whether the numbers from ``start`` to the end of its line, behind a time, have decimal commas."""
+    """Return whether the numbers from ``start`` to the end of its line, behind a time, have decimal commas.
+
+    They have none behind a comma, or in a line with a point.
+    """
     if not _NO_COMMA.match(text, start):
         return False
     end = text.find("\n", start)

@@ -269,7 +269,10 @@ def stated_count(header: Sequence[str]) -> int | None:
 
 
 def _short_label(label: str) -> str:
-    """Return a column's label shortened for names and tables: "N-S" and "North-south acceleration" give "NS"."""
+    """Return a column's label shortened for names and tables: "N-S" and "North-south acceleration" give "NS".
+
+    One that gives no direction loses its word for an acceleration, unless nothing else is left.
+    """
     label = label.strip('"')
     bare = re.sub(r"(?i)\s*(?:ground\s*)?acc(?:eleration|el)?\b\.?\s*", " ", label).strip()
     key = re.sub(r"[^A-Z]", "", bare.upper())

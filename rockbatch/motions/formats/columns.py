@@ -308,7 +308,7 @@ def _check_step(stated: StatedStep, dt: float, usual: float) -> None:
 
 
 def _column_name(i: int, column: Column) -> str:
-    """Return the name of a column in messages: 'column 2 ("NS")'."""
+    """Return the name of a column in messages: 'column 2 ("NS")', or 'column 2' without a label."""
     return f'column {i + 1} ("{column.label}")' if column.label else f"column {i + 1}"
 
 

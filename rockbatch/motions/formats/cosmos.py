@@ -156,7 +156,11 @@ def _width_and_count(text: str, index: int) -> tuple[int, int]:
 
 
 def _values(lines: list[str], index: int, series: re.Match[str]) -> tuple[Samples, int]:
-    """Return the values declared by ``lines[index]``, shape (npts,), and the index of the line after their end mark."""
+    """Return the values declared by ``lines[index]``, shape (npts,), and the index of the line after their end mark.
+
+    Raises:
+        InputError: no values are declared, others than declared follow, or no end mark.
+    """
     npts = int(series["npts"])
     if npts < 1:
         raise InputError(f"line {index + 1}: found {npts} values; expected some")

@@ -143,7 +143,10 @@ def _parsed(data: bytes) -> tuple[dict[str, float], dict[str, str], Samples]:
 
 
 def _statements(numbers: dict[str, float]) -> list[Stated]:
-    """Return the header's statements about its samples: the duration from B to E, and the range from DEPMIN to DEPMAX."""
+    """Return the header's statements about its samples: the duration from B to E, and the range from DEPMIN to DEPMAX.
+
+    Without both numbers, or with a DEPMAX not above DEPMIN, nothing is stated.
+    """
     statements = []
     if "B" in numbers and "E" in numbers:
         begins, ends = numbers["B"], numbers["E"]

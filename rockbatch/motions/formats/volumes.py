@@ -208,7 +208,11 @@ def _samples(lines: list[str], first: int, volume: int, fields: dict[str, str]) 
 
 
 def _pairs(lines: list[str], first: int, fields: dict[str, str]) -> tuple[_Samples, float, int]:
-    """Return the samples at even steps of pairs of time and value, their first time [s], and the index after them."""
+    """Return the samples at even steps of pairs of time and value, their first time [s], and the index after them.
+
+    Raises:
+        InputError: fewer than two points, or a line of USC that does not begin with a blank.
+    """
     npts, start = int(fields["npts"]), first + _DATA[1]
     if npts < 2:
         raise InputError(f"line {first + 11}: found {npts} points; expected at least two")
