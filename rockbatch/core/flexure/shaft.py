@@ -120,7 +120,7 @@ def _overhang(shaft, m):
 
 @inlined
 def leaning_height(m):
-    """Return the height [m] by which M g sin θ bounds the weight's moment: the centre of mass's, or more if the shaft bends."""
+    """Return the height h [m] for which the weight's moment is at most M g h sin θ: the centre's, or more if the shaft bends."""
     return m.height + overhang(m.shaft, m)
 
 
