@@ -20,7 +20,7 @@ def least_beta(pier: Pier, base: Base) -> float:
 
     A spring at rest at z = −1/η, or −(1 + ψ)/η with tendons, has r = 1 − |z|ⁿ (Bouc–Wen) of its elastic stiffness in further
     loading, and all of it in unloading; as a pair in rotation the springs have 2r/(1 + r) of the elastic stiffness. A shaft that
-    bends hangs over as it leans.
+    bends hangs over as it leans. For other bases it is that on two elastic springs.
     """
     over = _over(pier, base) if base.on_springs else 1.0
     if not (isinstance(base, YieldingBase) and base.eta > 1 and base.n >= 1):
@@ -33,7 +33,10 @@ def least_beta(pier: Pier, base: Base) -> float:
 
 
 def _over(pier: Pier, base: ElasticBase | FootingBase) -> float:
-    """Return the least β that holds a shaft which hangs over as it leans, over that of a rigid one; 1 for a rigid one."""
+    """Return the least β that holds a shaft which hangs over as it leans, over that of a rigid one.
+
+    1 for a rigid one, and for one that has :func:`rockbatch.pier.bending.problems`.
+    """
     if not base.bends or bending_problems(pier):
         return 1.0
     return math.sqrt(base.leaning_height(pier) / pier.height)

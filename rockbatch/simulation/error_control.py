@@ -210,7 +210,8 @@ def _with_notes(fine: Trial, coarse: Trial, extent: Agreement, tolerances: Sampl
     """Return the outcome of ``fine`` with notes on other results that did not converge, ``tolerances`` [rad] of each window.
 
     If rotations up to the window ``peak`` of the peak have not converged, no error is claimed: the peak then depends on digits
-    that no record has, and runs that agree on it do so by chance.
+    that no record has, and runs that agree on it do so by chance. Unless the run failed, ``may_overturn`` is
+    set to False, and ``chaotic`` to whether that is the case.
     """
     finer, coarser, notes = fine.outcome, coarse.outcome, list[str]()
     if finer.status != "failed":

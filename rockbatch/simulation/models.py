@@ -381,7 +381,7 @@ def _linear_part(pier: Pier, base: Base, element: Element, coefficient: float, e
 
 
 def _fastest(pier: Pier, base: Base) -> float:
-    """Return the greatest frequency or decay rate [1/s] on springs, without devices; on rigid ground the bound STEEP p."""
+    """Return the greatest frequency or decay rate [1/s] on ground that gives, without devices; else the bound STEEP p."""
     if not base.on_springs:
         return STEEP * pier.p
     if not base.bends:
