@@ -74,7 +74,7 @@ class MapSpec:
 
     @property
     def grid(self) -> tuple[list[float], list[float]]:
-        """Return frequencies and amplitudes, evenly spaced."""
+        """Return frequencies and amplitudes, evenly spaced, with both ends of their ranges."""
         return (
             np.linspace(*self.frequency, self.frequencies).tolist(),
             np.linspace(*self.amplitude, self.amplitudes).tolist(),
