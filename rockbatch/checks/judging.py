@@ -47,7 +47,7 @@ def judge(
     interaction: "pd.DataFrame | None" = None,
     doubted: bool = False,
 ) -> list[Verdict]:
-    """Evaluate every rule for every case at every scale; a case that was run on both axes of its pier is one.
+    """Judge each case by every rule at the scales that the rule chooses; a case run on both axes of its pier is one.
 
     Parameters
     ----------

@@ -69,7 +69,7 @@ def number(value: float, neighbour: float = math.nan, least: int = 4) -> str:
 
 
 def compared(value: float, limit: float, least: int = 4) -> str:
-    """Return a demand, or a bound of it, as a number that shows whether it differs from its limit; "0" if it is nothing."""
+    """Return a demand, or a bound of it, with ``least`` digits, or more if they tell it from its limit; "0" if it is nothing."""
     return "0" if is_nothing(value, limit) else number(value, limit, least)
 
 

@@ -65,8 +65,8 @@ def write_comparison(
     """Write one page that compares two studies run by run; return its path.
 
     ``out`` defaults to ``compare-NAME.html`` in the first folder, NAME being the second folder's. ``pairs`` are
-    cases of the second by those of the first with which they are compared. Raises ``InputError`` if results are missing or
-    damaged.
+    cases of the second by those of the first with which they are compared. With ``whole`` folded sections are printed, too.
+    Raises ``InputError`` if results are missing or damaged, or ``pairs`` do not fit their cases.
     """
     return _write(_contents((first, second), pairs), out, whole)
 

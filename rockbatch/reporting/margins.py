@@ -95,7 +95,7 @@ _IN_WORDS = {PASS: _passing, FAIL: _failing, NOT_DECIDED: _undecided, DOES_NOT_A
 
 
 def _cells(rows: Sequence[Row]) -> Iterator[tuple[Row, Cell]]:
-    """Yield the cells of rows, each with its row."""
+    """Yield the cells of rows that are not None, each with its row."""
     for row in rows:
         yield from ((row, cell) for cell in row.cells if cell is not None)
 

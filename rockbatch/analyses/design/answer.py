@@ -145,7 +145,7 @@ def _beyond(rows: Sequence[Entry], row: Entry, end: str) -> Said:
 
 
 def _verdict_without_pass(rows: Sequence[Entry]) -> str:
-    """Return the verdict on a key of which no value passes: not decided if some value is not, else fail."""
+    """Return the verdict on a key of which no value passes: "not decided" if that is the verdict on any value, else "fail"."""
     return NOT_DECIDED if any(row["verdict"] == NOT_DECIDED for row in rows) else FAIL
 
 

@@ -77,6 +77,7 @@ class Capacities:
         """Return the capacities of m records by the share, 0 to 1, of each ``within`` and ``beyond`` the limit at n levels.
 
         Both have the shape (m, n). Records with neither at any level are left out, and so are intervals without a record.
+        ``station`` has the number of each record's station; by default each is of one by itself.
         """
         of_record = np.hstack((beyond, within)).astype(np.float64)
         low = np.concatenate((np.zeros(len(levels)), levels))
@@ -88,7 +89,10 @@ class Capacities:
 
     @classmethod
     def of_brackets(cls, low: Values, high: Values, station: Numbers | None = None) -> "Capacities":
-        """Return the capacities of m records with one bracket each, shape (m,), without those between 0 and infinity."""
+        """Return the capacities of m records with one bracket each, shape (m,), without those between 0 and infinity.
+
+        ``station`` has the number of each record's station; by default each is of one by itself.
+        """
         known = (low > 0) | np.isfinite(high)
         station = np.arange(len(low)) if station is None else station
         return cls(low[known], high[known], np.ones(known.sum()), None, station[known])

@@ -140,7 +140,10 @@ def _level_plan(
 
 
 def first_intensities(spec: FragilitySpec, plan: LevelPlan, motion: int, case: Case) -> dict[float, float]:
-    """Return the intensities of a motion's runs that depend on no others, by level; in windows the allowed, by themselves."""
+    """Return the intensities of a motion's runs that depend on no other run, by level.
+
+    Those in the windows about its levels that the limits on factors allow are there, too, each by itself.
+    """
     used, earlier = plan.used[motion], plan.earlier[motion]
     around = (x for level in used for x in samples(level, spec.window_on(case.base)))
     return used | {x: x for x in around if spec.allows(earlier * plan.scale(motion, x))}

@@ -30,7 +30,7 @@ class Strip:
     edges: Array
 
     def outcome(self, frequency: float, amplitude: float) -> str:
-        """Return the outcome at a point of the strip."""
+        """Return the outcome at a point of the strip; on a boundary the one below it."""
         tops = [float(np.interp(frequency, self.frequencies, top)) for top in self.edges.T[1:-1]]
         return self.outcomes[int(np.searchsorted(tops, amplitude))]
 

@@ -74,7 +74,7 @@ class MapSpec:
 
     @property
     def grid(self) -> tuple[list[float], list[float]]:
-        """Return frequencies and amplitudes, evenly spaced."""
+        """Return frequencies and amplitudes, evenly spaced, with both ends of their ranges."""
         return (
             np.linspace(*self.frequency, self.frequencies).tolist(),
             np.linspace(*self.amplitude, self.amplitudes).tolist(),
@@ -249,7 +249,7 @@ def _without_size(table: Table, study: Study, names: Sequence[str]) -> None:
 
 
 def _piers(table: Table, alphas: Sequence[float], axis: str, values: list[float], study: Study) -> list[PierRead]:
-    """Return piers of every slenderness and size, otherwise as the study's without deck and parts, and their values by key.
+    """Return piers of every slenderness and size, else as the study's nominal ones without deck and parts; with values by key.
 
     A mass that is written in a case alone is left out, as the case adds it. A size that is impossible becomes a problem of the
     file, and ends those of its slenderness.

@@ -116,7 +116,10 @@ def _sliding(cases: Collection[Case]) -> str:
 
 
 def _damping(cases: Collection[Case]) -> str:
-    """Return a sentence on damping other than by landings: that of dashpots beside the supports, or none."""
+    """Return a sentence on dashpots beside the supports: "… by ζ = 0.05 of critical; there is no other damping but …".
+
+    Without them it is "Nothing but landings, yielding and devices takes energy."
+    """
     damped = [case for case in cases if case["parameters"].get("zeta")]
     if not damped:
         return "Nothing but landings, yielding and devices takes energy."
