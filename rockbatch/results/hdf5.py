@@ -28,8 +28,8 @@ def array_in(
 ) -> "np.ndarray":
     """Return the one-dimensional dataset ``name`` of ``group``: floats, integers or texts for ``kind`` "f", "i" or "S".
 
-    Raises ``ValueError`` if it is missing, stored elsewhere or in chunks, of another kind or ``length``, or has infinite values
-    that ``finite`` excludes; NaN is allowed. Texts are returned as ``str``.
+    Raises ``ValueError`` if it is missing, stored elsewhere or in chunks, larger than the file, of another kind or ``length``, or
+    has infinite values that ``finite`` excludes; NaN is allowed. Texts are returned as ``str``.
     """
     member = _member(group, name)
     if not isinstance(member, h5py.h5d.DatasetID) or member.rank != 1 or (dtype := member.dtype).kind != kind:
