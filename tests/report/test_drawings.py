@@ -153,9 +153,16 @@ def test_a_bound_is_named_where_its_device_or_its_pier_is_not_that_of_the_design
     heavy = rb.Pier.with_deck(7.0, 30.0, 1800.0, 1400.0, deck_height_m=31.5, top_m=30.0)
     oil = rb.Damper.viscous(heavy, coefficient_kN_s_m=2000.0, exponent=0.3)
     cases = [case("oil", OIL, bound=""), case("oil", weak, bound="weak"), case("oil", OIL, bound="soft")]
+    firm = rb.Damper.viscous(TOWER, coefficient_kN_s_m=3000.0, exponent=0.3)
+    cases += [case("firm", firm, bound=""), case("firm", firm, bound="soft")]
     captions, _ = drawn(tmp_path, *cases, case("oil", oil, pier=heavy, bound="traffic"), varied=("bound",))
     damper = "viscous damper at each pivot, C = {} kN (s/m)^0.3"
     assert captions == [
-        ["oil", damper.format(2000), f"oil: weak: {damper.format(1700)}"],
+        [
+            "oil, firm",
+            f"oil: {damper.format(2000)}",
+            f"oil: weak: {damper.format(1700)}",
+            f"firm: {damper.format(3000)}",
+        ],
         ["oil: traffic", damper.format(2000)],
     ]

@@ -154,6 +154,23 @@ def test_names_that_are_commands_of_typst_are_words(tmp_path):
     assert not [name for name in COMMANDS[:6] if without_spaces(name) not in whole]
 
 
+def test_all_that_is_hostile_on_a_page_is_words_in_the_pdf_which_does_nothing(tmp_path):
+    """Letters of every writing in the PDF's fonts, marks of direction and names of 3,000 letters among them."""
+    cases = [case_entry(name, {}, Pier(alpha=0.13, p=0.38), RigidBase()) for name in HOSTILE[5:8]]
+    unusable = [{"name": name, "source": name, "reason": name} for name in HOSTILE]
+    write_results(
+        tmp_path, records=[(name, 0.4) for name in HOSTILE], cases=cases, unusable=unusable, created=HOSTILE[0]
+    )
+    pdf_ = sheet_of(read(tmp_path)).pdf()
+    whole = without_spaces("".join(text_of(pdf_)))
+    hidden = [name for name in HOSTILE if without_spaces(name) not in whole]
+    assert [ascii(name) for name in hidden if name.isascii()] == []
+    reader = pypdf.PdfReader(io.BytesIO(pdf_))
+    actions = {"/OpenAction", "/AA", "/AcroForm"}
+    assert not actions & {key for part in (reader.trailer["/Root"], *reader.pages) for key in part}
+    assert [note for page in reader.pages for note in page.get("/Annots", ())] == []
+
+
 def test_a_sheet_is_written_as_html_and_pdf_and_the_command_names_both(tmp_path, capsys):
     write_results(tmp_path)
     assert main(["report", "--sheet", str(tmp_path)]) == 0

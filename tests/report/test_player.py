@@ -268,3 +268,41 @@ def test_behind_the_end_of_a_curve_its_last_value_is_called_so(tmp_path):
     assert float(re.search(r"t = 6.00 s, the curve ended at θ/α = (-?[\d.]+), ground", after)[1]) == pytest.approx(
         last, abs=2e-3
     )
+
+
+def still(folder, change):
+    """Return the run of case 1 with the columns of ``change`` in its history, and its figure in the player."""
+    write_results(folder)
+    run = response("ERZ-NS", *FOUNDATIONS[1], pier=PIER)
+    run = replace(run, history=run.history.assign(**change(run.history)))
+    (figure,) = players(write_report(folder, [run]).read_text(encoding="utf-8"))
+    return run, figure
+
+
+def test_at_a_peak_to_the_left_the_pier_leans_left_and_the_arrow_is_that_of_this_moment(tmp_path):
+    """The ground moves by cos t, of which the arrow of 50 px is the greatest."""
+    run, figure = still(tmp_path, lambda old: {"theta": -old["theta"], "ag_h": PIER.gravity * np.cos(old["t"])})
+    at = int(np.argmax(np.abs(run.theta)))
+    assert run.theta[at] < 0.0
+    moves = next(group for group in figure.iter("g") if group.get("class") == "moves")
+    turned, pivot, _ = map(float, re.findall(r"-?[\d.]+", moves.get("transform")))
+    assert turned < 0.0
+    assert pivot == -float(figure.get("data-half"))
+    arrow = next(path for path in figure.iter("path") if path.get("class") == "push")
+    push = float(re.search(r"h(-?[\d.]+)", arrow.get("d"))[1])
+    assert push == pytest.approx(50.0 * math.cos(run.t[at]), abs=0.06)
+
+
+def test_a_pier_that_overturns_is_drawn_where_its_curve_is_cut(tmp_path):
+    """At 1.5 α, to scale, and not at the six times α that it reached."""
+    _, figure = still(tmp_path, lambda old: {"theta": 50.0 * old["theta"]})
+    moves = next(group for group in figure.iter("g") if group.get("class") == "moves")
+    turned = float(re.search(r"-?[\d.]+", moves.get("transform"))[0])
+    assert turned == pytest.approx(math.degrees(1.5 * PIER.alpha), abs=2e-3)
+
+
+def test_a_run_is_played_over_the_stretch_that_its_picture_shows(tmp_path):
+    """The pier does not move before 4 s of 8."""
+    _, figure = still(tmp_path, lambda old: {"theta": np.where(old["t"] < 4.0, 0.0, old["theta"])})
+    first, last, peak = map(float, figure.get("data-times").split())
+    assert 2.0 < first < 4.0 < peak < last <= 8.0

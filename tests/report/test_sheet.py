@@ -8,19 +8,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from browser import HOSTILE, browse, needs_chromium
+from check_samples import verdict
 from report_page import Page
 from report_samples import FIG7, case_entry, write_results
 
 import rockbatch as rb
+from rockbatch.checks import write_verdicts
 from rockbatch.common.errors import InputError
+from rockbatch.common.files import legible
 from rockbatch.motions.description import digest
 from rockbatch.pier import Damper, Pier, RigidBase, Stop, Tendon, YieldingBase
+from rockbatch.reporting import write_report
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.sections import assumptions, studied
 from rockbatch.reporting.sheet import sheet_of as made
 from rockbatch.reporting.table import PAPER, Head, on_paper, table
 from rockbatch.reporting.templates import Section
+from rockbatch.results.run_json import describe_case
+from rockbatch.study import Case
 
 PIER = Pier(alpha=0.13, p=0.38)
 
@@ -318,3 +324,41 @@ def test_devices_observers_and_analyses_of_a_folder_have_their_sections_on_the_s
     monkeypatch.setattr("rockbatch.reporting.sheet.analyses", lambda contents: drawn)
     headings = {re.sub(r"^\d+ ", "", heading) for heading in Page(made(read(tmp_path)).html()).headings}
     assert {"Devices", "Forces", "Free rocking"} <= headings
+
+
+@needs_chromium
+@pytest.mark.parametrize("written", ["page", "sheet"])
+def test_hostile_bounds_checks_and_reasons_are_words_in_drawings_scorecard_and_statement(tmp_path, written):
+    """Each drawn pier, each cell and each sentence has one of them: none runs, none is an element, all can be read."""
+    pier = Pier(alpha=0.13, p=0.38)
+    damped = RigidBase(restraints=(Damper(kind="friction", f=0.05),))
+    cases = [entry("design", RigidBase(), bound="")]
+    cases += [describe_case(Case("design", pier, damped, {"bound": name})) for name in HOSTILE]
+    write_results(tmp_path, records=[("r", 0.3)], cases=cases, varied=("bound",))
+    verdicts = [
+        verdict(
+            "design", "fail", columns={"bound": bound}, check=name, reason=name, words=name, remarks=(name,), record="r"
+        )
+        for bound in ("", *HOSTILE[:3])
+        for name in HOSTILE
+    ]
+    write_verdicts(tmp_path, verdicts)
+    path = write_report(tmp_path, [])
+    if written == "sheet":
+        path.write_text(made(read(tmp_path)).html(), encoding="utf-8")
+    act = """
+    for (const node of document.querySelectorAll("button, summary")) node.click();
+    found.ran = window.ran ?? null;
+    found.elements = document.querySelectorAll("img, iframe, base, link, form, [onerror], [onload], [onmouseover]").length;
+    found.text = document.body.textContent;
+    """
+    found = browse(path, act)
+    assert (found["wrong"], found["requests"], found["ran"], found["elements"], found["wide"]) == (
+        [],
+        [],
+        None,
+        0,
+        True,
+    )
+    text = "".join(found["text"].split())
+    assert not [name for name in HOSTILE if "".join(legible(name).split()) not in text]
