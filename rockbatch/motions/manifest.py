@@ -332,7 +332,7 @@ def _orientation(orientation: Orientation, entry: Entry) -> Orientation:
 
 
 def is_manifest(path: Path) -> bool:
-    """Return whether a file named as a manifest is one: True for .toml; for .csv if it has a column "file", or cannot be read.
+    """Return whether a file named as a manifest is one: True for .toml; for .csv if it has a column "file", or cannot be opened.
 
     Another ``motions.csv`` may be a record.
     """

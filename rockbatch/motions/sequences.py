@@ -348,8 +348,8 @@ def add_sequences(
     """Return records and pulses followed by their sequences, which replace the records that are not also run ``alone``.
 
     A sequence of pulses only is a pulse, which no target scales. A sequence is unusable if one of its records is, or if they
-    cannot be joined. Raises ``InputError`` for sequences with the name of a record, and for names of no record; in a manifest,
-    ``source``, the sequence is then unusable, or left out if none of its records is read.
+    cannot be joined. Raises ``InputError`` for a sequence with the name of a record, also in a manifest, ``source``, and for
+    names of no record in a study; a sequence of a manifest is then unusable, or left out if none of its records is read.
     """
     if not sequences:
         return motions, list(pulses)

@@ -139,8 +139,8 @@ def seconds_in(unit: str) -> float | None:
 def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None:
     """Return the columns if the header states label and unit of all ``width``; else ``None``.
 
-    ``Column 2: North-south acceleration (cm/s/s)``, or in one line ``time(sec) N-S(cm/s/s) …``, the last one counts, or in
-    two, the labels and their units, of which some may be "" or "-".
+    ``Column 2: North-south acceleration (cm/s/s)``, or in one line ``time(sec) N-S(cm/s/s) …``, of which one unit at least is
+    known and the last such line counts, or in two, the labels and their units, of which some may be "" or "-".
     """
     numbered = {int(m["at"]): _column(m) for line in header if (m := _NUMBERED.match(line))}
     if sorted(numbered) == list(range(1, width + 1)):

@@ -186,8 +186,8 @@ def refuse_more(lines: Sequence[str], end: int, declared: str) -> None:
 def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) -> Samples:
     """Return ``count`` numbers between blanks from ``lines[first]`` to the end of the file, shape (count,).
 
-    Every line has ``per_line`` of them but the last, which has the rest. Raises ``InputError`` with the line for anything
-    else, before memory is allocated for more numbers than there are lines.
+    Every line has ``per_line`` of them but the last, which has the rest. Raises ``InputError`` with the line for anything else,
+    before memory is allocated for more numbers than there are lines, and if the last number is cut short.
     """
     needed = -(-count // per_line)
     end = next((i for i in range(len(lines), first, -1) if lines[i - 1].strip()), first)

@@ -137,7 +137,10 @@ def _stations(records: Iterable[Item]) -> int:
 
 
 def _sound(target: Target) -> bool:
-    """Return whether a target's spectra fit its periods and are positive, since run.json is untrusted."""
+    """Return whether a target's spectra fit its periods, and its numbers are above 0, but those of the mean only finite.
+
+    run.json is untrusted.
+    """
     periods, ends = target["period_s"], target["range_s"]
     fitting = all(len(target[name]) == len(periods) > 0 for name in ("sa_g", "mean_sa_g"))
     is_finite = fitting and all(map(math.isfinite, target["mean_sa_g"]))
