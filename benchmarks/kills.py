@@ -112,11 +112,10 @@ COMMANDS = {
 }
 
 
-def started(words: tuple[str, ...], folder: Path, limited: tuple[str, ...] = ()) -> subprocess.Popen:
-    """Return the process of a command, behind the words of a program that limits it."""
+def started(words: tuple[str, ...], folder: Path) -> subprocess.Popen:
     environment = os.environ | {"PYTHONPATH": str(Path(rockbatch.__file__).parents[1])}
     return subprocess.Popen(
-        [*limited, sys.executable, "-m", "rockbatch", *words],
+        [sys.executable, "-m", "rockbatch", *words],
         cwd=folder,
         env=environment,
         stdout=subprocess.DEVNULL,
@@ -186,11 +185,6 @@ def failures_of_kill(command: Command, folder: Path, wanted: Reference, instant:
     except ProcessLookupError:
         alive = False
     process.communicate()
-    return failures_of_repetition(command, folder, wanted), alive
-
-
-def failures_of_repetition(command: Command, folder: Path, wanted: Reference) -> list[str]:
-    """Return what is wrong after a command is repeated where it was disturbed."""
     rows = finished_rows(folder)
     status, messages, _ = carried_out(command.words, folder)
     found = files(folder)
@@ -202,7 +196,7 @@ def failures_of_repetition(command: Command, folder: Path, wanted: Reference) ->
     ]
     if finished_rows(folder) < rows:
         failures.append(f"{rows} rows before the repetition, {finished_rows(folder)} after it")
-    return failures
+    return failures, alive
 
 
 def main() -> int:
