@@ -6,12 +6,11 @@ from typing import NamedTuple
 from rockbatch.common.grouping import grouped
 from rockbatch.pier.figures import devices, sketches
 from rockbatch.quantities.cases import Case, top
-from rockbatch.quantities.design import BOUND, of_design
-from rockbatch.quantities.labels import titled
+from rockbatch.quantities.design import of_design
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import first_of
 from rockbatch.reporting.markup import Markup, join, tag
-from rockbatch.reporting.structure import devices_in_words, pier_of, restraints_of
+from rockbatch.reporting.structure import devices_in_words, names_of, pier_of, restraints_of
 from rockbatch.reporting.svg import sketch
 from rockbatch.results.labelled import Row, pier_key
 
@@ -72,8 +71,7 @@ def _title(finished: Finished, one: Alike, several: bool) -> str:
     case = one.cases[0]
     place = finished.pier_places.get(pier_key(case["columns"], finished.info["varied"]))
     pier = "" if place is None else finished.piers[place]
-    bounds = {str(case["case"]): str(case["columns"].get(BOUND, "")) for case in one.cases[::-1]}
-    names = first_of([titled(name, [bound] if bound else []) for name, bound in list(bounds.items())[::-1]], MOST_NAMES)
+    names = first_of(names_of(one.cases), MOST_NAMES)
     return ", ".join(filter(None, (pier, names))) if several or not pier else pier
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -65,11 +65,22 @@ class Finished(Contents, Labelled):
     @cached_property
     def pier_as_given(self) -> Row:
         """Return the [pier] table of the study file; empty if the text cannot be parsed."""
+        pier = self._as_given.get("pier", {})
+        return pier if isinstance(pier, dict) else {}
+
+    @property
+    def cases_as_given(self) -> list[Row]:
+        """Return each [[case]] table of the study file; [] if the text cannot be parsed."""
+        cases = self._as_given.get("case", [])
+        return [case for case in cases if isinstance(case, dict)] if isinstance(cases, list) else []
+
+    @cached_property
+    def _as_given(self) -> dict[str, Any]:
+        """Return the study file; empty if the text cannot be parsed."""
         try:
-            pier = tomllib.loads(self.info["study"]["text"]).get("pier", {})
+            return tomllib.loads(self.info["study"]["text"])
         except tomllib.TOMLDecodeError:
             return {}
-        return pier if isinstance(pier, dict) else {}
 
     @cached_property
     def count(self) -> str:

@@ -1,5 +1,6 @@
 """The pier, base and devices of a case, rebuilt from run.json, and devices in words."""
 
+from collections.abc import Iterable
 from dataclasses import fields, replace
 from functools import lru_cache
 from typing import Any
@@ -21,7 +22,8 @@ from rockbatch.pier.plausibility import wrong_restraints
 from rockbatch.pier.sizes import USUAL as OF_PIER
 from rockbatch.pier.traits import USUAL as OF_BASE
 from rockbatch.quantities.cases import Case
-from rockbatch.quantities.labels import DEVICE_SYMBOLS, plain, unit_with_exponent
+from rockbatch.quantities.design import BOUND
+from rockbatch.quantities.labels import DEVICE_SYMBOLS, plain, titled, unit_with_exponent
 from rockbatch.study.restraint_keys import KEYS_OF
 
 _PIER = (
@@ -46,6 +48,14 @@ _PREFERRED = {
 """Keys without units, and the equivalent ones with units, for a pier whose mass is known."""
 _NAMED = {"stop": "lift stop", "deck_spring": "deck spring"}
 _OF_STOP = {"stiffness_kN_m": ("k", "kN/m")}
+
+
+def names_of(cases: Iterable[Case]) -> list[str]:
+    """Return the names of cases that share something, in order; with its bound if the nominal design is not among them."""
+    bounds: dict[str, dict[str, None]] = {}
+    for case in cases:
+        bounds.setdefault(str(case["case"]), {})[str(case["columns"].get(BOUND, ""))] = None
+    return [titled(name, [] if "" in of_case else of_case) for name, of_case in bounds.items()]
 
 
 def pier_of(case: Case) -> Pier | None:

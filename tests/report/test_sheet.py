@@ -208,6 +208,25 @@ def test_every_foundation_and_every_listed_value_is_among_the_inputs(tmp_path):
     assert {"0.91", "41.5", "2.25", "30.0, 33.0"} <= cells
 
 
+def test_a_pier_that_a_bound_changes_has_the_name_of_the_bound_among_the_inputs(tmp_path):
+    heavy = replace(PIER, p=0.37)
+    cases = [describe_case(Case("foot", pier, RigidBase(), {"bound": bound})) for pier, bound in
+             ((PIER, ""), (PIER, "soft"), (heavy, "traffic"), (heavy, "more traffic"))]  # fmt: skip
+    rows = Page(sheet_of(tmp_path, cases=cases, varied=("bound",))).tables["inputs"]
+    piers = [row for row in rows if row[1:2] == ["0.13"]]
+    assert [row[0] for row in piers] == ["foot", "foot: traffic, more traffic"]
+
+
+def test_the_numbers_of_the_geotechnical_report_are_among_the_inputs_as_they_were_given(tmp_path):
+    keys = 'name = "clay"\nbase = "footing"\nshear_modulus_MPa = 101.5\npoisson = [0.31, 0.49]\n'
+    text = f'[[case]]\n{keys}[[case.damper]]\nkind = "x"'
+    study = {"path": "a.toml", "title": "a", "notes": "", "text": text, "sha256": "0" * 64}
+    rows = Page(sheet_of(tmp_path, study=study)).tables["inputs"]
+    assert ["clay", "footing", "101.5", "0.31, 0.49"] in rows
+    (head,) = [row for row in rows if row[:1] == ["case"] and len(row) == 4 and row[2].startswith("shear")]
+    assert head[2] == "shear modulus [MPa]"
+
+
 def test_no_two_different_foundations_have_the_same_row(tmp_path):
     cases = [
         entry("slender", RigidBase(), friction=0.4),

@@ -12,7 +12,7 @@ from rockbatch.reporting.drawings import drawings
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import heading, symbol
 from rockbatch.reporting.markup import Markup, join, tag
-from rockbatch.reporting.structure import device_in_words, pier_of, restraints_of
+from rockbatch.reporting.structure import device_in_words, names_of, pier_of, restraints_of
 from rockbatch.reporting.table import WHOLE, Head, table
 from rockbatch.results.labelled import Row
 
@@ -57,13 +57,14 @@ _UNIT = re.compile(f"_({'|'.join(_UNITS)})$")
 
 
 def section(finished: Finished) -> Markup:
-    """Return the drawings of the piers, and tables of the pier as given, parts, piers as computed, foundations and devices.
+    """Return drawings of the piers, and tables: pier, parts and cases as given, piers as computed, foundations and devices.
 
     Empty tables are left out.
     """
     tables: tuple[tuple[str, list[Row], Mapping[str, str]], ...] = (
         ("Pier as given", [finished.pier_as_given], {}),
         ("Parts of the pier", _parts(finished), {}),
+        ("Cases as given", _cases(finished), {}),
         ("Pier as computed", _piers(finished), OF_PIER),
         ("Foundations", [_foundation(finished, case) for case in finished.info["cases"]], OF_FOUNDATION),
         ("Devices", list(_devices(finished)), OF_DEVICE),
@@ -124,6 +125,14 @@ def _parts(finished: Finished) -> list[Row]:
     return [part for part in parts if isinstance(part, dict)] if isinstance(parts, list) else []
 
 
+def _cases(finished: Finished) -> list[Row]:
+    """Return each [[case]] of the study as its keys and values, its name first; devices have a table of their own."""
+    return [
+        {"case": case.get("name", "")} | {k: v for k, v in case.items() if k != "name"}
+        for case in finished.cases_as_given
+    ]
+
+
 def _piers(finished: Finished) -> list[Row]:
     """Return each distinct pier as run.json has it, under ``case`` with the names of its cases if piers differ."""
     cases_of: dict[tuple[object, ...], list[Case]] = {}
@@ -131,7 +140,7 @@ def _piers(finished: Finished) -> list[Row]:
         cases_of.setdefault(tuple(case["pier"].items()), []).append(case)
     piers = []
     for of_pier in cases_of.values():
-        names = ", ".join(dict.fromkeys(str(case["case"]) for case in of_pier))
+        names = ", ".join(names_of(of_pier))
         piers.append(({"case": names} if len(cases_of) > 1 else {}) | of_pier[0]["pier"])
     return piers
 
