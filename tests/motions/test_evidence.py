@@ -1,5 +1,7 @@
 """Directions by all evidence: what agrees is used, what contradicts itself is held back, and what people state is believed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from agency_files import knet_text
@@ -8,7 +10,11 @@ from waveform_files import channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.common.errors import Contradiction
 from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions.component import Component
+from rockbatch.motions.directions import _without_statement
+from rockbatch.motions.evidence import Kind, Statement
 from rockbatch.motions.manifest_draft import write_manifest
+from rockbatch.motions.orientation import Orientation
 
 SHAKES = {"a": 1, "b": 2, "c": 3}
 """Seeds of three series that do not resemble each other."""
@@ -432,3 +438,16 @@ def test_a_draft_has_azimuths_in_full(tmp_path):
     before = used(tmp_path, options=options)
     assert "azimuth = 3.5\n" in write_manifest(tmp_path, options).read_text(encoding="utf-8")
     assert used(tmp_path, options=options) == before
+
+
+def test_a_void_angle_leaves_the_direction_to_what_else_tells_it_or_to_nothing():
+    void = Statement(Kind.ANGLES, "azimuth 0°", Orientation("0", azimuth=0.0), default=True)
+    code = Statement(Kind.NAME, 'channel "HNE"', Orientation("HNE", azimuth=90.0))
+    bare = Component("c", 0.01, wiggle(100), Orientation("0", azimuth=0.0), statements=(void,))
+    for component, azimuth, instead in (
+        (bare, None, "nothing else tells its azimuth"),
+        (replace(bare, statements=(void, code)), 90.0, 'decided by: channel "HNE"'),
+    ):
+        found = _without_statement(component, void, "all say so")
+        assert found.orientation.azimuth == azimuth
+        assert found.findings[-1].text == f"azimuth 0°, which tells nothing (all say so); {instead}"
