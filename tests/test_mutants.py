@@ -161,3 +161,12 @@ def test_errors_are_drawn_from_all_packages_and_equivalent_ones_still_fit():
     places = drawn(seed=1, count=sys.maxsize)
     assert len({place.package for place in places[:100]}) > 10
     assert set(tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))) <= {place.name for place in places}
+
+
+def test_draws_of_one_package_and_of_all_others_are_disjoint_and_whole():
+    from run import drawn
+
+    every, core, others = (drawn(8, sys.maxsize, **which) for which in ({}, {"only": "core"}, {"without": "core"}))
+    assert {place.package for place in core} == {"core"}
+    assert not set(core) & set(others)
+    assert set(core) | set(others) == set(every)

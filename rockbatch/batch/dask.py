@@ -208,7 +208,9 @@ class Dask:
                 self._client.cancel(list(pending))
 
     def _finished_of(self, client: "Client", pending: "Iterable[Future]") -> "list[Future]":
-        """Return the futures that have finished, once one has; raise ``OSError`` if no worker is left, or if they keep dying."""
+        """Return the futures that have finished, once one has; raise ``OSError`` if no worker is left, or if they die again and
+        again.
+        """
         from distributed import TimeoutError as NotYetError
         from distributed import wait
 

@@ -258,7 +258,9 @@ class _Cases:
         return (f"Not every run ends standing: {self._with_ends(ended)}.",) if ended else ()
 
     def _coverage(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence for each share of further records that exceed a statistic by which these cases pass; () if none."""
+        """Return the sentences of statistics on how many further records may exceed them, each after the checks that these cases
+        pass by it; () for none.
+        """
         passed = [
             (statistic.coverage(verdict.records), verdict.check)
             for verdict in self._of(names, PASS)

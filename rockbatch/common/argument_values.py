@@ -30,9 +30,10 @@ def whole(text: str) -> int:
 
 
 def number(text: str) -> float:
-    """Return a number; raise ``ArgumentTypeError`` for another text, with the number if a unit or a decimal comma is in it.
+    """Return a number; raise ``ArgumentTypeError`` for another text.
 
-    A rate in Hz becomes an interval in s.
+    The error has the number that is probably meant: that before a unit, with a point for a decimal comma, of a rate in Hz the
+    interval [s].
     """
     with suppress(ValueError):
         return float(text)

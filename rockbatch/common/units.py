@@ -126,7 +126,8 @@ def unit_in_words(unit: str) -> str:
 def factor_between(unit: str, own: str) -> float | None:
     """Return what a number in ``unit`` is multiplied by to be in the unit ``own``, both as keys end in them.
 
-    A weight becomes a mass, and a mass a weight, by 9.81. None if they measure different things, or are not known.
+    A weight becomes a mass, and a mass a weight, by 9.81; percent become a share or g by 0.01. None if they measure different
+    things, or are not known.
     """
     given, wanted = _measured(unit), _measured(own)
     if given is None or wanted is None:

@@ -148,7 +148,7 @@ def kernel(function: Function) -> Function:
 
 
 def inlined(function: Function) -> Function:
-    """Compile a building block that is inlined into its callers, so that loops over it can be vectorised."""
+    """Compile a function that is inlined into its callers, so that loops over it can be vectorised."""
     return _guarded(numba.njit(forceinline=True, **_OPTIONS | _PART)(function))
 
 

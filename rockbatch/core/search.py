@@ -65,7 +65,7 @@ def _evaluate(m, devices, now, place, h, functions):
 
 @kernel
 def _trial_step(m, devices, start, x):
-    """Return the Instant at the end of a step of ``x`` [s], and the pier under its devices there."""
+    """Return the Instant at the end of a step of ``x`` [s], and the pier with the pull of its devices at that end."""
     end, there = rk4(m, devices, start, x), later(start.ground, x)
     k_end, under = rates_with(devices, m, Moment(end, start.contact, start.supports), there, END)
     return Instant(end, k_end, start.contact, start.supports, there), under

@@ -246,7 +246,9 @@ class SpectrumTarget:
 
 
 def _stations(motions: Sequence[Motion], among: Sequence[int] | None = None) -> list[list[int]]:
-    """Return the indices of motions, all or ``among`` some, grouped by station, which has another name in each earthquake."""
+    """Return the indices of ``motions``, or of those ``among`` them, grouped by station, which has another name in each
+    earthquake.
+    """
     places = range(len(motions)) if among is None else among
     return list(grouped(places, lambda i: motions[i].of_station).values())
 

@@ -153,7 +153,8 @@ def reduced(response: Response, look: Look, pixels: int = 900, most_devices: int
 
 
 def _moving(t: Array, theta: Array) -> tuple[float, float]:
-    """Return the times [s] at which θ/α, shape (n,), is first beyond a threshold from 0, and last from its final value.
+    """Return the times [s] from which θ/α, shape (n,), differs from 0, and until which it differs from its final value, by a
+    threshold.
 
     The threshold is ``MOVES``, 2 %, of the greatest |θ/α|, and of 1 at most; both ends of the history if it is never exceeded.
     """

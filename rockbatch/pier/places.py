@@ -23,7 +23,9 @@ class Place(NamedTuple):
 
 
 def places(pier: Pier, restraint: Restraint) -> tuple[Place, ...]:
-    """Return the places of ``restraint``, left before right: two if it acts at both pivots or sides, otherwise one."""
+    """Return the places of ``restraint``, left before right: two if it acts at both pivots, or on both sides by the law of a
+    stop; otherwise one.
+    """
     if isinstance(restraint, DeckSpring):
         height = pier.deck if restraint.height_m is None else restraint.height_m
         if restraint.linear:

@@ -80,7 +80,7 @@ def out_of_bounds(**values: float | None) -> list[Problem]:
 
 
 def falls(alpha: float, theta: float) -> list[Problem]:
-    """Return the problem of a release from ``theta`` [rad] at or beyond ``alpha``, which overturns; empty below it."""
+    """Return the problem of a release from ``theta`` [rad] at or beyond ±``alpha``, which overturns; empty between these."""
     if abs(theta) < alpha:
         return []
     degrees = _if_in_degrees(theta) if abs(theta) > 0.5 else ""

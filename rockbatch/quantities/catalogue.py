@@ -343,7 +343,7 @@ _MIRROR = Quantity(
 _DEVICES_ERROR = Quantity(
     "devices_error",
     "largest relative error among the columns of devices, other than counts (relative to 1 % of the scale of small ones): "
-    "the change when the step was halved; empty with a fixed step",
+    "four times the change when the step was halved; empty with a fixed step",
     "devices_error",
     page=ReportFormat("devices ±", ".0e", behind="deck_spring_energy_J_kg"),
     stood=True,
@@ -364,7 +364,8 @@ _OF_BENDING = (
     ),
     Quantity(
         "deflection_error_m",
-        "estimated error of it: the change when the step was halved; empty with a fixed step",
+        "estimated error of it: the change when the step was halved, and four times that by a mode fewer; empty with a "
+        "fixed step",
         "deflection_max_error",
         "m",
         ReportFormat("±", ".1g", 1000, "deflection_max_m"),

@@ -44,7 +44,10 @@ def player(runs: Iterable[Played]) -> Markup:
 
 
 def _figure(played: Played, chosen: bool) -> Markup:
-    """Return a run's pier at its peak, with what the script needs to move it."""
+    """Return the figure of a run's pier at its peak, with what the script needs to move it.
+
+    A peak beyond :data:`OVER` times α is drawn there; small rotations are drawn larger, by one of :data:`FACTORS`.
+    """
     history, alpha = played.run.history, played.pier.alpha
     time, peak = history.peak
     most = min(abs(peak), OVER) * alpha

@@ -30,8 +30,8 @@ def array_in(
 ) -> "np.ndarray":
     """Return the one-dimensional dataset ``name`` of ``group``: float64, int64 or ASCII texts for ``kind`` "f", "i" or "S".
 
-    Raises ``ValueError`` if it is missing, stored elsewhere or in chunks, of another kind or ``length``, or has infinite values
-    that ``finite`` excludes; NaN is allowed.
+    Raises ``ValueError`` if it is missing, stored elsewhere or in chunks, larger than the file, of another kind or ``length``, or
+    has infinite values that ``finite`` excludes; NaN is allowed.
     """
     member = _member(group, name)
     if not isinstance(member, h5py.h5d.DatasetID) or member.rank != 1 or (dtype := member.dtype).kind != kind:

@@ -487,9 +487,10 @@ _SLASHED = str.maketrans({"\\": "/", "\n": "/n", "\t": "/t", "\r": "/r", "\b": "
 
 
 def _spelt_out(path: Path, written: str) -> str | None:
-    """Return a path without its pattern, as a folder is read whole, with variables filled in, or that of an address of a file.
+    """Return the path probably meant: the folder of a pattern (records/*.AT2), one with variables filled in, an address file://
+    as a path.
 
-    None for a path that has none of these, or if there is nothing there.
+    None for another path, or if there is nothing at the one meant.
     """
     folder = Path(written).parent.as_posix()
     if any(sign in path.name for sign in "*?[") and path.parent.is_dir() and folder != ".":

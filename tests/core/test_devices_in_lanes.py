@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from core_samples import FIG5, doubts_of_grips, rows_by_pass_and_by_events, values_of
 
+from rockbatch.core.devices.bounds import Course
 from rockbatch.core.devices.elongation import Gap
 from rockbatch.core.devices.lanes import Mode
 from rockbatch.core.devices.laws import OPENS, SLACK, STICKS, TAUT, TENDON, YIELDING, Use
-from rockbatch.core.devices.passing import Course
 from rockbatch.core.table import LANES
 from rockbatch.motions import Motion
 from rockbatch.pier import Damper, Pier, RigidBase, Tendon, YieldingBase
@@ -163,7 +163,7 @@ def course(start, end, h=0.1):
 )
 def test_the_pass_leaves_a_tendon_that_may_yield_or_slacken_inside_to_scalar_code(start, end, mode, keeps, uncompiled):
     """Its force is 1 + 30 e, and it yields at 4."""
-    (sure,) = uncompiled(values_of, [("devices.passing", "_keeps_mode", TIE, mode, course(start, end))])
+    (sure,) = uncompiled(values_of, [("devices.bounds", "_keeps_mode", TIE, mode, course(start, end))])
     assert (sure > 0.0) == keeps
 
 
@@ -171,7 +171,7 @@ def test_the_pass_leaves_a_greatest_force_inside_a_sub_step_to_scalar_code(uncom
     """Of a tendon that turns after it is drawn out; not of one that goes on, nor if a greater force was before."""
     turns, goes_on = course((0.05, 1.0), (0.05, -1.0)), course((0.05, 1.0), (0.09, 1.0))
     calls = [
-        ("devices.passing", "_most_of_tendon", TIE, Mode(TAUT, OPENS), c, NO_USE._replace(most=most), NO_USE)
+        ("devices.bounds", "most_of_tendon", TIE, Mode(TAUT, OPENS), c, NO_USE._replace(most=most), NO_USE)
         for c, most in ((turns, 0.0), (goes_on, 0.0), (turns, 3.9))
     ]
     found = uncompiled(values_of, calls)

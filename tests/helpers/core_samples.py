@@ -27,8 +27,8 @@ from rockbatch.core.devices.events import (
 )
 from rockbatch.core.devices.lanes import equipment_of
 from rockbatch.core.devices.laws import FRICTION, STICKS
-from rockbatch.core.devices.passing import _judge_grip
 from rockbatch.core.devices.pull import START, device_rates, step_resolving_devices
+from rockbatch.core.devices.sticking import judge_grip
 from rockbatch.core.springs.lanes import LANE, static_contact, static_state
 from rockbatch.core.system import rates, status_at_sample
 from rockbatch.core.table import put, table
@@ -221,7 +221,7 @@ def doubts_of_grips(lanes):
     for i, (goes, forces) in enumerate(lanes):
         line.mode.goes[i] = goes
         equipment.grips.first[:, i] = forces
-    _judge_grip(equipment, equipment.shared[0], len(lanes))
+    judge_grip(equipment, equipment.shared[0], len(lanes))
     return [(bool(verdict.doubts[i]), bool(verdict.holds[i])) for i in range(len(lanes))]
 
 

@@ -23,12 +23,12 @@ from types import CodeType, FunctionType
 from typing import TextIO
 
 import pytest
-from recording import OF_CI
+from recording import marks
 
 LONGEST = 600
 """Seconds of computing after which the tests of an error count as failed; by the clock it is twice as long."""
 TOO_SLOW = "no end"
-OPTIONS = "-q", "-x", "--tb=no", "-p", "no:cacheprovider", "-m", OF_CI
+OPTIONS = "-q", "-x", "--tb=no", "-p", "no:cacheprovider", "-m", marks()
 COMPREHENSIONS = "<listcomp>", "<setcomp>", "<dictcomp>", "<genexpr>"
 Codes = dict[tuple[str, int], CodeType]
 

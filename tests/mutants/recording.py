@@ -17,13 +17,13 @@ from pathlib import Path
 import pytest
 
 OF_CI, FAST = "not thorough", "not slow"
-"""Marks of the tests that an error meets, and of those that it meets without the compiler."""
+"""Marks of the tests that an error meets, and of those that it meets without the compiler or with ``--fast``."""
 PHYSICS = "tests/core", "tests/simulation", "tests/verification"
 """Tests that errors in the core meet: uncompiled, since all kernels would be compiled anew for each."""
 UNCOMPILED_LIMIT = "20"
 """Seconds that a test may take uncompiled while its lines are recorded: others are not used."""
-LIMIT, SECONDS = "MUTANTS_LIMIT", "MUTANTS_SECONDS"
-"""Variables of the environment: a test's longest time, and the file for the times of all."""
+LIMIT, SECONDS, MARKS = "MUTANTS_LIMIT", "MUTANTS_SECONDS", "MUTANTS_MARKS"
+"""Variables of the environment: a test's longest time, the file for the times of all, and the marks of those that are used."""
 CONFIG = """
 [run]
 source = {top}/rockbatch
@@ -34,6 +34,11 @@ context = ${{PYTEST_CURRENT_TEST-}}
 """
 _CONTEXT = re.compile(r"(.+?)(?:\|(run|setup|teardown)| \((call|setup|teardown)\))", re.DOTALL)
 """A test and its phase, as pytest-cov names it, and as other processes that the test started find it in the environment."""
+
+
+def marks() -> str:
+    """Return the marks of the tests that errors meet with the compiler."""
+    return os.environ.get(MARKS, OF_CI)
 
 
 @functools.cache
@@ -84,8 +89,8 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 class Record:
     """Tests by the lines that they run."""
 
-    def __init__(self, top: Path, folder: Path, uncompiled: bool = False):
-        """Open what was recorded of the project at ``top`` in ``folder``, or record it."""
+    def __init__(self, top: Path, folder: Path, uncompiled: bool, jobs: int):
+        """Open what was recorded of the project at ``top`` in ``folder``, or record it in so many processes."""
         from coverage import CoverageData
 
         self.top, data, seconds = top, folder / "lines", folder / "seconds.json"
@@ -100,9 +105,9 @@ class Record:
                 "-q",
                 "--tb=no",
                 "-m",
-                FAST if uncompiled else OF_CI,
+                FAST if uncompiled else marks(),
                 "-n",
-                "auto",
+                str(jobs),
                 "--dist",
                 "loadfile",
                 "-p",

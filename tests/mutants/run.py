@@ -1,13 +1,14 @@
 """Put small errors into the product, one at a time, and see whether the tests of CI notice.
 
     make mutants [SEED=1] [COUNT=200]
-    python tests/mutants/run.py --seed 1 --count 200 [--only core] [--jobs 2]
+    python tests/mutants/run.py --seed 1 --count 200 [--only core | --without core] [--jobs 2] [--fast] [--seconds 180]
 
 Places are drawn at random from all lines that compute (places.py). The tests of CI run once, to record which of them runs which
 line (recording.py); an error meets those that run its line, three minutes of them, or those that run anything of its module if
 it is in what runs when this is imported (judging.py). It is noticed where a test fails that passes without it, or computes far
-longer. Errors in the core meet tests without the compiler, of a few seconds each. What is finished is kept in build/mutants and
-not done again. An error that changes no answer is listed, with the reason, in equivalent.toml.
+longer. Errors in the core meet tests without the compiler, of a few seconds each; with ``--fast``, no error meets a slow test.
+What is finished is kept in build/mutants and not done again. An error that changes no answer is listed, with the reason, in
+equivalent.toml.
 """
 
 import argparse
@@ -30,13 +31,14 @@ from typing import NamedTuple
 
 from judging import TOO_SLOW
 from places import Mutant, mutants
-from recording import PHYSICS, Record
+from recording import FAST, MARKS, PHYSICS, Record, marks
+from scipy.stats import binomtest
 
 TOP = Path(__file__).parents[2]
 BUILD = TOP / "build" / "mutants"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
-FIRST, MOST_SECONDS = 40, 180.0
-"""Tests that an error meets first, and how long all of them took without it."""
+FIRST = 40
+"""Tests that an error meets first."""
 OF_MODULE = 150
 """Tests that run most of a module, which an error in what runs when it is imported meets before others that run any of it, and
 one that few tests run meets, too."""
@@ -71,11 +73,11 @@ def _lines(file: str) -> list[str]:
     return (TOP / file).read_text(encoding="utf-8").splitlines()
 
 
-def drawn(seed: int, count: int, only: str = "") -> list[Place]:
-    """Return so many places at random, of a package if ``only`` names one."""
+def drawn(seed: int, count: int, only: str = "", without: str = "") -> list[Place]:
+    """Return so many places at random, of one package or of all others if one is named."""
     files = sorted(path.relative_to(TOP).as_posix() for path in (TOP / "rockbatch").rglob("*.py"))
     every = [Place(file, mutant) for file in files for mutant in mutants((TOP / file).read_text(encoding="utf-8"))]
-    chosen = [place for place in every if not only or place.package == only]
+    chosen = [place for place in every if place.package != without and (not only or place.package == only)]
     return random.Random(seed).sample(chosen, min(count, len(chosen)))
 
 
@@ -94,8 +96,8 @@ def copied(number: int) -> Path:
     return copy
 
 
-def tests_of(place: Place, record: Record) -> list[list[str]]:
-    """Return the tests that an error meets first and those that it meets then."""
+def tests_of(place: Place, record: Record, longest: float) -> list[list[str]]:
+    """Return the tests that an error meets first and those that it meets then, which took so many seconds without it."""
     tests = record.tests_of(place.file, place.lines)
     if not tests and not _in_function(place):
         tests = record.nearest(place.file, OF_MODULE)
@@ -105,7 +107,7 @@ def tests_of(place: Place, record: Record) -> list[list[str]]:
     rest, seconds = [], 0.0
     for test in sorted(tests[FIRST:], key=record.seconds.__getitem__):
         seconds += record.seconds[test]
-        if seconds < MOST_SECONDS:
+        if seconds < longest:
             rest.append(test)
     return [stage for stage in (tests[:FIRST], rest) if stage]
 
@@ -118,13 +120,13 @@ def _in_function(place: Place) -> bool:
 
 
 def judged(
-    places: list[Place], record: Record, copies: list[Path], uncompiled: bool = False
+    places: list[Place], record: Record, copies: list[Path], longest: float, uncompiled: bool = False
 ) -> Iterator[tuple[Place, str]]:
     """Yield each place, and what notices its error; what earlier calls found with this product is kept.
 
     What survived meets the tests again if there are others.
     """
-    journal, tests = BUILD / f"judged-{_digest('rockbatch')}.jsonl", _digest("tests")
+    journal, tests = BUILD / f"judged-{_digest('rockbatch')}.jsonl", f"{_digest('tests')} {marks()}"
     entries = map(json.loads, journal.read_text(encoding="utf-8").splitlines() if journal.exists() else [])
     known = {
         (entry["place"], entry["line"]): entry["noticed_by"]
@@ -142,7 +144,7 @@ def judged(
         assert process.stdin
         assert process.stdout
         wrong = place.mutant.put_into((TOP / place.file).read_text(encoding="utf-8"))
-        request = {"file": place.file, "wrong": wrong, "tests": tests_of(place, record)}
+        request = {"file": place.file, "wrong": wrong, "tests": tests_of(place, record, longest)}
         print(json.dumps(request), file=process.stdin, flush=True)
         found = str(json.loads(process.stdout.readline()))
         free.put(process)
@@ -169,32 +171,43 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--only", default="", metavar="PACKAGE")
+    parser.add_argument("--without", default="", metavar="PACKAGE")
+    parser.add_argument("--fast", action="store_true")
+    parser.add_argument("--seconds", type=float, default=180.0)
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     chosen = parser.parse_args()
     BUILD.mkdir(parents=True, exist_ok=True)
     # To compile the libraries and pytest's plugins takes longer than most tests; kernels with errors stay apart
     bytecode, kernels = str(BUILD / "bytecode"), str(BUILD / "kernels")
     os.environ |= {"PYTHONDONTWRITEBYTECODE": "", "PYTHONPYCACHEPREFIX": bytecode, "ROCKBATCH_CACHE": kernels}
+    os.environ |= {MARKS: FAST} if chosen.fast else {}
     equivalent = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8")) if EQUIVALENT.exists() else {}
     counts: dict[str, Counter[str]] = {}
     copies = [copied(number) for number in range(chosen.jobs)]
     for uncompiled in (False, True):
         places = [
-            place for place in drawn(chosen.seed, chosen.count, chosen.only) if (place.package == "core") == uncompiled
+            place
+            for place in drawn(chosen.seed, chosen.count, chosen.only, chosen.without)
+            if (place.package == "core") == uncompiled
         ]
         if not places:
             continue
-        record = Record(TOP, BUILD / f"record-{_digest('rockbatch', 'tests')}{'-uncompiled' * uncompiled}", uncompiled)
-        for place, found in judged(places, record, copies, uncompiled):
+        kind_of_record = "-uncompiled" if uncompiled else "-fast" if chosen.fast else ""
+        folder = BUILD / f"record-{_digest('rockbatch', 'tests')}{kind_of_record}"
+        record = Record(TOP, folder, uncompiled, chosen.jobs)
+        for place, found in judged(places, record, copies, chosen.seconds, uncompiled):
             kind = "noticed" if found else "equivalent" if place.name in equivalent else "survived"
             if not found or found.endswith(TOO_SLOW):
                 print(f"{kind}: {place.file}:{place.mutant.line}: {place.mutant} {found}", flush=True)
             for package in (place.package, "all"):
                 counts.setdefault(package, Counter())[kind] += 1
-    print(f"\nseed {chosen.seed}\n{'package':20} {'noticed':>8} {'equivalent':>11} {'survived':>9}  rate")
+    print(
+        f"\nseed {chosen.seed}\n{'package':20} {'noticed':>8} {'equivalent':>11} {'survived':>9}  rate, 95 % interval"
+    )
     for package, count in sorted(counts.items(), key=lambda item: (item[0] == "all", item[0])):
         matter = count["noticed"] + count["survived"]
-        rate = f"{count['noticed'] / matter:.0%}" if matter else ""
+        interval = binomtest(count["noticed"], matter).proportion_ci(method="wilson") if matter else (0.0, 1.0)
+        rate = f"{count['noticed'] / matter:4.0%} ({interval[0]:.0%} to {interval[1]:.0%})" if matter else ""
         print(f"{package:20} {count['noticed']:8} {count['equivalent']:11} {count['survived']:9}  {rate}")
     return 0
 

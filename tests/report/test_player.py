@@ -77,6 +77,20 @@ def test_without_a_history_nothing_is_played(tmp_path):
     assert "under the worst motion whose history is kept" not in page
 
 
+def test_a_history_whose_run_was_taken_out_of_the_table_is_drawn_and_not_played(tmp_path):
+    _, runs = pages(tmp_path)
+    table = tmp_path / "peaks.csv"
+    header, *rows = table.read_text(encoding="utf-8").splitlines(keepends=True)
+    kept = [row for row in rows if ",2," not in row[: row.index("ok")]]
+    assert 0 < len(kept) < len(rows)
+    table.write_text("".join([header, *kept]), encoding="utf-8")
+    page = write_report(tmp_path, runs).read_text(encoding="utf-8")
+    assert ["".join(figure[0].itertext()).replace("\u00a0", " ") for figure in players(page)] == [
+        "1: β = 40, η = 2.5 under ERZ-NS"
+    ]
+    assert "2: β = 40, η = 3.5" in page.replace("\u00a0", " ")
+
+
 def test_a_player_costs_less_than_sixty_kilobytes_for_as_many_cases_as_are_played(tmp_path):
     names = [f"case number {n} with a name that is long enough to cost something" for n in range(60)]
     cases = [case_entry(name, {}, PIER, FOUNDATIONS[1][1]) for name in names]

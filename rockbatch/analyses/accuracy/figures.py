@@ -42,7 +42,9 @@ def error_and_time(levels: Sequence[Level]) -> Figure:
 
 
 def _of_method(method: str, levels: Sequence[Level]) -> Iterator[Mark]:
-    """Yield a method's errors, with the numbers of steps per sample beside the markers."""
+    """Yield the errors of a method as lines, if it has several levels, and a marker with k, steps per sample, at each greatest
+    error.
+    """
     look, words, side = METHODS[method]
     times = np.array([level.time for level in levels])
     for name, (kind, dash) in ERRORS.items() if len(levels) > 1 else ():

@@ -51,7 +51,7 @@ class Interval(NamedTuple):
 
 
 def intervals(verdicts: Verdicts) -> list[Interval]:
-    """Return the intervals of equal verdicts, in rising order."""
+    """Return the intervals of equal verdicts in rising order, with the values beside them, None at an end of the scan."""
     every = sorted(verdicts)
     runs = [[*values] for _, values in groupby(every, key=lambda value: verdicts[value])]
     result = []

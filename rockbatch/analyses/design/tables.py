@@ -72,9 +72,10 @@ def _of_design(judged: Judgements, spec: DesignSpec, design: Design) -> Iterator
 
 
 def _row(interval: Interval, line: Mapping[float, Judged]) -> dict[str, Any]:
-    """Return the cells of an interval: at each end the neighbour beyond it, and what governs the worse of the two values there.
+    """Return the cells of an interval: verdict, its ends, number of values, widest step.
 
-    An end of the scan has none of these.
+    For each end with a neighbour beyond it, ``below`` and ``above``, also that value, its verdict, and what governs the worse of
+    the two values there, as "below_check".
     """
     verdict, low, high, below, above, values, widest = interval
     row: dict[str, Any] = dict(zip(_OF_INTERVAL, (verdict, low, high, values, widest), strict=True))
@@ -87,7 +88,9 @@ def _row(interval: Interval, line: Mapping[float, Judged]) -> dict[str, Any]:
 
 
 def _governing(found: Judged) -> dict[str, Any]:
-    """Return the cells of the check that governs; {} where the study is refused, or no check applies."""
+    """Return the cells :data:`GOVERNING` of the check that governs, from check to ratio; {} if the study is refused or no check
+    applies.
+    """
     verdict = found.governing
     if verdict is None:
         return {}
@@ -103,7 +106,9 @@ def _governing(found: Judged) -> dict[str, Any]:
 
 
 def refusals(judged: Judgements) -> Iterator[dict[str, Any]]:
-    """Yield the entries of design.json on values at which the study is refused, with the reasons."""
+    """Yield the entries of design.json on values at which the study is refused: ``case``, ``values`` and ``reason``, sorted by
+    case.
+    """
     for trial, found in sorted(judged.items()):
         if found.verdict == REFUSED:
             yield {"case": trial.design.case, "values": list(trial.values), "reason": found.reason}

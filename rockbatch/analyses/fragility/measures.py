@@ -67,7 +67,8 @@ def _near(name: str, values: Mapping[str, float]) -> str:
 def own_measure(name: str, values: Iterable[tuple[str, float]], power: float) -> OwnMeasure:
     """Return the measure of a column with the heading ``name``, "AvgSa [g]", and a value for each record.
 
-    Raises ``InputError`` for a heading without a unit ("[-]" for none), values that are not above 0, and a record twice.
+    Raises ``InputError`` for a heading without a unit ("[-]" for none), values that are not finite and above 0, and a record
+    twice.
     """
     match = _HEADING.fullmatch(name.strip())
     if match is None:

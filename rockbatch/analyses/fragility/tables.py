@@ -247,9 +247,11 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
 
 
 def _described_windows(windows: Windows, first: object, x: Values) -> dict[str, object]:
-    """Return the shares of the windows and the curve through them, with its median relative to that of the ``first``, less 1.
+    """Return width, shares and records of the windows and, of the curve through the shares, median, interval, dispersion and
+    points.
 
-    Without a curve the median is None.
+    ``above`` is its median relative to that of ``first``, less 1. Without a curve the median is None, and the others of it are
+    missing.
     """
     shares = [_or_none(share) for share in windows.shares]
     content: dict[str, object] = {"width": windows.width, "shares": shares, "records": windows.records, "median": None}

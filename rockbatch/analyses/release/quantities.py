@@ -11,7 +11,9 @@ def interval(fit: Entry) -> str:
 
 
 def in_words(fit: Entry) -> str:
-    """Return what was fitted: "restitution = 0.9122 (95 %: 0.9061 to 0.918), Housner's is 0.9118"."""
+    """Return the fitted value: "restitution = 0.9122 (95 %: 0.9061 to 0.918), Housner's is 0.9118"; then its scatter if above 0.1
+    %.
+    """
     value, low, high = (number(fit[name], ".4g") for name in ("value", "low", "high"))
     text = f"{fit['parameter']} = {value} ({100.0 * fit['confidence']:g} %: {low} to {high})"
     if fit["over_housner"] > 0.0:

@@ -48,7 +48,7 @@ def put_gap(line, at):
 
 @inlined
 def attitude(m, y, contact, level):
-    """Return the Attitude in state ``y``; at rest the pier is at v = ``level`` [m]."""
+    """Return the Attitude in state ``y``; its rise is above ``level`` [m], v at rest."""
     return _tilted(m, y, contact, level, sine_and_cosine(y.theta))
 
 
@@ -104,6 +104,25 @@ def across(m, of, at, y):
 def gap_of(m, of, at, y):
     """Return the Gap of the device ``of`` in state ``y``, whose Attitude is ``at``."""
     return gap(m, of.offset + at.shift, at, y) if of.height == 0.0 else across(m, of, at, y)
+
+
+@inlined
+def chosen(first, a, b):
+    """Return the Gap ``a`` if ``first``, else ``b``; fields are selected, since a loop with a branch stays scalar."""
+    return Gap(
+        a.elongation if first else b.elongation,
+        a.speed if first else b.speed,
+        a.by_v if first else b.by_v,
+        a.by_theta if first else b.by_theta,
+        a.bend if first else b.bend,
+        a.arm if first else b.arm,
+    )
+
+
+@inlined
+def gap_in_pass(m, of, at, y):
+    """Return the Gap of the device ``of`` in state ``y`` of a pass, whose Attitude is ``at``."""
+    return chosen(of.height != 0.0, across(m, of, at, y), gap(m, of.offset + at.shift, at, y))
 
 
 @inlined

@@ -256,7 +256,7 @@ def settle_friction(m, devices, now, x, ground):
 
 @kernel
 def change_tendon(mode, limit):
-    """Return YIELDING for a tendon whose force has reached its strength (``limit``); at 0 SLACK if it was TAUT, else TAUT."""
+    """Return YIELDING for a tendon at its strength (``limit``); for one whose force is 0, SLACK if it was TAUT, else TAUT."""
     if limit:
         return YIELDING
     return SLACK if mode == TAUT else TAUT

@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.core.devices.elongation import GAP, Attitude, Gap, put_gap
+from rockbatch.core.devices.elongation import GAP, Attitude, Gap, gap_in_pass, put_gap
 from rockbatch.core.devices.laws import ELEMENT, FRICTION, USE, Element, Use
 from rockbatch.core.devices.pull import END, Devices, bounds_steps
-from rockbatch.core.kernel import hook, kernel
+from rockbatch.core.kernel import hook, inlined, kernel
+from rockbatch.core.system import in_pass
 from rockbatch.core.table import LANES, get, lanes_of, move, put, taken
 from rockbatch.core.types import Pull
 
@@ -123,7 +124,7 @@ def signature(elements):
 
 
 def _rubbing(elements):
-    """Return the numbers of one or two friction dampers, of one twice; none of more."""
+    """Return the numbers of a run's two friction dampers, the same one twice if there is one; [] for none or more than two."""
     numbers = [j for j, of in enumerate(elements) if of.kind == FRICTION]
     return np.array(numbers[:1] + numbers[-1:] if len(numbers) in (1, 2) else [], np.int64)
 
@@ -297,3 +298,10 @@ def _move(equipment, i, j):
     move(equipment.cells, i, j)
     move(equipment.shared_cells, i, j)
     put(equipment.grips[0], j, get(equipment.grips[0], i, Grip))
+
+
+@inlined
+def gap_in_stage(traits, lanes, line, shared, i):
+    """Return the Gap of a device of lane ``i`` in the stage of the pass."""
+    m, now, _ = in_pass(traits, lanes, i)
+    return gap_in_pass(m, get(line.element, i, Element), get(shared.attitude, i, Attitude), get(shared.stage, i, now))

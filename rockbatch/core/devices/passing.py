@@ -1,52 +1,50 @@
-"""A sub-step of all lanes with devices: Runge–Kutta 4 stage by stage, and bounds that prove that no device has an event in it.
+"""A sub-step of all lanes with devices: Runge–Kutta 4 stage by stage, then a verdict whether it stands.
 
 Each stage takes a loop over lanes for each device, which adds its force to the pull on the pier, and one for the pier under
-their sum. The numbers of a lane are combined in the order of scalar code, so that a sub-step that stands gives its bits.
+their sum. The numbers of a lane are combined in the order of scalar code, so that a sub-step that stands gives its bits. It
+stands in the lanes in which bounds prove that no device has an event in it.
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from rockbatch.core.clock import EVENTFUL, ground_at
-from rockbatch.core.devices.elongation import Attitude, Gap, across, attitude_in_pass, gap, lifted, put_gap
-from rockbatch.core.devices.lanes import Grip, Mode, Progress, Works, devices_in, fetch
+from rockbatch.core.devices.bounds import (
+    course,
+    keeps_branch,
+    keeps_mode_of,
+    keeps_steep,
+    keeps_way,
+    most_of_friction,
+    most_of_hysteretic,
+    most_of_linear,
+    most_of_powers,
+    most_of_tendon,
+    no_event,
+    travelled,
+)
+from rockbatch.core.devices.elongation import Attitude, Gap, attitude_in_pass, put_gap
+from rockbatch.core.devices.lanes import Grip, Mode, Progress, Works, devices_in, fetch, gap_in_stage
 from rockbatch.core.devices.laws import (
     FRICTION,
     HYSTERETIC,
-    SPRING,
-    STICKS,
-    TAUT,
-    TENDON,
     VISCOUS,
-    YIELDING,
     Element,
     Use,
     friction,
     hysteretic,
     linear,
     tendon,
-    tension,
     viscous,
 )
-from rockbatch.core.devices.pull import (
-    END,
-    GROWTH,
-    PLASTIC,
-    START,
-    TRAVEL,
-    device_rates,
-    forces_that_hold,
-    pushed,
-)
+from rockbatch.core.devices.pull import END, PLASTIC, START, device_rates
+from rockbatch.core.devices.sticking import friction_holds, hold, judge_grip
 from rockbatch.core.devices.use import take_in
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import inlined, inlined_once, kernel
-from rockbatch.core.roots import NO_ACCELERATION, excess, inner_points
 from rockbatch.core.system import (
     end_step,
-    gives_way,
     in_pass,
     lanes_in_pass,
     pier_in,
@@ -90,7 +88,9 @@ def _stage_pier(traits, lanes, shared, i, y):
 
 @inlined
 def _leave_start(traits, lanes, each, shared, count):
-    """Set the pier's stage to half a step after the start, and sums of the rates at inner stages to 0."""
+    """Set the stage of the pier in each of ``count`` lanes to half a step after the start, and sums of the rates at inner stages
+    to 0.
+    """
     for i in range(count):
         m, y, contact = in_pass(traits, lanes, i)
         h, k = lanes.clock.step[i], get(lanes.rates, i, y)
@@ -119,22 +119,6 @@ def _unchanged(state):
 def _snapped(z):
     """Return ``z`` of a hysteretic damper at the end of a step: ±1 if within PLASTIC of it."""
     return (1.0 if z > 0.0 else -1.0) if abs(z) > 1.0 - PLASTIC else z
-
-
-@inlined
-def _gap_in(traits, lanes, line, shared, i):
-    """Return the Gap of a device of lane ``i`` in the stage; fields are selected, since a loop with a branch stays scalar."""
-    m, now, _ = in_pass(traits, lanes, i)
-    of, at, y = get(line.element, i, Element), get(shared.attitude, i, Attitude), get(shared.stage, i, now)
-    high, low, at_deck = across(m, of, at, y), gap(m, of.offset + at.shift, at, y), of.height != 0.0
-    return Gap(
-        high.elongation if at_deck else low.elongation,
-        high.speed if at_deck else low.speed,
-        high.by_v if at_deck else low.by_v,
-        high.by_theta if at_deck else low.by_theta,
-        high.bend if at_deck else low.bend,
-        high.arm if at_deck else low.arm,
-    )
 
 
 @inlined
@@ -198,140 +182,6 @@ def _evaluate_end(traits, lanes, shared, count, steps):
         shared.verdict.extremes[i] = shared.verdict.holds[i] = 0.0
 
 
-class Course(NamedTuple):
-    """A device in a sub-step."""
-
-    start: Gap
-    end: Gap
-    lift: float  # acceleration of its elongation at the start [m/s²]
-    lift_end: float
-    steepest: float  # greatest |acceleration| at the start, by the ground motion at either end of the sub-step
-    state: float
-    state_end: float
-    h: float  # [s]
-    dt: float  # sampling interval [s]
-    speed: float  # that is rounding [m/s]
-    acceleration: float
-    length: float
-
-
-@inlined
-def _keeps_direction(goes, c):
-    """Return a number that is positive if the speed of a device certainly keeps its direction, or is never more than rounding."""
-    early, late = inner_points(c.start.speed, c.lift, c.end.speed, c.lift_end, c.h)
-    fastest, keenest = max(abs(c.start.speed), abs(c.end.speed)), max(abs(c.lift), abs(c.lift_end))
-    still = min(c.speed - fastest, c.acceleration - keenest) >= 0.0  # at the pivot about which a block rocks
-    keeps = min(min(goes * early, goes * late), min(goes * c.start.speed, goes * c.end.speed)) - c.speed
-    return 1.0 if still else keeps
-
-
-@inlined
-def _keeps_mode(of, mode, c):
-    """Return a number that is positive if a tendon certainly keeps its mode, taut or slack; −1 for a yielding one."""
-    pull, pull_end = tension(of, c.start.elongation, c.state), tension(of, c.end.elongation, c.state)
-    early, late = inner_points(pull, of.stiffness * c.start.speed, pull_end, of.stiffness * c.end.speed, c.h)
-    least, most = min(min(early, late), min(pull, pull_end)), max(max(early, late), max(pull, pull_end))
-    rounding = of.stiffness * (c.length + c.h * c.speed)
-    kept = min(least, of.strength - most) if mode == TAUT else -most
-    return -1.0 if mode == YIELDING else kept - rounding
-
-
-@inlined
-def _no_event(of, mode, c):
-    """Return a positive number: a linear device has no event."""
-    return 1.0
-
-
-@inlined
-def _keeps_mode_of(of, mode, c):
-    """Return a number that is positive if a tendon keeps its mode; a spring does."""
-    return 1.0 if of.linear_below == math.inf else _keeps_mode(of, mode.mode, c)
-
-
-@inlined
-def _keeps_way(of, mode, c):
-    """Return a number that is positive if a friction damper keeps its direction; for one that sticks ``_judge_grip`` decides."""
-    return 1.0 if mode.goes == STICKS else _keeps_direction(mode.goes, c)
-
-
-@inlined
-def _keeps_steep(of, mode, c):
-    """Return a number that is positive if a viscous damper keeps its direction, and its step is short enough by GROWTH."""
-    near = GROWTH * max(abs(c.start.speed), of.linear_below) / (c.steepest * c.dt)
-    return -1.0 if of.exponent < 1.0 and near < 1.0 else _keeps_direction(mode.goes, c)
-
-
-@inlined
-def _keeps_branch(of, mode, c):
-    """Return a number that is positive if a hysteretic damper keeps its direction, and its step is short enough by TRAVEL."""
-    way = (abs(c.start.speed) + c.steepest * c.h) * c.dt * of.stiffness
-    return -1.0 if mode.goes * c.state < 1.0 and TRAVEL / way < 1.0 else _keeps_direction(mode.goes, c)
-
-
-@inlined
-def _greatest(f0, d0, f1, d1, h, best):
-    """Return the greater of ``best`` and |f| at both ends, and a number that is positive if |f| may be greater inside."""
-    best = max(best, abs(f0))
-    beyond = max(abs(f0), abs(f1)) + excess(d0, d1, h) - best
-    return max(best, abs(f1)), beyond if d0 * d1 <= 0.0 else -1.0
-
-
-@inlined
-def _most_of_linear(of, mode, c, use, before):
-    """Return the greatest |force| [m/s²] of a linear damper with its stroke and speed in ``use``, and −1: it is not exceeded."""
-    return max(use.most, of.slope * use.speed), -1.0
-
-
-@inlined
-def _most_of_powers(of, mode, c, use, before):
-    """Return ``most`` unchanged, and a number that is positive if scalar code has to raise it, since the greatest speed rose."""
-    return use.most, use.speed - before.speed
-
-
-@inlined
-def _most_of_friction(of, mode, c, use, before):
-    """Return the greatest |force| [m/s²] of a friction damper, and −1."""
-    return max(use.most, abs(of.strength * mode.goes)), -1.0
-
-
-@inlined
-def _most_of_hysteretic(of, mode, c, use, before):
-    """Return the greatest |force| [m/s²] of a hysteretic damper, and −1."""
-    return max(use.most, of.strength * max(abs(c.state), abs(c.state_end))), -1.0
-
-
-@inlined
-def _most_of_tendon(of, mode, c, use, before):
-    """Return the greatest |force| [m/s²] of a tendon or a spring, and a number that is positive if it may be exceeded inside."""
-    longest = max(c.start.elongation, c.end.elongation)
-    early, late = inner_points(c.start.elongation, c.start.speed, c.end.elongation, c.end.speed, c.h)
-    taut, turns = mode.mode == TAUT, min(c.start.speed, -c.end.speed) > 0.0
-    pull, bound = abs(tension(of, longest, c.state_end)), tension(of, max(longest, max(early, late)), c.state_end)
-    spring = of.kind == SPRING
-    most = max(use.most, of.stiffness * use.stroke if spring else (pull if taut else 0.0))
-    return most, -1.0 if spring else (bound if taut and turns else 0.0) - most
-
-
-@inlined
-def _course(traits, lanes, line, shared, i):
-    """Return the Course of a device of lane ``i``."""
-    now, start, end = in_pass(traits, lanes, i)[1], get(line.start_gap, i, Gap), get(line.gap, i, Gap)
-    lift, lift_end = lifted(start, get(lanes.rates, i, now)), lifted(end, get(shared.rates, i, now))
-    steepest = max(abs(lift), abs(lifted(start, get(shared.ahead, i, now))))
-    rest, state, state_end = lanes.model.rest[i], line.now.state[i], line.end.state[i]
-    least, step, dt = NO_ACCELERATION * lanes.model.gravity[i], lanes.clock.step[i], lanes.clock.dt[i]
-    return Course(start, end, lift, lift_end, steepest, state, state_end, step, dt, rest, least, rest * rest / least)
-
-
-@inlined
-def _travelled(line, i, c):
-    """Return the Use of a device after a sub-step but for its force, and a number positive if an extreme may be inside."""
-    use, yielded = get(line.use, i, Use), c.state_end if line.element.kind[i] == TENDON else 0.0
-    stroke, more = _greatest(c.start.elongation, c.start.speed, c.end.elongation, c.end.speed, c.h, use.stroke)
-    speed, faster = _greatest(c.start.speed, c.lift, c.end.speed, c.lift_end, c.h, use.speed)
-    return Use(use.most, stroke, speed, line.end.lost[i], yielded, use.times), max(more, faster)
-
-
 @inlined
 def _look_ahead(traits, lanes, shared, count, steps):
     """Set ``ahead`` to the rates at the start of the sub-step under the ground motion at its end."""
@@ -341,9 +191,6 @@ def _look_ahead(traits, lanes, shared, count, steps):
         ground = later(ground_at(lanes, i, steps * h), h)
         put(shared.ahead, i, rates(with_pull(m, get(shared.start_pull, i, Pull)), y, contact, ground))
 
-
-RANGES = 2.0
-"""Ranges of a sticking force in a step by which its reserve of strength surely exceeds the overshoot of the search's cubic."""
 
 STAGE, END_OF_STEP, VERDICT = map(np.int64, range(3))
 """What is done with a device in all lanes: a stage inside the step, its end, or whether the step stands."""
@@ -360,7 +207,7 @@ def _law(respond, clear, most, state_at_end=None):
     def take(what, part, traits, lanes, line, shared, count):
         if what == STAGE:
             for i in range(count):
-                here, h = _gap_in(traits, lanes, line, shared, i), lanes.clock.step[i]
+                here, h = gap_in_stage(traits, lanes, line, shared, i), lanes.clock.step[i]
                 of, mode = get(line.element, i, Element), get(line.mode, i, Mode)
                 state = line.now.state[i] + part * h * line.rates.state[i]
                 response = respond(of, here.elongation, here.speed, state, mode.mode, mode.goes)
@@ -370,7 +217,7 @@ def _law(respond, clear, most, state_at_end=None):
                 _pulled(shared, i, here, response.force)
         elif what == END_OF_STEP:
             for i in range(count):
-                here, h = _gap_in(traits, lanes, line, shared, i), lanes.clock.step[i]
+                here, h = gap_in_stage(traits, lanes, line, shared, i), lanes.clock.step[i]
                 of, mode = get(line.element, i, Element), get(line.mode, i, Mode)
                 end = _progress_at_end(line, i, h)
                 state = ends(end.state)
@@ -381,9 +228,9 @@ def _law(respond, clear, most, state_at_end=None):
                 _pulled(shared, i, here, response.force)
         else:
             for i in range(count):
-                c = _course(traits, lanes, line, shared, i)
+                c = course(traits, lanes, line, shared, i)
                 of, mode = get(line.element, i, Element), get(line.mode, i, Mode)
-                use, more = _travelled(line, i, c)
+                use, more = travelled(line, i, c)
                 force, stronger = most(of, mode, c, use, get(line.use, i, Use))
                 put(line.use_end, i, Use(force, use.stroke, use.speed, use.lost, use.yielded, use.times))
                 # Counts, since the compiler makes of min and max in place a masked store, which takes twenty times as long
@@ -393,11 +240,11 @@ def _law(respond, clear, most, state_at_end=None):
     return take
 
 
-_linear = _law(linear, _no_event, _most_of_linear)
-_by_powers = _law(viscous, _keeps_steep, _most_of_powers)  # not vectorised
-_tendon = _law(tendon, _keeps_mode_of, _most_of_tendon)
-_hysteretic = _law(hysteretic, _keeps_branch, _most_of_hysteretic, _snapped)
-_friction = _law(friction, _keeps_way, _most_of_friction)
+_linear = _law(linear, no_event, most_of_linear)
+_by_powers = _law(viscous, keeps_steep, most_of_powers)  # not vectorised
+_tendon = _law(tendon, keeps_mode_of, most_of_tendon)
+_hysteretic = _law(hysteretic, keeps_branch, most_of_hysteretic, _snapped)
+_friction = _law(friction, keeps_way, most_of_friction)
 
 
 @inlined
@@ -418,75 +265,6 @@ def _take_all(what, part, traits, lanes, each, shared, count):
 
 
 @inlined
-def _holds(traits, equipment, runs):
-    """Return True if friction that sticks in a lane may have a force; at the pivot on rigid ground it has none."""
-    holds, start = False, equipment.grips[0]
-    for j in equipment.rubs:
-        for i in range(runs):
-            has_force = gives_way(traits) or start.first[i] != 0.0 or start.second[i] != 0.0
-            holds = holds or (has_force and equipment.lanes[j].mode.goes[i] == STICKS)
-    return holds
-
-
-@inlined
-def _chosen(first, a, b):
-    """Return the Gap ``a`` if ``first``, else ``b``; fields are selected."""
-    return Gap(
-        a.elongation if first else b.elongation,
-        a.speed if first else b.speed,
-        a.by_v if first else b.by_v,
-        a.by_theta if first else b.by_theta,
-        a.bend if first else b.bend,
-        a.arm if first else b.arm,
-    )
-
-
-@kernel
-def _hold(traits, lanes, equipment, count, steps, part, number):
-    """Add the forces of friction that sticks to the pull in stage ``number``, ``part`` of a step after its start."""
-    shared, grip = equipment.shared[0], equipment.grips[number]
-    a, b = equipment.lanes[equipment.rubs[0]], equipment.lanes[equipment.rubs[1]]
-    for i in range(count):
-        m, now, contact = in_pass(traits, lanes, i)
-        y, pull, at = get(shared.stage, i, now), get(shared.pull, i, Pull), get(shared.attitude, i, Attitude)
-        h = lanes.clock.step[i]
-        ground = later(ground_at(lanes, i, steps * h), part * h)
-        sticks, other_sticks = a.mode.goes[i] == STICKS, b.mode.goes[i] == STICKS
-        here, there = _gap_in(traits, lanes, a, shared, i), _gap_in(traits, lanes, b, shared, i)
-        first, second = _chosen(sticks, here, there), _chosen(other_sticks, there, here)
-        strength, other_strength = a.element.strength[i], b.element.strength[i]
-        strengths = strength if sticks else other_strength, other_strength if other_sticks else strength
-        k, _ = rates_and_power(with_pull(m, pull), y, contact, ground, at)
-        k_first, _ = rates_and_power(with_pull(m, pushed(pull, first)), y, contact, ground, at)
-        k_second, _ = rates_and_power(with_pull(m, pushed(pull, second)), y, contact, ground, at)
-        one, two = forces_that_hold(first, second, k, k_first, k_second, strengths)
-        holds = sticks or other_sticks
-        put(grip, i, Grip(one if holds else 0.0, two if holds else 0.0))
-        shared.pull.force[i] = pull.force + (one * first.by_v + two * second.by_v if holds else 0.0)
-        shared.pull.moment[i] = pull.moment + (one * first.arm + two * second.arm if holds else 0.0)
-
-
-@kernel
-def _judge_grip(equipment, shared, count):
-    """Count lanes in which friction that sticks may slip: its least reserve of strength does not exceed twice its range."""
-    a, b = equipment.lanes[equipment.rubs[0]], equipment.lanes[equipment.rubs[1]]
-    for i in range(count):
-        sticks, other_sticks = a.mode.goes[i] == STICKS, b.mode.goes[i] == STICKS
-        strength, other_strength = a.element.strength[i], b.element.strength[i]
-        first, second = strength if sticks else other_strength, other_strength if other_sticks else strength
-        start, end = get(equipment.grips[0], i, Grip), get(equipment.grips[4], i, Grip)
-        low, high, low_other, high_other = abs(start.first), abs(start.first), abs(start.second), abs(start.second)
-        for number in range(1, 5):
-            grip = get(equipment.grips[number], i, Grip)
-            low, high = min(low, abs(grip.first)), max(high, abs(grip.first))
-            low_other, high_other = min(low_other, abs(grip.second)), max(high_other, abs(grip.second))
-        surely = min(first - high - RANGES * (high - low), second - high_other - RANGES * (high_other - low_other))
-        doubt = 1.0 if sticks or other_sticks else 0.0
-        shared.verdict.doubts[i] += 0.0 if surely > 0.0 else doubt
-        shared.verdict.holds[i] = 0.0 if end.first == 0.0 and end.second == 0.0 else 1.0
-
-
-@inlined
 def integrate(traits, lanes, equipment, runs, substep):
     """Integrate the first ``runs`` lanes over a sub-step, and judge their devices; return the number of lanes with padding.
 
@@ -499,24 +277,24 @@ def integrate(traits, lanes, equipment, runs, substep):
         else:
             put(equipment.grips[0], i, Grip(0.0, 0.0))
     _leave_start(traits, lanes, each, shared, count)
-    holds = _holds(traits, equipment, runs)
+    holds = friction_holds(traits, equipment, runs)
     for number in range(3):
         part = 1.0 if number == 2 else 0.5
         _take_all(STAGE, part, traits, lanes, each, shared, count)
         if holds:
-            _hold(traits, lanes, equipment, count, steps, part, ZERO + 1 + number)
+            hold(traits, lanes, equipment, count, steps, part, ZERO + 1 + number)
         if number < 2:
             _to_next_stage(traits, lanes, shared, count, steps, 0.5, 0.5 if number == 0 else 1.0)
     _to_end(traits, lanes, shared, count, steps)
     _take_all(END_OF_STEP, 1.0, traits, lanes, each, shared, count)
     if holds:
-        _hold(traits, lanes, equipment, count, steps, 1.0, ZERO + 4)
+        hold(traits, lanes, equipment, count, steps, 1.0, ZERO + 4)
     _evaluate_end(traits, lanes, shared, count, steps)
     if equipment.bound_steps:
         _look_ahead(traits, lanes, shared, count, steps)
     _take_all(VERDICT, 1.0, traits, lanes, each, shared, count)
     if holds:
-        _judge_grip(equipment, shared, count)
+        judge_grip(equipment, shared, count)
     return count
 
 

@@ -23,7 +23,7 @@ from rockbatch.core.types import Instant
 
 
 class Lift(NamedTuple):
-    """What lifts a pier that stands off either foot: it stays down while ``holds`` exceeds |``turns``|."""
+    """Moments on a pier that stands on both feet; it lifts off neither while ``holds`` exceeds |``turns``|."""
 
     holds: float  # moment of the weight about a foot over the mass [m²/s²]
     holds_rate: float

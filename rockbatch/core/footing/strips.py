@@ -311,7 +311,7 @@ def _grows(m, d, d_end, h, j):
 
 @kernel
 def sum_sets(m, first):
-    """Update the running sums of sets from the node ``first`` to the right edge."""
+    """Update the running sums of sets at all nodes to the right of ``first``, the leftmost node whose set has changed."""
     for j in range(first, last_node(m) + 1):
         m.bed[j + 1, WEIGHTED_SETS] = m.bed[j, WEIGHTED_SETS] + m.bed[j, WEIGHT] * m.bed[j, SET]
         m.bed[j + 1, ARMED_SETS] = m.bed[j, ARMED_SETS] + m.bed[j, ARM] * m.bed[j, SET]

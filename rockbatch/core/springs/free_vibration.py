@@ -25,7 +25,7 @@ SEEN = 1e-6
 
 @optional_hook
 def leaning_height(shaft, m):
-    """Return the height [m] by which M g sin θ bounds the weight's moment: the centre of mass's, or more if the shaft bends."""
+    """Return the height h [m] for which the weight's moment is at most M g h sin θ: the centre's, or more if the shaft bends."""
     return m.height
 
 

@@ -15,7 +15,10 @@ def supported(contact, side):
 
 @kernel
 def _arms(m, theta, side):
-    """Return the arms of the pivot on ``side`` and of the other one, and the moment of inertia in full contact [m²]."""
+    """Return the signed arms ∂v/∂θ [m] of the pivot on ``side`` (LEFT, RIGHT) and of the other one, and the moment of inertia.
+
+    At θ = 0 the left arm is b and the right one −b. The moment of inertia over the mass is that in full contact [m²].
+    """
     at = geometry(m, theta)
     inertia = m.inertia + at.lever * at.lever
     if side == LEFT:

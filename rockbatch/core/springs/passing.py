@@ -247,7 +247,8 @@ def pass_with_devices(traits, lanes, equipment, count, substep, settings):
         m, contact, end = model_in(traits, lanes, i), _free(lanes, i), state_in(traits.shaft, shared.stage, i)
         put(lanes.end, i, end)
         (left, right), (sign_left, sign_right) = pivots(m, end), _signs(m, contact)
-        keeps = m.rest + min(sign_left * left.velocity, sign_right * right.velocity)
+        # Without an allowance for rounding: friction that sticks holds a pivot but for a motion as small as that
+        keeps = 1.0 if min(sign_left * left.velocity, sign_right * right.velocity) >= 0.0 else -1.0
         lanes.reversals.keeps[i] = 0.0
         _judged(traits, lanes, i, substep, settings, min(keeps, 0.5 - shared.verdict.doubts[i]))
     settle(traits, lanes, equipment, count, whole)

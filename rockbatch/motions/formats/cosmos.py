@@ -221,7 +221,9 @@ def _initial(header: _Header) -> Initial | None:
 
 
 def _unit(header: _Header, series: re.Match[str], index: int) -> str:
-    """Return the unit of the accelerations by its code; raise ``InputError`` unless header and text agree with it."""
+    """Return the unit of the accelerations by its code; raise ``InputError`` unless it is known, and header and text agree with
+    it.
+    """
     code, text = int(series["code"]), series["unit"]
     unit = _UNITS.get(code)
     if unit is None:

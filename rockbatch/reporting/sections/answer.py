@@ -130,7 +130,10 @@ def _weighed(runs: "pd.DataFrame", kind: str) -> bool:
 
 
 def _device_demands(finished: Finished, runs: "pd.DataFrame", kind: str) -> list[object]:
-    """Return the greatest force and deformation [mm] of a kind of device over the runs that end standing; "–" for none."""
+    """Return the greatest force and deformation [mm] of a kind of device over the runs that end standing; "–" for none.
+
+    The force is in kN, or over the weight if the mass of a pier is not known.
+    """
     stood = runs[runs["status"] == "ok"]
     force = f"{kind}_force_kN" if _weighed(finished.runs, kind) else f"{kind}_force_over_weight"
     cells: list[object] = []

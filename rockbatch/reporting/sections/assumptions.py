@@ -39,7 +39,10 @@ def _plane(cases: Collection[Case]) -> str:
 
 
 def _body(cases: Collection[Case]) -> str:
-    """Return sentences on what bends: the shaft in its lowest modes, or nothing; each with its cases unless it is true of all."""
+    """Return sentences on what bends: never a frame; a shaft in its lowest modes; else nothing. "" without cases.
+
+    The last two have their cases unless they are true of all.
+    """
     parts = []
     if any(map(is_frame, cases)):
         parts.append("The columns of the frame are rigid and alike, and its deck stays level and on them.")

@@ -76,7 +76,8 @@ def _pictures(finished: Finished) -> tuple[list[Picture], list[Played]]:
         runs = [_drawn(finished.series[row["series"]], response) for row, response in zip(shown, chosen, strict=True)]
         pictures.append(_picture(_title(finished, shown[0]), runs, len(numbers) - len(shown)))
         for curve, (row, run) in enumerate(zip(shown, runs, strict=True)):
-            pier = pier_of(finished.cases[row["series"], row["pier"]])
+            case = finished.cases.get((row["series"], row["pier"]))  # none if rows were taken out of the table by hand
+            pier = pier_of(case) if case else None
             if pier:
                 played.append((row, _played(finished, row, run, pier, pictures, curve)))
     worst = sorted(played, key=lambda own: rank.get(_key(own[0]), len(rank)))

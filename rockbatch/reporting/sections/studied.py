@@ -183,7 +183,9 @@ def _telling(form: str, cells: Sequence[object]) -> str:
 
 
 def _devices(cases: Sequence[Case]) -> list[str]:
-    """Return the devices of each case in words, with as many digits as tell them apart, from 4 on; "" for impossible values."""
+    """Return the devices of each case in words, with as many digits as tell them apart, from 4 on; "" without any, or for
+    impossible values.
+    """
 
     def in_words(digits: int) -> list[str]:
         return ["; ".join(devices_in_words(case, digits)) for case in cases]
@@ -193,7 +195,10 @@ def _devices(cases: Sequence[Case]) -> list[str]:
 
 
 def _further(cases: Sequence[Case], shown: Collection[str]) -> dict[str, str]:
-    """Return the heads of parameters, by key, that are not ``shown`` and differ between cases, so that rows can be told apart."""
+    """Return the heads of parameters, by key, that are not ``shown`` and differ between cases, so that rows can be told apart.
+
+    Devices, which have a column of their own, are left out.
+    """
     parameters = [case["parameters"] for case in cases]
     keys = dict.fromkeys(key for of_case in parameters for key in of_case if key not in shown)
     differing = [key for key in keys if len({str(of_case.get(key)) for of_case in parameters}) > 1]
