@@ -47,12 +47,13 @@ def test_the_worst_of_every_response_is_found_whatever_is_checked():
 
 
 def test_the_worst_at_each_scale_is_that_of_its_runs_alone():
-    """Two of these scales have a tie, one no ductility, one no run that ends standing; the rows are in no order."""
+    """Ties, values that are missing or rounding, a scale without a run that ends standing; the rows are in no order."""
     of_scales = {
         2.0: runs(**YIELDED),
-        0.5: runs((0.3, 0.3, 0.1, 0.2), **SETTLED | {"settlement_m": [1e-12, 0.0, 0.0, 0.0]}),
+        0.5: runs((0.3, 0.3, 0.1, 0.2), settlement_m=[math.nan, 0.0, 0.0, 0.0], base_tilt_rad=1e-12),
         1.0: runs((0.4, math.nan, 0.4, 0.2), **YIELDED, status=["ok", "failed", "ok", "overturned"]),
         1.5: runs(**YIELDED, status="overturned"),
+        3.0: runs([1e-12]),
     }
     tables = [table.assign(scale=scale) for scale, table in of_scales.items()]
     shuffled = pd.concat(tables).sort_values(["record", "scale"], kind="stable").reset_index(drop=True)
@@ -61,11 +62,12 @@ def test_the_worst_at_each_scale_is_that_of_its_runs_alone():
         worst = worst_of_cases(table, [case()], **how)
         return [(one.demand, one.value, one.run["record"], float(one.run["scale"])) for one in worst]
 
-    alone = [one for scale in (0.5, 1.0, 2.0) for one in found(shuffled[shuffled["scale"] == scale])]
+    alone = [one for scale in (0.5, 1.0, 2.0, 3.0) for one in found(shuffled[shuffled["scale"] == scale])]
     assert found(shuffled, at_each_scale=True) == alone
     scales = [one.scale for one in worst_of_cases(shuffled, [case()], at_each_scale=True)]
-    assert scales == [0.5] * 5 + [1.0] * 6 + [2.0] * 6
-    assert [value for name, value, _, scale in alone if (name, scale) == ("settlement_m", 0.5)] == [0.0]
+    assert scales == [0.5] * 5 + [1.0] * 6 + [2.0] * 6 + [3.0] * 3
+    assert {("settlement_m", 0.0, "r1", 0.5), ("base_tilt_rad", 0.0, "r0", 0.5)} < {*alone}
+    assert ("theta_max_over_alpha", 1e-12, "r0", 3.0) in alone
 
 
 def test_the_worst_settlement_of_springs_that_creep_is_a_range():
