@@ -416,7 +416,7 @@ def test_the_legend_of_one_panel_covers_neither_axes_nor_labels_and_is_on_the_pa
     plt.close(whole)
 
 
-def test_two_panels_in_a_column_of_a_paper_have_their_numbers_apart_and_their_legends_below_them():
+def test_two_panels_in_a_column_have_their_numbers_apart_and_their_legends_below():
     """Numbers and legends of axes 44 mm wide, which were written over their neighbours."""
     whole, given = plt.subplots(1, 2, figsize=(88.0 / 25.4, 70.0 / 25.4))
     label = "stiff, strong: β = 80, η = 3.5 (p = 0.38 rad/s)"

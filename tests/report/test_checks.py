@@ -288,7 +288,7 @@ def test_each_remark_on_the_checks_is_a_line_of_its_own(tmp_path):
     assert {"push, drift: no error estimate.", "drift: fewer than 7 records."} <= set(lines)
 
 
-def test_the_legend_draws_a_line_of_limits_as_a_line_and_a_limit_of_rotations_upright():
+def test_the_legend_draws_limits_along_an_axis_as_a_line_and_a_rule_upright():
     x = np.array([0.0, 1.0])
     entries = [
         Entry("capacity", [Polyline(x, x, look=Look("limit"))]),

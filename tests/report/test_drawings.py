@@ -4,7 +4,7 @@ import math
 import re
 
 import pytest
-from browser import browse, needs_chromium
+from browser import browse, needs_chromium, tab
 from check_samples import verdict
 from report_samples import FIG7, FOUNDATIONS, report, three_piers, write_results
 
@@ -64,6 +64,19 @@ def test_the_scorecard_stands_beside_the_pier_but_alone_on_a_narrow_screen(tmp_p
     """
     found = browse(write_report(tmp_path, []), act, size=(width, 900))
     assert (found["abreast"], found["share"] > 0.99, found["wide"]) == (abreast, not abreast, True)
+
+
+@needs_chromium
+def test_the_printed_scorecard_is_as_wide_as_the_page(tmp_path):
+    """Beside the pier it had the width of a letter."""
+    write_results(tmp_path)
+    write_verdicts(tmp_path, [verdict(name, "pass", check=f"check {k}") for name, _ in FOUNDATIONS for k in range(7)])
+    with tab(write_report(tmp_path, []), (700, 1000)) as ask:
+        ask("Emulation.setEmulatedMedia", media="print")
+        wide = """["#answer .card", "#answer .beside"].map((of) => document.querySelector(of).getBoundingClientRect().width)"""
+        done = ask("Runtime.evaluate", expression=wide, returnByValue=True)
+    card, page = done["result"]["value"]
+    assert card > 0.99 * page > 500.0
 
 
 def test_cases_of_one_pier_share_a_drawing_without_a_caption(tmp_path):

@@ -279,7 +279,7 @@ def still(folder, change):
     return run, figure
 
 
-def test_at_a_peak_to_the_left_the_pier_leans_left_and_the_arrow_is_that_of_this_moment(tmp_path):
+def test_at_a_peak_to_the_left_the_pier_leans_left_and_the_arrow_is_its_own(tmp_path):
     """The ground moves by cos t, of which the arrow of 50 px is the greatest."""
     run, figure = still(tmp_path, lambda old: {"theta": -old["theta"], "ag_h": PIER.gravity * np.cos(old["t"])})
     at = int(np.argmax(np.abs(run.theta)))

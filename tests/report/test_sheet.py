@@ -217,7 +217,7 @@ def test_a_pier_that_a_bound_changes_has_the_name_of_the_bound_among_the_inputs(
     assert [row[0] for row in piers] == ["foot", "foot: traffic, more traffic"]
 
 
-def test_the_numbers_of_the_geotechnical_report_are_among_the_inputs_as_they_were_given(tmp_path):
+def test_the_numbers_of_the_ground_are_among_the_inputs_as_they_were_given(tmp_path):
     keys = 'name = "clay"\nbase = "footing"\nshear_modulus_MPa = 101.5\npoisson = [0.31, 0.49]\n'
     text = f'[[case]]\n{keys}[[case.damper]]\nkind = "x"'
     study = {"path": "a.toml", "title": "a", "notes": "", "text": text, "sha256": "0" * 64}
@@ -347,7 +347,7 @@ def test_devices_observers_and_analyses_of_a_folder_have_their_sections_on_the_s
 
 @needs_chromium
 @pytest.mark.parametrize("written", ["page", "sheet"])
-def test_hostile_bounds_checks_and_reasons_are_words_in_drawings_scorecard_and_statement(tmp_path, written):
+def test_hostile_bounds_checks_and_reasons_are_words_on_page_and_sheet(tmp_path, written):
     """Each drawn pier, each cell and each sentence has one of them: none runs, none is an element, all can be read."""
     pier = Pier(alpha=0.13, p=0.38)
     damped = RigidBase(restraints=(Damper(kind="friction", f=0.05),))
