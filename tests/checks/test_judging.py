@@ -75,6 +75,13 @@ def test_without_the_other_spring_law_nothing_passes_where_the_rule_asks_for_it(
     assert judged(elastic, one=ELASTIC, demand="settlement_m", at_most=0.05, other_law=True).verdict == "pass"
 
 
+def test_results_without_the_other_law_are_refused_only_by_a_rule_that_asks_for_it():
+    table = runs([0.1], settlement_m=0.04).drop(columns="settlement_other_law_m", errors="ignore")
+    assert judged(table, demand="settlement_m", at_most=0.05).verdict == "pass"
+    with pytest.raises(InputError, match=r"no settlement_m by the other law; write both_laws = true"):
+        judged(table, demand="settlement_m", at_most=0.05, other_law=True)
+
+
 def test_ratio_and_margin_are_the_distance_to_the_limit():
     found = judged(runs([0.6]))
     assert (found.ratio, found.margin) == (pytest.approx(1.2), pytest.approx(-0.1))
