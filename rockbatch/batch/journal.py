@@ -74,7 +74,7 @@ class _Rows:
         return (number for number, start in enumerate(self.starts) if start != ABSENT)
 
     def row(self, number: int) -> bytes:
-        """Return the row of a finished run as a line of the table, with its cells beside, without the number of the run."""
+        """Return the row of a finished run as a line of the table, without its number; cells of ``beside`` are at its end."""
         self.file.seek(self.starts[number])
         return _unfolded(self.file.read(self.sizes[number]))
 
@@ -239,7 +239,10 @@ class Journal:
         return iter(self._rows)
 
     def __getitem__(self, number: int) -> dict[str, str]:
-        """Return all cells of a finished run as texts, also those beside, "" for None; ``KeyError`` for an unfinished one."""
+        """Return all cells of a finished run as texts, "" for None, also those that ``beside`` names.
+
+        Raises ``KeyError`` for an unfinished run.
+        """
         if number not in self:
             raise KeyError(number)
         (cells,) = csv.reader(io.StringIO(self._rows.row(number).decode(), newline=""))

@@ -255,7 +255,10 @@ def unchecked(verdict: Verdict) -> str:
 
 
 def both_axes(verdicts: Iterable[Verdict]) -> str:
-    """Return "Two planar models of each pier, …, combined: SRSS of both axes (drift).", the checks by way; empty for none."""
+    """Return the ways of combining both axes, each with its checks; empty for none.
+
+    "Two planar models of each pier, one for each axis, combined: SRSS of both axes (drift)."
+    """
     ways = {verdict.check: verdict.axes for verdict in verdicts if verdict.axes}
     by_way = grouped(ways, ways.__getitem__)
     listed = "; ".join(f"{way} ({', '.join(names)})" for way, names in by_way.items())

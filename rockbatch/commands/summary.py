@@ -69,7 +69,7 @@ def warnings(table: "pd.DataFrame", case_of: Callable[["pd.Series[Any]"], str]) 
     """Return a sentence each on runs of ``table`` that an observer warns of, that rotate too far for linearised kinematics,
     lean, or slide; [] for none.
 
-    ``case_of`` names the case of a run.
+    ``case_of`` names the case of a run in the warnings of observers; the other sentences count runs.
     """
 
     def counted(runs: npt.NDArray[np.bool_], singular: str, plural: str) -> str:

@@ -186,7 +186,8 @@ def files_in(folder: Path) -> list[Path]:
 def content(path: Path, first: int | None = None) -> bytes:
     """Return the contents of a file, or its ``first`` bytes, unpacked if it is a .gz or lies in an archive.
 
-    Raises ``InputError`` for a file that is damaged, packed twice or larger than 256 MiB, ``OSError`` if it cannot be read.
+    Raises ``InputError`` for a file that is irregular, damaged, gone from its archive, still packed once unpacked, or larger than
+    256 MiB or, above 1 MiB, 100 times its packed size; ``OSError`` if the disk cannot be read.
     """
     if archive_of(path) is not None:
         data = _from_archive(path, first)

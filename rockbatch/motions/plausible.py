@@ -145,9 +145,9 @@ def alternation(candidate: Candidate) -> Finding | None:
 
 
 def alternating(samples: Samples) -> float:
-    """Return the largest amplitude of an alternation from sample to sample over eight samples, in their unit.
+    """Return the largest amplitude by which eight successive samples alternate, each swing against the last, in their unit.
 
-    It is half the least of their seven swings; 0 without an alternation, or for fewer than eight samples.
+    It is half the least of the seven swings; 0 without an alternation, or for fewer than eight samples.
     """
     if len(samples) <= _SWINGS:
         return 0.0

@@ -35,7 +35,7 @@ class HalfCycles(NamedTuple):
     """Half cycles of a run, each from an impact to the next; the first begins with the run. Shape (n,) each.
 
     ``t`` [s] is the beginning, with the angular velocities before and after it [rad/s], NaN for the first; ``amplitude`` [rad]
-    is the greatest |θ|, at ``t_amplitude`` [s], both NaN if the run ended before it.
+    is the greatest |θ|, at ``t_amplitude`` [s], both NaN if it still grew as the run ended.
     """
 
     t: Samples
@@ -58,7 +58,7 @@ def half_cycles(path: Path, landed: Rows | None) -> HalfCycles:
 
     ``landed``, shape (k,), are the rows after impacts, each next to the row before it; None on springs, where the pier lands
     before it is upright, and half cycles begin at θ = 0 instead. Amplitudes are |θ|. A run that never lands is one half cycle,
-    of amplitude NaN if θ never turns.
+    of amplitude NaN if θ does not turn at its greatest.
     """
     if landed is None:
         before, after, t, omega = _through_upright(path)
@@ -109,9 +109,9 @@ def _cubic(path: Path, before: Rows, after: Rows, h: Samples, s: Samples) -> tup
 
 
 def _peak(path: Path, first: int, end: int) -> tuple[float, float]:
-    """Return the greatest |θ| [rad] of the rows from ``first`` until before ``end``, and its time [s].
+    """Return the greatest |θ| [rad] from row ``first`` until before row ``end``, by cubics between rows, and its time [s].
 
-    Both are NaN if θ neither turns there nor starts at rest, tilted, from its greatest value.
+    Both are NaN unless θ turns at this value, or starts from it at rest, tilted: it may still grow at the end of a run.
     """
     theta, omega = path.theta[first:end], path.omega[first:end]
     top = int(np.abs(theta).argmax())

@@ -363,9 +363,9 @@ class Response(Shown):
         return panel_in(loops(self), ax, of)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
-        """Return the title, and peak, residual, settlement, reason and note if the response has a row, history and events.
+        """Return the title, and facts by their labels; "" hides one: see :class:`Shown`.
 
-        "" hides a fact: see :class:`Shown`.
+        History and events come last; before them, if the response has a row, peak, residual, settlement, reason and note.
         """
         kinds = self.events["kind"].value_counts(sort=False)
         facts = {

@@ -267,7 +267,7 @@ class YieldingBase(ElasticBase):
         return self.law.creep is not None
 
     def parameters(self, pier: Pier) -> dict[str, object]:
-        """Return the keys of :meth:`ElasticBase.parameters`, η, the law, ``n`` if the law has it, and δ_y."""
+        """Return these springs as :meth:`ElasticBase.parameters` does, with η, the law, ``n`` if the law has it, and δ_y."""
         values = super().parameters(pier) | {"eta": self.eta, "spring": self.spring}
         if self.has_exponent:
             values["n"] = self.n

@@ -71,7 +71,10 @@ def per_gravity(case: Case) -> float:
 
 
 def creeps(case: Case) -> bool:
-    """Return whether the springs of a case ratchet, settling further in each cycle, so that settlement depends on the law."""
+    """Return whether the springs of a case have a law of RATCHETING, by which they settle further in each cycle.
+
+    Their settlement then depends on the law. False for other laws, elastic springs and footings.
+    """
     return case["parameters"].get("spring") in RATCHETING
 
 

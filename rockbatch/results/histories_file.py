@@ -137,7 +137,10 @@ def _digest(file: io.FileIO) -> bytes:
 
 
 def _check_room(path: Path, response: Response) -> None:
-    """Raise ``InputError`` if ``response`` would fill the disk: HDF5 may crash at exit after a failed write."""
+    """Raise ``InputError`` if ``response`` would leave less than MARGIN, 10 MB, of the disk free.
+
+    HDF5 may crash at exit after a failed write.
+    """
     tables = (getattr(response, name) for name in ("history", "events", "impacts", *_BESIDE))
     needed = MARGIN + sum(int(table.memory_usage().sum()) for table in tables if table is not None)
     free = disk_usage(path.parent).free

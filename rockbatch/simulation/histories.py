@@ -147,8 +147,8 @@ def of_modes(rows: np.recarray) -> tuple[Samples, Samples]:
 def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
     """Return columns of a history on a footing at every step: state, edges of the foot, two forces there, energy.
 
-    The two forces have the sum and the moment of the bed's push, and are below 0 when pressed; the energy is without devices, and
-    from the start.
+    The two forces, below 0 when pressed, are equivalent to the bed's push and its moment; the energy is without devices, and from
+    the start.
     """
     pier, base, nothing = run.pier, run.base, np.full(len(rows), np.nan)
     bed = np.recarray(len(rows), BED_STATE)

@@ -144,9 +144,10 @@ def rests_at(
 ) -> float:
     """Return the static rotation [rad] of the pier on its supports after a run with this ``result``.
 
-    Small rotations, both pivots on their springs; devices deform elastically from their state at the end of the run, and a
-    sticking friction damper holds its place. ``level`` is v of the pier at rest at the start [m]; ``states`` and ``sticks``,
-    shape (devices,), are the state of each device at the end, and True for a friction damper that sticks then.
+    Rotations are small, both springs or the whole bed of a footing bear, and the P–Δ moment of the weight adds to the tilt;
+    devices deform elastically from their state at the end of the run, and a sticking friction damper holds its place. ``level``
+    is v of the pier at rest at the start [m]; ``states`` and ``sticks``, shape (devices,), are the state of each device at the
+    end, and True for a friction damper that sticks then.
     """
     v, theta, leaning = result.v_end, result.theta_end, pier.gravity * base.leaning_height(pier)
     if isinstance(base, FootingBase):

@@ -94,10 +94,10 @@ class InSection(NamedTuple):
 
 @entry
 def _follow(m, run, numbers, shares, out, pushes, bending):  # type: ignore[no-untyped-def]
-    """Write the Motion at each share of the step to the row of this number, the pushes on the deck, shape (moments, devices), and
-    the bending of an elastic shaft, shape (moments, 3, modes).
+    """Write to ``out`` the Motion at each of ``shares`` of the steps that end at the rows ``numbers``.
 
-    At share 1 they are those of the row itself.
+    Likewise to ``pushes`` those on the deck, shape (moments, devices), and to ``bending`` that of an elastic shaft, shape
+    (moments, 3, modes). At share 1 they are those of the row itself.
     """
     rows, pulls, devices, ground, dt = run
     walked = 0

@@ -339,7 +339,7 @@ class Piers(NamedTuple):
 
 
 def read_piers(file: TomlFile, bounds: Sequence[DesignBound] = ()) -> Piers:
-    """Return the piers of [pier], each also under those of the ``bounds`` that change it.
+    """Return the piers of [pier], each also under those of the ``bounds`` that change keys of [pier].
 
     Mistakes become problems of ``file``. An impossible pier is left out, and all are if the table has another mistake. Keys of
     the n-th [[pier.part]] are called part_n_mass_t and so on.
@@ -371,9 +371,10 @@ def read_piers(file: TomlFile, bounds: Sequence[DesignBound] = ()) -> Piers:
 def _under_bounds(
     table: Table, chosen: Chosen, parts: int, bounds: Sequence[DesignBound]
 ) -> dict[str, tuple[Pier, Values]]:
-    """Return the pier of one choice of values under each bound that changes it, by the bound's name.
+    """Return the pier of one choice of values under each bound that changes keys of [pier], by the bound's name.
 
-    An impossible one is left out; problems are added to the file.
+    A pier that cannot be made is left out; a single value that a bound makes impossible stays nominal. Problems of both are added
+    to the file.
     """
     piers = {}
     for bound in bounds:

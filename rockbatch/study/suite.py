@@ -118,7 +118,7 @@ def _both_axes(study: Study) -> bool:
 
 
 def _with_pairs(motions: MotionSet, pulses: Sequence[Motion]) -> tuple[MotionSet, list[Motion]]:
-    """Return the records and pulses that have both horizontal components; the others become unusable files."""
+    """Return the records and pulses that have an ``across``, their other horizontal component; others are unusable."""
     reason = (
         "has no horizontal component at right angles, and cases with other_width_m are run on both axes; leave it out "
         "(leave_out under [motions]), or run it in a study without other_width_m"

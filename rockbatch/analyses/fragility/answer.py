@@ -25,8 +25,8 @@ Info = Entry
 def of_curves(info: Info) -> Markup:
     """Return sentences on the weakest case for overturning and for the limit exceeded first, and remarks.
 
-    That is the one with the lowest median, if it is below that of overturning, or below all levels. Else the second sentence says
-    that no other limit is exceeded, or none has a lower median; there is none if overturning is the only limit.
+    The limit exceeded first has the lowest median of the others, if this is below that of overturning or below all levels. Else
+    the second sentence says that no other limit is exceeded, or none has a lower median. A single limit has no second sentence.
     """
     overturning, *others = grouped(info["curves"], lambda curve: curve["limit_state"]).values()
     sentences = [_of_limit(info, overturning, _capital(overturning[0]["limit_state"]))]

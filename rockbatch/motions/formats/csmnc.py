@@ -41,11 +41,12 @@ def is_csmnc(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording in a list; raise ``InputError`` with the line if it is incomplete, or of another quantity."""
+    """Return the recording in a list; raise ``InputError`` with the line that is wrong, missing or of another quantity."""
     lines = lines_of(text)
-    _, kind = line_with(_KIND, lines, _MOST, "UNCORRECTED ACCELERATION UNIT: CM/SEC/SEC")
+    index, kind = line_with(_KIND, lines, _MOST, "UNCORRECTED ACCELERATION UNIT: CM/SEC/SEC")
     if not kind["what"].upper().startswith("ACC"):  # the Center's own description has "ACCCELERATION"
-        raise NoRecord(f'found "{kind["what"]}"; expected accelerations: take the file that has them')
+        what = kind["what"]
+        raise NoRecord(f'line {index + 1}: found "{what}"; expected accelerations: take the file that has them')
     label = line_with(_COMPONENT, lines, _MOST, "COMP. EW")[1]["label"]
     station = line_with(_STATION, lines, _MOST, "STATION: …")[1]["code"]
     index, count = line_with(_COUNT, lines, _MOST, "NO. OF POINTS: … EQUALLY SPACED INTERVALS OF: … SEC")

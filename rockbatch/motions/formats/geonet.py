@@ -53,8 +53,8 @@ def parse(text: str) -> list[Recording]:
 def _component(lines: list[str], first_line: int) -> tuple[Recording, int]:
     """Return the component whose title is ``lines[first_line]``, and the index of the line after it.
 
-    The header has the time of the recorder's first sample, the year to the hour at the end of its first two lines of
-    integers, minute and ms at the end of the fourth. Corrected data begin some seconds of padding earlier.
+    The header has the time of the recorder's first sample: year and month end its first line of integers, day and hour the
+    second, minute and ms the fourth. Corrected data begin some seconds of padding earlier.
     """
     fields = read_header(lines, first_line, _TEXT)
     integers = [int(n) for n in fixed_numbers(lines, first_line + _INTEGERS, 40, _WIDTH, _PER_LINE)[0]]

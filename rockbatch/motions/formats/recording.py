@@ -51,7 +51,7 @@ def reader(parse: Callable[[str], Sequence[Recording]]) -> Callable[[RecordFile]
     """Return the reader of a text format whose files ``parse`` turns into recordings."""
 
     def read(file: RecordFile) -> list[Component | Unusable]:
-        """Return the components of a file in m/s²; raise ``InputError`` with the line if it is incomplete."""
+        """Return the components of a file in m/s²; raise ``InputError`` as ``parse`` does."""
         return to_components(file, parse(file.text))
 
     return read

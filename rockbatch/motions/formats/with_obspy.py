@@ -29,7 +29,10 @@ _BLOCKETTE = re.compile(rb"[0-9]{7}")  # three digits of type, four of length
 
 
 def check_mseed(data: bytes) -> bytes:
-    """Return MiniSEED, or a SEED volume, unchanged; raise ``InputError`` if its first data record is impossible."""
+    """Return MiniSEED, or a SEED volume, unchanged; raise ``InputError`` if its first data record is missing or impossible.
+
+    Impossible are a day, hour, minute or second, a chain of blockettes, and a length of records, also one of a volume.
+    """
     start = 0
     if data[6:7] in _CONTROL:
         length = 2 ** _volume_exponent(data)
@@ -40,7 +43,7 @@ def check_mseed(data: bytes) -> bytes:
 
 
 def _volume_exponent(data: bytes) -> int:
-    """Return log₂ of the length of a volume's records, by its first blockettes; raise ``InputError`` without it."""
+    """Return log₂ of the length of a volume's records, by its first blockettes; raise ``InputError`` if missing or impossible."""
     offset = 8
     while _BLOCKETTE.match(data, offset):
         kind, length = data[offset : offset + 3], int(data[offset + 3 : offset + 7])
@@ -56,7 +59,7 @@ def _volume_exponent(data: bytes) -> int:
 
 
 def _data_record(record: bytes) -> None:
-    """Raise ``InputError`` unless bytes begin with a data record of possible time and chain of blockettes."""
+    """Raise ``InputError`` unless bytes begin with a data record of possible day, time, chain of blockettes and length."""
     if len(record) < _FIXED or record[6:7] not in _DATA:
         raise Truncated("holds no whole data record; fetch it again")
     order = ">" if 1 <= int.from_bytes(record[22:24], "big") <= 366 else "<"

@@ -19,7 +19,8 @@ BEYOND = 0.3
 def over_axial_force(checks: "Iterable[tuple[Verdict, pd.DataFrame]]", series: Sequence[Series]) -> Figure:
     """Return a panel for each check of a capacity: the capacity, and the envelope of each case over all of its runs.
 
-    ``checks`` are verdicts, of any case, with the rows of interaction.csv of their section or base, and ``series`` of each row.
+    ``checks`` are verdicts, of any case, with the rows of interaction.csv of their section or base; the column "series" of these
+    rows has indices of ``series``.
     """
     panels = [_panel(verdict, rows, series) for verdict, rows in checks]
     return Figure(panels, "Envelopes of moment or shear over the axial force, and the capacity")

@@ -33,7 +33,7 @@ def remark(finished: Finished) -> Markup:
 def warning(table: "pd.DataFrame", case_of: Callable[["pd.Series[Any]"], str]) -> str:
     """Return a warning if settlements by the two spring laws differ by over 10 % and 1 mm in a run; else "".
 
-    ``case_of`` names the case of a run.
+    It has the number of these runs and the widest range, whose case ``case_of`` names.
     """
     if OTHER_LAW not in table:
         return ""

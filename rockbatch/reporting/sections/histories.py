@@ -160,7 +160,7 @@ def _motions(rows: Sequence[Row], rank: Mapping[tuple[object, ...], int]) -> lis
 
 
 def _key(row: Row) -> tuple[object, ...]:
-    """Return the key of a run: record, polarity, scale, rounded as in peaks.csv, pier and series."""
+    """Return the key of a run: record, polarity, scale to ten digits as peaks.csv has it, pier and series."""
     return row["record"], row["polarity"], float(f"{row['scale']:.10g}"), row["pier"], row["series"]
 
 

@@ -146,9 +146,10 @@ def _limit(verdict: Verdict) -> str:
 
 
 def _governing(finished: Finished, verdict: Verdict) -> str:
-    """Return the run that governs, has the greatest demand or leaves the check open: "greatest in "Te Mara": 0.2 m".
+    """Return the run that a verdict names: 'governed by "Te Mara"', or 'greatest in "Te Mara", reversed: 0.2 m'.
 
-    Only a greatest demand that is not the value is written behind it. "" if the verdict names no record.
+    The latter if its demand is not the value; 'left open by "Te Mara"' for an open check, 'one of these is "Te Mara"' for an
+    event, "" if the verdict names no record.
     """
     if not verdict.record:
         return ""
