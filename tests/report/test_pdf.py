@@ -93,10 +93,13 @@ def _is_dotted(cell):
 
 def test_every_section_has_its_heading_in_the_order_of_the_html(sheet, pages):
     whole = without_spaces("".join(pages))
-    places = [whole.find(f"{place}{without_spaces(s.heading)}") for place, s in enumerate(sheet.sections, start=1)]
-    assert len(places) > 8
-    assert -1 not in places
-    assert places == sorted(places)
+    assert len(sheet.sections) > 8
+    at = 0
+    for place, section in enumerate(sheet.sections, start=1):
+        at = whole.find(
+            f"{place}{without_spaces(section.heading)}", at
+        )  # behind the last, since tables have such words, too
+        assert at >= 0, section.heading
 
 
 def test_each_page_has_study_version_date_and_its_number(sheet, pages):
