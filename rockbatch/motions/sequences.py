@@ -6,7 +6,7 @@ ends with 0. P is long, so that this is far below the acceleration that lifts a 
 """
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
@@ -141,7 +141,7 @@ def sequence(
     pause: float = PAUSE,
     factors: Sequence[float] | None = None,
     polarity: Sequence[str] | None = None,
-    confirm: Collection[str] = (),
+    confirm: Sequence[str] = (),
 ) -> Motion:
     """Return shocks as one motion, one after the other.
 

@@ -20,6 +20,8 @@ from rockbatch.core.devices import laws as device_laws
 from rockbatch.core.devices.laws import CONTACT, FRICTION, HYSTERETIC, MAXWELL, SPRING, TENDON, VISCOUS, Element
 from rockbatch.core.flexure import equations as flexure
 from rockbatch.core.flexure import events as flexure_events
+from rockbatch.core.flexure import model as flexure_model
+from rockbatch.core.flexure import shaft as flexure_shaft
 from rockbatch.core.flexure.model import FlexibleBlock, Flexing
 from rockbatch.core.flexure.modes import PerMode
 from rockbatch.core.observe import forces
@@ -132,7 +134,7 @@ def plain_python(monkeypatch):
     """
     modules: tuple[ModuleType, ...] = (
         laws, recovery, equations, impact, events, trigonometry, block, block_events, forces, device_laws, elongation, pull, rk4,
-        flexure, flexure_events, bending_on_springs,
+        flexure, flexure_events, flexure_model, flexure_shaft, bending_on_springs,
     )  # fmt: skip
     compiled_geometry = equations.geometry
 
@@ -378,7 +380,7 @@ def test_a_bending_shaft_on_springs_has_rates_energies_and_forces(contact):
     assert_units(rk4.rk4(m, None, Instant(y, k, contact, WAITING, shaking), 0.001 * S), UNITS[BentState])
     up, turning, modes = bending_on_springs.momenta(m, y, 7.0 * M)
     assert_units([up, turning, *modes], [SPEED, M * SPEED, *4 * (SPEED,)])
-    assert_units([bending_on_springs.kinetic_of_modes(m, y, 7.0 * M)], [SPEED**2])
+    assert_units([flexure_shaft.kinetic_of_modes(m, y, 7.0 * M)], [SPEED**2])
     assert_units([system.ground_power(m, y, contact, shaking)], [ACCELERATION * SPEED])
     assert_units(forces.on_springs(m, 31.0 * M, Moment(y, contact, WAITING), shaking), FORCES)
 

@@ -352,7 +352,7 @@ def test_errors_on_a_bed_have_the_shares_of_modes_and_of_strips():
     assert [getattr(strips, f"{name}_error") for name in names] == pytest.approx([0.44] * 5)
 
 
-def test_runs_of_a_shaft_on_a_bed_are_repeated_with_fewer_modes_and_with_fewer_strips():
+def test_runs_of_a_shaft_on_a_bed_are_repeated_with_fewer_modes_and_strips():
     run = Run(PIER, base_of(), hard())
     fewer = [(other.base.strips, len(other.base.modes(PIER).frequency)) for other in coarser(run)]
     assert fewer == [(8, 3), (4, 4)]
@@ -399,7 +399,7 @@ def test_random_piers_on_yielding_beds_move_as_their_mass_points_do(number):
 
 @pytest.mark.thorough
 def test_the_shear_of_a_shaft_on_a_bed_is_that_of_a_column_of_elements():
-    """A stiff tower on a bed that its weight presses by 7 mm, by one to four modes of twenty elements (THEORY.md, E9)."""
+    """A stiff tower on a bed that its weight presses by 7 mm, by one to four modes of twenty elements, by (E9)."""
     parts = [rb.Part(3000.0, 20.0, 3000.0 * 40.0**2 / 12.0, 40.0), rb.Part(1500.0, 40.0, 1.5, 0.0)]
     pier = replace(rb.Pier.of_parts(8.0, parts, top_m=40.0), flexural_period_s=0.4)
     t, beta = np.arange(0.0, 3.6, 0.005), math.sqrt(G / 0.007) / pier.p
