@@ -154,7 +154,7 @@ def test_an_error_is_noticed_by_a_sound_test_that_fails_with_it(tmp_path):
     assert (tmp_path / "few.py").read_text() == SMALL
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_errors_are_drawn_from_all_packages_and_equivalent_ones_still_fit():
     from run import EQUIVALENT, drawn
 
@@ -163,7 +163,7 @@ def test_errors_are_drawn_from_all_packages_and_equivalent_ones_still_fit():
     assert set(tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))) <= {place.name for place in places}
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_draws_of_one_package_and_of_all_others_are_disjoint():
     from run import drawn
 

@@ -160,14 +160,14 @@ def test_the_page_of_bounds_quotes_what_is_printed(tmp_path, capsys):
     assert page in capsys.readouterr().out
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_page_of_capacities_quotes_what_is_printed(tmp_path, capsys):
     (page,) = blocks(ROOT / "docs" / "pages" / "questions" / "capacity.md", "text")
     main(["run", str(ROOT / "configs" / "capacities.toml"), "--out", str(tmp_path / "out")])
     assert page in capsys.readouterr().out
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_page_of_the_value_that_just_passes_quotes_what_is_printed(tmp_path, capsys):
     (page,) = blocks(ROOT / "docs" / "pages" / "questions" / "design.md", "text")
     main(["design", str(ROOT / "configs" / "damper_that_passes.toml"), "--out", str(tmp_path / "out")])
