@@ -233,12 +233,13 @@ def at(height: float) -> str:
 def requirements(verdicts: Iterable[Verdict]) -> dict[str, list[str]]:
     """Return up to three requirements of each check, by name, one for each height of its demand; then "likewise at 5 more …"."""
     asked = {name: list(dict.fromkeys(map(requirement, same))) for name, same in grouped(verdicts, name_of).items()}
-    return {
-        name: words
-        if len(words) <= REPEATED
-        else [*words[:REPEATED], f"likewise at {len(words) - REPEATED} more heights"]
-        for name, words in asked.items()
-    }
+    return {name: _first_few(words) for name, words in asked.items()}
+
+
+def _first_few(words: list[str]) -> list[str]:
+    """Return the first REPEATED requirements of a check, and "likewise at 5 more heights" for the others."""
+    others = len(words) - REPEATED
+    return words if others <= 0 else [*words[:REPEATED], f"likewise at {others} more heights"]
 
 
 def requirement(verdict: Verdict) -> str:

@@ -128,18 +128,16 @@ def orientation_in(label: str) -> Orientation:
 
 _LETTER = r"[^\W\d_]"
 _PART = r"(?P<site>.*[^-_. ])[-_. ]+"
-_ENDS = tuple(
-    re.compile(rf"{site}(?P<label>{label})")
-    for site, label in (
-        (_PART, rf"(?i:N-S|S-N|E-W|W-E|U-D|Up-D(?:ow)?n|{_LETTER}+-axis|{_LETTER}+-(?:up|d(?:ow|w)?n))"),
-        (_PART, rf"{_LETTER}+-{_LETTER}+"),  # Norte-Sur
-        (_PART, r"[A-Z][NLGH][ZNE12][-_. ]+\d\d"),
-        (_PART, rf"{_LETTER}+|\d{{3}}|[A-Za-z]+\d+[A-Za-z]*"),
-        (r"(?P<site>.*[A-Za-z0-9])", r"\d{3}|DWN|UP|(?:UD|EW|NS)[12]?|VER|VERT|VRT"),
-        (r"(?P<site>.*\d)", r"(?i:DWN|UP|UD|EW|NS|VERT?|VRT)"),
-        (r"(?P<site>.*\d\d)", r"(?i:[VZUNEW])"),  # chy080v
-    )
+_SITES_AND_LABELS = (
+    (_PART, rf"(?i:N-S|S-N|E-W|W-E|U-D|Up-D(?:ow)?n|{_LETTER}+-axis|{_LETTER}+-(?:up|d(?:ow|w)?n))"),
+    (_PART, rf"{_LETTER}+-{_LETTER}+"),  # Norte-Sur
+    (_PART, r"[A-Z][NLGH][ZNE12][-_. ]+\d\d"),
+    (_PART, rf"{_LETTER}+|\d{{3}}|[A-Za-z]+\d+[A-Za-z]*"),
+    (r"(?P<site>.*[A-Za-z0-9])", r"\d{3}|DWN|UP|(?:UD|EW|NS)[12]?|VER|VERT|VRT"),
+    (r"(?P<site>.*\d)", r"(?i:DWN|UP|UD|EW|NS|VERT?|VRT)"),
+    (r"(?P<site>.*\d\d)", r"(?i:[VZUNEW])"),  # chy080v
 )
+_ENDS = tuple(re.compile(rf"{site}(?P<label>{label})") for site, label in _SITES_AND_LABELS)
 _STATION = re.compile(  # codes of TSMIP, K-NET and KiK-net end in a number, as PEER's file names do in an azimuth
     r"(?:^|[^A-Z])(?:TCU|CHY|HWA|ILA|KAU|TAP|TTN|ABS|HDK|HYM|IBR|IKR|ISK|IWT|KKW|KMM|KNG|KOC|KSR|KYT|KGS|KGW|MIE|MYG|MYZ|"
     r"NAR|NGN|NGS|NIG|NMR|OIT|OKN|OKY|OSK|OSM|RMI|SAG|SBS|SIG|SIT|SMN|SRC|SZO|TCG|TKC|TKS|TKY|TTR|TYM|WKY|YMG|YMN|YMT|"

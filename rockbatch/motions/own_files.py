@@ -13,26 +13,24 @@ _HISTORIES = (".h5", ".hdf5")
 _HISTORIES_BEGIN = b"rockbatch histories"
 _MOST_OF_A_HEAD = 16_384  # bytes: more than the heads of all columns
 
-_NAMED_TOGETHER: tuple[frozenset[str], ...] = tuple(
-    frozenset(names.split())
-    for names in (
-        "record case polarity scale",
-        "case limit_state",
-        "record measure unit unscaled level",
-        "case parameter swing",
-        "case parameter first total",
-        "record polarity scale status theta_max_over_alpha",
-        "case alpha two_pi_over_p_s",
-        "map case outcome",
-        "method machine study",
-        "case parameter value confidence",
-        "case impact t_measured_s",
-        "case t_s theta_rad",
-        "record file_h file_v",
-        "case lift_off_g",
-        "case theta_rad moment_over_weight_m",
-    )
-)
+_COLUMNS_TOGETHER = """
+record case polarity scale
+case limit_state
+record measure unit unscaled level
+case parameter swing
+case parameter first total
+record polarity scale status theta_max_over_alpha
+case alpha two_pi_over_p_s
+map case outcome
+method machine study
+case parameter value confidence
+case impact t_measured_s
+case t_s theta_rad
+record file_h file_v
+case lift_off_g
+case theta_rad moment_over_weight_m
+"""
+_NAMED_TOGETHER = [frozenset(line.split()) for line in _COLUMNS_TOGETHER.strip().splitlines()]
 """Columns of which every table has at least one group, and which no table of samples has."""
 
 

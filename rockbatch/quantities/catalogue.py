@@ -6,7 +6,7 @@ checks, docs/columns.md and the list in configs/checks/stepping_pier.toml follow
 """
 
 from collections.abc import Iterable
-from itertools import groupby
+from itertools import chain, groupby
 from typing import Any
 
 import numpy as np
@@ -439,14 +439,9 @@ _OTHERS = (
 )
 """Demands that are no column of peaks.csv: events, and properties of the foundation."""
 
-DEMANDS: dict[str, Demand] = {
-    demand.name: demand
-    for demand in (
-        *(demand for quantity in COLUMNS.values() for demand in quantity.demands()),
-        *_OTHERS,
-        *(demand for demands in parts("quantities.DEMANDS") for demand in demands),
-    )
-}
+_OF_COLUMNS = chain.from_iterable(quantity.demands() for quantity in COLUMNS.values())
+_OF_PARTS = chain.from_iterable(parts("quantities.DEMANDS"))
+DEMANDS: dict[str, Demand] = {demand.name: demand for demand in chain(_OF_COLUMNS, _OTHERS, _OF_PARTS)}
 """Demands by the name that a rule gives them; signs are dropped."""
 
 BROUGHT = {

@@ -25,19 +25,14 @@ def cloud_table(
     """
     rows: list[dict[str, object]] = []
     for curve in curves:
-        constants = {"measure": spec.label, "unit": spec.unit, "limit": threshold(curve.limit)}
-        rows += [
-            {"record": names[run.motion]}
-            | curve.identity(varied)
-            | constants
-            | {
-                "intensity": run.intensity,
-                "demand": run.demand,
-                "status": run.status,
-                "counts": counts(run, curve, spec),
-            }
-            for run in curve.cloud
-        ]
+        constants = curve.identity(varied) | {
+            "measure": spec.label,
+            "unit": spec.unit,
+            "limit": threshold(curve.limit),
+        }
+        for run in curve.cloud:
+            result = {"intensity": run.intensity, "demand": run.demand, "status": run.status}
+            rows.append({"record": names[run.motion]} | constants | result | {"counts": counts(run, curve, spec)})
     return pd.DataFrame(rows)
 
 
@@ -71,15 +66,14 @@ def described_cloud(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
         "demand": "" if event else DEMANDS[curve.limit.demand].words,
         "line": None if line is None else {"ln_a": line.intercept, "b": line.slope, "sigma": line.sigma},
         "logistic": None if share is None else {"alpha_0": share.intercept, "alpha_1": share.slope},
-        "runs": [
-            {
-                "x": run.intensity,
-                "demand": run.demand if np.isfinite(run.demand) else None,
-                "counts": counts(run, curve, spec),
-            }
-            for run in curve.cloud
-        ],
+        "runs": [_described_run(run, curve, spec) for run in curve.cloud],
     }
+
+
+def _described_run(run: CloudPoint, curve: Curve, spec: FragilitySpec) -> dict[str, object]:
+    """Return the entry of a run in fragility.json; its demand is None unless finite."""
+    demand = run.demand if np.isfinite(run.demand) else None
+    return {"x": run.intensity, "demand": demand, "counts": counts(run, curve, spec)}
 
 
 def note_on_cloud(curve: Curve, spec: FragilitySpec) -> list[str]:

@@ -33,16 +33,19 @@ FIT = (
 )
 """Heads of a table of release.csv."""
 
+
+def _beside(name: str, unit: str, group: str, form: str) -> tuple[Head, Head]:
+    """Return the heads of a measured quantity and of the computed one."""
+    return (
+        Head("measured", form, group=group, value=f"{name}_measured{unit}"),
+        Head("computed", form, group=group, value=f"{name}_computed{unit}"),
+    )
+
+
 IMPACTS = (
     Head("impact", "d", value="impact"),
-    *(
-        Head(origin, form, group=group, value=f"{name}_{origin}{unit}")
-        for name, unit, group, form in (
-            ("t", "_s", "time [s]", ".4f"),
-            ("amplitude", "_rad", "amplitude [rad]", ".5f"),
-            ("restitution", "", "apparent e", ".3f"),
-        )
-        for origin in ("measured", "computed")
-    ),
+    *_beside("t", "_s", "time [s]", ".4f"),
+    *_beside("amplitude", "_rad", "amplitude [rad]", ".5f"),
+    *_beside("restitution", "", "apparent e", ".3f"),
 )
 """Heads of a table of release_impacts.csv."""

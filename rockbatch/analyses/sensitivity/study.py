@@ -104,20 +104,27 @@ WITHIN: dict[str, dict[str, dict[str, Key]]] = {
     "choice": {},
 }
 """Keys of tables within, such as [sensitivity.uniform.damper], or damper.f = … in [sensitivity.uniform]."""
+
+_SHOWN = dict(zip(RESTRAINTS, ("f", "psi", "gap_mm", "gap_mm"), strict=True))
+"""Key of each kind of device that is shown as an example."""
+
+
+def _within(spread: str, what: str, keys: dict[str, Key]) -> Section:
+    """Return the section of the inputs of one kind of device, such as [sensitivity.uniform.damper]."""
+    key = _SHOWN[what]
+    return Section(
+        ("sensitivity", spread, what),
+        f"Inputs of the {what} of a case, the least and the largest value; or write {what}.{key} = {keys[key].example} "
+        f"above. Where several {what}s of a case have the key, {what}_1 is the first that the case has, {what}_2 the next.",
+        keys,
+        numbered=True,
+    )
+
+
 SECTIONS = (
     SENSITIVITY,
     *SPREADS.values(),
-    *(
-        Section(
-            ("sensitivity", spread, what),
-            f"Inputs of the {what} of a case, the least and the largest value; or write {what}.{first} = {keys[first].example} "
-            f"above. Where several {what}s of a case have the key, {what}_1 is the first that the case has, {what}_2 the next.",
-            keys,
-            numbered=True,
-        )
-        for spread, within in WITHIN.items()
-        for (what, keys), first in zip(within.items(), ("f", "psi", "gap_mm", "gap_mm"), strict=False)
-    ),
+    *(_within(spread, what, keys) for spread, within in WITHIN.items() for what, keys in within.items()),
 )
 
 

@@ -65,10 +65,10 @@ def _of_spectra(analysis: FinishedAnalysis, suite: "pd.DataFrame") -> Markup:
 
 def _of_maps(analysis: FinishedAnalysis) -> list[str]:
     """Return a remark on the accuracy of the maps, one for each different setting."""
-    remarks = (
-        f"Boundaries of maps are located within {spec['tolerance']:g} along the ordinate, and beginnings, ends and "
-        f"changes of order of regions within {spec['width']:g} along the abscissa, where the picture has a "
-        "step. Islands narrower than one grid step may be missed."
-        for spec in analysis.info["maps"]
-    )
-    return list(dict.fromkeys(remarks))
+    settings = dict.fromkeys((spec["tolerance"], spec["width"]) for spec in analysis.info["maps"])
+    return [
+        f"Boundaries of maps are located within {tolerance:g} along the ordinate, and beginnings, ends and changes of order of "
+        f"regions within {width:g} along the abscissa, where the picture has a step. Islands narrower than one grid step may "
+        "be missed."
+        for tolerance, width in settings
+    ]

@@ -254,20 +254,9 @@ def _piers(table: Table, alphas: Sequence[float], axis: str, values: list[float]
     A mass that is written in a case alone is left out, as the case adds it. A size that is impossible becomes a problem of the
     file, and ends those of its slenderness.
     """
+    nominal = [case.pier for case in study.cases if not case.columns.get(BOUND)]  # of which the rocking spectrum is
     weighed = has_mass(table.file)
-    templates = dict.fromkeys(
-        replace(
-            case.pier,
-            alpha=1.0,
-            p=1.0,
-            top_m=None,
-            deck_height_m=None,
-            parts=None,
-            mass_t=case.pier.mass_t if weighed else None,
-        )
-        for case in study.cases
-        if not case.columns.get(BOUND)  # the rocking spectrum is of the nominal design
-    )
+    templates = dict.fromkeys(_template(pier, pier.mass_t if weighed else None) for pier in nominal)
     piers: list[PierRead] = []
     for n, alpha in enumerate(alphas):
         for template in templates:
@@ -279,6 +268,11 @@ def _piers(table: Table, alphas: Sequence[float], axis: str, values: list[float]
                     pier = replace(template, alpha=alpha, p=p, confirm=("p", "mass_t"))
                     piers.append(PierRead(pier, values_of_pier))
     return piers
+
+
+def _template(pier: Pier, mass_t: float | None) -> Pier:
+    """Return the pier without deck and parts, of which slenderness and size are still to be set."""
+    return replace(pier, alpha=1.0, p=1.0, top_m=None, deck_height_m=None, parts=None, mass_t=mass_t)
 
 
 def _p(axis: str, alpha: float, value: float, pier: Pier) -> float:

@@ -30,11 +30,17 @@ FIRST = (
     ),
 )
 
+_BY_OTHER_LAW = OtherEnd(
+    OTHER_LAW,
+    "both_laws",
+    "other_law",
+    lambda runs, case: runs.numbers(OTHER_LAW),
+    creeps,
+    model="law",
+    models="spring laws",
+)
 OTHER_ENDS = {
-    name: OtherEnd(OTHER_LAW, "both_laws", "other_law", evaluate, creeps, model="law", models="spring laws")
-    for name, evaluate in {
-        "settlement_m": lambda runs, case: runs.numbers(OTHER_LAW),
-        "toe_settlement_m": toe(OTHER_LAW),
-    }.items()
+    "settlement_m": _BY_OTHER_LAW,
+    "toe_settlement_m": _BY_OTHER_LAW._replace(evaluate=toe(OTHER_LAW)),
 }
 """Ends of the ranges of demands that are by the other law."""
