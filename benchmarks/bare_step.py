@@ -45,7 +45,8 @@ from rockbatch.motions import Motion
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Base, Damper, ElasticBase, FootingBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import Run, Stop, block, ground_of, run_all_fixed, run_all_to_tolerance, springs
-from rockbatch.simulation.models import elements, line_of, system_of
+from rockbatch.simulation.elements import elements
+from rockbatch.simulation.models import line_of, system_of
 from rockbatch.simulation.models import model as model_of
 from rockbatch.simulation.starting import start_of
 

@@ -32,8 +32,8 @@ from rockbatch.motions import Motion
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Base, Pier
 from rockbatch.simulation import chaos, run_all_to_tolerance
-from rockbatch.simulation.models import readings
 from rockbatch.simulation.runs import Run, Stop, run_all_fixed
+from rockbatch.simulation.steps import readings
 
 TOLERANCE = 1e-4
 CHANGES = (1e-8, -1e-8, 3e-9, -3e-9)

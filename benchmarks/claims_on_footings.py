@@ -25,8 +25,8 @@ from independent.pool import Rng, log_uniform, one_of
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import FootingBase, Pier
 from rockbatch.simulation import run_all_to_tolerance
-from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.runs import Run, Stop, run_all_fixed
+from rockbatch.simulation.steps import first_substeps
 
 TOLERANCE = 1e-4  # of α
 QUIET_S = 2.0

@@ -28,7 +28,7 @@ import rockbatch as rb
 from rockbatch.motions import Motion
 from rockbatch.pier import Base, Pier, Restraint, problems
 from rockbatch.simulation import run_fixed
-from rockbatch.simulation.models import first_substeps
+from rockbatch.simulation.steps import first_substeps
 
 DT, DURATION = 0.01, 3.0
 REFINED = 8

@@ -51,7 +51,7 @@ from independent.reference import HORIZON, Reference, reference, twice
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Base, RigidBase, YieldingBase, problems
 from rockbatch.simulation import run_to_tolerance
-from rockbatch.simulation.models import PATIENCE
+from rockbatch.simulation.steps import PATIENCE
 
 TOLERANCE = 1e-4
 RATCHETS = "ratchets over"

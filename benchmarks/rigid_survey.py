@@ -39,8 +39,8 @@ from rockbatch.motions.pairing import to_motions
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Pier, RigidBase
 from rockbatch.simulation import run_all_to_tolerance
-from rockbatch.simulation.models import patience
 from rockbatch.simulation.runs import Run, Stop
+from rockbatch.simulation.steps import patience
 
 TOLERANCE = 1e-4  # of α
 SAME_TIME = 0.01  # over p [s]

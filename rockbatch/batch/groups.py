@@ -7,9 +7,9 @@ from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.error_control import run_all_to_tolerance
 from rockbatch.simulation.leaning import with_lean
-from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.observing import Observer, observed
 from rockbatch.simulation.runs import Run, Stop, run_all_fixed, steps_of
+from rockbatch.simulation.steps import first_substeps
 from rockbatch.study import Numerics
 
 LEAST_GROUP, MOST_GROUP = 32, 1024

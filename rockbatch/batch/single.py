@@ -21,10 +21,10 @@ from rockbatch.results.columns import StudyRun, as_series, row
 from rockbatch.simulation.error_control import run_to_tolerance
 from rockbatch.simulation.histories import histories
 from rockbatch.simulation.leaning import with_lean
-from rockbatch.simulation.models import least_substeps
 from rockbatch.simulation.observing import Observer, observed
 from rockbatch.simulation.recording import Recording, recorded
 from rockbatch.simulation.runs import Run, run_fixed
+from rockbatch.simulation.steps import least_substeps
 from rockbatch.study import Case, Numerics, Output
 from rockbatch.study.spec import LEAST_TOLERANCE
 

@@ -5,8 +5,9 @@ from typing import Any
 
 _HOMES = {
     "rockbatch.core.kernel": ("core_digest",),
-    "rockbatch.simulation.models": ("block", "first_substeps", "ground_of", "least_substeps", "springs"),
+    "rockbatch.simulation.models": ("block", "ground_of", "springs"),
     "rockbatch.simulation.runs": ("Run", "Stop", "run_all_fixed", "run_fixed", "steps_of", "written_run"),
+    "rockbatch.simulation.steps": ("first_substeps", "least_substeps"),
     "rockbatch.simulation.error_control": ("run_all_to_tolerance", "run_to_tolerance"),
 }
 

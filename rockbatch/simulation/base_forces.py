@@ -9,7 +9,8 @@ from rockbatch.core.observe.forces import FORCES, Body, Hold, Outline
 from rockbatch.core.observe.peaks import NEVER, NOTED, Extremes, Limits, RecordedRun, forces_of_run
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase
-from rockbatch.simulation.models import elements, ground_of, model, per_mode
+from rockbatch.simulation.elements import elements
+from rockbatch.simulation.models import ground_of, model, per_mode
 from rockbatch.simulation.restraints import apart, recorded
 from rockbatch.simulation.runs import Run
 from rockbatch.simulation.starting import start_of

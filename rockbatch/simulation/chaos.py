@@ -11,8 +11,8 @@ from rockbatch.outcome.changes import change_of_devices
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Pier
 from rockbatch.simulation.agreement import far_below, same_counts, windows
-from rockbatch.simulation.models import fastest_rate
 from rockbatch.simulation.runs import Run, Stop, Trial, try_all
+from rockbatch.simulation.steps import fastest_rate
 
 CHANGES = {"stronger": 1e-8, "weaker": -1e-8}
 """Relative changes of a motion, less than a record resolves. A result that they change beyond the tolerance is chaotic."""

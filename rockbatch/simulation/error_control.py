@@ -17,8 +17,8 @@ from rockbatch.simulation.coarser import (
     with_modes_error,
     with_strips_error,
 )
-from rockbatch.simulation.models import first_substeps, readings
 from rockbatch.simulation.runs import MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
+from rockbatch.simulation.steps import first_substeps, readings
 
 HALVINGS = 8
 """Greatest number of halvings of the step before a run counts as not converged."""

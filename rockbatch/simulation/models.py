@@ -1,7 +1,6 @@
-"""The core's numbers for piers, bases and motions, and the steps that these need."""
+"""The core's numbers for piers on their bases, and for motions."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -9,7 +8,6 @@ import numpy as np
 
 from rockbatch.core.block import lanes as block_lanes
 from rockbatch.core.block.model import Block
-from rockbatch.core.devices.laws import CONTACT, DAMPERS, HYSTERETIC, MAXWELL, SPRING, TENDON, VISCOUS, Element
 from rockbatch.core.flexure import lanes as flexible_lanes
 from rockbatch.core.flexure.model import FlexibleBlock, Shaft
 from rockbatch.core.flexure.modes import PerMode
@@ -25,68 +23,21 @@ from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
     LAWS,
     Base,
-    Damper,
-    DeckSpring,
     ElasticBase,
     FootingBase,
     Modes,
     Pier,
-    Place,
-    Restraint,
     RigidBase,
-    Tendon,
     YieldingBase,
-    fastest,
-    places,
-    rocking_frequency,
     vertical_frequency,
     yield_deflection,
 )
-
-FREQUENCY_STEP = 0.2
-"""Largest ω h of a first run; the second, with half the step, has at most 0.1, where outcomes were never wrong."""
-
-FIRST_ON_ROCK = 2
-"""Least steps per sample of a first run on a rigid base. With one, that run and the next may take the same sub-steps, since
-both restart at every impact, and agree by chance."""
-
-STABLE_STEP = 2.0
-"""Largest ω h that is run at all: Runge–Kutta 4 is unstable for an oscillator beyond 2√2."""
-
-PATIENCE = 40.0
-"""Longest time after the record, in 1/p, for which a run continues while its energy allows a greater rotation or overturning.
-By then it has left any unstable equilibrium that rounding can hold."""
+from rockbatch.pier.vibration import greatest_rate_of_shaft
+from rockbatch.simulation.elements import prestress
+from rockbatch.simulation.steps import FREQUENCY_STEP
 
 ROUNDING = 1e-12
 """Velocity of a pivot that counts as 0, over g/ω_v on springs and R0 α p on a rigid base."""
-
-STEEP = 100.0
-"""Greatest decay rate, in units of p, by a viscous damper of exponent < 1 on a slow block on rigid ground."""
-
-READ_AFTER = 5.0
-"""Periods 2π/ω_v of vertical vibration between the end of the record and the reading of residuals."""
-
-
-IDLE = Element(
-    kind=VISCOUS,
-    strength=0.0,
-    stiffness=0.0,
-    coefficient=0.0,
-    exponent=1.0,
-    prestress=0.0,
-    offset=0.0,
-    linear_below=0.0,
-    slope=0.0,
-    give=0.0,
-    start=0.0,
-    returned=1.0,
-    quickest=0.0,
-    height=0.0,
-    swing=0.0,
-    way=1.0,
-)
-"""A forceless element in the middle of the base, from which others are made."""
-
 
 if unknown := set(CODES) ^ {"elastic", *LAWS}:
     raise TypeError(
@@ -214,7 +165,7 @@ def flexible_block(pier: Pier, base: RigidBase) -> FlexibleBlock:
         deck=0.0,
         top=float(pier.top),
         tipping=_tipping(rigid, modes),
-        flight_step=0.5 * FREQUENCY_STEP / _vibration(pier, base, rigid.inertia + rigid.height**2),
+        flight_step=0.5 * FREQUENCY_STEP / greatest_rate_of_shaft(pier, base, rigid.inertia + rigid.height**2),
         share=per_mode(modes.share),
         coupling=per_mode(modes.coupling),
         frequency=per_mode(modes.frequency, float(modes.frequency[-1])),
@@ -308,183 +259,6 @@ def line_of(
     return spring_lanes.line_of(m, *timing, *readings, prestress, start.v, start.theta, start.z_left, start.z_right)
 
 
-def elements(pier: Pier, base: Base) -> list[Element]:
-    """Return the core's numbers for the devices of ``base``, one Element for each place, per unit mass."""
-    return [_element(pier, base, device, place) for device in base.restraints for place in places(pier, device)]
-
-
-def _element(pier: Pier, base: Base, device: Restraint, place: Place) -> Element:
-    """Return the Element of a device at a place."""
-    element = IDLE._replace(offset=float(place.offset))
-    if place.height != 0.0:
-        swing = 0.0 if base.on_springs else pier.half_width
-        element = IDLE._replace(height=float(place.height), swing=float(swing), way=float(place.way or 1.0))
-    if isinstance(device, Damper):
-        return _damper(pier, base, device, element)
-    stiffness = float(device.lam * pier.gravity * pier.size / pier.half_width**2)
-    if isinstance(device, Tendon):
-        strength, prestress = float(pier.gravity * device.strength), float(pier.gravity * device.psi)
-        return element._replace(kind=TENDON, strength=strength, stiffness=stiffness, prestress=prestress)
-    if isinstance(device, DeckSpring) and device.linear:
-        return element._replace(kind=SPRING, stiffness=stiffness, linear_below=math.inf)
-    returned = float(device.restitution**2)
-    quickest = math.sqrt(_accelerance(pier, base, element) * stiffness / returned)
-    return element._replace(
-        kind=CONTACT, stiffness=stiffness, start=float(device.gap_m), returned=returned, quickest=quickest
-    )
-
-
-def _damper(pier: Pier, base: Base, damper: Damper, element: Element) -> Element:
-    """Return the Element of a damper at the place of ``element``."""
-    if damper.brace < math.inf:
-        return _braced(pier, damper, element)
-    force, coefficient = float(pier.gravity * damper.f), float(damper.nu * pier.p)
-    soft = float(1.0 / damper.yield_m) if damper.kind == "hysteretic" else 0.0
-    linear_below, slope = _linear_part(pier, base, element, coefficient, float(damper.exponent))
-    return element._replace(
-        kind=DAMPERS[damper.kind],
-        strength=force,
-        stiffness=soft,
-        coefficient=coefficient,
-        exponent=float(damper.exponent),
-        linear_below=linear_below,
-        slope=slope,
-    )
-
-
-def _braced(pier: Pier, damper: Damper, element: Element) -> Element:
-    """Return the Element of a damper on a brace at the place of ``element``; an idle one for a viscous damper without force."""
-    stiffness = float(damper.brace * pier.gravity * pier.size / pier.half_width**2)
-    if damper.kind == "hysteretic":
-        force, soft = float(pier.gravity * damper.f), float(1.0 / damper.yield_m)
-        return element._replace(kind=HYSTERETIC, strength=force, stiffness=soft, give=force * soft / stiffness)
-    coefficient, exponent = float(damper.nu * pier.p), float(damper.exponent)
-    if coefficient == 0.0:
-        return element._replace(linear_below=math.inf)
-    linear_below, quickest = math.inf if exponent == 1.0 else 0.0, stiffness / (exponent * coefficient)
-    element = element._replace(kind=MAXWELL, stiffness=stiffness, linear_below=linear_below, quickest=quickest)
-    return element._replace(coefficient=coefficient, exponent=exponent)
-
-
-def _linear_part(pier: Pier, base: Base, element: Element, coefficient: float, exponent: float) -> tuple[float, float]:
-    """Return the speed [m/s] below which a viscous damper is linear, and the slope [1/s] of its force there.
-
-    For a < 1 the damping rate is unbounded at low speed, and would stop small motions faster than any step resolves. Infinite and
-    the coefficient for a = 1; 0 and 0 for a > 1 and without a coefficient.
-    """
-    if exponent > 1.0 or coefficient == 0.0:
-        return 0.0, 0.0
-    if exponent == 1.0:
-        return math.inf, coefficient
-    speed = (coefficient * _accelerance(pier, base, element) / _fastest(pier, base)) ** (1.0 / (1.0 - exponent))
-    return speed, coefficient * speed ** (exponent - 1.0)
-
-
-def _fastest(pier: Pier, base: Base) -> float:
-    """Return the greatest frequency or decay rate [1/s] on ground that gives, without devices; else the bound STEEP p."""
-    if not base.on_springs:
-        return STEEP * pier.p
-    if not base.bends:
-        return fastest(pier, base)
-    if isinstance(base, FootingBase):
-        return _fastest_bending(footing(pier, base), _parts_of_bed(pier, base))
-    m = springs(pier, base)
-    both = [Support(side * m.half_width, m.yield_force * m.stiffness, m.damping) for side in (-1.0, 1.0)]
-    return _fastest_bending(m, (both, both[1:], []))
-
-
-class Support(NamedTuple):
-    """A spring with a dashpot under a pier, per unit mass."""
-
-    place: float  # to the right of the middle of the base [m]
-    stiffness: float  # [1/s²]
-    damping: float  # [1/s]
-
-
-PRESSED = (1.0, 0.8, 0.6, 0.4, 0.2, 0.1, 0.05, 0.0)
-"""Shares of a bed, from an edge on, for which the greatest rate of a pier whose shaft bends is looked for."""
-
-
-def _parts_of_bed(pier: Pier, base: FootingBase) -> Iterator[list[Support]]:
-    """Yield, for each share of a bed (:data:`PRESSED`), two supports with its stiffness and damping, vertical and in rocking."""
-    omega_v, b = vertical_frequency(pier, base), pier.half_width
-    for share in PRESSED:
-        middle, apart = b * (1.0 - share), b * share / math.sqrt(3.0)
-        stiffness, damping = 0.5 * share * omega_v**2, share * base.zeta * omega_v
-        yield [Support(float(middle + side * apart), float(stiffness), float(damping)) for side in (-1.0, 1.0)]
-
-
-def _fastest_bending(m: Springs | Footing, contacts: Iterable[Sequence[Support]]) -> float:
-    """Return the greatest rate [1/s] of a pier whose shaft bends, on the supports of any of ``contacts``."""
-    shaft, greatest = m.shaft, 0.0
-    assert shaft is not None
-    n = 2 + len(shaft.share)
-    masses = np.diag([1.0, m.inertia + m.height**2, *np.ones(n - 2)])
-    masses[1, 2:] = masses[2:, 1] = np.array(shaft.lever) + m.height * np.array(shaft.share)
-    for supports in contacts:
-        stiffness = np.diag([0.0, 0.0, *np.square(shaft.frequency)])
-        damping = np.diag([0.0, 0.0, *shaft.damping])
-        for support in supports:
-            arm = np.array([1.0, -support.place, *np.zeros(n - 2)])
-            stiffness += support.stiffness * np.outer(arm, arm)
-            damping += support.damping * np.outer(arm, arm)
-        rates = np.linalg.solve(masses, np.hstack((stiffness, damping)))
-        system = np.vstack((np.hstack((np.zeros((n, n)), np.eye(n))), -rates))
-        greatest = max(greatest, float(np.abs(np.linalg.eigvals(system)).max()))
-    return greatest
-
-
-def _accelerance(pier: Pier, base: Base, element: Element) -> float:
-    """Return the acceleration at a device by a unit force there per unit mass.
-
-    On a rigid base it is that about the farther pivot, else that in full contact.
-    """
-    if element.height != 0.0:
-        inertia = pier.inertia + pier.height**2 if base.on_springs else pier.inertia_about_pivot
-        return (element.height**2 + element.swing**2) / inertia
-    if not base.on_springs:
-        return (pier.half_width + abs(element.offset)) ** 2 / pier.inertia_about_pivot
-    return 1.0 + element.offset**2 / (pier.inertia + pier.height**2)
-
-
-@lru_cache(maxsize=4096)
-def prestress(pier: Pier, base: Base) -> float:
-    """Return Σ P0/M of all tendons [m/s²], counted at every place; 0 without any."""
-    return sum(law.prestress for law in elements(pier, base))
-
-
-def _vibration(pier: Pier, base: RigidBase, turning: float) -> float:
-    """Return the greatest rate [1/s] of the shaft's modes coupled with a rotation of the inertia ``turning`` [m²]."""
-    modes = base.modes(pier)
-    n = len(modes.frequency)
-    # Without the rotation, whose acceleration is −Σ λ_i ü_i/J
-    masses = np.eye(n) - np.outer(modes.coupling, modes.coupling) / turning
-    pulls = np.hstack((np.diag(modes.frequency**2), np.diag(2.0 * base.damping_ratios(pier) * modes.frequency)))
-    system = np.vstack((np.hstack((np.zeros((n, n)), np.eye(n))), -np.linalg.solve(masses, pulls)))
-    return float(np.abs(np.linalg.eigvals(system)).max())
-
-
-@lru_cache(maxsize=4096)
-def fastest_rate(pier: Pier, base: Base) -> float:
-    """Return the greatest rate [1/s] of a model: of springs, vibration against devices, or decay by linear dampers.
-
-    On rigid ground with a viscous damper of exponent < 1 it is at least STEEP p.
-    """
-    stiff, slows, relaxes, steep = 0.0, 0.0, 0.0, False
-    for law in elements(pier, base):
-        lever = _accelerance(pier, base, law)
-        steel = law.strength / (1.0 + law.give) if law.kind == HYSTERETIC else 0.0
-        stiff += lever * law.stiffness * (steel or law.kind in (TENDON, SPRING, MAXWELL))
-        slows += lever * law.coefficient if law.kind == VISCOUS else 0.0
-        steep = steep or (law.kind == VISCOUS and law.exponent < 1.0)
-        relaxes = max(relaxes, law.quickest if law.kind == MAXWELL and law.exponent == 1.0 else 0.0)
-    if base.on_springs:
-        return max(math.hypot(_fastest(pier, base), math.sqrt(stiff)), 2.0 * slows, relaxes)
-    if base.bends:
-        stiff += _vibration(pier, base, pier.inertia_about_pivot) ** 2
-    return max(math.sqrt(stiff), _fastest(pier, base) if steep else slows, relaxes)
-
-
 def ground_of(motion: Motion) -> Samples:
     """Return the core's rows of a motion, shape (npts, 4); see :func:`rockbatch.core.ground.ground_rows`."""
     vertical = () if motion.vertical is None else motion.vertical
@@ -494,39 +268,3 @@ def ground_of(motion: Motion) -> Samples:
 def acceleration_at(samples: Samples, dt: float, t: Samples | float) -> Samples:
     """Return the ground acceleration at times ``t``: linear between ``samples``, zero from the sample after the last."""
     return np.interp(t, np.arange(len(samples) + 1) * dt, np.append(samples, 0.0))
-
-
-def first_substeps(pier: Pier, base: Base, dt: float) -> int:
-    """Return the steps per sample of ``dt`` [s] of a first run: with the model's fastest rate ω, ω h ≤ :data:`FREQUENCY_STEP`.
-
-    One at least, on a rigid base two.
-    """
-    return max(_substeps_for(FREQUENCY_STEP, pier, base, dt), 1 if base.on_springs else FIRST_ON_ROCK)
-
-
-def least_substeps(pier: Pier, base: Base, dt: float) -> int:
-    """Return the least steps per sample of ``dt`` [s] with which the integration is stable, ω h ≤ :data:`STABLE_STEP`."""
-    return _substeps_for(STABLE_STEP, pier, base, dt)
-
-
-def _substeps_for(largest: float, pier: Pier, base: Base, dt: float) -> int:
-    return max(1, math.ceil(fastest_rate(pier, base) * dt / largest - 1e-9))
-
-
-def patience(pier: Pier, dt: float) -> int:
-    """Return the greatest number of samples of ``dt`` [s] after the record: those of 40/p (:data:`PATIENCE`), and one more."""
-    return int(PATIENCE / (pier.p * dt)) + 1
-
-
-@lru_cache(maxsize=4096)
-def readings(pier: Pier, base: Base, dt: float) -> tuple[int, int]:
-    """Return the samples of ``dt`` [s] from the record's end to the first reading of residuals, and from that to the second.
-
-    The first comes :data:`READ_AFTER` periods of vertical vibration after the record; the second, at least as long after the
-    first, gives their drift over whole periods of full-contact rocking. 0 and 0 on other bases than yielding springs.
-    """
-    if not isinstance(base, YieldingBase):
-        return 0, 0
-    interval = READ_AFTER * 2.0 * math.pi / vertical_frequency(pier, base)
-    rocking = 2.0 * math.pi / rocking_frequency(pier, base)
-    return math.ceil(interval / dt), math.ceil(math.ceil(interval / rocking) * rocking / dt)

@@ -29,7 +29,8 @@ from rockbatch.core.types import Result
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.device_work import Courses, Work, work_of
 from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase, places
-from rockbatch.simulation.models import elements, footing, model, prestress, springs
+from rockbatch.simulation.elements import elements, prestress
+from rockbatch.simulation.models import footing, model, springs
 from rockbatch.simulation.starting import start_of
 
 AT_REST = 1e-9

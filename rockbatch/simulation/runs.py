@@ -31,21 +31,11 @@ from rockbatch.pier import (
 from rockbatch.pier.laws import without_ratcheting
 from rockbatch.simulation.beds import of_bed
 from rockbatch.simulation.compilation import kernel_of
-from rockbatch.simulation.models import (
-    Line,
-    acceleration_at,
-    elements,
-    first_substeps,
-    ground_of,
-    least_substeps,
-    line_of,
-    model,
-    patience,
-    prestress,
-    readings,
-)
+from rockbatch.simulation.elements import elements, prestress
+from rockbatch.simulation.models import Line, acceleration_at, ground_of, line_of, model
 from rockbatch.simulation.restraints import rests_at, rests_on_rigid_base
 from rockbatch.simulation.starting import start_of
+from rockbatch.simulation.steps import first_substeps, least_substeps, patience, readings
 
 MOST_STEPS = 1e8
 """Greatest number of steps of a run, about 15 s of computing."""

@@ -28,7 +28,8 @@ from rockbatch.outcome.changes import LEAST, Sized, greatest_change
 from rockbatch.outcome.outcome import Section
 from rockbatch.pier import Modes, Pier, WithShaft, bent_above
 from rockbatch.pier.sections import above
-from rockbatch.simulation.models import elements, ground_of, model
+from rockbatch.simulation.elements import elements
+from rockbatch.simulation.models import ground_of, model
 from rockbatch.simulation.restraints import apart
 from rockbatch.simulation.restraints import recorded as recorded_devices
 from rockbatch.simulation.runs import Run

@@ -13,7 +13,8 @@ import numpy as np
 from rockbatch.core.devices.laws import CONTACT, FRICTION, HYSTERETIC, SPRING, TENDON, Element
 from rockbatch.pier import Base, ElasticBase, FootingBase, Pier
 from rockbatch.pier.first_loading import steel
-from rockbatch.simulation.models import Start, elements, prestress, springs
+from rockbatch.simulation.elements import elements, prestress
+from rockbatch.simulation.models import Start, springs
 
 _STANDING = Start()
 

@@ -24,7 +24,7 @@ from rockbatch.core.devices.laws import (
 from rockbatch.core.types import Ground, Moment
 from rockbatch.pier import Pier, RigidBase
 from rockbatch.simulation import block
-from rockbatch.simulation.models import IDLE
+from rockbatch.simulation.elements import IDLE
 
 REST, LENGTH = 1e-9, 1e-12
 TIE = IDLE._replace(kind=TENDON, strength=4.0, stiffness=30.0, prestress=1.0)

@@ -26,7 +26,7 @@ from rockbatch.core.devices.laws import (
     stop_force,
     stored,
 )
-from rockbatch.simulation.models import IDLE
+from rockbatch.simulation.elements import IDLE
 
 INF = math.inf
 DAMPER = IDLE._replace(kind=VISCOUS, coefficient=3.0, exponent=0.5, linear_below=0.01, slope=3.0 * 0.01**-0.5)

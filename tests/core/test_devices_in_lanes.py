@@ -14,7 +14,7 @@ from rockbatch.core.table import LANES
 from rockbatch.motions import Motion
 from rockbatch.pier import Damper, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import Run, Stop, run_all_fixed, runs
-from rockbatch.simulation.models import IDLE
+from rockbatch.simulation.elements import IDLE
 from rockbatch.simulation.runs import written_runs
 
 VISCOUS, SLIDING = Damper("viscous", nu=0.2), Damper("friction", f=0.05)

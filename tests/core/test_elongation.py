@@ -11,7 +11,8 @@ from rockbatch.core.devices.laws import FRICTION
 from rockbatch.core.springs.model import Contact, State
 from rockbatch.core.types import Ground
 from rockbatch.pier import ElasticBase, Pier
-from rockbatch.simulation.models import IDLE, springs
+from rockbatch.simulation.elements import IDLE
+from rockbatch.simulation.models import springs
 from rockbatch.simulation.starting import _deck_elongation
 
 PIER = Pier(0.3, 1.2)

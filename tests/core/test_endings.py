@@ -14,7 +14,7 @@ from rockbatch.core.springs.model import Contact, State, Supports
 from rockbatch.core.types import GROWING, RESTLESS, SURVIVED, UNDECIDED, Moment
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import block, run_fixed, run_to_tolerance, springs
-from rockbatch.simulation.models import IDLE
+from rockbatch.simulation.elements import IDLE
 
 
 @pytest.mark.parametrize("quiet_s", [0.0, 2.0, 20.0])

@@ -12,7 +12,8 @@ from rockbatch.core.flexure.model import Flexing
 from rockbatch.core.types import RESTLESS, RUNNING, SURVIVED, UNDECIDED, Moment
 from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.simulation import block, springs
-from rockbatch.simulation.models import IDLE, flexible_block
+from rockbatch.simulation.elements import IDLE
+from rockbatch.simulation.models import flexible_block
 
 BOTH, NONE, RIGHT, LEFT = Stance(1, 1, 0, 0), Stance(0, 0, 1, 1), Stance(0, 1, 1, 1), Stance(1, 0, -1, -1)
 COMMON = {

@@ -36,7 +36,8 @@ from rockbatch.core.types import OF_PIER, Ground, Instant, Moment
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
 from rockbatch.simulation import runs
-from rockbatch.simulation.models import IDLE, model, springs, system_of
+from rockbatch.simulation.elements import IDLE
+from rockbatch.simulation.models import model, springs, system_of
 from rockbatch.simulation.sections import InSection, in_body, in_section, recorded
 
 FIG5 = Pier(alpha=0.20, p=1.0)

@@ -12,7 +12,8 @@ from rockbatch.core.devices.lanes import equipment_of
 from rockbatch.core.history import MOMENT
 from rockbatch.core.run import march
 from rockbatch.pier import ElasticBase, RigidBase, YieldingBase
-from rockbatch.simulation.models import block, elements
+from rockbatch.simulation.elements import elements
+from rockbatch.simulation.models import block
 
 ELASTIC = ElasticBase(50.0, epsilon=0.3)
 BOUC_WEN = YieldingBase(50.0, epsilon=0.3, eta=3.0)

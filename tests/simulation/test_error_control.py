@@ -17,6 +17,7 @@ from rockbatch.motions.motion import Motion
 from rockbatch.outcome.changes import Sized, greatest_change
 from rockbatch.outcome.outcome import Failure, Outcome
 from rockbatch.pier import Damper, DeckSpring, ElasticBase, Part, Pier, RigidBase, Tendon, YieldingBase
+from rockbatch.pier.vibration import greatest_rate_of_shaft
 from rockbatch.simulation import (
     Run,
     agreement,
@@ -29,8 +30,9 @@ from rockbatch.simulation import (
     run_to_tolerance,
 )
 from rockbatch.simulation.agreement import windows
-from rockbatch.simulation.models import _vibration, elements, fastest_rate, readings
+from rockbatch.simulation.elements import elements
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
+from rockbatch.simulation.steps import fastest_rate, readings
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 
@@ -504,7 +506,7 @@ def test_steps_respect_how_fast_a_shaft_vibrates_or_creeps_beside_a_rotation(dam
     mass = np.block([[np.array([[turning]]), modes.coupling[None]], [modes.coupling[:, None], np.eye(n)]])
     soft, slow = (-np.linalg.solve(mass, np.diag(each)) for each in (frequency**2, 2.0 * damping * frequency))
     rates = np.linalg.eigvals(np.block([[np.zeros((n + 1, n + 1)), np.eye(n + 1)], [soft, slow]]))
-    assert _vibration(pier, base, turning) == pytest.approx(np.abs(rates).max(), rel=1e-6)
+    assert greatest_rate_of_shaft(pier, base, turning) == pytest.approx(np.abs(rates).max(), rel=1e-6)
 
 
 @pytest.mark.parametrize(("devices", "rate"), RATES)

@@ -24,9 +24,9 @@ from rockbatch.results.labels import Series
 from rockbatch.results.run_json import describe_case
 from rockbatch.simulation import Run, Stop, run_all_to_tolerance, run_fixed, run_to_tolerance
 from rockbatch.simulation.leaning import PARTS, greatest_swing, lean_of, unstressed, with_lean
-from rockbatch.simulation.models import readings
 from rockbatch.simulation.observing import observed
 from rockbatch.simulation.recording import recorded
+from rockbatch.simulation.steps import readings
 from rockbatch.study import Case, Numerics, Output, load_study
 
 PIER = Pier(alpha=0.2, p=1.0)

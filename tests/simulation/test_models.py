@@ -4,7 +4,8 @@ import pytest
 from core_samples import FIG5
 
 from rockbatch.pier import ElasticBase, Pier, RigidBase, Tendon, YieldingBase
-from rockbatch.simulation.models import elements, model
+from rockbatch.simulation.elements import elements
+from rockbatch.simulation.models import model
 from rockbatch.simulation.restraints import _at_rest
 
 UNITS = {

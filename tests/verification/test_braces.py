@@ -16,7 +16,7 @@ from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Damper, ElasticBase, RigidBase
 from rockbatch.simulation import Run, run_fixed, written_run
-from rockbatch.simulation.models import first_substeps
+from rockbatch.simulation.steps import first_substeps
 
 BRACED = {
     "linear": (Damper("viscous", nu=1.0, brace=2.0),),

@@ -10,7 +10,7 @@ from core_samples import has_usual_n
 
 from rockbatch.motions import Motion
 from rockbatch.simulation import run_fixed, run_to_tolerance
-from rockbatch.simulation.models import readings
+from rockbatch.simulation.steps import readings
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 

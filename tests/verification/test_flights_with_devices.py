@@ -12,7 +12,8 @@ import rockbatch as rb
 from rockbatch.core.block.model import Rocking, Stance
 from rockbatch.core.types import Ground, Instant, Moment, Pull
 from rockbatch.simulation import written_run
-from rockbatch.simulation.models import block, elements
+from rockbatch.simulation.elements import elements
+from rockbatch.simulation.models import block
 from rockbatch.simulation.runs import Run
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"

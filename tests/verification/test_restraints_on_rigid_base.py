@@ -25,7 +25,8 @@ from rockbatch.core.run import march
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Damper, DeckSpring, ElasticBase, Pier, RigidBase, Tendon, problems, recentres
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
-from rockbatch.simulation.models import block, elements
+from rockbatch.simulation.elements import elements
+from rockbatch.simulation.models import block
 from rockbatch.simulation.restraints import rests_on_rigid_base
 from rockbatch.simulation.runs import LEFT_ALONE
 

@@ -17,9 +17,9 @@ from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Damper, DeckSpring, ElasticBase, RigidBase, Tendon, YieldingBase, places, problems
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
-from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.restraints import rests_at
 from rockbatch.simulation.starting import start_of
+from rockbatch.simulation.steps import first_substeps
 
 ELASTIC = ElasticBase(50.0, epsilon=0.3)
 DAMPED = ElasticBase(50.0, zeta=0.05)

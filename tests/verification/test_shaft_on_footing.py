@@ -25,10 +25,11 @@ from rockbatch.pier import vertical_frequency
 from rockbatch.simulation import Run, run_fixed, written_run
 from rockbatch.simulation.coarser import coarser, with_modes_error, with_strips_error
 from rockbatch.simulation.histories import of_modes
-from rockbatch.simulation.models import fastest_rate, first_substeps, footing
+from rockbatch.simulation.models import footing
 from rockbatch.simulation.restraints import rests_at
 from rockbatch.simulation.runs import _BLANK as BLANK
 from rockbatch.simulation.runs import Trial
+from rockbatch.simulation.steps import fastest_rate, first_substeps
 
 PIER, ROCK = pier_of(*TOWER), rb.RigidBase(shaft="elastic", flexural_damping=0.03)
 SOME = Touch(1.0, 1.0, 0.0)

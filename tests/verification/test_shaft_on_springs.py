@@ -21,8 +21,10 @@ from rockbatch.core.springs.model import BentState, Contact, Supports
 from rockbatch.core.types import SAMPLE, Ground, Moment, Pull
 from rockbatch.motions.motion import Motion
 from rockbatch.simulation import Run, run_fixed, written_run
+from rockbatch.simulation.elements import elements
 from rockbatch.simulation.histories import of_modes
-from rockbatch.simulation.models import first_substeps, springs
+from rockbatch.simulation.models import springs
+from rockbatch.simulation.steps import fastest_rate, first_substeps
 
 BENDS = {"shaft": "elastic", "flexural_damping": 0.03, "kinematics": "finite", "zeta": 0.2}
 LAWS = {"epp": reference.perfectly_plastic, "bouc-wen": reference.bouc_wen}
@@ -74,6 +76,28 @@ def test_accelerations_are_those_of_the_mass_points_in_all_contacts(uncompiled):
             expected.append(wanted)
     found = np.array(uncompiled(values_of, calls))
     np.testing.assert_allclose(found[:, [2, 3, 10, 11, 12, 13]], expected, rtol=1e-8, atol=1e-9)
+
+
+def test_steps_resolve_the_fastest_motion_and_a_damper_decays_no_faster():
+    """The greatest eigenvalue of the mass points on both springs, on either, and in the air; below its linear speed the damper
+    decays at this rate where it acts."""
+    base, of, rest = base_of(), points_of(*TOWER, ROCK), np.zeros(6)
+    supports, greatest = supports_of(base), 0.0
+    _, _, _, _, across, up = reference.places(of, (1.0, 1.0), rest)
+    mass = (across * shares(of)) @ across.T + (up * shares(of)) @ up.T
+    pivots = np.stack([np.ones(2), reference.pivots(of, rest, rest)[2], *np.zeros((4, 2))])
+    for down in CONTACTS:
+        springs = (pivots * down) @ pivots.T
+        stiffness = np.diag([0.0, 0.0, *of.frequency**2]) + supports.strength / supports.deflection * springs
+        damping = np.diag([0.0, 0.0, *2.0 * of.damping_ratio * of.frequency]) + supports.damping * springs
+        slopes = -np.linalg.solve(mass, np.hstack((stiffness, damping)))
+        rates = np.linalg.eigvals(np.vstack((np.hstack((np.zeros((6, 6)), np.eye(6))), slopes)))
+        greatest = max(greatest, abs(rates).max())
+    assert fastest_rate(PIER, base) == pytest.approx(greatest, rel=1e-6)
+    damped = replace(base, restraints=(rb.Damper("viscous", nu=3.0, exponent=0.5, at=0.0),))
+    (damper,) = elements(PIER, damped)
+    assert damper.slope == pytest.approx(greatest, rel=1e-6)  # a unit mass in the middle of the base
+    assert fastest_rate(PIER, damped) == fastest_rate(PIER, base)
 
 
 def both_of(of, supports, q, rates, z, shaking):

@@ -12,7 +12,7 @@ import rockbatch as rb
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Damper, RigidBase, Stop, Tendon, problems
 from rockbatch.simulation import run_fixed, run_to_tolerance
-from rockbatch.simulation.models import first_substeps
+from rockbatch.simulation.steps import first_substeps
 
 STOPS = {
     "elastic": (Stop(0.04, 20.0),),

@@ -21,8 +21,8 @@ from rockbatch.common.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun
-from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.runs import Stop, run_all_fixed, run_fixed
+from rockbatch.simulation.steps import first_substeps
 from rockbatch.study import Study
 
 SUBSTEPS = (1, 2, 4, 8, 16, 32)

@@ -21,9 +21,9 @@ from rockbatch.motions import Motion
 from rockbatch.outcome.half_cycles import apparent_restitution
 from rockbatch.pier import Base
 from rockbatch.simulation.histories import cycles_of
-from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.recording import recorded
 from rockbatch.simulation.runs import Run, run_fixed
+from rockbatch.simulation.steps import first_substeps
 from rockbatch.study import Case, Motions, Study
 from rockbatch.workflow.analysis import Analysis, AnalysisFolder, run_analysis
 
