@@ -12,7 +12,7 @@ from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
 from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
-from rockbatch.common.showing import shown
+from rockbatch.common.showing import capital, shown
 from rockbatch.quantities.cases import name_along
 from rockbatch.quantities.design import BOUND, under
 from rockbatch.quantities.statistics import STATISTICS
@@ -240,7 +240,7 @@ class _Cases:
         if not names:
             return None
         text = f"{self._among(names)} {'is' if len(names) == 1 else 'are'} not checked"
-        return Line(NOT_DECIDED, _capital(text), self._with_ends(names), ())
+        return Line(NOT_DECIDED, capital(text), self._with_ends(names), ())
 
     def _with_ends(self, names: Sequence[str]) -> str:
         """Return up to three names of cases, most runs cut short first: "pads, 2 of 10 runs overturned; piles".
@@ -300,7 +300,7 @@ class _Cases:
         text = f"{self._among(free)} meet{'s' * (len(free) == 1)} the limits, but none is set on {names}"
         values = ", ".join(f"{RESPONSES[name].words} {in_words(response)}" for name, response in worst.items())
         details = f"Without a limit, at most: {values}.", *self._cut_short(list(free))
-        return Line(NOT_DECIDED, _capital(text), _few(list(free)), details)
+        return Line(NOT_DECIDED, capital(text), _few(list(free)), details)
 
     def failing(self, names: Sequence[str]) -> Line | None:
         """Return the line on cases that fail a check, with the nearest to passing if its ratio is finite; None for no case."""
@@ -311,7 +311,7 @@ class _Cases:
         text = f"{self._among(names)} fail{'s' * (len(names) == 1)}"
         return Line(
             FAIL,
-            _capital(text),
+            capital(text),
             "" if len(names) == len(self.every) else _few(names),
             ((details,) * math.isfinite(_excess(near)) + self._failing_bounds(names)),
         )
@@ -338,7 +338,7 @@ class _Cases:
                 place = f"{name} " if len(self.every) > 1 else ""
                 sentences.append(f"{place}fails under {_listed([str(bound) for bound in failing], ', ')} only.")
         few = sentences[:MOST_NAMES]
-        return (*(_capital(words) if len(self.every) == 1 else words for words in few),)
+        return (*(capital(words) if len(self.every) == 1 else words for words in few),)
 
     def undecided(self, names: Sequence[str], failing: Sequence[str]) -> Line | None:
         """Return the line on undecided cases ``names`` with reasons, and undecided checks of ``failing`` ones; None for neither.
@@ -356,7 +356,7 @@ class _Cases:
             details.append(f"and {len(others) - MOST_CHECKS} more.")
         if idle:
             details.append(f"{idle}: not decided in cases that fail anyway.")
-        return Line(NOT_DECIDED, _capital(f"{self._among(names)} cannot be decided"), _few(names), tuple(details))
+        return Line(NOT_DECIDED, capital(f"{self._among(names)} cannot be decided"), _few(names), tuple(details))
 
     def _reasons_without_bound(self, verdicts: Sequence[Verdict]) -> list[str]:
         """Return a sentence for each omission that leaves demands without an upper bound; [] for none."""
@@ -404,11 +404,6 @@ def _excess(verdict: Verdict) -> float:
     Infinite for events that must not occur, and for a ratio of NaN.
     """
     return math.inf if verdict.is_ban or math.isnan(verdict.ratio) else verdict.ratio
-
-
-def _capital(words: str) -> str:
-    """Return words with a capital first letter."""
-    return words[0].upper() + words[1:]
 
 
 def _few(names: Sequence[str]) -> str:

@@ -70,6 +70,11 @@ def several(n: int, noun: str) -> str:
     return "" if n == 0 else f"{n} {noun}" if n == 1 else f"{n} {noun}s"
 
 
+def capital(words: str) -> str:
+    """Return words with a capital first letter; "" for none."""
+    return words[:1].upper() + words[1:]
+
+
 def shown(value: object, limit: int = 60) -> str:
     """Return the value as TOML writes it, a text in quotes, legible, and cut with "…" if longer than ``limit``."""
     if isinstance(value, bool):

@@ -13,6 +13,7 @@ import numpy as np
 from rockbatch.common.errors import EditedTable, InputError
 from rockbatch.common.files import read_table, read_text, sha256_of
 from rockbatch.common.lazy import pd
+from rockbatch.common.showing import capital
 from rockbatch.quantities.labels import in_full
 from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, join, tag
@@ -53,7 +54,7 @@ class FinishedAnalysis:
             parts.append(f"{counted(len(motions), 'ground motion')}: {'; '.join(motions[:MOST_NAMES])}{more}")
         if versions:
             parts.append(f"made with {', '.join(f'{name} {version}' for name, version in versions.items())}")
-        sentences = ". ".join(part[0].upper() + part[1:] for part in parts)
+        sentences = ". ".join(map(capital, parts))
         return tag("p", sentences, ".", class_="legend") if parts else Markup("")
 
     def table(self, name: str, columns: Collection[str]) -> "pd.DataFrame | None":

@@ -11,6 +11,7 @@ from rockbatch.checks.wording import percent
 from rockbatch.common.analyses import Entry
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
+from rockbatch.common.showing import capital
 from rockbatch.reporting.finished_analysis import named
 from rockbatch.reporting.labels import counted
 from rockbatch.results.labelled import as_dicts
@@ -35,9 +36,7 @@ def answer(info: Entry, intervals: "pd.DataFrame", values: "pd.DataFrame") -> li
     for label, own in by_design(info, rows).items():
         several = len(info["designs"]) > 1 or info["lacking"]
         of_one = _of_map(info, own) if len(info["vary"]) > 1 else _of_line(info, own, tried[label])
-        said += [
-            (verdict, f"{label}: {words}" if several else words[0].upper() + words[1:]) for verdict, words in of_one
-        ]
+        said += [(verdict, f"{label}: {words}" if several else capital(words)) for verdict, words in of_one]
     return [*said, *_remarks(info, rows)]
 
 

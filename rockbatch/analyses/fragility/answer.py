@@ -6,6 +6,7 @@ from rockbatch.analyses.fragility.figures import label
 from rockbatch.analyses.fragility.quantities import FEW, Curve, bound_in_words, level_of, percent, power
 from rockbatch.common.analyses import Entry
 from rockbatch.common.grouping import grouped
+from rockbatch.common.showing import capital
 from rockbatch.quantities.labels import plain
 from rockbatch.reporting.finished_analysis import answered, sentence
 from rockbatch.reporting.labels import counted
@@ -29,7 +30,7 @@ def of_curves(info: Info) -> Markup:
     the second sentence says that no other limit is exceeded, or none has a lower median. A single limit has no second sentence.
     """
     overturning, *others = grouped(info["curves"], lambda curve: curve["limit_state"]).values()
-    sentences = [_of_limit(info, overturning, _capital(overturning[0]["limit_state"]))]
+    sentences = [_of_limit(info, overturning, capital(overturning[0]["limit_state"]))]
     weakest = min(others, key=_lowest, default=None)
     if weakest is not None and (_lowest(weakest) < _lowest(overturning) or _lowest(weakest) == 0.0):
         words = f" ({weakest[0]['words']})" if weakest[0]["words"] else ""
@@ -47,7 +48,7 @@ def of_rates(info: Info) -> Markup:
     known = {name: [curve for curve in curves if curve["risk"]] for name, curves in by_limit.items()}
     overturning, *_ = known
     often = max(known, key=lambda name: max(map(_rate, known[name]), default=0.0))
-    subjects = {name: _capital(name) for name in (overturning, often)}
+    subjects = {name: capital(name) for name in (overturning, often)}
     if info["hazard"]["source"]:
         subjects[overturning] = f"With the hazard “{info['hazard']['source']}” {overturning}"
     sentences = [_of_rate(info, known[name], subject) for name, subject in subjects.items()]
@@ -269,7 +270,3 @@ def _rate(curve: Curve) -> float:
     risk = curve["risk"]
     rate = (risk["rate_least"] or risk["rate_most"]) if risk["bound"] else risk["rate_per_year"]
     return float(rate or 0.0)
-
-
-def _capital(words: str) -> str:
-    return words[:1].upper() + words[1:]

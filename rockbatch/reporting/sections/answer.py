@@ -12,6 +12,7 @@ from rockbatch.checks.remarks import pulled_supports, undamped_settlement, weak_
 from rockbatch.checks.responses import LOST, RESPONSES, Worst, heights_of, in_words, standing
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
+from rockbatch.common.showing import capital
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.quantity import FOOTING, SETTLING
 from rockbatch.quantities.rows import NOT_RUN
@@ -169,7 +170,7 @@ def _without_a_result(finished: Finished) -> Iterator[Markup]:
         reasons = "; ".join(f"{count} ×: {reason}" for reason, count in reasons_of_failure(runs).items())
         words = " and ".join(lost)
         yield join(
-            alarm(words[0].upper() + words[1:]),
+            alarm(capital(words)),
             f" ({reasons})" if reasons else "",
             "; see ",
             tag("a", "Not used", href="#unusable"),

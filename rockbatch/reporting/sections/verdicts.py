@@ -13,6 +13,7 @@ from rockbatch.checks.scorecard import Scorecard as Card
 from rockbatch.checks.scorecard import scorecard as of_verdicts
 from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import grouped
+from rockbatch.common.showing import capital
 from rockbatch.quantities.design import under
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting.finished import Finished
@@ -156,7 +157,7 @@ def statistics_in_words(finished: Finished) -> str:
     values = "; ".join(
         f"{STATISTICS[name].words} over {over} ({', '.join(checks)})" for name, checks in checks_of.items()
     )
-    return f"{values[0].upper()}{values[1:]}. The mark on a bar is the limit." if values else ""
+    return f"{capital(values)}. The mark on a bar is the limit." if values else ""
 
 
 def _row(
