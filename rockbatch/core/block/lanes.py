@@ -152,7 +152,7 @@ def note_devices(traits, lanes, i, devices):
 
 
 def system_of(m):
-    """Return the System of the pier ``m`` (Block)."""
+    """Return the System of all piers ``m`` (Block), the same whatever their numbers."""
     return System(BlockTraits(), Line, LANE, Rocking._fields + Stance._fields, PASSED)
 
 

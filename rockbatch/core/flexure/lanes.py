@@ -102,7 +102,7 @@ def finish(traits, lanes, i, t, result):
 
 
 def system_of(m):
-    """Return the System of the pier ``m`` (FlexibleBlock)."""
+    """Return the System of all piers ``m`` (FlexibleBlock), the same whatever their numbers; its pass takes no devices."""
     return System(FlexibleTraits(), Line, LANE, Flexing._fields + Stance._fields)
 
 

@@ -178,3 +178,18 @@ def _bending_shaft(shaft, lanes, i):
         PerMode(m.deck_shape_first, m.deck_shape_second, m.deck_shape_third, m.deck_shape_fourth),
         m.top,
     )
+
+
+@hook
+def either_in(shaft, part, i, straight, bent):
+    """Return lane ``i`` of a part of the table as the named tuple ``straight``, or as ``bent`` if the ``shaft`` bends."""
+
+
+@either_in.of(type(None))
+def _straight_in(shaft, part, i, straight, bent):
+    return get(part, i, straight)
+
+
+@either_in.of(Shaft)
+def _bent_in(shaft, part, i, straight, bent):
+    return get(part, i, bent)

@@ -98,7 +98,7 @@ BendingLine = NamedTuple("BendingLine", (*LINE, *SHAFT_NUMBERS))  # type: ignore
 @system.pier_in.of(FootingTraits)
 def pier_in(traits, lanes, i):
     """Return the Footing of lane ``i``, and its Moment; the bed is part of the pier."""
-    return model_in(traits, lanes, i), Moment(state_in(traits.shaft, lanes.now, i), get(lanes.contact, i, Touch), None)
+    return model_in(traits, lanes, i), Moment(state_in(traits, lanes.now, i), get(lanes.contact, i, Touch), None)
 
 
 @kernel
@@ -225,7 +225,7 @@ def one_pass(traits, lanes, count, substep, settings):
     for i in range(count):
         m, now = pier_in(traits, lanes, i)
         h, ground = lanes.clock.step[i], ground_at(lanes, i, substep * lanes.clock.step[i])
-        k = state_in(traits.shaft, lanes.rates, i)
+        k = state_in(traits, lanes.rates, i)
         if not abs(k.omega) < math.inf:
             k = rates(m, now.y, now.contact, ground)
         end = rk4(m, None, Instant(now.y, k, now.contact, None, ground), h)
@@ -265,7 +265,7 @@ def finish(traits, lanes, i, t, result):
 
 
 def system_of(m):
-    """Return the System of the pier ``m`` (Footing)."""
+    """Return the System of the pier ``m`` (Footing): equal for piers with fields of the same types, whatever their numbers."""
     if m.shaft is None:
         return System(FootingTraits(m.finite, m.shifting), Line, LANE, State._fields + Touch._fields)
     traits = FootingTraits(m.finite, m.shifting, LIKE)

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.core.flexure.model import Flexing, Shaft, shaft_in
-from rockbatch.core.kernel import hook, inlined
+from rockbatch.core.flexure.model import Flexing, Shaft, either_in, shaft_in
+from rockbatch.core.kernel import inlined
 from rockbatch.core.table import LANES, get
 from rockbatch.core.types import Pull
 
@@ -85,19 +85,10 @@ class State(NamedTuple):
     omega: float  # [rad/s]
 
 
-@hook
-def state_in(shaft, part, i):
-    """Return the state in lane ``i`` of a part of the table: State, or Flexing if the ``shaft`` bends."""
-
-
-@state_in.of(type(None))
-def _straight_state_in(shaft, part, i):
-    return get(part, i, State)
-
-
-@state_in.of(Shaft)
-def _bent_state_in(shaft, part, i):
-    return get(part, i, Flexing)
+@inlined
+def state_in(traits, part, i):
+    """Return the state in lane ``i`` of a part of the table: a State, or a Flexing if the shaft bends."""
+    return either_in(traits.shaft, part, i, State, Flexing)
 
 
 class Touch(NamedTuple):

@@ -165,7 +165,11 @@ def _amplification(m):
 
 @kernel
 def lean_on(m, base):
-    """Return the rotation [rad] at which a pier rests on its ``base``, the Supports with both unstressed positions."""
+    """Return the rotation [rad] at which a pier rests on both springs; 0 if they have settled alike.
+
+    It is that of its ``base``, Supports with the unstressed positions of both, also in contact [m], to the right if the right one
+    is the lower, times what the weight adds as it leans (P–Δ). Rotations are small: it may exceed the unstable equilibrium.
+    """
     return 0.5 * (base.left - base.right) / m.half_width * _amplification(m)
 
 

@@ -89,7 +89,7 @@ BendingLine = NamedTuple("BendingLine", (*LINE, *SHAFT_NUMBERS))  # type: ignore
 @system.pier_in.of(SpringTraits)
 def pier_in(traits, lanes, i):
     """Return the Springs of lane ``i`` and its Moment."""
-    now = Moment(state_in(traits.shaft, lanes.now, i), get(lanes.contact, i, Contact), get(lanes.supports, i, Supports))
+    now = Moment(state_in(traits, lanes.now, i), get(lanes.contact, i, Contact), get(lanes.supports, i, Supports))
     return model_in(traits, lanes, i), now
 
 
@@ -189,7 +189,7 @@ def take_in_part(traits, lanes, i, m, part, after):
 def take_in_step(traits, lanes, i, substep, history):
     """Record extremes and reversals of a sub-step of lane ``i`` that stands, and advance the lane to its end."""
     m, now = pier_in(traits, lanes, i)
-    end = state_in(traits.shaft, lanes.end, i)
+    end = state_in(traits, lanes.end, i)
     _include_extremes(lanes, i, m, Part(now, end, lanes.clock.step[i]))
     if lanes.reversals.keeps[i] < 0.0:
         _change_branches(lanes, i, m, now, substep, history)
@@ -261,7 +261,7 @@ def _write_reversals(lanes, i, m, now, substep, after, history):
 
 
 def system_of(m):
-    """Return the System of the pier ``m`` (Springs), for which its runs are compiled."""
+    """Return the System of the pier ``m`` (Springs): equal for piers with fields of the same types, whatever their numbers."""
     if m.shaft is None:
         return System(SpringTraits(m.exponent, m.finite, m.damped), Line, LANE, State._fields + Contact._fields, PASSED)
     traits = SpringTraits(m.exponent, m.finite, m.damped, LIKE)

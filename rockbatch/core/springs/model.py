@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from rockbatch.core.flexure.model import Shaft, shaft_in
-from rockbatch.core.kernel import hook, inlined
+from rockbatch.core.flexure.model import Shaft, either_in, shaft_in
+from rockbatch.core.kernel import inlined
 from rockbatch.core.table import get
 from rockbatch.core.types import Pull
 
@@ -130,19 +130,10 @@ class BentState(NamedTuple):
     u_4_rate: float
 
 
-@hook
-def state_in(shaft, part, i):
-    """Return the state in lane ``i`` of a part of the table."""
-
-
-@state_in.of(type(None))
-def _straight_state_in(shaft, part, i):
-    return get(part, i, State)
-
-
-@state_in.of(Shaft)
-def _bent_state_in(shaft, part, i):
-    return get(part, i, BentState)
+@inlined
+def state_in(traits, part, i):
+    """Return the state in lane ``i`` of a part of the table: a State, or a BentState if the shaft bends."""
+    return either_in(traits.shaft, part, i, State, BentState)
 
 
 class Contact(NamedTuple):

@@ -111,7 +111,7 @@ def _stepped(traits, lanes, i, substep):
     Set ``keeps``, negative if the velocity of a spring has reversed.
     """
     m, h = model_in(traits, lanes, i), lanes.clock.step[i]
-    y, contact, ground = state_in(traits.shaft, lanes.now, i), _free(lanes, i), ground_at(lanes, i, substep * h)
+    y, contact, ground = state_in(traits, lanes.now, i), _free(lanes, i), ground_at(lanes, i, substep * h)
     k = rates(m, y, contact, ground)
     lanes.rates.v_rate[i], lanes.rates.omega[i] = k.v_rate, k.omega  # corrections need only these
     end = rk4(m, None, Instant(y, k, contact, None, ground), h)
@@ -165,7 +165,7 @@ def _judged(traits, lanes, i, substep, settings, sure):
     """
     m, h, step_status = model_in(traits, lanes, i), lanes.clock.step[i], lanes.step_status
     lowest, supports, low_left, low_right = lanes.lowest, lanes.supports, lanes.lowest.left[i], lanes.lowest.right[i]
-    y, end, contact = state_in(traits.shaft, lanes.now, i), state_in(traits.shaft, lanes.end, i), _free(lanes, i)
+    y, end, contact = state_in(traits, lanes.now, i), state_in(traits, lanes.end, i), _free(lanes, i)
     (left, right), (left_end, right_end), (sign_left, sign_right) = pivots(m, y), pivots(m, end), _signs(m, contact)
     in_left, in_right = _range(m, left, left_end, h), _range(m, right, right_end, h)
     on_left = Support(contact.left, contact.left_yields, supports.left[i], supports.yield_left[i], y.z_left, end.z_left)
@@ -232,7 +232,7 @@ def one_pass(traits, lanes, count, substep, settings):
 @system.in_pass.of(SpringTraits)
 def in_pass(traits, lanes, i):
     """Return model, state and contact of lane ``i``; a grazing contact is left out."""
-    return model_in(traits, lanes, i), state_in(traits.shaft, lanes.now, i), _free(lanes, i)
+    return model_in(traits, lanes, i), state_in(traits, lanes.now, i), _free(lanes, i)
 
 
 @system.gives_way.of(SpringTraits)
@@ -247,7 +247,7 @@ def pass_with_devices(traits, lanes, equipment, count, substep, settings):
     shared = equipment.shared[0]
     whole = integrate(traits, lanes, equipment, count, substep)
     for i in range(whole):
-        m, contact, end = model_in(traits, lanes, i), _free(lanes, i), state_in(traits.shaft, shared.stage, i)
+        m, contact, end = model_in(traits, lanes, i), _free(lanes, i), state_in(traits, shared.stage, i)
         put(lanes.end, i, end)
         (left, right), (sign_left, sign_right) = pivots(m, end), _signs(m, contact)
         # Without an allowance for rounding: friction that sticks holds a pivot but for a motion as small as that
