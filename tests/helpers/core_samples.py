@@ -127,16 +127,14 @@ def hard_case(seed: int, npts: int = 400) -> tuple[Pier, Base, Motion]:
 
 
 def values_of(calls):
-    """Return what functions of the core return: of each call its module below ``rockbatch.core``, its name and arguments."""
-    return [
-        getattr(importlib.import_module(f"rockbatch.core.{module}"), name)(*given) for module, name, *given in calls
-    ]
+    """Return what functions of the core return: of each call its module below ``rockbatch.core``, its name and arguments.
 
-
-def values_on_beds(calls):
-    """Return :func:`values_of` calls that may walk beyond an edge of a bed, where its set is infinite, and its growth NaN."""
-    with np.errstate(invalid="ignore"):
-        return values_of(calls)
+    Raises ``FloatingPointError`` where uncompiled code makes a NaN, as of inf − inf.
+    """
+    with np.errstate(invalid="raise"):
+        return [
+            getattr(importlib.import_module(f"rockbatch.core.{module}"), name)(*given) for module, name, *given in calls
+        ]
 
 
 def gaps_of(pier, base, devices, states):

@@ -11,7 +11,7 @@ import bending_on_bed_reference as reference
 import numpy as np
 import pytest
 from bending_piers import DT, TOWER, G, pier_of, points_of
-from core_samples import displaced_at_start, values_on_beds
+from core_samples import displaced_at_start, values_of
 from scipy.optimize import fsolve
 from supported_reference import drift_of, places
 
@@ -98,7 +98,7 @@ def test_accelerations_on_a_bed_are_those_of_the_mass_points(laid, uncompiled):
         calls += [("system", "rates", each, state(q, rates), SOME, ground) for each in (m, m._replace(pull=pull))]
         expected += [np.concatenate([rates[:2], each[:2], rates[2:], each[2:]]) for each in (free, pulled)]
         seen.append(pressed(foot, q, sets))
-    found = np.array(uncompiled(values_on_beds, calls)[1:])
+    found = np.array(uncompiled(values_of, calls)[1:])
     np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-9)
     assert all(each in seen for each in ({True}, {False}, {True, False}))
 
@@ -119,7 +119,7 @@ def test_energies_and_the_power_of_the_ground_are_those_of_the_mass_points(laid,
         ]
         kinetic = 0.5 * shares(of) @ (speed**2 + rise**2)
         expected.append((kinetic, G * raised, bent, -shaking @ (shares(of) @ speed, shares(of) @ rise)))
-    found = uncompiled(values_on_beds, calls)[2:]
+    found = uncompiled(values_of, calls)[2:]
     for i, wanted in enumerate(expected):
         bending, straight, power = found[3 * i : 3 * i + 3]
         of_shaft = bending[2] - straight[2]  # the bed stores the same
@@ -162,7 +162,7 @@ def test_forces_at_base_and_deck_on_a_bed_are_those_of_the_mass_points(laid, unc
         moving = mass @ (rates @ across), mass @ (rates @ up)
         expected.append((mass @ push_x - less / c, force, moment, shaken_deck, *moving))
         assert force == pytest.approx(mass @ push_z, rel=1e-6, abs=1e-6)
-    for found, wanted in zip(uncompiled(values_on_beds, calls)[1:], expected, strict=True):
+    for found, wanted in zip(uncompiled(values_of, calls)[1:], expected, strict=True):
         values = found.shear, found.normal, found.moment, found.deck, found.along, found.up
         assert values == pytest.approx(wanted, rel=2e-6, abs=2e-5)
 
@@ -183,7 +183,7 @@ def test_a_pier_rests_on_a_tilted_bed_where_its_mass_points_do(uncompiled):
     rigid = footing(pier, replace(base, shaft="rigid"))
     calls = [("footing.lanes", "start_on_bed", each, PRESSED_DEEP) for each in (m, rigid)]
     calls += [("footing.statics", "lean", each, G) for each in (m, rigid)]
-    *_, lean, stiff = uncompiled(values_on_beds, calls)
+    *_, lean, stiff = uncompiled(values_of, calls)
     assert lean == pytest.approx(q[1], rel=1e-7)
     assert lean > 1.001 * stiff
 
@@ -197,14 +197,14 @@ def test_the_least_energy_at_a_rotation_is_that_of_the_pier_held_there(uncompile
     calls += [
         ("footing.statics", name, m, float(t), G) for name in ("level_energy", "righting", "level_at") for t in turns
     ]
-    energy, moment, level = np.array(uncompiled(values_on_beds, calls)[1:]).reshape(3, -1)
+    energy, moment, level = np.array(uncompiled(values_of, calls)[1:]).reshape(3, -1)
     work = (turns[2:] - turns[:-2]) / 6.0 * (moment[:-2] + 4.0 * moment[1:-1] + moment[2:])
     np.testing.assert_allclose((energy[2:] - energy[:-2])[::2], work[::2], rtol=1e-3)
     held = [("footing.equations", "at_rest", m.shaft, m, float(v), float(t)) for v, t in zip(level, turns, strict=True)]
     calls = [calls[0], *held]
-    states = uncompiled(values_on_beds, calls)[1:]
+    states = uncompiled(values_of, calls)[1:]
     calls = [calls[0], *(("footing.equations", "energies", m, y) for y in states)]
-    of_states = [sum(each) for each in uncompiled(values_on_beds, calls)[1:]]
+    of_states = [sum(each) for each in uncompiled(values_of, calls)[1:]]
     np.testing.assert_allclose(of_states, energy, rtol=1e-12)
 
 
@@ -215,11 +215,11 @@ def test_beyond_its_summit_no_bed_holds_a_pier_whose_shaft_hangs_over(uncompiled
     m, rigid = footing(soft, base), footing(soft, replace(base, shaft="rigid"))
     level = [("footing.strips", "lay", each) for each in (m, rigid)]
     calls = [*level, *(("footing.statics", "summit", each, G) for each in (m, rigid))]
-    own, straight = uncompiled(values_on_beds, calls)[2:]
+    own, straight = uncompiled(values_of, calls)[2:]
     assert straight == pytest.approx(soft.alpha, rel=1e-3)
     short = 0.995  # the bed bears on more than its edge
     calls = [*level, *(("footing.statics", "righting", m, short * theta, G) for theta in (own, straight))]
-    held, lost = uncompiled(values_on_beds, calls)[2:]
+    held, lost = uncompiled(values_of, calls)[2:]
     assert lost < 0.0 < held < 0.02 * G * soft.half_width
 
 

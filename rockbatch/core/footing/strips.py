@@ -334,7 +334,7 @@ def _growth(m, d, d_end, h, j):
     start, rate, end, rate_end = _depths(m, d, d_end, j)
     before = m.bed[j, SET] + m.strength / m.stiffness
     deepest, until = summit_within(start, rate, end, rate_end, h, before)
-    return deepest - before, until
+    return deepest - before if deepest > before else 0.0, until  # no difference of the infinite sets beside the bed
 
 
 @kernel
