@@ -321,7 +321,7 @@ TARGET = {
     [
         ({}, ""), ({"sa_g": "x"}, "target.sa_g: expected a list"), ({"factors": {}}, "target.factors: expected"),
         ({"range_s": [None]}, "target.range_s[0]: expected a number"), ({"period_s": []}, ""), ({"mean_sa_g": [1.0]}, ""),
-        ({"range_s": [0.1]}, ""), ({"sa_g": [0.0, 0.0]}, ""),
+        ({"range_s": [0.1]}, ""), ({"sa_g": [0.0, 0.0]}, ""), ({"mean_sa_g": [0.9, -0.6]}, ""),
     ],
 )  # fmt: skip
 @pytest.mark.usefixtures("pages")

@@ -137,11 +137,11 @@ def _stations(records: Iterable[Item]) -> int:
 
 
 def _sound(target: Target) -> bool:
-    """Return whether a target's spectra fit its periods, and its numbers are above 0, but those of the mean only finite.
+    """Return whether a target's spectra fit its periods, and its numbers are above 0, those of the mean finite and not below 0.
 
     run.json is untrusted.
     """
     periods, ends = target["period_s"], target["range_s"]
     fitting = all(len(target[name]) == len(periods) > 0 for name in ("sa_g", "mean_sa_g"))
-    is_finite = fitting and all(map(math.isfinite, target["mean_sa_g"]))
-    return len(ends) == 2 and min(ends) > 0 and is_finite and min((*periods, *target["sa_g"])) > 0
+    has_mean = fitting and all(0.0 <= mean < math.inf for mean in target["mean_sa_g"])
+    return len(ends) == 2 and min(ends) > 0 and has_mean and min((*periods, *target["sa_g"])) > 0
