@@ -1,6 +1,7 @@
 """Types of command-line values, and keywords of ``ArgumentParser.add_argument``."""
 
 import argparse
+import math
 import re
 from collections.abc import Callable
 from contextlib import suppress
@@ -30,6 +31,13 @@ def whole(text: str) -> int:
 
 
 def number(text: str) -> float:
+    """Return a finite number; raise ``ArgumentTypeError`` for another text, as :func:`_number`."""
+    if math.isfinite(value := _number(text)):
+        return value
+    raise argparse.ArgumentTypeError(f"{text}: must be a finite number")
+
+
+def _number(text: str) -> float:
     """Return a number, "inf" and "nan" too; raise ``ArgumentTypeError`` for another text.
 
     The error has the number that is probably meant, if any: that before "s" or "counts", another time in seconds, a point for a
@@ -49,7 +57,7 @@ def number(text: str) -> float:
 
 def seconds(text: str) -> float:
     """Return a number above 0, or inf; raise ``ArgumentTypeError`` for another text."""
-    if (value := number(text)) > 0:
+    if (value := _number(text)) > 0:
         return value
     raise argparse.ArgumentTypeError(f"{text}: must be above 0")
 
