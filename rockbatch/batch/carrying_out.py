@@ -1,5 +1,7 @@
 """Carry out the unfinished runs of a batch into its journal."""
 
+from collections.abc import Collection
+
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.execution import execute_runs, to_simulate
 from rockbatch.batch.journal import Journal
@@ -10,7 +12,7 @@ from rockbatch.batch.threads import Engine
 from rockbatch.results.labelled import Row
 
 
-def execute(batch: Batch, requested: range, journal: Journal, engine: Engine) -> Row:
+def execute(batch: Batch, requested: Collection[int], journal: Journal, engine: Engine) -> Row:
     """Carry out the ``requested`` runs that the journal lacks; return ``jobs`` and ``kept``, those finished before."""
     runs, listener = batch.runs, batch.listener
     every, remaining = (len(to_simulate(runs, requested, finished)) for finished in ((), journal))

@@ -1,7 +1,7 @@
 """Carry out runs that a journal lacks, and add their rows to it."""
 
 from array import array
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Iterator, Mapping, Sequence
 from contextlib import closing
 
 from rockbatch.batch.beside import packed
@@ -47,7 +47,7 @@ def execute_runs(
     observers: Sequence[Observer] = (),
     *,
     first: int = 0,
-    among: range | None = None,
+    among: Collection[int] | None = None,
     row: RowOf | None = None,
     progress: Advance = silent,
 ) -> None:
@@ -72,7 +72,7 @@ def execute_runs(
             progress(len(group))
 
 
-def to_simulate(runs: Runs, requested: range, journal: Container[int] = (), first: int = 0) -> "array[int]":
+def to_simulate(runs: Runs, requested: Collection[int], journal: Container[int] = (), first: int = 0) -> "array[int]":
     """Return the indices of the runs to simulate for all that are ``requested`` and not in ``journal``.
 
     Of two mirror images it is the index of the one that is simulated for both, once, requested itself or not. Raises

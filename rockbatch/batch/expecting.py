@@ -78,7 +78,7 @@ def expected(
     listener.motions(motions)
     check_records(records, motions)
     plan = Plan(study, motions)
-    requested = share_of(len(plan), *share) if share else range(len(plan))
+    requested = share_of(plan, *share) if share else range(len(plan))
     simulated = some_of(plan, to_simulate(plan, requested))
     steps = [least_steps(run, study.numerics) for run in simulated]
     observers = (*observers_of(study.output), *observers_beside(study.output, motions.motions))

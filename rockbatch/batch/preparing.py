@@ -13,7 +13,7 @@ from rockbatch.batch.execution import to_simulate
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, count, once
 from rockbatch.batch.observers import observers_beside
-from rockbatch.batch.plan import Plan
+from rockbatch.batch.plan import Plan, Runs
 from rockbatch.batch.threads import cores
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import legible, read_text, refuse_irregular
@@ -192,11 +192,15 @@ def check_records(records: Collection[str], motions: MotionSet) -> None:
         raise InputError(*wrong)
 
 
-def share_of(runs: int, share: int, shares: int) -> range:
-    """Return the indices of the ``share``-th (from 1) of ``shares`` consecutive parts of ``runs``, equal to within one run.
+def share_of(runs: Runs, share: int, shares: int) -> Collection[int]:
+    """Return the indices, ascending, of the ``share``-th (from 1) of ``shares`` consecutive parts of ``runs``.
 
-    Raises ``InputError`` for more shares than runs.
+    Parts are equal to within one simulation, and have a run together with its mirror image. Raises ``InputError`` for more shares
+    than simulations.
     """
-    if shares > runs:
-        raise InputError(f"--shard {share}/{shares}: the study has {count(runs, 'run')}; make as many shares or fewer")
-    return range(runs * (share - 1) // shares, runs * share // shares)
+    simulated = to_simulate(runs, range(len(runs)))
+    n = len(simulated)
+    if shares > n:
+        raise InputError(f"--shard {share}/{shares}: the study has {count(n, 'run')}; make as many shares or fewer")
+    part = simulated[n * (share - 1) // shares : n * share // shares]
+    return dict.fromkeys(sorted(image for index in part for image in runs.images(index))).keys()

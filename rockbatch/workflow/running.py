@@ -155,7 +155,7 @@ def run_into(
     """
     started = time.monotonic()
     batch = prepare(directory, study, listener, command, records=records, later=(CHECKS, REPORT))
-    requested = share_of(len(batch.runs), *share) if share else range(len(batch.runs))
+    requested = share_of(batch.runs, *share) if share else range(len(batch.runs))
     with batch.journal(fresh) as journal:
         cost = None if fresh or len(journal) else cost_of_finished(directory, batch.info)
         if cost is not None:

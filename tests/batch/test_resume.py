@@ -15,8 +15,13 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch.batch.groups
 import rockbatch.batch.threads
+from rockbatch.batch.execution import to_simulate
+from rockbatch.batch.plan import Plan
+from rockbatch.batch.preparing import share_of
 from rockbatch.commands.cli import main
 from rockbatch.common.files import only_writer
+from rockbatch.study import load_study
+from rockbatch.study.suite import ground_motions
 from rockbatch.workflow.running import _ranges as ranges
 
 SIMULATED = 18 * 3
@@ -468,12 +473,26 @@ def test_shares_are_merged_to_the_results_of_one_run(study, tmp_path, undisturbe
     merge = ["merge", str(study), "--out", str(out)]
     assert main([*merge, str(folders[2]), str(folders[0])]) == 2
     told = capsys.readouterr().err
-    assert f"{RUNS // 3} of {RUNS} rows are missing in these folders: {RUNS // 3 + 1} to {2 * RUNS // 3}; " in told
+    first, last = SIMULATED // 3 + 1, 2 * SIMULATED // 3
+    both = f"{first} to {last}, {SIMULATED + first} to {SIMULATED + last}"  # with the mirror images
+    assert f"{RUNS // 3} of {RUNS} rows are missing in these folders: {both}; " in told
     assert f"rockbatch run {study} --out {out}" in told
     assert main([*merge, *map(str, folders)]) == 0
     assert (out / "peaks.csv").read_bytes() == undisturbed
     assert sorted(file.name for file in out.iterdir()) == ["peaks.csv", "report.html", "run.json"]
     assert json.loads((out / "run.json").read_text())["kept"] == SIMULATED
+
+
+@pytest.mark.parametrize("shares", [1, 2, 5, SIMULATED])
+def test_every_simulation_of_a_study_is_in_one_share(study, shares):
+    """Also of a single record in both polarities."""
+    loaded = load_study(study)
+    runs = Plan(loaded, ground_motions(loaded))
+    parts = [share_of(runs, share, shares) for share in range(1, shares + 1)]
+    assert sorted(number for part in parts for number in part) == list(range(RUNS))
+    simulated = [len(to_simulate(runs, part)) for part in parts]
+    assert sum(simulated) == SIMULATED
+    assert max(simulated) - min(simulated) <= 1
 
 
 def test_what_merge_is_missing_can_be_carried_out_where_the_shares_were_joined(study, tmp_path, undisturbed):
