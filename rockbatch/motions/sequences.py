@@ -348,8 +348,8 @@ def add_sequences(
     """Return records and pulses followed by their sequences, which replace the records that are not also run ``alone``.
 
     A sequence of pulses only is a pulse, which no target scales. A sequence is unusable if one of its records is, or if they
-    cannot be joined. Raises ``InputError`` for a sequence with the name of a record, also in a manifest, ``source``, and for
-    names of no record in a study; a sequence of a manifest is then unusable, or left out if none of its records is read.
+    cannot be joined. In a study raises ``InputError`` for a sequence with the name of a record, and for names of no record; a
+    sequence of a manifest, ``source``, is then unusable, or left out if none of its records is read.
     """
     if not sequences:
         return motions, list(pulses)
@@ -358,8 +358,7 @@ def add_sequences(
     reasons = {file.name: file.reason for file in not_used}
     joined_motions: list[Motion] = []
     refused: list[Unusable | LeftOut] = []
-    taken = [entry.name for entry in sequences if entry.name in by_name]
-    wrong = [f"{source}{name}: a record has this name; give the sequence one of its own" for name in taken]
+    wrong: list[str] = []
     for entry in sequences:
         try:
             joined = _sequence_or_refusal(entry, by_name, reasons, source)
@@ -392,24 +391,26 @@ def _sequence_or_refusal(
 ) -> Motion | Unusable | LeftOut:
     """Return a sequence of the motions ``by_name``; unusable if a record of it is, or if they cannot be joined.
 
-    ``reasons`` has those of unusable and left-out records by name. For unknown names raises ``InputError`` in a study,
-    where ``source`` is ""; in a manifest the sequence is unusable, or left out if all are unknown.
+    ``reasons`` has those of unusable and left-out records by name. For its name, if it is a record's, and for unknown names of
+    records raises ``InputError`` in a study, where ``source`` is ""; in a manifest the sequence is unusable, or left out if all
+    are unknown.
     """
+    taken = ["a record has this name; give the sequence one of its own"] if entry.name in by_name else []
     missing = [name for name in entry.records if name not in by_name]
     reasons_of_parts = [f"its record {name} cannot be used: {reasons[name]}" for name in missing if name in reasons]
     unknown = [_unknown_record(name, by_name) for name in missing if name not in reasons]
-    if unknown and not source:
-        raise InputError(*(f"[[motions.sequence]] {shown(entry.name)}: {message}" for message in unknown))
+    if (taken or unknown) and not source:
+        raise InputError(*(f"[[motions.sequence]] {shown(entry.name)}: {message}" for message in (*taken, *unknown)))
     if len(unknown) == len(
         entry.records
     ):  # only one file beside the manifest is read, or rotation has renamed the records
         return LeftOut(entry.name, source, f"none of its records is read: {unknown[0]}")
-    if not missing:
+    if not missing and not taken:
         try:
             return entry.as_motion([by_name[name] for name in entry.records])
         except InputError as error:
             reasons_of_parts = list(error.messages)
-    reason = f"sequence {shown(entry.name)}: {'; '.join((*reasons_of_parts, *unknown))}"
+    reason = f"sequence {shown(entry.name)}: {'; '.join((*taken, *reasons_of_parts, *unknown))}"
     return Unusable(entry.name, source or "[[motions.sequence]]", reason)
 
 

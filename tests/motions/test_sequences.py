@@ -215,7 +215,7 @@ def test_a_sequence_of_what_cannot_be_used_is_a_row_with_the_reason(tmp_path):
             'there is no record "RSN2_B_0000"; did you mean "RSN2_B_000"?',
         ),
         ([TWO | {"records": ["nothing like it"]}], "`rockbatch motions PATH` lists them"),
-        ([TWO | {"name": "RSN1_A_090"}], "a record has this name"),
+        ([TWO | {"name": "RSN1_A_090"}], r'\[\[motions.sequence\]\] "RSN1_A_090": a record has this name'),
         ([TWO, TWO], 'name = "two": given twice; give each sequence its own name'),
         ([TWO | {"factors": [1.0, 2.0, 3.0]}], "factors: 3 given for 2 records; write one for each, or one for all"),
         ([TWO | {"pause_s": 0}], "pause_s = 0: expected a number above 0"),
@@ -249,6 +249,15 @@ def test_a_manifest_declares_sequences_that_every_reader_of_the_folder_gets(tmp_
     assert names(lone.motions) == ["RSN2_B_000"]
     assert [(each.name, each.reason[:11]) for each in lone.unusable] == [("both", 'sequence "b')]
     assert [(each.name, each.reason[:15]) for each in lone.left_out] == [("twice", "none of its rec")]
+
+
+def test_a_sequence_of_a_manifest_with_the_name_of_a_record_says_so_and_the_rest_is_used(tmp_path):
+    text = '[[sequence]]\nname = "{}"\nrecords = ["RSN1_A_000", "RSN1_A_000"]\n'
+    found = manifest(tmp_path, text.format("RSN2_B_000") + text.format("twice"))
+    assert names(found.motions) == ["RSN2_B_000", "twice"]
+    (refused,) = found.unusable
+    assert refused.source.endswith("motions.toml")
+    assert refused.reason == 'sequence "RSN2_B_000": a record has this name; give the sequence one of its own'
 
 
 def test_a_manifest_with_a_record_that_is_not_there_says_so_and_the_rest_is_used(tmp_path):
