@@ -89,9 +89,20 @@ class Labelled(Names):
     def named_runs(
         self, case: str, columns: Mapping[str, object], varied: Sequence[str], scale: float | None = None
     ) -> str:
-        """Return the name of a case, with the ``scale`` of its motions if given and if there are several."""
-        scaled = scaled_by(scale) if self.many_scales and scale is not None else ""
-        return self.named_case(case, columns, varied, scaled)
+        """Return the name of a case, with the ``scale`` of its motions if given and if there are several.
+
+        It is made once: each check has a verdict on the same case.
+        """
+        key = (case, scale, *columns.items(), *varied)
+        if key not in self._made:
+            scaled = scaled_by(scale) if self.many_scales and scale is not None else ""
+            self._made[key] = self.named_case(case, columns, varied, scaled)
+        return self._made[key]
+
+    @cached_property
+    def _made(self) -> dict[tuple[object, ...], str]:
+        """Names of cases at scales, as :meth:`named_runs` makes them."""
+        return {}
 
     def named_design(
         self, case: str, columns: Mapping[str, object], varied: Sequence[str], scale: float | None = None

@@ -18,7 +18,7 @@ from rockbatch.commands import check
 from rockbatch.commands.cli import main
 from rockbatch.reporting import write_report
 from rockbatch.results.checking import verdicts
-from rockbatch.results.labelled import labelled
+from rockbatch.results.labelled import Labelled, labelled
 
 
 def table_of(out, verdicts):
@@ -47,6 +47,19 @@ def many(tmp_path, most=40):
         for beta in betas
     )
     return folder(tmp_path / "out", table, [case(beta=beta) for beta in betas], MARGIN)
+
+
+def test_a_case_is_named_once_however_many_checks_it_has(tmp_path, monkeypatch):
+    out, made, named_case = many(tmp_path, most=6), [], Labelled.named_case
+
+    def counted(self, case, columns, *rest):
+        made.append(columns["beta"])
+        return named_case(self, case, columns, *rest)
+
+    monkeypatch.setattr(Labelled, "named_case", counted)
+    saved = rb.open_results(out)
+    check.answered(verdicts(saved, None) * 5, saved)
+    assert sorted(made) == [30.0, 31.0, 32.0, 33.0, 34.0, 35.0]
 
 
 @pytest.mark.slow
