@@ -26,7 +26,7 @@ from rockbatch.common.lazy import pd
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 LOCK = "rockbatch.lock"
 UNFINISHED = ".unfinished"
-NAMES = ("record", "case", "polarity", "status", "reason", "mirror_of", "map", "limit", "shock_record", "shock_status")
+NAMES = ("record", "case", "polarity", "status", "reason", "mirror_of", "map", "limit")
 """Columns of tables that hold words from elsewhere."""
 MOST_TEXT = 1 << 30
 """Most bytes of a file that is read as a whole: run.json of the largest study takes a third of it."""
@@ -377,10 +377,11 @@ def _text_cell(text: str) -> str:
     return csv_line([csv_safe(legible(text, keep="\t\r\n")), None])[:-2]
 
 
-def read_table(path: Path) -> "pd.DataFrame":
-    """Return a table that :func:`csv_text` wrote; names that look like numbers stay names, and missing names are ""."""
+def read_table(path: Path, texts: Iterable[str] = ()) -> "pd.DataFrame":
+    """Return a table that :func:`csv_text` wrote; in :data:`NAMES` and ``texts`` numbers stay words, and missing ones are ""."""
+    words = [*NAMES, *texts]
     with opened(path) as file:
-        table = pd.read_csv(file, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(NAMES, "str"))
-    for name in table.columns.intersection(list(NAMES)):
+        table = pd.read_csv(file, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(words, "str"))
+    for name in table.columns.intersection(words):
         table[name] = table[name].fillna("").map(csv_plain)
     return table

@@ -72,7 +72,7 @@ def read_beside(
     Raises ``InputError`` if a column that names the run or one of ``columns`` is missing, or if one of these that is not in
     ``texts`` is not numeric.
     """
-    table = read_table(path)
+    table = read_table(path, texts)
     if table.empty and list(table) == list(NAMING):
         return table.reindex(columns=[*NAMING, *varied, *columns])
     wrong = [f"column {name} is missing" for name in (*NAMING, *varied, *columns) if name not in table]

@@ -30,6 +30,13 @@ def test_numbers_have_to_be_numbers_and_texts_may_be_any(tmp_path, name):
         read_beside(path, ["beta"], COLUMNS, ["words"])
 
 
+def test_a_text_that_looks_like_a_number_or_a_formula_stays_as_it_was(tmp_path):
+    TABLE.assign(words="007").to_csv(tmp_path / "of.csv", index=False)
+    assert read_beside(tmp_path / "of.csv", ["beta"], COLUMNS, ["words"])["words"].tolist() == ["007"]
+    TABLE.assign(words="'=1+1").to_csv(tmp_path / "of.csv", index=False)
+    assert read_beside(tmp_path / "of.csv", ["beta"], COLUMNS, ["words"])["words"].tolist() == ["=1+1"]
+
+
 def test_a_case_is_known_by_its_values_in_the_digits_of_the_table():
     assert case_key("pads", {"beta": 1.0 / 3.0, "spring": "epp"}, ["spring", "beta"]) == ("pads", "epp", 0.3333333333)
     assert case_key("pads", {}, ["beta"]) == ("pads", "")

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 from rockbatch.motions import Motion
 from rockbatch.observers.shocks import TABLE
-from rockbatch.observers.shocks.effects import OfShocks, of_shocks, with_error
+from rockbatch.observers.shocks.effects import OfShocks, ShockOutcome, of_shocks, with_error
 from rockbatch.observers.shocks.table import shock_rows
-from rockbatch.outcome.outcome import Outcome, ShockOutcome
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
