@@ -1,15 +1,14 @@
 """Coverage of the verdicts: every case at every scale with how its runs ended, and the stations of the suite."""
 
 from collections.abc import Mapping, Sequence
-from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.cases import Case, of_pier
-from rockbatch.quantities.rows import NOT_RUN, rows_of_cases
+from rockbatch.quantities.cases import Case
+from rockbatch.quantities.rows import NOT_RUN, rows_of_piers
 
 ENDED = {"overturned": "overturned", "flight": "ended by flight", "failed": "failed", NOT_RUN: NOT_RUN}
 """Words for runs that do not end standing."""
@@ -88,8 +87,7 @@ def runs_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], records: int) -> 
     kind_of = pd.Index(statuses).get_indexer(pd.Index(runs["status"])) + 1  # 0 of those that end standing
     planned = records * runs["polarity"].nunique()
     counted = []
-    for _, of_axes in groupby(rows_of_cases(runs, cases), lambda pair: of_pier(pair[0])):
-        axes = list(of_axes)
+    for axes in rows_of_piers(runs, cases):
         (case, _), rows = axes[0], np.concatenate([rows for _, rows in axes])
         every, width = planned * len(axes), len(statuses) + 1
         kinds = np.bincount(scale_of[rows] * width + kind_of[rows], minlength=len(scales) * width)

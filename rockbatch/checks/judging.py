@@ -5,7 +5,6 @@ import math
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
-from itertools import groupby
 
 import numpy as np
 
@@ -21,10 +20,10 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import Case, has_device, is_across, of_pier
+from rockbatch.quantities.cases import Case, has_device, is_across
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.quantities.demands import OF_BASE
-from rockbatch.quantities.rows import NOT_RUN, complete, counts_as, rows_of_cases, simulated, with_case
+from rockbatch.quantities.rows import NOT_RUN, complete, counts_as, rows_of_piers, simulated, with_case
 from rockbatch.quantities.statistics import STATISTICS
 
 MOST_NAMES = 5
@@ -120,8 +119,7 @@ def judge(
         at_section(runs, at_heights[DEMANDS[fit.rule.demand].needs], fit) if fit.sections else table for fit in fits
     ]
     verdicts = []
-    for _, of_axes in groupby(rows_of_cases(runs, cases), lambda pair: of_pier(pair[0])):
-        pier = list(of_axes)
+    for pier in rows_of_piers(runs, cases):
         name = str(pier[0][0]["case"])
         for scale in scales:
             axes = []

@@ -1,14 +1,14 @@
 """Rows of peaks.csv: those of runs, those of each case at one scale, and the record as which each counts."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import product
+from itertools import groupby, product
 
 import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import MISSING, Rows, Texts
-from rockbatch.quantities.cases import Case
+from rockbatch.quantities.cases import Case, of_pier
 from rockbatch.quantities.catalogue import MIRROR_OF
 
 NOT_RUN = "not run"
@@ -45,6 +45,12 @@ def rows_of_cases(runs: "pd.DataFrame", cases: Sequence[Case]) -> Iterator[tuple
         firsts_of_case = by_name.get(case["case"], firsts[:0])
         of_case = [rows[kind] for kind in firsts_of_case.index[_fits(firsts_of_case, case["columns"])]]
         yield case, np.sort(np.concatenate(of_case)) if of_case else order[:0]
+
+
+def rows_of_piers(runs: "pd.DataFrame", cases: Sequence[Case]) -> Iterator[list[tuple[Case, npt.NDArray[np.intp]]]]:
+    """Yield the cases of each pier, along and across its axis or along it alone, with the places of their rows in ``runs``."""
+    for _, of_axes in groupby(rows_of_cases(runs, cases), lambda pair: of_pier(pair[0])):
+        yield list(of_axes)
 
 
 def _fits(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArray[np.bool_]:

@@ -114,6 +114,11 @@ def _in_the_middle(pier: Pier, device: Restraint, other: Pier) -> Restraint:
     return replace(device, **changes | {"at": 0.0})
 
 
+def on_both_axes(cases: Iterable[Case]) -> bool:
+    """Return whether a case is run on both axes of its pier."""
+    return any(case.across_of for case in cases)
+
+
 def along_the_axis(cases: Iterable[Case]) -> tuple[Case, ...]:
     """Return the cases without those across the axis of others."""
     return tuple(case for case in cases if not case.across_of)

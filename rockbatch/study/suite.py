@@ -12,7 +12,7 @@ from rockbatch.motions.scaling import scale_as_listed, scale_to_targets
 from rockbatch.motions.selection import Selection, selected
 from rockbatch.motions.sequences import add_sequences
 from rockbatch.motions.spectrum_target import SpectrumTarget
-from rockbatch.study.both_axes import along_the_axis
+from rockbatch.study.both_axes import on_both_axes
 from rockbatch.study.load import Study
 from rockbatch.study.spec import MotionSpec
 
@@ -24,7 +24,7 @@ def ground_motions(study: Study) -> MotionSet:
     target; its ``scale`` and ``polarity`` are left to the runs. Raises ``InputError`` if no motion is left, in a strict study if
     any file is unusable, and for keys about recorded motions in a study without these.
     """
-    spec, both = study.motions, _both_axes(study)
+    spec, both = study.motions, on_both_axes(study.cases)
     if wrong := _without_records(spec, both):
         raise InputError(*wrong)
     gravity, azimuths = study.cases[0].pier.gravity, _azimuths(study)
@@ -104,17 +104,12 @@ def _azimuths(study: Study) -> tuple[float, ...]:
     of pairs or runs on both axes need it and none of them is."""
     spec = study.motions
     of_pairs = spec.target is not None and spec.target.pairs != "apart"
-    if not (of_pairs or study.output.has("sa_pairs") or _both_axes(study)) or not spec.azimuths:
+    if not (of_pairs or study.output.has("sa_pairs") or on_both_axes(study.cases)) or not spec.azimuths:
         return spec.azimuths
     square = (spec.azimuths[0] + 90.0) % 360.0
     if any(same_azimuth(azimuth, way) for azimuth in spec.azimuths for way in (square, square + 180.0)):
         return spec.azimuths
     return *spec.azimuths, square
-
-
-def _both_axes(study: Study) -> bool:
-    """Return whether a case is run on both axes of its pier."""
-    return len(along_the_axis(study.cases)) < len(study.cases)
 
 
 def _with_pairs(motions: MotionSet, pulses: Sequence[Motion]) -> tuple[MotionSet, list[Motion]]:

@@ -36,7 +36,7 @@ from rockbatch.reporting import REPORT, write_analyses
 from rockbatch.reporting.finished_analysis import digest_of
 from rockbatch.results.run_json import describe_study, versions
 from rockbatch.study import Case, Motions, Study, given_study
-from rockbatch.study.both_axes import along_the_axis
+from rockbatch.study.both_axes import along_the_axis, on_both_axes
 from rockbatch.study.suite import ground_motions
 
 A = TypeVar("A", bound="Analysis")
@@ -262,10 +262,10 @@ def run_analysis(
     """
     started = time.monotonic()
     loaded, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
-    spec, cases = read(loaded), along_the_axis(loaded.cases)
-    if len(cases) < len(loaded.cases) and not takes_both_axes(spec):
+    spec = read(loaded)
+    if on_both_axes(loaded.cases) and not takes_both_axes(spec):
         listener.say("other_width_m: this analysis takes the cases along the axis of the pier only")
-        loaded = replace(loaded, cases=cases)
+        loaded = replace(loaded, cases=along_the_axis(loaded.cases))
         spec = read(loaded)
     if out is not None:
         kind.refuse_irregular(Path(out))
