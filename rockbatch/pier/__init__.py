@@ -41,7 +41,7 @@ from rockbatch.pier.restraints import Restraint as Restraint
 from rockbatch.pier.restraints import Stop as Stop
 from rockbatch.pier.restraints import Tendon as Tendon
 from rockbatch.pier.restraints import restraint_of as restraint_of
-from rockbatch.pier.shafts import WithShaft as WithShaft
+from rockbatch.pier.shafts import OF_SHAFT as OF_SHAFT
 from rockbatch.pier.supports import MOST_ETA as MOST_ETA
 from rockbatch.pier.supports import beta_of as beta_of
 from rockbatch.pier.supports import eta_of as eta_of

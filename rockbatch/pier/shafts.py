@@ -1,6 +1,6 @@
 """Shafts of piers on bases that let them bend."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 import numpy.typing as npt
@@ -36,14 +36,19 @@ class WithShaft(Traits):
 
     def leaning_height(self, pier: Pier) -> float:
         """Return the height [m] at which the weight of ``pier`` turns it as it leans at rest, above h if its shaft hangs over."""
-        if not self.bends:
-            return pier.height
+        return pier.height + self.overhang(pier) if self.bends else pier.height
+
+    def overhang(self, pier: Pier) -> float:
+        """Return how far the weight hangs over the axis of an elastic shaft that leans at rest, over sin θ [m]: g Σ μ²/ω²."""
         modes = self.modes(pier)
-        return pier.height + pier.gravity * float(((modes.share / modes.frequency) ** 2).sum())
+        return pier.gravity * float(((modes.share / modes.frequency) ** 2).sum())
 
     def of_shaft(self, pier: Pier) -> dict[str, object]:
         """Return the shaft of ``pier`` by the keys of run.json; empty if it is rigid."""
         if not self.bends:
             return {}
-        values = {name: getattr(self, name) for name in ("shaft", "flexural_damping", "flexural_damping_kind")}
-        return values | {"flexural_modes": len(self.modes(pier).frequency)}
+        return {name: getattr(self, name) for name in OF_SHAFT} | {"flexural_modes": len(self.modes(pier).frequency)}
+
+
+OF_SHAFT = tuple(field.name for field in fields(WithShaft))
+"""Keys of the shaft, of every base and in studies."""

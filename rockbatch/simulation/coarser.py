@@ -9,7 +9,7 @@ import numpy as np
 from rockbatch.core.clock import WINDOWS
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.outcome import Outcome
-from rockbatch.pier import FootingBase, WithShaft
+from rockbatch.pier import FootingBase
 from rockbatch.simulation.agreement import Tolerances, windows
 from rockbatch.simulation.runs import Run, Trial
 
@@ -20,7 +20,7 @@ _OF_SHAFT = ("theta_max", "deflection_max", "top_drift_max", "theta_res", "settl
 def with_fewer_modes(run: Run) -> Run | None:
     """Return a run with the shaft in one mode fewer; None if it does not bend, or in one alone."""
     base = run.base
-    if not (isinstance(base, WithShaft) and base.bends):
+    if not base.bends:
         return None
     n = len(base.modes(run.pier).frequency)
     return Run(run.pier, replace(base, flexural_modes=n - 1), run.motion) if n > 1 else None
@@ -173,6 +173,6 @@ def of_model(run: Run, change: float, chance: float) -> float:
     has no limit.
     """
     base = run.base
-    if isinstance(base, WithShaft) and base.bends and base.damping_ratios(run.pier)[-1] > MOST_DAMPING:
+    if base.bends and base.damping_ratios(run.pier)[-1] > MOST_DAMPING:
         return math.nan
     return chance * change

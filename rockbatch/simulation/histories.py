@@ -14,7 +14,7 @@ from rockbatch.core.observe.ledger import energy_of_rows
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.half_cycles import HalfCycles, Path, half_cycles
 from rockbatch.outcome.response import EVENT_TYPES, Response
-from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase, WithShaft
+from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase
 from rockbatch.simulation import restraints
 from rockbatch.simulation.models import acceleration_at, model, springs
 from rockbatch.simulation.observing import Observer
@@ -76,7 +76,7 @@ def histories(
         state["energy"] = state["energy"] + devices.stored
     vertical = np.zeros(len(t)) if motion.vertical is None else acceleration_at(motion.vertical, motion.dt, t)
     horizontal = acceleration_at(motion.horizontal, motion.dt, t)
-    bent = {"deflection": _deflection(pier, base, rows)} if isinstance(base, WithShaft) and base.bends else {}
+    bent = {"deflection": _deflection(pier, base, rows)} if base.bends else {}
     history = pd.DataFrame({"t": t, **state, "ag_h": horizontal, "ag_v": vertical, **bent})
     events = pd.DataFrame(_events(rows, recording.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
     return Response(
@@ -127,7 +127,7 @@ def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Sa
     return {"theta": rows.theta, "omega": rows.omega, **none, "energy": _energy(pier, base, rows)}
 
 
-def _deflection(pier: Pier, base: WithShaft, rows: np.recarray) -> Samples:
+def _deflection(pier: Pier, base: Base, rows: np.recarray) -> Samples:
     """Return the deflection of the highest point of an elastic shaft across its axis [m], at every row."""
     shapes = base.modes(pier).at(pier.highest)
     deflection: Samples = shapes @ of_modes(rows)[0][: len(shapes)]

@@ -25,7 +25,6 @@ from rockbatch.pier import (
     Base,
     ElasticBase,
     FootingBase,
-    Modes,
     Pier,
     RigidBase,
     YieldingBase,
@@ -164,7 +163,7 @@ def flexible_block(pier: Pier, base: RigidBase) -> FlexibleBlock:
         rest=rigid.rest,
         deck=0.0,
         top=float(pier.top),
-        tipping=_tipping(rigid, modes),
+        tipping=_tipping(rigid, base.overhang(pier)),
         flight_step=0.5 * FREQUENCY_STEP / greatest_rate_of_shaft(pier, base, rigid.inertia + rigid.height**2),
         share=per_mode(modes.share),
         coupling=per_mode(modes.coupling),
@@ -181,13 +180,12 @@ def per_mode(values: Samples, absent: float = 0.0) -> PerMode:
     return PerMode(*map(float, values), *[absent] * lacking)
 
 
-def _tipping(m: Block, modes: Modes) -> float:
-    """Return the unstable equilibrium [rad] on one pivot with the shaft bent by the weight; it is below α."""
-    leans = m.gravity * float(((modes.share / modes.frequency) ** 2).sum())
+def _tipping(m: Block, overhang: float) -> float:
+    """Return the unstable equilibrium [rad] on one pivot with the shaft bent by the weight, which hangs over; it is below α."""
     low, high = 0.0, m.alpha
     for _ in range(60):
         middle = 0.5 * (low + high)
-        back = m.half_width * math.cos(middle) - (m.height + leans * math.cos(middle)) * math.sin(middle)
+        back = m.half_width * math.cos(middle) - (m.height + overhang * math.cos(middle)) * math.sin(middle)
         low, high = (middle, high) if back > 0.0 else (low, middle)
     return low
 

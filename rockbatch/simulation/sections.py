@@ -26,7 +26,7 @@ from rockbatch.core.types import LIFT_OFF, TAKE_OFF, Pull
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.changes import LEAST, Sized, greatest_change
 from rockbatch.outcome.outcome import Section
-from rockbatch.pier import Modes, Pier, WithShaft, bent_above
+from rockbatch.pier import Modes, Pier, bent_above
 from rockbatch.pier.sections import above
 from rockbatch.simulation.elements import elements
 from rockbatch.simulation.models import ground_of, model
@@ -164,7 +164,7 @@ def in_body(of: Recorded, numbers: Places, shares: Samples) -> InBody:
     across, along = horizontal * cosine - vertical * sine, vertical * cosine + horizontal * sine
     on_deck = [(float(height), push) for height, push in zip(of.heights, pushes.T, strict=True) if height != 0.0]
     body = InBody(across, along, motion.turning, motion.omega, squared, sine, cosine, on_deck, None)
-    if not (isinstance(base, WithShaft) and base.bends):
+    if not base.bends:
         return body
     modes = base.modes(pier)
     body = body._replace(bending=Bending(modes, *np.moveaxis(bending, 0, 2)[:, : len(modes.frequency)]))

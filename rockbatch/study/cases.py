@@ -9,6 +9,7 @@ from rockbatch.common.naming import alike
 from rockbatch.common.showing import shown
 from rockbatch.common.units import rounded_up
 from rockbatch.pier import (
+    OF_SHAFT,
     WITH_EPSILON,
     WITH_EXPONENT,
     Base,
@@ -158,7 +159,7 @@ def _case_of(case: _WrittenCase, chosen: Chosen, pier: Pier, pier_values: Values
     if not base.has_exponent:
         applying.pop("n", None)
     if not base.bends:
-        for key in ("shaft", "flexural_damping", "flexural_damping_kind", "flexural_modes"):
+        for key in OF_SHAFT:
             applying.pop(key, None)
     return Case(case.name, pier, base, pier_values | applying)
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any, get_args
 
 from rockbatch.common.errors import Contradiction, InputError, MissingKey, Problem
-from rockbatch.pier import FootingBase, Pier
+from rockbatch.pier import OF_SHAFT, FootingBase, Pier
 from rockbatch.pier.footing_base import POISSON, STRIPS
 from rockbatch.pier.restraints import DeckSpring, Restraint
 from rockbatch.pier.soil import Formula
@@ -16,7 +16,7 @@ from rockbatch.toml.section import Key
 ON_FOOTING = {"base": ("footing",)}
 _FIELDS = (
     *("zeta", "kinematics", "friction", "flight_limit_mm", "strips", "length_m", "safety_factor", "beta"),
-    *("shaft", "flexural_damping", "flexural_damping_kind", "flexural_modes"),
+    *OF_SHAFT,
 )
 
 _WAYS = {
