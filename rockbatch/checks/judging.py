@@ -13,7 +13,7 @@ from rockbatch.checks.capacity import used
 from rockbatch.checks.endings import left_open
 from rockbatch.checks.events import OfEvent, largest_event
 from rockbatch.checks.omissions import OMISSIONS
-from rockbatch.checks.rule_choices import FAR, Available, Fitted, fitted, limit_key
+from rockbatch.checks.rule_choices import FAR, Available, Fitted, fitted
 from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
@@ -337,7 +337,7 @@ def _on_each(demand: OfSuite, axes: Sequence[Axis]) -> str:
 
 def _remark_if_far(rule: Rule, value: float) -> str:
     """Return the remark that the value is below a hundredth of the limit; "" if it is not, is 0 or confirmed, or for a count."""
-    key = limit_key(rule)
+    key = rule.limit_key
     if rule.statistic == "count" or key in rule.confirm or not 0.0 < FAR * value < rule.limit:
         return ""
     return f"{value:.4g} is below {1 / FAR:g} of the limit: check its unit, or write confirm = [{shown(key)}]"

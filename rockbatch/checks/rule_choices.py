@@ -145,7 +145,7 @@ def _implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
 
     It is negative, next to 0 in mm, or in all ``cases`` above the greatest possible value or far from the size of the quantity.
     """
-    key = "above" if rule.statistic == "count" else limit_key(rule)
+    key = "above" if rule.statistic == "count" else rule.limit_key
     demand, value = DEMANDS[rule.demand], rule.above if rule.statistic == "count" else rule.limit
     if value is None or key in rule.confirm:
         return
@@ -167,11 +167,6 @@ def _implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
         yield odd(f"{rule.demand} above {most:.4g} {demand.ceiling.beyond}, so the limit decides nothing")
     elif value > 0 and (text := _far_from(rule.demand, value, mine)):
         yield odd(text)
-
-
-def limit_key(rule: Rule) -> str:
-    """Return the key of the rule's limit: "at_most" or "at_least", or "capacity" where the limit is a share of one."""
-    return rule.sense.replace(" ", "_") if rule.number_of_capacity is None else "capacity"
 
 
 def _far_from(name: str, value: float, cases: Sequence[Case]) -> str:

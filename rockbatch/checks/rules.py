@@ -169,6 +169,11 @@ class Rule:
         """ "at most" if ``at_most`` is given, else "at least"."""
         return "at most" if self.at_most is not None else "at least"
 
+    @property
+    def limit_key(self) -> str:
+        """The key of the limit: "at_most" or "at_least", or "capacity" where the limit is a share of one."""
+        return self.sense.replace(" ", "_") if self.number_of_capacity is None else "capacity"
+
     @cached_property
     def ways(self) -> dict[str, str]:
         """Way of counting, one of :data:`COUNTING`, by status: {"overturned": "infinite", …}; all infinite by ASCE 7-16."""
