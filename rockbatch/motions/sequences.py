@@ -6,7 +6,7 @@ ends with 0. P is long, so that this is far below the acceleration that lifts a 
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
@@ -377,13 +377,18 @@ def add_sequences(
             refused.append(LeftOut(name, by_name[name].files, reason))
     parts_only = parts.keys() - alone
     pulse_names = {pulse.name for pulse in pulses}
-    as_pulses = [motion for motion in joined_motions if pulse_names.issuperset(shock.name for shock in motion.shocks)]
+    as_pulses = [motion for motion in joined_motions if is_pulse(motion, pulse_names)]
     records = [motion for motion in motions.motions if motion.name not in parts_only]
     records += [motion for motion in joined_motions if motion not in as_pulses]
     unusable = [file for file in refused if isinstance(file, Unusable)]
     left_out = [file for file in refused if isinstance(file, LeftOut)]
     pulses_alone = [pulse for pulse in pulses if pulse.name not in parts_only]
     return motions.reduced_to(records, unusable, left_out), pulses_alone + as_pulses
+
+
+def is_pulse(motion: Motion, pulses: Set[str]) -> bool:
+    """Return whether a motion is one of the ``pulses`` of these names, or a sequence of these alone: no target scales it."""
+    return {*motion.records} <= pulses
 
 
 def _sequence_or_refusal(

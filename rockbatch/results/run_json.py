@@ -15,8 +15,9 @@ from rockbatch.common.files import is_plain, read_text, replacing
 from rockbatch.common.version import commit
 from rockbatch.motions import MotionSet
 from rockbatch.motions.description import entry, spectra
-from rockbatch.motions.motion import Motion, Unusable
+from rockbatch.motions.motion import Unusable
 from rockbatch.motions.scaling import verticals
+from rockbatch.motions.sequences import is_pulse
 from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
 from rockbatch.pier import Base, Damper, DeckSpring, Pier, Stop, Tendon, described
 from rockbatch.pier.bases import BASES
@@ -160,7 +161,8 @@ def describe(study: Study, motions: MotionSet) -> Row:
     gravity = study.cases[0].pier.gravity
     target = study.motions.target if isinstance(study.motions.target, SpectrumTarget) else None
     compared = target is not None and target.factors == "none"
-    fitted = [motion for motion in motions.motions if compared or not _is_pulse(motion, study)]
+    pulses = {pulse.name for pulse in study.motions.pulses}
+    fitted = [motion for motion in motions.motions if compared or not is_pulse(motion, pulses)]
     with_pulses = target is not None or study.output.has("intensity")
     labels = motions.labels
     return {
@@ -212,11 +214,6 @@ def is_of(directory: Path, sha256: str, records: Sequence[str] | None = None) ->
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return False
     return is_same and is_plain(directory / PEAKS)
-
-
-def _is_pulse(motion: Motion, study: Study) -> bool:
-    """Return whether a motion is a pulse of the study, or a sequence of pulses: targets do not scale these."""
-    return {pulse.name for pulse in study.motions.pulses}.issuperset(motion.records)
 
 
 def rocking_periods(cases: Sequence[Case], target: SpectrumTarget) -> dict[str, list[float]]:
