@@ -20,7 +20,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import Case, has_device, is_across
+from rockbatch.quantities.cases import Case, has_device, is_across, names_along
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.quantities.demands import OF_BASE
 from rockbatch.quantities.rows import NOT_RUN, complete, counts_as, rows_of_piers, simulated, with_case
@@ -91,7 +91,7 @@ def judge(
     }
     none_read = bool((runs["status"] == "failed").all())  # tables are empty then, and no choice of theirs is wrong
     available = Available(
-        cases=list(dict.fromkeys(str(case["case"]) for case in cases if not is_across(case))),
+        cases=names_along(cases),
         scales=scales,
         output=[
             *(key for key, columns in BROUGHT.items() if _has_columns(runs, columns)),

@@ -26,6 +26,16 @@ def name_along(case: Case) -> str:
     return str(case.get("across_of") or case["case"])
 
 
+def names_along(cases: Iterable[Case]) -> list[str]:
+    """Return the names of cases along the axis of their pier, each once, in order."""
+    return list(dict.fromkeys(str(case["case"]) for case in cases if not is_across(case)))
+
+
+def names_across(cases: Iterable[Case]) -> set[str]:
+    """Return the names of cases across the axis of their pier."""
+    return {str(case["case"]) for case in cases if is_across(case)}
+
+
 def of_pier(case: Case) -> tuple[object, ...]:
     """Return a key that the cases of both axes of a pier share: the name of the case along the axis, and (key, value) pairs."""
     return name_along(case), *case["columns"].items()

@@ -16,7 +16,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.naming import chosen
 from rockbatch.common.showing import shown
 from rockbatch.outcome.response import Response
-from rockbatch.quantities.cases import is_across
+from rockbatch.quantities.cases import names_along
 from rockbatch.reporting.finished import Finished, read
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.margins import headline
@@ -231,7 +231,7 @@ def statement(directory: str | os.PathLike[str], case: str | None = None) -> str
     Case "pads" meets its only check, but is not decided: no check limits its mean settlement, residual tilt, ductility. ...
     """
     finished = read(Path(directory), ())
-    names = list(dict.fromkeys(str(entry["case"]) for entry in finished.info["cases"] if not is_across(entry)))
+    names = names_along(finished.info["cases"])
     if unknown := {verdict.case for verdict in finished.verdicts if verdict.case} - {*names}:
         text = (
             f"has verdicts on case {shown(min(unknown))}, which run.json does not list; start `rockbatch check` again"

@@ -12,7 +12,7 @@ import numpy as np
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.cases import Case, is_across, name_along
+from rockbatch.quantities.cases import Case, is_across, name_along, names_across
 from rockbatch.quantities.design import BOUND, of_design, under
 from rockbatch.quantities.labels import digits_that_tell, quantity, scaled_by, titled, values_in_words
 from rockbatch.quantities.rows import as_in_peaks, simulated, with_case
@@ -175,7 +175,7 @@ def labelled(peaks: "pd.DataFrame", info: Item, directory: Path) -> Labelled:
         runs[name] = kinds.map({kind: fact[column] for kind, fact in facts.items()})
     pga = {record["record"]: record["pga_g"] for record in info["records"]}
     runs["pga"] = runs["record"].map(pga).astype("float64") * runs["scale"]
-    if across := {case["case"] for case in info["cases"] if is_across(case)}:
+    if across := names_across(info["cases"]):
         runs["pga"] = runs["pga"].where(
             ~runs["case"].isin(across), runs["pga_g"]
         )  # run.json has the PGA of the other component

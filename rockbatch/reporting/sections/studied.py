@@ -5,7 +5,7 @@ from collections.abc import Collection, Sequence
 
 from rockbatch.checks.coverage import stations_of
 from rockbatch.pier.restraints import KINDS
-from rockbatch.quantities.cases import Case, is_across, top
+from rockbatch.quantities.cases import Case, is_across, names_across, top
 from rockbatch.quantities.design import BOUND
 from rockbatch.quantities.labels import plain, titled
 from rockbatch.quantities.quantity import FOOTING
@@ -56,7 +56,7 @@ def section(finished: Finished, level: str = "h3") -> Markup:
         drift_at = top(case)
         key = *(case["pier"][key] for key in ("alpha", "p", "mu", "gravity")), drift_at
         piers.setdefault(key, case["pier"] | {"top_m": drift_at})
-    names_across = {case["case"] for case in cases if is_across(case)}
+    are_across = names_across(cases)
     return render(
         "reporting/sections/studied.html",
         finished=finished,
@@ -67,7 +67,7 @@ def section(finished: Finished, level: str = "h3") -> Markup:
         degrees=math.degrees,
         along=list(along.values()),
         across=list(across.values()),
-        foundations_along=sum(key[0] not in names_across for key in finished.places),
+        foundations_along=sum(key[0] not in are_across for key in finished.places),
         given=_numbers_of(finished.pier_as_given),
         vertical=_vertical(finished),
         scales=sorted(finished.runs["scale"].unique().astype(float)) if len(finished.runs) else [],
