@@ -15,7 +15,7 @@ from short_pages import pages, short_pages
 from rockbatch.common.garbage import collect_rarely
 from rockbatch.core import kernel
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase
+from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.pier.restraints import Restraint
 from rockbatch.simulation import kept
 
@@ -71,9 +71,13 @@ def pytest_sessionstart(session):
             import_module(library)
 
 
-SLOW = ({"finite"}, {"shaft"})
+SLOW = ({"finite"}, {"shaft"}, {"backbone"})
 """What is compiled by itself in the bases whose kernels slow tests compile beside these; those of all others are thorough."""
-OF_SLOW = [RigidBase(shaft="elastic", flexural_modes=1), ElasticBase(50.0, kinematics="finite")]
+OF_SLOW = [
+    RigidBase(shaft="elastic", flexural_modes=1),
+    ElasticBase(50.0, kinematics="finite"),
+    YieldingBase(50.0, eta=2.0, spring="backbone", backbone=((1.0, 1.0), (2.0, 1.0))),
+]
 """Bases whose kernels slow tests compile."""
 
 
@@ -83,6 +87,7 @@ def compiled_traits(base, tied):
     if base.on_springs:
         n = base.has_exponent and base.n != 5.0
         traits |= {"finite": base.kinematics == "finite", "n": n, "damped": base.zeta is not None}
+        traits |= {"backbone": bool(getattr(base, "backbone", ()))}
     return {name for name, present in traits.items() if present}
 
 

@@ -355,7 +355,8 @@ def _springs(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
     low, high = (float(loaded.min()), float(loaded.max())) if len(loaded) else (-1.0, 0.0)
     margin = 0.08 * (high - low) + 0.01
     x = Axis(names[0], low - margin, high + margin, about=3)
-    y = Axis(names[1], -1.08, 0.1, about=3) if base.yields else spanning(names[1], *forces, about=3)
+    bounded = base.yields and min((np.nanmin(force, initial=0.0) for force in forces), default=0.0) >= -1.0
+    y = Axis(names[1], -1.08, 0.1, about=3) if bounded else spanning(names[1], *forces, about=3)
     yields = Rule("y", -np.ones(1), look=Look("edge", dash=1), label="force at which a support yields")
     panels = []
     for side, own, force in zip(sides, v, forces, strict=True):

@@ -1,5 +1,6 @@
 """The pier and its base: a rigid block on rigid ground, elastic or yielding springs, or a footing."""
 
+from rockbatch.pier.backbones import MOST_POINTS as MOST_POINTS
 from rockbatch.pier.bases import MOST_NEGLECTED as MOST_NEGLECTED
 from rockbatch.pier.bases import Base as Base
 from rockbatch.pier.bases import ElasticBase as ElasticBase
@@ -27,6 +28,7 @@ from rockbatch.pier.frequencies import yield_deflection as yield_deflection
 from rockbatch.pier.landing import landing_force as landing_force
 from rockbatch.pier.laws import LAWS as LAWS
 from rockbatch.pier.laws import WITH_EXPONENT as WITH_EXPONENT
+from rockbatch.pier.laws import WITH_POINTS as WITH_POINTS
 from rockbatch.pier.laws import SpringLaw as SpringLaw
 from rockbatch.pier.parts import Part as Part
 from rockbatch.pier.places import Place as Place

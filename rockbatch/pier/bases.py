@@ -10,12 +10,14 @@ from dataclasses import InitVar, dataclass, field
 from typing import Any, ClassVar, Literal, Self
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import Contradiction, Problem, Superseded, WrongType, refuse
+from rockbatch.common.errors import Contradiction, MissingKey, OutOfRange, Problem, Superseded, WrongType, refuse
+from rockbatch.common.units import Bounds
+from rockbatch.pier.backbones import first_corner, over_first, wrong_points
 from rockbatch.pier.block import Pier
 from rockbatch.pier.first_loading import Curve, Straight
 from rockbatch.pier.footing_base import FootingBase
 from rockbatch.pier.frequencies import static_deflection, vertical_frequency, yield_deflection
-from rockbatch.pier.laws import LAWS, Law, SpringLaw
+from rockbatch.pier.laws import LAWS, WITH_POINTS, Law, SpringLaw
 from rockbatch.pier.restraints import Restraint, described_restraints
 from rockbatch.pier.shafts import WithShaft
 from rockbatch.pier.supports import beta_of, eta_of, unlikely_supports
@@ -23,6 +25,7 @@ from rockbatch.pier.traits import (
     ASKING_TENSION,
     BETA,
     EPSILON_AND_ZETA,
+    ETA_OF_BACKBONE,
     FLIGHT_LIMIT_MM,
     WITH_EPSILON,
     Flight,
@@ -220,11 +223,14 @@ class YieldingBase(ElasticBase):
     ----------
     eta : float
         Bearing capacity index η = δ_y/δ_s > 1.
-    spring : "bouc-wen", "epp" or "hardening"
+    spring : "bouc-wen", "epp", "hardening" or "backbone"
         The paper's smooth law (THEORY.md, eq. 7), elastic–perfectly plastic, or Bouc–Wen's curve with elastic unloading and
-        reloading up to the greatest force borne so far.
+        reloading up to the greatest force borne so far; or the same rule with a curve of its own (THEORY.md, A backbone).
     n : float
-        Bouc–Wen exponent ≥ 1 of the first and the last; 5 in the paper.
+        Bouc–Wen exponent ≥ 1 of the first and the third; 5 in the paper.
+    backbone : tuple of (float, float)
+        Points of the last one's curve, deflection over δ_y and force over F_y: a concave polyline whose first corner is (1, 1)
+        and whose last slope goes on. δ_y and F_y are those of that corner, so that η may be below 1 (:meth:`from_backbone`).
 
     Examples
     --------
@@ -237,9 +243,25 @@ class YieldingBase(ElasticBase):
     eta: float = field(kw_only=True)
     spring: SpringLaw = "bouc-wen"
     n: float = 5.0
+    backbone: tuple[tuple[float, float], ...] = field(default=(), kw_only=True)
 
     name = "yielding"
     yields = True
+
+    def _bounds(self, name: str) -> Bounds:
+        return ETA_OF_BACKBONE if name == "eta" and self.spring in WITH_POINTS else super()._bounds(name)
+
+    def _wrong_together(self) -> list[Problem]:
+        wrong = super()._wrong_together()
+        if self.backbone and self.spring not in WITH_POINTS:
+            text = f'is of spring = "backbone", and these springs are "{self.spring}"; change one'
+            wrong.append(Problem("backbone", None, text, kind=Contradiction))
+        elif self.spring in WITH_POINTS and (text := wrong_points(self.backbone)):
+            wrong.append(Problem("backbone", None, text, kind=OutOfRange if self.backbone else MissingKey))
+        elif self.backbone and self.backbone[0] != (1.0, 1.0):
+            text = "its first point must be (1, 1), since all are over its deflection and force; or take from_backbone"
+            wrong.append(Problem("backbone", None, text, kind=OutOfRange))
+        return wrong
 
     @property
     def reference_eta(self) -> float:
@@ -254,7 +276,7 @@ class YieldingBase(ElasticBase):
     @property
     def first_loading(self) -> Curve:
         """Return the curve of the springs' first loading, over force and deflection at yield."""
-        return self.law.first_loading(self.n)
+        return self.law.first_loading(self.n, self.backbone)
 
     @property
     def has_exponent(self) -> bool:
@@ -271,6 +293,8 @@ class YieldingBase(ElasticBase):
         values = super().parameters(pier) | {"eta": self.eta, "spring": self.spring}
         if self.has_exponent:
             values["n"] = self.n
+        if self.backbone:
+            values["backbone"] = [list(point) for point in self.backbone]
         return values | {"delta_y_m": yield_deflection(pier, self)}
 
     @classmethod
@@ -287,6 +311,27 @@ class YieldingBase(ElasticBase):
             rest["eta"] = eta_of(pier, yield_kN)
             refuse(unlikely_supports(pier, rest.get("confirm", ()), yield_kN=yield_kN))
         return super().from_stiffness(pier, stiffness_kN_m, **rest)
+
+    @classmethod
+    @checked
+    def from_backbone(cls, pier: Pier, points_mm_kN: tuple[tuple[float, float], ...], **rest: Any) -> Self:
+        """Return a base from the backbone of one support, points of deflection [mm] and force [kN]; ``rest`` as in the class.
+
+        ``pier`` must have a mass. The first point is the first corner, and the last slope goes on. Raises ``InputError`` for
+        points that are no concave polyline, or values that are impossible, or unusual and not confirmed.
+
+        Examples
+        --------
+        >>> tall = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
+        >>> pads = rb.YieldingBase.from_backbone(tall, [(10, 20e3), (30, 35e3), (60, 40e3)], epsilon=0.05)
+        >>> pads.backbone
+        ((1.0, 1.0), (3.0, 1.75), (6.0, 2.0))
+        """
+        if text := wrong_points(points_mm_kN):
+            refuse([Problem("points_mm_kN", None, text, kind=OutOfRange)])
+        stiffness, force = first_corner(points_mm_kN)
+        values = {"spring": "backbone", "backbone": over_first(points_mm_kN)}
+        return cls.from_stiffness(pier, stiffness, yield_kN=force, **values | rest)
 
 
 Base = RigidBase | ElasticBase | YieldingBase | FootingBase

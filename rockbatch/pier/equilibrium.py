@@ -139,9 +139,9 @@ class Equilibria:
 
 
 def spring_of(pier: Pier, base: ElasticBase) -> Spring:
-    """Return one support of ``base`` under ``pier``: stiffness and strength over the weight, the strength inf if elastic."""
-    strength = 0.5 * base.eta if isinstance(base, YieldingBase) else math.inf
-    return Spring(0.5 / static_deflection(pier, base), strength, base.first_loading)
+    """Return one support of ``base`` under ``pier``: stiffness and yield force over the weight, the force inf if elastic."""
+    yield_force = 0.5 * base.eta if isinstance(base, YieldingBase) else math.inf
+    return Spring(0.5 / static_deflection(pier, base), yield_force, base.first_loading)
 
 
 class SlowTurn:
@@ -281,7 +281,7 @@ class SlowTurn:
         depth = self.settled + rise  # of an elastic toe; Newton's method from there never goes past the root
         for _ in range(MOST_STEPS):
             toe, lifted = spring.force(depth), depth < bears
-            slope = np.where(lifted, 0.0, 1.0) + spring.curve.tangent(toe / spring.strength)
+            slope = np.where(lifted, 0.0, 1.0) + spring.curve.tangent(toe / spring.yield_force)
             excess = 1.0 - toe - self._heel(theta, depth)
             step = excess / (spring.stiffness * np.maximum(slope, NEAR))
             depth, before = np.where(lifted, np.minimum(depth + step, bears), depth + step), depth
@@ -429,6 +429,9 @@ class SlowTurn:
             regimes += [curve.heel >= self.spring.strength]
             if self.spring.curve.corner:
                 regimes += [curve.depth * self.spring.stiffness >= self.spring.strength]
+            regimes += [
+                curve.depth >= self.spring.depth(kink * self.spring.yield_force) for kink in self.spring.curve.kinks
+            ]
         for place in self.places:
             device, elongation = place.device, self.elongation(place, curve.theta, curve.depth)
             if isinstance(device, Tendon):

@@ -4,12 +4,15 @@ A curve is defined by its tangent stiffness over the elastic one, s(z) at z = F/
 sheet, releases and the static state of a run all use it.
 """
 
+from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
 import numpy.typing as npt
+
+from rockbatch.pier.backbones import Points, greatest, slopes
 
 Array = npt.NDArray[np.float64]
 
@@ -28,6 +31,7 @@ class Straight:
 
     most: float = 1.0
     corner = True
+    kinks = ()
 
     def force(self, deflection: Array) -> Array:
         """Return F/F_y at a ``deflection``/δ_y ≥ 0: the smaller of it and ``most``."""
@@ -53,6 +57,8 @@ class Smooth:
     softening: Callable[[Array], Array]
     give: float = 0.0
     corner = False
+    most = 1.0
+    kinks = ()
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:
@@ -93,7 +99,47 @@ class Smooth:
         return self.softening(1.0 - force)
 
 
-Curve = Straight | Smooth
+@dataclass(frozen=True)
+class Polyline:
+    """A concave polyline from the origin through ``points``, (deflection/δ_y, force/F_y), the first of which is (1, 1).
+
+    All but the last point are corners; that gives the slope beyond them.
+    """
+
+    points: Points
+    corner = False
+
+    @cached_property
+    def tangents(self) -> Array:
+        """Tangent stiffness over the elastic one, 1, and beyond each corner."""
+        return np.array(slopes(self.points))
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Return the forces/F_y at the corners."""
+        return tuple(force for _, force in self.points[:-1])
+
+    @property
+    def most(self) -> float:
+        """Return the greatest force/F_y: that at the last corner if the spring is plastic beyond it, else infinity."""
+        return greatest(self.points)
+
+    def force(self, deflection: Array) -> Array:
+        """Return F/F_y at a ``deflection``/δ_y ≥ 0."""
+        x, force = np.array([(0.0, 0.0), *self.points]).T
+        return np.interp(deflection, x, force) + self.tangents[-1] * np.maximum(deflection - x[-1], 0.0)
+
+    def deflection(self, force: float) -> float:
+        """Return the deflection/δ_y under a ``force``/F_y below the greatest."""
+        starts, i = ((0.0, 0.0), *self.points), bisect_left(self.kinks, force)
+        return float(starts[i][0] + (force - starts[i][1]) / self.tangents[i])
+
+    def tangent(self, force: Array) -> Array:
+        """Return tangent over elastic stiffness at ``force``/F_y; at a corner, that beyond it."""
+        return self.tangents[np.searchsorted(self.kinks, force, side="right")]
+
+
+Curve = Straight | Smooth | Polyline
 """First loading of a spring."""
 
 
@@ -135,21 +181,26 @@ def steel(give: float) -> BoucWen:
 
 @dataclass(frozen=True)
 class Spring:
-    """A support: stiffness [1/m] and strength over the weight, and the curve of its first loading."""
+    """A support: stiffness [1/m] and yield force over the weight, and the curve of its first loading."""
 
     stiffness: float
-    strength: float
+    yield_force: float
     curve: Curve
+
+    @property
+    def strength(self) -> float:
+        """Return the greatest force over the weight."""
+        return self.yield_force * self.curve.most
 
     def force(self, depth: Array) -> Array:
         """Return the force over the weight in first loading at a ``depth`` [m] below the unstressed place; 0 above it."""
         elastic = self.stiffness * np.maximum(depth, 0.0)
         if self.curve.corner:
             return np.minimum(elastic, self.strength)
-        return self.strength * self.curve.force(elastic / self.strength)
+        return self.yield_force * self.curve.force(elastic / self.yield_force)
 
     def depth(self, force: float) -> float:
         """Return the depth [m] under a ``force`` over the weight, below the strength, in first loading."""
         if self.curve.corner:
             return force / self.stiffness
-        return self.curve.deflection(force / self.strength) * self.strength / self.stiffness
+        return self.curve.deflection(force / self.yield_force) * self.yield_force / self.stiffness

@@ -8,9 +8,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from rockbatch.pier.first_loading import Curve, Straight, bouc_wen
+from rockbatch.pier.backbones import Points
+from rockbatch.pier.first_loading import Curve, Polyline, Straight, bouc_wen
 
-SpringLaw = Literal["bouc-wen", "epp", "hardening"]
+SpringLaw = Literal["bouc-wen", "epp", "hardening", "backbone"]
 
 
 @dataclass(frozen=True)
@@ -30,12 +31,14 @@ class Law:
     """A law of yielding supports.
 
     ``meaning`` follows its name in the reference of studies; ``has_exponent`` is True if it has the exponent n;
-    ``first_loading`` returns its curve for a value of n; ``creep`` is None unless it ratchets.
+    ``has_points`` if its curve is given by points; ``first_loading`` returns the curve for n and points; ``creep`` is None
+    unless it ratchets.
     """
 
     meaning: str
     has_exponent: bool
-    first_loading: Callable[[float], Curve]
+    has_points: bool
+    first_loading: Callable[[float, Points], Curve]
     creep: Creep | None
 
 
@@ -43,19 +46,29 @@ LAWS: dict[SpringLaw, Law] = {
     "bouc-wen": Law(
         meaning="smooth, as in the paper",
         has_exponent=True,
-        first_loading=bouc_wen,
+        has_points=False,
+        first_loading=lambda n, points: bouc_wen(n),
         creep=Creep(exponent=lambda n: n, other="epp"),
     ),
     "epp": Law(
         meaning="elastic and then perfectly plastic",
         has_exponent=False,
-        first_loading=lambda n: Straight(),
+        has_points=False,
+        first_loading=lambda n, points: Straight(),
         creep=None,
     ),
     "hardening": Law(
         meaning='loaded at first as "bouc-wen", and elastic below the greatest force borne so far',
         has_exponent=True,
-        first_loading=bouc_wen,
+        has_points=False,
+        first_loading=lambda n, points: bouc_wen(n),
+        creep=None,
+    ),
+    "backbone": Law(
+        meaning="loaded along the points given, and elastic below the greatest force borne so far",
+        has_exponent=False,
+        has_points=True,
+        first_loading=lambda n, points: Polyline(points),
         creep=None,
     ),
 }
@@ -67,13 +80,16 @@ if missing := set(get_args(SpringLaw)) ^ set(LAWS):
 WITH_EXPONENT = tuple(name for name, law in LAWS.items() if law.has_exponent)
 """Laws with the exponent n."""
 
+WITH_POINTS = tuple(name for name, law in LAWS.items() if law.has_points)
+"""Laws whose curve is given by points."""
+
 RATCHETING = tuple(name for name, law in LAWS.items() if law.creep is not None)
 """Laws that ratchet."""
 
 
 def without_ratcheting(word: str) -> str:
-    """Return the quoted names of the laws that do not ratchet, joined by commas and ``word``: '"epp" and "hardening"'."""
-    names = [f'"{name}"' for name in LAWS if name not in RATCHETING]
+    """Return the quoted names of the laws that neither ratchet nor need points, joined by ``word``: '"epp" or "hardening"'."""
+    names = [f'"{name}"' for name in LAWS if name not in (*RATCHETING, *WITH_POINTS)]
     return f" {word} ".join((", ".join(names[:-1]), names[-1]))
 
 

@@ -23,10 +23,10 @@ def least_beta(pier: Pier, base: Base) -> float:
     bends hangs over as it leans. For other bases it is that on two elastic springs.
     """
     over = _over(pier, base) if base.on_springs else 1.0
-    if not (isinstance(base, YieldingBase) and base.eta > 1 and base.n >= 1):
+    if not (isinstance(base, YieldingBase) and base.n >= 1):
         return over * pier.least_beta
     carried = base.eta / (1.0 + prestress_over_weight(pier, base.restraints))
-    if carried <= 1:
+    if carried * base.first_loading.most <= 1:
         return over * pier.least_beta
     softer = float(base.first_loading.tangent(np.array(1.0 / carried)))
     return over * pier.least_beta * math.sqrt((1.0 + softer) / (2.0 * softer))
@@ -44,7 +44,8 @@ def _over(pier: Pier, base: ElasticBase | FootingBase) -> float:
 
 def least_eta(pier: Pier, base: Base) -> float:
     """Return η below which the springs cannot carry the weight and the tendons' prestress."""
-    return LEAST_ETA * (1.0 + prestress_over_weight(pier, base.restraints))
+    most = base.first_loading.most if isinstance(base, YieldingBase) else 1.0
+    return LEAST_ETA * (1.0 + prestress_over_weight(pier, base.restraints)) / most
 
 
 def enough_eta(pier: Pier, base: Base) -> float:
@@ -91,10 +92,8 @@ def problems(pier: Pier, base: Base) -> list[Problem]:
         wrong += lopsided_tendons(pier, base.restraints)
     if isinstance(base, YieldingBase) and base.eta < (least := least_eta(pier, base)):
         prestress = prestress_over_weight(pier, base.restraints)
-        text = (
-            f"the springs cannot carry the weight and the prestress of the tendons, psi = {prestress:g} of it; eta must be "
-            f"above 1 + psi, {rounded_up(least):g}"
-        )
+        more = f" and the prestress of the tendons, psi = {prestress:g} of it" if prestress else ""
+        text = f"the springs cannot carry the weight{more}; eta must be above {_least_eta_in_words(base)}{rounded_up(least):g}"
         wrong.append(Problem("eta", base.eta, text, kind=OutOfRange))
     return wrong
 
@@ -123,6 +122,9 @@ def _wrong_bending(pier: Pier, base: Base) -> list[Problem]:
     wrong = bending_problems(pier)
     if any(place.height != 0.0 for device in base.restraints for place in places(pier, device)):
         text = 'devices on the deck are of a rigid shaft; leave them out, or write shaft = "rigid"'
+        wrong.append(Problem("shaft", "elastic", text, kind=Contradiction))
+    if isinstance(base, YieldingBase) and base.backbone:
+        text = 'springs with a backbone bear a rigid shaft only; write spring = "hardening", or shaft = "rigid"'
         wrong.append(Problem("shaft", "elastic", text, kind=Contradiction))
     if base.on_springs:
         wrong += [Problem("shaft", "elastic", text, kind=Contradiction) for text in _wrong_under_shaft(base)]
@@ -173,10 +175,20 @@ def _wrong_stiffness(pier: Pier, base: ElasticBase) -> list[Problem]:
     elif isinstance(base, YieldingBase):
         text = (
             "the least push topples the pier, because such springs near their yield force "
-            f"(eta = {base.eta:g}, n = {base.n:g}) give way on the loaded side; beta must be above {least:.4g}"
+            f"({_near_yield(base)}) give way on the loaded side; beta must be above {least:.4g}"
         )
     else:
         text = (
             f"the pier topples on its springs, over which its shaft hangs as it leans; beta must be above {least:.4g}"
         )
     return [Problem("beta", base.beta, text, kind=OutOfRange)]
+
+
+def _least_eta_in_words(base: YieldingBase) -> str:
+    """Return "1 + psi, ", or of springs that may bear more than F_y nothing."""
+    return "" if base.law.has_points else "1 + psi, "
+
+
+def _near_yield(base: YieldingBase) -> str:
+    """Return "eta = 1.2, n = 5", the second if the law has it."""
+    return f"eta = {base.eta:g}" + (f", n = {base.n:g}" if base.has_exponent else "")

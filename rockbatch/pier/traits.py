@@ -63,6 +63,9 @@ BOUNDS = {
 }
 """Possible values of the fields of bases; the least β and η depend on the pier and on tendons, too (`possible.py`)."""
 
+ETA_OF_BACKBONE = Bounds(LEAST, MOST, ", the force at the first corner of the backbone over the static one")
+"""Possible η with a backbone, whose greatest force decides whether it can carry the pier."""
+
 WORDS: dict[str, tuple[str, ...]] = {
     "kinematics": get_args(Kinematics),
     "flight": get_args(Flight),
@@ -123,12 +126,16 @@ class Traits(InNotebook):
         values = {attribute.name: getattr(self, attribute.name) for attribute in fields(self)}  # type: ignore[arg-type]
         wrong = []
         for name in filter(values.__contains__, BOUNDS):
-            wrong += BOUNDS[name].problems(name, values[name])
+            wrong += self._bounds(name).problems(name, values[name])
         for name, words in WORDS.items():
             if name in values and values[name] not in words:
                 wrong.append(Problem(name, values[name], f"must be {' or '.join(map(shown, words))}", kind=WrongType))
         wrong += self._wrong_together()
         refuse(wrong or unusual(USUAL, self.confirm, **{name: values[name] for name in USUAL if name in values}))
+
+    def _bounds(self, name: str) -> Bounds:
+        """Return the possible values of a field of :data:`BOUNDS`; a class overrides it where others apply."""
+        return BOUNDS[name]
 
     def _wrong_together(self) -> list[Problem]:
         """Return a problem for each contradiction between fields; none unless a class overrides it."""

@@ -16,12 +16,14 @@ from rockbatch.core.footing.model import BEDS, Footing
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.powers import LARGEST_WHOLE
 from rockbatch.core.springs import lanes as spring_lanes
+from rockbatch.core.springs.backbone import MOST_CORNERS, Backbone, backbone_of
 from rockbatch.core.springs.laws import CODES
 from rockbatch.core.springs.model import IMPACTS, Springs
 from rockbatch.core.system import System
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
     LAWS,
+    MOST_POINTS,
     Base,
     ElasticBase,
     FootingBase,
@@ -31,6 +33,7 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
+from rockbatch.pier.first_loading import Polyline
 from rockbatch.pier.vibration import greatest_rate_of_shaft
 from rockbatch.simulation.elements import prestress
 from rockbatch.simulation.steps import FREQUENCY_STEP
@@ -42,6 +45,9 @@ if unknown := set(CODES) ^ {"elastic", *LAWS}:
     raise TypeError(
         f"laws of springs stand in one of core/springs/laws.py and pier/laws.py only: {', '.join(sorted(unknown))}"
     )
+
+if MOST_POINTS != MOST_CORNERS + 1:
+    raise TypeError("core/springs/backbone.py has another number of corners than the points of pier/backbones.py")
 
 
 Line = Any
@@ -98,7 +104,16 @@ def springs(pier: Pier, base: ElasticBase) -> Springs:
         finite=True if base.kinematics == "finite" else None,
         damped=True if base.zeta else None,
         shaft=_shaft(pier, base),
+        backbone=_backbone(base),
     )
+
+
+def _backbone(base: ElasticBase) -> Backbone | None:
+    """Return the core's numbers for the backbone of the springs; None if they have none."""
+    curve = base.first_loading
+    if not isinstance(curve, Polyline):
+        return None
+    return backbone_of(curve.kinks, [float(1.0 - stiff) for stiff in curve.tangents[1:]])
 
 
 def _shaft(pier: Pier, base: ElasticBase | FootingBase) -> Shaft | None:

@@ -15,6 +15,7 @@ from rockbatch.core.clock import EVENTFUL
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.run import Settings
 from rockbatch.core.springs import lanes as spring_lanes
+from rockbatch.core.springs.backbone import backbone_of, branch_at, corner_beyond
 from rockbatch.core.springs.laws import CODES, kept_sign, may_yield
 from rockbatch.core.springs.model import Contact, SpringTraits, State, Supports
 from rockbatch.core.springs.passing import correct_lane
@@ -57,13 +58,14 @@ SLOW_PIERS = {
     "finite": {"finite": True},
     "damped": {"damped": True, "damping": 3.0, "epsilon": 1.0},
     "finite-damped": {"finite": True, "damped": True, "damping": 0.5, "epsilon": 1.0},
+    "backbone": {"law": CODES["backbone"], "backbone": backbone_of((1.0, 1.02, 1.05), (0.3, 0.6, 1.0))},
 }
-PIERS = {name: {"law": law} for name, law in CODES.items()}
+PIERS = {name: {"law": law} for name, law in CODES.items() if name != "backbone"}
 
 
 def random_lanes(rng, m):
     """Return a table of piers that hardly touch their supports or hang right above them, near their yield points, and shake."""
-    lanes = table(spring_lanes.LANE)[0]
+    lanes = table(spring_lanes.system_of(m).lane)[0]
     lane, soft = lanes[0], m.yield_deflection
     for name, _ in spring_lanes.NUMBERS:
         lane.model[name][:] = 5.0 if name == "exponent" else getattr(m, name)
@@ -79,8 +81,21 @@ def random_lanes(rng, m):
         lane.now[f"z_{side}"][:] = z if m.damped else on * z
         lane.supports[side][:] = -rng.uniform(0.0, 0.02 * soft, LANES)
         lane.supports[f"yield_{side}"][:] = z - rng.uniform(0.0, 0.02, LANES) if m.law == CODES["hardening"] else -1.0
+    if m.backbone is not None:
+        between_corners(rng, m, lane, speeds)
     lane.ground.horizontal[:], lane.ground.vertical[:] = rng.normal(0.0, 20.0, (2, LANES))
     return lanes
+
+
+def between_corners(rng, m, lane, speeds):
+    """Press the springs of a ``lane`` until they are near the corners of their backbones, each on its branch there."""
+    for name in m.backbone._fields:
+        lane.backbone[name][:] = getattr(m.backbone, name)
+    for side, speed in zip(("left", "right"), speeds, strict=True):
+        z, on = -rng.uniform(0.98, 1.06, LANES), lane.contact[side]
+        branch = [branch_at(m.backbone, -each) for each in z]
+        lane.now[f"z_{side}"][:], lane.contact[f"{side}_yields"][:] = on * z, on * (speed < 0.0) * branch
+        lane.supports[f"yield_{side}"][:] = np.minimum(z - rng.uniform(0.0, 0.02, LANES), -1.0)
 
 
 def margins(m, side, j, y, contact, supports, k):
@@ -89,6 +104,9 @@ def margins(m, side, j, y, contact, supports, k):
     on_spring = getattr(contact, side) != 0.0
     if on_spring and may_yield(m.law, getattr(contact, f"{side}_yields")):
         return [(-z, -z_rate), (z - getattr(supports, f"yield_{side}"), z_rate)]
+    if on_spring and getattr(contact, f"{side}_yields") != 0.0 and m.backbone is not None:
+        corner = corner_beyond(m.backbone, getattr(contact, f"{side}_yields"))
+        return [(z + corner, z_rate)] if corner < math.inf else []
     if m.damped:  # no cubics: the path below
         return []
     return [(-z, -z_rate) if on_spring else (pivot.position - getattr(supports, side), pivot.velocity)]
@@ -120,7 +138,7 @@ def hold_pivot(m, side, contact, supports, path, rates_at_ends, h):
     [
         *PIERS.values(),
         *(
-            pytest.param(pier, marks=pytest.mark.slow if name == "finite" else pytest.mark.thorough)
+            pytest.param(pier, marks=pytest.mark.slow if name in ("finite", "backbone") else pytest.mark.thorough)
             for name, pier in SLOW_PIERS.items()
         ),
     ],
@@ -133,7 +151,7 @@ def test_the_pass_on_springs_misses_no_event_of_a_pivot(changes):
     for _ in range(100):
         lanes = random_lanes(rng, m)
         before = lanes.copy()[0]
-        passes(SpringTraits(None, m.finite, m.damped), lanes[0], LANES)
+        passes(spring_lanes.system_of(m).traits, lanes[0], LANES)
         for i in np.flatnonzero((lanes[0].step_status.kind < EVENTFUL) & (lanes[0].reversals.keeps >= 0.0)):
             contact, supports = lane_of(before.contact, i, Contact), lane_of(before.supports, i, Supports)
             h, ground = before.clock.step[i], Ground(before.ground.horizontal[i], 0.0, before.ground.vertical[i], 0.0)

@@ -44,7 +44,8 @@ LAWS = {
 PIER = """    "softening": Law(
         meaning="softer in proportion to its force",
         has_exponent=False,
-        first_loading=lambda n: SOFTENING,
+        has_points=False,
+        first_loading=lambda n, points: SOFTENING,
         creep=Creep(exponent=lambda n: 1.0, other="epp"),
     ),
 }
@@ -102,9 +103,9 @@ def add(place, core=CORE, of_pier=PIER, literal=True):
         place,
         "pier/laws.py",
         (end, of_pier),
-        ("import Curve, Straight, bouc_wen\n", "import Curve, Smooth, Straight, bouc_wen\n"),
+        ("import Curve, Polyline, Straight, bouc_wen\n", "import Curve, Polyline, Smooth, Straight, bouc_wen\n"),
         ("LAWS: dict[", "SOFTENING = Smooth(lambda deficit: deficit)\n\nLAWS: dict["),
-        *([('"hardening"]', '"hardening", "softening"]')] if literal else []),
+        *([('"backbone"]', '"backbone", "softening"]')] if literal else []),
     )
 
 
@@ -150,7 +151,7 @@ def test_a_law_without_an_entry_in_the_core_stops_the_import(copied, lacks):
 
 
 @pytest.mark.parametrize(
-    "lacks", ["first_loading=lambda n: SOFTENING,", 'creep=Creep(exponent=lambda n: 1.0, other="epp"),']
+    "lacks", ["first_loading=lambda n, points: SOFTENING,", 'creep=Creep(exponent=lambda n: 1.0, other="epp"),']
 )
 def test_a_law_without_an_entry_for_statics_or_releases_stops_the_import(copied, lacks):
     add(copied, of_pier=PIER.replace(lacks, ""))

@@ -236,7 +236,7 @@ def test_the_spring_law_gives_rates_compliances_and_work(n):
     m = pier(None)._replace(exponent=exponent)
     for yields in (0.0, 1.0):
         rate = laws.z_rate(m, -0.6 * ONE, -0.1 * SPEED, yields)
-        assert_units([rate, laws.within_yield(-0.6 * ONE, yields)], [1 / S, ONE])
+        assert_units([rate, laws.within_yield(None, -0.6 * ONE, yields)], [1 / S, ONE])
     work = laws.plastic_work(m, -0.2 * ONE, -0.6 * ONE, 0.001 * M)
     assert_units([work, laws.give(m, 0.4 * ONE, -0.3 * ONE)], [M, ONE])
 

@@ -11,7 +11,7 @@ from rockbatch.core.flexure.shaft import Accelerations, accelerations_over, velo
 from rockbatch.core.kernel import hook, inlined
 from rockbatch.core.springs.equations import accelerations_of, geometry, rates_of, touching, with_forces, without
 from rockbatch.core.springs.model import BentState, State
-from rockbatch.core.springs.passing import correct_reversals, nothing_new_of_shaft, take_in_end
+from rockbatch.core.springs.passing import correct_reversals, leave_reversals, nothing_new_of_shaft, take_in_end
 from rockbatch.core.springs.recovery import acceleration_of_top, forces
 from rockbatch.core.springs.transitions import mirrored
 from rockbatch.core.table import along, get, put
@@ -105,8 +105,7 @@ def _mirrored(y):
 
 @correct_reversals.of(Shaft)
 def _repeat_reversals(shaft, traits, lanes, count):
-    for i in range(count):
-        lanes.reversals.surely[i] = -1.0
+    leave_reversals(lanes, count)
 
 
 @nothing_new_of_shaft.of(Shaft)

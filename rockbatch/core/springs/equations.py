@@ -128,8 +128,9 @@ def stage(m, y, start, contact, remaining):
 
 @system.end_step.of(Springs)
 def end_step(m, y, start, contact, remaining):
-    """Return the end of a step, with z at least −1 on the inelastic branch, and in closed form for supports without pivots."""
-    z_left, z_right = within_yield(y.z_left, contact.left_yields), within_yield(y.z_right, contact.right_yields)
+    """Return the end of a step, with z :func:`within_yield`, and in closed form for supports without pivots."""
+    z_left = within_yield(m.backbone, y.z_left, contact.left_yields)
+    z_right = within_yield(m.backbone, y.z_right, contact.right_yields)
     return with_recovery(m, with_z(y, z_left, z_right), start, contact, remaining)
 
 
@@ -166,7 +167,7 @@ def without(contact, side):
 
 @kernel
 def touching(contact, side, yields):
-    """Return ``contact`` with the pivot on ``side`` on its spring, on the inelastic branch if ``yields`` is 1, elastic if 0."""
+    """Return ``contact`` with the pivot on ``side`` on its spring, on the inelastic branch ``yields``, elastic if 0."""
     held = 0.0 if contact.held == side else contact.held
     if side == LEFT:
         return Contact(1.0, contact.right, yields, contact.right_yields, held)
@@ -177,7 +178,7 @@ def touching(contact, side, yields):
 def holding(contact, side, yields):
     """Return ``contact`` with the pivot on ``side`` grazing its support: free, and ``held``.
 
-    The other pivot, if it grazed, is now on its spring, on the inelastic branch if ``yields`` is 1.
+    The other pivot, if it grazed, is now on its spring, on the inelastic branch ``yields``, elastic if 0.
     """
     if contact.held == -side:
         contact = touching(contact, -side, yields)

@@ -1,14 +1,17 @@
 """Event functions of the pivots: positive until an event, where one falls through zero.
 
-Each pivot has two functions. On its spring: −z (separation) and the law's switching_point (velocity reversal, or yield).
-Free: the gap to its support (landing). In grazing contact: the two conditions that end it.
+Each pivot has two functions. On its spring: −z (separation), or what is left to the corner of a backbone at which an inelastic
+branch ends; and the law's switching_point (velocity reversal, or yield). Free: the gap to its support (landing). In grazing
+contact: the two conditions that end it.
 """
 
+import math
 from typing import NamedTuple
 
 from rockbatch.core import system
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.roots import NO_ACCELERATION, surely
+from rockbatch.core.springs.backbone import corner_beyond
 from rockbatch.core.springs.equations import geometry, holding, pivot_acceleration, touching, without
 from rockbatch.core.springs.laws import branch_of_landing, switching_point
 from rockbatch.core.springs.model import Springs
@@ -27,7 +30,7 @@ class Side(NamedTuple):
     acceleration: float  # [m/s²]
     z: float
     z_rate: float  # [1/s]
-    yields: float  # the spring is on its inelastic branch
+    yields: float  # inelastic branch of the spring, 0 on the elastic one
     support: float  # position at which it is unstressed without its pivot [m]
     point: float  # yield point
 
@@ -64,13 +67,20 @@ def _free_functions(m, side):
 
 @inlined
 def _contact_functions(m, side):
-    """Return the two event functions of a pivot on its spring, each followed by its slope: separation, and change of branch."""
+    """Return the two event functions of a pivot on its spring, each followed by its slope.
+
+    The first is separation; but a spring on an inelastic branch is pressed and cannot separate, so that it is then the corner at
+    which that branch ends, if it does. The second is the change to and from the elastic branch.
+    """
     z, z_rate, velocity, acceleration = side.z, side.z_rate, side.velocity, side.acceleration
     if abs(velocity) <= m.rest:
         if abs(acceleration) <= NO_ACCELERATION * m.gravity:
             acceleration = 0.0
         z_rate = surely(velocity, acceleration, m.rest) * m.stiffness
     contact, contact_slope = _compression(m, z, z_rate, velocity, acceleration)
+    corner = corner_beyond(m.backbone, side.yields)
+    if side.yields != 0.0 and corner < math.inf:
+        contact, contact_slope = z + corner, z_rate
     law, law_slope = switching_point(m.law, side, z_rate, acceleration)
     return contact, contact_slope, law, law_slope
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from rockbatch.core.flexure.shaft import energies_of_modes, leaning_height
 from rockbatch.core.kernel import kernel
+from rockbatch.core.springs.backbone import give_at, greatest
 from rockbatch.core.springs.equations import geometry
 from rockbatch.core.springs.laws import give, limited
 from rockbatch.core.springs.model import HOUSNER
@@ -27,7 +28,7 @@ SEEN = 1e-6
 @kernel
 def _capacity(m, load):
     """Return the supports' greatest moment about the base's centre over load · b; below 1 if one cannot carry all."""
-    return min(1.0, 2.0 * m.yield_force / load - 1.0) if limited(m.law) != 0.0 else 1.0
+    return min(1.0, 2.0 * m.yield_force * greatest(m.backbone) / load - 1.0) if limited(m.law) != 0.0 else 1.0
 
 
 @kernel
@@ -84,7 +85,8 @@ def _climb(m, lean, target, load, point):
     dx = (capacity - x) / PARTS
     for i in range(PARTS):
         middle = x + (i + 0.5) * dx
-        turn = 0.5 * deflection * dx * (1.0 + give(m, static_force * (1.0 + middle), point)) / b
+        at = x + (i + give_at(m.backbone)) * dx
+        turn = 0.5 * deflection * dx * (1.0 + give(m, static_force * (1.0 + at), point)) / b
         part = min(turn, goal - travel)
         middle = x + (i + 0.5 * part / turn) * dx
         moment = load * (b * middle - weight * _weight_moment(m, travel + 0.5 * part))

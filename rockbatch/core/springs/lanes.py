@@ -14,10 +14,13 @@ from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import lowest_within
 from rockbatch.core.springs import events  # noqa: F401  hooks of the springs
+from rockbatch.core.springs.backbone import LIKE as LIKE_BACKBONE
+from rockbatch.core.springs.backbone import NUMBERS as BACKBONE_NUMBERS
+from rockbatch.core.springs.backbone import Backbone, begin_backbone
 from rockbatch.core.springs.bending import at_start
 from rockbatch.core.springs.ending import Waiting, base_of, set_deadline
 from rockbatch.core.springs.equations import clearances
-from rockbatch.core.springs.laws import yield_point, yields_at_first, yields_when_pressed
+from rockbatch.core.springs.laws import branch_at_first, first_point, yield_point, yields_when_pressed
 from rockbatch.core.springs.loading import BranchChange, Loading, branch_change, branches
 from rockbatch.core.springs.model import (
     NUMBERS,
@@ -67,6 +70,9 @@ BENDING_LANE = lanes_of(
 )
 """A table of piers whose shafts bend."""
 
+BACKBONE_LANE = lanes_of(COMMON | {"backbone": Backbone} | LANE_PARTS)
+"""A table of piers on springs with a backbone, which is not at its end: Numba would take it for a LANE."""
+
 
 LINE = (
     *NUMBERS,
@@ -84,6 +90,8 @@ LINE = (
 Line = NamedTuple("Line", LINE)  # type: ignore[misc]
 
 BendingLine = NamedTuple("BendingLine", (*LINE, *SHAFT_NUMBERS))  # type: ignore[misc]
+
+BackboneLine = NamedTuple("BackboneLine", (*LINE, *BACKBONE_NUMBERS))  # type: ignore[misc]
 
 
 @system.pier_in.of(SpringTraits)
@@ -110,8 +118,8 @@ def static_state(m, load):
 @kernel
 def static_contact(m, y):
     """Return contacts and supports in the static state ``y``."""
-    branch = yields_at_first(m.law)
-    point = yield_point(m.law, 0.0, y.z_left)
+    branch = branch_at_first(m, y.z_left)
+    point = yield_point(m.law, first_point(m.law), y.z_left)
     return Contact(1.0, 1.0, branch, branch, 0.0), Supports(0.0, 0.0, point, point)
 
 
@@ -125,7 +133,7 @@ def held_contact(m, y, z_static, plastic):
     pressed, left, right = yields_when_pressed(m.law), y.z_left < 0.0, y.z_right < 0.0
     left_yields = pressed if left and y.theta > 0.0 else 0.0
     right_yields = pressed if right and y.theta < 0.0 else 0.0
-    point = yield_point(m.law, 0.0, z_static)
+    point = yield_point(m.law, first_point(m.law), z_static)
     supports = Supports(plastic, plastic, yield_point(m.law, point, y.z_left), yield_point(m.law, point, y.z_right))
     return Contact(1.0 if left else 0.0, 1.0 if right else 0.0, left_yields, right_yields, 0.0), supports
 
@@ -135,6 +143,7 @@ def begin(traits, lanes, i, run):
     """Set the model of ``run`` in lane ``i``, and its state: static, or held at a rotation."""
     put(lanes.model, i, taken(run, Numbers))
     begin_shaft(traits.shaft, lanes, i, run)
+    begin_backbone(traits.backbone, lanes, i, run)
     pier = model_in(traits, lanes, i)
     y = static_state(pier, run.gravity + run.prestress)
     level, plastic = y.v, y.v - run.yield_deflection * y.z_left
@@ -262,14 +271,18 @@ def _write_reversals(lanes, i, m, now, substep, after, history):
 
 def system_of(m):
     """Return the System of the pier ``m`` (Springs): equal for piers with fields of the same types, whatever their numbers."""
+    traits, columns = SpringTraits(m.exponent, m.finite, m.damped), State._fields + Contact._fields
+    if m.backbone is not None:
+        return System(traits._replace(backbone=LIKE_BACKBONE), BackboneLine, BACKBONE_LANE, columns, PASSED)
     if m.shaft is None:
-        return System(SpringTraits(m.exponent, m.finite, m.damped), Line, LANE, State._fields + Contact._fields, PASSED)
-    traits = SpringTraits(m.exponent, m.finite, m.damped, LIKE)
-    return System(traits, BendingLine, BENDING_LANE, BentState._fields + Contact._fields, PASSED)
+        return System(traits, Line, LANE, columns, PASSED)
+    return System(traits._replace(shaft=LIKE), BendingLine, BENDING_LANE, BentState._fields + Contact._fields, PASSED)
 
 
 def line_of(m, *timing):
     """Return the Line of a run of the pier ``m`` (Springs); ``timing`` are the fields of Line from ``dt`` on."""
     exponent = 5.0 if m.exponent is None else float(m.exponent)
     numbers = *m[: m._fields.index("exponent")], exponent, *timing
+    if m.backbone is not None:
+        return BackboneLine(*numbers, *m.backbone)
     return Line(*numbers) if m.shaft is None else BendingLine(*numbers, *shaft_numbers(m.shaft))

@@ -2,9 +2,10 @@
 
 z = F/F_y is in [−1, 0]. A Bouc–Wen spring is on the inelastic branch whenever it is being compressed, an elastic one never. The
 other two have a yield point, and are on that branch from there until their velocity reverses: the elastic–perfectly plastic
-spring from z = −1, where the same expression gives ż = 0, the hardening one from the least z so far. All differences between
-the laws are in the table :data:`LAWS`, whose entries kernels use. ``yields`` is 1 on the inelastic branch, 0 on the elastic one;
-``point`` is the yield point.
+spring from z = −1, where the same expression gives ż = 0, the hardening one from the least z so far. So does a spring with a
+backbone, which may bear more than F_y, the force at its first corner; it has an inelastic branch beyond each corner. All
+differences between the laws are in the table :data:`LAWS`, whose entries kernels use. ``yields`` is the number of the inelastic
+branch, 1 but with a backbone, and 0 on the elastic one; ``point`` is the yield point.
 """
 
 from collections.abc import Callable
@@ -12,8 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.kernel import hook, inlined, kernel, optional_hook
 from rockbatch.core.powers import power
+from rockbatch.core.springs.backbone import Backbone, branch_at, loss_on
 
 # Gauss–Legendre: poles of the integrand lie on the unit circle at ±2π/n, which n = 5 keeps well away from [0, 1]
 _NEARBY = 0.1  # half width up to which half of the nodes suffice: with poles 9.5 half widths away the error is 19⁻¹²
@@ -71,20 +73,30 @@ def bouc_wen_work(m, z_from, z_to, plastic_deflection):
     return plastic_deflection - m.yield_deflection * half * _elastic_share_integral(middle, half, m.exponent)
 
 
+@inlined
+def backbone_loss(m, x):
+    """Return the share of the stiffness that is lost in first loading at the force ``x`` = |z|."""
+    return loss_on(m.backbone, branch_at(m.backbone, x))
+
+
+@kernel
+def backbone_work(m, z_from, z_to, plastic_deflection):
+    """Return the work/F_y [m] dissipated on one branch: force and plastic deflection grow in proportion."""
+    return -0.5 * (z_from + z_to) * plastic_deflection
+
+
 class Law(NamedTuple):
     """A law of springs. No field has a default, so that a law without an entry fails on import.
 
     Numbers are 0 or 1. Functions take the pier ``m`` first, whose law has been chosen by its code.
     """
 
-    limited: float  # its force is at most F_y
+    limited: float  # its force is at most F_y, or the greatest of its backbone
     yields_at_first: float  # first loading is on the inelastic branch from the start
     yields_when_pressed: float  # any compression is on the inelastic branch
     has_point: float  # the elastic branch ends at a yield point
     remembers: float  # the yield point is the least z at which the spring was unloaded; else −1
-    stiffness_loss: (
-        Callable  # (m, x): share of the stiffness lost on the inelastic branch, at the force x = |z| from 0 to 1
-    )
+    stiffness_loss: Callable  # (m, x): share of the stiffness lost on the inelastic branch, at the force x = |z|
     plastic_work: (
         Callable  # (m, z_from, z_to, plastic_deflection): work/F_y [m] dissipated from z to z on the inelastic branch
     )
@@ -127,11 +139,23 @@ LAWS = {
         stiffness_loss=bouc_wen_loss,
         plastic_work=bouc_wen_work,
     ),
+    "backbone": Law(
+        limited=1.0,
+        yields_at_first=0.0,
+        yields_when_pressed=0.0,
+        has_point=1.0,
+        remembers=1.0,
+        stiffness_loss=backbone_loss,
+        plastic_work=backbone_work,
+    ),
 }
 """All laws by their names in studies, and the law of springs that do not yield."""
 
 CODES = {name: float(code) for code, name in enumerate(LAWS)}
 """Codes of the laws in a pier's model."""
+
+BY_TYPE = "backbone"
+"""The law of piers with a Backbone, by which type its functions are chosen: the vector loops of others know nothing of them."""
 
 
 def _flag(codes):
@@ -175,39 +199,83 @@ def _choice(functions):
 
 
 def _function_of(name):
-    """Return a kernel that calls the entry ``name`` of the pier's law."""
-    functions = [(CODES[law], getattr(entries, name)) for law, entries in LAWS.items()]
+    """Return a kernel that calls the entry ``name`` of the law of a pier without a backbone."""
+    functions = [(CODES[law], getattr(entries, name)) for law, entries in LAWS.items() if law != BY_TYPE]
     return _choice(functions[::-1])
 
 
 limited, has_point = _flag_of("limited"), _flag_of("has_point")
 yields_at_first, yields_when_pressed = _flag_of("yields_at_first"), _flag_of("yields_when_pressed")
 remembers = _flag_of("remembers")
-stiffness_loss, plastic_work = _function_of("stiffness_loss"), _function_of("plastic_work")
+stiffness_loss, _work_by_law = _function_of("stiffness_loss"), _function_of("plastic_work")
+
+
+@hook
+def _loss(backbone, m, z, yields):
+    """Return the share of the stiffness that a spring has lost at z on an inelastic branch."""
+
+
+@_loss.of(type(None))
+def _loss_by_law(backbone, m, z, yields):
+    return stiffness_loss(m, min(max(-z, 0.0), 1.0))
+
+
+@_loss.of(Backbone)
+def _loss_on_backbone(backbone, m, z, yields):
+    return loss_on(backbone, yields)
+
+
+@hook
+def _work(backbone, m, z_from, z_to, plastic_deflection):
+    """Return the work/F_y [m] dissipated on the inelastic branch from ``z_from`` to ``z_to``."""
+
+
+@_work.of(type(None))
+def _work_without_backbone(backbone, m, z_from, z_to, plastic_deflection):
+    return _work_by_law(m, z_from, z_to, plastic_deflection)
+
+
+@_work.of(Backbone)
+def _work_on_backbone(backbone, m, z_from, z_to, plastic_deflection):
+    return backbone_work(m, z_from, z_to, plastic_deflection)
+
+
+@kernel
+def plastic_work(m, z_from, z_to, plastic_deflection):
+    """Return the work/F_y [m] dissipated in compression on an inelastic branch from ``z_from`` to ``z_to``."""
+    return _work(m.backbone, m, z_from, z_to, plastic_deflection)
 
 
 @inlined
 def z_rate(m, z, velocity, yields):
     """Return the rate of z [1/s] of a spring in contact, from its velocity [m/s].
 
-    A step too long for a hard landing may try z < −1: the force is limited to −1 (see :func:`within_yield`), since beyond it
-    the law would throw z back and let a compressed spring separate.
+    A step too long for a hard landing may try z < −1: without a backbone the force is limited to −1 (see :func:`within_yield`),
+    since beyond it the law would throw z back and let a compressed spring separate.
     """
     rate = velocity * m.stiffness
     if yields != 0.0:
-        rate *= 1.0 - stiffness_loss(m, min(max(-z, 0.0), 1.0))
+        rate *= 1.0 - _loss(m.backbone, m, z, yields)
     return rate
 
 
-@inlined
-def within_yield(z, yields):
-    """Return z, but at least −1 on the inelastic branch, which a step that resolves the law never passes."""
+@optional_hook
+def within_yield(backbone, z, yields):
+    """Return z, without a ``backbone`` at least −1 on the inelastic branch, which a step that resolves the law never passes."""
     return max(z, -1.0) if yields != 0.0 else z
+
+
+@within_yield.of(Backbone)
+def _any_z(backbone, z, yields):
+    return z
 
 
 @inlined
 def kept_sign(law, on_spring, yields):
-    """Return the sign of a spring's velocity on its branch; 0 if the branch does not depend on it, or without contact."""
+    """Return the sign of a spring's velocity on its branch; 0 if the branch does not depend on it, or without contact.
+
+    On the later branches of a backbone it is −2, −3, …, a number with that sign.
+    """
     reloads = yields_when_pressed(law)
     return on_spring * (reloads - (reloads + 1.0) * yields)
 
@@ -216,6 +284,12 @@ def kept_sign(law, on_spring, yields):
 def may_yield(law, yields):
     """Return True if the spring leaves its branch at a yield point."""
     return has_point(law) != 0.0 and yields == 0.0
+
+
+@inlined
+def first_point(law):
+    """Return the yield point of a spring that has borne nothing."""
+    return yields_at_first(law) - 1.0
 
 
 @inlined
@@ -228,6 +302,14 @@ def yield_point(law, point, z):
 
 
 @inlined
+def branch_at_first(m, z):
+    """Return the branch of a spring in first loading to ``z``."""
+    if has_point(m.law) != 0.0 and z <= first_point(m.law):
+        return branch_at(m.backbone, -z)
+    return yields_at_first(m.law)
+
+
+@inlined
 def switching_point(law, side, z_rate, acceleration):
     """Return the event function of a Side's change of branch, positive before it, and its rate; 1 and 0 if it never changes."""
     sign = kept_sign(law, 1.0, side.yields)
@@ -237,23 +319,27 @@ def switching_point(law, side, z_rate, acceleration):
 
 
 @inlined
-def after_switch(law, yields, point, z):
-    """Return the other branch, and z, set exactly to the yield point if the spring yields there."""
-    return 1.0 - yields, point if may_yield(law, yields) else z
+def after_switch(m, yields, point, z):
+    """Return the branch after a change, and z, set exactly to the yield point if the spring yields there."""
+    if may_yield(m.law, yields):
+        return branch_at(m.backbone, -point), point
+    return 1.0 - min(yields, 1.0), z
 
 
 @inlined
-def branch_after_jump(law, yields, point, z, velocity, rest):
-    """Return the branch of a spring after a jump to ``velocity`` [m/s]; unchanged if that is at most ``rest`` either way.
+def branch_after_jump(m, yields, point, z, velocity):
+    """Return the branch of a spring after a jump to ``velocity`` [m/s]; unchanged if that counts as zero.
 
-    Upwards the elastic one (0); downwards the inelastic one (1) by a law without elastic compression or from the yield point on,
-    else unchanged.
+    Upwards the elastic one (0); downwards an inelastic one by a law without elastic compression or from the yield point on, else
+    unchanged.
     """
-    if abs(velocity) <= rest:
+    if abs(velocity) <= m.rest:
         return yields
     if velocity > 0.0:
         return 0.0
-    return 1.0 if yields_when_pressed(law) != 0.0 or (has_point(law) != 0.0 and z <= point) else yields
+    if has_point(m.law) != 0.0 and z <= point:
+        return branch_at(m.backbone, -z)
+    return 1.0 if yields_when_pressed(m.law) != 0.0 else yields
 
 
 @inlined
@@ -266,12 +352,27 @@ def branch_of_landing(m, velocity):
     return 0.0 if m.damped is not None and velocity > 0.0 else yields_when_pressed(m.law)
 
 
+@hook
+def _compliance(backbone, m, force):
+    """Return the tangent compliance over the elastic one of a spring in first loading to a ``force``/F_y."""
+
+
+@_compliance.of(type(None))
+def _compliance_by_law(backbone, m, force):
+    return 1.0 / (1.0 - stiffness_loss(m, min(max(force, 0.0), 1.0 - 1e-12)))
+
+
+@_compliance.of(Backbone)
+def _compliance_of_backbone(backbone, m, force):
+    return 1.0 / max(1.0 - backbone_loss(m, force), 1e-12)
+
+
 @kernel
 def give(m, force, point):
-    """Return the tangent compliance over the elastic one of a spring in loading, at least 1; ``force`` is over F_y, from 0 to 1.
+    """Return the tangent compliance over the elastic one of a spring in loading, at least 1; ``force`` ≥ 0 is over F_y.
 
     1 for elastic springs, and up to the yield ``point`` of laws that have one.
     """
     if yields_when_pressed(m.law) == 0.0 and (has_point(m.law) == 0.0 or force < -point):
         return 1.0
-    return 1.0 / (1.0 - stiffness_loss(m, min(max(force, 0.0), 1.0 - 1e-12)))
+    return _compliance(m.backbone, m, force)

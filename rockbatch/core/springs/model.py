@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from rockbatch.core.flexure.model import Shaft, either_in, shaft_in
 from rockbatch.core.kernel import inlined
+from rockbatch.core.springs.backbone import Backbone, backbone_in
 from rockbatch.core.table import get
 from rockbatch.core.types import Pull
 
@@ -18,7 +19,7 @@ IMPACTS = {"landing": LANDING, "housner": HOUSNER}
 class Springs(NamedTuple):
     """A pier on two springs, per unit mass.
 
-    The types of the last five select code when kernels are compiled: a call of ``pow``, ``sin`` or ``cos`` in an unused
+    The types of the last six select code when kernels are compiled: a call of ``pow``, ``sin`` or ``cos`` in an unused
     branch would keep the common model, n = 5, first-order and undamped, from being vectorised.
     """
 
@@ -26,7 +27,9 @@ class Springs(NamedTuple):
     height: float  # h [m]
     inertia: float  # I0/M [m²]
     gravity: float  # g [m/s²]
-    yield_deflection: float  # δ_y [m]; the static deflection for elastic springs
+    yield_deflection: (
+        float  # δ_y [m]; the static deflection for elastic springs, that at the first corner of a backbone
+    )
     stiffness: float  # K/F_y = 1/δ_y [1/m]
     yield_force: float  # F_y/M [m/s²]
     epsilon: float  # restitution of the landing pivot; 1 for damped supports, whose dashpots lose the energy
@@ -43,6 +46,7 @@ class Springs(NamedTuple):
     damped: bool | None = None  # True: a dashpot beside each spring; None: none
     pull: Pull | None = None  # of dampers and tendons; None: there are none
     shaft: Shaft | None = None  # one that bends, in finite kinematics on damped supports; None: it is rigid
+    backbone: Backbone | None = None  # of springs that are given by points; None: the law has none
 
 
 class SpringTraits(NamedTuple):
@@ -53,6 +57,7 @@ class SpringTraits(NamedTuple):
     damped: bool | None
     shaft: Shaft | None = None
     pull: Pull | None = None
+    backbone: Backbone | None = None
 
 
 NUMBERS = tuple((name, float) for name in Springs._fields[: Springs._fields.index("finite")])
@@ -97,6 +102,7 @@ def model_in(traits, lanes, i):
         traits.damped,
         traits.pull,
         shaft_in(traits.shaft, lanes, i),
+        backbone_in(traits.backbone, lanes, i),
     )
 
 
@@ -107,7 +113,7 @@ class State(NamedTuple):
     theta: float  # rotation, positive to the right [rad]
     v_rate: float  # [m/s]
     omega: float  # [rad/s]
-    z_left: float  # F_L/F_y, −1..0
+    z_left: float  # F_L/F_y, −1..0, and below with a backbone
     z_right: float
 
 
@@ -141,7 +147,7 @@ class Contact(NamedTuple):
 
     left: float  # the pivot is on its spring
     right: float
-    left_yields: float  # the spring is on its inelastic branch
+    left_yields: float  # 1 if the spring is on its inelastic branch; with a backbone the number of that branch
     right_yields: float
     held: (
         float  # pivot in grazing contact, pressed down while free and lifted while in contact: −1 left, 1 right, 0 none

@@ -13,6 +13,7 @@ from rockbatch.core.devices.passing import integrate, settle
 from rockbatch.core.kernel import hook, inlined, kernel, optional_hook
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import excess
+from rockbatch.core.springs.backbone import Backbone, corner_beyond
 from rockbatch.core.springs.laws import kept_sign, may_yield
 from rockbatch.core.springs.model import Contact, SpringTraits, State, model_in, state_in
 from rockbatch.core.springs.recovery import lag, top
@@ -60,16 +61,27 @@ class Support(NamedTuple):
     """Support of a pivot in a sub-step."""
 
     on_spring: float  # 1 if the pivot is on it
-    yields: float  # 1 if the spring is on its inelastic branch
+    yields: float  # inelastic branch of the spring, 0 on the elastic one
     unstressed: float  # position at which it is unstressed without its pivot [m]
     point: float  # yield point
     z: float
     z_end: float
 
 
+@optional_hook
+def short_of_corner(backbone, yields, least, clear):
+    """Return the lesser of ``clear`` and a bound on what is left to the next corner of a ``backbone``, by the ``least`` z."""
+    return clear
+
+
+@short_of_corner.of(Backbone)
+def _short_of_corner(backbone, yields, least, clear):
+    return min(clear, least + corner_beyond(backbone, yields)) if yields != 0.0 else clear
+
+
 @inlined
 def _clear(m, support, start, end, within, h):
-    """Return a number that is positive if a pivot has certainly neither separated nor landed, nor reached its yield point.
+    """Return a number that is positive if a pivot has certainly neither separated nor landed, nor its spring changed its branch.
 
     Arguments that may be NaN come first in max and min, so that the result is NaN, too.
     """
@@ -78,9 +90,10 @@ def _clear(m, support, start, end, within, h):
     if m.damped is not None:  # greatest velocity by the parabola through both velocities and the displacement
         bulge = 1.5 * abs((end.position - start.position) / h - 0.5 * (start.velocity + end.velocity))
         contact -= lag(m) * (max(start.velocity, end.velocity) + bulge)
-    until_yield = min(z_end - within.fall_end, z - within.fall) - point
+    least = min(z_end - within.fall_end, z - within.fall)
     gap = within.lowest - top(m, unstressed, z_end)  # without its pivot a damped support rises
-    contact = min(contact, until_yield) if may_yield(m.law, yields) else contact
+    contact = min(contact, least - point) if may_yield(m.law, yields) else contact
+    contact = short_of_corner(m.backbone, yields, least, contact)
     return contact if on_spring != 0.0 else gap
 
 
@@ -204,15 +217,37 @@ def _judged(traits, lanes, i, substep, settings, sure):
 
 @hook
 def correct_reversals(shaft, traits, lanes, count):
-    """Correct lanes with velocity reversals of springs; with a ``shaft`` that bends these are left to scalar code."""
+    """Correct lanes with velocity reversals of springs; those of a ``shaft`` that bends are left to scalar code."""
 
 
 @correct_reversals.of(type(None))
-def _correct_reversals(shaft, traits, lanes, count):
+def _under_rigid_shaft(shaft, traits, lanes, count):
+    _correct_by_law(traits.backbone, traits, lanes, count)
+
+
+@hook
+def _correct_by_law(backbone, traits, lanes, count):
+    """Correct lanes with velocity reversals of springs; those of springs with a ``backbone`` are left to scalar code."""
+
+
+@_correct_by_law.of(type(None))
+def _correct(backbone, traits, lanes, count):
     i = _next_turned(lanes, ZERO, count)
     while i < count:
         correct_lane(traits, lanes, i)
         i = _next_turned(lanes, i + 1, count)
+
+
+@_correct_by_law.of(Backbone)
+def _leave_backbone(backbone, traits, lanes, count):
+    leave_reversals(lanes, count)
+
+
+@inlined
+def leave_reversals(lanes, count):
+    """Leave sub-steps with velocity reversals of springs to scalar code."""
+    for i in range(count):
+        lanes.reversals.surely[i] = -1.0
 
 
 @system.one_pass.of(SpringTraits)

@@ -3,8 +3,11 @@
 Written for the left pivot; at the right one, the mirror image is handled (θ → −θ, left ↔ right, ü_g → −ü_g).
 """
 
+import math
+
 from rockbatch.core import system
 from rockbatch.core.kernel import hook, kernel
+from rockbatch.core.springs.backbone import corner_beyond
 from rockbatch.core.springs.equations import geometry, on_ground, touching, without
 from rockbatch.core.springs.events import settle
 from rockbatch.core.springs.impact import land, land_flat
@@ -143,9 +146,12 @@ def _transition_of_left(m, now, of_law, ground):
             return Moment(y, touching(contact, LEFT, yields), supports), HELD_LEFT
         waiting = _left_moved(supports, y.v + at.lift_left - m.yield_deflection * y.z_left)
         return Moment(y, without(contact, LEFT), waiting), SEPARATION_LEFT
-    if of_law:  # the spring changes its branch
-        yields, z = after_switch(m.law, contact.left_yields, supports.yield_left, y.z_left)
+    if of_law:  # the spring changes to or from its elastic branch
+        yields, z = after_switch(m, contact.left_yields, supports.yield_left, y.z_left)
         return Moment(with_z(y, z, y.z_right), touching(contact, LEFT, yields), supports), SPRING_LEFT
+    if contact.left_yields != 0.0 and corner_beyond(m.backbone, contact.left_yields) < math.inf:
+        at_corner = with_z(y, -corner_beyond(m.backbone, contact.left_yields), y.z_right)
+        return Moment(at_corner, touching(contact, LEFT, contact.left_yields + 1.0), supports), SPRING_LEFT
     if contact.left != 0.0:
         return _separation(m, now, ground)
     return _landing(m, now, ground)
@@ -223,5 +229,5 @@ def _right_after_impulse(m, y, contact, supports, at):
         return without(contact, RIGHT), moved
     if contact.right == 0.0:
         return contact, supports
-    yields = branch_after_jump(m.law, contact.right_yields, supports.yield_right, y.z_right, velocity, m.rest)
+    yields = branch_after_jump(m, contact.right_yields, supports.yield_right, y.z_right, velocity)
     return touching(contact, RIGHT, yields), supports

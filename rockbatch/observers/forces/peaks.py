@@ -163,7 +163,9 @@ def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakF
     events = rows[(rows.kind > 0.0) | (rows.kind == types.BEFORE_EVENT)].view(np.recarray)
     landings = impacts(events, at_rows(run, events))
     # Yield is located up to rounding, which must not exceed the capacity; a dashpot adds to the spring's force
-    capacity = run.base.eta if isinstance(run.base, YieldingBase) and not run.base.zeta else math.inf
+    capacity = math.inf
+    if isinstance(run.base, YieldingBase) and not run.base.zeta:
+        capacity = run.base.eta * run.base.first_loading.most
     hardest, limit = _hardest(run, events, landings), run.base.friction
     peaks = PeakForces(
         base_shear=most.shear,
