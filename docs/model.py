@@ -63,6 +63,7 @@ LEFT_OUT = {
     | {
         "mass_t": "the mass that [pier] has, for a pier of alpha and p",
         "other_width_m": "width at right angles to the picture",
+        "backbone_mm_kN": "points of a curve in place of stiffness_kN_m and yield_kN",
         "radiation": CHOICE,
         "confirm": CHOICE,
     },

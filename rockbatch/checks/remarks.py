@@ -6,6 +6,7 @@ from typing import Any
 
 from rockbatch.checks.responses import Worst
 from rockbatch.common.grouping import grouped
+from rockbatch.pier.backbones import greatest
 from rockbatch.quantities.cases import Case, asks_tension
 from rockbatch.quantities.labels import in_full
 
@@ -71,9 +72,12 @@ def changes_of(bound: Mapping[str, Any]) -> str:
 
 
 def _borne_alone(case: Case) -> float:
-    """Return the yield force of a support over weight and prestress; infinite if it does not yield."""
-    eta = case["parameters"].get("eta")
-    return math.inf if eta is None else 0.5 * float(eta) / (1.0 + _prestress(case))
+    """Return the greatest force of a support over weight and prestress; infinite without one."""
+    parameters = case["parameters"]
+    eta, points = parameters.get("eta"), parameters.get("backbone")
+    if eta is None:
+        return math.inf
+    return 0.5 * float(eta) * (greatest(points) if points else 1.0) / (1.0 + _prestress(case))
 
 
 def _prestress(case: Case) -> float:

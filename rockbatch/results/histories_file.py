@@ -163,6 +163,8 @@ def _write(group: "h5py.Group", response: Response) -> None:
     _set(group.create_group("pier"), asdict(response.pier) | {"parts": parts, "confirm": None})
     base = {"name": response.base.name} | asdict(response.base) | {"confirm": None}
     base["restraints"] = json.dumps([asdict(device) for device in response.base.restraints])
+    if "backbone" in base:
+        base["backbone"] = json.dumps(base["backbone"]) if base["backbone"] else None
     _set(group.create_group("base"), base)
     _write_all(group, response.history, columns_of(response.base, response.base.bends))
     _write_all(group.create_group("events"), response.events, _EVENTS)
@@ -284,6 +286,8 @@ def _read(group: "h5py.Group") -> Response:
     kind = BASES[base.pop("name")]
     if "restraints" in base:
         base["restraints"] = tuple(map(restraint_of, json.loads(base["restraints"])))
+    if "backbone" in base:
+        base["backbone"] = tuple(map(tuple, json.loads(base["backbone"])))
     pier = attributes_of(group_in(group, "pier"))
     if "parts" in pier:
         pier["parts"] = tuple(Part(*part) for part in json.loads(pier["parts"]))

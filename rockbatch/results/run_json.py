@@ -100,6 +100,7 @@ SHAPE = {
             | dict.fromkeys(_OPTIONAL_OF_PIER, Maybe(_NUMBER)),
             "base": tuple(BASES),
             "parameters": {name: Maybe(_NUMBER) for name in _NUMBERS_OF_BASE}
+            | {"backbone": Maybe([[float]])}
             | {name: Maybe((str, None)) for name in WORDS}
             | {"restraints": Maybe([_RESTRAINT])},
             "across_of": Maybe(str),

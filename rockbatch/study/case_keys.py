@@ -1,13 +1,16 @@
 """The keys of the tables [[case]] of a study file."""
 
 from rockbatch.pier import (
+    MOST_POINTS,
     WITH_EPSILON,
     WITH_EXPONENT,
+    WITH_POINTS,
     ElasticBase,
     FootingBase,
     RigidBase,
     YieldingBase,
 )
+from rockbatch.pier.backbones import wrong_points
 from rockbatch.pier.bases import BASES
 from rockbatch.pier.bending import MOST_MODES
 from rockbatch.pier.laws import meanings
@@ -15,7 +18,7 @@ from rockbatch.pier.sizes import BOUNDS as OF_PIER
 from rockbatch.pier.traits import BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, wrong_blow
 from rockbatch.study.footing_keys import FOOTING_KEYS
 from rockbatch.study.piers import PIER
-from rockbatch.toml.kinds import KindError, Other, Whole, choice, positive, text, within
+from rockbatch.toml.kinds import KindError, Other, Points, Whole, choice, positive, text, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
@@ -32,6 +35,7 @@ _CALLED = {
         {
             "epp": "bilinear elastoplastic elasticplastic elasticperfectlyplastic perfectlyplastic elasticpp",
             "bouc-wen": "smooth",
+            "backbone": "multilinear piecewiselinear polyline points trilinear",
         }
     ),
     "impact": names({"landing": "impulse"}),
@@ -141,6 +145,14 @@ BASE_KEYS = {
         many=True,
         only=_YIELDS,
     ),
+    "backbone_mm_kN": Key(
+        Points("a list of points, each [deflection in mm, force in kN]", MOST_POINTS, wrong_points),
+        "[[10.0, 2.0e4], [30.0, 3.5e4], [60.0, 4.0e4]]",
+        "Backbone of one support in compression: deflections and forces at its corners, from the first one on, and at one point "
+        "more, whose slope goes on. It is concave and replaces stiffness and strength; the mass must be known.",
+        required=True,
+        only=_YIELDS | {"spring": WITH_POINTS},
+    ),
     "n": Key(
         within(BOUNDS["n"]),
         "5",
@@ -227,8 +239,8 @@ BASE_KEYS = {
 CASE = Section(
     ("case",),
     (
-        "A foundation. Write one for each foundation to compare. All keys but `name`, `base`, `other_width_m` "
-        "and `confirm` may be lists: every combination is a case."
+        "A foundation. Write one for each foundation to compare. All keys but `name`, `base`, `other_width_m`, "
+        "`backbone_mm_kN` and `confirm` may be lists: every combination is a case."
     ),
     {
         "name": Key(text, '"soft"', "Its name in tables; the base if there is only one case."),
@@ -265,6 +277,7 @@ CASE = Section(
             "spring": "law hysteresis material uniaxialmaterial springs springlaw springtype",
             "eta": "fs factorofsafety safetyfactor",
             "n": "exponent boucwenn",
+            "backbone_mm_kN": "backbone envelope curve points backbonekn",
             "name": "id label title",
             "tendon": "cable cables strand posttensioning",
         }
@@ -284,12 +297,16 @@ CASE = Section(
             at="stiffness_kN_m",
         ),
         Clash(("eta", "yield_kN"), "eta and yield_kN are given, which fix the same; keep one", at="yield_kN"),
+        *(
+            Clash((key, "backbone_mm_kN"), "the first point of backbone_mm_kN fixes the same; leave it out", shown=True)
+            for key in ("beta", "stiffness_kN_m", "eta", "yield_kN")
+        ),
         Clash(("epsilon", "zeta"), EPSILON_AND_ZETA, shown=True),
         Clash(("impact", "zeta"), EPSILON_AND_ZETA, shown=True),
         Clash(
             ("mass_t",),
             "mass_t is for use with stiffness_kN_m or yield_kN; leave it out",
-            lacking=("stiffness_kN_m", "yield_kN"),
+            lacking=("stiffness_kN_m", "yield_kN", "backbone_mm_kN"),
         ),
     ),
 )

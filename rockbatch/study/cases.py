@@ -12,6 +12,7 @@ from rockbatch.pier import (
     OF_SHAFT,
     WITH_EPSILON,
     WITH_EXPONENT,
+    WITH_POINTS,
     Base,
     FootingBase,
     Pier,
@@ -20,12 +21,13 @@ from rockbatch.pier import (
     least_beta,
     problems,
 )
+from rockbatch.pier.backbones import first_corner, over_first
 from rockbatch.pier.bases import BASES
 from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.plausibility import wrong_device
 from rockbatch.pier.possible import enough_eta
 from rockbatch.pier.supports import SUPPORTS
-from rockbatch.pier.traits import BETA, BOUNDS, USUAL
+from rockbatch.pier.traits import BETA, BOUNDS, ETA_OF_BACKBONE, USUAL
 from rockbatch.quantities.design import BOUND
 from rockbatch.study.case_keys import BASE_KEYS, CASE
 from rockbatch.study.design_bounds import DesignBound
@@ -39,6 +41,13 @@ from rockbatch.toml.reader import Table, TomlFile, in_table
 
 _ANY_PIER = Pier(alpha=1.0, p=1.0, flexural_period_s=1.0)
 """Pier used if none can be read, so that keys that do not depend on it are still checked."""
+
+
+_REMEDIES = {
+    "beta": "write smaller deflections, or greater forces",
+    "eta": "write a greater force at its last corner, or a last slope above 0",
+}
+"""What to write instead of a backbone whose β or η is impossible."""
 
 
 class _WrittenCase(NamedTuple):
@@ -150,7 +159,7 @@ def _case_of(case: _WrittenCase, chosen: Chosen, pier: Pier, pier_values: Values
         _complain_unless_usual(case.table, chosen, pier)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | values
     # devices have columns of their own, the others have none
-    for name in ("restraints", "confirm", "flexural_impact", "vertical_over_formula"):
+    for name in ("restraints", "confirm", "flexural_impact", "vertical_over_formula", "backbone", "backbone_mm_kN"):
         applying.pop(name, None)
     if not base.has_epsilon:
         applying.pop("epsilon", None)
@@ -171,12 +180,18 @@ def _base_of(name: str, values: KeyValues, pier: Pier) -> tuple[Base, list[Probl
     """
     arguments, wrong = dict(values), list[Problem]()
     stiffness, strength, _ = (arguments.pop(key, None) for key in ("stiffness_kN_m", "yield_kN", "mass_t"))
-    kind = BASES[name]
+    kind, of_eta = BASES[name], BOUNDS["eta"]
+    if points := arguments.pop("backbone_mm_kN", None):
+        stiffness, strength = first_corner(points)
+        if arguments["spring"] in WITH_POINTS:
+            arguments["backbone"], of_eta = over_first(points), ETA_OF_BACKBONE
+    elif arguments.get("spring") in WITH_POINTS:  # points are missing or wrong, which is noted already
+        arguments["spring"] = "epp"
     if stiffness and pier.mass_t:
         arguments["beta"] = beta_of(pier, stiffness)
     if strength and pier.mass_t:
         arguments["eta"] = eta_of(pier, strength)
-    ratios = {"beta": (BETA, 2 * pier.least_beta, kind.on_springs), "eta": (BOUNDS["eta"], 2.0, kind.yields)}
+    ratios = {"beta": (BETA, 2 * pier.least_beta, kind.on_springs), "eta": (of_eta, 2.0, kind.yields)}
     for ratio, (bounds, possible, applies) in ratios.items():
         if applies and (problems_of_ratio := bounds.problems(ratio, arguments.setdefault(ratio, possible))):
             wrong += problems_of_ratio
@@ -213,8 +228,9 @@ def _read_case(table: Table) -> _WrittenCase:
     if weighed and grid.settings.pop("mass_t", ()):
         value = shown(table.data["mass_t"])
         table.complain(f"mass_t = {value}: [pier] states the pier's mass already; leave it out", "mass_t")
+    by_points = table.has("backbone_mm_kN") or table.data.get("spring") in WITH_POINTS
     for ratio, absolute in (("beta", "stiffness_kN_m"), ("eta", "yield_kN")):
-        if base not in BASE_KEYS[absolute].only["base"] or table.has(ratio):
+        if base not in BASE_KEYS[absolute].only["base"] or table.has(ratio) or by_points:
             continue
         if not table.has(absolute):
             table.complain(
@@ -227,6 +243,12 @@ def _read_case(table: Table) -> _WrittenCase:
                 f"mass_t is missing beside {absolute}; write for example mass_t = {example}, here or in [pier]",
                 absolute,
             )
+    if table.has("backbone_mm_kN") and not (weighed or table.has("mass_t")):
+        example = BASE_KEYS["mass_t"].example
+        table.complain(
+            f"mass_t is missing beside backbone_mm_kN; write for example mass_t = {example}, here or in [pier]",
+            "backbone_mm_kN",
+        )
     if table.has("area_m2") and not (weighed or table.has("mass_t")):
         table.complain(
             "area_m2: stresses are of a pier whose mass is known; write mass_t in [pier], or leave it out", "area_m2"
@@ -240,6 +262,9 @@ def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: 
 
     It then says what K or F_y would have to be.
     """
+    if "backbone_mm_kN" in chosen and problem.key in ("beta", "eta"):
+        text = f"the support that it describes has {problem}; {_REMEDIES[problem.key]}"
+        problem = replace(problem, key="backbone_mm_kN", value=None, text=text)
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(problem.key, "")
     mass = pier.mass_t
     if source in chosen and mass is not None:
@@ -275,6 +300,11 @@ def _complain_unless_usual(table: Table, chosen: Chosen, pier: Pier) -> None:
     if "mass_t" in chosen:
         for problem in unlikely_mass(pier, table.confirmed):
             table.complain_about(chosen["mass_t"], in_table(problem))
+    if "backbone_mm_kN" in chosen and "backbone_mm_kN" not in table.confirmed:
+        values = zip(("stiffness_kN_m", "yield_kN"), first_corner(chosen["backbone_mm_kN"].value), strict=True)
+        for name, value in values:
+            for problem in SUPPORTS[name].doubts(pier, "backbone_mm_kN", value):
+                table.complain_about(chosen["backbone_mm_kN"], in_table(replace(problem, value=None)))
     for name, usual in SUPPORTS.items():
         if name not in chosen or name in table.confirmed:
             continue

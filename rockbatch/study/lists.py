@@ -32,7 +32,9 @@ class Grid:
         settings = {}
         for name, value in table.read(keys, other=other, places=True).items():
             settings[prefix + name] = value if keys[name].many else [Setting(value, (*table.key_path, name))]
-        lists = [name for name, value in table.data.items() if name in keys and isinstance(value, list)]
+        lists = [
+            name for name, value in table.data.items() if name in keys and keys[name].many and isinstance(value, list)
+        ]
         return cls(settings, tuple(prefix + name for name in lists if name != "confirm"))
 
     def __add__(self, other: "Grid") -> "Grid":

@@ -35,7 +35,7 @@ from rockbatch.study.restraint_keys import DEVICES
 from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Reference
 from rockbatch.study.tables import as_toml, changed, plain_table, without_lost_cases
 from rockbatch.study.target_keys import TARGET, VERTICAL_TARGET
-from rockbatch.toml.kinds import choice, count, not_negative, positive, text, within
+from rockbatch.toml.kinds import Points, choice, count, not_negative, positive, text, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
@@ -125,7 +125,7 @@ REFERENCE = Section(
         **{
             name: Key(key.kind, key.example, "The value that the case has, where the study varies this key.")
             for name, key in {**PIER, **BASE_KEYS}.items()
-            if name != "confirm"
+            if name != "confirm" and not isinstance(key.kind, Points)  # points are not varied
         },
     },
     many=True,

@@ -197,6 +197,27 @@ class Choice:
 
 
 @dataclass(frozen=True)
+class Points:
+    """A list of points, each a pair of numbers, at most ``most`` of them; ``wrong`` returns what is wrong about them, or ""."""
+
+    words: str
+    most: int
+    wrong: Callable[[tuple[tuple[float, float], ...]], str]
+
+    def __call__(self, value: object) -> tuple[tuple[float, float], ...]:
+        if not isinstance(value, list) or not all(isinstance(point, list) and len(point) == 2 for point in value):
+            raise KindError(self.words)
+        points = tuple((_finite_float(x), _finite_float(y)) for x, y in value)
+        if text := self.wrong(points):
+            raise KindError(text, whole=True)
+        return points
+
+    def schema(self) -> Schema:
+        point = {"type": "array", "items": {"type": "number", "minimum": 0}, "minItems": 2, "maxItems": 2}
+        return {"type": "array", "items": point, "minItems": 2, "maxItems": self.most}
+
+
+@dataclass(frozen=True)
 class Other:
     """Values that ``read`` converts, or refuses with :class:`KindError`; ``form`` is their schema."""
 

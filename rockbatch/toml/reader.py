@@ -27,7 +27,7 @@ from rockbatch.common.files import opened_input
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
 from rockbatch.common.units import factor_between, is_weight_of, number_in_unit_of, unit_in_words, unit_of
-from rockbatch.toml.kinds import Choice, KeyValues, Kind, KindError, Number, Other
+from rockbatch.toml.kinds import Choice, KeyValues, Kind, KindError, Number, Other, Points
 from rockbatch.toml.lines import KeyPath, TooDeepError, key_lines
 from rockbatch.toml.section import CONFIRM, Key, Section, home, options
 from rockbatch.toml.slips import syntax_error
@@ -342,7 +342,7 @@ class Table:
         """
         whole = Setting(value, (*self.key_path, name))
         items = [whole]
-        if isinstance(value, list):
+        if isinstance(value, list) and not isinstance(key.kind, Points):
             items = [Setting(item, (*whole.key_path, n)) for n, item in enumerate(value)]
             if not (key.many or key.pair):
                 self._not_one(name, key, whole)

@@ -335,6 +335,10 @@ SHAKEN = recorded(vertical=True, scale=10.0)
 ONE_EVENT = recorded("one event") | {"check": [CHECK | {"statistic": "en1998-2"}], "suite": {}}
 TINY = {"motions": {"pulse": [SINE | {"period_s": 0.4, "duration_s": 0.4}]}}
 YIELDING = study(case=SOFT | {"base": "yielding", "eta": 2.5, "spring": "bouc-wen"}) | TINY
+ON_POINTS = (
+    study(case={"name": "r", "base": "yielding", "spring": "backbone", "backbone_mm_kN": [[100.0, 3e4], [300.0, 4e4]]})
+    | TINY
+)
 FOOT = {"name": "r", "base": "footing", "width_m": 4.0, "length_m": 8.0}
 SOIL = FOOT | {"shear_modulus_MPa": 60.0, "poisson": 0.45, "bearing_MPa": 1.5, "embedment_m": 1.0}
 ON_CLAY, RADIATING = study(case=SOIL), study(case=SOIL | {"radiation": True, "density_t_m3": 1.9})
@@ -412,6 +416,7 @@ USES: dict[str, dict[str, Use]] = {
         **uses(SHAKEN | {"case": [SOFT]}, ("case", 0), {"flight": "stop"}),
         **uses(YIELDING, ("case", 0), {"eta": 3.0, "spring": "epp", "n": 3.0, "kinematics": "finite"}, stepped),
         **uses(study(case=PADS | {"base": "yielding", "yield_kN": 3e4}) | TINY, ("case", 0), {"yield_kN": 4e4}, stepped),
+        **uses(ON_POINTS, ("case", 0), {"backbone_mm_kN": [[100.0, 3e4], [300.0, 5e4]]}, stepped),
         **uses(BENDING, ("case", 0), {
             "flexural_damping": 0.1, "flexural_damping_kind": "stiffness", "flexural_modes": 2,
         }, stepped),

@@ -163,7 +163,7 @@ def _foundations(finished: Finished) -> Markup:
     ]
     keys = ("impact", "epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution", "omega_v")
     names = ("beta", "eta", *in_kilonewtons, *keys)
-    further = _further(finished.info["cases"], {*names, "delta_s_m", "delta_y_m"})
+    further = _further(finished.info["cases"], {*names, "backbone", "delta_s_m", "delta_y_m"})
     rows = []
     devices = _devices(finished.info["cases"])
     for case, of_case in zip(finished.info["cases"], devices, strict=True):
@@ -172,6 +172,9 @@ def _foundations(finished: Finished) -> Markup:
         millimetres = [None if metres is None else 1000 * metres for metres in deflections]
         own = [case["columns"].get(key) for key in varied]
         name = titled(case["case"], filter(None, [case["columns"].get(BOUND)]))
+        if points := values.get("backbone"):
+            listed = ", ".join(f"({x:.4g}, {force:.4g})" for x, force in points)
+            values = values | {"spring": f"backbone of {len(points)} points (δ/δ_y, F/F_y): {listed}"}
         cells = [name, *own, case["base"], *(values.get(key) for key in names), *millimetres]
         rows.append([*cells, *(values.get(key) for key in further), of_case])
     heads += [*(Head(words, ".6g") for words in further.values()), Head("devices")]

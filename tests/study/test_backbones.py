@@ -1,0 +1,146 @@
+"""Backbones of supports in a study and in Python: what is read of the points, and what is said of wrong ones."""
+
+import numpy as np
+import pytest
+from studies import study_text, write_study
+
+import rockbatch as rb
+from rockbatch.checks.remarks import weak_supports
+from rockbatch.pier.first_loading import Polyline
+from rockbatch.pier.possible import least_eta, problems
+
+PIER = {"width_m": 8.0, "height_m": 30.0, "mass_t": 3000.0}
+POINTS = [[5.0, 10e3], [12.0, 20e3], [40.0, 38e3]]
+
+
+def study_with(tmp_path, points, pier=PIER, **more):
+    case = {"name": "pads", "base": "yielding", "spring": "backbone"} | (
+        {} if points is None else {"backbone_mm_kN": points}
+    )
+    return rb.load_study(write_study(tmp_path, study_text(pier=pier, cases=[case | more])))
+
+
+def test_a_study_gives_the_backbone_of_one_support_in_mm_and_kn(tmp_path):
+    (case,) = study_with(tmp_path, POINTS).cases
+    parameters = case.base.parameters(case.pier)
+    assert parameters["stiffness_kN_m"] == pytest.approx(2e6, rel=1e-14)
+    assert parameters["yield_kN"] == pytest.approx(10e3, rel=1e-14)
+    assert parameters["delta_y_m"] == pytest.approx(0.005, rel=1e-14)
+    assert parameters["backbone"] == [[1.0, 1.0], [2.4, 2.0], [8.0, 3.8]]
+    assert case.base == rb.YieldingBase.from_backbone(case.pier, POINTS)
+    at_rest = 0.5 * 3000.0 * 9.81  # 14 715 kN, between the first corner and the second
+    settled = 0.005 + (at_rest - 10e3) / (10e3 / 0.007)
+    assert rb.statics(case.pier, case.base).settlement_m == pytest.approx(settled, rel=1e-12)
+
+
+def test_a_remark_is_made_of_supports_whose_greatest_force_is_below_the_weight(tmp_path):
+    entries = []
+    for points in (POINTS, [*POINTS[:2], [40.0, 20e3]], [*POINTS, [60.0, 38e3]]):  # endless; up to 20 MN; up to 38 MN
+        (case,) = study_with(tmp_path, points).cases
+        entries.append({"case": case.name, "columns": {}, "parameters": case.base.parameters(case.pier)})
+    assert [bool(weak_supports([entry])) for entry in entries] == [False, True, False]
+    assert "(68 %)" in weak_supports(entries[1:2])  # 20 MN over 29 430 kN
+
+
+@pytest.mark.parametrize(
+    ("points", "said"),
+    [
+        (5.0, "expected a list of points, each [deflection in mm, force in kN]; write for example"),
+        ([5.0, 10e3], "expected a list of points, each [deflection in mm, force in kN]; write for example"),
+        ([[5.0, 10e3]], "a backbone has 2 to 9 points, not 1"),
+        ([[1.0 * i, 10e3 * i] for i in range(1, 11)], "a backbone has 2 to 9 points, not 10"),
+        ([[5.0, 10e3], [12.0, "20e3"]], "expected a number (without quotes)"),
+        ([[0.0, 0.0], *POINTS], "leave the origin out"),
+        ([[-5.0, -10e3], [12.0, 20e3]], "deflection and force must be above 0"),
+        ([*POINTS[:2], [10.0, 38e3]], "[10, 38000] follows [12, 20000]: each deflection must be above the one before"),
+        ([*POINTS[:2], [40.0, 15e3]], "[40, 15000] follows [12, 20000]: the force falls"),
+        ([*POINTS[:2], [14.0, 26e3]], "between [12, 20000] and [14, 26000] it is steeper, 3000, than before, 1429"),
+        ([[0.005, 10e3], [0.012, 20e3]], "presses the supports in by 0.0074 mm only"),
+        ([[5.0, 10e6], [12.0, 20e6]], "680 times what the support carries at rest"),
+        ([[5.0, 10.0], [12.0, 20.0]], "the support that it describes has beta = 1.677"),
+        (
+            [[5.0, 10e3], [12.0, 12e3], [40.0, 12e3]],
+            "write a greater force at its last corner, or a last slope above 0",
+        ),
+    ],
+)
+def test_wrong_points_are_named_with_their_line_and_the_remedy(tmp_path, points, said):
+    with pytest.raises(rb.InputError) as error:
+        study_with(tmp_path, points)
+    assert said in str(error.value)
+    assert all(problem.place and "backbone_mm_kN" in str(problem) for problem in error.value.problems)
+
+
+def test_nan_in_a_backbone_is_refused(tmp_path):
+    text = study_text(pier=PIER, cases=[{"base": "yielding", "spring": "backbone", "backbone_mm_kN": POINTS}])
+    with pytest.raises(rb.InputError, match="expected a finite number"):
+        rb.load_study(write_study(tmp_path, text.replace("38000.0", "nan")))
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"beta": 40.0}, "beta = 40.0: the first point of backbone_mm_kN fixes the same; leave it out"),
+        ({"yield_kN": 1e4}, "yield_kN = 10000.0: the first point of backbone_mm_kN fixes the same; leave it out"),
+        ({"spring": "epp"}, 'does not apply to spring = "epp"'),
+        ({"n": 5.0}, 'n = 5.0: does not apply to spring = "backbone"'),
+    ],
+)
+def test_a_backbone_stands_alone(tmp_path, more, said):
+    with pytest.raises(rb.InputError, match=said):
+        study_with(tmp_path, POINTS, **more)
+
+
+def test_a_backbone_needs_points_and_a_mass(tmp_path):
+    with pytest.raises(
+        rb.MissingKey, match=r"backbone_mm_kN is missing; write for example backbone_mm_kN = \[\["
+    ) as error:
+        study_with(tmp_path, None)
+    assert len(error.value.problems) == 1
+    with pytest.raises(rb.InputError, match="mass_t is missing beside backbone_mm_kN"):
+        study_with(tmp_path, POINTS, pier={"width_m": 8.0, "height_m": 30.0})
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"backbone": ((1.0, 1.0), (2.0, 3.0))}, "it is steeper, 2, than before, 1"),
+        ({"backbone": ()}, "2 to 9 points, not 0"),
+        ({"backbone": ((2.0, 2.0), (3.0, 2.5))}, r"its first point must be \(1, 1\)"),
+        ({"backbone": ((1.0, 1.0), (2.0, float("nan")))}, "must be finite numbers"),
+        (
+            {"spring": "epp", "backbone": ((1.0, 1.0), (2.0, 1.0))},
+            'is of spring = "backbone", and these springs are "epp"',
+        ),
+    ],
+)
+def test_wrong_points_are_refused_in_python(given, said):
+    with pytest.raises(rb.InputError, match=said):
+        rb.YieldingBase(**{"beta": 40.0, "eta": 2.0, "spring": "backbone"} | given)
+
+
+def test_a_pier_that_bends_or_is_too_heavy_is_refused():
+    points = ((1.0, 1.0), (2.0, 1.5), (3.0, 1.5))
+    base = rb.YieldingBase(60.0, eta=0.65, spring="backbone", backbone=points)
+    pier = rb.Pier(0.2, 1.0, flexural_period_s=0.3)
+    assert least_eta(pier, base) == pytest.approx(1.0 / 1.5, rel=1e-5)
+    assert [problem.key for problem in problems(pier, base)] == ["eta"]
+    bending = rb.YieldingBase(
+        60.0, eta=0.7, spring="backbone", backbone=points, zeta=0.2, kinematics="finite", shaft="elastic"
+    )
+    (problem,) = problems(pier, bending)
+    assert 'springs with a backbone bear a rigid shaft only; write spring = "hardening", or shaft = "rigid"' in str(
+        problem
+    )
+
+
+def test_the_curve_of_first_loading_is_the_polyline():
+    curve = Polyline(((1.0, 1.0), (3.0, 2.0), (5.0, 2.5)))
+    depths = np.array([0.0, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0])
+    forces = np.array([0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0])
+    np.testing.assert_allclose(curve.force(depths), forces, rtol=1e-15)
+    assert [curve.deflection(force) for force in forces] == pytest.approx(depths, rel=1e-15)
+    np.testing.assert_allclose(curve.tangent(np.array([0.5, 1.0, 1.9, 2.0, 9.0])), [1.0, 0.5, 0.5, 0.25, 0.25])
+    assert curve.most == np.inf
+    plastic = Polyline(((1.0, 1.0), (3.0, 2.0), (5.0, 2.0)))
+    assert (plastic.most, plastic.deflection(2.0), float(plastic.tangent(np.array(2.0)))) == (2.0, 3.0, 0.0)
