@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from core_samples import hard_case
 from reference_solver import ZL, TwoSprings
+from restrained_reference import TiedTwoSprings
 
 from rockbatch.pier import YieldingBase, least_beta
 
@@ -14,16 +15,16 @@ class OnBackbone(TwoSprings):
 
     def __init__(self, pier, base, motion, quiet_s):
         self.corners = [force for _, force in base.backbone[:-1]]
-        x, force = np.array([(0.0, 0.0), *base.backbone]).T
-        self.slopes = np.diff(force) / np.diff(x)
+        self.x, self.forces_at = np.array([(0.0, 0.0), *base.backbone]).T
+        self.tangents = np.diff(self.forces_at) / np.diff(self.x)
         self.passed = 0  # corners beyond the first of each loading
         super().__init__(pier, base, motion, quiet_s)
-        static = 1.0 / base.eta
-        passed = sum(static > corner for corner in self.corners)
-        self.v0 = -self.dy * (x[passed] + (static - force[passed]) / self.slopes[passed])
-        self.y[0] = self.v0
         self.deepest = [min(self.z0, -1.0)] * 2
         self.mode = [self._mode_at(-self.z0)] * 2
+
+    def _static_integral(self, s):
+        passed = sum(s > corner for corner in self.corners)
+        return float(self.x[passed] + (s - self.forces_at[passed]) / self.tangents[passed])
 
     def _mode_at(self, force):
         passed = sum(force >= corner for corner in self.corners)
@@ -31,17 +32,16 @@ class OnBackbone(TwoSprings):
 
     def z_rate(self, mode, z, rate):
         if mode.startswith("load "):
-            return rate / self.dy * float(self.slopes[int(mode.split()[1])])
+            return rate / self.dy * float(self.tangents[int(mode.split()[1])])
         return super().z_rate(mode, z, rate)
 
     def surfaces(self, leg):
         surfaces = []
         for surface in self._of_elastic_springs(leg):
             _, _, i, kind = surface
-            mode = self.mode[i]
             if kind != "separate":
                 surfaces.append(surface)
-            elif mode == "unload":
+            elif (mode := self.mode[i]) == "unload":
                 surfaces += [surface, (lambda t, y, i=i: y[ZL + i] - self.deepest[i], 1e-14, i, "load")]
             else:
                 surfaces.append((lambda t, y, i=i: -self.rate(i, y), 1e-13 * self.omega_v * self.dy, i, "unload"))
@@ -82,6 +82,10 @@ class OnBackbone(TwoSprings):
                 self.mode[i] = "unload"
             elif self.mode[i] == "unload" and rate < 0.0 and self.y[ZL + i] <= self.deepest[i]:
                 self.mode[i] = self._mode_at(-self.deepest[i])
+
+
+class TiedOnBackbone(OnBackbone, TiedTwoSprings):
+    """The same with devices."""
 
 
 def random_backbone(rng):

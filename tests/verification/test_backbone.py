@@ -6,12 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from backbone_reference import OnBackbone, backbone_case
+from backbone_reference import OnBackbone, TiedOnBackbone, backbone_case
 from core_samples import FIG5, pulse
 
 import rockbatch as rb
 from rockbatch import simulate
-from rockbatch.pier import Damper, YieldingBase, yield_deflection
+from rockbatch.pier import Damper, Tendon, YieldingBase, yield_deflection
+from rockbatch.pier.equilibrium import SlowTurn
 from rockbatch.simulation import run_fixed, run_to_tolerance
 
 POINTS = ((1.0, 1.0), (2.0, 1.7), (3.5, 2.3), (6.0, 2.8))
@@ -158,3 +159,51 @@ def test_random_hard_cases_agree_with_the_reference(seeds):
         assert work == pytest.approx(expected.dissipated_left + expected.dissipated_right, rel=1e-5, abs=1e-12), seed
         compared += 1
     assert compared >= len(seeds) / 2
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("zeta", [None, 0.05])
+@pytest.mark.parametrize(
+    "device",
+    [Damper("viscous", nu=0.1), Damper("friction", f=0.05), Tendon(psi=0.1, lam=0.2)],
+    ids=["viscous", "friction", "tendon"],
+)
+def test_devices_on_a_backbone_agree_with_the_reference(device, zeta):
+    """A tendon's prestress adds to the force at rest, which is beyond the first corner then."""
+    base = replace(ENDLESS, epsilon=0.0 if zeta else 0.1, eta=1.05, zeta=zeta, restraints=(device,))
+    solver = TiedOnBackbone(FIG5, base, PUSH, 0.0)
+    expected = solver.run()
+    assert solver.passed > 0
+    outcome = run_fixed(FIG5, base, PUSH, 16, 0.0, wait=False)
+    assert outcome.theta_max == pytest.approx(expected.theta_max, rel=2e-8)
+    assert outcome.impacts == expected.impacts
+    work = outcome.dissipated_left + outcome.dissipated_right
+    assert work == pytest.approx(expected.dissipated_left + expected.dissipated_right, rel=1e-6)
+
+
+@pytest.mark.thorough
+def test_a_release_from_a_rotation_starts_on_the_polyline():
+    """The compressed spring bears the weight but for the other one's share: here alone, 2/η = 5/3 F_y, on the second slope."""
+    base = replace(ENDLESS, epsilon=0.0, zeta=0.05)
+    response = simulate(
+        FIG5, base, rb.Motion.still(2.0), initial_rotation_rad=0.05, substeps=8, quiet_s=0.0, wait=False, ledger=True
+    )
+    first, soft = response.history.iloc[0], yield_deflection(FIG5, base)
+    assert (first.z_left, first.z_right) == pytest.approx((0.0, -5.0 / 3.0), rel=1e-12)
+    assert -first.v_right / soft == pytest.approx(1.0 + (5.0 / 3.0 - 1.0) / 0.7, rel=1e-10)
+    assert np.abs(response.ledger["remainder"]).max() < 1e-6
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("eta", [0.8, 1.2])
+def test_a_pier_turns_under_a_slow_ramp_as_the_statics_sheet_says(eta):
+    """At 0.3, 0.6 and 0.9 of the strength; 1 %: what damping and vibration leave."""
+    base, dt, rise = replace(ENDLESS, beta=80.0, epsilon=0.0, eta=eta, zeta=0.5), 0.01, 60.0
+    sheet = rb.statics(FIG5, base)
+    shares = np.linspace(0.0, 0.95, round(rise / dt) + 1)
+    motion = rb.Motion("ramp", dt, FIG5.gravity * sheet.strength_g * shares)
+    history = simulate(FIG5, base, motion, substeps=4, quiet_s=0.0, wait=False).history
+    curve = SlowTurn(FIG5, base).curve(sheet.strength_rad)
+    for share in (0.3, 0.6, 0.9):
+        static = np.interp(share * sheet.strength_g, curve.acceleration, curve.theta)
+        assert np.interp(share / 0.95 * rise, history["t"], history["theta"]) == pytest.approx(-static, rel=0.01)
