@@ -38,19 +38,27 @@ def deflections(response, side):
     return depth[force > 0.0], force[force > 0.0]
 
 
-@pytest.mark.parametrize("base", [ENDLESS, PLASTIC, SOFT_AT_REST], ids=["endless", "plastic", "soft at rest"])
+@pytest.mark.parametrize(
+    "base",
+    [ENDLESS, pytest.param(PLASTIC, marks=pytest.mark.slow), pytest.param(SOFT_AT_REST, marks=pytest.mark.slow)],
+    ids=["endless", "plastic", "soft at rest"],
+)
 def test_a_spring_traces_its_backbone_and_is_elastic_below_it(uncompiled, base):
-    """Where it is deeper than ever it bears the polyline's force, elsewhere less by the way up from there over δ_y."""
+    """Where it is deeper than ever it bears the polyline's force, elsewhere less by the way up from there over δ_y.
+
+    1e-10: at an event the force is set to that of the corner, which is located to 2e-11 of δ_y.
+    """
     response = uncompiled(simulate, FIG5, base, PUSH, substeps=2, quiet_s=0.0, wait=False)
     deepest = 0.0
     for side in ("left", "right"):
         depth, force = deflections(response, side)
         most = np.maximum.accumulate(np.maximum(depth, depth[0]))
-        np.testing.assert_allclose(force, envelope(base, most) - (most - depth), rtol=0, atol=1e-11)
+        np.testing.assert_allclose(force, envelope(base, most) - (most - depth), rtol=0, atol=1e-10)
         deepest = max(deepest, most.max())
     assert deepest > base.backbone[-2][0]  # beyond its last corner
 
 
+@pytest.mark.slow
 def test_one_corner_and_no_slope_beyond_it_is_the_elastic_perfectly_plastic_spring(uncompiled):
     """With a damper reversals of both laws are events, so that they take the same steps."""
     rest = {"epsilon": 0.1, "eta": 2.2, "restraints": (Damper("viscous", nu=0.02),)}
