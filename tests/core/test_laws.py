@@ -10,6 +10,10 @@ from scipy.integrate import quad
 
 from rockbatch.core.springs import backbone, laws
 from rockbatch.core.springs.events import Side
+from rockbatch.core.springs.free_vibration import _climb
+from rockbatch.core.springs.model import Contact, State, Supports
+from rockbatch.core.springs.transitions import handle
+from rockbatch.core.types import CONTACT_LEFT, CONTACT_RIGHT, SPRING_LEFT, SPRING_RIGHT, Ground, Moment
 from rockbatch.pier import ElasticBase, YieldingBase
 from rockbatch.pier.laws import LAWS as LAW_OF_PIERS
 from rockbatch.pier.laws import Law
@@ -150,6 +154,37 @@ def test_a_backbone_has_a_branch_beyond_each_corner():
     assert [laws.give(m, force, -1.2) for force in (1.1, 1.5, 1.8)] == pytest.approx([1.0, 1.0 / 0.7, 1.0 / 0.3])
     assert laws.plastic_work(m, -1.0, -1.7, 0.02) == pytest.approx(1.35 * 0.02)
     assert laws.plastic_work(m, -2.0, -2.0, 0.02) == pytest.approx(2.0 * 0.02)
+
+
+@pytest.mark.parametrize(("contact_event", "side"), [(CONTACT_LEFT, "left"), (CONTACT_RIGHT, "right")])
+def test_a_corner_sets_the_force_and_goes_on_to_the_next_branch(contact_event, side):
+    """The event of a pressed spring's contact, since it cannot separate; the yield point is of its unloading and stays."""
+    m, supports = model("backbone"), Supports(0.0, 0.0, -1.2, -1.2)
+    now = Moment(State(-0.1, 0.0, -0.3, 0.0, -1.69999999, -1.69999999), Contact(1.0, 1.0, 1.0, 1.0, 0.0), supports)
+    after, kind = handle(m, now, contact_event, Ground(0.0, 0.0, 0.0, 0.0))
+    other = "right" if side == "left" else "left"
+    assert kind == (SPRING_LEFT if side == "left" else SPRING_RIGHT)
+    assert getattr(after.y, f"z_{side}") == -1.7
+    assert getattr(after.contact, f"{side}_yields") == 2.0
+    assert (getattr(after.y, f"z_{other}"), getattr(after.contact, f"{other}_yields")) == (-1.69999999, 1.0)
+    assert after.supports == supports
+
+
+def test_the_energy_to_turn_a_pier_on_a_backbone_is_bounded_below():
+    """Against 1e5 parts of the same loading, for targets on every slope: at most it, by no more than 2 %."""
+    base = replace(base_of("backbone"), eta=1.15)  # at rest below the first corner, alone beyond the second
+    m = springs(FIG5, base)
+    load, b = m.gravity, m.half_width
+    static, curve = 0.5 * load / m.yield_force, base.first_loading
+    x = np.linspace(0.0, 1.0, 100_001)
+    deflections = np.array([curve.deflection(force) for force in static * (1.0 + x)])
+    theta = 0.5 * m.yield_deflection * (deflections - deflections[0] + static * x) / b
+    moment = load * (b * x - m.height * theta)
+    work = np.concatenate(([0.0], np.cumsum(0.5 * (moment[1:] + moment[:-1]) * np.diff(theta))))
+    for share in (0.2, 0.5, 0.9, 0.999):
+        target = share * theta[-1]
+        exact = np.interp(target, theta, work)
+        assert 0.98 * exact <= _climb(m, 0.0, target, load, -1.0) <= exact * (1.0 + 1e-9)
 
 
 def test_a_switching_point_is_where_the_velocity_reverses_or_at_the_yield_point():

@@ -108,9 +108,8 @@ def give_at(backbone):
 
 @give_at.of(Backbone)
 def _give_at_end(backbone):
-    return (
-        1.0 - 1e-9
-    )  # where it is greatest, so that the energy to turn a pier is bounded below; short of a corner at the end
+    # Where it is greatest, so that the energy to turn a pier is bounded below; short of a corner at the end
+    return 1.0 - 1e-9
 
 
 @optional_hook

@@ -27,9 +27,7 @@ class Springs(NamedTuple):
     height: float  # h [m]
     inertia: float  # I0/M [m²]
     gravity: float  # g [m/s²]
-    yield_deflection: (
-        float  # δ_y [m]; the static deflection for elastic springs, that at the first corner of a backbone
-    )
+    yield_deflection: float  # δ_y [m]; the static deflection of elastic springs, that at the first corner of a backbone
     stiffness: float  # K/F_y = 1/δ_y [1/m]
     yield_force: float  # F_y/M [m/s²]
     epsilon: float  # restitution of the landing pivot; 1 for damped supports, whose dashpots lose the energy
