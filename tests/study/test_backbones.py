@@ -1,5 +1,6 @@
 """Backbones of supports in a study and in Python: what is read of the points, and what is said of wrong ones."""
 
+import h5py
 import numpy as np
 import pytest
 from studies import study_text, write_study
@@ -8,6 +9,7 @@ import rockbatch as rb
 from rockbatch.checks.remarks import weak_supports
 from rockbatch.pier.first_loading import Polyline
 from rockbatch.pier.possible import least_eta, problems
+from rockbatch.results.histories_file import _read, _write
 
 PIER = {"width_m": 8.0, "height_m": 30.0, "mass_t": 3000.0}
 POINTS = [[5.0, 10e3], [12.0, 20e3], [40.0, 38e3]]
@@ -40,6 +42,15 @@ def test_a_remark_is_made_of_supports_whose_greatest_force_is_below_the_weight(t
         entries.append({"case": case.name, "columns": {}, "parameters": case.base.parameters(case.pier)})
     assert [bool(weak_supports([entry])) for entry in entries] == [False, True, False]
     assert "(68 %)" in weak_supports(entries[1:2])  # 20 MN over 29 430 kN
+
+
+def test_histories_keep_the_backbone(tmp_path, uncompiled):
+    base = rb.YieldingBase(60.0, eta=1.2, spring="backbone", backbone=((1.0, 1.0), (2.0, 1.5), (3.0, 1.5)))
+    still = rb.Motion.still(0.02, 0.01)
+    response = uncompiled(rb.simulate, rb.Pier(0.2, 1.0), base, still, substeps=1, quiet_s=0.0, wait=False)
+    with h5py.File(tmp_path / "run.h5", "w") as file:
+        _write(file, response)
+        assert _read(file).base == base
 
 
 @pytest.mark.parametrize(
