@@ -114,6 +114,16 @@ def test_a_step_across_a_reversal_is_corrected_to_the_next_order(begin, until, a
     assert (left < [0.03, 0.03, 0.01, 0.01, 1e-4, 0.03]).all(), left
 
 
+@pytest.mark.parametrize(("sign", "softness"), [(1.0, 1.0), (0.0, 1.0), (-1.0, 1.0 - 0.5**5)])
+def test_a_spring_whose_velocity_keeps_its_sign_stays_as_it_is(sign, softness):
+    """It follows displacements by its own branch: elastic, without one that depends on the velocity, and inelastic."""
+    start, end = Pivot(0.0, 1e-3 * sign), Pivot(1e-5 * sign, 1e-3 * sign)
+    found = reversal(MODEL, sign, start, 0.0, end, -0.5, 0.01)
+    unstressed = end.position + 0.5 * MODEL.yield_deflection
+    assert found[:5] == (0.0, -0.5, unstressed, 0.0, pytest.approx(softness, rel=1e-15))
+    assert found.surely > 0.0
+
+
 def test_two_reversals_in_one_step_and_sharp_ones_are_left_to_the_search():
     sign = kept_sign(CODES["bouc-wen"], 1.0, 0.0)
     assert (sign, kept_sign(CODES["bouc-wen"], 1.0, 1.0)) == (1, -1)

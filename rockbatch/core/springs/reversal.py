@@ -70,22 +70,24 @@ def reversal(m, sign, start, acceleration, end, z_end, h):
         z at the end of the step by the branch.
     """
     w0, w1 = sign * start.velocity, sign * end.velocity
-    happened = w1 < -m.rest
-    share = w1 / (w1 - max(w0, 0.0)) if happened else 0.0  # of the step after the reversal, by the chord
+    part = stiffness_loss(m, _size(z_end))
+    if not w1 < -m.rest:
+        softness = 1.0 if sign >= 0.0 else 1.0 - part
+        unstressed = end.position - m.yield_deflection * z_end
+        return Reversal(0.0, z_end, unstressed, 0.0, softness, min(once(m, sign, start, end, h), SHARP))
+    share = w1 / (w1 - max(w0, 0.0))  # of the step after the reversal, by the chord
     before = 1.0 - share
     way = end.position - start.position
     # The position has an extremum at the reversal, so that an error of its time counts squared; a quartic gives it
     cubic = share * (h * start.velocity - way) + before * (way - h * end.velocity)
     quartic = h * (0.5 * h * acceleration + 2.0 * start.velocity + end.velocity) - 3.0 * way
     unit = share * (way - before * (cubic + before * share * quartic)) * m.stiffness  # way after the reversal/δ_y
-    part = stiffness_loss(m, _size(z_end))
     middle = z_end - 0.5 * unit * (1.0 + sign * part)
     added = stiffness_loss(m, _size(middle)) * abs(unit)
-    unloads = (sign if happened else -0.5 - sign) < 0.0  # the branch at the end is elastic; sign is −1 on the other one
+    unloads = sign < 0.0  # the branch at the end is elastic
     z = z_end - unit + (added if unloads else 0.0)
-    surely = 1.0 if happened else once(m, sign, start, end, h)
     unstressed = end.position - m.yield_deflection * (z + unit)
-    return Reversal(share * h, z, unstressed, added, 1.0 if unloads else 1.0 - part, min(surely, SHARP - added))
+    return Reversal(share * h, z, unstressed, added, 1.0 if unloads else 1.0 - part, SHARP - added)
 
 
 @inlined
