@@ -1,8 +1,6 @@
 """Workers and schedulers that cannot be used, die or do not answer: reported, and not waited for without end."""
 
-import contextlib
 import itertools
-import json
 import re
 import signal
 import subprocess
@@ -11,6 +9,7 @@ import time
 from types import SimpleNamespace
 
 import pytest
+from clusters import WORKER, cluster
 
 import rockbatch.batch.dask
 import rockbatch.batch.groups
@@ -44,31 +43,9 @@ def test_a_worker_without_rockbatch_is_refused(file, tmp_path, capsys, in_this_p
 def test_a_worker_without_rockbatch_is_reported_before_anything_waits_for_it(file, tmp_path, capsys):
     """It would end at the first task, and whoever waits for that would wait for ever."""
     pytest.importorskip("distributed")
-    scheduler = subprocess.Popen(
-        [sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
-         "--scheduler-file", str(tmp_path / "scheduler.json")], stderr=subprocess.DEVNULL,
-    )  # fmt: skip
-    address = address_of(tmp_path / "scheduler.json")
-    code = WITHOUT_ROCKBATCH.replace("ADDRESS", address)
-    worker = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.DEVNULL)
-    try:
+    with cluster(tmp_path, ["-c", WITHOUT_ROCKBATCH]) as (address, _, _):
         assert main(["run", str(file), "--out", str(tmp_path / "out"), "--scheduler", address]) == 2
-        assert "there is no rockbatch where these workers run: tcp://127.0.0.1:" in capsys.readouterr().err
-    finally:
-        worker.kill()
-        scheduler.kill()
-        worker.wait()
-        scheduler.wait()
-
-
-def address_of(file):
-    """Of a scheduler that was started with this file."""
-    until = time.monotonic() + 60
-    while time.monotonic() < until:
-        with contextlib.suppress(OSError, ValueError):
-            return json.loads(file.read_text())["address"]
-        time.sleep(0.1)
-    raise AssertionError("no scheduler")
+    assert "there is no rockbatch where these workers run: tcp://127.0.0.1:" in capsys.readouterr().err
 
 
 @pytest.mark.slow
@@ -77,38 +54,27 @@ def test_a_scheduler_that_stops_or_falls_silent_is_reported_in_a_sentence(file, 
     """And soon; in a process of its own, because distributed logs to the real stderr."""
     pytest.importorskip("distributed")
     file.write_text(file.read_text().replace("[0.5, 1.0]", str([0.5 + 0.001 * i for i in range(120)])))
-    dask = [sys.executable, "-m"]
-    scheduler = subprocess.Popen(
-        [*dask, "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
-         "--scheduler-file", str(tmp_path / "scheduler.json")], stderr=subprocess.DEVNULL,
-    )  # fmt: skip
-    address = address_of(tmp_path / "scheduler.json")
-    worker = subprocess.Popen(
-        [*dask, "distributed.cli.dask_worker", address, "--no-nanny", "--no-dashboard"], stderr=subprocess.DEVNULL
-    )
     part = tmp_path / "out" / "peaks.csv.part"
-    run = subprocess.Popen(
-        [*dask, "rockbatch", "run", str(file), "--out", str(part.parent), "--scheduler", address],
-        stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
-    try:
-        until = time.monotonic() + 300
-        while not (part.exists() and part.read_bytes().count(b"\n") > 1):
-            assert time.monotonic() < until
-            time.sleep(0.1)
-        scheduler.send_signal(how)
-        started = time.monotonic()
-        _, told = run.communicate(timeout=60)
-        assert run.returncode == 2
-        assert time.monotonic() - started < 40
-        assert f"rockbatch: {address}: lost (" in told
-        assert "give the same command again to go on, with a scheduler and workers that are there" in told
-        assert "Traceback" not in told
-        assert "distributed." not in told
-    finally:
-        for process in (worker, scheduler, run):
-            process.kill()
-            process.wait()
+    command = [sys.executable, "-m", "rockbatch", "run", str(file), "--out", str(part.parent), "--scheduler"]
+    with cluster(tmp_path, WORKER) as (address, scheduler, _):
+        run = subprocess.Popen([*command, address], stderr=subprocess.PIPE, text=True)
+        try:
+            until = time.monotonic() + 300
+            while not (part.exists() and part.read_bytes().count(b"\n") > 1):
+                assert time.monotonic() < until
+                time.sleep(0.1)
+            scheduler.send_signal(how)
+            started = time.monotonic()
+            _, told = run.communicate(timeout=60)
+        finally:
+            run.kill()
+            run.wait()
+    assert run.returncode == 2
+    assert time.monotonic() - started < 40
+    assert f"rockbatch: {address}: lost (" in told
+    assert "give the same command again to go on, with a scheduler and workers that are there" in told
+    assert "Traceback" not in told
+    assert "distributed." not in told
 
 
 class Late:
