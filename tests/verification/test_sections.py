@@ -4,9 +4,12 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
+from numpy.polynomial import polynomial
 
 import rockbatch as rb
+from rockbatch.observers.interaction.observe import InteractionInSections
 from rockbatch.observers.sections.observe import ForcesInSections
 from rockbatch.outcome.changes import LEAST
 from rockbatch.outcome.outcome import Section
@@ -333,6 +336,75 @@ def test_a_motion_with_a_jump_bends_the_foot_no_more_than_its_normal_force_can()
     (foot,) = sections_of(run, rows, [0.0])
     assert foot.moment == pytest.approx(pier.half_width * foot.axial_at_moment, rel=1e-9)
     assert foot.moment < 0.45 * pier.height * 0.5 * G
+
+
+# interaction.csv
+
+
+def reach(points, sizes):
+    """Return how far points of N and |E|, over their ``sizes``, reach in 61 directions."""
+    ways = np.linspace(0.0, np.pi, 61)
+    return (np.array([np.cos(ways), np.sin(ways)]).T @ [points[0] / sizes[0], np.abs(points[1]) / sizes[1]]).max(axis=1)
+
+
+def by_points_at_rows(run, rows, height):
+    """Axial force and moment in a section by the points above it, normal force and shear of the base for None, shape (2, n).
+
+    At all rows at which the points can be differentiated.
+    """
+    numbers = np.unique(smooth(rows[rows.t < 2.9].view(np.recarray), np.random.default_rng(0), 20000))
+    shear, moment, axial = np.array([by_points(run, rows, height or 0.0, number) for number in numbers]).T
+    if height is not None:
+        return np.array([axial, moment])
+    sine, cosine = np.sin(rows.theta[numbers]), np.cos(rows.theta[numbers])
+    if run.base.kinematics == "first-order":
+        sine, cosine = rows.theta[numbers], 1.0
+    return np.array([axial * cosine - shear * sine, shear * cosine + axial * sine]) / (sine**2 + cosine**2)
+
+
+def read_at_rows(run, rows, height):
+    """The same by the run's own forces, at all rows; of the base also between them, on the cubic through four even ones."""
+    if height is not None:
+        (forces,) = of_sections.forces_in_sections(run, rows, [height])
+        return np.array([forces.axial, forces.moment])
+    forces, step = at_rows(run, rows), np.diff(rows.t)
+    even = (step[1:-1] > 0.0) & np.isclose(step[:-2], step[1:-1]) & np.isclose(step[2:], step[1:-1])
+    around = np.flatnonzero(even)[:, None] + np.arange(4)
+    curves = (polynomial.polyfit(np.arange(-1, 3), its[around].T, 3) for its in (forces.normal, forces.shear))
+    between = [polynomial.polyval(np.array([0.25, 0.5, 0.75]), curve).ravel() for curve in curves]
+    return np.hstack([[forces.normal, forces.shear], between])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["first-order", "rigid"])
+def test_each_column_of_interaction_is_that_of_the_mass_above_differentiated_twice(name):
+    """Corners reach as far as the forces at all rows, but for those left out; between rows and beside events a little farther.
+
+    The error is four times the change of the reach by half the steps, and 10⁻⁴ for corners left out.
+    """
+    rng = np.random.default_rng(14)
+    pier, base = random_pier(rng), BASES[name]
+    run, rows = recorded(pier, base, random_motion(rng, pier, 0.3))
+    coarse = recorded(pier, base, run.motion, SUBSTEPS // 2)[1]
+    outcome = run_fixed(pier, base, run.motion, SUBSTEPS, 0.2, wait=False)
+    heights = (0.0, 0.6 * section_heights(pier, 2)[1])
+    observer = InteractionInSections(heights, base=True)
+    (found,) = observed([run], [outcome], [observer], 0.2, error=True, wait=False)
+    table = pd.DataFrame(found.tables[observer.table]).astype(float)
+    assert table["height_m"].drop_duplicates().tolist() == pytest.approx([*heights, math.nan], nan_ok=True)
+    for height in (*heights, None):
+        own = table[table["height_m"].isna() if height is None else table["height_m"] == height]
+        effect, other = ("shear_kN", "moment_kNm") if height is None else ("moment_kNm", "shear_kN")
+        assert own[other].isna().all()
+        assert own["axial_kN"].is_monotonic_increasing
+        corners = own[["axial_kN", effect]].to_numpy().T / pier.mass_t
+        sizes = np.abs(corners).max(axis=1)
+        farther = reach(corners, sizes) - reach(by_points_at_rows(run, rows, height), sizes)
+        assert farther.min() > -1e-4, height
+        assert farther.max() < 1e-2, height
+        of_rows = [reach(read_at_rows(run, its, height), sizes) for its in (rows, coarse)]
+        change = np.abs(of_rows[0] - of_rows[1]).max()
+        assert own["interaction_error"].to_numpy() == pytest.approx(CHANCE * change + 1e-4, abs=1e-7), height
 
 
 # What has no sections
