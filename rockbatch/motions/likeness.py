@@ -279,6 +279,11 @@ def _codes(values: Iterable[Hashable]) -> Indices:
     return np.array([codes.setdefault(value, len(codes)) if value else -1 for value in values], dtype=np.int64)
 
 
+def _places(codes: Indices) -> dict[int, Indices]:
+    """Return the places of each code, ascending."""
+    return {code: np.array(places) for code, places in grouped(range(len(codes)), codes.tolist().__getitem__).items()}
+
+
 class _Table:
     """Properties of components as arrays, so that each component is compared with all others at once.
 
@@ -293,6 +298,7 @@ class _Table:
         self.numbered = _codes(c.site if is_numbered(c.site) else "" for c in components)
         self.sensor, self.event = _codes(c.sensor.number for c in components), _codes(c.event for c in components)
         self.samples = _codes(map(_digest_of_samples, components))
+        self.with_samples, self.of_sensor = _places(self.samples), _places(self.sensor)
         self.way = _codes(map(_kind_of_direction, components))
         self.azimuth = np.array([c.orientation.azimuth for c in components], dtype=float)
         self.start = np.array([c.start for c in components], dtype=float)
@@ -304,6 +310,11 @@ class _Table:
         self.energy = np.full((len(components), len(_BANDS)), math.nan, dtype=np.float32)
         vertical = np.array([c.orientation.vertical for c in components], dtype=bool)
         self.whole_file = np.isin(self.file, self.file[vertical]) & np.isin(self.file, self.file[~vertical])
+
+    @staticmethod
+    def _later(places: Indices, i: int) -> Indices:
+        """Return those of ascending ``places`` that are behind ``i``."""
+        return places[np.searchsorted(places, i, "right") :]
 
     def _differ(self, column: Indices, i: int, j: Indices) -> Truths:
         """Return whether the codes ``column[j]`` differ from ``column[i]``, shape of ``j``; False where either is unknown, -1."""
@@ -337,7 +348,7 @@ class _Table:
 
         What is unknown may be the same.
         """
-        j = i + 1 + np.flatnonzero(self.samples[i + 1 :] == self.samples[i])
+        j = self._later(self.with_samples[int(self.samples[i])], i)
         j = j[~self._differ(self.event, i, j)]
         this, copies = self.components[i], []
         for k, alike in zip(j.tolist(), self._pointing_alike(i, j), strict=True):
@@ -351,8 +362,8 @@ class _Table:
         """Return later components of the same recording by their headers, never those of one file; [] for an unknown sensor."""
         if self.sensor[i] < 0:
             return []
-        near = (self.event[i + 1 :] == self.event[i]) | self.dated[i + 1 :]
-        j = i + 1 + np.flatnonzero(near & (self.sensor[i + 1 :] == self.sensor[i]))
+        j = self._later(self.of_sensor[int(self.sensor[i])], i)
+        j = j[(self.event[j] == self.event[i]) | self.dated[j]]
         same_event = (self.event[i] >= 0) & (self.event[j] == self.event[i])
         same_event = np.where(self.dated[i] & self.dated[j], self._overlap(i, j), same_event)
         differ = (self.file[j] == self.file[i]) | self._differ(self.numbered, i, j)
@@ -381,9 +392,9 @@ class _Table:
                 continue
             within = _SPREAD * length[n] + _BLUR
             j = order[n + 1 : np.searchsorted(length, length[n] + within, "right")]
-            j = j[self.way[j] == self.way[i]]
+            for share in range(len(_SHARES) - 1):
+                j = j[np.abs(self.growth[j, share] - self.growth[i, share]) <= within]
             j = j[self._joinable(i, j) & self._pointing_alike(i, j)]
-            j = j[(np.abs(self.growth[j, :-1] - self.growth[i, :-1]) <= within).all(axis=1)]
             yield from ((min(i, k), max(i, k)) for k in j[self._similar(i, j)].tolist())
 
     def _similar(self, i: int, j: Indices) -> Truths:

@@ -12,14 +12,21 @@ from collections.abc import Hashable, Iterable, Iterator, Sequence
 from itertools import combinations, pairwise
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.common.grouping import distinct, grouped
 from rockbatch.motions.common_span import overlap
 from rockbatch.motions.component import Component, file_of
+from rockbatch.motions.motion import Samples
+
+Indices = npt.NDArray[np.int64]
 
 _NUMBERED = re.compile(r"RSN\d+")
 _HOUR = 3600.0  # s
 _SAME_SHAPE = 1e-4  # of the peak: rounding of a sample in a printed, scaled copy
+_CLOSE = 0.499  # correlation of lines 60° apart, but for rounding
+_ROUNDING = 1e-12  # of coordinates of unit vectors
+_BLOCK = 256  # records that are compared with all others at once
 
 
 def is_numbered(site: str) -> bool:
@@ -232,13 +239,40 @@ def _turned_triples(stations: Sequence[Sequence[Component]]) -> Iterator[tuple[i
     for alike in grouped(horizontals, lambda pair: (len(pair[1].acceleration), round(pair[1].dt, 9))).values():
         if len({i for i, _ in alike}) < 2 or len(alike) < 3:
             continue
-        places = [i for i, _ in alike]
         samples = np.array([c.acceleration / np.linalg.norm(c.acceleration) for _, c in alike])
-        cosines = samples @ samples.T
-        close = (np.abs(cosines) >= 0.499) & (np.abs(cosines) < 1.0 - _SAME_SHAPE)
-        for a, b in zip(*np.nonzero(np.triu(close, 1)), strict=True):
-            g = cosines[a, b]
-            in_plane = (cosines[a] ** 2 + cosines[b] ** 2 - 2.0 * g * cosines[a] * cosines[b]) / (1.0 - g**2)
-            for c in np.flatnonzero(in_plane > 1.0 - _SAME_SHAPE**2 / (1.0 - g**2)):
-                if c not in (a, b) and len({places[a], places[b], places[c]}) > 1:
-                    yield places[a], places[b], places[int(c)]
+        for triple in _planes(samples):
+            of_station = [alike[row][0] for row in triple]
+            if len({*of_station}) > 1:
+                yield of_station[0], of_station[1], of_station[2]
+
+
+def _planes(samples: Samples) -> Iterator[tuple[int, int, int]]:
+    """Yield three rows of unit ``samples`` that lie in one plane, but for rounding.
+
+    What lies in a plane lies in its projection, and is no farther from it: three coordinates of an orthonormal projection rule
+    nearly all other rows out.
+    """
+    projected = samples @ np.linalg.qr(np.random.default_rng(0).normal(size=(samples.shape[1], 3)))[0]
+    for a, b in _close_lines(samples):
+        g = np.einsum("ij,ij->i", samples[a], samples[b])
+        a, b, g = (values[np.abs(g) < 1.0 - _SAME_SHAPE] for values in (a, b, g))
+        normal, off_plane = np.cross(projected[a], projected[b]), _SAME_SHAPE / np.sqrt(1.0 - g**2)
+        within = off_plane * np.linalg.norm(normal, axis=1) + _ROUNDING
+        for i, (first, second) in enumerate(zip(a.tolist(), b.tolist(), strict=True)):
+            near = np.flatnonzero(np.abs(projected @ normal[i]) <= within[i])
+            cosines = samples[near] @ samples[[first, second]].T
+            in_plane = (np.square(cosines).sum(axis=1) - 2.0 * g[i] * cosines.prod(axis=1)) / (1.0 - g[i] ** 2)
+            others = near[in_plane > 1.0 - off_plane[i] ** 2].tolist()
+            yield from ((first, second, third) for third in others if third not in (first, second))
+
+
+def _close_lines(samples: Samples) -> Iterator[tuple[Indices, Indices]]:
+    """Yield rows a and rows b > a of unit ``samples`` whose correlation is about a half or more, of either sign, shape (k,) each.
+
+    A block of rows a at a time, so that memory does not grow with the square of their number.
+    """
+    rounded = samples.astype(np.float32)
+    for first in range(0, len(rounded), _BLOCK):
+        cosines = rounded[first : first + _BLOCK] @ rounded[first:].T
+        a, b = np.nonzero(np.triu(np.abs(cosines) >= _CLOSE, 1))
+        yield first + a, first + b

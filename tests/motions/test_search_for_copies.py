@@ -1,11 +1,14 @@
 """Copies are searched for in time that grows with the number of records, and by samples that are alike."""
 
+import tracemalloc
+from itertools import combinations
+
 import numpy as np
 import pytest
 from copies import title
 from motion_files import wiggle, write_at2
 
-from rockbatch.motions import likeness, read_motions
+from rockbatch.motions import likeness, read_motions, stations
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation
 
@@ -74,3 +77,26 @@ def test_series_that_never_move_have_no_independent_values():
     assert likeness._independent_values(np.ones(100), np.ones(100)) == 0.0
     moving = np.random.default_rng(0).normal(size=(2, 4096))  # of white noise each sample is one, to its scatter
     assert likeness._independent_values(*moving) == pytest.approx(4096.0, rel=0.1)
+
+
+def test_turned_triples_are_all_rows_in_one_plane_and_take_little_memory():
+    """A matrix of all correlations takes the square of the number of records: 7 GB of 20,000 of one length."""
+    rng = np.random.default_rng(8)
+    rows = np.linalg.qr(rng.normal(size=(100, 24)))[0].T + 0.02 * rng.normal(size=(24, 100))
+    for turned, (one, two), angle in ((7, (3, 21), 0.6), (12, (0, 23), 2.0), (18, (16, 17), 1.1)):
+        rows[turned] = np.cos(angle) * rows[one] + np.sin(angle) * rows[two]
+    pair = np.linalg.qr(rng.normal(size=(100, 2)))[0].T  # three lines 60° apart, as far as three in a plane can be
+    rows[[4, 9, 14]] = [np.cos(angle) * pair[0] + np.sin(angle) * pair[1] for angle in np.radians([10.0, 70.0, 130.0])]
+    rows /= np.linalg.norm(rows, axis=1)[:, None]
+    least = {three: np.linalg.svd(rows[list(three)])[1][-1] for three in combinations(range(24), 3)}
+    planes = {three for three, of_plane in least.items() if of_plane < 1e-6}
+    assert len(planes) == 4
+    assert {tuple(sorted(three)) for three in stations._planes(rows)} == planes
+
+    many = rng.normal(size=(4000, 100))
+    many /= np.linalg.norm(many, axis=1)[:, None]
+    tracemalloc.start()
+    assert list(stations._planes(many)) == []
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 0.25 * 8 * len(many) ** 2
