@@ -55,7 +55,7 @@ def spent(runs: Sequence[Run]) -> Spent:
     found, levels, asked = Spent(), dict[int, list[Trial]](), dict[int, str]()
     number = {id(run): i for i, run in enumerate(runs)}
     try_all, magnifies, wanders = error_control.try_all, error_control.magnifies, error_control.residuals_wander
-    look, reasons, latest = error_control.look_for_chaos, list[str](), 0
+    look, lingers, reasons, latest = error_control.look_for_chaos, error_control.lingers, list[str](), 0
 
     def trying(some: Sequence[Run], *rest: Any) -> list[Trial | None]:
         trials = try_all(some, *rest)
@@ -86,6 +86,10 @@ def spent(runs: Sequence[Run]) -> Spent:
         asked[latest] = "residuals" + (", slowly" if same_counts(last, before) else ", with other counts of events")
         return wanders(trials, *rest)
 
+    def lingering(run: Run, *rest: Any) -> bool:
+        asked[latest] = "it lingers near its unstable equilibrium"
+        return lingers(run, *rest)
+
     def looking(some: Sequence[Run], outcomes: Any, doubtful: Any, *rest: Any) -> None:
         reasons.extend(asked[i] for i in doubtful)
         look(some, outcomes, doubtful, *rest)
@@ -94,12 +98,13 @@ def spent(runs: Sequence[Run]) -> Spent:
     changes: Any = chaos
     control.try_all, changes.try_all = trying, under_changes
     control.magnifies, control.residuals_wander = magnifying, wandering
-    control.look_for_chaos = looking
+    control.lingers, control.look_for_chaos = lingering, looking
     try:
         run_all_to_tolerance(runs, TOLERANCE, QUIET_S, Stop())
     finally:
         control.try_all = changes.try_all = try_all
-        control.magnifies, control.residuals_wander, control.look_for_chaos = magnifies, wanders, look
+        control.magnifies, control.residuals_wander = magnifies, wanders
+        control.lingers, control.look_for_chaos = lingers, look
     return found
 
 

@@ -30,6 +30,10 @@ RISES, FALLS = 300.0, 0.5
 """An extreme after the peak is harmless if RISES times its change by halving the step brings it neither to the peak nor to the
 rotation FALLS α, from which a pier may overturn."""
 
+NEAR, SWIFT = 0.2, 6.0
+"""Distance from α, over α, of a pier that may be near its unstable equilibrium, and the time there, times p, above which a run is
+repeated: energies that differ by 10⁻⁸ are told apart after about 2 ln(0.2/10⁻⁴) = 15."""
+
 
 def magnifies(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, until: int) -> bool:
     """Return True if a run that claims the error of its peak magnifies errors of steps; ``until`` is the motion's last window.
@@ -47,6 +51,21 @@ def magnifies(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, until: int
     resolved = max(fastest_rate(run.pier, run.base), run.pier.p) * run.motion.dt / outcome.substeps
     magnified = change * greatest > SENSITIVE * run.pier.alpha * peak * resolved**2
     return claimed is not None and bool(magnified.any())
+
+
+def lingers(run: Run, fine: Trial, quiet_s: float) -> bool:
+    """Return True if a pier that stays upright leans near its unstable equilibrium for longer than :data:`SWIFT`/p.
+
+    There the least change may overturn it, which a peak before it does not show. The last window of its extremes goes on from
+    the end of the tail of ``quiet_s`` [s] to that of the run.
+    """
+    outcome, near, tail_s = (
+        fine.outcome,
+        np.abs(fine.extremes / run.pier.alpha - 1.0) < NEAR,
+        run.motion.duration + quiet_s,
+    )
+    lingered = near.sum() * tail_s / len(near) + near[-1] * max(outcome.t_end - tail_s, 0.0)
+    return outcome.status == "ok" and bool(lingered * run.pier.p > SWIFT)
 
 
 def residuals_wander(levels: Sequence[Trial], tolerance: float, pier: Pier) -> bool:

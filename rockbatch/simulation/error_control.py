@@ -8,7 +8,7 @@ from rockbatch.outcome.changes import change_of_devices
 from rockbatch.outcome.outcome import Failure, Outcome
 from rockbatch.pier import Base, Damper, Pier
 from rockbatch.simulation.agreement import COUNTS, Agreement, agreement, converged_extent, flight_of, windows
-from rockbatch.simulation.chaos import MARGIN, look_for_chaos, magnifies, residuals_wander, without_error
+from rockbatch.simulation.chaos import MARGIN, lingers, look_for_chaos, magnifies, residuals_wander, without_error
 from rockbatch.simulation.coarser import (
     share_of_strips,
     tolerances_beside,
@@ -95,7 +95,8 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
                 magnified = magnifies(runs[i], fine, coarse, outcome, until)
                 if magnified and extent == Agreement.RESULTS:
                     outcome = without_error(outcome, "other peaks near it follow the step")
-                if magnified or outcome.chaotic or residuals_wander(levels[i], tolerance * pier.alpha, pier):
+                doubts = magnified or outcome.chaotic or residuals_wander(levels[i], tolerance * pier.alpha, pier)
+                if doubts or lingers(runs[i], fine, quiet_s):
                     doubtful[i] = fine
                 outcomes[i] = outcome
                 del levels[i]

@@ -199,6 +199,27 @@ def test_overturning_under_a_changed_motion_is_noted_without_an_error(monkeypatc
     assert "a motion 1e-08 weaker overturns the pier" in outcome.note
 
 
+def test_a_pier_that_lingers_near_its_unstable_equilibrium_may_overturn():
+    """Behind a peak of 1.4 α under a strong pulse, which a motion 10⁻⁸ stronger hardly moves, and whose halves of steps agree."""
+
+    t = np.arange(800) * 0.005
+    wave = np.sin(2.0 * np.pi * t / 1.5) * (t < 1.5)
+
+    def under(amplitude):
+        motion = Motion("one sine", 0.005, amplitude * wave)
+        return run_to_tolerance(Pier(alpha=0.2, p=1.0), RigidBase(), motion, 1e-4)
+
+    low, high = 11.0, 12.0
+    while high / low - 1.0 > 1e-10:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if under(middle).status == "overturned" else (middle, high)
+    for less, may_overturn in ((0.0, True), (8e-9, True), (1.2e-8, False)):
+        outcome = under(low * (1.0 - less))
+        assert outcome.status == "ok"
+        assert (under(low * (1.0 - less) * (1.0 + 1e-8)).status == "overturned") == may_overturn
+        assert (outcome.may_overturn, outcome.chaotic, outcome.theta_max_error is None) == 3 * (may_overturn,)
+
+
 def test_no_error_is_claimed_of_a_peak_to_which_a_later_one_may_rise(monkeypatch):
     """Under a changed motion an extreme behind the peak moves by half of what it lies below it."""
     later = 0.1 - 4e-4 * FIG5.alpha
