@@ -242,8 +242,9 @@ def _exit_code(parsed: argparse.Namespace) -> int:
         say(f"rockbatch: {place}{error.strerror or error}; choose another folder, or make this one writable")
         return 2
     except MemoryError as error:
+        advice = "run fewer at a time (--jobs), keep fewer histories, or allow more"
         say(
-            f"rockbatch: {str(error) or 'out of memory: run fewer at a time (--jobs), keep fewer histories, or allow more'}"
+            f"rockbatch: {str(error) or f'out of memory: {advice}; what is finished is kept: give the same command again'}"
         )
         return 2
     except ImportError as error:

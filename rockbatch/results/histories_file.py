@@ -34,7 +34,7 @@ from typing import Any, overload
 import numpy as np
 
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import opened, replacing, state_of
+from rockbatch.common.files import FULL, opened, replacing, state_of
 from rockbatch.common.lazy import h5py, pd
 from rockbatch.outcome.outcome import TERMS
 from rockbatch.outcome.response import FORCE_UNITS, HISTORY_UNITS, IMPACT_UNITS, Response
@@ -110,6 +110,7 @@ def write(path: Path, responses: Iterable[Response], info: Item) -> None:
     Raises ``InputError`` if the disk is full.
     """
     with replacing(path) as temporary:
+        _check_room(path, temporary, MARGIN)
         with h5py.File(temporary, "w", userblock_size=BLOCK) as file:
             study = info["study"]
             attributes = {"format": FORMAT, "rockbatch": info["rockbatch"], "created": info["created"]}
@@ -117,7 +118,7 @@ def write(path: Path, responses: Iterable[Response], info: Item) -> None:
             _set(file.create_group("versions"), info["versions"] | {"hdf5": h5py.version.hdf5_version})
             runs = file.create_group("runs")
             for number, response in enumerate(responses):
-                _check_room(path, response)
+                _check_room(path, temporary, MARGIN + _size_of(response))
                 _write(runs.create_group(_group_name(number)), response)
                 file.flush()  # HDF5 reports failed writes on a flush, but not when it closes a dataset
         seal(temporary)
@@ -136,19 +137,35 @@ def _digest(file: io.FileIO) -> bytes:
     return hashlib.file_digest(file, "sha256").hexdigest().encode()
 
 
-def _check_room(path: Path, response: Response) -> None:
-    """Raise ``InputError`` if ``response`` would leave less than MARGIN, 10 MB, of the disk free.
+def _check_room(path: Path, temporary: Path, needed: int) -> None:
+    """Raise ``InputError`` or ``OSError`` if a file of ``path``'s folder, ``temporary``, cannot grow by ``needed`` [bytes].
 
-    HDF5 may crash at exit after a failed write.
+    HDF5 may crash at exit after a failed write, and so is given room that leaves MARGIN, 10 MB. The free space of a disk does
+    not tell a quota, nor a limit on the size of files: they refuse to grow the file, which then has its size again.
     """
-    tables = (getattr(response, name) for name in ("history", "events", "impacts", *_BESIDE))
-    needed = MARGIN + sum(int(table.memory_usage().sum()) for table in tables if table is not None)
     free = disk_usage(path.parent).free
     if free < needed:
         raise InputError(
             f"{path}: the disk is full, {free / 1e6:.0f} MB are left; make room, or keep fewer histories with [output] "
             'histories = "worst" or "none"'
         )
+    if not hasattr(os, "posix_fallocate"):  # macOS, Windows
+        return
+    with opened(temporary, "r+b") as file:
+        size = os.fstat(file.fileno()).st_size
+        try:
+            os.posix_fallocate(file.fileno(), size, needed)
+        except OSError as error:
+            if error.errno in FULL:
+                raise
+        finally:
+            file.truncate(size)
+
+
+def _size_of(response: Response) -> int:
+    """Return the size of the tables of a response [bytes]."""
+    tables = (getattr(response, name) for name in ("history", "events", "impacts", *_BESIDE))
+    return sum(int(table.memory_usage().sum()) for table in tables if table is not None)
 
 
 def _group_name(number: int) -> str:

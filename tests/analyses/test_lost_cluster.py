@@ -5,7 +5,8 @@ import signal
 import pytest
 from clusters import WORKER, cluster
 from many_runs import in_this_process
-from studies import RIGID, seven_pulses, study_text, write_study
+from studies import seven_pulses
+from three_commands import TABLES, study_of, tables_in
 
 from rockbatch.batch.dask import Dask
 from rockbatch.batch.journal import Journal
@@ -13,29 +14,13 @@ from rockbatch.commands.cli import main
 
 __all__ = ["in_this_process"]
 
-SPRUNG = {"name": "springs", "base": "elastic", "beta": 50.0}
-CHECK = {"name": "peak", "demand": "theta_max_over_alpha", "at_most": 0.3, "reason": "made up"}
-TABLES = {
-    "run": {"cases": (SPRUNG, RIGID), "bound": [{"name": "soft", "case.beta": {"times": 0.8}}]},
-    "design": {
-        "cases": (SPRUNG,),
-        "design": {"vary": "case.beta", "between": [30.0, 60.0], "find": "least", "points": 3, "width": 10.0},
-    },
-    "fragility": {"cases": (SPRUNG, RIGID), "fragility": {"measure": "PGA", "levels_g": [0.3, 0.6, 1.2]}},
-}
-
-
-def tables_in(folder):
-    """Return the tables of a folder by name, but for what another number of workers is named in."""
-    return {path.name: path.read_bytes() for path in folder.glob("*.csv")}
-
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("command", TABLES)
 def test_an_analysis_whose_cluster_is_lost_goes_on_to_the_same_tables(tmp_path, capsys, monkeypatch, command):
     pytest.importorskip("distributed")
-    study = write_study(tmp_path, study_text(check=[CHECK], output={"histories": "none"}, **TABLES[command]))
+    study = study_of(command, tmp_path)
     lost, whole = tmp_path / "lost", tmp_path / "whole"
     real, seen = Dask._finished_of, []
 
@@ -73,8 +58,7 @@ def many_groups(tmp_path, monkeypatch):
     pytest.importorskip("distributed")
     monkeypatch.setattr("rockbatch.batch.dask.MOST_RUNS_OF_A_TASK", 1)
     monkeypatch.setattr("rockbatch.batch.groups.LEAST_GROUP", 1)
-    common = {"pulses": seven_pulses(0.6), "check": [CHECK], "output": {"histories": "none"}}
-    return lambda command: write_study(tmp_path, study_text(**common, **TABLES[command]))
+    return lambda command: study_of(command, tmp_path, seven_pulses(0.6))
 
 
 def killing(patch, processes):

@@ -1,5 +1,6 @@
 """Results on disk: which histories are kept, that they come back to the bit, and what is said when they do not."""
 
+import os
 import subprocess
 import sys
 from dataclasses import asdict, replace
@@ -325,6 +326,37 @@ def test_a_full_disk_is_reported_before_it_is_written_to(tmp_path, monkeypatch, 
         stored(tmp_path, at_rest())
     assert [file.name for file in tmp_path.iterdir()] == ["histories.h5"]
     assert (tmp_path / "histories.h5").read_bytes() == earlier
+
+
+@pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="no file can be given room here before it is written to")
+@pytest.mark.parametrize("fits", [0, 1])
+def test_a_limit_on_the_size_of_files_is_met_before_histories_are_written_to(tmp_path, monkeypatch, fits):
+    """As a quota is, which the free space of the disk does not tell; here before the first, and behind it."""
+    import resource
+
+    stored(tmp_path, at_rest())
+    earlier = (tmp_path / "histories.h5").read_bytes()
+    monkeypatch.setattr(histories_file, "MARGIN", len(earlier) // 2)
+    before, taken = resource.getrlimit(resource.RLIMIT_FSIZE), []
+
+    def responses():
+        for _ in range(4):
+            taken.append(at_rest())
+            yield taken[-1]
+
+    resource.setrlimit(resource.RLIMIT_FSIZE, (len(earlier) // 3 + 2 * fits * len(earlier), before[1]))
+    try:
+        with pytest.raises(
+            rb.InputError, match=r"histories\.h5: cannot be written: File too large; what was finished before"
+        ):
+            write(tmp_path / "histories.h5", responses(), INFO)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert (len(taken) > 1) == bool(fits)
+    assert [file.name for file in tmp_path.iterdir()] == ["histories.h5"]
+    assert (tmp_path / "histories.h5").read_bytes() == earlier
+    write(tmp_path / "histories.h5", responses(), INFO)
+    assert len(Responses(tmp_path / "histories.h5", INFO)) == 4
 
 
 # Which runs are kept
