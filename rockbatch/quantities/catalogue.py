@@ -165,7 +165,10 @@ FIXED = (
         suite=OfSuite("Settlement [mm]", ".2f"), error="settlement_error_m", limits=_SETTLEMENTS,
     ),
     Quantity("impacts", "number of impacts", "impacts", kind="count", limits=(Limit(),)),
-    Quantity("separations", "number of separations", "separations", kind="count", limits=(Limit(),)),
+    Quantity(
+        "separations", "number of separations", "separations", kind="count", limits=(Limit(),),
+        more=", on rigid ground of lift-offs from rest; one in the instant of an impact has no event of its own",
+    ),
     Quantity(
         "flight_s", "time at which both pivots first left the ground, also if the run continued", "t_flight",
         "s", sometimes=True,
