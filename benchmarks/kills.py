@@ -208,23 +208,24 @@ def main() -> int:
     chance, failed = random.Random(arguments.seed), 0
     names = arguments.commands or list(COMMANDS)
     print(
-        "| command | duration [s] | files, of them compared by bytes | kills before the end | failed |\n| - | - | - | - | - |"
+        "| command | duration [s] | files, of them compared by bytes | kills, of them before the end | failed |\n"
+        "| - | - | - | - | - |"
     )
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) / "work"
         for place, name in enumerate(names):
             command = COMMANDS[name]
             wanted = reference(command, folder)
-            kills, bad = 0, 0
-            for _ in range(len(range(place, arguments.kills, len(names)))):
+            kills, before, bad = len(range(place, arguments.kills, len(names))), 0, 0
+            for _ in range(kills):
                 instant = chance.uniform(0.0, wanted.duration)
                 failures, alive = failures_of_kill(command, folder, wanted, instant)
-                kills, bad = kills + alive, bad + bool(failures)
+                before, bad = before + alive, bad + bool(failures)
                 for failure in failures:
                     print(f"{name}, killed after {instant:.3f} s: {failure}", file=sys.stderr, flush=True)
             failed += bad
             shown = f"{len(wanted.files)}, {len(wanted.stable)}"
-            print(f"| {name} | {wanted.duration:.1f} | {shown} | {kills} | {bad} |", flush=True)
+            print(f"| {name} | {wanted.duration:.1f} | {shown} | {kills}, {before} | {bad} |", flush=True)
     return 1 if failed else 0
 
 

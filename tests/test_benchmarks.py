@@ -291,3 +291,22 @@ def test_a_failed_run_counts_as_wrong(benchmark):
     predicted, observed = np.array([1.0, 0.0, np.nan, np.nan]), np.array([1.0, 0.0, 1.0, 0.0])
     assert module.share_right(predicted, observed) == 0.5
     assert module.counted(predicted, observed) == "1 1 0 0 (2 failed)"
+
+
+def test_troubles_count_what_was_tried_and_what_ended_badly(benchmark, capsys):
+    module = benchmark("troubles")
+    printed = "journal: 20 damaged, 1 ended badly\n    19  words\njournal, seed 51, number 3\nstudy: 10 damaged, 0 ended badly\n"
+    assert module.of_damage(printed) == [("damaged journals", 20, 1), ("damaged studies", 10, 0)]
+    files = benchmark("broken_files")
+    for name in ("PEER AT2", "DYNA (ESM, ITACA, AFAD)", "motions.csv", "motions.toml", "folders that change"):
+        files.tell(name, files.fuzz.Counts(good=1000, refused=2345, slowest=0.0123))
+    assert module.of_broken_files(capsys.readouterr().out) == [
+        ("damaged records of 2 formats", 6690, 0),
+        ("damaged manifests", 6690, 0),
+        ("folders of records that change while they are read", 3345, 0),
+    ]
+    printed = (
+        "| command | duration [s] | files | kills | failed |\n| - | - | - | - | - |\n| run | 1.5 | 8, 4 | 5, 4 | 0 |\n"
+    )
+    printed += "| sheet | 2.5 | 9, 4 | 5, 5 | 2 |\n"
+    assert module.of_kills(printed) == [("kills of 2 commands at random instants", 10, 2)]
