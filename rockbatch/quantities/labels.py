@@ -99,19 +99,21 @@ def quantity(key: str, value: object, digits: int = 10, case: Case | None = None
 
     ``case``, from run.json, supplies the exponent in a viscous damper's unit: "C = 900 kN (s/m)^0.3".
     """
-    symbol, unit = symbol_of(key)
+    symbol, unit = symbol_of(key, case)
     if not isinstance(value, float | int):
         return f"{symbol} {value}"
-    if case is not None and (device := of_device(key)):
-        unit = unit_with_exponent(unit, _exponent(case, device.kind, device.number))
     return f"{symbol} = {plain(value, digits)} {unit}".strip().replace(" ", "\u00a0")
 
 
-def symbol_of(key: str) -> tuple[str, str]:
-    """Return symbol and unit of a study key, numbered from a second device: "C", "damper 2: C"; else the key itself and ""."""
+def symbol_of(key: str, case: Case | None = None) -> tuple[str, str]:
+    """Return symbol and unit of a study key, numbered from a second device: "C", "damper 2: C"; else the key itself and "".
+
+    ``case``, from run.json, supplies the exponent in a viscous damper's unit.
+    """
     if key in SYMBOLS or not (device := of_device(key)):
         return SYMBOLS.get(key, (key, ""))
     symbol, unit = DEVICE_SYMBOLS.get(device.key, (device.key, ""))
+    unit = unit_with_exponent(unit, _exponent(case, device)) if case is not None else unit
     return (symbol if device.number == 1 else f"{device.words}: {symbol}"), unit
 
 
@@ -135,15 +137,18 @@ def of_device(key: str) -> OfDevice | None:
     return device and OfDevice(device[1], int(device[2]), device[3])
 
 
-def unit_with_exponent(unit: str, exponent: float) -> str:
-    """Return a unit with its exponent a replaced by a number: "kN (s/m)^0.3"; "kN s/m" for 1."""
+def unit_with_exponent(unit: str, exponent: float | None) -> str:
+    """Return a unit with its exponent a replaced by a number: "kN (s/m)^0.3"; "kN s/m" for 1; unchanged for None."""
+    if exponent is None:
+        return unit
     return unit.replace("(s/m)^a", "s/m" if exponent == 1.0 else f"(s/m)^{exponent:g}")
 
 
-def _exponent(case: Case, kind: str, number: int) -> float:
-    """Return the exponent of the ``number``-th device of a kind in a case of run.json; 1 if it has none or is not there."""
-    of_kind = [device for device in devices(case) if what_of(device) == kind]
-    return next((device.get("exponent") for device in of_kind[number - 1 :]), None) or 1.0
+def _exponent(case: Case, device: OfDevice) -> float | None:
+    """Return the exponent of a device in a case of run.json, from the columns if it is varied; None if it has none."""
+    of_kind = [values for values in devices(case) if what_of(values) == device.kind]
+    fixed = next((values.get("exponent") for values in of_kind[device.number - 1 :]), None)
+    return case["columns"].get(f"{device.kind}_{device.number}_exponent", fixed)
 
 
 def plain(value: float, digits: int) -> str:

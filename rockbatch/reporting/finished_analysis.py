@@ -14,6 +14,7 @@ from rockbatch.common.errors import EditedTable, InputError
 from rockbatch.common.files import read_table, read_text, sha256_of
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import capital
+from rockbatch.quantities.cases import Case
 from rockbatch.quantities.labels import in_full
 from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, join, tag
@@ -148,6 +149,16 @@ def sentence(said: str, left_open: Iterable[str] = ()) -> Markup:
     return join(said, *(join("; ", tag("span", words, class_="undecided")) for words in left_open), ".")
 
 
-def named(values: Mapping[str, object], shown: Sequence[str]) -> str:
-    """Return the name of a case with its values of the keys ``shown``, without NaN: "pads: β = 40"."""
-    return in_full(str(values["case"]), {name: values[name] for name in shown if name != "case"})
+def named(info: Item, values: Mapping[str, object], shown: Sequence[str]) -> str:
+    """Return the name of a case with its values of the keys ``shown``, without NaN: "pads: β = 40".
+
+    ``info``, the content of NAME.json, has the exponents in units.
+    """
+    columns = {key: values[key] for key in shown if key != "case" and values[key] == values[key]}
+    return in_full(str(values["case"]), columns, case_of(info, values["case"], columns))
+
+
+def case_of(info: Item, name: object, columns: Mapping[str, object]) -> Case | None:
+    """Return the entry of a case in NAME.json, with these varied values; None if an earlier version wrote the file."""
+    entry = next((case for case in info.get("cases", ()) if case["case"] == name), None)
+    return entry and {**entry, "columns": columns}

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Sequence
 
+from rockbatch.quantities.cases import Case
 from rockbatch.quantities.labels import symbol_of
 from rockbatch.quantities.quantity import Quantity
 from rockbatch.reporting.markup import Markup, escape, tag
@@ -14,9 +15,9 @@ def counted(count: int, word: str) -> str:
     return f"{count:,} {word}s" if count != 1 else f"one {word}"
 
 
-def symbol(key: str) -> str:
-    """Return symbol and unit of a study key for the head of a column: "p [rad/s]"."""
-    letter, unit = symbol_of(key)
+def symbol(key: str, case: Case | None = None) -> str:
+    """Return symbol and unit of a study key for a head or an axis: "p [rad/s]"; ``case`` as in :func:`symbol_of`."""
+    letter, unit = symbol_of(key, case)
     return letter + (f" [{unit}]" if unit else "")
 
 

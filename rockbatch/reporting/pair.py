@@ -126,9 +126,11 @@ def _distance(first: Mapping[Place, object], second: Mapping[Place, object]) -> 
 def _labelled_by(study: Finished, keys: list[str]) -> Finished:
     """Return the study with its series labelled by the varied values of ``keys`` only."""
     varied = [key for key in study.info["varied"] if key not in PIER_KEYS and key != "vertical"]
+    entries = {place: entry for (place, _), entry in study.cases.items()}
     series = []
     for (case, *values), place in study.places.items():
-        words = values_in_words({name: value for name, value in zip(varied, values, strict=True) if name in keys})
+        columns = {name: value for name, value in zip(varied, values, strict=True) if name in keys}
+        words = values_in_words(columns, entries.get(place))
         label = titled(str(case), words)
         series.append(replace(study.series[place], label=label, has_values=bool(words)))
     return replace(study, series=series)

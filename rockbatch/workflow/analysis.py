@@ -34,7 +34,7 @@ from rockbatch.common.version import __version__
 from rockbatch.motions import MotionSet, Unusable
 from rockbatch.reporting import REPORT, write_analyses
 from rockbatch.reporting.finished_analysis import digest_of
-from rockbatch.results.run_json import describe_study, versions
+from rockbatch.results.run_json import describe_case, describe_study, versions
 from rockbatch.study import Case, Motions, Study, given_study
 from rockbatch.study.both_axes import along_the_axis, on_both_axes
 from rockbatch.study.suite import ground_motions
@@ -112,9 +112,9 @@ class Analysis(Shown):
 class AnalysisFolder:
     """Folder of an analysis, its tables and NAME.json, with the engine and listener for its runs.
 
-    ``info`` is the content of NAME.json: versions, study, ``files`` written and the digests of their runs, to which the
-    analysis adds its own entries. It is written after each table, so that a later command can keep the table if this one is
-    killed. A ``temporary`` folder gets no report. ``suite`` holds the ground motions once read.
+    ``info`` is the content of NAME.json: versions, study, its cases, ``files`` written and the digests of their runs, to
+    which the analysis adds its own entries. It is written after each table, so that a later command can keep the table if
+    this one is killed. A ``temporary`` folder gets no report. ``suite`` holds the ground motions once read.
     """
 
     def __init__(
@@ -132,7 +132,7 @@ class AnalysisFolder:
         self.listener, self.engine, self.suite = listener or Listener(), engine or Threads(1), MotionSet()
         self.path = directory / f"{name}.json"
         self.info: dict[str, Any] = {"rockbatch": __version__, "versions": versions(), "study": describe_study(study)}
-        self.info |= {"files": [], "digests": {}}
+        self.info |= {"cases": [describe_case(case) for case in study.cases], "files": [], "digests": {}}
         self._earlier = {} if fresh else _earlier_digests(self.path)
 
     def read_motions(self, study: Study) -> MotionSet:

@@ -294,7 +294,7 @@ def test_panels_are_named_by_what_differs_between_them():
 
 def test_a_sensitivity_has_the_swings_and_indices_of_its_tables(tmp_path):
     result = rb.sensitivity(study(tmp_path, SENSITIVITY, (RIGID,)))
-    tornado, indices = bars(result.sensitivity, result.sobol, result.study.varied).panels
+    tornado, indices = bars(result.sensitivity, result.sobol, result.info).panels
     table, ordered = result.sensitivity, result.sobol.sort_values("total", ascending=False, kind="stable")
     base = table["answer_base"][0]
     answers = table[["answer_low", "answer_high"]].to_numpy().ravel()
@@ -340,7 +340,7 @@ def test_a_release_has_its_impacts_at_rest_and_amplitudes_on_the_computed_side()
         "case": ["rock"] * 3 + ["pads"] * 3, "t_measured_s": [-0.5, 2.0, 2.1, -0.6, np.nan, 0.7],
         "t_amplitude_computed_s": [0.25, 1.0, 2.0] * 2, "amplitude_measured_rad": [0.12, 0.03, np.nan, 0.03, 0.04, 0.02],
     })  # fmt: skip
-    panels = rotations(impacts, history, ()).panels
+    panels = rotations(impacts, history, {"varied": ()}).panels
     assert [panel.caption for panel in panels] == ["rock", "pads"]
     for panel, factor, most, at, amplitudes in (
         (panels[0], 1.0, 0.12, [-0.5, 2.0], [-0.12, 0.03, np.nan]), (panels[1], 0.5, 0.05, [0.7], [-0.03, 0.04, -0.02]),

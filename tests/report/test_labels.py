@@ -9,10 +9,14 @@ from report_samples import write_results
 from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.analyses.design.figures import axis_label
+from rockbatch.analyses.fragility.figures import label
 from rockbatch.pier import RigidBase, Tendon, YieldingBase
 from rockbatch.quantities.labels import digits_that_tell, in_full, plain, quantity
 from rockbatch.reporting.finished import read
+from rockbatch.reporting.finished_analysis import named as named_by
 from rockbatch.results.labels import named
+from rockbatch.workflow.analysis import AnalysisFolder
 
 MASS = {"width_m": 4.0, "height_m": 20.0, "mass_t": 1000.0}
 
@@ -154,7 +158,7 @@ def test_a_run_says_what_else_than_its_foundation_tells_it_from_others_of_its_re
 )
 def test_the_unit_of_a_viscous_coefficient_has_the_exponent_of_its_own_damper(key, unit):
     devices = [{"kind": "viscous", "exponent": 1.0}, {"psi": 0.2}, {"kind": "viscous", "exponent": 0.3}]
-    case = {"parameters": {"restraints": devices}}
+    case = {"columns": {}, "parameters": {"restraints": devices}}
     assert quantity(key, 900.0, case=case).replace("\u00a0", " ") == unit
 
 
@@ -162,3 +166,24 @@ def test_legends_name_a_viscous_coefficient_with_the_unit_of_its_exponent(tmp_pa
     oil = {"kind": "viscous", "coefficient_kN_s_m": [500.0, 900.0], "exponent": 0.3}
     names = [label.replace("\u00a0", " ") for label in labels(tmp_path, RIGID | {"damper": [oil]})]
     assert names == ["C = 500 kN (s/m)^0.3", "C = 900 kN (s/m)^0.3"]
+
+
+@pytest.mark.parametrize("exponent", [0.3, [0.3, 1.0]])
+def test_analyses_name_a_viscous_coefficient_with_the_unit_of_its_exponent(tmp_path, exponent):
+    oil = {"kind": "viscous", "coefficient_kN_s_m": [500.0, 900.0], "exponent": exponent}
+    cases = [RIGID, RIGID | {"name": "oil", "damper": [oil]}]
+    study = rb.load_study(write_study(tmp_path, study_text(pier=MASS, cases=cases)))
+    info = AnalysisFolder(tmp_path, "fragility", study).info
+    names = [label(info, {"case": case.name, "columns": case.columns}).replace("\u00a0", " ") for case in study.cases]
+    if exponent == 0.3:
+        assert names == ["rigid", "oil: C = 500 kN (s/m)^0.3", "oil: C = 900 kN (s/m)^0.3"]
+    else:
+        units = "kN (s/m)^0.3, a = 0.3", "kN s/m, a = 1"
+        assert names == ["rigid", *(f"oil: C = {value} {unit}" for value in (500, 900) for unit in units)]
+    (_, entry, *_) = info["cases"]
+    assert axis_label("case.damper.coefficient_kN_s_m", entry) == "damper: C [kN (s/m)^0.3]"
+
+
+def test_without_its_case_a_viscous_coefficient_keeps_the_letter_of_its_exponent():
+    key = "damper_1_coefficient_kN_s_m"  # an analysis of an earlier version does not list its cases
+    assert named_by({}, {"case": "oil", key: 900.0}, [key]).replace("\u00a0", " ") == "oil: C = 900 kN (s/m)^a"

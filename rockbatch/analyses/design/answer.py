@@ -52,9 +52,10 @@ def with_labels(info: Entry, table: "pd.DataFrame") -> list[dict[str, Any]]:
 def by_design(info: Entry, rows: Sequence[Entry]) -> dict[str, list[Entry]]:
     """Return the rows of a table by their design, "pads: β = 40", in the order of the study; [] for one without rows."""
     keys = ["case", *info["varied"]]
-    by_name = grouped(rows, lambda row: named(row, keys))
+    by_name = grouped(rows, lambda row: named(info, row, keys))
     names = [
-        named({"case": design["case"], **design["columns"]}, ["case", *design["columns"]]) for design in info["designs"]
+        named(info, {"case": design["case"], **design["columns"]}, list(design["columns"]))
+        for design in info["designs"]
     ]
     return {name: by_name.get(name, []) for name in names}
 

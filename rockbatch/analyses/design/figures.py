@@ -26,6 +26,8 @@ from rockbatch.common.figures.description import (
 )
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.cases import Case
+from rockbatch.reporting.finished_analysis import case_of
 from rockbatch.reporting.labels import symbol
 from rockbatch.results.labelled import as_dicts
 from rockbatch.study.design_bounds import parted
@@ -48,19 +50,27 @@ def figure_of(info: Entry, intervals: "pd.DataFrame", values: "pd.DataFrame", ch
     return maps(info, tried) if len(info["vary"]) > 1 else ratios(info, rows, as_dicts(checks))
 
 
-def axis_label(path: str) -> str:
-    """Return the label of the axis of a key: "damper: F [kN]" of "case.damper.force_kN"."""
+def axis_label(path: str, case: Case | None = None) -> str:
+    """Return the label of the axis of a key: "damper: F [kN]" of "case.damper.force_kN"; ``case`` has exponents in units."""
     _, *tables, name = path.split(".")
     kind, number = parted(tables[0]) if tables else ("", "")
-    label = symbol(f"{kind}_{number or 1}_{name}" if kind else name)
+    label = symbol(f"{kind}_{number or 1}_{name}" if kind else name, case)
     words = f"{' '.join(filter(None, (kind.replace('_', ' '), number)))}: " if kind else ""
     return words + (label.replace("_", " ") if label == name else label.rpartition(": ")[2])
 
 
-def axis_of(varied: Entry) -> Axis:
-    """Return the axis of a key over its scan, with room for marks at its ends."""
+def axis_of(varied: Entry, case: Case | None) -> Axis:
+    """Return the axis of a key of a case over its scan, with room for marks at its ends."""
     room = ROOM * (varied["high"] - varied["low"])
-    return Axis(axis_label(varied["path"]), varied["low"] - room, varied["high"] + room, about=6)
+    return Axis(axis_label(varied["path"], case), varied["low"] - room, varied["high"] + room, about=6)
+
+
+def _case(info: Entry, rows: Sequence[Entry]) -> Case | None:
+    """Return the case of a design by its rows; None without rows, or if an exponent in units is itself varied."""
+    if not rows or any(varied["path"].endswith(".exponent") for varied in info["vary"]):
+        return None
+    columns = {name: rows[0][name] for name in info["varied"] if rows[0][name] == rows[0][name]}
+    return case_of(info, rows[0]["case"], columns)
 
 
 def ratios(info: Entry, intervals: Sequence[Entry], checks: Sequence[Entry]) -> Figure:
@@ -95,7 +105,7 @@ def _ratios(info: Entry, label: str, intervals: Sequence[Entry], checks: Sequenc
     for place, (check, rows) in enumerate(by_check.items()):
         marks += _of_check(vary["path"], place, check, rows, top)
     marks.append(Rule("y", np.ones(1), look=Look("limit"), label="limit", title="limit"))
-    x_axis = axis_of(vary)
+    x_axis = axis_of(vary, _case(info, intervals))
     return Panel(
         x_axis, Axis("demand over limit", 0.0, high, about=5, last=top), marks, label, width=460.0, height=210.0
     )
@@ -170,7 +180,8 @@ def _map(info: Entry, label: str, values: Sequence[Entry], checks: Mapping[str, 
                 label=f"passes, closest: {check}",
             )
         )
-    return Panel(axis_of(across), axis_of(up), marks, label, width=460.0, height=260.0)
+    case = _case(info, values)
+    return Panel(axis_of(across, case), axis_of(up, case), marks, label, width=460.0, height=260.0)
 
 
 def _outlines(boxes: Sequence[tuple[float, float, float, float]]) -> tuple[np.ndarray, np.ndarray]:

@@ -67,7 +67,7 @@ def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
     curve = min(curves, key=_strength)
     decided = _decided(curve)
     total = sum(point["records"] - point["undecided"] for point in decided)
-    case = f" for {label(curve)}, the lowest of {len(curves)} cases" if len(curves) > 1 else ""
+    case = f" for {label(info, curve)}, the lowest of {len(curves)} cases" if len(curves) > 1 else ""
     if curve["median"] is not None:
         said = f"has a median of {_median(info, curve)}{case}"
         overlaps = any(_overlap(curve, each) for each in curves if each is not curve)
@@ -125,7 +125,7 @@ def _left_open(info: Info, curve: Curve, curves: Sequence[Curve]) -> Iterator[st
     doubtful = [other for other in curves if other is not curve and other["median_undecided"]]
     least = min(doubtful, key=lambda other: other["median_undecided"][0] or 0.0, default=None)
     if least is not None and (low := least["median_undecided"][0] or 0.0) < _strength(curve):
-        yield f"{label(least)} may be weaker, down to {plain(low, 3)}, as runs of it are undecided"
+        yield f"{label(info, least)} may be weaker, down to {plain(low, 3)}, as runs of it are undecided"
 
 
 def _of_all(info: Info) -> Iterator[str]:
@@ -140,7 +140,7 @@ def _of_all(info: Info) -> Iterator[str]:
         if little := sum(curve["says_little"] for curve in curves):
             yield f"{little} of {len(curves)} curves {'says' if little == 1 else 'say'} little: too many runs are undecided."
     yield from _shared(info)
-    if gaps := list(dict.fromkeys(label(curve) for curve in curves if len(curve.get("looked", ())) > 1)):
+    if gaps := list(dict.fromkeys(label(info, curve) for curve in curves if len(curve.get("looked", ())) > 1)):
         cases = ", ".join(gaps) if len(gaps) <= MOST_NAMES else f"{len(gaps)} cases"
         yield f"Between the levels nothing was run in {cases}: a first exceedance there is missed, and medians may be too high."
 
@@ -149,7 +149,7 @@ def _shared(info: Info) -> Iterator[str]:
     """Yield the basis of intervals if records share a station or an earthquake; nothing if each has its own."""
     stations, events = info.get("stations", info["records"]), info.get("events", 0)
     if info.get("by") == "event":
-        yield f"Intervals are by earthquake: the records are of {events}."
+        yield f"Intervals are by earthquake: the records come from {counted(events, 'earthquake')}."
         return
     if stations < info["records"]:
         yield f"Intervals are by station: the {info['records']} records are components of {counted(stations, 'station')}."
@@ -164,7 +164,7 @@ def _of_rate(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
         return sentence(f"{subject} has no rate, as no curve could be fitted")
     curve = max(curves, key=_rate)
     risk, years = curve["risk"], min(info["hazard"]["years"])
-    case = f" for {label(curve)}, the greatest of {len(curves)} cases" if len(curves) > 1 else ""
+    case = f" for {label(info, curve)}, the greatest of {len(curves)} cases" if len(curves) > 1 else ""
     p, low, high = (risk[f"p_in_{years:g}_years{end}"] for end in ("", "_low", "_high"))
     if bound := risk["bound"]:
         chances = [f"{percent(p)}\u00a0%" for p, end in ((low, "rate_least"), (high, "rate_most")) if risk[end]]

@@ -3,13 +3,13 @@
 import argparse
 
 from rockbatch.analyses.fragility.analysis import fragility
+from rockbatch.analyses.fragility.figures import label
 from rockbatch.analyses.fragility.limit_states import words
 from rockbatch.analyses.fragility.quantities import Curve, of_curves, of_rates
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.tables import RUNS
 from rockbatch.batch.listening import count
 from rockbatch.common.analyses import Entry
-from rockbatch.quantities.labels import in_full
 from rockbatch.reporting.table import Head
 from rockbatch.study import Study
 from rockbatch.terminal.analysis import analysis_arguments, in_lines, print_files
@@ -44,12 +44,12 @@ def table(info: Entry, spec: FragilitySpec) -> str:
         title += f"; {share}: too many runs are undecided"
     lines = [
         title,
-        in_lines([*NAMES, *of_curves(info)], curves, len(NAMES)),
+        in_lines([*_names(info), *of_curves(info)], curves, 2),
         *limits,
         info["looked_at"],
         info["by_shares"],
         info["drawn"],
-        *(f"{_name(curve)}: {curve['note']}" for curve in curves if curve["note"]),
+        *(f"{_name(info, curve)}: {curve['note']}" for curve in curves if curve["note"]),
         added(spec),
     ]
     return "\n".join(line for line in lines if line)
@@ -76,17 +76,14 @@ def risk_lines(info: Entry) -> str:
     if not curves:
         return "No annual rates: no curve could be fitted"
     about = "Mean annual rates of exceedance; intervals are those of the fit, with the hazard taken as known"
-    notes = [f"{_name(curve)}: {curve['risk']['note']}" for curve in curves if curve["risk"]["note"]]
-    return "\n".join([about, in_lines([*NAMES, *of_rates(info, "{:.2e}".format)], curves, len(NAMES)), *notes])
+    notes = [f"{_name(info, curve)}: {curve['risk']['note']}" for curve in curves if curve["risk"]["note"]]
+    return "\n".join([about, in_lines([*_names(info), *of_rates(info, "{:.2e}".format)], curves, 2), *notes])
 
 
-def _case(curve: Curve) -> str:
-    return in_full(curve["case"], curve["columns"])
+def _name(info: Entry, curve: Curve) -> str:
+    return f"{curve['limit_state']}, {label(info, curve)}"
 
 
-def _name(curve: Curve) -> str:
-    return f"{curve['limit_state']}, {_case(curve)}"
-
-
-NAMES = (Head("limit", value="limit_state"), Head("case", value=_case))
-"""Columns that name a curve."""
+def _names(info: Entry) -> tuple[Head, Head]:
+    """Return the heads of the columns that name a curve."""
+    return Head("limit", value="limit_state"), Head("case", value=lambda curve: label(info, curve))

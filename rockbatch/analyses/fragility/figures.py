@@ -23,7 +23,7 @@ from rockbatch.common.figures.description import (
     sign_of,
 )
 from rockbatch.common.grouping import grouped
-from rockbatch.quantities.labels import in_full
+from rockbatch.reporting.finished_analysis import named
 
 STRIP = 0.03
 """Height of a strip above the axes, in probability."""
@@ -34,9 +34,9 @@ Curve = Entry
 """One of ``curves`` of fragility.json."""
 
 
-def label(entry: Curve) -> str:
+def label(info: Entry, entry: Curve) -> str:
     """Return the name of a curve's case with its varied values: "pads: β = 40"."""
-    return in_full(entry["case"], entry["columns"])
+    return named(info, {"case": entry["case"], **entry["columns"]}, list(entry["columns"]))
 
 
 def in_brackets(unit: str) -> str:
@@ -46,7 +46,7 @@ def in_brackets(unit: str) -> str:
 
 def _looks(info: Entry) -> dict[str, Look]:
     """Return the marks of each case by its label, the same in every figure."""
-    return {name: marks_of(i) for i, name in enumerate(dict.fromkeys(map(label, info["curves"])))}
+    return {name: marks_of(i) for i, name in enumerate(dict.fromkeys(label(info, entry) for entry in info["curves"]))}
 
 
 def _intensity(info: Entry) -> str:
@@ -63,12 +63,12 @@ def curves(info: Entry) -> Figure:
             x = Axis(_intensity(info), 0.0, 1.1 * info["levels"][-1], about=6)
             y = Axis("probability", 0.0, 1.0 + STRIP * (len(looked) + 0.5 * bool(looked)), last=1.0)
             strips = [
-                _line([low, high], [1.0 + STRIP * (place + 1)] * 2, looks[label(entry)])
+                _line([low, high], [1.0 + STRIP * (place + 1)] * 2, looks[label(info, entry)])
                 for place, entry in enumerate(looked)
                 for low, high in entry["looked"]
             ]
-            bands = [mark for entry in group for mark in _bands(entry, looks[label(entry)])]
-            marks = [mark for entry in group for mark in _marks(entry, x.high, looks[label(entry)])]
+            bands = [mark for entry in group for mark in _bands(entry, looks[label(info, entry)])]
+            marks = [mark for entry in group for mark in _marks(info, entry, x.high, looks[label(info, entry)])]
             panels.append(Panel(x, y, [*bands, *strips, *marks], name, group[0]["words"]))
     return Figure(panels, f"Fragility curves over {info['measure']}")
 
@@ -88,15 +88,15 @@ def _bands(entry: Curve, look: Look) -> Iterator[Mark]:
             yield Area(np.concatenate((x, x[::-1])), around, look=Look(kind, look.colour))
 
 
-def _marks(entry: Curve, right: float, look: Look) -> Iterator[Mark]:
+def _marks(info: Entry, entry: Curve, right: float, look: Look) -> Iterator[Mark]:
     """Yield the curves of a case, and the shares at the levels, each from the decided records, with bars for the others."""
-    name = label(entry)
+    name = label(info, entry)
     if "curve" in entry:
         yield _line(entry["curve"]["x"], entry["curve"]["p"], look, label=name)
     if "total" in entry:
         yield _line(entry["total"]["x"], entry["total"]["p"], look, 1)
     if "windows" in entry:
-        yield from _of_shares(entry, look)
+        yield from _of_shares(info, entry, look)
     if entry["capacities"] and "open" not in entry:  # a share of the records needs all of them
         yield _line(*_steps([high for _, high in entry["capacities"]], right), look, 2)
     points = [point for point in entry["points"] if point["records"]]
@@ -104,35 +104,40 @@ def _marks(entry: Curve, right: float, look: Look) -> Iterator[Mark]:
         if point["undecided"]:
             ends = [k / point["records"] for k in (point["exceeded"], point["exceeded"] + point["undecided"])]
             yield Polyline(
-                np.full(2, point["level"]), np.array(ends), look=Look("level", look.colour), title=_said(entry, point)
+                np.full(2, point["level"]),
+                np.array(ends),
+                look=Look("level", look.colour),
+                title=_said(info, entry, point),
             )
     decided = [point for point in points if point["records"] > point["undecided"]]
     shares = np.array([point["exceeded"] / (point["records"] - point["undecided"]) for point in decided])
     levels = np.array([point["level"] for point in decided], dtype=float)
-    yield Points(levels, shares, None, [_said(entry, point) for point in decided], look=look, label=name)
+    yield Points(levels, shares, None, [_said(info, entry, point) for point in decided], look=look, label=name)
 
 
-def _of_shares(entry: Curve, look: Look) -> Iterator[Mark]:
+def _of_shares(info: Entry, entry: Curve, look: Look) -> Iterator[Mark]:
     """Yield the curve by shares, and the shares as open markers."""
-    windows, name = entry["windows"], f"{label(entry)}, by shares"
+    windows, name = entry["windows"], f"{label(info, entry)}, by shares"
     if "curve" in windows:
         yield _line(windows["curve"]["x"], windows["curve"]["p"], look, 3, name)
     shown = [
         (p["level"], share) for p, share in zip(entry["points"], windows["shares"], strict=True) if share is not None
     ]
     words = f"of the scales within ±{100 * windows['width']:g} % exceed the limit"
-    titles = [f"{label(entry)}, {level:g}: {share:.0%} {words}" for level, share in shown]
+    titles = [f"{label(info, entry)}, {level:g}: {share:.0%} {words}" for level, share in shown]
     levels, shares = np.array(shown, dtype=float).reshape(-1, 2).T
     yield Points(levels, shares, None, titles, look=Look("", look.colour, shape=look.shape, open=True), label=name)
 
 
-def _said(entry: Curve, point: Entry) -> str:
+def _said(info: Entry, entry: Curve, point: Entry) -> str:
     ends = [
         f"{point[name]} {words}"
         for name, words in (("collapsed", "overturned"), ("flight", "flew"), ("failed", "failed"))
         if point[name]
     ]
-    counts = f"{label(entry)}, {point['level']:g}: {point['exceeded']} of {point['records']} records exceed the limit"
+    counts = (
+        f"{label(info, entry)}, {point['level']:g}: {point['exceeded']} of {point['records']} records exceed the limit"
+    )
     undecided = [f"{point['undecided']} undecided"] if point["undecided"] else []
     return "; ".join([counts, *undecided, *ends])
 
@@ -151,7 +156,7 @@ def clouds(info: Entry) -> Figure:
     """
     looks = _looks(info)
     shown = [entry for entry in info["curves"] if _has_demands(entry)]
-    return Figure([_cloud(info, entry, looks[label(entry)]) for entry in shown], "Demands of the records")
+    return Figure([_cloud(info, entry, looks[label(info, entry)]) for entry in shown], "Demands of the records")
 
 
 def _has_demands(entry: Curve) -> bool:
@@ -181,7 +186,7 @@ def _cloud(info: Entry, entry: Curve, look: Look) -> Panel:
             up = np.exp(middle + shift)
             marks.append(_line(across, np.where((up >= y.low) & (up <= top), up, np.nan), look, dash))
     kinds = {  # which runs, where they are drawn, how
-        "line": (None, look, label(entry)),
+        "line": (None, look, label(info, entry)),
         "below": (cloud["floor"], Look("", look.colour, shape="down", open=True), ""),
         "overturned": (math.sqrt(top * y.high), sign_of("overturned"), ""),
     }
@@ -195,7 +200,7 @@ def _cloud(info: Entry, entry: Curve, look: Look) -> Panel:
         marks.append(
             Points(np.array([run["x"] for run in counted], dtype=float), up, None, titles, look=own, label=name)
         )
-    return Panel(x, y, marks, f"{entry['limit_state']}, {label(entry)}")
+    return Panel(x, y, marks, f"{entry['limit_state']}, {label(info, entry)}")
 
 
 def risk(info: Entry, shown: Sequence[Curve]) -> Figure:
@@ -225,7 +230,7 @@ def _densities(info: Entry, shown: Sequence[Curve], looks: Mapping[str, Look], c
     known = sorted(end for end in {info["hazard"]["levels"][0], info["hazard"]["levels"][-1]} if x.low <= end <= x.high)
     marks: list[Mark] = [Rule("x", np.array(known, dtype=float), look=Look("edge"))]
     marks += [
-        _line(density["x"], density["share"], looks[label(entry)], label=label(entry))
+        _line(density["x"], density["share"], looks[label(info, entry)], label=label(info, entry))
         for entry, density in zip(shown, densities, strict=True)
     ]
     return Panel(x, Axis("share of the rate", 0.0, 1.1 * most, about=4), marks, caption)

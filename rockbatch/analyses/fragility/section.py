@@ -6,7 +6,7 @@ from rockbatch.analyses.fragility import answer
 from rockbatch.analyses.fragility.figures import clouds, curves, in_brackets, label, risk
 from rockbatch.analyses.fragility.quantities import Curve, level_of, of_curves, of_rates, power
 from rockbatch.common.analyses import Entry
-from rockbatch.reporting.finished_analysis import FinishedAnalysis, of_analysis
+from rockbatch.reporting.finished_analysis import FinishedAnalysis, named, of_analysis
 from rockbatch.reporting.markup import Markup, tag
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import Head, listed, table
@@ -29,7 +29,7 @@ def section(analysis: FinishedAnalysis) -> Markup:
         share=level_of(info),
         panels=drawn(curves(info)),
         table=_table(info),
-        notes=_notes(entries),
+        notes=_notes(info, entries),
         open=any("open" in entry for entry in entries),
         looked=any(entry.get("looked") for entry in entries),
         clouds=drawn(of_clouds) if of_clouds.panels else "",
@@ -43,7 +43,7 @@ def section(analysis: FinishedAnalysis) -> Markup:
 def _table(info: Entry) -> Markup:
     heads = [
         Head("limit", value="limit_state"),
-        Head("case", value=label),
+        Head("case", value=lambda entry: label(info, entry)),
         *of_curves(info),
         Head("records", ".0f", "that count", value=_greatest("records")),
         Head("overturned", ".0f", "largest number of records that overturn at one level", value=_greatest("collapsed")),
@@ -52,10 +52,12 @@ def _table(info: Entry) -> Markup:
     return listed(heads, info["curves"], prose=True, name="Medians and dispersions")
 
 
-def _notes(entries: Iterable[Curve]) -> Markup:
+def _notes(info: Entry, entries: Iterable[Curve]) -> Markup:
     """Return a folded list of notes on single curves; empty without any."""
     lines = [
-        tag("li", f"{entry['limit_state']}, {label(entry)}: {entry['note']}.") for entry in entries if entry["note"]
+        tag("li", f"{entry['limit_state']}, {label(info, entry)}: {entry['note']}.")
+        for entry in entries
+        if entry["note"]
     ]
     return tag("details", tag("summary", "Notes on the curves"), tag("ul", *lines)) if lines else Markup("")
 
@@ -82,12 +84,10 @@ def _capacities(analysis: FinishedAnalysis) -> Markup:
     capacities = analysis.table("fragility_capacities.csv", CAPACITIES)
     if capacities is None:
         return Markup("")
-    varied = {name for entry in analysis.info["curves"] for name in entry["columns"]}
+    varied = list(dict.fromkeys(name for entry in analysis.info["curves"] for name in entry["columns"]))
 
     def case(row: Entry) -> str:
-        return label(
-            {**row, "columns": {name: value for name, value in row.items() if name in varied and value == value}}
-        )
+        return named(analysis.info, row, varied)
 
     heads = [
         Head("record", value="record"),
@@ -131,7 +131,11 @@ def rates(analysis: FinishedAnalysis) -> Markup:
     curves = [entry for entry in info["curves"] if entry["risk"]]
     if not curves:
         return tag("p", "No curve could be fitted, so that there are no rates.")
-    heads = [Head("limit", value="limit_state"), Head("case", value=label), *of_rates(info, power)]
+    heads = [
+        Head("limit", value="limit_state"),
+        Head("case", value=lambda entry: label(info, entry)),
+        *of_rates(info, power),
+    ]
     return render(
         "analyses/fragility/risk_section.html",
         info=info,
@@ -140,11 +144,11 @@ def rates(analysis: FinishedAnalysis) -> Markup:
         share=level_of(info),
         panels=drawn(risk(info, curves)),
         table=listed(heads, curves, prose=True, name="Annual rates and probabilities"),
-        notes=_notes_on_rates(curves),
+        notes=_notes_on_rates(info, curves),
     )
 
 
-def _notes_on_rates(curves: Sequence[Curve]) -> Markup:
+def _notes_on_rates(info: Entry, curves: Sequence[Curve]) -> Markup:
     """Return the remarks on annual rates, a line for each curve with any."""
-    notes = [(f"{entry['limit_state']}, {label(entry)}", entry["risk"]["note"]) for entry in curves]
+    notes = [(f"{entry['limit_state']}, {label(info, entry)}", entry["risk"]["note"]) for entry in curves]
     return tag("ul", *(tag("li", f"{name}: {note}.") for name, note in notes if note))

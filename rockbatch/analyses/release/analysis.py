@@ -85,7 +85,7 @@ class Release(Analysis):
         from rockbatch.analyses.release.figures import rotations
         from rockbatch.common.figures.paper import drawn
 
-        return drawn(rotations(self.release_impacts, self.release_history, self.study.varied), width_mm, ax)
+        return drawn(rotations(self.release_impacts, self.release_history, self.info), width_mm, ax)
 
 
 @checked

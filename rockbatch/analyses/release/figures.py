@@ -1,9 +1,8 @@
 """The figure of a release test: the computed rotation, with the measured impacts and amplitudes on it."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
+from rockbatch.common.analyses import Entry
 from rockbatch.common.figures.description import Axis, Figure, Look, Panel, Points, Polyline, line_of
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.finished_analysis import named
@@ -11,14 +10,14 @@ from rockbatch.reporting.finished_analysis import named
 MEASURED = Look("", 2)
 
 
-def rotations(impacts: "pd.DataFrame", history: "pd.DataFrame", varied: Sequence[str]) -> Figure:
-    """Return a figure with a panel for each case, from release_impacts.csv and release_history.csv."""
-    keys = ["case", *varied]
+def rotations(impacts: "pd.DataFrame", history: "pd.DataFrame", info: Entry) -> Figure:
+    """Return a figure with a panel for each case, from release_impacts.csv, release_history.csv and release.json."""
+    keys = ["case", *info["varied"]]
     computed = {names: part for names, part in history.groupby(keys, sort=False, dropna=False)}
     groups = impacts.groupby(keys, sort=False, dropna=False)
     panels = []
     for names, measured in groups:
-        caption = named(dict(zip(keys, names, strict=True)), keys)
+        caption = named(info, dict(zip(keys, names, strict=True)), keys)
         panels.append(_panel(measured, computed[names], caption))
     return Figure(panels, "Rotation after the release, computed and measured")
 

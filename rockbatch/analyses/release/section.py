@@ -24,29 +24,32 @@ def section(
     analysis: FinishedAnalysis, fits: "pd.DataFrame", impacts: "pd.DataFrame", history: "pd.DataFrame"
 ) -> Markup:
     """Return the report's section of a release test: what was fitted in each case, the figure and the tables."""
-    varied = analysis.info["varied"]
-    keys, rows = ["case", *varied], as_dicts(fits)
-    heads = [Head("case", value=lambda fit: named(fit, keys)), *quantities.FIT]
-    computed = [tag("p", METHOD, *(f"{named(fit, keys)}: {fit['remark']}. " for fit in rows)), analysis.provenance()]
+    info = analysis.info
+    keys, rows = ["case", *info["varied"]], as_dicts(fits)
+    heads = [Head("case", value=lambda fit: named(info, fit, keys)), *quantities.FIT]
+    computed = [
+        tag("p", METHOD, *(f"{named(info, fit, keys)}: {fit['remark']}. " for fit in rows)),
+        analysis.provenance(),
+    ]
     return join(
-        *(_answer(fit, keys) for fit in rows),
-        figure(drawn(rotations(impacts, history, varied)), CAPTION),
+        *(_answer(info, fit, keys) for fit in rows),
+        figure(drawn(rotations(impacts, history, info)), CAPTION),
         listed(heads, rows, name="Fitted to the release test"),
         tag("details", tag("summary", "How this was computed"), *computed),
-        *_impacts(impacts, keys),
+        *_impacts(info, impacts, keys),
     )
 
 
-def _answer(fit: Entry, keys: Sequence[str]) -> Markup:
+def _answer(info: Entry, fit: Entry, keys: Sequence[str]) -> Markup:
     """Return what was fitted in a case, in a sentence, with what puts it in doubt."""
     doubts = [doubt] if (doubt := number(fit["doubt"])) else []  # an empty cell is read as NaN
-    return answered(sentence(f"{named(fit, keys)}: {quantities.in_words(fit)}", doubts))
+    return answered(sentence(f"{named(info, fit, keys)}: {quantities.in_words(fit)}", doubts))
 
 
-def _impacts(impacts: "pd.DataFrame", keys: list[str]) -> list[Markup]:
+def _impacts(info: Entry, impacts: "pd.DataFrame", keys: list[str]) -> list[Markup]:
     """Return for each case a folded table of its impacts."""
     tables = []
     for names, of_case in impacts.groupby(keys, sort=False, dropna=False):
-        title = f"Impacts of {named(dict(zip(keys, names, strict=True)), keys)}, measured and computed"
+        title = f"Impacts of {named(info, dict(zip(keys, names, strict=True)), keys)}, measured and computed"
         tables.append(tag("details", tag("summary", title), listed(quantities.IMPACTS, as_dicts(of_case), name=title)))
     return tables

@@ -63,7 +63,7 @@ class Sensitivity(Analysis):
         from rockbatch.analyses.sensitivity.figures import bars
         from rockbatch.common.figures.paper import drawn
 
-        return drawn(bars(self.sensitivity, self.sobol, self.study.varied), width_mm, ax)
+        return drawn(bars(self.sensitivity, self.sobol, self.info), width_mm, ax)
 
 
 @checked

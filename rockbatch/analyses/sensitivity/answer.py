@@ -34,7 +34,7 @@ def answer(info: Info, swings: "pd.DataFrame", sobol: "pd.DataFrame") -> Markup:
     keys = ["case", *info["varied"]]
     merged = swings.merge(sobol, on=[*keys, "parameter"]).groupby(keys, sort=False, dropna=False)
     parts = (as_dicts(part.sort_values("total", ascending=False, kind="stable")) for _, part in merged)
-    cases = {named(rows[0], keys): rows for rows in parts}
+    cases = {named(info, rows[0], keys): rows for rows in parts}
     subject = heading(f"{STATISTICS[info['statistic']].words} of θ_max/α over {counted(info['motions'], 'motion')}")
     if len(cases) > MOST_CASES:
         lines = [join("The ", subject, _in_most(list(cases.values())))]

@@ -4,8 +4,9 @@ import argparse
 
 from rockbatch.analyses.sensitivity.analysis import sensitivity
 from rockbatch.analyses.sensitivity.quantities import QUANTITIES
+from rockbatch.common.analyses import Entry
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.labels import in_full
+from rockbatch.reporting.finished_analysis import named
 from rockbatch.reporting.table import Head
 from rockbatch.results.labelled import as_dicts
 from rockbatch.study import Study
@@ -16,7 +17,7 @@ from rockbatch.terminal.streams import say, show
 def main(arguments: argparse.Namespace, study: Study) -> int:
     """Compute and print the sensitivity of the peak rotation; return 1 if a record is unusable, else 0."""
     result = sensitivity(study, **analysis_arguments(arguments))
-    show(shown(result.sensitivity, result.sobol, study.varied))
+    show(shown(result.info, result.sensitivity, result.sobol))
     ended = ", ".join(f"{number} {status}" for status, number in sorted(result.info["statuses"].items()))
     cut = f"theta_max/alpha = {result.spec.overturned:g}"
     say(f"{ended}; runs that overturned or were ended by flight count as {cut}")
@@ -24,12 +25,12 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
     return 1 if result.unusable else 0  # what failed counts, as the report says
 
 
-def shown(swings: "pd.DataFrame", shares: "pd.DataFrame", varied: tuple[str, ...]) -> str:
+def shown(info: Entry, swings: "pd.DataFrame", shares: "pd.DataFrame") -> str:
     """Return both tables for a terminal, a block for each case: the answer at both ends, and the indices with their errors."""
-    keys = ["case", *varied]
+    keys = ["case", *info["varied"]]
     heads, blocks = [Head("input", value="parameter"), *QUANTITIES], []
     for names, of_case in swings.groupby(keys, sort=False, dropna=False):
         rows = as_dicts(of_case.merge(shares, on=[*keys, "parameter"]))
-        title = in_full(str(names[0]), dict(zip(varied, names[1:], strict=True)))
+        title = named(info, dict(zip(keys, names, strict=True)), keys)
         blocks.append(f"{title}: theta_max/alpha one at a time, and Sobol indices\n{in_lines(heads, rows)}")
     return "\n\n".join(blocks)

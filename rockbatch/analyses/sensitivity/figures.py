@@ -25,13 +25,17 @@ def symbol(name: str) -> str:
     return SYMBOLS.get(name, (name, ""))[0]
 
 
-def bars(swings: "pd.DataFrame", sobol: "pd.DataFrame", varied: Sequence[str]) -> Figure:
-    """Return a figure with two panels for each case: the answer at both ends of every input, and Sobol's indices."""
-    keys = ["case", *varied]
+def bars(swings: "pd.DataFrame", sobol: "pd.DataFrame", info: Entry) -> Figure:
+    """Return a figure with two panels for each case: the answer at both ends of every input, and Sobol's indices.
+
+    The tables are sensitivity.csv and sobol.csv, ``info`` is sensitivity.json.
+    """
+    keys = ["case", *info["varied"]]
     varying = [name for name in keys if swings[name].nunique(dropna=False) > 1]
     panels = []
     for names, part in swings.groupby(keys, sort=False, dropna=False):
-        rows, words = part.merge(sobol, on=[*keys, "parameter"]), named(dict(zip(keys, names, strict=True)), varying)
+        rows = part.merge(sobol, on=[*keys, "parameter"])
+        words = named(info, dict(zip(keys, names, strict=True)), varying)
         panels += [
             _tornado(rows, f"{words}: one input at a time, all others as in the study"),
             _indices(rows, f"{words}: all inputs at once over their ranges"),

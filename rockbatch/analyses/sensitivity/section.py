@@ -20,14 +20,14 @@ def section(analysis: FinishedAnalysis, swings: "pd.DataFrame", shares: "pd.Data
     info = analysis.info
     keys, cases = ["case", *info["varied"]], swings.groupby(["case", *info["varied"]], dropna=False).ngroups
     heads = [Head("input", value=lambda row: symbol(row["parameter"])), *QUANTITIES]
-    heads = [Head("case", value=lambda row: named(row, keys)), *heads] if cases > 1 else heads
+    heads = [Head("case", value=lambda row: named(info, row, keys)), *heads] if cases > 1 else heads
     rows, inputs = as_dicts(swings.merge(shares, on=[*keys, "parameter"])), [entry["name"] for entry in info["inputs"]]
     return render(
         "analyses/sensitivity/section.html",
         info=info,
         statistic=STATISTICS[info["statistic"]].words,
         answer=answer(info, swings, shares),
-        picture=drawn(bars(swings, shares, info["varied"])),
+        picture=drawn(bars(swings, shares, info)),
         table=listed(heads, rows, name="Sensitivity in numbers"),
         runs=[f"{count} {status}" for status, count in sorted(info["statuses"].items())],
         idle="vertical" in inputs and not any(motion["vertical"] for motion in info["under"]),

@@ -82,7 +82,7 @@ def _greatest(info: Info, suite: "pd.DataFrame") -> Iterator[str]:
     words, unit = _axis(info["axis"])
     places = [f"{words} = {plain(row[info['axis']], 3)}{unit}", quantity("alpha", row["alpha"])]
     apart = _apart(info, suite)
-    places += [named(row, apart)] if suite.groupby(apart, dropna=False).ngroups > 1 else []
+    places += [named(info, row, apart)] if suite.groupby(apart, dropna=False).ngroups > 1 else []
     of = " of those that stand" if len(standing) < len(suite) else ""
     interval = f" (16 to 84 %: {_peak(row['p16'])} to {_peak(row['p84'])})" if info["motions"] > 1 else ""
     statistic = "median rotation" if info["motions"] > 1 else "rotation"
@@ -144,7 +144,7 @@ def of_maps(info: Info, regions: "pd.DataFrame") -> tuple[list[str], list[str]]:
     if len(maps) > MOST_MAPS:
         of, maps = f", the least of {len(maps)} maps", [min(maps, key=_least)]
     keys = ["case", *info["varied_map"]]
-    sentences = [_least_of(of_map, keys, of) for of_map in maps]
+    sentences = [_least_of(info, of_map, keys, of) for of_map in maps]
     return sentences, [f"{of_map['map'].iloc[0]}: {remark}." for of_map in maps for remark in _left_open(of_map)]
 
 
@@ -159,7 +159,7 @@ def _worst(regions: "pd.DataFrame") -> "pd.DataFrame":
     return regions[regions["outcome"].str.startswith("overturned") & (regions["low"] == _least(regions))]
 
 
-def _least_of(regions: "pd.DataFrame", keys: list[str], of: str) -> str:
+def _least_of(info: Info, regions: "pd.DataFrame", keys: list[str], of: str) -> str:
     """Return "The least sine that overturns the pier has a_p/(g tan α) = 2.1, at ω_p/p = 3.", or that none of the map does.
 
     "sine" is the name of the map; of several cases it says for which, or for how many, and ``of`` stands at the end.
@@ -169,9 +169,8 @@ def _least_of(regions: "pd.DataFrame", keys: list[str], of: str) -> str:
         ends = f"ω_p/p = {_span(regions['omega_p_over_p'])}, up to a_p/(g tan α) = {plain(float(regions['high'].max()), 3)}"
         return f"No {name} of {ends} overturns the pier{f', in any of {cases} cases' if cases > 1 else ''}."
     alike = worst.groupby(keys, dropna=False).ngroups
-    case = (
-        f"{named(as_dicts(worst)[0], keys)}, the least of {cases} cases" if alike == 1 else f"{alike} of {cases} cases"
-    )
+    least_case = named(info, as_dicts(worst)[0], keys)
+    case = f"{least_case}, the least of {cases} cases" if alike == 1 else f"{alike} of {cases} cases"
     least = f"a_p/(g tan α) = {plain(_least(regions), 3)}, at ω_p/p = {_span(worst['omega_p_over_p'])}"
     return f"The least {name} that overturns the pier has {least}{f', for {case}' if cases > 1 else ''}{of}."
 

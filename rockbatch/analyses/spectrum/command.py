@@ -8,9 +8,10 @@ from rockbatch.analyses.spectrum.analysis import spectrum
 from rockbatch.analyses.spectrum.rocking_spectrum import OWN, groups
 from rockbatch.analyses.spectrum.study import SELF_SIMILAR, SpectrumSpec
 from rockbatch.batch.listening import count
+from rockbatch.common.analyses import Entry
 from rockbatch.common.grouping import spread
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.labels import in_full
+from rockbatch.reporting.finished_analysis import named
 from rockbatch.study import Study
 from rockbatch.terminal.analysis import analysis_arguments, print_files
 from rockbatch.terminal.streams import in_width, say, show
@@ -24,18 +25,18 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
     result = spectrum(study, **analysis_arguments(arguments))
     failed = 0
     if result.spectra is not None and result.spectrum is not None and result.spectrum_suite is not None:
-        show(shown(result.spectrum_suite, result.spectra))
+        show(shown(result.info, result.spectrum_suite, result.spectra))
         failed = int((result.spectrum["status"] == "failed").sum())
         if failed:
             runs = count(len(result.spectrum), "run")
             say(f"{failed} of {runs} failed and count in no quantile; the column reason says why")
     if result.overturning_map is not None:
-        show(shown_maps(result.overturning_map, study.varied))
+        show(shown_maps(result.info, result.overturning_map))
     print_files(result)
     return 1 if failed or result.unusable else 0
 
 
-def shown(suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
+def shown(info: Entry, suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
     """Return medians of θ_max/α for a terminal: a line for each of up to MOST_LINES, 12, values on the axis, ∞ if overturned."""
     axis = spectrum.axis
     keys = [name for name in groups(spectrum.varied) if name != axis]
@@ -44,7 +45,7 @@ def shown(suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
     columns: dict[str, dict[str, str]] = {}
     for names, of_suite in suite[suite[axis].isin(lines)].groupby(keys, sort=False, dropna=False):
         values = dict(zip(keys, names, strict=True))
-        heading = in_full(str(names[0]), {name: values[name] for name in labels})
+        heading = named(info, values, labels)
         columns[heading] = {
             f"{value:.4g}": "" if np.isnan(median) else "∞" if np.isinf(median) else f"{median:.4f}"
             for value, median in zip(of_suite[axis], of_suite["median"], strict=True)
@@ -66,11 +67,11 @@ def _evenly(values: np.ndarray) -> np.ndarray:
     return values[np.unique(np.abs(values[:, None] - targets).argmin(axis=0))]
 
 
-def shown_maps(table: "pd.DataFrame", varied: tuple[str, ...]) -> str:
+def shown_maps(info: Entry, table: "pd.DataFrame") -> str:
     """Return the regions of every map for a terminal, a line for each of up to MOST_LINES, 12, frequencies."""
-    blocks = []
-    for names, of_map in table.groupby(["map", "case", *varied], sort=False, dropna=False):
-        case = in_full(str(names[1]), dict(zip(varied, names[2:], strict=True)))
+    blocks, keys = [], ["case", *info["varied_map"]]
+    for names, of_map in table.groupby(["map", *keys], sort=False, dropna=False):
+        case = named(info, dict(zip(keys, names[1:], strict=True)), keys)
         lines = [f"{names[0]}, {case}; outcome by a_p/(g tan alpha)"]
         for frequency in _evenly(of_map["omega_p_over_p"].unique()):
             column = of_map[of_map["omega_p_over_p"] == frequency]

@@ -47,7 +47,7 @@ def spectra(suite: "pd.DataFrame", records: "pd.DataFrame | None", info: Entry, 
     singly = {} if records is None else dict(list(records.groupby(apart, sort=False, dropna=False)))
     panels = []
     for names, runs in suite.groupby(apart, sort=False, dropna=False):
-        caption = named(dict(zip(apart, names, strict=True)), varying)
+        caption = named(info, dict(zip(apart, names, strict=True)), varying)
         panels.append(_spectrum(runs, singly.get(names) if many else None, axis or info["axis"], many, caption))
     return Figure(panels, "Rocking spectra")
 
@@ -105,7 +105,7 @@ def maps(regions: "pd.DataFrame", info: Entry) -> Figure:
     panels = []
     for names, of_map in regions.groupby(apart, sort=False, dropna=False):
         values = dict(zip(apart, names, strict=True))
-        caption = f"{values['map']} ({shapes[values['map']]}), {named(values, apart[1:])}"
+        caption = f"{values['map']} ({shapes[values['map']]}), {named(info, values, apart[1:])}"
         panels.append(_map(of_map, caption, f"{of_map['omega_p_over_p'].nunique()} frequencies"))
     return Figure(panels, "Overturning maps")
 

@@ -80,7 +80,7 @@ def test_overturned_points_stay_in_the_spectrum_as_infinite(folder, capsys):
 
 def test_the_terminal_shows_every_median(folder, tmp_path):
     suite, lines = pd.read_csv(folder / "spectrum_suite.csv"), {}
-    for first, *medians in map(str.split, shown(suite, read(STUDY, tmp_path)[0]).splitlines()):
+    for first, *medians in map(str.split, shown({}, suite, read(STUDY, tmp_path)[0]).splitlines()):
         lines[first] = [*lines.get(first, []), *medians]
     for size, of_size in suite.groupby("two_pi_over_p_s"):
         assert lines[f"{size:.4g}"] == ["∞" if np.isinf(median) else f"{median:.4f}" for median in of_size["median"]]
