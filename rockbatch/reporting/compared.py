@@ -61,7 +61,7 @@ def _responses(studies: list[Finished], responses: list[dict[str, Worst]], stood
     for name, pair in in_both.items():
         change = _change(*(w.value for w in pair))
         labels = (study.label(w.run["record"]) for study, w in zip(studies, pair, strict=True))
-        percent = f"{100 * change:+.3g} %" if math.isfinite(change) else "from none"
+        percent = f"{100 * change:+.3g} %".replace("-", "−") if math.isfinite(change) else "from none"
         parts.append(f"{RESPONSES[name].words} {percent} ({'; then '.join(dict.fromkeys(labels))})")
     if not parts:
         return f"{ended}No run ends standing in both."
@@ -206,7 +206,7 @@ def only_in_one(pair: Pair) -> Markup:
                 [name, study.case_of(group.iloc[0]), len(group), first_of(list(dict.fromkeys(group["record"])), 6)]
             )
     heads = [Head("study"), Head("case"), Head("runs"), Head("records")]
-    return table(heads, rows, name="Only in one") if rows else Markup("")
+    return table(heads, rows, name="Runs in one study only") if rows else Markup("")
 
 
 def studies(pair: Pair) -> Markup:

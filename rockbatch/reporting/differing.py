@@ -1,11 +1,11 @@
-"""Differences between two studies: every key that is written in either, by value, and the motions that were run."""
+"""Differences between two studies: every key that either gives, by value, and the motions that were run."""
 
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from rockbatch.common.showing import shown
-from rockbatch.quantities.labels import digits_that_tell
+from rockbatch.quantities.labels import digits_that_tell, plain
 from rockbatch.quantities.rows import as_in_peaks
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted
@@ -54,13 +54,13 @@ _NO_SECTION = Section((), "", {})
 def differences(a: Finished, b: Finished, names: Mapping[str, str]) -> list[Difference]:
     """Return the inputs that differ between two studies; ``names`` are cases of A by those of B with which they are paired.
 
-    A table of a list that only one of them has, such as a case or a damper, is a single input, "written" against "–".
+    A table of a list that only one of them has, such as a case or a damper, is a single input: its keys and values against "–".
     """
     sides = written(a.study), written(b.study, names)
     places = dict.fromkeys(place for side in sides for place in side.values)
     only = [sides[0].listed - sides[1].listed, sides[1].listed - sides[0].listed]
-    rows = [Difference(_named(table), "written", "–") for table in _outermost(only[0])]
-    rows += [Difference(_named(table), "–", "written") for table in _outermost(only[1])]
+    rows = [Difference(_named(table), _content(sides[0], table), "–") for table in _outermost(only[0])]
+    rows += [Difference(_named(table), "–", _content(sides[1], table)) for table in _outermost(only[1])]
     for place in places:
         if place in _NAMES or any(place[:n] in only[0] | only[1] for n in range(1, len(place))):
             continue
@@ -169,6 +169,21 @@ def _named(place: Place) -> str:
     return ", ".join(words)
 
 
+def _content(study: Written, table: Place) -> str:
+    """Return the keys of a table with their values, without its name: "kind = friction, force_kN = 300".
+
+    Of more than :data:`MOST_VALUES` the first are returned; "given" if it has no key but its name.
+    """
+    inner = [place for place in study.values if place[: len(table)] == table and place[len(table) :] != ("name",)]
+    words = [f"{', '.join(place[len(table) :])} = {_shown(study.values[place], 4)}" for place in inner]
+    return _first(words) or "given"
+
+
+def _first(words: Sequence[str]) -> str:
+    """Return up to :data:`MOST_VALUES` words with commas, and "…" for the rest."""
+    return ", ".join([*words[:MOST_VALUES], *(["…"] if len(words) > MOST_VALUES else [])])
+
+
 def _shown(value: object, digits: int) -> str:
     """Return a value in words, a number with so many ``digits``; "–" for None, a key not written and without a default.
 
@@ -179,10 +194,9 @@ def _shown(value: object, digits: int) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, float | int):
-        return f"{value:.{digits}g}"
+        return plain(value, digits)
     if isinstance(value, list | tuple):
-        words = [_shown(item, 10) for item in value]
-        return f"{', '.join(words[:MOST_VALUES])}, …" if len(words) > MOST_VALUES else ", ".join(words)
+        return _first([_shown(item, 10) for item in value])
     return value if isinstance(value, str) else shown(value)
 
 
@@ -192,7 +206,7 @@ def _of_motions(a: Finished, b: Finished) -> list[Difference]:
     Of these one for files that could not be used, and one for files left out; [] if all agree.
     """
     only = [[name for name in x.records if name not in y.records] for x, y in ((a, b), (b, a))]
-    rows = [Difference("motions in one only", *(_listed(names, "motion") for names in only))] if any(only) else []
+    rows = [Difference("motions in one study only", *(_listed(names, "motion") for names in only))] if any(only) else []
     other = [name for name in a.records if name in b.records and _differ(a.records[name], b.records[name])]
     if other:
         sides = ([f"{name} ({x.records[name]['pga_g']:.4g} g)" for name in other] for x in (a, b))

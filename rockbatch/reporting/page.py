@@ -117,7 +117,7 @@ PARTS_OF_TWO = (
     Part("Peak rotations", "figure", compared.figures),
     Part("Every pair of runs", "peaks", compared.pairs),
     Part("Statistics of the suite", "suite", compared.suites, folded=True),
-    Part("Only in one", "only", compared.only_in_one),
+    Part("Runs in one study only", "only", compared.only_in_one),
     Part("What is compared", "studied", compared.studies, folded=True),
     Part("How the study files differ", "difference", compared.difference),
 )

@@ -180,7 +180,7 @@ def test_a_folder_without_results_is_refused_in_words(tmp_path, capsys):
 def test_records_of_one_study_only_are_named_in_the_inputs(tmp_path):
     a, b = two(tmp_path, second={"records": FIG7[:5]})
     _, *rows = Page(write_comparison(a, b).read_text(encoding="utf-8")).tables["inputs"]
-    assert rows == [["motions in one only", "CPM000", "–"]]
+    assert rows == [["motions in one study only", "CPM000", "–"]]
 
 
 def test_inputs_that_are_the_same_are_said_to_be(changed):
@@ -204,7 +204,7 @@ def test_rotations_follow_by_how_much_and_in_which_record_they_change(tmp_path):
     """Compare ratio and counts by hand: the only rotation that differs is the worst of each."""
     runs = [({"changes": {("SYL360", "2"): {"theta_max_over_alpha": theta}}}) for theta in (0.8, 0.4)]
     told = answered(two(tmp_path, *runs)).removeprefix(NO_LIMITS)
-    assert told.startswith("From A to B, over 30 runs: worst rotation -50 % (SYL360), mean settlement +0 % (")
+    assert told.startswith("From A to B, over 30 runs: worst rotation −50 % (SYL360), mean settlement +0 % (")
     assert "smaller in 1 of 30 pairs of runs, larger in 0. B/A ranges from 0.5 (SYL360, 2) to" in told
 
 

@@ -287,7 +287,7 @@ ONE_CHANGE = {
     "pier.deck_mass_t": (("pier", "deck_mass_t"), 600.0, ("500", "600")),
     "pier.height_m": (("pier", "height_m"), 20.00001, ("20", "20.00001")),
     "pier.top_m": (("pier", "top_m"), 22.0, ("–", "22")),
-    "case springs, stiffness_kN_m": ((*CASE, "stiffness_kN_m"), 2.2e6, ("2e+06", "2.2e+06")),
+    "case springs, stiffness_kN_m": ((*CASE, "stiffness_kN_m"), 2.2e6, ("2 × 10⁶", "2.2 × 10⁶")),
     "case springs, zeta": ((*CASE, "zeta"), 0.02, ("0.05", "0.02")),
     "case springs, kinematics": ((*CASE, "kinematics"), "finite", ("first-order", "finite")),
     "case springs, flight_limit_mm": ((*CASE, "flight_limit_mm"), 9.0, ("5", "9")),
@@ -298,12 +298,12 @@ ONE_CHANGE = {
     "motions.scale": (("motions", "scale"), 1.2, ("–", "1.2")),
     "motions.polarity": (("motions", "polarity"), "-", ("+", "-")),
     "motions, pulse Te Mara, amplitude_g": (("motions", "pulse", 0, "amplitude_g"), 0.9, ("1", "0.9")),
-    "numerics.tolerance": (("numerics", "tolerance"), 1e-5, ("0.0001", "1e-05")),
+    "numerics.tolerance": (("numerics", "tolerance"), 1e-5, ("0.0001", "1 × 10⁻⁵")),
     "numerics.quiet_s": (("numerics", "quiet_s"), 3.0, ("2", "3")),
     "output.ledger": (("output",), {"ledger": True}, ("false", "true")),
     "check rotation, at_most": (("check", 0, "at_most"), 0.6, ("0.5", "0.6")),
     "suite.count": (("suite",), {"count": "component"}, ("station", "component")),
-    "bound stiff": (("bound",), [{"name": "stiff", "case.zeta": 0.1}], ("–", "written")),
+    "bound stiff": (("bound",), [{"name": "stiff", "case.zeta": 0.1}], ("–", "case.zeta = 0.1")),
 }
 
 
@@ -363,13 +363,16 @@ def test_a_motion_of_another_shape_and_the_same_peak_differs(tmp_path):
 def test_many_motions_of_one_study_only_are_counted_as_motions(tmp_path):
     pulses = [PULSES[0] | {"name": f"n{i:02}"} for i in range(12)]
     rows = inputs(two(tmp_path, tables(), tables(motions={"pulse": [*PULSES, *pulses]})))
-    assert rows["motions in one only"][1].startswith("12 motions: n00, n01")
+    assert rows["motions in one study only"][1].startswith("12 motions: n00, n01")
 
 
 def test_motions_of_one_study_only_are_named(tmp_path):
     rows = inputs(two(tmp_path, tables(), tables(motions={"pulse": PULSES[:1]})))
-    assert rows["motions in one only"] == ("Lyttelton", "–")
-    assert rows["motions, pulse Lyttelton"] == ("written", "–")
+    assert rows["motions in one study only"] == ("Lyttelton", "–")
+    assert rows["motions, pulse Lyttelton"] == (
+        "shape = sine, amplitude_g = 1, period_s = 0.7, dt_s = 0.01, duration_s = 4",
+        "–",
+    )
 
 
 def test_files_left_out_or_unusable_of_one_study_are_named_by_their_kind(tmp_path):
