@@ -1,13 +1,15 @@
 """The report in a real browser: nothing leaves the page, no script error, and sorting, searching and reading values work."""
 
+import io
 import json
 import math
 import re
 from dataclasses import replace
 
 import pandas as pd
+import pypdf
 import pytest
-from browser import HOSTILE, browse, needs_chromium, printed
+from browser import HOSTILE, browse, needs_chromium, printed, tab
 from check_samples import verdict
 from report_samples import FIG7, FOUNDATIONS, case_entry, response, write_results
 
@@ -335,6 +337,45 @@ def test_it_prints(page):
     boxes = re.findall(rb"/MediaBox \[0 0 ([\d.]+) ([\d.]+)\]", printed(page))
     assert boxes
     assert {float(width) > float(height) for width, height in boxes} == {False}  # wide tables go on below
+
+
+def test_the_head_of_a_long_table_is_printed_on_each_of_its_pages(tmp_path):
+    """Heads are buttons, which Chromium draws on the first page alone."""
+    write_results(tmp_path, records=[(f"R{i:03}", 0.5) for i in range(12)])
+    pages = [sheet.extract_text() for sheet in pypdf.PdfReader(io.BytesIO(printed(write_report(tmp_path, [])))).pages]
+    of_runs = [text for text in pages if re.search(r"R\d{3} \d \d\.\d", text.replace("\n", " "))]
+    assert len(of_runs) > 1
+    assert all("demand L" in text for text in of_runs)
+
+
+@pytest.mark.parametrize("table", ["peaks", "records"])
+def test_what_is_printed_of_a_table_is_as_wide_as_the_paper(tmp_path, table):
+    """A record is named by its event, its station and its direction, in the last table beside its name in peaks.csv."""
+    long = "Imperial Valley 1979, El Centro - Meloland Overpass, N90W"
+    write_results(tmp_path, records=[(f"20160214_001345_{i:06}_20.N90W", 0.5) for i in range(9)])
+    page = write_report(tmp_path, [])
+    page.write_text(re.sub(r">20160214_001345_\d{6}_20.N90W</(span|th)", rf">{long}</\1", page.read_text()))
+    wide = f"""[...document.querySelectorAll("#{table} .wide")].map((node) => node.scrollWidth - node.clientWidth)"""
+    with tab(page, (688, 1000)) as ask:  # A4 less its margins
+        ask("Emulation.setEmulatedMedia", media="print")
+        over = ask("Runtime.evaluate", expression=wide, returnByValue=True)["result"]["value"]
+    assert over
+    assert max(over) <= 0
+
+
+def test_words_of_a_printed_scorecard_of_seven_checks_are_whole(tmp_path):
+    write_results(tmp_path)
+    names = ["overturning margin", "settlement of the toe", "flight within the keys", *(f"check {i}" for i in range(4))]
+    write_verdicts(tmp_path, [verdict("c", "not decided", check=name) for name in names])
+    lines = """[...document.querySelectorAll("#answer .card thead th")].map((head) => {
+      const range = document.createRange();
+      range.selectNodeContents(head.firstChild);
+      return new Set([...range.getClientRects()].map((box) => Math.round(box.top))).size;
+    })"""
+    with tab(write_report(tmp_path, []), (688, 1000)) as ask:
+        ask("Emulation.setEmulatedMedia", media="print")
+        counts = ask("Runtime.evaluate", expression=lines, returnByValue=True)["result"]["value"]
+    assert counts[1] == 2  # one line for each word
 
 
 def test_on_paper_stands_the_motion_that_is_shown_and_every_one_if_all_is_asked_for(tmp_path):
