@@ -26,6 +26,7 @@ from rockbatch.core.devices.laws import (
     stop_force,
     stored,
 )
+from rockbatch.pier.dampers import SMOOTHNESS
 from rockbatch.simulation.elements import IDLE
 
 INF = math.inf
@@ -135,3 +136,9 @@ def test_a_stop_is_loaded_along_k_and_lets_go_along_a_steeper_line():
     )  # how deep it is pressed is noted as it turns
     assert mode_of(BAND, -0.1, 0.0, OPENS) == mode_of(DAMPER, 0.1, 0.0, CLOSES) == TAUT
     assert force(BAND, -0.2, 0.3, 0.0, TAUT, OPENS) == pytest.approx(-5.0)
+
+
+def test_the_exponent_that_pages_state_of_hysteretic_dampers_is_that_of_their_law():
+    """ż = (ė/u_y)(1 − |z|ⁿ) in loading."""
+    loading = response(STEEL, 0.0, 1.0, 0.5, TAUT, OPENS)
+    assert loading.state_rate == pytest.approx(STEEL.stiffness * (1.0 - 0.5**SMOOTHNESS), rel=1e-14)

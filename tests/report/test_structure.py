@@ -50,7 +50,7 @@ def test_the_statics_of_all_cases_stand_beside_each_other_with_their_devices(rep
     assert rows["devices"] == [
         "",
         "viscous damper at each pivot, C = 2000 kN (s/m)^0.3",
-        "hysteretic damper at the left pivot, F = 2000 kN, uy = 5 mm; tendon on the axis, P0 = 5000 kN, kt = 20,000 kN/m",
+        "hysteretic damper at the left pivot, F = 2000 kN, uy = 5 mm, n = 5; tendon on the axis, P0 = 5000 kN, kt = 20,000 kN/m",
     ]
     pier = rb.Pier.with_deck(**BRIDGE)
     tan = pier.half_width / pier.height
