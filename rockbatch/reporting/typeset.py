@@ -118,7 +118,8 @@ def _of_text(element: Element, setting: Setting) -> str:
         case "p" if len(element) == 1 and element[0].tag == "img" and not (element.text or "").strip():
             return _figure(element[0])
         case "p" if _classes(element) & {"legend", "muted"}:
-            return f"\n#text(8pt, {_colour('--muted')})[{_inline(element)}]\n"
+            line = f"text(8pt, {_colour('--muted')})[{_inline(element)}]"
+            return f"\n#block(sticky: true, {line})\n" if "part" in _classes(element) else f"\n#{line}\n"
         case "p":
             return _paragraph(_inline(element))
         case "ul" | "ol":
@@ -138,8 +139,8 @@ def _figure(image: Element) -> str:
 
 
 def _key(element: Element, setting: Setting) -> str:
-    """Return a legend: samples, each with its words, in lines."""
-    entries = (f"#box({_picture(item[0], setting)}) {_inline(item[1])}" for item in element)
+    """Return a legend: samples, each with its words, in lines; a sample stands in the line of the first of its words."""
+    entries = (f"#box({_picture(item[0], setting)})~{_inline(item[1])}" for item in element)
     return f"\n#text(8pt)[{' #h(8pt) '.join(entries)}]\n"
 
 

@@ -213,6 +213,16 @@ def test_text_before_between_and_after_blocks_is_set_in_its_order():
     assert set_.split() == ["before", "item", "within", "later", "between", "part", "a", "fter", "end"]
 
 
+def test_the_number_of_a_part_of_a_table_stays_with_it():
+    numbered, other = (blocks(parsed(f'<p class="legend{more}">x</p>'), Setting({})) for more in (" part", ""))
+    assert ("sticky: true" in numbered, "sticky" in other) == (True, False)
+
+
+def test_a_sample_of_a_legend_stays_with_the_first_of_its_words():
+    key = '<ul class="key"><li><svg viewBox="0 0 9 9" /><span>a long name</span></li></ul>'
+    assert re.search(r"\)~a long name", blocks(parsed(key), Setting({})))
+
+
 def test_a_span_in_a_cell_keeps_what_its_class_says():
     """Verdict and colour, the share of a limit, the unit below its head, and a subscript."""
     cell = (

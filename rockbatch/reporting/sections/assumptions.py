@@ -161,10 +161,10 @@ def _numerics(numerics: Any, cases: Collection[Case]) -> str:
 
 
 def _only(some: Collection[Case], cases: Collection[Case]) -> str:
-    """Return the cases of which a sentence is true, " (pads, piles)"; empty if that is all of them."""
+    """Return the cases of which a sentence is true, " (pads; piles)"; empty if that is all of them."""
     if len(some) == len(cases):
         return ""
-    return f" ({', '.join(dict.fromkeys(str(case['case']) for case in some))})"
+    return f" ({'; '.join(dict.fromkeys(str(case['case']) for case in some))})"
 
 
 def _listed(values: Iterable[str]) -> str:

@@ -11,7 +11,7 @@ from rockbatch.quantities.quantity import ENDINGS, in_print
 from rockbatch.reporting.drawings import drawings
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import heading, symbol
-from rockbatch.reporting.markup import Markup, join, tag
+from rockbatch.reporting.markup import Markup, join, number, tag
 from rockbatch.reporting.structure import device_in_words, names_of, pier_of, restraints_of
 from rockbatch.reporting.table import WHOLE, Head, table
 from rockbatch.results.labelled import Row
@@ -115,7 +115,7 @@ def _written(value: object) -> object:
     if not _single(value):
         return None
     if isinstance(value, list):
-        return ", ".join(map(str, value))
+        return ", ".join(number(item, DIGITS) if isinstance(item, float) else str(item) for item in value)
     return str(value).lower() if isinstance(value, bool) else value
 
 
