@@ -208,7 +208,7 @@ def _stretched(box: Box, views: Sequence[Axis]) -> Iterator[Markup]:
         words = [_beside(mark, view, box) for mark in panel.marks if isinstance(mark, Points | Words)]
         if panel.x.numbered:
             words += [
-                text(_percentage(view, at), box.foot + 13.0, tick, class_="m") for at, tick in view.ticks().items()
+                text(_percentage(view, at), box.foot + 15.0, tick, class_="m") for at, tick in view.ticks().items()
             ]
         yield tag("g", *words, class_=f"v{place}")
     if panel.x.label:
@@ -304,7 +304,7 @@ def _frame(box: Box) -> Markup:
     if x.numbered:
         every = math.ceil(7.0 * max(map(len, columns.values()), default=1) * len(columns) / box.width) if x.names else 1
         shown = list(columns.items())[::every]  # names of all columns would overlap
-        parts += [text(float(box.across(at)), box.foot + 13, words, class_="m") for at, words in shown]
+        parts += [text(float(box.across(at)), box.foot + 15, words, class_="m") for at, words in shown]
     return join(*parts)
 
 

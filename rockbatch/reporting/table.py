@@ -172,10 +172,13 @@ def _with_unit(text: str) -> Markup:
 
 
 def _common(heads: Sequence[Head], values: Sequence[object], complete: bool) -> Markup:
-    """Return a line with the values of constant columns; ``complete`` if the table shows every row."""
+    """Return a line with the values of constant columns and their units; ``complete`` if the table shows every row."""
     words = []
     for head, value in zip(heads, values, strict=True):
-        words.append(join(head.text, " ", value if isinstance(value, Markup) else number(value, head.form)))
+        name, bracket, unit = escape(head.text).rpartition(" [")
+        shown = value if isinstance(value, Markup) else number(value, head.form)
+        behind = f"\u00a0{unit.removesuffix(']')}" if bracket else ""
+        words.append(join(Markup(name if bracket else unit), " ", shown, Markup(behind)))
     rows = "In every row: " if complete else "In each of these rows: "
     return tag("p", rows, join(*words, between="; "), ".", class_="legend")
 

@@ -54,12 +54,13 @@ def response_spectra(spectra: Item, names: Sequence[str], fitted: tuple[float, f
     few = len(names) <= LABELLED
     marks: list[Mark] = [] if fitted is None else [Span("x", *fitted, look=Look("band"))]
 
-    def add(spectrum: npt.NDArray[np.float64], look: Look, name: str, named: bool = True) -> None:
-        label = name if len(name) <= 40 else f"{name[:20]}…{name[-19:]}"
-        marks.append(Polyline(periods, np.maximum(spectrum, y.low), name, look=look, label=label if named else ""))
+    def add(spectrum: npt.NDArray[np.float64], look: Look, name: str, label: str | None = None) -> None:
+        short = name if len(name) <= 40 else f"{name[:20]}…{name[-19:]}"
+        label = short if label is None else label
+        marks.append(Polyline(periods, np.maximum(spectrum, y.low), name, look=look, label=label))
 
     for i, (name, spectrum) in enumerate(zip(names, values, strict=True)):
-        add(spectrum, line_of(i) if few else Look("faint"), name, named=few)
+        add(spectrum, line_of(i) if few else Look("faint"), name, None if few else "")
     if len(target):
         add(np.array(spectra["mean_sa_g"], dtype=float), Look("level", dash=1), "mean of the records")
         add(target, Look("target"), "target")
@@ -67,7 +68,7 @@ def response_spectra(spectra: Item, names: Sequence[str], fitted: tuple[float, f
         add(np.median(values, axis=0), Look("level"), "median")
     if not few:
         for percent in (16, 84):
-            add(np.percentile(values, percent, axis=0), Look("level", dash=2), f"{percent} %")
+            add(np.percentile(values, percent, axis=0), Look("level", dash=2), f"{percent} %", "16 and 84 %")
     x = Axis("period [s]", float(periods[0]), float(periods[-1]), log=True)
     words = f"Response spectra of {len(names)} ground motions" + (" and their target" if len(target) else "")
     return Figure([Panel(x, y, marks, width=440.0, height=260.0)], words)

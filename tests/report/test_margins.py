@@ -118,7 +118,7 @@ def test_a_study_that_fails_is_not_better_for_a_smaller_rotation(tmp_path):
     text = Page(write_comparison(*folders).read_text(encoding="utf-8")).text.replace("\u00a0", " ")
     assert "A passes all, closest 40 % (rotation, Lyttelton); B fails rotation at 185 % (Lyttelton)." in text
     assert "is better" not in text
-    assert "worst rotation -7.5 %" in text
+    assert "worst rotation −7.5 %" in text
 
 
 def test_cases_that_only_one_study_has_do_not_change_what_the_other_comes_to(tmp_path):

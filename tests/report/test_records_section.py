@@ -17,7 +17,7 @@ def test_few_spectra_are_drawn_with_names_and_many_as_a_spread(tmp_path, count):
     drawn = text[text.index(f"Response spectra of {count} ground motions") :].split("</ul>")[0]
     assert drawn.count("<path") > count
     assert (">record 0<" in drawn) == (count < 20)
-    assert ("84 %" in drawn) == (count == 20)
+    assert drawn.count(">16 and 84 %<") == (count == 20)  # one entry for two lines that look alike
     assert ("median" in drawn) == (count > 1)
 
 

@@ -277,7 +277,7 @@ def by_shares(curves: Sequence[Curve]) -> str:
         return ""
     return (
         f"by shares: the median of a curve through the share of the scales within ±{widths[0]} of each level that exceed the "
-        "limit, which no hunt changes"
+        "limit, which does not depend on the search"
     )
 
 
@@ -342,7 +342,8 @@ def note(curve: Curve, spec: FragilitySpec) -> str:
     if curve.windows and isinstance(curve.windows.fitted, NoCurve) and curve.windows.fitted != fitted:
         notes.append(f"no median by shares: {curve.windows.fitted.reason}")
     if returning := sum(cap.returns > 0 for _, cap in curve.capacities):
-        notes.append(f"{returning} of {len(curve.capacities)} records withstand a level above their first exceedance")
+        words = "withstands a level above its" if returning == 1 else "withstand a level above their"
+        notes.append(f"{returning} of {len(curve.capacities)} records {words} first exceedance")
     return "; ".join(filter(None, notes))
 
 

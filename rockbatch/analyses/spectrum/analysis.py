@@ -170,7 +170,7 @@ def _write_maps(results: AnalysisFolder, maps: Sequence[MapSpec]) -> None:
             computed, finished = overturning_map.Maps(spec, study.cases), waves.finished
             grid = f"{spec.frequencies} frequencies × {spec.amplitudes} amplitudes"
             grid += f" × {count(len(study.cases), 'case')}" if len(study.cases) > 1 else ""
-            listener.say(f"map {spec.name}: {grid} on {results.engine}; then what changes is looked at more closely")
+            listener.say(f"map {spec.name}: {grid} on {results.engine}; refined where the outcome changes")
             by_case = computed.find(waves)
             rows += computed.rows(by_case)
             listener.say(f"map {spec.name}: {sum(map(len, by_case))} frequencies, {waves.finished - finished} runs")

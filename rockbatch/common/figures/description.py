@@ -215,12 +215,15 @@ def decades(label: str, values: Iterable[float], about: int = 6) -> Axis:
 
 
 def written(ticks: Sequence[float]) -> list[str]:
-    """Return labels of ticks with as many decimals as their step needs, or powers of ten if they are far apart; [] for none."""
+    """Return labels of ticks with as many decimals as their step needs, or powers of ten if they are far apart; [] for none.
+
+    From 10,000 on thousands are grouped.
+    """
     if len(ticks) > 1 and ticks[0] > 0 and ticks[1] / ticks[0] > 9:
         return [_power_of_ten(tick) for tick in ticks]
     step = min((b - a for a, b in pairwise(ticks)), default=sum(ticks)) or 1.0
     decimals = next((d for d in range(9) if math.isclose(step, round(step, d), rel_tol=1e-6)), 9)
-    return [f"{tick + 0.0:.{decimals}f}".replace("-", "−") for tick in ticks]
+    return [f"{tick + 0.0:{',' if abs(tick) >= 1e4 else ''}.{decimals}f}".replace("-", "−") for tick in ticks]
 
 
 def _power_of_ten(value: float) -> str:
