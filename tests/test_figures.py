@@ -477,6 +477,52 @@ def test_several_panels_do_not_go_into_axes_without_a_grid():
     plt.close(whole)
 
 
+def test_a_figure_of_one_panel_is_drawn_in_given_axes_as_that_panel_alone_is():
+    """Its legend covered curves, and its numbers had the size of a screen."""
+    line = Polyline(np.array([0.0, 1.0]), np.array([0.0, 1.0]), look=line_of(0), label="rises")
+    figure = Figure([Panel(Axis("x", 0.0, 1.0), Axis("y", 0.0, 1.0), [line], "one")], "one")
+    whole, axes = plt.subplots(figsize=(88.0 / 25.4, 60.0 / 25.4))
+    assert paper.drawn(figure, 88.0, axes) is whole
+    whole.draw_without_rendering()
+    assert axes.get_legend().get_window_extent().y1 < axes.get_window_extent().y0
+    assert axes.xaxis.get_ticklabels()[0].get_fontsize() == paper._STYLE["xtick.labelsize"]
+    plt.close(whole)
+
+
+def _panels(count, width=440.0):
+    lines = [Polyline(np.array([0.0, 1.0]), np.array([0.0, float(n)]), label=f"curve {n}") for n in range(count)]
+    return Figure(
+        [Panel(Axis("x", 0.0, 1.0), Axis("y", 0.0, n + 1.0), [line], width=width) for n, line in enumerate(lines)], ""
+    )
+
+
+def test_panels_that_would_not_be_legible_in_given_axes_are_refused_with_the_height_they_need():
+    whole, axes = plt.subplots(figsize=(88.0 / 25.4, 55.0 / 25.4), layout="constrained")
+    with pytest.raises(
+        rb.InputError, match=r"^ax: 4 panels and their legend need (\d+) mm of height here, and it has 55 mm"
+    ) as told:
+        paper.drawn(_panels(4), 88.0, axes)
+    assert axes.figure is whole  # and is still there
+    plt.close(whole)
+    needed = float(re.search(r"need (\d+) mm", str(told.value))[1])
+    whole, axes = plt.subplots(figsize=(88.0 / 25.4, needed / 25.4), layout="constrained")
+    paper.drawn(_panels(4), 88.0, axes)
+    whole.draw_without_rendering()
+    panels = [one.get_window_extent() for one in whole.subfigs[0].axes]
+    assert min(panel.height for panel in panels) > 0.8 * paper.LOWEST / 25.4 * whole.dpi
+    assert all(upper.y0 > lower.y1 for upper, lower in itertools.pairwise(panels))
+    plt.close(whole)
+
+
+@pytest.mark.parametrize(("height", "rows"), [(112.0, 2), (300.0, 4)])
+def test_panels_stand_abreast_in_given_axes_that_are_too_low_for_all_of_them(height, rows):
+    whole, axes = plt.subplots(figsize=(160.0 / 25.4, height / 25.4), layout="constrained")
+    paper.drawn(_panels(4), 160.0, axes)
+    whole.draw_without_rendering()
+    assert len({round(one.get_window_extent().y0) for one in whole.subfigs[0].axes}) == rows
+    plt.close(whole)
+
+
 def _laid_out(shown, width_mm):
     drawn = paper.drawn(shown, width_mm)
     drawn.draw_without_rendering()

@@ -6,7 +6,7 @@ Colours and dashes are those of the page; letters have the size in which they ar
 import itertools
 import math
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import singledispatch
 from io import BytesIO
@@ -60,6 +60,10 @@ COLUMN = 88.0
 """Width of a column of a paper [mm]."""
 LEAST_SIZE = 0.5
 """Height of panels that share their axes, over that on the page."""
+LEAST_WIDTH = 0.6
+"""Width to which panels are narrowed so that more stand abreast, over that on the page."""
+CROWDED = 1.25
+"""Height of a figure over that of the place for it, above which its panels would not be legible."""
 
 Style = dict[str, Any]
 """Keyword arguments of matplotlib's functions."""
@@ -121,6 +125,9 @@ _STYLE: Any = {
 Entries = dict[str, dict[type[Mark], Artist]]
 """What stands for each label of a legend, one artist for each type of mark."""
 
+Arranged = tuple[list[list[Panel]], list[float], float]
+"""Rows of panels, their heights [mm], and the distance of columns that share their axes [mm], else 0."""
+
 
 class ShownFigure(MatplotlibFigure):
     """A matplotlib Figure that is not pyplot's, and shows itself in a notebook nevertheless, also without ``%matplotlib``."""
@@ -134,8 +141,8 @@ class ShownFigure(MatplotlibFigure):
 def drawn(figure: Figure, width_mm: float, ax: Axes | None = None) -> MatplotlibFigure:
     """Return the matplotlib figure in which ``figure`` is drawn, ``width_mm`` wide, or that of ``ax``.
 
-    One panel is drawn in ``ax``, several in its place. Raises ``InputError`` for an ``ax`` that is no Axes, or if there are
-    several panels and it is in no grid.
+    One panel is drawn in ``ax`` as by :func:`panel_in`, several in its place. Raises ``InputError`` for an ``ax`` that is no
+    Axes, and if there are several panels and it is in no grid, or too low for them.
     """
     _check_axes(ax)
     with mpl.rc_context(_STYLE):
@@ -144,21 +151,37 @@ def drawn(figure: Figure, width_mm: float, ax: Axes | None = None) -> Matplotlib
             height = _drawn_in(own, figure, width_mm, PROPORTION * width_mm)
             own.set_size_inches(width_mm / 25.4, height / 25.4)
             return own
-        parent = ax.figure
-        width, height = (25.4 / parent.dpi * length for length in (ax.bbox.width, ax.bbox.height))
+        whole = ax.figure.figure
         if len(figure.panels) == 1:
-            _alone(ax, figure, width)
-        elif place := ax.get_subplotspec():
-            ax.remove()
-            _drawn_in(parent.add_subfigure(place), figure, width, height)
+            panel_in(figure, ax)
         else:
-            raise InputError(
-                "ax: is in no grid, and this figure has several panels; make it by matplotlib's subplots()"
-            )
-        whole = parent.figure
+            _in_place_of(ax, figure)
         if whole.get_layout_engine() is None:
             whole.set_layout_engine("constrained")  # or labels of neighbours overlap
         return whole
+
+
+def _in_place_of(ax: Axes, figure: Figure) -> None:
+    """Draw several panels in the cell of the grid in which ``ax`` is, and remove it."""
+    place, parent = ax.get_subplotspec(), ax.figure
+    if place is None:
+        raise InputError("ax: is in no grid, and this figure has several panels; make it by matplotlib's subplots()")
+    grid = place.get_gridspec()
+    width, height = (
+        25.4 / parent.dpi * length * sum(ratios[at] for at in span) / sum(ratios)
+        for length, ratios, span in (
+            (parent.bbox.width, grid.get_width_ratios(), place.colspan),
+            (parent.bbox.height, grid.get_height_ratios(), place.rowspan),
+        )
+    )
+    _, lowest = _sized(figure, width, height)
+    if lowest > CROWDED * height:
+        raise InputError(
+            f"ax: {len(figure.panels)} panels and their legend need {lowest:.0f} mm of height here, and it has {height:.0f} mm; "
+            "make the figure higher, or give it fewer rows"
+        )
+    ax.remove()
+    _drawn_in(parent.add_subfigure(place), figure, width, height)
 
 
 def panel_in(figure: Figure, ax: Axes | None, name: str = "") -> Axes:
@@ -190,9 +213,8 @@ def panel_in(figure: Figure, ax: Axes | None, name: str = "") -> Axes:
         ax.set_axisbelow(True)
         _colour_bar(ax.figure, [ax], replace(figure, panels=panels[:1]))
         if entries:
-            longest = 8.0 + LETTER * max(map(len, entries))
             below = 4.0 + 4.0 * panels[0].x.numbered + 4.0 * bool(panels[0].x.label)
-            columns = max(1, min(len(entries), int(width / longest)))
+            columns = _columns_of_legend(entries, width)
             letters = max(int((width - 8.0) / LETTER), 12)
             lines = {"\n".join(textwrap.wrap(words, letters)): artists for words, artists in entries.items()}
             ax.legend(
@@ -213,21 +235,30 @@ def _check_axes(ax: object) -> None:
         refuse([Problem("ax", None, text, kind=WrongType, named=False)])
 
 
-def _alone(axes: Axes, figure: Figure, width_mm: float) -> None:
-    """Draw a figure of one panel in axes that exist."""
-    entries: Entries = {}
-    _panel(axes, figure.panels[0], width_mm - BESIDE, entries)
-    _colour_bar(axes.figure, [axes], figure)
-    if entries:
-        axes.legend(**_legend_of(entries))
-
-
-def _drawn_in(place: FigureBase, figure: Figure, width_mm: float, tallest: float) -> float:
-    """Draw a figure in ``place``; return its height [mm]. Panels over ``tallest`` mm together are lowered, within limits."""
+def _sized(figure: Figure, width_mm: float, tallest: float) -> tuple[Arranged, float]:
+    """Return panels in rows, lowered within limits if they are over ``tallest`` mm together, and the figure's height [mm]."""
     rows, heights, across = _arranged(figure, width_mm, tallest)
     spare = MM * min((panel.height for panel in figure.panels), default=0.0) * (LEAST_SIZE if across else 0.8) - LOWEST
     lower = min(max(sum(heights) - tallest, 0.0) / len(rows), spare)
     heights = [height - lower for height in heights]
+    lines = len(_title(figure, width_mm)) + math.ceil(len(figure.legend) / _columns_of_legend(figure.legend, width_mm))
+    return (rows, heights, across), sum(heights) + 4.0 * lines + 5.0
+
+
+def _title(figure: Figure, width_mm: float) -> list[str]:
+    """Return the lines of a figure's title."""
+    return textwrap.wrap(figure.title, int(0.6 * width_mm))
+
+
+def _columns_of_legend(labels: Collection[str], width_mm: float) -> int:
+    """Return how many entries of a legend of this width stand side by side, one at least."""
+    longest = 8.0 + LETTER * max(map(len, labels), default=0)
+    return max(1, min(len(labels), int(width_mm / longest)))
+
+
+def _drawn_in(place: FigureBase, figure: Figure, width_mm: float, tallest: float) -> float:
+    """Draw a figure in ``place``; return its height [mm]. Panels over ``tallest`` mm together are lowered, within limits."""
+    (rows, heights, across), height = _sized(figure, width_mm, tallest)
     columns = [len(row if figure.stacked else rows[0]) for row in rows]
     grid = place.add_gridspec(len(rows), math.lcm(*columns), height_ratios=heights)
     entries: Entries = {}
@@ -239,15 +270,11 @@ def _drawn_in(place: FigureBase, figure: Figure, width_mm: float, tallest: float
             _panel(axes, panel, across or width_mm / abreast - BESIDE, entries)
             made.append(axes)
     _colour_bar(place, made, figure)
-    title = textwrap.wrap(figure.title, int(0.6 * width_mm))
-    if title:
+    if title := _title(figure, width_mm):
         place.suptitle("\n".join(map(_text, title)))
-    height = sum(heights) + 4.0 * len(title) + 5.0
     if entries:
-        longest = 8.0 + LETTER * max(map(len, entries))
-        columns_of_legend = max(1, min(len(entries), int(width_mm / longest)))
-        place.legend(**_legend_of(entries), loc="outside lower center", ncols=columns_of_legend)
-        height += 4.0 * math.ceil(len(entries) / columns_of_legend)
+        ncols = _columns_of_legend(entries, width_mm)
+        place.legend(**_legend_of(entries), loc="outside lower center", ncols=ncols)
     return height
 
 
@@ -265,14 +292,10 @@ def _colour_bar(place: FigureBase, axes: Sequence[Axes], figure: Figure) -> None
             return
 
 
-Arranged = tuple[list[list[Panel]], list[float], float]
-"""Rows of panels, their heights [mm], and the distance of columns that share their axes [mm], else 0."""
-
-
 def _arranged(figure: Figure, width_mm: float, tallest: float) -> Arranged:
     """Return panels in rows, stacked as they are or as many abreast as have room, with heights and distance of columns.
 
-    Of panels that share their axes more stand abreast, and lower, if the rows would together be higher than ``tallest`` mm.
+    More stand abreast, of panels that share their axes also lower, if the rows would together be higher than ``tallest`` mm.
     """
     if figure.stacked:
         rows = []
@@ -281,9 +304,14 @@ def _arranged(figure: Figure, width_mm: float, tallest: float) -> Arranged:
             rows += [row[i : i + abreast] for i in range(0, len(row), abreast)]
         return rows, [max(_height(panel, width_mm / len(row)) for panel in row) for row in rows], 0.0
     first, count = figure.panels[0], len(figure.panels)
-    columns = max(1, min(count, round(width_mm / (MM * max(panel.width for panel in figure.panels)))))
+    widest = MM * max(panel.width for panel in figure.panels)
+    columns = max(1, min(count, round(width_mm / widest)))
     if count == columns or any((panel.x, panel.y) != (first.x, first.y) for panel in figure.panels):
-        return _grid(figure.panels, columns, width_mm, 0.8)
+        arranged = _grid(figure.panels, columns, width_mm, 0.8)
+        while columns < count and sum(arranged[1]) > tallest and width_mm >= LEAST_WIDTH * widest * (columns + 1):
+            columns += 1
+            arranged = _grid(figure.panels, columns, width_mm, 0.8)
+        return arranged
     for abreast in itertools.count(columns):
         across = (width_mm - BESIDE) / abreast
         rows, heights, _ = _grid(_inner(figure.panels, abreast), abreast, width_mm, LEAST_SIZE, across)
