@@ -37,6 +37,7 @@ class Called(NamedTuple):
 
 
 _COLOURS = {PASS: "32", FAIL: "31", NOT_DECIDED: "33"}  # green, red, amber
+_COUNTED = {DOES_NOT_APPLY: "not applicable"}
 _LOUD = {FAIL: "FAIL", NOT_DECIDED: "NOT DECIDED"}
 _PLAIN = {PASS: "+", FAIL: "x", NOT_DECIDED: "?", DOES_NOT_APPLY: "-"}
 _LEFT_OUT = (5, 4, 1)
@@ -72,6 +73,8 @@ def report(arguments: argparse.Namespace) -> int:
     say(str(made.path))
     if made.pdf and made.pdf != made.path:
         say(str(made.pdf))
+    elif made.is_sheet and arguments.out is None:
+        say('no PDF: that needs typst, pip install "rockbatch[pdf]"')
     return 0
 
 
@@ -94,7 +97,7 @@ def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved, whole: bool = Fa
         show((summed_up if many else table)(verdicts, names) + "\n")
     show(answered(verdicts, saved))
     count = wording.count_of(verdicts)
-    say(", ".join(f"{n} {kind}" for kind, n in count.items() if n))
+    say(", ".join(f"{n} {_COUNTED.get(kind, kind)}" for kind, n in count.items() if n))
     say(f"{path}{': all of them' if whole and many else ''}")
     if idle:
         say("no check applies to these cases")

@@ -21,7 +21,7 @@ RECORDS = "records"
 CHECKS = "checks.toml"
 """The design checks beside a copied study."""
 
-_PATH = re.compile(r'"\.\./motions/(\w+)"')
+_PATH = re.compile(r'"\.\./motions/(\w+)"( *)')
 _CHECKED_IN = Path("checks", "stepping_pier.toml")
 
 
@@ -110,7 +110,7 @@ def _is_part_of(path: Path, contents: Mapping[Path, bytes]) -> bool:
 
 def _adapted(text: str, name: str, study: str, match: re.Match[str] | None) -> bytes:
     """Return the text of an example that finds its records and checks beside it, and calls itself ``study``."""
-    text = _PATH.sub(f'"{RECORDS}"', text)
+    text = _PATH.sub(lambda path: f'"{RECORDS}"'.ljust(len(path[0]) if path[2] else 0), text)  # comments stay aligned
     text = text.replace(f"configs/{_CHECKED_IN.as_posix()}", CHECKS).replace(_CHECKED_IN.as_posix(), CHECKS)
     if match:
         text = text.replace(f"motions/{match[1]}", RECORDS)

@@ -7,7 +7,7 @@ import sys
 
 import pandas as pd
 import pytest
-from check_samples import case, folder, runs
+from check_samples import RIGID, case, folder, runs
 from report_page import Page
 from rules_of_checks import CONFIGS, MARGIN, STUDY, rules_file
 
@@ -189,3 +189,12 @@ def test_the_verdicts_stand_in_the_report(tmp_path):
 def test_a_ratio_that_would_round_to_1_says_on_which_side_it_is(tmp_path, capsys):
     assert main(["check", str(folder(tmp_path / "out", runs([0.5001]), [case()], MARGIN))]) == 1
     assert "0.5001 ✗ 100.02 %" in capsys.readouterr().out
+
+
+def test_checks_that_do_not_apply_are_counted_as_not_applicable(tmp_path, capsys):
+    """One was "1 does not apply", five were "5 does not apply"."""
+    rules = tmp_path / "rules.toml"
+    rules.write_text(MARGIN + MARGIN.replace("theta_max_over_alpha", "ductility").replace('"margin"', '"ductility"'))
+    out = folder(tmp_path / "out", runs([0.1, 0.2], "rigid"), [RIGID])
+    main(["check", str(out), "--rules", str(rules)])
+    assert "1 pass, 1 not applicable\n" in capsys.readouterr().err

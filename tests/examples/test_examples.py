@@ -185,3 +185,11 @@ def test_init_into_a_folder_with_the_name_of_an_example_asks_which_is_meant(tmp_
     assert "write rockbatch init near_fault --example near_fault, or give another folder" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
     assert main(["init", "near_fault", "--example", "near_fault"]) == 0
+
+
+def test_the_comments_of_a_copied_study_stay_below_each_other(tmp_path):
+    copy(FIRST, tmp_path, "pier.toml")
+    path, vertical = re.findall(
+        r"^(?:path|vertical) = .*", (tmp_path / "pier.toml").read_text(encoding="utf-8"), re.MULTILINE
+    )
+    assert path.index("#") == vertical.index("#")

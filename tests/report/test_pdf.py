@@ -191,7 +191,7 @@ def test_a_name_that_ends_in_pdf_asks_for_the_pdf_alone(tmp_path):
     assert not (tmp_path / "sheet.html").exists()
 
 
-def test_without_typst_the_html_is_written_and_a_pdf_is_refused_with_the_remedy(tmp_path, monkeypatch):
+def test_without_typst_the_html_is_written_and_a_pdf_is_refused_with_the_remedy(tmp_path, monkeypatch, capsys):
     write_results(tmp_path)
     monkeypatch.setattr("rockbatch.reporting.installed", lambda: False)
     monkeypatch.setattr(pdf, "installed", lambda: False)
@@ -199,6 +199,9 @@ def test_without_typst_the_html_is_written_and_a_pdf_is_refused_with_the_remedy(
     assert (written.path.name, written.pdf, (tmp_path / "sheet.pdf").exists()) == ("sheet.html", None, False)
     with pytest.raises(InputError, match=r'pip install "rockbatch\[pdf\]"'):
         rb.report(tmp_path, sheet=True, out=tmp_path / "sheet.pdf")
+    for options, told in ((("--sheet",), True), (("--sheet", "--out", str(tmp_path / "a.html")), False), ((), False)):
+        assert main(["report", str(tmp_path), *options]) == 0
+        assert ('pip install "rockbatch[pdf]"' in capsys.readouterr().err) == told
 
 
 def test_an_element_that_is_not_set_yet_is_refused_by_name():
