@@ -4,6 +4,7 @@ import importlib.util
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image
 from report_samples import write_results
@@ -32,6 +33,19 @@ def test_every_screenshot_is_committed_small_and_on_the_page(script):
             assert abs(picture.height - shot.height) <= 100  # letter or A4, as the printer's default is
             paper = picture.convert("L").getpixel((3, 3))
         assert paper < 40 if shot.dark else paper > 240
+
+
+def test_the_palette_of_a_screenshot_keeps_the_pale_colours_of_verdicts(script):
+    """They were grey; words, whose edges have many colours, take most of a palette."""
+    draw = np.random.default_rng(7)
+    pixels = draw.integers(0, 256, (400, 300, 1)) + draw.integers(-12, 13, (400, 300, 3))
+    pale = {name: np.array(colour) for name, colour in (("pass", (237, 243, 239)), ("fail", (247, 230, 229)))}
+    for place, colour in enumerate(pale.values()):
+        pixels[:, 100 * place : 100 * place + 60] = colour
+    picture = Image.fromarray(np.clip(pixels, 0, 255).astype(np.uint8))
+    kept = np.asarray(script.smaller(picture).convert("RGB")).astype(int)
+    for place, colour in enumerate(pale.values()):
+        assert np.abs(kept[:, 100 * place : 100 * place + 60] - colour).max() <= 2
 
 
 def test_without_chromium_the_script_says_so_and_changes_nothing(script, tmp_path, monkeypatch, capsys):
