@@ -496,7 +496,7 @@ def _panels(count, width=440.0):
     )
 
 
-def test_panels_that_would_not_be_legible_in_given_axes_are_refused_with_the_height_they_need():
+def test_panels_too_many_for_given_axes_are_refused_with_the_height_they_need():
     whole, axes = plt.subplots(figsize=(88.0 / 25.4, 55.0 / 25.4), layout="constrained")
     with pytest.raises(
         rb.InputError, match=r"^ax: 4 panels and their legend need (\d+) mm of height here, and it has 55 mm"

@@ -329,7 +329,7 @@ def test_what_is_open_says_why_and_that_it_does_not_matter_where_a_case_fails():
     [(48123.4, 50000.0, "48,120"), (50003.0, 50000.0, "50,003"), (50000.0, 50000.0, "50,000"), (3e-6, 1.0, "3 × 10⁻⁶"),
      (math.inf, 1.0, "∞"), (0.0, 0.5, "0")],
 )  # fmt: skip
-def test_a_demand_is_written_in_decimals_or_a_power_of_ten_and_distinguished_from_its_limit(value, limit, words):
+def test_a_demand_is_written_without_an_e_and_distinguished_from_its_limit(value, limit, words):
     assert wording.number(value, limit) == words
 
 

@@ -167,13 +167,9 @@ def _in_place_of(ax: Axes, figure: Figure) -> None:
     if place is None:
         raise InputError("ax: is in no grid, and this figure has several panels; make it by matplotlib's subplots()")
     grid = place.get_gridspec()
-    width, height = (
-        25.4 / parent.dpi * length * sum(ratios[at] for at in span) / sum(ratios)
-        for length, ratios, span in (
-            (parent.bbox.width, grid.get_width_ratios(), place.colspan),
-            (parent.bbox.height, grid.get_height_ratios(), place.rowspan),
-        )
-    )
+    across, down = (np.asarray(ratios, dtype=float) for ratios in (grid.get_width_ratios(), grid.get_height_ratios()))
+    share = across[list(place.colspan)].sum() / across.sum(), down[list(place.rowspan)].sum() / down.sum()
+    width, height = (25.4 / parent.dpi * float(length) for length in np.array(parent.bbox.size) * share)
     _, lowest = _sized(figure, width, height)
     if lowest > CROWDED * height:
         raise InputError(
