@@ -553,3 +553,12 @@ def test_the_page_and_every_plot_show_figures_of_the_same_functions(tmp_path):
         of_plot = makers(plot) - {"rockbatch.results.figures.peaks_of_all"}  # which gives the panels of `peaks` a title
         assert [maker.rpartition(".")[2] for maker in of_plot] == [name]
         assert name == "peaks" or of_plot <= of_page  # on the page, peaks are rows of dots
+
+
+def test_numbers_of_two_axes_that_begin_with_one_do_not_meet_at_the_corner():
+    panel = Panel(Axis("x", 0.05, 5.0, log=True), Axis("y", 0.02, 2.0, log=True), [])
+    (picture,) = (node for node in parsed(svg.drawn(Figure([panel], ""))) if node.tag == "svg")
+    places = {node.text: (node.get("class"), float(node.get("y"))) for node in picture.iter("text")}
+    (side, baseline), (below, foot) = places["0.02"], places["0.05"] if places["0.05"][0] == "m" else places["0.10"]
+    assert (side, below) == ("e", "m")
+    assert foot - 0.75 * 11.5 > baseline + 2.0  # digits of 11.5 px
