@@ -79,6 +79,16 @@ def test_the_printed_scorecard_is_as_wide_as_the_page(tmp_path):
     assert card > 0.99 * page > 500.0
 
 
+@needs_chromium
+def test_a_printed_pier_is_on_the_page_of_its_caption(tmp_path):
+    report(tmp_path)
+    with tab(tmp_path / "report.html", (700, 1000)) as ask:
+        ask("Emulation.setEmulatedMedia", media="print")
+        kept = """[...document.querySelectorAll(".piers figure")].map((node) => getComputedStyle(node).breakInside)"""
+        found = ask("Runtime.evaluate", expression=kept, returnByValue=True)["result"]["value"]
+    assert set(found) == {"avoid"}
+
+
 def test_cases_of_one_pier_share_a_drawing_without_a_caption(tmp_path):
     captions, words = drawn(tmp_path, case("a"), case("b"))
     assert captions == [[]]
