@@ -251,7 +251,7 @@ def test_a_manifest_declares_sequences_that_every_reader_of_the_folder_gets(tmp_
     assert [(each.name, each.reason[:15]) for each in lone.left_out] == [("twice", "none of its rec")]
 
 
-def test_a_sequence_of_a_manifest_with_the_name_of_a_record_says_so_and_the_rest_is_used(tmp_path):
+def test_a_manifests_sequence_with_a_records_name_says_so_and_the_rest_is_used(tmp_path):
     text = '[[sequence]]\nname = "{}"\nrecords = ["RSN1_A_000", "RSN1_A_000"]\n'
     found = manifest(tmp_path, text.format("RSN2_B_000") + text.format("twice"))
     assert names(found.motions) == ["RSN2_B_000", "twice"]
