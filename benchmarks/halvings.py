@@ -19,6 +19,7 @@ from tower import QUIET_S
 from rockbatch.motions import Motion, read_motions
 from rockbatch.simulation import Run, Stop, chaos, error_control, run_all_to_tolerance
 from rockbatch.simulation.agreement import Agreement, agreement, same_counts
+from rockbatch.simulation.coarser import tolerances_beside
 from rockbatch.simulation.runs import Trial
 
 
@@ -39,14 +40,14 @@ def disagreement(levels: Sequence[Trial], run: Run) -> str:
     """Return what the last two trials of a run disagree on, so that a further one is needed."""
     if len(levels) == 1:
         return "halved"
-    fine, coarse, tolerance = levels[-1], levels[-2], TOLERANCE * run.pier.alpha
+    fine, coarse, tolerances = levels[-1], levels[-2], tolerances_beside(TOLERANCE * run.pier.alpha, None)
     if fine.outcome.status != coarse.outcome.status:
         return "further: another outcome"
-    if agreement(fine, coarse, tolerance, run.pier) == Agreement.APART and not same_counts(
+    if agreement(fine, coarse, tolerances, run.pier) == Agreement.APART and not same_counts(
         fine.outcome, coarse.outcome
     ):
         return "further: counts of events differ"
-    moved = abs(fine.outcome.theta_max - coarse.outcome.theta_max) > tolerance
+    moved = abs(fine.outcome.theta_max - coarse.outcome.theta_max) > tolerances.peak
     return "further: the peak" if moved else "further: residuals, lesser extremes or the time of the peak"
 
 
