@@ -18,7 +18,7 @@ from tower import QUIET_S
 
 from rockbatch.motions import Motion, read_motions
 from rockbatch.simulation import Run, Stop, chaos, error_control, run_all_to_tolerance
-from rockbatch.simulation.agreement import Agreement, agreement, same_counts
+from rockbatch.simulation.agreement import Agreement, agreement, same_counts, windows
 from rockbatch.simulation.coarser import tolerances_beside
 from rockbatch.simulation.runs import Trial
 
@@ -43,9 +43,8 @@ def disagreement(levels: Sequence[Trial], run: Run) -> str:
     fine, coarse, tolerances = levels[-1], levels[-2], tolerances_beside(TOLERANCE * run.pier.alpha, None)
     if fine.outcome.status != coarse.outcome.status:
         return "further: another outcome"
-    if agreement(fine, coarse, tolerances, run.pier) == Agreement.APART and not same_counts(
-        fine.outcome, coarse.outcome
-    ):
+    extent, changes = agreement(fine, coarse, tolerances, run.pier), windows(fine, coarse)[1]
+    if extent == Agreement.APART and (changes <= tolerances.extremes).all():
         return "further: counts of events differ"
     moved = abs(fine.outcome.theta_max - coarse.outcome.theta_max) > tolerances.peak
     return "further: the peak" if moved else "further: residuals, lesser extremes or the time of the peak"
