@@ -416,7 +416,7 @@ USES: dict[str, dict[str, Use]] = {
         **uses(SHAKEN | {"case": [SOFT]}, ("case", 0), {"flight": "stop"}),
         **uses(YIELDING, ("case", 0), {"eta": 3.0, "spring": "epp", "n": 3.0, "kinematics": "finite"}, stepped),
         **uses(study(case=PADS | {"base": "yielding", "yield_kN": 3e4}) | TINY, ("case", 0), {"yield_kN": 4e4}, stepped),
-        **uses(ON_POINTS, ("case", 0), {"backbone_mm_kN": [[100.0, 3e4], [300.0, 5e4]]}, stepped),
+        **uses(ON_POINTS, ("case", 0), {"backbone_mm_kN": [[100.0, 2.8e4], [300.0, 4e4]]}, stepped),
         **uses(BENDING, ("case", 0), {
             "flexural_damping": 0.1, "flexural_damping_kind": "stiffness", "flexural_modes": 2,
         }, stepped),
