@@ -122,7 +122,7 @@ def _unpacked(t, y, cells, ground):
     """What the core's functions take, from plain arrays, which cross from Python to compiled code at the least cost."""
     m = Springs(
         cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6], cells[7], cells[8], cells[9], cells[10], cells[11],
-        cells[12], cells[13], cells[14], cells[22], None, None, None, None, None,
+        cells[12], cells[13], cells[14], cells[22], None, None, None, None, None, None,
     )  # fmt: skip
     contact = Contact(cells[15], cells[16], cells[17], cells[18], cells[19])
     i = int(t / cells[23])
