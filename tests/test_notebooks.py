@@ -104,7 +104,7 @@ def test_an_interrupted_cell_ends_and_the_same_cell_goes_on_in_the_same_kernel(t
     try:
         assert client.execute("import rockbatch as rb", reply=True, timeout=120)["content"]["status"] == "ok"
         cell = 'table = rb.run("study.toml", "out", jobs=1)'
-        asked, until = client.execute(cell), time.monotonic() + 120
+        asked, until = client.execute(cell), time.monotonic() + 600
         while not part.exists() or part.read_bytes().count(b"\n") < 2:
             assert time.monotonic() < until
             time.sleep(0.01)

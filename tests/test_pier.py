@@ -254,7 +254,8 @@ def test_the_base_tilts_less_than_the_residual_the_nearer_to_toppling():
 def test_every_law_stands_in_both_tables_and_one_that_creeps_names_one_that_does_not():
     assert set(get_args(SpringLaw)) == set(LAWS) == set(CODES) - {"elastic"}
     for spring, law in LAWS.items():
-        base = YieldingBase(40.0, eta=3.0, spring=spring)
+        points = ((1.0, 1.0), (3.0, 2.0)) if law.has_points else ()
+        base = YieldingBase(40.0, eta=3.0, spring=spring, backbone=points)
         other = by_other_law(base)
         assert other is None or not other.ratchets
         assert base.ratchets == (other is not None) == (law.creep is not None)

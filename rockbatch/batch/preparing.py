@@ -201,6 +201,10 @@ def share_of(runs: Runs, share: int, shares: int) -> Collection[int]:
     simulated = to_simulate(runs, range(len(runs)))
     n = len(simulated)
     if shares > n:
-        raise InputError(f"--shard {share}/{shares}: the study has {count(n, 'run')}; make as many shares or fewer")
+        images = "" if n == len(runs) else ", each for a run and its mirror image"
+        raise InputError(
+            f"--shard {share}/{shares}: the study has {count(n, 'simulation')}{images}; make as many shares or fewer"
+        )
     part = simulated[n * (share - 1) // shares : n * share // shares]
+    # A dictionary, since runs are looked up in it one by one
     return dict.fromkeys(sorted(image for index in part for image in runs.images(index))).keys()

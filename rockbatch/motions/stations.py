@@ -237,8 +237,8 @@ def _turned_triples(stations: Sequence[Sequence[Component]]) -> Iterator[tuple[i
     members = [(i, c) for i, station in enumerate(stations) for c in station]
     horizontals = [(i, c) for i, c in members if not c.orientation.vertical and c.pga]
     for alike in grouped(horizontals, lambda pair: (len(pair[1].acceleration), round(pair[1].dt, 9))).values():
-        if len({i for i, _ in alike}) < 2 or len(alike) < 3:
-            continue
+        if len({i for i, _ in alike}) < 2 or len(alike) < 3 or len(alike[0][1].acceleration) < 3:
+            continue  # any two samples lie in one plane
         samples = np.array([c.acceleration / np.linalg.norm(c.acceleration) for _, c in alike])
         for triple in _planes(samples):
             of_station = [alike[row][0] for row in triple]

@@ -3,13 +3,16 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 
 from rockbatch.outcome.changes import change_of_devices
 from rockbatch.outcome.outcome import Outcome
-from rockbatch.pier import Pier
+from rockbatch.pier import Base, Pier
+from rockbatch.pier.equilibrium import without_dampers
+from rockbatch.pier.footings import slow_turn
 from rockbatch.simulation.agreement import far_below, same_counts, windows
 from rockbatch.simulation.runs import Run, Stop, Trial, try_all
 from rockbatch.simulation.steps import fastest_rate
@@ -31,7 +34,7 @@ RISES, FALLS = 300.0, 0.5
 rotation FALLS α, from which a pier may overturn."""
 
 NEAR, SWIFT = 0.2, 6.0
-"""Distance from α, over α, of a pier that may be near its unstable equilibrium, and the time there, times p, above which a run is
+"""Distance from its unstable equilibrium, over it, of a pier that may linger, and the time there, times p, above which a run is
 repeated: energies that differ by 10⁻⁸ are told apart after about 2 ln(0.2/10⁻⁴) = 15."""
 
 
@@ -54,18 +57,24 @@ def magnifies(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, until: int
 
 
 def lingers(run: Run, fine: Trial, quiet_s: float) -> bool:
-    """Return True if a pier that stays upright leans near its unstable equilibrium for longer than :data:`SWIFT`/p.
+    """Return True if a pier that stays upright may lean near its unstable equilibrium for longer than :data:`SWIFT`/p.
 
-    There the least change may overturn it, which a peak before it does not show. The last window of its extremes goes on from
-    the end of the tail of ``quiet_s`` [s] to that of the run.
+    There the least change may overturn it, which a peak before it does not show. Windows count whole, if the pier leans that far
+    in them or farther: it may linger on its way back. The last one extends to the end of the run, beyond the tail of ``quiet_s``
+    [s].
     """
-    outcome, near, tail_s = (
-        fine.outcome,
-        np.abs(fine.extremes / run.pier.alpha - 1.0) < NEAR,
-        run.motion.duration + quiet_s,
-    )
+    outcome = fine.outcome
+    near = fine.extremes > (1.0 - NEAR) * _unstable_equilibrium(run.pier, run.base)
+    tail_s = run.motion.duration + quiet_s
     lingered = near.sum() * tail_s / len(near) + near[-1] * max(outcome.t_end - tail_s, 0.0)
     return outcome.status == "ok" and bool(lingered * run.pier.p > SWIFT)
+
+
+@lru_cache(maxsize=256)
+def _unstable_equilibrium(pier: Pier, base: Base) -> float:
+    """Return the unstable equilibrium of a pier that is turned slowly [rad]; inf if it has none up to π/2."""
+    unstable = slow_turn(pier, base, without_dampers(base.restraints)).unstable
+    return math.inf if unstable is None else unstable
 
 
 def residuals_wander(levels: Sequence[Trial], tolerance: float, pier: Pier) -> bool:

@@ -100,3 +100,9 @@ def test_turned_triples_are_all_rows_in_one_plane_and_take_little_memory():
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert most < 0.25 * 8 * len(many) ** 2
+
+
+def test_any_two_samples_lie_in_one_plane_and_tell_nothing_of_turned_copies(tmp_path):
+    for name, direction, samples in (("A", "000", (1.0, 0.5)), ("B", "030", (0.9, -0.3)), ("C", "060", (0.4, 1.0))):
+        write_at2(tmp_path, f"{name}{direction}.AT2", samples, title=title(direction, station=name))
+    assert len(read_motions(tmp_path).motions) == 3

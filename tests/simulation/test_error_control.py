@@ -199,11 +199,14 @@ def test_overturning_under_a_changed_motion_is_noted_without_an_error(monkeypatc
     assert "a motion 1e-08 weaker overturns the pier" in outcome.note
 
 
-def test_a_pier_that_lingers_near_its_unstable_equilibrium_may_overturn():
-    """Behind a peak of 1.4 α under a strong pulse, which a motion 10⁻⁸ stronger hardly moves, and whose halves of steps agree."""
+@pytest.mark.parametrize("zeros_s", [2.5, 298.5])
+def test_a_pier_that_lingers_near_its_unstable_equilibrium_may_overturn(zeros_s):
+    """Behind a peak of 1.4 α under a strong pulse, which a motion 10⁻⁸ stronger hardly moves, and whose halves of steps agree.
 
-    t = np.arange(800) * 0.005
-    wave = np.sin(2.0 * np.pi * t / 1.5) * (t < 1.5)
+    With many zeros after the pulse all of it is in one window of the extremes.
+    """
+    wave = np.sin(2.0 * np.pi * np.arange(300) * 0.005 / 1.5)
+    wave = np.append(wave, np.zeros(round(zeros_s / 0.005)))
 
     def under(amplitude):
         motion = Motion("one sine", 0.005, amplitude * wave)
@@ -218,6 +221,36 @@ def test_a_pier_that_lingers_near_its_unstable_equilibrium_may_overturn():
         assert outcome.status == "ok"
         assert (under(low * (1.0 - less) * (1.0 + 1e-8)).status == "overturned") == may_overturn
         assert (outcome.may_overturn, outcome.chaotic, outcome.theta_max_error is None) == 3 * (may_overturn,)
+
+
+@pytest.mark.parametrize(
+    ("base", "tangent_over_alpha"),
+    [
+        (RigidBase(), 1.0),
+        (
+            YieldingBase(20.0, eta=1.3, spring="hardening"),
+            0.3,
+        ),  # a toe bears 1.3/2 of the weight: tan θ = (1.3 − 1) tan α
+        (YieldingBase(20.0, eta=2.5), 1.0),
+    ],
+)
+def test_a_pier_lingers_near_its_own_unstable_equilibrium(base, tangent_over_alpha):
+    """For 6/p, there or beyond: the motion of 4 s and the tail of 4 s have windows of a quarter of a second."""
+    run = Run(Pier(0.1, 1.0), base, Motion("m", 0.01, np.zeros(401)))
+    balance = math.atan(tangent_over_alpha * math.tan(0.1))
+
+    def lingering(rotation, count, t_end=8.0):
+        extremes = np.where(np.arange(WINDOWS) < count, rotation, 0.0)[::-1]
+        return chaos.lingers(
+            run, SimpleNamespace(outcome=SimpleNamespace(status="ok", t_end=t_end), extremes=extremes), 4.0
+        )
+
+    assert [lingering(share * balance, 25) for share in (0.75, 0.85, 1.3)] == [False, True, True]
+    assert [lingering(balance, count) for count in (23, 25)] == [False, True]
+    assert [lingering(balance, 1, t_end) for t_end in (13.0, 14.0)] == [
+        False,
+        True,
+    ]  # the last window extends to the end
 
 
 def test_no_error_is_claimed_of_a_peak_to_which_a_later_one_may_rise(monkeypatch):

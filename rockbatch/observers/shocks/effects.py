@@ -1,12 +1,13 @@
 """Effects of each shock of a sequence on a pier, from the history of the run."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from rockbatch.motions.motion import Motion, Samples
+from rockbatch.observers.shocks.outcome import ShockOutcome
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import ElasticBase
 from rockbatch.simulation.leaning import greatest_swing, lean_of, unstressed
@@ -20,36 +21,6 @@ NOT_REACHED = "not reached"
 
 
 _AT_ONCE = 1e-9  # s: times of samples are sums, and rounded
-
-
-@dataclass(frozen=True)
-class ShockOutcome:
-    """Effects of a shock; SI units, angles in radians, NaN if one does not apply.
-
-    Attributes
-    ----------
-    status : str
-        "ok"; "overturned" or "flight" if the run ended so before the next shock began; "not reached"; or "failed".
-    theta_max, t_max : float
-        Greatest rotation |θ| from its first sample until the next shock begins, or the run ends, and its time.
-    theta_max_error : float
-        Its change by halving the step; NaN with a fixed step.
-    theta_res : float
-        Static rest rotation on the deformed base when the next shock begins; with dampers or tendons the middle of the
-        extremes of θ in the last quarter of the pause. The last shock has a pause, too.
-    settlement : float
-        Mean settlement of the supports since the start, at that time.
-    moving : float
-        Half the range of θ in the last quarter of the pause.
-    """
-
-    status: str
-    theta_max: float = math.nan
-    t_max: float = math.nan
-    theta_max_error: float = math.nan
-    theta_res: float = math.nan
-    settlement: float = math.nan
-    moving: float = math.nan
 
 
 class OfShocks(NamedTuple):

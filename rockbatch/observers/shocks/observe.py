@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 from rockbatch.motions import Motion
 from rockbatch.observers.shocks import TABLE
-from rockbatch.observers.shocks.effects import OfShocks, ShockOutcome, of_shocks, with_error
+from rockbatch.observers.shocks.effects import OfShocks, of_shocks, with_error
+from rockbatch.observers.shocks.outcome import ShockOutcome
 from rockbatch.observers.shocks.table import shock_rows
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.simulation.observing import Observer

@@ -7,7 +7,7 @@ from typing import Any
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.observers.shocks import TABLE
-from rockbatch.observers.shocks.effects import ShockOutcome
+from rockbatch.observers.shocks.outcome import ShockOutcome
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Pier
 from rockbatch.results.beside_peaks import present, read_beside
