@@ -17,13 +17,16 @@ from rockbatch.study import Case
 PIER = replace(RIGID_PIER, flexural_period_s=0.9)
 FOOT = FootingBase(beta=80.0, safety_factor=4.0, length_m=6.0, friction=0.6)
 BENT_FOOT = replace(FOOT, kinematics="finite", shaft="elastic", flexural_modes=3)
+ON_POINTS = YieldingBase(
+    beta=50.0, eta=2.5, spring="backbone", backbone=((1.0, 1.0), (3.0, 2.0), (5.0, 2.5)), epsilon=0.1
+)
 BASES = [
     RigidBase(
         shaft="elastic", flexural_modes=3, restitution=0.9, friction=0.6, area_m2=4.0, contact_stiffness_kN_m=1e6
     ),
     ElasticBase(beta=50.0, shaft="elastic", flexural_modes=3, epsilon=0.1, friction=0.6, area_m2=4.0),
     YieldingBase(beta=50.0, shaft="elastic", flexural_modes=3, eta=2.5, zeta=0.05, friction=0.6, area_m2=4.0),
-    YieldingBase(beta=50.0, eta=2.5, spring="backbone", backbone=((1.0, 1.0), (3.0, 2.0), (5.0, 2.5)), epsilon=0.1),
+    ON_POINTS,
     FOOT,
     BENT_FOOT,
 ]
@@ -78,7 +81,7 @@ def test_cases_that_differ_in_one_key_of_their_base_have_rows_that_differ(base):
             continue
         if base.shaft == "rigid" and (name == "shaft" or name.startswith("flexural")):
             continue
-        if base is BENT_FOOT and name == "kinematics":
+        if (base is BENT_FOOT and name == "kinematics") or (base is ON_POINTS and name in ("spring", "n")):
             continue
         first, second = rows(base, changed(base, name, rng))
         assert first != second, name
