@@ -173,7 +173,7 @@ def _foundations(finished: Finished) -> Markup:
         own = [case["columns"].get(key) for key in varied]
         name = titled(case["case"], filter(None, [case["columns"].get(BOUND)]))
         if points := values.get("backbone"):
-            listed = ", ".join(f"({x:.4g}, {force:.4g})" for x, force in points)
+            listed = ", ".join(f"({x:.7g}, {force:.7g})" for x, force in points)
             values = values | {"spring": f"backbone of {len(points)} points (δ/δ_y, F/F_y): {listed}"}
         cells = [name, *own, case["base"], *(values.get(key) for key in names), *millimetres]
         rows.append([*cells, *(values.get(key) for key in further), of_case])
