@@ -334,6 +334,15 @@ def test_a_demand_is_written_without_an_e_and_distinguished_from_its_limit(value
 
 
 @pytest.mark.parametrize(
+    ("ratio", "words"),
+    [(1.15, "115 %"), (1.0, "100 %"), (0.9999, "99.99 %"), (1.0 - 1e-9, "100.000 %"), (12.0, "1,200 %"), (math.inf, "∞"),
+     (math.nan, "")],
+)  # fmt: skip
+def test_a_share_of_a_limit_that_is_not_known_has_no_words(ratio, words):
+    assert wording.percent(ratio).replace("\u00a0", " ") == words
+
+
+@pytest.mark.parametrize(
     ("value", "more", "words"),
     [
         (0.25, {}, ("0.25 ≤ 0.5", "≤ 0.5", "0.50", "0.25")),
