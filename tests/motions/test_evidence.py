@@ -264,7 +264,7 @@ def test_angles_that_contradict_codes_or_samples_hold_the_set_back(tmp_path, ang
     assert any(all(words in reason for words in said) for reason in reasons)
 
 
-@pytest.mark.parametrize("turned, remarked", [(0.0, False), (4.0, False), (6.0, True), (-30.0, True)])
+@pytest.mark.parametrize(("turned", "remarked"), [(0.0, False), (4.0, False), (6.0, True), (-30.0, True)])
 def test_angles_are_remarked_on_only_where_they_differ_from_their_codes(tmp_path, turned, remarked):
     write_channels(tmp_path, HNE=(90.0 + turned, 0.0), HNN=(turned % 360.0, 0.0))
     found = read_motions(tmp_path, options=ReadOptions(sensitivity=1e6))

@@ -1,11 +1,15 @@
 """Files that ObsPy reads by an explicit format, and ASDF through h5py: of recorders and of data centres."""
 
+import struct
+
 import h5py
 import numpy as np
 import pytest
 from waveform_files import COUNTS, asdf_bytes, channel_xml, evt_bytes, trace
 
+from rockbatch.common.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions.formats.with_obspy import check_evt
 
 XML = (
     '<FDSNStationXML xmlns="http://www.fdsn.org/xml/station/1"><Network code="CI"><Station code="LRL">{}</Station></Network>'
@@ -110,3 +114,22 @@ def test_a_cut_file_of_a_recorder_is_refused(tmp_path, end):
     (tmp_path / "x.evt").write_bytes(evt_bytes()[:end])
     assert read_motions(tmp_path).unusable
     assert not read_motions(tmp_path, options=ReadOptions(role="horizontal"), confirmed=["*"]).motions
+
+
+def frame(kind, order, mark=None, of_data=24):
+    """Return a frame of an .evt: a tag of 16 bytes in the byte ``order`` that its second byte states, a header and data."""
+    tag = struct.pack(f"{order}2s2xIHHI", b"K" + bytes([order == ">" if mark is None else mark]), kind, 32, of_data, 0)
+    return tag + bytes(32 + of_data)
+
+
+@pytest.mark.parametrize("order", "<>")
+def test_tags_of_a_recorder_lead_from_frame_to_frame_in_either_byte_order(order):
+    whole = frame(1, order, of_data=0) + frame(0, order) + frame(0, order)
+    assert check_evt(whole) == whole
+    assert check_evt(whole + bytes(50)) == whole + bytes(50)
+    with pytest.raises(InputError, match="no tag at byte 48"):
+        check_evt(whole[:48] + frame(0, order, mark=2))
+    with pytest.raises(InputError, match="a frame of 32 and 24 bytes at byte 120"):
+        check_evt(whole[:-1])
+    with pytest.raises(InputError, match="no tag at byte 192"):
+        check_evt(whole + b"K\0")
