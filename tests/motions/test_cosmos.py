@@ -189,6 +189,7 @@ def test_the_mark_of_missing_values_is_no_acceleration_unless_the_peak_reaches_i
         (cosmos_text(series={"layout": "free"}), r'line 46: found the format "\(free\)"; expected one such as'),
         (cosmos_text(series={"layout": "0F10.5"}), "found the format"),
         (cosmos_text().replace("100 Integer", " 90 Integer"), "line 14: found .*expected 100 Integer-header values"),
+        (cosmos_text().replace("100 Integer", "100 Real"), "line 14: found .*expected 100 Integer-header values"),
         (cosmos_text().replace("with 13", "with 12"), 'line 13: found .*expected "100 Integer-header'),
         (cosmos_text().replace("2 Comment", "1 Comment"), 'line 45: found .*expected ".*acceleration pts'),
         (cosmos_text() + "1.0\n", "line 54: found "),

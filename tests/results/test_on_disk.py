@@ -649,3 +649,19 @@ def test_histories_are_read_without_the_compiler(results):
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split() == [
         "h5py"
     ]
+
+
+def test_what_yielding_springs_write_is_expected_to_grow_with_time_and_frequency():
+    """Each changes its branch twice a period, on top of the samples and of the impacts."""
+    pier, record = rb.Pier(0.2, 1.0), SimpleNamespace(dt=0.01)
+
+    def expected(base, seconds=20.0):
+        run = SimpleNamespace(case=SimpleNamespace(pier=pier, base=base), record=record)
+        return history_bytes(run, {"impacts": 9, "separations": 9, "t_end_s": seconds})
+
+    soft, stiff, stiffest = (rb.YieldingBase(beta, eta=3.0) for beta in (50.0, 100.0, 200.0))
+    more = expected(stiff) - expected(soft)
+    assert expected(stiffest) - expected(stiff) == pytest.approx(2.0 * more, rel=1e-9)
+    assert expected(stiff, 40.0) - expected(soft, 40.0) == pytest.approx(2.0 * more, rel=1e-9)
+    assert more > 0.0
+    assert expected(rb.ElasticBase(50.0)) == expected(rb.ElasticBase(200.0)) < expected(soft)
