@@ -34,7 +34,7 @@ from rockbatch.results.labelled import Labelled
 from rockbatch.results.labels import Series
 from rockbatch.study import load_study
 from rockbatch.terminal import messages
-from rockbatch.terminal.streams import filled, in_width, is_lost, shortened, show
+from rockbatch.terminal.streams import filled, in_width, is_lost, shortened, show, tell
 
 STUDY = study_text(title="A <pulse> & a pier")
 
@@ -385,6 +385,21 @@ def test_wide_tables_fit_the_terminal(monkeypatch):
     assert len(in_width(["", "a" * 100], [["one", "0"]]).splitlines()) == 2  # too wide for any block, and below none
     blocks = "\n".join(lines).split("\n\n")
     assert all(block.splitlines()[1].split()[0] == "one" for block in blocks)  # whose numbers they are
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_on_a_terminal_lines_are_wrapped_and_verdicts_keep_their_colour(monkeypatch, terminal):
+    """Elsewhere a line stays one, and no escape sequence is written; nowhere does a text control the terminal."""
+    stream = io.StringIO()
+    monkeypatch.setattr(stream, "isatty", lambda: terminal)
+    monkeypatch.setenv("COLUMNS", "40")
+    tell(stream, f"\x1b[31mfail\x1b[0m {'word ' * 20}\x1b[2Jend")
+    written = stream.getvalue()
+    assert written.count("\x1b") == 2 * terminal
+    assert written.startswith("\x1b[31mfail\x1b[0m word" if terminal else "\\x1b[31mfail\\x1b[0m word")
+    assert "\\x1b[2Jend" in written
+    lines = written.splitlines()
+    assert (len(lines) > 2, max(map(len, lines)) <= 40 + len("\x1b[31m\x1b[0m")) == (terminal, terminal)
 
 
 def test_prose_is_indented_behind_its_first_line():
