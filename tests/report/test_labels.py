@@ -12,7 +12,7 @@ import rockbatch as rb
 from rockbatch.analyses.design.figures import axis_label
 from rockbatch.analyses.fragility.figures import label
 from rockbatch.pier import RigidBase, Tendon, YieldingBase
-from rockbatch.quantities.labels import digits_that_tell, in_full, plain, quantity
+from rockbatch.quantities.labels import digits_that_tell, in_full, plain, quantity, record_labels
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.finished_analysis import named as named_by
 from rockbatch.results.labels import named
@@ -187,3 +187,8 @@ def test_analyses_name_a_viscous_coefficient_with_the_unit_of_its_exponent(tmp_p
 def test_without_its_case_a_viscous_coefficient_keeps_the_letter_of_its_exponent():
     key = "damper_1_coefficient_kN_s_m"  # an analysis of an earlier version does not list its cases
     assert named_by({}, {"case": "oil", key: 900.0}, [key]).replace("\u00a0", " ") == "oil: C = 900 kN (s/m)^a"
+
+
+def test_a_record_without_a_label_is_called_by_its_name():
+    records = [{"record": "a", "label": "Town Hall NS"}, {"record": "b", "label": None}, {"record": "c"}]
+    assert record_labels({"records": records}) == {"a": "Town Hall NS", "b": "b", "c": "c"}
