@@ -205,6 +205,20 @@ def test_what_is_possible_ends_at_its_bounds(low, high, make):
 
 
 @pytest.mark.parametrize(
+    ("name", "low", "high"),
+    [("alpha", 1e-4, 1.57079), ("p", 1e-3, 1e3), ("mu", 1e-3, 1e12), ("gravity", 1e-3, 1e3)],
+)
+def test_a_pier_far_from_any_that_exists_is_possible_up_to_its_bounds(name, low, high):
+    def pier(value):
+        return Pier(**{"alpha": 0.2, "p": 1.0, name: value}, confirm=(name,))
+
+    assert [getattr(pier(value), name) for value in (low, high)] == [low, high]
+    for value in (0.999 * low, 1.001 * high, math.nan):
+        with pytest.raises(InputError, match=f"^{name} = "):
+            pier(value)
+
+
+@pytest.mark.parametrize(
     ("beta", "words"), [(math.nan, "above"), (-1.0, "above"), (math.inf, "1e+15 at most"), (2e15, "1e+15")]
 )
 def test_a_stiffness_that_is_no_number_is_refused(beta, words):
