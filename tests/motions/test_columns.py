@@ -12,7 +12,7 @@ from motion_files import at2_text, wiggle
 from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.motions import ReadOptions, Unusable, read_motions
 from rockbatch.motions.formats import RecordFile, read_record, table
-from rockbatch.motions.formats.column_header import Column
+from rockbatch.motions.formats.column_header import Column, stated_step
 from rockbatch.motions.formats.columns import is_bbp
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 
@@ -126,6 +126,17 @@ def test_double_precision_exponents_of_fortran_are_numbers(tmp_path):
 def test_a_step_and_a_count_in_the_header_are_taken(tmp_path):
     (tmp_path / "x_N.txt").write_text("# NPTS = 3\n# dt = 10 ms\n# unit: gal\n1.0\n2.5\n3.0\n")
     assert one(tmp_path).dt == 0.01
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["dt = 20 ms", "dt (ms) = 20", "dt_ms: 20", "dt [ms.] 20", "time step (s): 0.02", "dt = 0.02", "sampling rate: 50 Hz",
+     "sampling rate (Hz): 50", "sampling rate (samples/sec) = 50", "sampling_rate_hz = 50", "sampling interval (ms): 20"],
+)  # fmt: skip
+def test_the_unit_of_a_step_may_stand_before_or_behind_its_number(line):
+    stated = stated_step([f"# {line}"])
+    assert stated is not None
+    assert stated.dt == pytest.approx(0.02, rel=1e-12)
 
 
 def test_a_table_cut_within_its_last_number_is_refused(tmp_path):

@@ -272,6 +272,12 @@ def test_angles_are_remarked_on_only_where_they_differ_from_their_codes(tmp_path
     assert [text.count("decided by: these angles") for text in texts] == [1] * (2 * remarked)
     for code, azimuth in zip(("HNE", "HNN"), (90.0 + turned, turned % 360.0), strict=True):
         assert remarked == any(f'"{code}"' in text and f"{azimuth:g}°" in text for text in texts)
+    (tmp_path / "motions.toml").write_text(
+        "".join(f'[[record]]\nfile = "{n}.mseed"\nuse = true\n' for n in ("HNE", "HNN"))
+    )
+    found = read_motions(tmp_path, options=ReadOptions(sensitivity=1e6))
+    assert [motion.azimuth for motion in found.motions] == [90.0 + turned, turned % 360.0]
+    assert "direction" not in [finding.what for motion in found.motions for finding in motion.findings]
 
 
 @pytest.mark.parametrize(
