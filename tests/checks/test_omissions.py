@@ -271,6 +271,16 @@ def test_the_first_screen_says_what_an_undecided_and_a_green_check_leave_out():
     assert (rock.verdict, {cell.percent for cell in rock.cells}) == ("not decided", {"≥\u00a050\u00a0%"})
 
 
+@pytest.mark.parametrize(
+    ("omits", "percent"), [(LANDINGS, "≥\u00a050\u00a0%"), (MODES, "50\u00a0%"), ("", "≥\u00a050\u00a0%")]
+)
+def test_a_force_without_its_last_mode_is_no_lower_bound(omits, percent):
+    """What the mode adds may have either sign."""
+    one = verdict("rock", "not decided", check="shear", value=0.25, ratio=0.5, high=math.inf, omits=omits)
+    assert one.is_lower_bound == (omits != MODES)
+    assert scorecard([one], lambda one: one.case).rows[0].cells[0].percent == percent
+
+
 def test_what_is_left_out_is_a_column_of_the_verdicts_and_no_other_word_is_read(tmp_path):
     table = runs([0.3], name="rigid", impacts=4, **SHEAR)
     found = [judged(table, one=RIGID, demand="base_shear_kN", at_most=4000.0)]

@@ -215,6 +215,7 @@ def test_intervals_by_station_are_said_to_be_so(tmp_path, stations, said):
     (f"{IDA}\nwindow = 2", ["window = 2: expected a number from 0.001 to 0.2"]),
     (f'{STRIPES}\nmethod = "IDA"', ['did you mean "ida"?']),
     (f'{STRIPES}\nchecks = ["half-way"]', ['checks = "half-way": no [[check]] has this name; did you mean "half way"?']),
+    (f'{STRIPES}\nchecks = ["zzz"]', ['checks = "zzz": no [[check]] has this name; there is "half way"']),
     (f"{STRIPES}\nconfidence = 1.0", ["confidence = 1.0: expected a number, 0 or above and below 1"]),
 ])  # fmt: skip
 def test_mistakes_in_the_settings_are_reported_with_their_line(tmp_path, capsys, fragility, words):
