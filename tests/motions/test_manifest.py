@@ -198,6 +198,8 @@ def test_mistakes_in_a_csv_have_their_lines_too(tmp_path):
     assert second.startswith('motions.csv:2: [[record]] "a000.AT2": scale = "x": expected a number')
     assert third.startswith("motions.csv:4: found 4 cells; the first line names 3 columns")
     assert fourth.startswith('motions.csv:4: [[record]] "a09.AT2": file = "a09.AT2": no such file in ')
+    (tmp_path / "motions.csv").write_text("file,zzz\na000.AT2,1\n")
+    assert problems_of(tmp_path)[0].startswith('motions.csv:1: "zzz": unknown column; write one of file, ')
 
 
 def test_counts_take_no_unit_and_two_components_no_single_azimuth(tmp_path):

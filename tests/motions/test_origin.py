@@ -238,3 +238,17 @@ def test_tables_keep_the_name_and_report_terminal_and_run_json_say_the_words(tmp
     assert f'<th scope="row"><span title="CHAN24">{label}</span></th>' in report  # every run
     assert f'<th scope="row">{label}' not in report
     assert f"{label} (CHAN24)" in report
+
+
+@pytest.mark.parametrize(
+    ("event", "station", "short"),
+    [
+        ("Kobe 1995", "Town Hall Kobe", "Town Hall"),
+        ("Kobe Aftershock 1995", "Town Hall Kobe", "Town Hall"),
+        ("Waiau 2016", "Town Hall Kobe", "Town Hall Kobe"),
+        ("", "Town Hall Kobe", "Town Hall Kobe"),
+        ("X 1999", "Lower Valley - Elementary School", "Elementary"),
+    ],
+)
+def test_a_station_in_a_table_leaves_out_the_place_of_its_event(event, station, short):
+    assert Origin(event, station).short_station == short

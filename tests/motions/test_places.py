@@ -162,3 +162,13 @@ def test_a_dam_s_toe_and_crest_are_told_apart_by_the_station_of_an_at2_file(tmp_
     assert len(read_motions(tmp_path)) == 1
     write_at2(tmp_path, "x.AT2", wiggle(60), title="Somewhere, 1/17/1994, Some Dam - Right Crest, 000")
     assert "in a structure" in only_reason(read_motions(tmp_path))
+
+
+@pytest.mark.parametrize("place", ["{} m depth", "Depth: {} m", "{} m below ground", "GL-{} m"])
+def test_a_depth_over_two_metres_is_below_the_ground_in_either_unit(place):
+    expected = {1.9: Stand.GROUND, 2.1: Stand.BOREHOLE}
+    for unit, metres in (("m", 1.0), ("ft", 0.3048), ("feet", 0.3048)):
+        found = {
+            m: stand(place.format(f"{m / metres:.3f}").replace(" m", f" {unit}", 1), "Somewhere")[0] for m in expected
+        }
+        assert found == expected
