@@ -9,6 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import binom, nct, norm
 
+from rockbatch.checks import Rule
+from rockbatch.common.errors import InputError
 from rockbatch.quantities.statistics import STATISTICS, exceedance, quantile, tolerance_rank
 
 INF = math.inf
@@ -50,6 +52,14 @@ def test_no_statistic_falls_when_a_value_grows(values, index, name, more):
 )  # fmt: skip
 def test_a_statistic_over_the_records_is_what_a_hand_computes(asked, expected):
     assert judged(runs([0.1, 0.2, 0.6, 0.3]), **asked).value == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("least", [3, 7, 12])
+def test_a_check_may_ask_for_more_records_than_its_code_does(least):
+    one = Rule("tilt", "theta_max_over_alpha", at_most=0.3, statistic="en1998-1", least=least)
+    assert one.least == least
+    with pytest.raises(InputError, match="^least = 2: EN 1998-1 asks for 3; leave it out"):
+        Rule("tilt", "theta_max_over_alpha", at_most=0.3, statistic="en1998-1", least=2)
 
 
 @pytest.mark.parametrize(

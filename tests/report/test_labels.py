@@ -12,9 +12,11 @@ import rockbatch as rb
 from rockbatch.analyses.design.figures import axis_label
 from rockbatch.analyses.fragility.figures import label
 from rockbatch.pier import RigidBase, Tendon, YieldingBase
+from rockbatch.quantities.catalogue import COLUMNS
 from rockbatch.quantities.labels import digits_that_tell, in_full, plain, quantity, record_labels
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.finished_analysis import named as named_by
+from rockbatch.reporting.labels import head
 from rockbatch.results.labels import named
 from rockbatch.workflow.analysis import AnalysisFolder
 
@@ -192,3 +194,10 @@ def test_without_its_case_a_viscous_coefficient_keeps_the_letter_of_its_exponent
 def test_a_record_without_a_label_is_called_by_its_name():
     records = [{"record": "a", "label": "Town Hall NS"}, {"record": "b", "label": None}, {"record": "c"}]
     assert record_labels({"records": records}) == {"a": "Town Hall NS", "b": "b", "c": "c"}
+
+
+def test_a_heading_names_its_column_and_the_factor_only_if_the_page_has_one():
+    for column in COLUMNS.values():
+        if column.page is not None:
+            factor = f" × {column.page.factor}" if column.page.factor != 1.0 else ""
+            assert head(column).note == f"{column.name}{factor}: {column.meaning}"

@@ -4,6 +4,7 @@ import json
 import re
 from dataclasses import fields, replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -20,6 +21,7 @@ from rockbatch.common.errors import InputError, MissingColumns
 from rockbatch.motions.scaling import Target
 from rockbatch.outcome.outcome import TERMS, Outcome
 from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.bed import OF_FOOTING
 from rockbatch.quantities.cases import THOUSAND
 from rockbatch.quantities.catalogue import (
     COLUMNS,
@@ -389,3 +391,9 @@ def test_runs_that_never_flew_have_no_duration_and_no_height_of_flights(table):
     grounded = table[table["flights"] == 0]
     assert len(grounded)
     assert grounded[["flight_duration_s", "flight_height_m"]].isna().all(axis=None)
+
+
+@pytest.mark.parametrize("quantity", OF_FOOTING, ids=lambda quantity: quantity.name)
+def test_a_run_without_a_bed_has_no_quantity_of_one(quantity):
+    outcome = SimpleNamespace(bed=None, settlement_error=0.1, theta_res_error=0.1)
+    assert quantity.source(SimpleNamespace(pier=rb.Pier(0.2, 1.0), base=rb.RigidBase(), outcome=outcome)) is None
