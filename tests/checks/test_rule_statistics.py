@@ -58,7 +58,7 @@ def test_a_statistic_over_the_records_is_what_a_hand_computes(asked, expected):
 def test_a_check_may_ask_for_more_records_than_its_code_does(least):
     one = Rule("tilt", "theta_max_over_alpha", at_most=0.3, statistic="en1998-1", least=least)
     assert one.least == least
-    with pytest.raises(InputError, match="^least = 2: EN 1998-1 asks for 3; leave it out"):
+    with pytest.raises(InputError, match=r"^least = 2: EN 1998-1 asks for 3; leave it out"):
         Rule("tilt", "theta_max_over_alpha", at_most=0.3, statistic="en1998-1", least=2)
 
 

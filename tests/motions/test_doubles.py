@@ -14,6 +14,7 @@ from waveform_files import COUNTS, START, trace, write_mseed
 from rockbatch.common.errors import Contradiction
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.component import Component, Sensor
+from rockbatch.motions.doubles import _finding_on_copy
 from rockbatch.motions.likeness import pairs_of_one_recording
 from rockbatch.motions.manifest_draft import draft
 from rockbatch.motions.orientation import Orientation
@@ -286,3 +287,16 @@ def test_two_channels_of_unknown_direction_do_not_contradict_each_other():
 
     assert denied("H1") == [(0, 1)]
     assert denied("") == []
+
+
+@pytest.mark.parametrize(
+    ("peak", "factor", "said"),
+    [(6.0, None, "has 3 times its peak"), (0.5, None, "has 0.25 times its peak"), (2.9, None, ""), (1.4, None, ""),
+     (6.0, 3.0, "has the same samples times 3: check")],
+)  # fmt: skip
+def test_a_copy_with_another_peak_says_how_many_times_that_of_the_one_in_use(peak, factor, said):
+    used = Component("used", 0.01, 2.0 * np.sin(np.arange(1, 200) * np.pi / 4.0), Orientation("NS"))
+    copy = Component("copy", 0.01, peak * np.sin(np.arange(1, 200) * np.pi / 4.0), Orientation("NS"), source="copy.AT2")
+    finding = _finding_on_copy(copy, used, factor, decided=True)
+    assert (finding is not None) == bool(said)
+    assert finding is None or (said in finding.text and not finding.gross)

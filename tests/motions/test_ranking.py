@@ -10,7 +10,7 @@ from motion_files import wiggle, write_at2
 
 import rockbatch as rb
 from rockbatch.commands.cli import main
-from rockbatch.commands.motions import _GLANCE, overview
+from rockbatch.commands.motions import _GLANCE, _scorecard, overview
 from rockbatch.common.errors import Contradiction
 from rockbatch.motions import LeftOut, MotionSet, Unusable, measures, small_figures
 from rockbatch.motions.listed import Listed
@@ -121,6 +121,17 @@ def test_the_terminal_shows_the_doubtful_and_the_strongest_of_many():
         line == f"and {50 - len(doubtful)} doubtful and {150 - len(names) + len(doubtful)} other stations more"
         for line in lines
     )
+
+
+@pytest.mark.parametrize(
+    ("sound", "doubtful", "room", "shown"), [(4, 50, 40, (4, 18)), (50, 50, 40, (20, 10)), (4, 6, 40, (4, 6))]
+)
+def test_doubtful_records_have_the_lines_that_the_others_leave_and_half_of_all_at_least(sound, doubtful, room, shown):
+    many = [motion(f"S{i}x", 0.1) for i in range(sound)] + [
+        motion(f"D{i}x", 0.2, findings=ODD) for i in range(doubtful)
+    ]
+    card = _scorecard(ranked_records(MotionSet(many)), room)
+    assert tuple(sum(line.startswith(letter) and "x " in line for line in card) for letter in "SD") == shown
 
 
 def test_the_scorecard_with_every_column_fits_into_80_letters(monkeypatch):
