@@ -7,7 +7,7 @@ import pytest
 from check_samples import PIER, RIGID, case, runs, verdict
 
 from rockbatch.checks import wording
-from rockbatch.checks.answer import MOST_FILES, MOST_NAMES, answer, without_limits
+from rockbatch.checks.answer import MOST_FILES, MOST_NAMES, _listed, answer, without_limits
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, Stations, runs_of_cases, stations_of
 from rockbatch.checks.responses import in_words, worst_of_all, worst_of_cases
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
@@ -387,3 +387,8 @@ def test_a_quantile_that_passes_says_how_many_further_records_exceed_it():
     (said,) = [detail for detail in passing.details if "further records" in detail]
     assert said == "tilt: by interpolation between the ranks of 8, which 24 % of further records exceed."
     assert "further" not in " ".join(lines([verdict("pads", FAIL, **tilt)])[0].details)
+
+
+@pytest.mark.parametrize(("number", "words"), [(2, "a; b"), (3, "a; b; and 1 more"), (5, "a; b; and 3 more")])
+def test_names_that_are_not_listed_are_counted(number, words):
+    assert _listed(list("abcde")[:number], most=2) == words

@@ -1,6 +1,7 @@
 """Components of one station in one earthquake are one record, wherever and however often its files lie."""
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -156,3 +157,35 @@ def test_a_pair_that_was_turned_to_directions_before_it_is_read_is_one_station(t
     for name in ("ST20_000.txt", "ST110_000.txt"):
         (tmp_path / name).unlink()
     assert sorted(counted(tmp_path, options=ReadOptions(unit="m/s2")).values()) == [1, 1, 1]
+
+
+@pytest.mark.parametrize(
+    ("starts", "events", "same"),
+    [
+        ((HOUR, HOUR + 4.0), ("A", "B"), True),
+        ((HOUR, HOUR + 6.0), ("A", "A"), False),
+        ((HOUR, None), ("A", "A"), True),
+        ((HOUR, None), ("A", "B"), False),
+        ((None, None), ("", ""), False),
+    ],
+)
+def test_two_components_are_of_one_event_by_their_times_else_by_what_headers_say(starts, events, same):
+    """Each lasts five seconds."""
+    one, other = (component("x", start=start, event=event) for start, event in zip(starts, events, strict=True))
+    assert stations.in_one_event(one, other) is same
+
+
+@pytest.mark.parametrize(
+    ("events", "azimuths", "records"),
+    [(("A", "A"), (0.0, 0.0), 1), (("", ""), (0.0, 90.0), 1), (("A", ""), (0.0, 90.0), 1), (("", "A"), (0.0, 0.0), 2)],
+)
+def test_components_without_times_are_one_record_unless_one_repeats_a_direction(events, azimuths, records):
+    """An event that both headers state is as good as a time."""
+    both = [
+        replace(
+            component("x", event=event, site=f"site {i}", source=f"x{i}.txt"),
+            orientation=Orientation("H", azimuth=azimuth),
+        )
+        for i, (event, azimuth) in enumerate(zip(events, azimuths, strict=True))
+    ]
+    assert len(stations._by_time(both)) == records

@@ -11,10 +11,11 @@ from report_samples import FIG7, FOUNDATIONS, case_entry, three_piers, write_res
 
 from rockbatch.checks import write_verdicts
 from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.reporting import write_comparison
 from rockbatch.reporting.finished import read
-from rockbatch.reporting.pair import pair
+from rockbatch.reporting.pair import pair, paired_cases
 
 PIER = Pier(alpha=0.13, p=0.38)
 
@@ -249,3 +250,11 @@ def test_the_worst_of_both_stands_with_its_value_its_record_and_its_case(tmp_pat
     assert float(ratio) == pytest.approx(0.9 / theta, abs=6e-4)
     (settled,) = (row[3:] for row in others if row[0] == "mean settlement")
     assert settled == ["none", "", ""]
+
+
+def test_a_case_that_is_paired_twice_is_refused(tmp_path):
+    write_results(tmp_path)
+    study = read(tmp_path)
+    first, second, *_ = (name for name, _ in FOUNDATIONS)
+    with pytest.raises(InputError, match=f'^case "{first}" of B is paired twice; pair it once$'):
+        paired_cases(study, study, {first: first, second: first})

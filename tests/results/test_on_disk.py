@@ -22,7 +22,7 @@ from rockbatch.batch.observers import observers_of
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
 from rockbatch.outcome.outcome import TERMS
-from rockbatch.results import histories_file
+from rockbatch.results import histories_file, run_json
 from rockbatch.results.columns import columns
 from rockbatch.results.histories_file import FORMAT, HISTORY_UNITS, Responses, history_bytes, seal, write
 from rockbatch.results.reading import read_saved
@@ -665,3 +665,9 @@ def test_what_yielding_springs_write_is_expected_to_grow_with_time_and_frequency
     assert expected(stiff, 40.0) - expected(soft, 40.0) == pytest.approx(2.0 * more, rel=1e-9)
     assert more > 0.0
     assert expected(rb.ElasticBase(50.0)) == expected(rb.ElasticBase(200.0)) < expected(soft)
+
+
+@pytest.mark.parametrize("commit", ["1f2e3d4c5b6a", ""])
+def test_the_versions_have_the_commit_of_a_checkout_alone(monkeypatch, commit):
+    monkeypatch.setattr(run_json, "commit", lambda: commit)
+    assert run_json.versions().get("commit", "none") == (commit or "none")
