@@ -179,3 +179,17 @@ def test_every_key_that_a_text_names_is_one():
 )
 def test_lengths_and_velocities_have_the_factor_of_their_length(unit, factor):
     assert length_factor(unit) == factor
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "number"),
+    [
+        ("area_m2", "5 m2", "5"),
+        ("area_m2", "5 m²", "5"),
+        ("area_m2", "5 m", ""),
+        ("length_m", "5 m2", ""),
+        ("length_m", "5 m", "5"),
+    ],
+)
+def test_a_number_in_a_power_of_a_unit_is_no_number_in_the_unit(name, text, number):
+    assert number_in_unit_of(name, text) == number
