@@ -276,6 +276,7 @@ def test_every_law_stands_in_both_tables_and_one_that_creeps_names_one_that_does
         model = springs(Pier(0.13, 0.38), base)
         assert (model.law, model.creep > 0.0) == (CODES[spring], base.ratchets)
         assert base.has_exponent == law.has_exponent == (spring in WITH_EXPONENT)
+        assert base.has_points == law.has_points == (model.backbone is not None)
 
 
 SQUARE = Pier.rectangle(6.0, 30.0, mass_t=1000.0)

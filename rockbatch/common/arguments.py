@@ -9,6 +9,8 @@ from dataclasses import InitVar
 from numbers import Integral, Real
 from typing import Any, Literal, TypeVar, Union, Unpack, get_args, get_origin, get_type_hints
 
+import numpy as np
+
 from rockbatch.common.errors import Problem, WrongType, refuse
 
 Door = TypeVar("Door", bound=Callable[..., Any])
@@ -33,8 +35,8 @@ _WORDS: dict[object, str] = {
 def checked(door: Door) -> Door:
     """Decorate a public function or dataclass so that it accepts arguments of its annotated types only.
 
-    Numbers of other types, as NumPy's, become ``float`` and ``int``, and lists become tuples where one is meant. Annotations in
-    quotes and arrays are not checked. Raises ``InputError`` with a sentence for each argument of another type.
+    Numbers of other types, as NumPy's, become ``float`` and ``int``, and lists and arrays become tuples where one is meant.
+    Annotations in quotes and of arrays are not checked. Raises ``InputError`` with a sentence for each argument of another type.
     """
     function: Any = vars(door)["__init__"] if isinstance(door, type) else door
     parameters = inspect.signature(function).parameters
@@ -128,8 +130,8 @@ def _take(value: Any, kind: Any) -> object:
             and not _is_endless(value)
         ):
             return plain(value)
-    elif plain in (tuple, Sequence) and isinstance(value, tuple | list):
-        return _members(value, get_args(kind))
+    elif plain in (tuple, Sequence) and isinstance(value, tuple | list | np.ndarray):
+        return _members(value.tolist() if isinstance(value, np.ndarray) else value, get_args(kind))
     elif plain is Literal:
         fits = type(value) in map(type, get_args(kind))  # which words there are is said where they are read
     elif isinstance(value, str):

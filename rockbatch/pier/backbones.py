@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from itertools import pairwise
+from numbers import Real
 
 Points = tuple[tuple[float, float], ...]
 """Points (deflection, force), from the first corner on; the last one gives the slope that goes on."""
@@ -11,21 +12,24 @@ MOST_POINTS = 9
 """Greatest number of points of a backbone."""
 
 COLLINEAR = 1e-9
-"""Relative growth of a slope from one point to the next that is rounding."""
+"""Growth of a slope from one point to the next over that slope, and a slope over the first one, that are rounding."""
 
 
 def slopes(points: Points) -> list[float]:
-    """Return the slopes between the origin and the points, of force over deflection; none is above the one before."""
+    """Return the slopes between the origin and the points, of force over deflection; none is above the one before.
+
+    One of the size of rounding is 0: the spring is plastic there.
+    """
     least: list[float] = []
     for (x, force), (x_end, force_end) in pairwise(((0.0, 0.0), *points)):
         slope = (force_end - force) / (x_end - x)
         least.append(min([slope, *least[-1:]]))
-    return least
+    return [slope if slope > COLLINEAR * least[0] else 0.0 for slope in least]
 
 
 def greatest(points: Points) -> float:
     """Return the greatest force: that at the last corner if the last slope is 0, else infinity."""
-    return points[-2][1] if points[-1][1] == points[-2][1] else math.inf
+    return math.inf if slopes(points)[-1] else points[-2][1]
 
 
 def over_first(points: Points) -> Points:
@@ -42,10 +46,12 @@ def first_corner(points_mm_kn: Points) -> tuple[float, float]:
 
 def wrong_points(points: Sequence[tuple[float, float]]) -> str:
     """Return what is wrong about the points of a backbone, and what to write; "" if nothing is."""
+    if not all(map(_is_pair, points)):
+        return "each point is a pair of numbers, its deflection and its force"
     if not 2 <= len(points) <= MOST_POINTS:
         return (
             f"a backbone has 2 to {MOST_POINTS} points, not {len(points)}: its corners, and one more that gives the slope beyond "
-            "the last corner"
+            "the last corner" + ("; leave out those nearest to a straight line" if len(points) > MOST_POINTS else "")
         )
     if not (points[0][0] > 0.0 and points[0][1] > 0.0):
         return (
@@ -61,7 +67,7 @@ def wrong_points(points: Sequence[tuple[float, float]]) -> str:
         if not slope >= 0.0:
             return (
                 f"{_shown(point)} follows {_shown(before)}: the force falls, and a support that softens is not "
-                f"followed; write {before[1]:g} there, from which on it is plastic"
+                f"followed; write {_exact(before[1])} there, from which on it is plastic"
             )
         if not slope <= steepest * (1.0 + COLLINEAR):
             return (
@@ -73,4 +79,17 @@ def wrong_points(points: Sequence[tuple[float, float]]) -> str:
 
 
 def _shown(point: tuple[float, float]) -> str:
-    return f"[{point[0]:g}, {point[1]:g}]"
+    return f"[{_exact(point[0])}, {_exact(point[1])}]"
+
+
+def _exact(number: float) -> str:
+    """Return a number with all its digits, by which it is read back as it is."""
+    return repr(float(number)).removesuffix(".0")
+
+
+def _is_pair(point: object) -> bool:
+    return (
+        isinstance(point, tuple | list)
+        and len(point) == 2
+        and all(isinstance(number, Real) and not isinstance(number, bool) for number in point)
+    )

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Literal, Self
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import Contradiction, MissingKey, OutOfRange, Problem, Superseded, WrongType, refuse
 from rockbatch.common.units import Bounds
-from rockbatch.pier.backbones import first_corner, over_first, wrong_points
+from rockbatch.pier.backbones import first_corner, wrong_points
 from rockbatch.pier.block import Pier
 from rockbatch.pier.first_loading import Curve, Straight
 from rockbatch.pier.footing_base import FootingBase
@@ -20,7 +20,7 @@ from rockbatch.pier.frequencies import static_deflection, vertical_frequency, yi
 from rockbatch.pier.laws import LAWS, WITH_POINTS, Law, SpringLaw
 from rockbatch.pier.restraints import Restraint, described_restraints
 from rockbatch.pier.shafts import WithShaft
-from rockbatch.pier.supports import beta_of, eta_of, unlikely_supports
+from rockbatch.pier.supports import FIXED_BY_POINTS, beta_of, eta_of, of_backbone, unlikely_supports
 from rockbatch.pier.traits import (
     ASKING_TENSION,
     BETA,
@@ -249,15 +249,20 @@ class YieldingBase(ElasticBase):
     yields = True
 
     def _bounds(self, name: str) -> Bounds:
-        return ETA_OF_BACKBONE if name == "eta" and self.spring in WITH_POINTS else super()._bounds(name)
+        return ETA_OF_BACKBONE if name == "eta" and self.has_points else super()._bounds(name)
 
     def _wrong_together(self) -> list[Problem]:
         wrong = super()._wrong_together()
-        if self.backbone and self.spring not in WITH_POINTS:
+        if self.backbone and not self.has_points:
             text = f'is of spring = "backbone", and these springs are "{self.spring}"; change one'
             wrong.append(Problem("backbone", None, text, kind=Contradiction))
-        elif self.spring in WITH_POINTS and (text := wrong_points(self.backbone)):
-            wrong.append(Problem("backbone", None, text, kind=OutOfRange if self.backbone else MissingKey))
+        elif self.has_points and not self.backbone:
+            text = (
+                "backbone is missing; write for example backbone = ((1, 1), (3, 1.75), (6, 2)), or take from_backbone"
+            )
+            wrong.append(Problem("backbone", None, text, kind=MissingKey, named=False))
+        elif self.has_points and (text := wrong_points(self.backbone)):
+            wrong.append(Problem("backbone", None, text, kind=OutOfRange))
         elif self.backbone and self.backbone[0] != (1.0, 1.0):
             text = "its first point must be (1, 1), since all are over its deflection and force; or take from_backbone"
             wrong.append(Problem("backbone", None, text, kind=OutOfRange))
@@ -282,6 +287,11 @@ class YieldingBase(ElasticBase):
     def has_exponent(self) -> bool:
         """Return True if the law of these springs has the exponent ``n``."""
         return self.law.has_exponent
+
+    @property
+    def has_points(self) -> bool:
+        """Return True if the curve of these springs is given by points."""
+        return self.spring in WITH_POINTS
 
     @property
     def ratchets(self) -> bool:
@@ -317,8 +327,9 @@ class YieldingBase(ElasticBase):
     def from_backbone(cls, pier: Pier, points_mm_kN: tuple[tuple[float, float], ...], **rest: Any) -> Self:
         """Return a base from the backbone of one support, points of deflection [mm] and force [kN]; ``rest`` as in the class.
 
-        ``pier`` must have a mass. The first point is the first corner, and the last slope goes on. Raises ``InputError`` for
-        points that are no concave polyline, or values that are impossible, or unusual and not confirmed.
+        ``pier`` must have a mass; an array of the points has the shape (n, 2). The first point is the first corner, and the
+        last slope goes on. Raises ``InputError`` for points that are no concave polyline, for ``rest`` that they fix, or values
+        that are impossible, or unusual and not confirmed.
 
         Examples
         --------
@@ -329,9 +340,13 @@ class YieldingBase(ElasticBase):
         """
         if text := wrong_points(points_mm_kN):
             refuse([Problem("points_mm_kN", None, text, kind=OutOfRange)])
+        text = "the points fix the same; leave it out"
+        fixed = rest.keys() & {*FIXED_BY_POINTS, "spring", "backbone"}
+        refuse([Problem(name, rest[name], text, kind=Contradiction) for name in sorted(fixed)])
         stiffness, force = first_corner(points_mm_kN)
-        values = {"spring": "backbone", "backbone": over_first(points_mm_kN)}
-        return cls.from_stiffness(pier, stiffness, yield_kN=force, **values | rest)
+        base = cls(**of_backbone(pier, points_mm_kN), spring="backbone", **rest)
+        refuse(unlikely_supports(pier, base.confirm, stiffness_kN_m=stiffness, yield_kN=force, area_m2=base.area_m2))
+        return base
 
 
 Base = RigidBase | ElasticBase | YieldingBase | FootingBase

@@ -83,13 +83,16 @@ WITH_EXPONENT = tuple(name for name, law in LAWS.items() if law.has_exponent)
 WITH_POINTS = tuple(name for name, law in LAWS.items() if law.has_points)
 """Laws whose curve is given by points."""
 
+WITHOUT_POINTS = tuple(name for name in LAWS if name not in WITH_POINTS)
+"""Laws whose curve follows from n or has no parameter."""
+
 RATCHETING = tuple(name for name, law in LAWS.items() if law.creep is not None)
 """Laws that ratchet."""
 
 
 def without_ratcheting(word: str) -> str:
     """Return the quoted names of the laws that neither ratchet nor need points, joined by ``word``: '"epp" or "hardening"'."""
-    names = [f'"{name}"' for name in LAWS if name not in (*RATCHETING, *WITH_POINTS)]
+    names = [f'"{name}"' for name in WITHOUT_POINTS if name not in RATCHETING]
     return f" {word} ".join((", ".join(names[:-1]), names[-1]))
 
 

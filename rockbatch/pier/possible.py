@@ -52,7 +52,9 @@ def enough_eta(pier: Pier, base: Base) -> float:
     """Return η above which the springs carry weight and prestress, and hold the pier upright with the given β.
 
     This inverts :func:`least_beta` if the base yields and β suffices for elastic springs; otherwise it is :func:`least_eta`.
+    It is of springs that bear F_y at most, without points.
     """
+    assert not base.has_points
     least = least_eta(pier, base)
     if isinstance(base, YieldingBase) and base.beta > pier.least_beta:
         excess = 2.0 * (base.beta / pier.least_beta) ** 2 - 1.0
@@ -123,7 +125,7 @@ def _wrong_bending(pier: Pier, base: Base) -> list[Problem]:
     if any(place.height != 0.0 for device in base.restraints for place in places(pier, device)):
         text = 'devices on the deck are of a rigid shaft; leave them out, or write shaft = "rigid"'
         wrong.append(Problem("shaft", "elastic", text, kind=Contradiction))
-    if isinstance(base, YieldingBase) and base.backbone:
+    if base.has_points:
         text = 'springs with a backbone bear a rigid shaft only; write spring = "hardening", or shaft = "rigid"'
         wrong.append(Problem("shaft", "elastic", text, kind=Contradiction))
     if base.on_springs:
@@ -186,7 +188,7 @@ def _wrong_stiffness(pier: Pier, base: ElasticBase) -> list[Problem]:
 
 def _least_eta_in_words(base: YieldingBase) -> str:
     """Return "1 + psi, ", or of springs that may bear more than F_y nothing."""
-    return "" if base.law.has_points else "1 + psi, "
+    return "" if base.has_points else "1 + psi, "
 
 
 def _near_yield(base: YieldingBase) -> str:

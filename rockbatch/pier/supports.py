@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Callable, Collection
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from rockbatch.common.errors import MissingKey, Problem, Unusual, refuse
 from rockbatch.common.units import POSITIVE, in_other_units
+from rockbatch.pier.backbones import Points, first_corner, over_first
 from rockbatch.pier.block import Pier
 
 MOST_ETA = 100.0
@@ -17,6 +18,9 @@ LIGHTEST, HEAVIEST = 5.0, 1e5
 LEAST_DEFLECTION_MM = 0.02
 """Static deflection [mm] of supports below which a wrong unit is likelier than the ground: on sound rock it is some 0.1 mm."""
 
+FIXED_BY_POINTS = ("beta", "stiffness_kN_m", "eta", "yield_kN")
+"""Keys that the first point of a backbone fixes."""
+
 
 def beta_of(pier: Pier, stiffness_kN_m: float) -> float:
     """Return β = sqrt(2K/M)/p of supports with the stiffness K [kN/m]. Raises ``InputError`` for a pier without mass."""
@@ -27,6 +31,15 @@ def beta_of(pier: Pier, stiffness_kN_m: float) -> float:
 def eta_of(pier: Pier, yield_kN: float) -> float:
     """Return η = 2 F_y/(M g) of supports with the yield force F_y [kN]. Raises ``InputError`` for a pier without mass."""
     return 2 * yield_kN / (_mass(pier, yield_kN=yield_kN) * pier.gravity)
+
+
+def of_backbone(pier: Pier, points_mm_kn: Points) -> dict[str, Any]:
+    """Return β, η and the points over the first one, by field, of supports with a backbone [mm, kN].
+
+    Raises ``InputError`` for a pier without mass.
+    """
+    stiffness, force = first_corner(points_mm_kn)
+    return {"beta": beta_of(pier, stiffness), "eta": eta_of(pier, force), "backbone": over_first(points_mm_kn)}
 
 
 def _mass(pier: Pier, **value: float) -> float:

@@ -152,6 +152,11 @@ class Traits(InNotebook):
         return False
 
     @property
+    def has_points(self) -> bool:
+        """Return whether the springs' law has its curve by points: False unless a class overrides it."""
+        return False
+
+    @property
     def has_epsilon(self) -> bool:
         """Return whether impacts have a restitution ε of the landing pivot: False unless a class overrides it."""
         return False

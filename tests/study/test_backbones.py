@@ -8,7 +8,7 @@ from studies import study_text, write_study
 import rockbatch as rb
 from rockbatch.checks.remarks import weak_supports
 from rockbatch.pier.first_loading import Polyline
-from rockbatch.pier.possible import least_eta, problems
+from rockbatch.pier.possible import enough_eta, least_eta, problems
 from rockbatch.results.histories_file import _read, _write
 
 PIER = {"width_m": 8.0, "height_m": 30.0, "mass_t": 3000.0}
@@ -60,6 +60,7 @@ def test_histories_keep_the_backbone(tmp_path, uncompiled):
         ([5.0, 10e3], "expected a list of points, each [deflection in mm, force in kN]; write for example"),
         ([[5.0, 10e3]], "a backbone has 2 to 9 points, not 1"),
         ([[1.0 * i, 10e3 * i] for i in range(1, 11)], "a backbone has 2 to 9 points, not 10"),
+        ([[1.0 * i, 10e3 * i] for i in range(1, 11)], "leave out those nearest to a straight line"),
         ([[5.0, 10e3], [12.0, "20e3"]], "expected a number (without quotes)"),
         ([[0.0, 0.0], *POINTS], "leave the origin out"),
         ([[-5.0, -10e3], [12.0, 20e3]], "deflection and force must be above 0"),
@@ -116,7 +117,10 @@ def test_a_backbone_needs_points_and_a_mass(tmp_path):
     ("given", "said"),
     [
         ({"backbone": ((1.0, 1.0), (2.0, 3.0))}, "it is steeper, 2, than before, 1"),
-        ({"backbone": ()}, "2 to 9 points, not 0"),
+        ({"backbone": ()}, r"backbone is missing; write for example backbone = \(\(1, 1\), \(3, 1.75\)"),
+        ({"backbone": ((1.0, 1.0), (2.0,))}, "each point is a pair of numbers"),
+        ({"backbone": ((1.0, 1.0, 1.0), (2.0, 1.5, 1.0))}, "each point is a pair of numbers"),
+        ({"backbone": ((1.0, 1.0), (2.0, "1.5"))}, "each point is a pair of numbers"),
         ({"backbone": ((2.0, 2.0), (3.0, 2.5))}, r"its first point must be \(1, 1\)"),
         ({"backbone": ((1.0, 1.0), (2.0, float("nan")))}, "must be finite numbers"),
         (
@@ -155,3 +159,48 @@ def test_the_curve_of_first_loading_is_the_polyline():
     assert curve.most == np.inf
     plastic = Polyline(((1.0, 1.0), (3.0, 2.0), (5.0, 2.0)))
     assert (plastic.most, plastic.deflection(2.0), float(plastic.tangent(np.array(2.0)))) == (2.0, 3.0, 0.0)
+
+
+def test_the_force_to_write_for_one_that_falls_has_all_its_digits(tmp_path):
+    points = [[5.0, 20e3], [12.0, 35123.44], [20.0, 35e3]]
+    with pytest.raises(rb.InputError, match=r"\[20, 35000\] follows \[12, 35123.44\].*write 35123.44 there"):
+        study_with(tmp_path, points)
+    points[2][1] = 35123.44
+    (case,) = study_with(tmp_path, points).cases
+    assert case.base.first_loading.most == pytest.approx(35123.44 / 20e3, rel=1e-15)
+
+
+def test_a_last_slope_of_the_size_of_rounding_is_plastic():
+    rounded = ((1.0, 1.0), (2.0, 1.5), (3.0, 1.5 + 1e-12))
+    assert Polyline(rounded).most == 1.5
+    assert Polyline(rounded).tangents.tolist() == [1.0, 0.5, 0.0]
+    assert Polyline(((1.0, 1.0), (2.0, 1.5), (3.0, 1.5 + 1e-8))).most == np.inf
+
+
+def test_points_may_be_an_array_in_python(tmp_path):
+    (case,) = study_with(tmp_path, POINTS).cases
+    of_array = rb.YieldingBase.from_backbone(case.pier, np.array(POINTS))
+    assert of_array == case.base
+    over_first = np.array(of_array.backbone)
+    again = rb.YieldingBase(of_array.beta, eta=of_array.eta, spring="backbone", backbone=over_first)
+    assert again == of_array
+    assert hash(again) == hash(of_array)
+    with pytest.raises(rb.InputError, match="each point is a pair of numbers"):
+        rb.YieldingBase.from_backbone(case.pier, np.array([[10.0, 20e3, 3.0], [30.0, 35e3, 1.0]]))
+
+
+@pytest.mark.parametrize(
+    "more",
+    [{"yield_kN": 3.0}, {"eta": 2.0}, {"beta": 40.0}, {"stiffness_kN_m": 2e6}, {"spring": "epp"}, {"backbone": ()}],
+)
+def test_what_points_fix_is_refused_beside_them_in_python(more):
+    pier = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
+    with pytest.raises(rb.Contradiction, match="the points fix the same; leave it out") as error:
+        rb.YieldingBase.from_backbone(pier, POINTS, **more)
+    assert [problem.key for problem in error.value.problems] == list(more)
+
+
+def test_enough_eta_is_of_springs_without_points():
+    base = rb.YieldingBase(60.0, eta=0.7, spring="backbone", backbone=((1.0, 1.0), (2.0, 1.5), (3.0, 1.5)))
+    with pytest.raises(AssertionError):
+        enough_eta(rb.Pier(0.2, 1.0), base)
