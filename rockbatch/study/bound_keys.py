@@ -13,7 +13,7 @@ from rockbatch.study.case_keys import CASE
 from rockbatch.study.design_bounds import Change, DesignBound, parted
 from rockbatch.study.piers import PART, PIER
 from rockbatch.study.restraint_keys import DEVICES
-from rockbatch.toml.kinds import Choice, KindError, Text, choice, text
+from rockbatch.toml.kinds import KindError, Points, Text, choice, text
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Clash, Key, Section
 
@@ -89,6 +89,7 @@ BOUNDS = Section(
     free_schema={
         "anyOf": [
             {"type": ["number", "string"]},
+            CASE["backbone_mm_kN"].kind.schema(),
             {"type": "object", "properties": {"times": {"type": "number"}}, "required": ["times"]},
         ]
     },
@@ -203,8 +204,9 @@ def _read_change(table: Table, path: str) -> Change | None:
             f"{shown(path)} = {shown(written)}: expected a factor above 0; write for example {example}", path
         )
         return None
-    if isinstance(key.kind, Choice):
-        table.complain(f"{shown(path)}: times is for numbers, and this is {key.kind.words}; write a value", path)
+    if not key.kind.numeric:
+        value = f"the points of the bound, {shown(path)} = [[…]]" if isinstance(key.kind, Points) else "a value"
+        table.complain(f"{shown(path)}: times is for numbers, and this is {key.kind.words}; write {value}", path)
         return None
     return Change(path, key, times=times)
 

@@ -15,6 +15,7 @@ from rockbatch.pier.bases import BASES
 from rockbatch.pier.bending import MOST_MODES
 from rockbatch.pier.laws import meanings
 from rockbatch.pier.sizes import BOUNDS as OF_PIER
+from rockbatch.pier.supports import FIXED_BY_POINTS
 from rockbatch.pier.traits import BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, wrong_blow
 from rockbatch.study.footing_keys import FOOTING_KEYS
 from rockbatch.study.piers import PIER
@@ -146,7 +147,12 @@ BASE_KEYS = {
         only=_YIELDS,
     ),
     "backbone_mm_kN": Key(
-        Points("a list of points, each [deflection in mm, force in kN]", MOST_POINTS, wrong_points),
+        Points(
+            "a list of points, each [deflection in mm, force in kN]",
+            MOST_POINTS,
+            wrong_points,
+            "write a [[case]] for each backbone",
+        ),
         "[[10.0, 2.0e4], [30.0, 3.5e4], [60.0, 4.0e4]]",
         "Backbone of one support in compression: deflections and forces at its corners, from the first one on, and at one point "
         "more, whose slope goes on. It is concave and replaces stiffness and strength; the mass must be known.",
@@ -299,7 +305,7 @@ CASE = Section(
         Clash(("eta", "yield_kN"), "eta and yield_kN are given, which fix the same; keep one", at="yield_kN"),
         *(
             Clash((key, "backbone_mm_kN"), "the first point of backbone_mm_kN fixes the same; leave it out", shown=True)
-            for key in ("beta", "stiffness_kN_m", "eta", "yield_kN")
+            for key in FIXED_BY_POINTS
         ),
         Clash(("epsilon", "zeta"), EPSILON_AND_ZETA, shown=True),
         Clash(("impact", "zeta"), EPSILON_AND_ZETA, shown=True),

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, replace
 from typing import NamedTuple
 
-from rockbatch.common.errors import Problem
+from rockbatch.common.errors import Contradiction, Problem
 from rockbatch.common.naming import alike
 from rockbatch.common.showing import shown
 from rockbatch.common.units import rounded_up
@@ -21,12 +21,12 @@ from rockbatch.pier import (
     least_beta,
     problems,
 )
-from rockbatch.pier.backbones import first_corner, over_first
+from rockbatch.pier.backbones import first_corner
 from rockbatch.pier.bases import BASES
 from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.plausibility import wrong_device
 from rockbatch.pier.possible import enough_eta
-from rockbatch.pier.supports import SUPPORTS
+from rockbatch.pier.supports import SUPPORTS, of_backbone
 from rockbatch.pier.traits import BETA, BOUNDS, ETA_OF_BACKBONE, USUAL
 from rockbatch.quantities.design import BOUND
 from rockbatch.study.case_keys import BASE_KEYS, CASE
@@ -174,18 +174,21 @@ def _case_of(case: _WrittenCase, chosen: Chosen, pier: Pier, pier_values: Values
 
 
 def _base_of(name: str, values: KeyValues, pier: Pier) -> tuple[Base, list[Problem]]:
-    """Return the base, with β and η from K [kN/m] and F_y [kN] by the mass of the pier, and the problems of β and η.
+    """Return the base, with β and η from K [kN/m] and F_y [kN] or points by the mass of the pier, and problems of these.
 
     A possible value takes the place of an impossible or missing one, so that the other keys can be checked.
     """
     arguments, wrong = dict(values), list[Problem]()
     stiffness, strength, _ = (arguments.pop(key, None) for key in ("stiffness_kN_m", "yield_kN", "mass_t"))
     kind, of_eta = BASES[name], BOUNDS["eta"]
-    if points := arguments.pop("backbone_mm_kN", None):
-        stiffness, strength = first_corner(points)
-        if arguments["spring"] in WITH_POINTS:
-            arguments["backbone"], of_eta = over_first(points), ETA_OF_BACKBONE
-    elif arguments.get("spring") in WITH_POINTS:  # points are missing or wrong, which is noted already
+    points, spring = arguments.pop("backbone_mm_kN", None), arguments.get("spring")
+    if points and spring and spring not in WITH_POINTS:
+        text = "has no points, and backbone_mm_kN is given; write a [[case]] of its own for it"
+        wrong.append(Problem("spring", spring, text, kind=Contradiction))
+    elif points and spring and pier.mass_t:
+        arguments |= of_backbone(pier, points)
+        of_eta = ETA_OF_BACKBONE
+    elif spring in WITH_POINTS:  # points or mass are missing or wrong, which is noted already
         arguments["spring"] = "epp"
     if stiffness and pier.mass_t:
         arguments["beta"] = beta_of(pier, stiffness)

@@ -7,6 +7,7 @@ from typing import Any
 
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
+from rockbatch.pier.supports import FIXED_BY_POINTS
 from rockbatch.quantities.design import BOUND
 from rockbatch.study.lists import Chosen
 from rockbatch.toml.kinds import KindError
@@ -173,7 +174,9 @@ def _why_none(change: Change, having: Iterable[Iterable[str]]) -> str:
     state = f"{where} has no such key" if change.of_pier else "no case has this key"
     if change.times is not None:
         state += ", so that there is nothing to multiply"
-    top = change.path.partition(".")[0]
+    top, *_, key = change.path.split(".")
+    if key in FIXED_BY_POINTS and any("backbone_mm_kN" in names for names in having):
+        return f'{change.words}: {state}; write the points in the bound, "case.backbone_mm_kN" = [[…]]'
     near = closest(change.path, sorted({_path(top, name) for names in having for name in names}))
     hint = f", or did you mean {shown(near)}?" if near else ""
     return f"{change.words}: {state}; write its nominal value in {where}{hint}"

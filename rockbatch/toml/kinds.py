@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 from rockbatch.common.files import legible
 from rockbatch.common.showing import shown
@@ -41,7 +41,12 @@ class KindError(ValueError):
 
 
 class Kind(Protocol):
-    """The values that a key may have, and their form in the program."""
+    """The values that a key may have, and their form in the program.
+
+    ``numeric`` is True if each is one number, which may be multiplied.
+    """
+
+    numeric: ClassVar[bool]
 
     @property
     def words(self) -> str:
@@ -71,6 +76,7 @@ class Number:
     bounds: Bounds | None = None
     but: float | None = None
     endless: bool = False
+    numeric: ClassVar[bool] = True
 
     @property
     def words(self) -> str:
@@ -111,6 +117,7 @@ class Whole:
     low: int = 1
     words: str = "a whole number, 1 or above"
     high: int | None = None
+    numeric: ClassVar[bool] = True
 
     def __call__(self, value: object) -> int:
         if isinstance(value, bool) or not isinstance(value, int) or value < self.low:
@@ -132,6 +139,7 @@ class Text:
 
     words: str = "text in quotes"
     check: Callable[[str], None] | None = None
+    numeric: ClassVar[bool] = False
 
     def __call__(self, value: object) -> str:
         if not isinstance(value, str) or not value.strip():
@@ -159,6 +167,7 @@ class Choice:
     also: Number | None = None
     called: Mapping[str, object] = field(default_factory=dict)
     listed_by: str = ""
+    numeric: ClassVar[bool] = False
 
     @property
     def words(self) -> str:
@@ -198,13 +207,20 @@ class Choice:
 
 @dataclass(frozen=True)
 class Points:
-    """A list of points, each a pair of numbers, at most ``most`` of them; ``wrong`` returns what is wrong about them, or ""."""
+    """A list of points, each a pair of numbers, at most ``most`` of them; ``wrong`` returns what is wrong about them, or "".
+
+    ``instead`` is what to write instead of several lists.
+    """
 
     words: str
     most: int
     wrong: Callable[[tuple[tuple[float, float], ...]], str]
+    instead: str
+    numeric: ClassVar[bool] = False
 
     def __call__(self, value: object) -> tuple[tuple[float, float], ...]:
+        if isinstance(value, list) and any(isinstance(point, list) and list in map(type, point) for point in value):
+            raise KindError(f"expected one list of points; {self.instead}", whole=True)
         if not isinstance(value, list) or not all(isinstance(point, list) and len(point) == 2 for point in value):
             raise KindError(self.words)
         points = tuple((_finite_float(x), _finite_float(y)) for x, y in value)
@@ -224,6 +240,7 @@ class Other:
     words: str
     read: Callable[[object], object]
     form: Schema
+    numeric: ClassVar[bool] = False
 
     def __call__(self, value: object) -> object:
         return self.read(value)

@@ -3,13 +3,15 @@
 import h5py
 import numpy as np
 import pytest
-from studies import study_text, write_study
+from jsonschema import Draft7Validator
+from studies import SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.checks.remarks import weak_supports
 from rockbatch.pier.first_loading import Polyline
 from rockbatch.pier.possible import enough_eta, least_eta, problems
 from rockbatch.results.histories_file import _read, _write
+from rockbatch.study.schema import STUDY, schema_of
 
 PIER = {"width_m": 8.0, "height_m": 30.0, "mass_t": 3000.0}
 POINTS = [[5.0, 10e3], [12.0, 20e3], [40.0, 38e3]]
@@ -61,6 +63,8 @@ def test_histories_keep_the_backbone(tmp_path, uncompiled):
         ([[5.0, 10e3]], "a backbone has 2 to 9 points, not 1"),
         ([[1.0 * i, 10e3 * i] for i in range(1, 11)], "a backbone has 2 to 9 points, not 10"),
         ([[1.0 * i, 10e3 * i] for i in range(1, 11)], "leave out those nearest to a straight line"),
+        ([POINTS, POINTS], "expected one list of points; write a [[case]] for each backbone"),
+        ([POINTS[:2], POINTS[:2]], "expected one list of points; write a [[case]] for each backbone"),
         ([[5.0, 10e3], [12.0, "20e3"]], "expected a number (without quotes)"),
         ([[0.0, 0.0], *POINTS], "leave the origin out"),
         ([[-5.0, -10e3], [12.0, 20e3]], "deflection and force must be above 0"),
@@ -198,6 +202,62 @@ def test_what_points_fix_is_refused_beside_them_in_python(more):
     with pytest.raises(rb.Contradiction, match="the points fix the same; leave it out") as error:
         rb.YieldingBase.from_backbone(pier, POINTS, **more)
     assert [problem.key for problem in error.value.problems] == list(more)
+
+
+BACKBONE = {"name": "pads", "base": "yielding", "spring": "backbone", "backbone_mm_kN": POINTS}
+
+
+def with_tables(tmp_path, case=BACKBONE, pier=PIER, **tables):
+    return rb.load_study(write_study(tmp_path, study_text(pier=pier, cases=[case], **tables)))
+
+
+def test_a_bound_may_have_points_of_its_own_valid_in_editors_too(tmp_path):
+    softer = [[2.0 * x, force] for x, force in POINTS]
+    bound = {"name": "soft", "case.backbone_mm_kN": softer}
+    nominal, soft = rb.Study.from_dict(
+        {
+            "pier": PIER,
+            "motions": {"pulse": [SINE]},
+            "case": [BACKBONE],
+            "bound": [bound],
+        }
+    ).cases
+    assert soft.base == rb.YieldingBase.from_backbone(nominal.pier, softer)
+    validator = Draft7Validator(schema_of(STUDY, "study")["properties"]["bound"])
+    assert not list(validator.iter_errors([bound]))
+    assert list(validator.iter_errors([bound | {"case.backbone_mm_kN": [[1.0]]}]))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (
+            {"case.backbone_mm_kN": {"times": 1.5}},
+            'write the points of the bound, "case.backbone_mm_kN" = [[…]]',
+        ),
+        ({"case.yield_kN": 2e4}, 'write the points in the bound, "case.backbone_mm_kN" = [[…]]'),
+        (
+            {"case.stiffness_kN_m": {"times": 2.0}},
+            'write the points in the bound, "case.backbone_mm_kN" = [[…]]',
+        ),
+        ({"case.spring": "epp"}, 'spring = "epp": has no points, and backbone_mm_kN is given; write a [[case]]'),
+    ],
+)
+def test_a_bound_of_what_points_fix_is_sent_to_points(change, said):
+    tables = {"pier": PIER, "motions": {"pulse": [SINE]}, "case": [BACKBONE], "bound": [{"name": "b", **change}]}
+    with pytest.raises(rb.InputError) as error:
+        rb.Study.from_dict(tables)
+    assert said in str(error.value)
+    assert len(error.value.problems) == 1
+
+
+@pytest.mark.parametrize("first_corner", [10e3, 16e3])  # below and above the static force, 14 715 kN
+def test_a_law_without_points_is_refused_beside_a_backbone(tmp_path, first_corner):
+    points = [[5.0, first_corner], [12.0, 24e3], [40.0, 38e3]]
+    with pytest.raises(rb.InputError) as error:
+        study_with(tmp_path, points, spring=["epp", "backbone"])
+    (problem,) = error.value.problems
+    assert 'spring = "epp": has no points, and backbone_mm_kN is given; write a [[case]] of its own' in str(problem)
 
 
 def test_enough_eta_is_of_springs_without_points():
