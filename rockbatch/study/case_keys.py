@@ -16,7 +16,7 @@ from rockbatch.pier.bending import MOST_MODES
 from rockbatch.pier.laws import meanings
 from rockbatch.pier.sizes import BOUNDS as OF_PIER
 from rockbatch.pier.supports import FIXED_BY_POINTS
-from rockbatch.pier.traits import BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, wrong_blow
+from rockbatch.pier.traits import BOUNDS, EPSILON_AND_ZETA, ETA_OF_BACKBONE, USUAL, WORDS, wrong_blow
 from rockbatch.study.footing_keys import FOOTING_KEYS
 from rockbatch.study.piers import PIER
 from rockbatch.toml.kinds import KindError, Other, Points, Whole, choice, positive, text, within
@@ -125,7 +125,7 @@ BASE_KEYS = {
         only=_ON_GROUND_THAT_GIVES,
     ),
     "eta": Key(
-        within(BOUNDS["eta"]),
+        within(ETA_OF_BACKBONE),  # the law decides the limit, which is 1 without points
         "2.5",
         "Strength as η = F_y/(static force of a support), above 1; or give `yield_kN`.",
         many=True,

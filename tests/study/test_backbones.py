@@ -7,6 +7,9 @@ from jsonschema import Draft7Validator
 from studies import SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.analyses.design.study import read_design
+from rockbatch.analyses.sensitivity.study import read_sensitivity
+from rockbatch.analyses.spectrum.study import read_spectrum
 from rockbatch.checks.remarks import weak_supports
 from rockbatch.pier.first_loading import Polyline
 from rockbatch.pier.possible import enough_eta, least_eta, problems
@@ -258,6 +261,53 @@ def test_a_law_without_points_is_refused_beside_a_backbone(tmp_path, first_corne
         study_with(tmp_path, points, spring=["epp", "backbone"])
     (problem,) = error.value.problems
     assert 'spring = "epp": has no points, and backbone_mm_kN is given; write a [[case]] of its own' in str(problem)
+
+
+@pytest.mark.parametrize("path", ["case.yield_kN", "case.backbone_mm_kN"])
+def test_a_design_does_not_vary_points(tmp_path, path):
+    design = {"vary": path, "between": [1e4, 2e4], "find": "least", "width": 100.0}
+    check = {"name": "rotation", "demand": "theta_max_over_alpha", "at_most": 0.5, "reason": "agreed"}
+    study = with_tables(tmp_path, design=design, check=[check])
+    with pytest.raises(rb.InputError, match="not varied; vary another key") as error:
+        read_design(study)
+    assert len(error.value.problems) == 1
+
+
+def test_eta_below_one_is_an_input_of_analyses_where_points_bear_the_weight(tmp_path):
+    study = with_tables(tmp_path, sensitivity={"uniform": {"eta": [0.6, 0.8]}})
+    assert read_sensitivity(study).inputs[0].levels == (0.6, 0.8)
+    pads = {"name": "pads", "base": "yielding", "beta": 50.0, "eta": 2.5}
+    study = with_tables(tmp_path, case=pads, sensitivity={"uniform": {"eta": [0.6, 3.0]}})
+    with pytest.raises(rb.InputError, match="the springs cannot carry the weight"):
+        read_sensitivity(study)
+
+
+def test_a_reference_may_have_eta_below_one(tmp_path):
+    reference = {
+        "record": "*",
+        "case": "pads",
+        "theta_max_over_alpha": 0.1,
+        "eta": 0.6795786612300374,
+        "source": "a test",
+    }
+    assert len(with_tables(tmp_path, reference=[reference]).references) == 1
+
+
+def test_laws_of_points_are_no_choice_of_a_sensitivity(tmp_path):
+    pads = {"name": "pads", "base": "yielding", "beta": 50.0, "eta": 2.5}
+    choice = {"choice": {"spring": ["hardening", "backbone"]}}
+    with pytest.raises(rb.InputError, match='expected one of "bouc-wen", "epp", "hardening"'):
+        read_sensitivity(with_tables(tmp_path, case=pads, sensitivity=choice))
+    with pytest.raises(rb.InputError, match='is of spring = "backbone", and these springs are'):
+        read_sensitivity(with_tables(tmp_path, sensitivity={"choice": {"spring": ["hardening", "epp"]}}))
+
+
+def test_a_self_similar_spectrum_has_no_backbone(tmp_path):
+    spectrum = {"alpha": [0.2], "omega_g_over_p": [1.0, 4.0], "pga_over_g_tan_alpha": [1.5]}
+    pier = {"alpha": 0.2, "p": 0.5, "mass_t": 3000.0}
+    study = with_tables(tmp_path, pier=pier, spectrum=spectrum)
+    with pytest.raises(rb.InputError, match="its points are in mm and kN of one size; leave the case out"):
+        read_spectrum(study)
 
 
 def test_enough_eta_is_of_springs_without_points():

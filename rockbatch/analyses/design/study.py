@@ -10,10 +10,11 @@ import numpy as np
 from rockbatch.analyses.design.written import paths_in, with_value
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
+from rockbatch.pier.supports import FIXED_BY_POINTS
 from rockbatch.study import Study
 from rockbatch.study.bound_keys import key_at, why_fixed
 from rockbatch.study.tables import name_of
-from rockbatch.toml.kinds import KindError, Other, Whole, choice, number, positive, text
+from rockbatch.toml.kinds import KindError, Other, Points, Whole, choice, number, positive, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table
 from rockbatch.toml.section import Key, Section
@@ -205,6 +206,8 @@ def _why_not_over(path: str, low: float, high: float) -> str:
         return f"{shown(path)}: motions that are given in g would change with it; vary another key"
     key = key_at(path)
     assert key is not None
+    if isinstance(key.kind, Points):
+        return f"{shown(path)}: points are not varied; vary another key"
     for value in (low, high, 0.5 * (low + high)):
         try:
             if not isinstance(key.kind(value), float):
@@ -225,6 +228,10 @@ def _having(table: Table, study: Study, paths: Sequence[str]) -> tuple[tuple[str
     for place, path in enumerate(paths):
         if not any(has[place] for has in having.values()):
             near = closest(path, sorted(paths_in(tables)))
+            if path.rpartition(".")[2] in FIXED_BY_POINTS and any("backbone_mm_kN" in case for case in tables["case"]):
+                text = "no case has this key, which the points of backbone_mm_kN fix, and these are not varied"
+                table.complain(f"{shown(path)}: {text}; vary another key", "vary")
+                return (), ()
             where = "[pier] has no such key" if path.startswith("pier.") else "no case has this key"
             hint = f", or did you mean {shown(near)}?" if near else ""
             table.complain(f"{shown(path)}: {where}; write its value there{hint}", "vary")

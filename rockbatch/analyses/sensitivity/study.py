@@ -6,6 +6,7 @@ from itertools import product
 from typing import Any
 
 from rockbatch.common.showing import shown
+from rockbatch.pier.laws import WITHOUT_POINTS
 from rockbatch.study.case_keys import CASE
 from rockbatch.study.inputs import OF_PIER, impossible, outside, ranges, values_of, why_no_case
 from rockbatch.study.load import Study
@@ -92,7 +93,7 @@ SPREADS = {
         "Inputs with two equally likely values.",
         {
             **_choice(CASE, "kinematics", '["first-order", "finite"]'),
-            **_choice(CASE, "spring", '["bouc-wen", "epp"]'),
+            "spring": Key(choice(*WITHOUT_POINTS), '["bouc-wen", "epp"]', CASE["spring"].words, many=True),
             "vertical": Key(boolean, "[true, false]", "With the records' vertical components, or without.", many=True),
             **_choice(MOTIONS, "polarity", '["+", "-"]'),
         },

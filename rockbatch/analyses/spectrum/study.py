@@ -1,13 +1,13 @@
 """Rocking spectra and overturning maps in a study file: [spectrum] and [[spectrum.map]]."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rockbatch.motions.pulses import SHAPES
-from rockbatch.pier import Pier, problems
+from rockbatch.pier import Base, Pier, problems
 from rockbatch.quantities.design import BOUND
 from rockbatch.study.cases import read_cases
 from rockbatch.study.load import Study
@@ -215,7 +215,9 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
     )
     del table.file.problems[problems_before:]  # said below, with the slenderness to which it applies
     _without_size(
-        table, study, [case.name for case, large in zip(expanded, larger, strict=False) if case.base != large.base]
+        table,
+        study,
+        {case.name: case.base for case, large in zip(expanded, larger, strict=False) if case.base != large.base},
     )
     reported = set()
     for case in expanded:
@@ -231,14 +233,19 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
     return SpectrumSpec(axis, tuple(case.with_columns(varied) for case in expanded), varied, intensities)
 
 
-def _without_size(table: Table, study: Study, names: Sequence[str]) -> None:
-    """Complain about cases ``names`` whose base depends on the pier's size, and about scales, in a self-similar spectrum."""
+def _without_size(table: Table, study: Study, bases: Mapping[str, Base]) -> None:
+    """Complain about ``bases``, by case, that depend on the pier's size, and about scales, in a self-similar spectrum."""
     if not table.has(SELF_SIMILAR):
         return
-    for name in dict.fromkeys(names):
+    for name, base in bases.items():
+        remedy = (
+            "its points are in mm and kN of one size; leave the case out"
+            if base.has_points
+            else "give its ratios: beta, eta, nu instead of stiffness_kN_m, yield_kN, coefficient_kN_s_m"
+        )
         table.complain(
             f'{SELF_SIMILAR}: the pier has another size under each record, and case "{name}" has another base for each size; '
-            "give its ratios: beta, eta, nu instead of stiffness_kN_m, yield_kN, coefficient_kN_s_m",
+            f"{remedy}",
             SELF_SIMILAR,
         )
     if study.motions.scale != (1.0,):
