@@ -126,7 +126,7 @@ def test_the_terminal_shows_the_doubtful_and_the_strongest_of_many():
 @pytest.mark.parametrize(
     ("sound", "doubtful", "room", "shown"), [(4, 50, 40, (4, 18)), (50, 50, 40, (20, 10)), (4, 6, 40, (4, 6))]
 )
-def test_doubtful_records_have_the_lines_that_the_others_leave_and_half_of_all_at_least(sound, doubtful, room, shown):
+def test_doubtful_records_have_the_lines_left_over_and_half_of_all_at_least(sound, doubtful, room, shown):
     many = [motion(f"S{i}x", 0.1) for i in range(sound)] + [
         motion(f"D{i}x", 0.2, findings=ODD) for i in range(doubtful)
     ]
