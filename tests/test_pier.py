@@ -19,6 +19,7 @@ from rockbatch.pier import (
     Damper,
     DeckSpring,
     ElasticBase,
+    Part,
     Pier,
     RigidBase,
     SpringLaw,
@@ -202,6 +203,12 @@ def test_what_is_possible_ends_at_its_bounds(low, high, make):
         with pytest.raises(InputError) as caught:
             make(value)
         assert len(caught.value.messages) == 1, value
+
+
+@pytest.mark.parametrize("width", [-4.0, 0.0, 1e16, math.nan])
+def test_no_confirmation_makes_an_impossible_width_of_parts_possible(width):
+    with pytest.raises(InputError, match=r"^width_m = "):
+        Pier.of_parts(width, [Part(100.0, 10.0, 4000.0)], confirm=("width_m",))
 
 
 @pytest.mark.parametrize(
