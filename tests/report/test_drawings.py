@@ -10,11 +10,13 @@ from report_samples import FIG7, FOUNDATIONS, report, three_piers, write_results
 
 import rockbatch as rb
 from rockbatch.checks import write_verdicts
+from rockbatch.common.figures.description import Axis, Figure, Look, Panel, Span
 from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.reporting import write_report
 from rockbatch.reporting.drawings import MOST_LINES, MOST_NAMES, drawings
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.sheet import sheet_of
+from rockbatch.reporting.svg import drawn as picture_of
 from rockbatch.reporting.typeset import parsed
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
@@ -189,3 +191,18 @@ def test_a_bound_is_named_where_its_device_or_its_pier_is_not_that_of_the_design
         ],
         ["oil: traffic", damper.format(2000)],
     ]
+
+
+@pytest.mark.parametrize(("axis", "shares"), [("x", (0.3, 1.0)), ("y", (1.0, 0.25))])
+def test_a_band_covers_its_values_on_its_axis_and_all_of_the_other(axis, shares):
+    """From 1 to 4 of 10 across, and from 1 to 2 of 4 upwards."""
+    whole, part = (
+        Span("x", 0.0, 10.0, look=Look("band")),
+        Span(axis, 1.0, 4.0 if axis == "x" else 2.0, look=Look("band")),
+    )
+    panel = Panel(Axis("", 0.0, 10.0), Axis("", 0.0, 4.0), [whole, part], width=400.0, height=200.0)
+    sizes = re.findall(
+        r'<rect[^>]* width="([\d.]+)" height="([\d.]+)" class="[^"]*band', picture_of(Figure([panel], "bands"))
+    )
+    (across, down), (own_across, own_down) = ((float(a), float(b)) for a, b in sizes)
+    assert (own_across / across, own_down / down) == pytest.approx(shares, abs=0.01)
