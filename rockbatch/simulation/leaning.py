@@ -10,7 +10,7 @@ from rockbatch.outcome.outcome import LEANS, Outcome
 from rockbatch.pier import ElasticBase, Pier, YieldingBase, tilt_over_residual, vertical_frequency, yield_deflection
 from rockbatch.simulation.recording import recorded_side_by_side
 from rockbatch.simulation.runs import Run, Stop
-from rockbatch.simulation.starting import start_of
+from rockbatch.simulation.starting import unstressed_at_rest
 
 MOSTLY = 0.5
 """Least lean over θ_max, and greatest rocking at the peak over the greatest rocking, for a peak to count as lean."""
@@ -94,16 +94,16 @@ def lean_of(pier: Pier, base: ElasticBase, rows: np.recarray | Path) -> Samples:
 
 
 def unstressed(pier: Pier, base: ElasticBase, rows: np.recarray | Path) -> tuple[Samples, Samples]:
-    """Return the unstressed positions of the left and the right support at every row [m], up from those at the start."""
+    """Return the unstressed positions of the left and the right support at every row [m], up from those at rest."""
     b, h, theta = pier.half_width, pier.height, rows.theta
     rise: Samples = b * theta
     drop: float | Samples = 0.0
     if base.kinematics == "finite":
         rise, drop = b * np.sin(theta), h * (1.0 - np.cos(theta))
     deflection = yield_deflection(pier, base)
-    at_first = start_of(pier, base).unstressed
-    left = _last_borne(rows.v + rise + drop - deflection * rows.z_left, rows.left != 0.0, at_first)
-    right = _last_borne(rows.v - rise + drop - deflection * rows.z_right, rows.right != 0.0, at_first)
+    at_first = unstressed_at_rest(pier, base)  # what the first loading leaves under the weight is no effect of the run
+    left = _last_borne(rows.v + rise + drop - deflection * rows.z_left, rows.left != 0.0, at_first) - at_first
+    right = _last_borne(rows.v - rise + drop - deflection * rows.z_right, rows.right != 0.0, at_first) - at_first
     return left, right
 
 

@@ -37,11 +37,23 @@ def start_of(pier: Pier, base: Base) -> Start:
     return Start(theta=theta, states=tuple(states), level=0.0)
 
 
+def unstressed_at_rest(pier: Pier, base: ElasticBase) -> float:
+    """Return the position at which the supports are unstressed when the pier stands at rest, before any pull [m]."""
+    m = springs(pier, base)
+    return m.level + m.yield_deflection * _static(pier, base)
+
+
+def _static(pier: Pier, base: ElasticBase) -> float:
+    """Return the force of each spring at rest over F_y."""
+    m = springs(pier, base)
+    return 0.5 * (m.gravity + prestress(pier, base)) / m.yield_force
+
+
 def _on_springs(pier: Pier, base: ElasticBase) -> Start:
     """Return the state of a pier held on springs at its initial rotation, where vertical forces balance."""
     m, theta, laws = springs(pier, base), pier.initial_rotation_rad, elements(pier, base)
     curve, delta, side = base.first_loading, m.yield_deflection, math.copysign(1.0, theta)
-    static = 0.5 * (m.gravity + prestress(pier, base)) / m.yield_force
+    static = _static(pier, base)
     level = m.level
     tilt, drop, by_v = abs(theta), 0.0, 1.0
     if m.finite is not None:
@@ -72,7 +84,7 @@ def _on_springs(pier: Pier, base: ElasticBase) -> Start:
     v, pressed, lifted = state(_nonnegative_root(excess))
     z_left, z_right = (-lifted, -pressed) if side > 0.0 else (-pressed, -lifted)
     states = tuple(device_state for _, device_state in devices(v))
-    return Start(v, theta, z_left + 0.0, z_right + 0.0, states, level, level + delta * static)
+    return Start(v, theta, z_left + 0.0, z_right + 0.0, states, level, unstressed_at_rest(pier, base))
 
 
 def _force_and_state(law: Element, elongation: float) -> tuple[float, float]:

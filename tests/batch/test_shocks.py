@@ -90,6 +90,34 @@ def test_a_base_that_yields_settles_with_every_shock_and_never_rises():
     assert (settled.diff(1).fillna(settled.iloc[0]) > 1e-6).all()
 
 
+@pytest.mark.parametrize(
+    "base",
+    [
+        rb.YieldingBase(60, eta=0.8, spring="backbone", backbone=((1.0, 1.0), (2.0, 1.5), (3.0, 1.8)), epsilon=0.1),
+        rb.YieldingBase(60, eta=1.5, spring="hardening", n=1.0, epsilon=0.1),
+        rb.YieldingBase(60, eta=1.2, epsilon=0.1),
+    ],
+    ids=["backbone", "hardening", "bouc-wen"],
+)
+def test_what_supports_have_sunk_under_the_weight_is_no_settlement_of_a_shock(base):
+    still = rb.Motion.still(0.05, 0.01)
+    response = rb.simulate(PIER, base, rb.sequence([still, still], name="s", pause=0.1))
+    assert response.settlement == pytest.approx(0.0, abs=1e-12)
+    assert response.shocks["settlement_m"].to_numpy() == pytest.approx(
+        0.0, abs=1e-12
+    )  # 0.2 to 1.8 mm with the first sinking
+
+
+def test_the_settlement_of_a_shock_counts_from_before_the_pull_to_a_rotation():
+    pier = rb.Pier(alpha=0.2, p=1.0, initial_rotation_rad=0.05)
+    base = rb.YieldingBase(40, eta=1.5, spring="hardening", n=1.0, zeta=0.1)
+    still = rb.Motion.still(0.5, 0.01)
+    response = rb.simulate(pier, base, rb.sequence([still, still], name="s", pause=60.0))
+    last = response.shocks.iloc[-1]
+    assert response.settlement > 1e-4
+    assert last["settlement_m"] == pytest.approx(response.settlement, rel=1e-3)
+
+
 def test_an_elastic_base_has_no_residual_and_a_rigid_one_without_dampers_none_at_all():
     assert of(SPRINGS, shock(), shock()).shocks[["theta_res_over_alpha", "settlement_m"]].eq(0.0).all(axis=None)
     assert of(rb.RigidBase(), shock(), shock()).shocks[["theta_res_over_alpha", "settlement_m"]].isna().all(axis=None)
