@@ -126,7 +126,7 @@ def _wrong_bending(pier: Pier, base: Base) -> list[Problem]:
         text = 'devices on the deck are of a rigid shaft; leave them out, or write shaft = "rigid"'
         wrong.append(Problem("shaft", "elastic", text, kind=Contradiction))
     if base.has_points:
-        text = 'springs with a backbone bear a rigid shaft only; write spring = "hardening", or shaft = "rigid"'
+        text = 'springs with a backbone are available for rigid shafts only; write spring = "hardening", or shaft = "rigid"'
         wrong.append(Problem("shaft", "elastic", text, kind=Contradiction))
     if base.on_springs:
         wrong += [Problem("shaft", "elastic", text, kind=Contradiction) for text in _wrong_under_shaft(base)]

@@ -151,8 +151,9 @@ def test_a_pier_that_bends_or_is_too_heavy_is_refused():
         60.0, eta=0.7, spring="backbone", backbone=points, zeta=0.2, kinematics="finite", shaft="elastic"
     )
     (problem,) = problems(pier, bending)
-    assert 'springs with a backbone bear a rigid shaft only; write spring = "hardening", or shaft = "rigid"' in str(
-        problem
+    assert (
+        'springs with a backbone are available for rigid shafts only; write spring = "hardening", or shaft = "rigid"'
+        in str(problem)
     )
 
 
