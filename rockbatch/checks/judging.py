@@ -30,6 +30,7 @@ MOST_NAMES = 5
 
 
 NOT_WEIGHED = "the study does not state the pier's mass"
+UNBOUNDED_FORCE = "the backbone of the supports has no greatest force"
 _OTHER_ENDS = [demand.other_end for demand in DEMANDS.values() if demand.other_end]
 PLANAR = "each axis of the pier is a planar model of its own"
 
@@ -229,7 +230,7 @@ def _counts_ended_early(rule: Rule, suites: Iterable[Rows]) -> str:
 
 
 def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
-    """Return the verdict on a property of the case, the worse of both axes; it does not apply if that needs a mass not given.
+    """Return the verdict on a property of the case, the worse of both axes; none if it needs a mass not given, or is infinite.
 
     ``none`` is the verdict without its numbers.
     """
@@ -237,6 +238,8 @@ def _of_case(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
     value = worse(float(DEMANDS[rule.demand].evaluate(axis.suite, axis.case).value[0]) for axis in axes)
     if math.isnan(value):
         return replace(none, remarks=(NOT_WEIGHED,))
+    if math.isinf(value):
+        return replace(none, remarks=(UNBOUNDED_FORCE,))
     decided, _ = _decide(rule, value, value)
     return replace(_with_numbers(none, value, value, value), verdict=decided)
 

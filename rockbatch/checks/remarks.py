@@ -6,8 +6,7 @@ from typing import Any
 
 from rockbatch.checks.responses import Worst
 from rockbatch.common.grouping import grouped
-from rockbatch.pier.backbones import greatest
-from rockbatch.quantities.cases import Case, asks_tension
+from rockbatch.quantities.cases import Case, asks_tension, backbone, capacity_index
 from rockbatch.quantities.labels import in_full
 
 MOST_NAMES = 3
@@ -23,7 +22,8 @@ def weak_supports(cases: Sequence[Case]) -> str:
     weak = [cases[i] for i in shares]
     load = "weight and prestress" if any(map(_prestress, weak)) else "weight"
     named = _named(weak, cases)
-    return f"{named}: one support cannot carry the full {load} ({borne} %): it yields before the pier lifts off"
+    limit = "reaches its greatest force" if any(map(backbone, weak)) else "yields"
+    return f"{named}: one support cannot carry the full {load} ({borne} %): it {limit} before the pier lifts off"
 
 
 def pulled_supports(cases: Sequence[Case]) -> str:
@@ -73,11 +73,8 @@ def changes_of(bound: Mapping[str, Any]) -> str:
 
 def _borne_alone(case: Case) -> float:
     """Return the greatest force of a support over weight and prestress; infinite without one."""
-    parameters = case["parameters"]
-    eta, points = parameters.get("eta"), parameters.get("backbone")
-    if eta is None:
-        return math.inf
-    return 0.5 * float(eta) * (greatest(points) if points else 1.0) / (1.0 + _prestress(case))
+    index = capacity_index(case)
+    return math.inf if math.isnan(index) else 0.5 * index / (1.0 + _prestress(case))
 
 
 def _prestress(case: Case) -> float:

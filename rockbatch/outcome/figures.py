@@ -357,7 +357,10 @@ def _springs(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
     x = Axis(names[0], low - margin, high + margin, about=3)
     bounded = base.yields and min((np.nanmin(force, initial=0.0) for force in forces), default=0.0) >= -1.0
     y = Axis(names[1], -1.08, 0.1, about=3) if bounded else spanning(names[1], *forces, about=3)
-    yields = Rule("y", -np.ones(1), look=Look("edge", dash=1), label="force at which a support yields")
+    corners = base.backbone[:-1] if base.has_points else ()
+    label = "force at a corner of the backbone" if corners else "force at which a support yields"
+    at = -np.array([force for _, force in corners] or [1.0])
+    yields = Rule("y", at[at >= y.low], look=Look("edge", dash=1), label=label)
     panels = []
     for side, own, force in zip(sides, v, forces, strict=True):
         marks: list[Mark] = [Polyline(*without_repeats(own, force, pixels), y.plain, look=look)]

@@ -255,6 +255,8 @@ class Response(Shown):
     def z_left(self) -> Samples:
         """Force of the left spring over its yield force, −1..0, shape (n,); NaN on the rigid base and on a footing.
 
+        On a backbone it is over the force at the first corner, and falls below −1 beyond it.
+
         Of an elastic spring, which does not yield, it is the force over half the weight, without a lower bound.
         """
         return self._history("z_left")
@@ -262,6 +264,8 @@ class Response(Shown):
     @property
     def z_right(self) -> Samples:
         """Force of the right spring over its yield force, −1..0, shape (n,); NaN on the rigid base and on a footing.
+
+        On a backbone it is over the force at the first corner, and falls below −1 beyond it.
 
         Of an elastic spring, which does not yield, it is the force over half the weight, without a lower bound.
         """

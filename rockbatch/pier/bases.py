@@ -222,7 +222,7 @@ class YieldingBase(ElasticBase):
     Attributes, in addition to those of :class:`ElasticBase`
     ----------
     eta : float
-        Bearing capacity index η = δ_y/δ_s > 1.
+        Bearing capacity index η = δ_y/δ_s > 1; of a backbone, whose greatest force carries the pier, > 0.
     spring : "bouc-wen", "epp", "hardening" or "backbone"
         The paper's smooth law (THEORY.md, eq. 7), elastic–perfectly plastic, or Bouc–Wen's curve with elastic unloading and
         reloading up to the greatest force borne so far; or the same rule with a curve of its own (THEORY.md, A backbone).

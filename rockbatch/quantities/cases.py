@@ -1,10 +1,13 @@
 """A case of run.json, and the values of it that demands take: lengths, weight, devices, parameters."""
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+from rockbatch.pier.backbones import Points, greatest
 from rockbatch.pier.bases import IMPULSIVE
 from rockbatch.pier.block import share_of_shaft
+from rockbatch.pier.first_loading import Polyline
 from rockbatch.pier.laws import RATCHETING
 from rockbatch.pier.restraints import kinds_of
 from rockbatch.pier.traits import ASKING_TENSION
@@ -78,6 +81,28 @@ def weight(case: Case) -> float:
 def per_gravity(case: Case) -> float:
     """Return 1/g [s²/m]."""
     return 1.0 / float(case["pier"]["gravity"])
+
+
+def backbone(case: Case) -> Points:
+    """Return the points (δ/δ_y, F/F_y) of the supports' backbone; () without one."""
+    return tuple((x, force) for x, force in case["parameters"].get("backbone", ()))
+
+
+def capacity_index(case: Case) -> float:
+    """Return a support's greatest force over its static one, η without a backbone; infinite if that has no greatest force.
+
+    NaN for supports that do not yield.
+    """
+    points = backbone(case)
+    return float(case["parameters"].get("eta", math.nan)) * (greatest(points) if points else 1.0)
+
+
+def static_settlement(case: Case) -> float:
+    """Return the deflection of the supports under the weight at rest [m]: elastic, or along their backbone; NaN without any."""
+    parameters, points = case["parameters"], backbone(case)
+    if not points:
+        return float(parameters.get("delta_s_m", math.nan))
+    return float(parameters["delta_y_m"]) * Polyline(points).deflection(1.0 / float(parameters["eta"]))
 
 
 def creeps(case: Case) -> bool:

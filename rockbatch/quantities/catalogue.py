@@ -23,8 +23,11 @@ from rockbatch.quantities.cases import (
     Lever,
     alpha,
     always,
+    backbone,
     bends,
+    capacity_index,
     product,
+    static_settlement,
     top,
     width,
 )
@@ -64,9 +67,15 @@ MIRROR_OF = "mirror_of"
 """Column of the polarity of the run whose mirror image a row is; only where a study has both polarities."""
 
 MOST_DUCTILITY = 100.0
-"""Greatest over yield deflection of a support: soils bear some 2 to 10."""
+"""Greatest over yield deflection of a support, or over the last one of its backbone: soils bear some 2 to 10."""
 
-_SPENT = Ceiling(always(MOST_DUCTILITY), "is more than any support bears")
+
+def _most_ductility(case: Case) -> float:
+    points = backbone(case)
+    return MOST_DUCTILITY * (points[-1][0] if points else 1.0)
+
+
+_SPENT = Ceiling(_most_ductility, "is more than any support bears")
 
 
 def _displacements(name: str, lever: Lever) -> tuple[Limit, Limit]:
@@ -181,7 +190,7 @@ _CHANGED = "a motion 10⁻⁸ stronger or weaker"
 _KNOWN = "; empty with a fixed step, and of a run that failed"
 
 
-_DUCTILITY = "greatest deflection of {} support over its yield deflection"
+_DUCTILITY = "greatest deflection of {} support over its yield deflection, of a backbone that at its first corner"
 _DISSIPATED = "plastic work of each support, per unit mass"
 
 TRAILING = (
@@ -423,21 +432,22 @@ _OTHERS = (
     ),
     parameter(
         "eta",
-        "bearing capacity index, a support's yield force over its static one",
+        "bearing capacity index, a support's yield force, or the greatest of its backbone, over its static one",
         "",
         YIELDING,
         Ceiling(always(MOST_ETA), "is more than any foundation has"),
+        capacity_index,
     ),
-    parameter("yield_kN", "yield force of a support", "kN", YIELDING),
+    parameter("yield_kN", "yield force of a support, of a backbone that at its first corner", "kN", YIELDING),
     parameter("stiffness_kN_m", "stiffness of a support", "kN/m", TWO_SPRINGS),
     parameter("safety_factor", "strength of a footing's bed over the pier's weight", "", FOOTING),
     parameter(
         "static_deflection_m",
-        "deflection of the supports under the weight at rest, while elastic",
+        "deflection of the supports under the weight at rest, elastic or along a backbone",
         "m",
         SPRINGS,
         WIDER,
-        "delta_s_m",
+        static_settlement,
     ),
 )
 """Demands that are no column of peaks.csv: events, and properties of the foundation."""

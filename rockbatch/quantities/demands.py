@@ -278,14 +278,15 @@ def event(name: str, meaning: str, happened: Callable[[Rows], npt.NDArray[np.boo
 
 
 def parameter(
-    name: str, meaning: str, unit: str, bases: tuple[str, ...], ceiling: Ceiling | None = None, of: str = ""
+    name: str, meaning: str, unit: str, bases: tuple[str, ...], ceiling: Ceiling | None = None, of: Lever | None = None
 ) -> Demand:
-    """Return the demand on a parameter of the case, called ``of`` in run.json if not ``name``.
+    """Return the demand on a value ``of`` the case, by default its parameter of this ``name`` in run.json.
 
     Its value has shape (1,), NaN if the case lacks it; its error is NaN.
     """
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
-        return without_error(np.array([float(case["parameters"].get(of or name, np.nan))]))
+        value = of(case) if of else float(case["parameters"].get(name, np.nan))
+        return without_error(np.array([value]))
 
     return Demand(name, meaning, evaluate, unit, bases, per_case=True, ceiling=ceiling)

@@ -196,6 +196,8 @@ def _shown(value: object, digits: int) -> str:
     if isinstance(value, float | int):
         return plain(value, digits)
     if isinstance(value, list | tuple):
+        if all(isinstance(item, list | tuple) for item in value):  # points of a backbone, nine at most
+            return ", ".join(f"[{', '.join(map(shown, item))}]" for item in value)
         return _first([_shown(item, 10) for item in value])
     return value if isinstance(value, str) else shown(value)
 

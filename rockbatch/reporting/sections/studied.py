@@ -142,12 +142,16 @@ def _foundations(finished: Finished) -> Markup:
     """Return a table of the bases: parameters, and the deflections [mm] that follow from them."""
     varied = [key for key in finished.info["varied"] if key in PIER_KEYS or key.startswith(DEVICES)]
     heads = [Head("case"), *(Head(symbol(key)) for key in varied), Head("base")]
-    weighed = {"stiffness_kN_m": "stiffness of a support", "yield_kN": "force at which a support yields"}
     present = {key for case in finished.info["cases"] for key in case["parameters"]}
+    at_corner, static = "", ""
+    if "backbone" in present:
+        at_corner = "; of a backbone at its first corner"
+        static = ", also beyond the first corner of a backbone, where the supports settle more"
+    weighed = {"stiffness_kN_m": "stiffness of a support", "yield_kN": f"force at which a support yields{at_corner}"}
     in_kilonewtons = {key: note for key, note in weighed.items() if key in present}
     heads += [
         Head("β", ".5g", note="vertical over rocking frequency parameter"),
-        Head("η", ".5g", note="yield over static deflection: a support's capacity over its static load"),
+        Head("η", ".5g", note=f"yield over static deflection: a support's yield force over its static load{at_corner}"),
         *(Head(symbol(key), ",.0f", note) for key, note in in_kilonewtons.items()),
         Head("impact", note="landing: impulse at the landing pivot, by ε; housner: factor e on the angular velocity"),
         Head("ε", note="restitution of the landing pivot's velocity"),
@@ -158,8 +162,8 @@ def _foundations(finished: Finished) -> Markup:
         Head("in flight"),
         Head("e", note="factor on the angular velocity at impact; empty: Housner's"),
         Head(join(sub("ω", "v"), " [rad/s]"), ".2f", "vertical frequency"),
-        Head(join(sub("δ", "s"), " [mm]"), ".2f", "static deflection"),
-        Head(join(sub("δ", "y"), " [mm]"), ".2f", "yield deflection"),
+        Head(join(sub("δ", "s"), " [mm]"), ".2f", f"static deflection, elastic{static}"),
+        Head(join(sub("δ", "y"), " [mm]"), ".2f", f"yield deflection{at_corner}"),
     ]
     keys = ("impact", "epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution", "omega_v")
     names = ("beta", "eta", *in_kilonewtons, *keys)
