@@ -59,10 +59,11 @@ def differences(a: Finished, b: Finished, names: Mapping[str, str]) -> list[Diff
     sides = written(a.study), written(b.study, names)
     places = dict.fromkeys(place for side in sides for place in side.values)
     only = [sides[0].listed - sides[1].listed, sides[1].listed - sides[0].listed]
-    rows = [Difference(_named(table), _content(sides[0], table), "–") for table in _outermost(only[0])]
-    rows += [Difference(_named(table), "–", _content(sides[1], table)) for table in _outermost(only[1])]
+    rows = [Difference(_named(table), content, "–") for table, content in _contents(sides[0], _outermost(only[0]))]
+    rows += [Difference(_named(table), "–", content) for table, content in _contents(sides[1], _outermost(only[1]))]
+    in_one = only[0] | only[1]
     for place in places:
-        if place in _NAMES or any(place[:n] in only[0] | only[1] for n in range(1, len(place))):
+        if place in _NAMES or any(place[:n] in in_one for n in range(1, len(place))):
             continue
         values = [side.value(place) for side in sides]
         if _as_compared(values[0]) != _as_compared(values[1]):
@@ -155,6 +156,11 @@ def _named(place: Place) -> str:
     """Return the name of an input: "case pads, damper 1, force_kN"; keys of a table at the top follow a dot: "pier.alpha"."""
     if len(place) == 2 and (section := _SECTIONS.get(place[:1])) is not None and not section.many:
         return ".".join(place)
+    return ", ".join(_words(place))
+
+
+def _words(place: Place) -> list[str]:
+    """Return the words of a place, a table in a list with its label: ["case pads", "damper 1", "force_kN"]."""
     words: list[str] = []
     at: Place = ()
     is_label = False
@@ -166,22 +172,34 @@ def _named(place: Place) -> str:
         at = (*at, part)
         words.append(part)
         is_label = at in _SECTIONS and _SECTIONS[at].many
-    return ", ".join(words)
+    return words
 
 
-def _content(study: Written, table: Place) -> str:
-    """Return the keys of a table with their values, without its name: "kind = friction, force_kN = 300".
+def _contents(study: Written, tables: Sequence[Place]) -> Iterator[tuple[Place, str]]:
+    """Yield each of ``tables``, none of which is in another, with its keys and values but its name: "beta = [30, 40]; h = 2".
 
-    Of more than :data:`MOST_VALUES` the first are returned; "given" if it has no key but its name.
+    Of more than :data:`MOST_VALUES` keys the first are shown; "given" stands for no key but the name.
     """
-    inner = [place for place in study.values if place[: len(table)] == table and place[len(table) :] != ("name",)]
-    words = [f"{', '.join(place[len(table) :])} = {_shown(study.values[place], 4)}" for place in inner]
-    return _first(words) or "given"
+    inner: dict[Place, list[Place]] = {table: [] for table in tables}
+    for place in study.values:
+        for n in range(1, len(place)):
+            if place[:n] in inner and place[n:] != ("name",):
+                inner[place[:n]].append(place)
+    for table, places in inner.items():
+        names = [", ".join(_words(place)[len(_words(table)) :]) for place in places]
+        values = [study.values[place] for place in places]
+        words = [f"{name} = {_bracketed(value)}" for name, value in zip(names, values, strict=True)]
+        yield table, _first(words, "; ") or "given"
 
 
-def _first(words: Sequence[str]) -> str:
-    """Return up to :data:`MOST_VALUES` words with commas, and "…" for the rest."""
-    return ", ".join([*words[:MOST_VALUES], *(["…"] if len(words) > MOST_VALUES else [])])
+def _bracketed(value: object) -> str:
+    """Return a value in words, a list in brackets."""
+    return f"[{_shown(value, 4)}]" if isinstance(value, list) else _shown(value, 4)
+
+
+def _first(words: Sequence[str], between: str = ", ") -> str:
+    """Return up to :data:`MOST_VALUES` words with ``between`` them, and "…" for the rest."""
+    return between.join([*words[:MOST_VALUES], *(["…"] if len(words) > MOST_VALUES else [])])
 
 
 def _shown(value: object, digits: int) -> str:
