@@ -477,6 +477,30 @@ def test_several_panels_do_not_go_into_axes_without_a_grid():
     plt.close(whole)
 
 
+def test_several_panels_do_not_go_into_axes_in_a_grid_inside_a_cell_of_another_but_into_a_subfigure():
+    """They were drawn over the cells beside, and the height of the whole figure was taken for theirs."""
+    whole = plt.figure(figsize=(180.0 / 25.4, 160.0 / 25.4), layout="constrained")
+    axes = whole.add_subplot(whole.add_gridspec(2, 1)[1].subgridspec(2, 2)[0, 0])
+    with pytest.raises(rb.InputError, match=r"inside a cell of another.* make it by subplots\(\), or in a subfigure"):
+        paper.drawn(_panels(2, 110.0), 88.0, axes)
+    axes.remove()
+    inner = whole.subfigures(2, 1)[1]
+    paper.drawn(_panels(2, 110.0), 180.0, inner.subplots())
+    whole.draw_without_rendering()
+    panels = [one.get_window_extent() for one in inner.subfigs[0].axes]
+    assert len(panels) == 2
+    assert all(panel.y1 < whole.bbox.height / 2 for panel in panels)
+    plt.close(whole)
+
+
+@pytest.mark.parametrize(("rows", "ending"), [(1, "wider or higher"), (2, "wider or higher, or give it fewer rows")])
+def test_fewer_rows_are_advised_only_for_a_grid_of_several(rows, ending):
+    whole, axes = plt.subplots(rows, squeeze=False, figsize=(88.0 / 25.4, rows * 55.0 / 25.4), layout="constrained")
+    with pytest.raises(rb.InputError, match=f"make the figure {ending}$"):
+        paper.drawn(_panels(4), 88.0, axes[0, 0])
+    plt.close(whole)
+
+
 def test_a_figure_of_one_panel_is_drawn_in_given_axes_as_that_panel_alone_is():
     """Its legend covered curves, and its numbers had the size of a screen."""
     line = Polyline(np.array([0.0, 1.0]), np.array([0.0, 1.0]), look=line_of(0), label="rises")

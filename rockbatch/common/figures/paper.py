@@ -142,7 +142,7 @@ def drawn(figure: Figure, width_mm: float, ax: Axes | None = None) -> Matplotlib
     """Return the matplotlib figure in which ``figure`` is drawn, ``width_mm`` wide, or that of ``ax``.
 
     One panel is drawn in ``ax`` as by :func:`panel_in`, several in its place. Raises ``InputError`` for an ``ax`` that is no
-    Axes, and if there are several panels and it is in no grid, or too low for them.
+    Axes, and if there are several panels and it is in no grid, in one inside a cell of another, or too low for them.
     """
     _check_axes(ax)
     with mpl.rc_context(_STYLE):
@@ -166,6 +166,11 @@ def _in_place_of(ax: Axes, figure: Figure) -> None:
     place, parent = ax.get_subplotspec(), ax.figure
     if place is None:
         raise InputError("ax: is in no grid, and this figure has several panels; make it by matplotlib's subplots()")
+    if place.get_topmost_subplotspec() is not place:
+        raise InputError(
+            "ax: is in a grid inside a cell of another, and this figure has several panels; "
+            "make it by subplots(), or in a subfigure"
+        )
     grid = place.get_gridspec()
     across, down = (np.asarray(ratios, dtype=float) for ratios in (grid.get_width_ratios(), grid.get_height_ratios()))
     share = across[list(place.colspan)].sum() / across.sum(), down[list(place.rowspan)].sum() / down.sum()
@@ -174,7 +179,7 @@ def _in_place_of(ax: Axes, figure: Figure) -> None:
     if lowest > CROWDED * height:
         raise InputError(
             f"ax: {len(figure.panels)} panels and their legend need {lowest:.0f} mm of height here, and it has {height:.0f} mm; "
-            "make the figure higher, or give it fewer rows"
+            f"make the figure wider or higher{', or give it fewer rows' if grid.nrows > 1 else ''}"
         )
     ax.remove()
     _drawn_in(parent.add_subfigure(place), figure, width, height)
