@@ -188,6 +188,28 @@ def test_wrong_input_runs_nothing_and_exits_with_2(study, tmp_path, capsys):
     assert "Traceback" not in told
 
 
+FEWER = "run fewer at a time (--jobs), keep fewer histories, or "
+AGAIN = "; what is finished is kept: give the same command again"
+
+
+@pytest.mark.parametrize(
+    ("words", "fewer", "again"),
+    [
+        (["statics"], "", ""),
+        (["run"], FEWER, AGAIN),
+        (["run", "--fresh"], FEWER, f"{AGAIN}, without --fresh"),
+    ],
+)
+def test_out_of_memory_only_what_helps_the_command_is_advised(study, monkeypatch, capsys, words, fewer, again):
+    def out_of_memory(*_):
+        raise MemoryError
+
+    command, *options = words
+    monkeypatch.setattr(type(COMMANDS[command]), "run_command", out_of_memory)
+    assert main([command, str(study), *options]) == 2
+    assert capsys.readouterr().err == f"rockbatch: out of memory: {fewer}allow more{again}\n"
+
+
 def test_a_misspelt_option_is_answered_with_the_one_of_its_command(study, capsys):
     for words, end in (
         (["run", str(study), "--dryrun"], "unrecognized arguments: --dryrun; did you mean --dry-run?"),

@@ -242,10 +242,7 @@ def _exit_code(parsed: argparse.Namespace) -> int:
         say(f"rockbatch: {place}{error.strerror or error}; choose another folder, or make this one writable")
         return 2
     except MemoryError as error:
-        advice = "run fewer at a time (--jobs), keep fewer histories, or allow more"
-        say(
-            f"rockbatch: {str(error) or f'out of memory: {advice}; what is finished is kept: give the same command again'}"
-        )
+        say(f"rockbatch: {str(error) or f'out of memory: {_more_memory(parsed)}'}")
         return 2
     except ImportError as error:
         if "failed to map segment" not in str(error):  # message of the loader if memory is limited
@@ -255,6 +252,13 @@ def _exit_code(parsed: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         say("rockbatch: interrupted")
         return 130
+
+
+def _more_memory(parsed: argparse.Namespace) -> str:
+    """Return what helps a command that is out of memory: fewer jobs if it has them, and to go on if it keeps finished runs."""
+    fewer = "run fewer at a time (--jobs), keep fewer histories, or " if "jobs" in parsed else ""
+    again = f"the same command again{', without --fresh' if parsed.fresh else ''}" if "fresh" in parsed else ""
+    return f"{fewer}allow more" + (f"; what is finished is kept: give {again}" if again else "")
 
 
 def _plainly(otherwise: Callable[..., None]) -> Callable[..., None]:
