@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, standing, worst_of_all
 from rockbatch.quantities.catalogue import COLUMNS
+from rockbatch.quantities.labels import plain
 from rockbatch.reporting.differing import differences
 from rockbatch.reporting.drawings import drawings
 from rockbatch.reporting.finished import Finished, worst_first
@@ -61,7 +62,8 @@ def _responses(studies: list[Finished], responses: list[dict[str, Worst]], stood
     for name, pair in in_both.items():
         change = _change(*(w.value for w in pair))
         labels = (study.label(w.run["record"]) for study, w in zip(studies, pair, strict=True))
-        percent = f"{100 * change:+.3g} %".replace("-", "−") if math.isfinite(change) else "from none"
+        sign = "−" if change < 0.0 else "+"
+        percent = f"{sign}{plain(abs(100.0 * change), 3)} %" if math.isfinite(change) else "from none"
         parts.append(f"{RESPONSES[name].words} {percent} ({'; then '.join(dict.fromkeys(labels))})")
     if not parts:
         return f"{ended}No run ends standing in both."

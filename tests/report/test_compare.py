@@ -209,6 +209,16 @@ def test_rotations_follow_by_how_much_and_in_which_record_they_change(tmp_path):
     assert "smaller in 1 of 30 pairs of runs, larger in 0. B/A ranges from 0.5 (SYL360, 2) to" in told
 
 
+@pytest.mark.parametrize(("thetas", "percent"), [((0.01, 0.3), "+2900 %"), ((0.8, 0.8 * (1 - 1e-7)), "−1 × 10⁻⁵ %")])
+def test_a_change_is_shown_without_an_e(tmp_path, thetas, percent):
+    """By hand: 0.3 is 30 times 0.01, and 29 times 0.01 more."""
+    folders = two(tmp_path)
+    for path, theta in zip(folders, thetas, strict=True):
+        peaks = pd.read_csv(path / "peaks.csv", dtype={"case": str})
+        peaks.assign(theta_max_over_alpha=theta).to_csv(path / "peaks.csv", index=False)
+    assert f"worst rotation {percent} (" in answered(folders)
+
+
 def test_a_study_in_which_the_pier_overturns_is_said_to_be_first_or_second(tmp_path):
     a, b = two(tmp_path, {"changes": {("SYL360", "2"): {"status": "overturned"}}})
     assert "Of 30 runs in common 1 of A and 0 of B do not end standing." in answered((a, b))
