@@ -37,18 +37,21 @@ def of_damage(printed: str) -> list[Row]:
 
 
 def of_broken_files(printed: str) -> list[Row]:
-    """Return the rows of what broken_files.py printed, which ends with a traceback at the first file that ends badly."""
-    lines = re.findall(r"^(\S.*?) +(\d+) +\d+ +\d+ +\d+$", printed, re.MULTILINE)
-    files = {name: int(times) for name, times in lines}
+    """Return the rows of what broken_files.py printed, whose last line is a name without counts if a file of it ended badly."""
+    lines = re.findall(r"^(\S.*?) +(?:(\d+) +\d+ +\d+ +\d+)?$", printed, re.MULTILINE)
+    files, badly = {name: int(times or 0) for name, times in lines}, {name for name, times in lines if not times}
     formats = [name for name in files if name not in (*MANIFESTS, CHANGING)]
     kinds = {f"damaged records of {len(formats)} formats": formats, "damaged manifests": MANIFESTS}
     kinds["folders of records that change while they are read"] = [CHANGING]
-    return [Row(kind, sum(files.get(name, 0) for name in names), 0) for kind, names in kinds.items()]
+    return [
+        Row(kind, sum(files.get(name, 0) for name in names), len(badly.intersection(names)))
+        for kind, names in kinds.items()
+    ]
 
 
 def of_kills(printed: str) -> list[Row]:
-    """Return the row of what kills.py printed."""
-    counts = re.findall(r"^\| (\w+) \|.*\| (\d+), \d+ \| (\d+) \|$", printed, re.MULTILINE)
+    """Return the row of what kills.py printed, with the kills before the end of their command."""
+    counts = re.findall(r"^\| (\w+) \|.*\| \d+, (\d+) \| (\d+) \|$", printed, re.MULTILINE)
     badly = sum(int(bad) for *_, bad in counts)
     return [
         Row(f"kills of {len(counts)} commands at random instants", sum(int(kills) for _, kills, _ in counts), badly)

@@ -306,7 +306,7 @@ def test_troubles_count_what_was_tried_and_what_ended_badly(benchmark, capsys):
     assert module.of_damage(printed) == [("damaged journals", 20, 1), ("damaged studies", 10, 0)]
     files = benchmark("broken_files")
     for name in ("PEER AT2", "DYNA (ESM, ITACA, AFAD)", "motions.csv", "motions.toml", "folders that change"):
-        files.tell(name, files.fuzz.Counts(good=1000, refused=2345, slowest=0.0123))
+        files.tell(name, lambda: files.fuzz.Counts(good=1000, refused=2345, slowest=0.0123))
     assert module.of_broken_files(capsys.readouterr().out) == [
         ("damaged records of 2 formats", 6690, 0),
         ("damaged manifests", 6690, 0),
@@ -316,4 +316,23 @@ def test_troubles_count_what_was_tried_and_what_ended_badly(benchmark, capsys):
         "| command | duration [s] | files | kills | failed |\n| - | - | - | - | - |\n| run | 1.5 | 8, 4 | 5, 4 | 0 |\n"
     )
     printed += "| sheet | 2.5 | 9, 4 | 5, 5 | 2 |\n"
-    assert module.of_kills(printed) == [("kills of 2 commands at random instants", 10, 2)]
+    assert module.of_kills(printed) == [("kills of 2 commands at random instants", 9, 2)]
+
+
+@pytest.mark.parametrize(("ended", "row"), [("PEER AT2", 0), ("motions.toml", 1), ("folders that change", 2)])
+def test_the_kind_of_file_at_which_the_reading_ended_counts_as_one_that_ended_badly(benchmark, capsys, ended, row):
+    files = benchmark("broken_files")
+
+    def read(name):
+        if name == ended:
+            raise AssertionError(name)
+        return files.fuzz.Counts(good=10, refused=5, slowest=0.1)
+
+    names = ["DYNA", "PEER AT2", "motions.csv", "motions.toml", "folders that change"]
+    for name in names[: names.index(ended)]:
+        files.tell(name, read, name)
+    with pytest.raises(AssertionError):
+        files.tell(ended, read, ended)
+    rows = benchmark("troubles").of_broken_files(capsys.readouterr().out)
+    assert [badly for *_, badly in rows] == [int(place == row) for place in range(3)]
+    assert rows[0].trouble == "damaged records of 2 formats"
