@@ -27,9 +27,6 @@ DamperKind = Literal["friction", "viscous", "hysteretic"]
 DAMPERS = {"friction": ("f",), "hysteretic": ("f", "yield_m"), "viscous": ("nu", "exponent")}
 """Names of the fields that each kind of damper uses."""
 
-SMOOTHNESS = 5
-"""Exponent n of the Bouc–Wen law of hysteretic dampers."""
-
 SPEED = 0.1
 """Speed [m/s] at which a viscous damper should have less than the pier's weight; heels of rocking piers reach 0.1 to 1 m/s."""
 

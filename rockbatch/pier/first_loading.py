@@ -17,7 +17,7 @@ from rockbatch.pier.backbones import Points, greatest, slopes
 Array = npt.NDArray[np.float64]
 
 STEEL_EXPONENT = 5.0
-"""Bouc–Wen exponent of hysteretic dampers."""
+"""Exponent n of the Bouc–Wen law of hysteretic dampers."""
 
 SLOW = 0.99
 """zⁿ above which the series of a Bouc–Wen curve converges too slowly."""

@@ -18,7 +18,7 @@ from rockbatch.pier import (
     restraint_of,
 )
 from rockbatch.pier.bases import BASES
-from rockbatch.pier.dampers import SMOOTHNESS
+from rockbatch.pier.first_loading import STEEL_EXPONENT
 from rockbatch.pier.plausibility import wrong_restraints
 from rockbatch.pier.sizes import USUAL as OF_PIER
 from rockbatch.pier.traits import USUAL as OF_BASE
@@ -118,7 +118,7 @@ def device_in_words(pier: Pier, restraint: Restraint, digits: int = 4) -> str:
     words = f"{kind} damper" if isinstance(restraint, Damper) else _NAMED.get(kind, kind)
     names = DEVICE_SYMBOLS | _OF_STOP if restraint.what in _NAMED else DEVICE_SYMBOLS
     numbers = [_parameter(*names[key], value, power, digits) for key, value in values.items() if value < float("inf")]
-    numbers += [f"n\u00a0=\u00a0{SMOOTHNESS}"] if kind == "hysteretic" else []
+    numbers += [f"n\u00a0=\u00a0{STEEL_EXPONENT:g}"] if kind == "hysteretic" else []
     return ", ".join([f"{words} {_place(restraint)}", *numbers])
 
 

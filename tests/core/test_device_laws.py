@@ -26,7 +26,7 @@ from rockbatch.core.devices.laws import (
     stop_force,
     stored,
 )
-from rockbatch.pier.dampers import SMOOTHNESS
+from rockbatch.pier.first_loading import STEEL_EXPONENT
 from rockbatch.simulation.elements import IDLE
 
 INF = math.inf
@@ -141,4 +141,4 @@ def test_a_stop_is_loaded_along_k_and_lets_go_along_a_steeper_line():
 def test_the_exponent_that_pages_state_of_hysteretic_dampers_is_that_of_their_law():
     """ż = (ė/u_y)(1 − |z|ⁿ) in loading."""
     loading = response(STEEL, 0.0, 1.0, 0.5, TAUT, OPENS)
-    assert loading.state_rate == pytest.approx(STEEL.stiffness * (1.0 - 0.5**SMOOTHNESS), rel=1e-14)
+    assert loading.state_rate == pytest.approx(STEEL.stiffness * (1.0 - 0.5**STEEL_EXPONENT), rel=1e-14)
