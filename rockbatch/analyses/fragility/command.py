@@ -5,12 +5,11 @@ import argparse
 from rockbatch.analyses.fragility.analysis import fragility
 from rockbatch.analyses.fragility.figures import label
 from rockbatch.analyses.fragility.limit_states import words
-from rockbatch.analyses.fragility.quantities import Curve, of_curves, of_rates
+from rockbatch.analyses.fragility.quantities import Curve, names_of_curves, of_curves, of_rates
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.tables import RUNS
 from rockbatch.batch.listening import count
 from rockbatch.common.analyses import Entry
-from rockbatch.reporting.table import Head
 from rockbatch.study import Study
 from rockbatch.terminal.analysis import analysis_arguments, in_lines, print_files
 from rockbatch.terminal.options import folder
@@ -44,7 +43,7 @@ def table(info: Entry, spec: FragilitySpec) -> str:
         title += f"; {share}: too many runs are undecided"
     lines = [
         title,
-        in_lines([*_names(info), *of_curves(info)], curves, 2),
+        in_lines([*names_of_curves(info), *of_curves(info)], curves, 2),
         *limits,
         info["looked_at"],
         info["by_shares"],
@@ -77,13 +76,8 @@ def risk_lines(info: Entry) -> str:
         return "No annual rates: no curve could be fitted"
     about = "Mean annual rates of exceedance; intervals are those of the fit, with the hazard taken as known"
     notes = [f"{_name(info, curve)}: {curve['risk']['note']}" for curve in curves if curve["risk"]["note"]]
-    return "\n".join([about, in_lines([*_names(info), *of_rates(info, "{:.2e}".format)], curves, 2), *notes])
+    return "\n".join([about, in_lines([*names_of_curves(info), *of_rates(info, "{:.2e}".format)], curves, 2), *notes])
 
 
 def _name(info: Entry, curve: Curve) -> str:
     return f"{curve['limit_state']}, {label(info, curve)}"
-
-
-def _names(info: Entry) -> tuple[Head, Head]:
-    """Return the heads of the columns that name a curve."""
-    return Head("limit", value="limit_state"), Head("case", value=lambda curve: label(info, curve))

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 
-from rockbatch.analyses.fragility.figures import in_brackets
+from rockbatch.analyses.fragility.figures import in_brackets, label
 from rockbatch.common.analyses import Entry
 from rockbatch.quantities.labels import plain
 from rockbatch.reporting.markup import Markup, interval
@@ -19,6 +19,11 @@ FEW = 3
 def level_of(info: Entry) -> str:
     """Return the level of the intervals: "95 %"."""
     return f"{100 * info['confidence']:g} %"
+
+
+def names_of_curves(info: Entry) -> tuple[Head, Head]:
+    """Return the heads of the columns that name a curve: its limit and its case."""
+    return Head("limit", value="limit_state"), Head("case", value=lambda curve: label(info, curve))
 
 
 def of_curves(info: Entry) -> list[Head]:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from rockbatch.analyses.fragility import answer
 from rockbatch.analyses.fragility.figures import clouds, curves, in_brackets, label, risk
-from rockbatch.analyses.fragility.quantities import Curve, level_of, of_curves, of_rates, power
+from rockbatch.analyses.fragility.quantities import Curve, level_of, names_of_curves, of_curves, of_rates, power
 from rockbatch.common.analyses import Entry
 from rockbatch.reporting.finished_analysis import FinishedAnalysis, named, of_analysis
 from rockbatch.reporting.markup import Markup, tag
@@ -42,8 +42,7 @@ def section(analysis: FinishedAnalysis) -> Markup:
 
 def _table(info: Entry) -> Markup:
     heads = [
-        Head("limit", value="limit_state"),
-        Head("case", value=lambda entry: label(info, entry)),
+        *names_of_curves(info),
         *of_curves(info),
         Head("records", ".0f", "that count", value=_greatest("records")),
         Head("overturned", ".0f", "largest number of records that overturn at one level", value=_greatest("collapsed")),
@@ -132,8 +131,7 @@ def rates(analysis: FinishedAnalysis) -> Markup:
     if not curves:
         return tag("p", "No curve could be fitted, so that there are no rates.")
     heads = [
-        Head("limit", value="limit_state"),
-        Head("case", value=lambda entry: label(info, entry)),
+        *names_of_curves(info),
         *of_rates(info, power),
     ]
     return render(
