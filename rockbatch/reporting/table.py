@@ -175,10 +175,11 @@ def _common(heads: Sequence[Head], values: Sequence[object], complete: bool) -> 
     """Return a line with the values of constant columns and their units; ``complete`` if the table shows every row."""
     words = []
     for head, value in zip(heads, values, strict=True):
-        name, bracket, unit = escape(head.text).rpartition(" [")
+        name, bracket, unit = escape(head.text.removesuffix("]")).rpartition(" [")
+        has_unit = bool(bracket) and head.text.endswith("]")
         shown = value if isinstance(value, Markup) else number(value, head.form)
-        behind = f"\u00a0{unit.removesuffix(']')}" if bracket else ""
-        words.append(join(Markup(name if bracket else unit), " ", shown, Markup(behind)))
+        behind = f"\u00a0{unit}" if has_unit else ""
+        words.append(join(Markup(name) if has_unit else head.text, " ", shown, Markup(behind)))
     rows = "In every row: " if complete else "In each of these rows: "
     return tag("p", rows, join(*words, between="; "), ".", class_="legend")
 

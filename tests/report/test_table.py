@@ -79,6 +79,8 @@ def test_what_is_the_same_in_every_row_of_a_long_table_stands_above_it_once():
         [heads[0], Head("drift at [m]", ".4g"), *heads[2:]], [[row[0], 30.0, *row[2:]] for row in rows], sortable=True
     )
     assert "In every row: drift at 30\u00a0m; scale 1.50." in with_unit
+    at_rest = table([heads[0], Head("period [s] of rest"), *heads[2:]], rows, sortable=True)
+    assert "In every row: period [s] of rest ok; scale 1.50." in at_rest
     for unlike in (table(heads, rows), table(heads, rows[:LEAST_COMMON], sortable=True)):
         assert "In every row" not in unlike
     one = [*rows[:-1], ["r", "failed", 1.5, 0.0]]
