@@ -186,6 +186,30 @@ def test_analyses_name_a_viscous_coefficient_with_the_unit_of_its_exponent(tmp_p
     assert axis_label("case.damper.coefficient_kN_s_m", entry) == "damper: C [kN (s/m)^0.3]"
 
 
+SCAN = {"vary": "case.restitution", "between": [0.8, 0.9], "find": "least", "points": 3, "width": 0.04}
+PEAK = {"name": "peak", "demand": "theta_max_over_alpha", "at_most": 0.9, "reason": "made up"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("analysis", "tables"),
+    [
+        (rb.spectrum, {"spectrum": {"alpha": [0.2], "p": [1.0, 2.0], "points": 3}}),
+        (rb.sensitivity, {"sensitivity": {"statistic": "max", "samples": 4, "uniform": {"restitution": [0.85, 0.9]}}}),
+        (rb.release, {"release": {"impact_s": [0.3, 0.8, 1.3]}}),
+        (rb.design, {"design": SCAN, "check": [PEAK]}),
+    ],
+)
+def test_every_analysis_names_its_panels_with_the_unit_of_a_viscous_exponent(tmp_path, analysis, tables):
+    oil = {"kind": "viscous", "coefficient_kN_s_m": [500.0, 900.0], "exponent": 0.3}
+    case = {"name": "oil", "base": "rigid", "restitution": 0.9, "damper": [oil]}
+    pier = MASS | ({"initial_rotation_rad": 0.1} if "release" in tables else {})
+    study = rb.load_study(write_study(tmp_path, study_text(pier=pier, cases=[case], **tables)))
+    titles = {axes.get_title().replace("\u00a0", " ") for axes in analysis(study).plot().axes}
+    for coefficient in (500, 900):
+        assert any(f"C = {coefficient} kN (s/m)^0.3" in title for title in titles)
+
+
 def test_without_its_case_a_viscous_coefficient_keeps_the_letter_of_its_exponent():
     key = "damper_1_coefficient_kN_s_m"  # an analysis of an earlier version does not list its cases
     assert named_by({}, {"case": "oil", key: 900.0}, [key]).replace("\u00a0", " ") == "oil: C = 900 kN (s/m)^a"
