@@ -74,7 +74,7 @@ def report(arguments: argparse.Namespace) -> int:
     if made.pdf and made.pdf != made.path:
         say(str(made.pdf))
     elif made.is_sheet and arguments.out is None:
-        say('no PDF: that needs typst, pip install "rockbatch[pdf]"')
+        say('no PDF was written: install typst with pip install "rockbatch[pdf]"')
     return 0
 
 

@@ -313,7 +313,7 @@ class _Table:
 
     @staticmethod
     def _later(places: Indices, i: int) -> Indices:
-        """Return those of ascending ``places`` that are behind ``i``."""
+        """Return the places after ``i``, of ascending ``places``."""
         return places[np.searchsorted(places, i, "right") :]
 
     def _differ(self, column: Indices, i: int, j: Indices) -> Truths:

@@ -406,9 +406,8 @@ def _sequence_or_refusal(
     unknown = [_unknown_record(name, by_name) for name in missing if name not in reasons]
     if (taken or unknown) and not source:
         raise InputError(*(f"[[motions.sequence]] {shown(entry.name)}: {message}" for message in (*taken, *unknown)))
-    if len(unknown) == len(
-        entry.records
-    ):  # only one file beside the manifest is read, or rotation has renamed the records
+    # if only one file beside the manifest is read, or rotation has renamed the records
+    if len(unknown) == len(entry.records):
         return LeftOut(entry.name, source, f"none of its records is read: {unknown[0]}")
     if not missing and not taken:
         try:

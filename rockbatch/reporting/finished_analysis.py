@@ -152,7 +152,7 @@ def sentence(said: str, left_open: Iterable[str] = ()) -> Markup:
 def named(info: Item, values: Mapping[str, object], shown: Sequence[str]) -> str:
     """Return the name of a case with its values of the keys ``shown``, without NaN: "pads: β = 40".
 
-    ``info``, the content of NAME.json, has the exponents in units.
+    ``info``, the content of NAME.json, supplies the exponent in a viscous damper's unit.
     """
     columns = {key: values[key] for key in shown if key != "case" and values[key] == values[key]}
     return in_full(str(values["case"]), columns, case_of(info, values["case"], columns))

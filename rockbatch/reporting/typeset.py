@@ -139,7 +139,7 @@ def _figure(image: Element) -> str:
 
 
 def _key(element: Element, setting: Setting) -> str:
-    """Return a legend: samples, each with its words, in lines; a sample stands in the line of the first of its words."""
+    """Return a legend: samples, each with its words, in lines; a sample is kept on the line of its first word."""
     entries = (f"#box({_picture(item[0], setting)})~{_inline(item[1])}" for item in element)
     return f"\n#text(8pt)[{' #h(8pt) '.join(entries)}]\n"
 

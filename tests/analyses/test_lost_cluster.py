@@ -62,7 +62,7 @@ def many_groups(tmp_path, monkeypatch):
 
 
 def killing(patch, processes):
-    """Let each process of ``processes`` be killed (SIGKILL) once so many groups are finished and kept, its key."""
+    """Kill each process (SIGKILL) when as many groups as its key are finished."""
     real, kept = Dask.outcomes, []
 
     def outcomes(self, *asked):

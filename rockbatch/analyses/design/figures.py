@@ -51,7 +51,10 @@ def figure_of(info: Entry, intervals: "pd.DataFrame", values: "pd.DataFrame", ch
 
 
 def axis_label(path: str, case: Case | None = None) -> str:
-    """Return the label of the axis of a key: "damper: F [kN]" of "case.damper.force_kN"; ``case`` has exponents in units."""
+    """Return the label of the axis of a key: "damper: F [kN]" of "case.damper.force_kN".
+
+    ``case`` supplies the exponent in a viscous damper's unit.
+    """
     _, *tables, name = path.split(".")
     kind, number = parted(tables[0]) if tables else ("", "")
     label = symbol(f"{kind}_{number or 1}_{name}" if kind else name, case)
