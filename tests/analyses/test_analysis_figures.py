@@ -11,6 +11,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.analyses.accuracy.figures import error_and_time
 from rockbatch.analyses.accuracy.levels import of_table
+from rockbatch.analyses.fragility import figures
 from rockbatch.analyses.fragility.figures import clouds, curves, risk
 from rockbatch.analyses.release.figures import rotations
 from rockbatch.analyses.sensitivity.figures import INDICES, bars
@@ -82,6 +83,17 @@ def entry(case, limit="overturning", **more):
     points = [point | {"collapsed": 1, "flight": place, "failed": 0} for place, point in enumerate(points)]
     identity = {"case": case, "columns": {}, "limit_state": limit, "words": f"{limit} > 0.3", "points": points}
     return identity | {"capacities": []} | more
+
+
+def test_the_marks_of_a_curve_share_one_label(monkeypatch):
+    """The label, for which the list of cases is searched, was made anew for every level: 2 s for 3,000 cases."""
+    shown = [entry("rock"), entry("pads")]
+    info = {"measure": "PGA", "unit": "g", "levels": [0.2, 0.5, 0.8, 2.0], "curves": shown}
+    real, asked = figures.label, []
+    monkeypatch.setattr(figures, "label", lambda info, curve: asked.append(curve["case"]) or real(info, curve))
+    (panel,) = curves(info).panels
+    assert {mark.label for mark in of_kind(panel.marks, Points)} == {"rock", "pads"}
+    assert asked == ["rock", "pads"] * 2  # once for the looks of all figures, once for the marks
 
 
 def test_a_fragility_has_its_shares_and_one_look_for_each_case(tmp_path):

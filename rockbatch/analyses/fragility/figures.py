@@ -58,18 +58,18 @@ def curves(info: Entry) -> Figure:
     looks, panels = _looks(info), []
     for name, of_limit in grouped(info["curves"], lambda entry: entry["limit_state"]).items():
         for first in range(0, len(of_limit), CASES_OF_A_PANEL):
-            group = of_limit[first : first + CASES_OF_A_PANEL]
-            looked = [entry for entry in group if entry.get("looked")]
+            group = [(label(info, entry), entry) for entry in of_limit[first : first + CASES_OF_A_PANEL]]
+            looked = [(case, entry) for case, entry in group if entry.get("looked")]
             x = Axis(_intensity(info), 0.0, 1.1 * info["levels"][-1], about=6)
             y = Axis("probability", 0.0, 1.0 + STRIP * (len(looked) + 0.5 * bool(looked)), last=1.0)
             strips = [
-                _line([low, high], [1.0 + STRIP * (place + 1)] * 2, looks[label(info, entry)])
-                for place, entry in enumerate(looked)
+                _line([low, high], [1.0 + STRIP * (place + 1)] * 2, looks[case])
+                for place, (case, entry) in enumerate(looked)
                 for low, high in entry["looked"]
             ]
-            bands = [mark for entry in group for mark in _bands(entry, looks[label(info, entry)])]
-            marks = [mark for entry in group for mark in _marks(info, entry, x.high, looks[label(info, entry)])]
-            panels.append(Panel(x, y, [*bands, *strips, *marks], name, group[0]["words"]))
+            bands = [mark for case, entry in group for mark in _bands(entry, looks[case])]
+            marks = [mark for case, entry in group for mark in _marks(case, entry, x.high, looks[case])]
+            panels.append(Panel(x, y, [*bands, *strips, *marks], name, of_limit[first]["words"]))
     return Figure(panels, f"Fragility curves over {info['measure']}")
 
 
@@ -88,15 +88,14 @@ def _bands(entry: Curve, look: Look) -> Iterator[Mark]:
             yield Area(np.concatenate((x, x[::-1])), around, look=Look(kind, look.colour))
 
 
-def _marks(info: Entry, entry: Curve, right: float, look: Look) -> Iterator[Mark]:
+def _marks(name: str, entry: Curve, right: float, look: Look) -> Iterator[Mark]:
     """Yield the curves of a case, and the shares at the levels, each from the decided records, with bars for the others."""
-    name = label(info, entry)
     if "curve" in entry:
         yield _line(entry["curve"]["x"], entry["curve"]["p"], look, label=name)
     if "total" in entry:
         yield _line(entry["total"]["x"], entry["total"]["p"], look, 1)
     if "windows" in entry:
-        yield from _of_shares(info, entry, look)
+        yield from _of_shares(name, entry, look)
     if entry["capacities"] and "open" not in entry:  # a share of the records needs all of them
         yield _line(*_steps([high for _, high in entry["capacities"]], right), look, 2)
     points = [point for point in entry["points"] if point["records"]]
@@ -107,37 +106,35 @@ def _marks(info: Entry, entry: Curve, right: float, look: Look) -> Iterator[Mark
                 np.full(2, point["level"]),
                 np.array(ends),
                 look=Look("level", look.colour),
-                title=_said(info, entry, point),
+                title=_said(name, point),
             )
     decided = [point for point in points if point["records"] > point["undecided"]]
     shares = np.array([point["exceeded"] / (point["records"] - point["undecided"]) for point in decided])
     levels = np.array([point["level"] for point in decided], dtype=float)
-    yield Points(levels, shares, None, [_said(info, entry, point) for point in decided], look=look, label=name)
+    yield Points(levels, shares, None, [_said(name, point) for point in decided], look=look, label=name)
 
 
-def _of_shares(info: Entry, entry: Curve, look: Look) -> Iterator[Mark]:
+def _of_shares(name: str, entry: Curve, look: Look) -> Iterator[Mark]:
     """Yield the curve by shares, and the shares as open markers."""
-    windows, name = entry["windows"], f"{label(info, entry)}, by shares"
+    windows, by_shares = entry["windows"], f"{name}, by shares"
     if "curve" in windows:
-        yield _line(windows["curve"]["x"], windows["curve"]["p"], look, 3, name)
+        yield _line(windows["curve"]["x"], windows["curve"]["p"], look, 3, by_shares)
     shown = [
         (p["level"], share) for p, share in zip(entry["points"], windows["shares"], strict=True) if share is not None
     ]
     words = f"of the scales within ±{100 * windows['width']:g} % exceed the limit"
-    titles = [f"{label(info, entry)}, {level:g}: {share:.0%} {words}" for level, share in shown]
+    titles = [f"{name}, {level:g}: {share:.0%} {words}" for level, share in shown]
     levels, shares = np.array(shown, dtype=float).reshape(-1, 2).T
-    yield Points(levels, shares, None, titles, look=Look("", look.colour, shape=look.shape, open=True), label=name)
+    yield Points(levels, shares, None, titles, look=Look("", look.colour, shape=look.shape, open=True), label=by_shares)
 
 
-def _said(info: Entry, entry: Curve, point: Entry) -> str:
+def _said(name: str, point: Entry) -> str:
     ends = [
-        f"{point[name]} {words}"
-        for name, words in (("collapsed", "overturned"), ("flight", "flew"), ("failed", "failed"))
-        if point[name]
+        f"{point[kind]} {words}"
+        for kind, words in (("collapsed", "overturned"), ("flight", "flew"), ("failed", "failed"))
+        if point[kind]
     ]
-    counts = (
-        f"{label(info, entry)}, {point['level']:g}: {point['exceeded']} of {point['records']} records exceed the limit"
-    )
+    counts = f"{name}, {point['level']:g}: {point['exceeded']} of {point['records']} records exceed the limit"
     undecided = [f"{point['undecided']} undecided"] if point["undecided"] else []
     return "; ".join([counts, *undecided, *ends])
 
