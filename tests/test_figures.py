@@ -477,7 +477,7 @@ def test_several_panels_do_not_go_into_axes_without_a_grid():
     plt.close(whole)
 
 
-def test_several_panels_do_not_go_into_axes_in_a_grid_inside_a_cell_of_another_but_into_a_subfigure():
+def test_several_panels_go_into_a_subfigure_and_not_into_a_grid_inside_a_cell():
     """They were drawn over the cells beside, and the height of the whole figure was taken for theirs."""
     whole = plt.figure(figsize=(180.0 / 25.4, 160.0 / 25.4), layout="constrained")
     axes = whole.add_subplot(whole.add_gridspec(2, 1)[1].subgridspec(2, 2)[0, 0])

@@ -66,8 +66,8 @@ def wrong_points(points: Sequence[tuple[float, float]]) -> str:
         slope = (point[1] - before[1]) / (point[0] - before[0])
         if not slope >= 0.0:
             return (
-                f"{_shown(point)} follows {_shown(before)}: the force falls, and a support that softens is not "
-                f"followed; write {_exact(before[1])} there, from which on it is plastic"
+                f"{_shown(point)} follows {_shown(before)}: the force falls, and softening is not "
+                f"modelled; write {_exact(before[1])} there, from which on it is plastic"
             )
         if not slope <= steepest * (1.0 + COLLINEAR):
             return (

@@ -266,7 +266,7 @@ def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: 
     It then says what K or F_y would have to be.
     """
     if "backbone_mm_kN" in chosen and problem.key in ("beta", "eta"):
-        text = f"the support that it describes has {problem}; {_REMEDIES[problem.key]}"
+        text = f"it gives {problem}; {_REMEDIES[problem.key]}"
         problem = replace(problem, key="backbone_mm_kN", value=None, text=text)
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(problem.key, "")
     mass = pier.mass_t

@@ -401,7 +401,7 @@ def test_cases_paired_by_inputs_differ_in_values_only(tmp_path):
     assert rows == {"case springs, zeta": ("0.05", "0.1")}
 
 
-def test_a_case_that_only_one_study_has_is_shown_with_lists_in_brackets_and_inner_tables_by_their_names(tmp_path):
+def test_what_one_study_has_is_shown_with_lists_in_brackets_and_names_of_tables(tmp_path):
     soft = {"name": "soft", "base": "elastic", "stiffness_kN_m": [3e5, 4e5], "zeta": [0.02, 0.05]}
     soft["damper"] = [{"kind": "friction", "force_kN": 300.0}]
     rows = inputs(two(tmp_path, tables(), tables(case=[SPRINGS | DEVICES, soft])))
