@@ -206,7 +206,7 @@ def _table(table: Element, setting: Setting) -> str:
     heads = [row for row in rows if _of_heads(row)]
     body = ", ".join(_cell(cell, setting, card) for row in rows if not _of_heads(row) for cell in row)
     above = ", ".join(_cell(cell, setting, card) for row in heads for cell in row)
-    texts = [["".join(cell.itertext()) for cell in row] for row in rows if len(row) == across and row not in heads]
+    texts = [["".join(cell.itertext()) for cell in row] for row in rows if len(row) == across]
     widths = ", ".join(["1.4fr"] + ["1fr"] * (across - 1) if card else _widths(texts))
     return f"\n#table(columns: ({widths},), table.header({above}), {body})\n"
 
@@ -216,7 +216,7 @@ def _of_heads(row: Element) -> bool:
 
 
 def _widths(cells: Sequence[Sequence[str]]) -> Iterator[str]:
-    """Yield the width of each column by the texts below its head: "auto" for short ones, else a share such as "7fr".
+    """Yield the width of each column by its texts, heads included: "auto" for short ones, else a share such as "7fr".
 
     Short are texts of up to ``WRAPPED`` characters, or ``_NARROW`` if the table would not fit on the paper then. The share is the
     fourth root of the sum of squared lengths, so that a long text counts more than many short ones.

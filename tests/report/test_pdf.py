@@ -342,9 +342,10 @@ def test_the_first_number_of_an_axis_of_peaks_is_not_cut_off():
     assert left > 0.5 * 4 * 6.0  # half of four digits
 
 
-def widths_of(*rows):
+def widths_of(*rows, heads=()):
     """Return the widths of the columns of a table as it is set."""
-    cells = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows)
+    head = "<tr>" + "".join(f"<th>{name}</th>" for name in heads) + "</tr>" if heads else ""
+    cells = head + "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows)
     set_ = blocks(parsed(f'<table class="sortable"><tbody>{cells}</tbody></table>'), Setting({}))
     return re.search(r"columns: \((.*?),?\), table", set_)[1].split(", ")
 
@@ -356,6 +357,14 @@ def test_columns_keep_their_width_if_the_paper_has_it_and_share_it_if_not():
     assert wide[3] == "auto"
     shares = [float(width.removesuffix("fr")) for width in (*wide[:3], wide[4])]
     assert max(shares) < 1.5 * min(shares)  # one long remark has the room of names
+
+
+def test_long_heads_leave_the_notes_of_a_table_their_room():
+    """Of a statics table of six cases with long names, whose notes had the width of a word."""
+    case, note = "soft, weak: β = 40, η = 2.5, p = 0.58 rad/s", "rotation at which it is reached, of the " * 2
+    widths = widths_of(["lift-off [g]", *6 * ["0.1234"], note], heads=["", *6 * [case], ""])
+    assert widths[0] == "auto"
+    assert float(widths[-1].removesuffix("fr")) > 0.5 * float(widths[1].removesuffix("fr"))
 
 
 def test_a_list_in_a_legend_is_as_small_as_the_legend():
