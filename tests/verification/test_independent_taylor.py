@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 from known_flights import KNOWN_PEAKS, MOTIONS, PIER
 
-from rockbatch.motions import Motion
+from rockbatch.motions import Motion, read_motions
 from rockbatch.pier import Pier, RigidBase
+from rockbatch.simulation import Run, Stop, run_all_to_tolerance
 
 pytestmark = pytest.mark.thorough  # compiles the reference, which hardly ever changes
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
@@ -79,3 +80,15 @@ def test_two_references_that_share_no_code_agree(independent, taylor):
                 assert one.status == "overturned" or abs(one.theta_max - other.theta_max) <= within
                 compared += 1
     assert compared > 40
+
+
+def test_changed_motions_do_not_show_a_window_between_them(taylor):
+    """A pier that comes to rest forgets its motion; here it is lifted first, but only under motions 3 to 7·10⁻⁹ stronger."""
+    motion = read_motions([], fema=[("LCN", 260.0)]).motions[0]
+    pier, base = Pier(0.13, 0.43), RigidBase(0.9375)
+    outcome = run_all_to_tolerance([Run(pier, base, motion)], 1e-4, 2.0, Stop())[0]
+    assert outcome is not None
+    peaks = {change: taylor.truth(pier, base, motion, 1.0 + change).theta_max for change in (-1e-8, 0.0, 3e-9, 1e-8)}
+    assert abs(peaks[0.0] - outcome.theta_max) <= outcome.theta_max_error
+    assert [abs(peaks[change] / outcome.theta_max - 1.0) < 1e-7 for change in peaks] == [True, True, False, True]
+    assert peaks[3e-9] == pytest.approx(0.9 * peaks[0.0], rel=0.01)
