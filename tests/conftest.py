@@ -40,6 +40,7 @@ def kept_entry_to(block):
 kernel._entry_to = kept_entry_to
 
 PHYSICS = ("core", "simulation", "verification")
+COMPILES = os.environ.get("NUMBA_DISABLE_JIT") != "1"
 DEVICE = (Damper("viscous", nu=0.1),)
 SHARED = [
     ElasticBase(50.0, restraints=DEVICE),
@@ -146,7 +147,7 @@ def pytest_collection_finish(session):
     """Compile the shared kernels before the first test of the physics, each in one of the workers."""
     worker = getattr(session.config, "workerinput", None)
     physics = [item for item in session.items if item.path.parent.name in PHYSICS]
-    if worker and physics:
+    if worker and physics and COMPILES:
         from rockbatch import simulate
 
         still, share = Motion.still(0.1), slice(int(worker["workerid"][2:]), None, worker["workercount"])
@@ -160,8 +161,7 @@ def pytest_collection_finish(session):
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item):
     """Fail a fast test of the physics that needs another kernel than the shared ones."""
-    compiles = os.environ.get("NUMBA_DISABLE_JIT") != "1"
-    if not compiles or item.path.parent.name not in PHYSICS or item.get_closest_marker("slow"):
+    if not COMPILES or item.path.parent.name not in PHYSICS or item.get_closest_marker("slow"):
         return (yield)
     from rockbatch.core import run
 
@@ -181,7 +181,7 @@ def pytest_runtest_protocol(item):
 @pytest.fixture(scope="session")
 def uncompiled():
     """Call functions in a process in which Numba compiles nothing: a sub-step of a run takes a millisecond there."""
-    if os.environ.get("NUMBA_DISABLE_JIT") == "1":
+    if not COMPILES:
         yield lambda function, *given, **named: function(*given, **named)
         return
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
