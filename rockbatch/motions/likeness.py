@@ -289,7 +289,8 @@ class _Table:
 
     ``growth`` has the times [s] between the ``_SHARES`` of ∫a² dt, and their sum; ``amplitude`` the Fourier amplitudes in
     ``_BANDS``, of which ``bands`` lie below the Nyquist frequency, and ``energy`` the cumulative sum of their squares. Both
-    are NaN until first used.
+    are NaN until first used. So is ``spectra``, by ``length``, for components with as many samples: the :func:`_spectrum` of
+    each, at its ``place`` among them.
     """
 
     def __init__(self, components: Sequence[Component]) -> None:
@@ -308,6 +309,11 @@ class _Table:
         self.bands = np.array([np.searchsorted(_BANDS, 0.5 / c.dt, "right") - 1 for c in components], dtype=np.int64)
         self.amplitude = np.full((len(components), len(_BANDS) - 1), math.nan, dtype=np.float32)
         self.energy = np.full((len(components), len(_BANDS)), math.nan, dtype=np.float32)
+        self.length = _codes((len(c.acceleration), c.dt) for c in components)
+        self.place = np.empty(len(components), dtype=np.int64)
+        for of_length in _places(self.length).values():
+            self.place[of_length] = np.arange(len(of_length))
+        self.spectra: dict[int, npt.NDArray[np.float32]] = {}
         vertical = np.array([c.orientation.vertical for c in components], dtype=bool)
         self.whole_file = np.isin(self.file, self.file[vertical]) & np.isin(self.file, self.file[~vertical])
 
@@ -395,7 +401,8 @@ class _Table:
             for share in range(len(_SHARES) - 1):
                 j = j[np.abs(self.growth[j, share] - self.growth[i, share]) <= within]
             j = j[self._joinable(i, j) & self._pointing_alike(i, j)]
-            yield from ((min(i, k), max(i, k)) for k in j[self._similar(i, j)].tolist())
+            j = j[self._similar(i, j)]
+            yield from ((min(i, k), max(i, k)) for k in j[self._similar_in_full(i, j)].tolist())
 
     def _similar(self, i: int, j: Indices) -> Truths:
         """Return whether the spectra allow a correlation of ``_CERTAIN``: at any shift, |Σ AᵢAⱼ e^iφ| ≤ Σ |Aᵢ||Aⱼ|."""
@@ -406,6 +413,25 @@ class _Table:
         common = np.minimum(self.bands[i], self.bands[j])
         product = self.amplitude[j] @ self.amplitude[i]
         return np.asarray(np.square(product) >= _SIMILAR**2 * self.energy[i, common] * self.energy[j, common])
+
+    def _similar_in_full(self, i: int, j: Indices) -> Truths:
+        """Return whether full spectra allow it, too, of components with the steps and samples of ``i``; True for others.
+
+        Random motions of one envelope, as simulated suites have, are alike in bands of many frequencies.
+        """
+        similar, length = np.ones(len(j), dtype=bool), int(self.length[i])
+        same = self.length[j] == length
+        if same.any():
+            if length not in self.spectra:
+                shape = int((self.length == length).sum()), len(_spectrum(self.components[i].acceleration))
+                self.spectra[length] = np.full(shape, math.nan, dtype=np.float32)
+            spectra, places = self.spectra[length], self.place[j[same]]
+            for k in (i, *j[same][np.isnan(spectra[places, 0])].tolist()):
+                if math.isnan(spectra[self.place[k], 0]):
+                    spectra[self.place[k]] = _spectrum(self.components[k].acceleration)
+            # NaN, of a constant one, decides nothing
+            similar[same] = ~(spectra[places] @ spectra[self.place[i]] < _SIMILAR)
+        return similar
 
 
 def _kind_of_direction(component: Component) -> tuple[str, ...]:
@@ -432,6 +458,19 @@ def _amplitudes(component: Component) -> Samples:
     energy = np.concatenate(([0.0], np.cumsum(np.square(np.abs(np.fft.rfft(a, n))))))
     ends = np.minimum(np.ceil(_BANDS * n * dt).astype(int), len(energy) - 1)
     return np.asarray(np.sqrt(np.maximum(np.diff(energy[ends]), 0.0) / (energy[-1] or 1.0)))
+
+
+def _spectrum(values: Samples) -> Samples:
+    """Return the Fourier amplitudes of a series less its mean, of unit energy, each two in one; NaN for a constant one.
+
+    Those of two series of one length have a product that is no less than their correlation at any shift, since each of them
+    is long enough for both, one behind the other.
+    """
+    deviation = values - values.mean()
+    n = 1 << max(2 * len(values) - 1, 2).bit_length()
+    amplitudes = np.abs(np.fft.rfft(deviation, n)[1:]).reshape(-1, 2)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(math.sqrt(2.0 / n) * np.hypot(*amplitudes.T) / np.linalg.norm(deviation))
 
 
 def likeness_of(a: Component, b: Component) -> float:

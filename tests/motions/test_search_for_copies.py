@@ -1,6 +1,7 @@
 """Copies are searched for in time that grows with the number of records, and by samples that are alike."""
 
 import tracemalloc
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -40,6 +41,56 @@ def test_sets_are_found_in_time_that_grows_with_their_number(tmp_path, correlati
             (tmp_path / f"r{i}_NS.txt").write_text("time(s) a(g)\n" + rows)
     assert len(read_motions(tmp_path).motions) == 60
     assert len(correlations) < 60
+
+
+def simulated(rng, count, samples=400):
+    """Components of random motions of one length and envelope, all to the north, as a simulated suite has them."""
+    t = np.arange(samples) / samples
+    return [
+        Component(f"r{i}", 0.02, a, Orientation("000", azimuth=0.0), source=f"r{i}.AT2")
+        for i, a in enumerate(rng.normal(size=(count, samples)) * t * np.exp(-4.0 * t))
+    ]
+
+
+def with_copies(rng, suite):
+    """The suite with copies of some of its motions behind it: shifted, reversed, scaled, filtered, with noise, in any order."""
+    changes = [
+        lambda a: np.roll(a, int(rng.integers(1, 30))),
+        lambda a: -a,
+        lambda a: 100.0 * a,
+        lambda a: np.convolve(a, [0.25, 0.5, 0.25], "same"),
+        lambda a: a + rng.uniform(0.1, 0.5) * a.std() * rng.normal(size=len(a)),
+    ]
+    changed = [rng.choice(changes)(suite[i].acceleration) for i in rng.integers(len(suite), size=len(suite) // 2)]
+    copies = [replace(suite[0], name=f"c{i}", source=f"c{i}.AT2", acceleration=a) for i, a in enumerate(changed)]
+    return [(suite + copies)[i] for i in rng.permutation(len(suite) + len(copies))]
+
+
+def test_a_simulated_suite_of_one_length_and_envelope_is_not_compared_in_pairs(correlations):
+    suite = simulated(np.random.default_rng(3), 60)
+    assert not likeness.pairs_of_one_recording(suite).pairs
+    assert len(correlations) < 6
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_full_spectra_rule_out_no_pair_that_a_comparison_of_all_pairs_finds(monkeypatch, seed):
+    rng = np.random.default_rng(seed)
+    suite = with_copies(rng, simulated(rng, 16))
+    found = likeness.pairs_of_one_recording(suite)
+    monkeypatch.setattr(likeness._Table, "_similar_in_full", lambda self, i, j: np.ones(len(j), dtype=bool))
+    assert found.pairs
+    assert found == likeness.pairs_of_one_recording(suite)
+
+
+def test_no_correlation_is_above_the_product_of_spectra():
+    rng = np.random.default_rng(2)
+    for samples in (1, 2, 3, 50, 257, 512):
+        for _ in range(20):
+            pair = rng.normal(size=(2, samples)) * np.exp(
+                -rng.uniform(0.0, 9.0, size=(2, 1)) * np.arange(samples) / samples
+            )
+            product = likeness._spectrum(pair[0]) @ likeness._spectrum(pair[1])
+            assert np.isnan(product) if samples == 1 else likeness.correlation(*pair) <= product * (1.0 + 1e-12)
 
 
 @pytest.mark.parametrize("change", ["half the step", "reversed", "noise", "cut", "another scale"])
