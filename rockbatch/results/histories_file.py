@@ -110,7 +110,7 @@ def write(path: Path, responses: Iterable[Response], info: Item) -> None:
     Raises ``InputError`` if the disk is full.
     """
     with replacing(path) as temporary:
-        _check_room(path, temporary, MARGIN)
+        tried = _check_room(path, temporary, MARGIN)
         with h5py.File(temporary, "w", userblock_size=BLOCK) as file:
             study = info["study"]
             attributes = {"format": FORMAT, "rockbatch": info["rockbatch"], "created": info["created"]}
@@ -118,7 +118,7 @@ def write(path: Path, responses: Iterable[Response], info: Item) -> None:
             _set(file.create_group("versions"), info["versions"] | {"hdf5": h5py.version.hdf5_version})
             runs = file.create_group("runs")
             for number, response in enumerate(responses):
-                _check_room(path, temporary, MARGIN + _size_of(response))
+                tried = _check_room(path, temporary, MARGIN + _size_of(response), tried)
                 _write(runs.create_group(_group_name(number)), response)
                 file.flush()  # HDF5 reports failed writes on a flush, but not when it closes a dataset
         seal(temporary)
@@ -137,11 +137,13 @@ def _digest(file: io.FileIO) -> bytes:
     return hashlib.file_digest(file, "sha256").hexdigest().encode()
 
 
-def _check_room(path: Path, temporary: Path, needed: int) -> None:
+def _check_room(path: Path, temporary: Path, needed: int, tried: int = 0) -> int:
     """Raise ``InputError`` or ``OSError`` if a file of ``path``'s folder, ``temporary``, cannot grow by ``needed`` [bytes].
 
     HDF5 may crash at exit after a failed write, and so is given room that leaves MARGIN, 10 MB. The free space of a disk does
-    not tell a quota, nor a limit on the size of files: they refuse to grow the file, which then has its size again.
+    not tell a quota, nor a limit on the size of files: they refuse to grow the file, which then has its size again. Returns the
+    size to which it could grow. A file system that cannot give room is written to instead, and so it is not tried again while
+    all but half of MARGIN lies below the size ``tried``.
     """
     free = disk_usage(path.parent).free
     if free < needed:
@@ -149,10 +151,10 @@ def _check_room(path: Path, temporary: Path, needed: int) -> None:
             f"{path}: the disk is full, {free / 1e6:.0f} MB are left; make room, or keep fewer histories with [output] "
             'histories = "worst" or "none"'
         )
-    if not hasattr(os, "posix_fallocate"):  # macOS, Windows
-        return
+    size = temporary.stat().st_size
+    if not hasattr(os, "posix_fallocate") or size + needed - MARGIN // 2 <= tried:  # macOS and Windows lack it
+        return tried
     with opened(temporary, "r+b") as file:
-        size = os.fstat(file.fileno()).st_size
         try:
             os.posix_fallocate(file.fileno(), size, needed)
         except OSError as error:
@@ -160,6 +162,7 @@ def _check_room(path: Path, temporary: Path, needed: int) -> None:
                 raise
         finally:
             file.truncate(size)
+    return size + needed
 
 
 def _size_of(response: Response) -> int:

@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from dataclasses import asdict, replace
+from itertools import pairwise
 from types import SimpleNamespace
 
 import h5py
@@ -357,6 +358,22 @@ def test_a_limit_on_the_size_of_files_is_met_before_histories_are_written_to(tmp
     assert (tmp_path / "histories.h5").read_bytes() == earlier
     write(tmp_path / "histories.h5", responses(), INFO)
     assert len(Responses(tmp_path / "histories.h5", INFO)) == 4
+
+
+@pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="no file can be given room here before it is written to")
+def test_room_is_tried_again_only_once_half_of_the_margin_is_used(tmp_path, monkeypatch):
+    """A file system without such a call is written to instead, which took 10 MB for each history."""
+    tried, give_room = [], os.posix_fallocate
+
+    def counted(handle, size, needed):
+        tried.append((size, size + needed))
+        give_room(handle, size, needed)
+
+    monkeypatch.setattr(os, "posix_fallocate", counted)
+    monkeypatch.setattr(histories_file, "MARGIN", 60_000)
+    stored(tmp_path, *[at_rest()] * 12)
+    assert 2 < len(tried) < 8
+    assert all(start < end for (_, end), (start, _) in pairwise(tried))  # never beyond the room that was tried
 
 
 # Which runs are kept
