@@ -33,7 +33,6 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
-from rockbatch.pier.first_loading import Polyline
 from rockbatch.pier.vibration import greatest_rate_of_shaft
 from rockbatch.simulation.elements import prestress
 from rockbatch.simulation.steps import FREQUENCY_STEP
@@ -110,10 +109,11 @@ def springs(pier: Pier, base: ElasticBase) -> Springs:
 
 def _backbone(base: ElasticBase) -> Backbone | None:
     """Return the core's numbers for the backbone of the springs; None if they have none."""
-    curve = base.first_loading
-    if not isinstance(curve, Polyline):
+    if not base.has_points:
         return None
-    return backbone_of(curve.kinks, [float(1.0 - stiff) for stiff in curve.tangents[1:]])
+    curve = base.first_loading
+    beyond = curve.tangent(np.array(curve.kinks))
+    return backbone_of(curve.kinks, [float(1.0 - stiff) for stiff in beyond])
 
 
 def _shaft(pier: Pier, base: ElasticBase | FootingBase) -> Shaft | None:
