@@ -58,7 +58,7 @@ def count_by_check(verdicts: Iterable[Verdict]) -> dict[str, dict[str, int]]:
 def number(value: float, neighbour: float = math.nan, least: int = 4) -> str:
     """Return a value with ``least`` significant digits, or up to ten, until it differs from its ``neighbour``: "1,234".
 
-    "∞" or "-∞" if it is infinite, "" for NaN; with a power of ten below 10⁻⁴ and from 10⁷ on.
+    "∞" or "-∞" if it is infinite, "" for NaN; with a power of ten below 10⁻⁴ and from 10⁶ on, as :func:`plain`.
     """
     if math.isnan(value):
         return ""
@@ -66,7 +66,7 @@ def number(value: float, neighbour: float = math.nan, least: int = 4) -> str:
         return "∞" if value > 0 else "-∞"
     digits = next((n for n in range(least, 10) if value == neighbour or f"{value:.{n}g}" != f"{neighbour:.{n}g}"), 10)
     rounded = float(f"{value:.{digits}g}")
-    return f"{rounded:,.10g}" if rounded == 0 or 1e-4 <= abs(rounded) < 1e7 else plain(rounded, digits)
+    return f"{rounded:,.10g}" if 1e3 <= abs(rounded) < 1e4 else plain(rounded, digits)
 
 
 def compared(value: float, limit: float, least: int = 4) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from rockbatch.pier.restraints import what_of
-from rockbatch.quantities.cases import Case, devices
+from rockbatch.quantities.cases import Case, backbone, devices
 from rockbatch.quantities.design import BOUND
 
 SYMBOLS = {
@@ -97,11 +97,13 @@ def record_labels(info: Mapping[str, Any]) -> dict[str, str]:
 def quantity(key: str, value: object, digits: int = 10, case: Case | None = None) -> str:
     """Describe a value of a study key: "β = 40", "Fy = 45,000 kN", with no-break spaces, or "kinematics finite".
 
-    ``case``, from run.json, supplies the exponent in a viscous damper's unit: "C = 900 kN (s/m)^0.3".
+    ``case``, from run.json, supplies the exponent in a viscous damper's unit, "C = 900 kN (s/m)^0.3", and the number of
+    points of a backbone: "spring backbone of 3 points".
     """
     symbol, unit = symbol_of(key, case)
     if not isinstance(value, float | int):
-        return f"{symbol} {value}"
+        points = backbone(case) if key == "spring" and case is not None else ()
+        return f"{symbol} {value} of {len(points)} points" if points else f"{symbol} {value}"
     return f"{symbol} = {plain(value, digits)} {unit}".strip().replace(" ", "\u00a0")
 
 
@@ -154,12 +156,12 @@ def _exponent(case: Case, device: OfDevice) -> float | None:
 def plain(value: float, digits: int) -> str:
     """Format a number to ``digits`` significant digits without an "e": "0.35", "4500", "45,000", "2.5 × 10⁶".
 
-    Up to six integer digits are kept in full, with a comma from five on; numbers with more, or below 1e-4, are written with a
-    power of ten.
+    Up to six integer digits are kept in full, with a comma from five on; numbers that have more once rounded, or are below
+    1e-4, are written with a power of ten.
     """
     whole = len(str(int(abs(value))))
-    if whole <= 6 and not 0.0 < abs(value) < 1e-4:
-        rounded = float(f"{value:.{max(digits, whole)}g}")
+    rounded = float(f"{value:.{max(digits, whole)}g}")
+    if rounded == 0.0 or 1e-4 <= abs(rounded) < 1e6:
         return f"{rounded:,.10g}" if abs(rounded) >= 1e4 else f"{rounded:.10g}"
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     return f"{float(mantissa):.10g} × 10{str(int(exponent)).translate(_RAISED)}"

@@ -327,7 +327,7 @@ def test_what_is_open_says_why_and_that_it_does_not_matter_where_a_case_fails():
 @pytest.mark.parametrize(
     ("value", "limit", "words"),
     [(48123.4, 50000.0, "48,120"), (50003.0, 50000.0, "50,003"), (50000.0, 50000.0, "50,000"), (3e-6, 1.0, "3 × 10⁻⁶"),
-     (math.inf, 1.0, "∞"), (0.0, 0.5, "0")],
+     (math.inf, 1.0, "∞"), (0.0, 0.5, "0"), (2e6, 3e6, "2 × 10⁶"), (999_999.6, 5e6, "1 × 10⁶")],
 )  # fmt: skip
 def test_a_demand_is_written_without_an_e_and_distinguished_from_its_limit(value, limit, words):
     assert wording.number(value, limit) == words

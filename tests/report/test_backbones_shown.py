@@ -12,6 +12,7 @@ from rockbatch.outcome.figures import _springs
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.reporting.differing import _shown
 from rockbatch.reporting.sections.studied import _foundations
+from rockbatch.results.labels import named
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 from rockbatch.study.inputs import varied
@@ -60,6 +61,13 @@ def test_the_table_of_foundations_says_which_columns_are_those_of_a_first_corner
     assert "where the supports settle more" in table
     pads = describe_case(Case("pads", rb.Pier(0.2, 1.0), rb.YieldingBase(50.0, eta=2.0), {}))
     assert "backbone" not in str(_foundations(SimpleNamespace(info={"cases": [pads], "varied": []})))
+
+
+def test_a_label_says_how_many_points_a_backbone_has():
+    base = rb.YieldingBase(beta=60.0, eta=2.5, epsilon=0.05, spring="epp")
+    three, epp = entry(POINTS), describe_case(Case("stiff", case_of(POINTS).pier, base, {}))
+    labels = [series.label for series in named({("pads",): [three], ("stiff",): [epp]}, (), {}).values()]
+    assert ["spring backbone of 3 points" in labels[0], "spring epp" in labels[1]] == [True, True], labels
 
 
 def test_a_comparison_shows_the_points_of_a_backbone_as_pairs():
