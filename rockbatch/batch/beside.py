@@ -26,14 +26,17 @@ Rows = list[Row]
 def packed(run: StudyRun, table: str) -> str:
     """Return the rows of a run in ``table`` as one cell without commas; "" without that table, or beyond MOST_OF_A_CELL."""
     rows = None if run.outcome is None else run.outcome.tables.get(table)
-    if rows is None:
-        return ""
+    return "" if rows is None else packed_rows(rows)
+
+
+def packed_rows(rows: Sequence[Mapping[str, object]]) -> str:
+    """Return rows as one cell without commas; "" beyond MOST_OF_A_CELL."""
     cell = base64.b64encode(zlib.compress(json.dumps(rows).encode())).decode()
     return cell if len(cell) <= MOST_OF_A_CELL else ""
 
 
 def unpacked(cell: str) -> Rows:
-    """Return the rows in a cell made by :func:`packed`."""
+    """Return the rows in a cell made by :func:`packed_rows`."""
     return list(json.loads(zlib.decompress(base64.b64decode(cell))))
 
 
@@ -45,17 +48,18 @@ def rows_beside(
     journal: Journal,
     jobs: int,
     listener: Listener,
-    first: int = 0,
+    in_journal: Sequence[int] | None = None,
 ) -> dict[str, Rows]:
     """Return the rows of each table of ``observers`` for finished ``runs``, whose rows in ``peaks`` come first.
 
-    ``first`` is the number of ``runs[0]`` in the journal. Each row begins with the columns that name its run.
-    Mirror images have none. Runs whose rows the ``journal`` lacks, for example because they were finished before the table
-    was requested, are repeated.
+    ``in_journal`` are the numbers of the runs in the journal, by default their indices. Each row begins with the columns that
+    name its run. Mirror images have none. Runs whose rows the ``journal`` lacks, for example because they were finished before
+    the table was requested, are repeated.
     """
     tables: dict[str, Rows] = {observer.table: [] for observer in observers}
+    in_journal = range(len(runs)) if in_journal is None else in_journal
     numbers = [number for number, run in enumerate(runs) if not run.mirror_of]
-    kept = (journal.cells_beside(first + number) for number in numbers)
+    kept = (journal.cells_beside(in_journal[number]) for number in numbers)
     lacking = [[o for o in observers if not cells.get(o.table)] for cells in kept]
     again = [(number, missing) for number, missing in zip(numbers, lacking, strict=True) if missing]
 
@@ -67,7 +71,7 @@ def rows_beside(
         with listener.progress(len(again)) as progress:
             of_again = pool.map(of_run, *zip(*again, strict=True)) if again else iter(())
             for number, missing in zip(numbers, lacking, strict=True):
-                cells = journal.cells_beside(first + number)
+                cells = journal.cells_beside(in_journal[number])
                 of_tables = {name: unpacked(cell) for name, cell in cells.items() if cell}
                 if missing:
                     of_tables |= next(of_again)

@@ -46,7 +46,7 @@ def execute_runs(
     engine: Engine,
     observers: Sequence[Observer] = (),
     *,
-    first: int = 0,
+    numbers: Sequence[int] | None = None,
     among: Collection[int] | None = None,
     row: RowOf | None = None,
     progress: Advance = silent,
@@ -54,15 +54,17 @@ def execute_runs(
     """Carry out the runs that ``journal`` lacks, and add the rows of each group when it is finished.
 
     One of two mirror images is simulated, both are added. Rows of ``observers``' tables are kept with those of the peaks.
-    ``first`` is the number of ``runs[0]`` in the journal, ``among`` restricts the indices of runs; ``row`` makes the row of a
-    finished run, by default that of peaks.csv; ``progress`` is called with the number of simulations of each finished group.
+    ``numbers`` are those of the runs in the journal, by default their indices; ``among`` restricts the indices of runs; ``row``
+    makes the row of a finished run, by default that of peaks.csv; ``progress`` is called with the number of simulations of each
+    finished group.
     """
-    requested = range(len(runs)) if among is None else among
-    remaining = to_simulate(runs, requested, journal, first)
+    every = range(len(runs))
+    requested, numbers = every if among is None else among, every if numbers is None else numbers
+    remaining = to_simulate(runs, requested, journal, numbers)
     with closing(engine.outcomes(some_of(runs, remaining), numerics, observers)) as groups:
         for group in groups:
             finished = _with_images(runs, {remaining[place]: run for place, run in group.items()})
-            missing = {first + i: run for i, run in finished if i in requested and first + i not in journal}
+            missing = {numbers[i]: run for i, run in finished if i in requested and numbers[i] not in journal}
             if row is not None:
                 journal.add_all({number: row(run) for number, run in missing.items()})
             elif missing:
@@ -72,11 +74,14 @@ def execute_runs(
             progress(len(group))
 
 
-def to_simulate(runs: Runs, requested: Collection[int], journal: Container[int] = (), first: int = 0) -> "array[int]":
+def to_simulate(
+    runs: Runs, requested: Collection[int], journal: Container[int] = (), numbers: Sequence[int] | None = None
+) -> "array[int]":
     """Return the indices of the runs to simulate for all that are ``requested`` and not in ``journal``.
 
-    Of two mirror images it is the index of the one that is simulated for both, once, requested itself or not. Raises
-    ``InputError`` if ``runs`` are more than :data:`MOST_RUNS`, however many are requested.
+    ``numbers`` are those of the runs in the journal, by default their indices. Of two mirror images it is the index of the one
+    that is simulated for both, once, requested itself or not. Raises ``InputError`` if ``runs`` are more than
+    :data:`MOST_RUNS`, however many are requested.
     """
     if len(runs) > MOST_RUNS:
         raise InputError(
@@ -85,7 +90,7 @@ def to_simulate(runs: Runs, requested: Collection[int], journal: Container[int] 
         )
 
     def is_left(index: int) -> bool:
-        return index in requested and first + index not in journal
+        return index in requested and (index if numbers is None else numbers[index]) not in journal
 
     if not runs.mirrored:
         return array("q", filter(is_left, requested))

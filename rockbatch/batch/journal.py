@@ -288,25 +288,28 @@ class Journal:
             for first in range(0, len(missing), ROWS_AT_ONCE):
                 self._add((number, source.row(number)) for number in missing[first : first + ROWS_AT_ONCE])
 
-    def write_in_order(self, path: Path, extra_rows: Iterable[Mapping[str, object]] = ()) -> Written:
-        """Write the table completely or not at all: finished runs in rising order, then rows of no run.
+    def write_in_order(
+        self, path: Path, extra_rows: Iterable[Mapping[str, object]] = (), numbers: Iterable[int] | None = None
+    ) -> Written:
+        """Write the table completely or not at all: finished runs, then rows of no run.
 
+        Runs are those of ``numbers``, in their order, by default all in rising order.
         The journal is then removed at the end of the ``with``, unless an error ends it.
         """
         digest, rows = hashlib.sha256(), -1
         with replacing(path) as temporary, temporary.open("wb") as file:
-            for line in self._lines_in_order(extra_rows):
+            for line in self._lines_in_order(extra_rows, self if numbers is None else numbers):
                 file.write(line)
                 digest.update(line)
                 rows += 1
         self._written = True
         return Written(rows, digest.hexdigest())
 
-    def _lines_in_order(self, extra_rows: Iterable[Mapping[str, object]]) -> Iterator[bytes]:
-        """Yield the lines of the table: head, finished runs in rising order, extra rows."""
+    def _lines_in_order(self, extra_rows: Iterable[Mapping[str, object]], numbers: Iterable[int]) -> Iterator[bytes]:
+        """Yield the lines of the table: head, finished runs, extra rows."""
         yield _encoded(csv_line(self.columns[: len(self.columns) - len(self.beside)]))
         with os.fdopen(os.dup(self._rows.file.fileno()), "rb", BUFFER) as buffered:
-            for number in self:
+            for number in numbers:
                 buffered.seek(self._rows.starts[number])
                 yield self._without_beside(_unfolded(buffered.read(self._rows.sizes[number])))
         for row in extra_rows:

@@ -256,7 +256,10 @@ def test_only_runs_that_are_wanted_and_not_in_the_journal_are_carried_out(study,
     calls = []
     with Journal(tmp_path / "peaks.csv.part", columns(loaded), {}) as journal:
         for wanted in (range(5, 9), range(7, 12), range(7, 12)):
-            execute_runs(runs, loaded.numerics, journal, Watched(2), first=100, among=wanted, progress=calls.append)
+            numbers = range(100, 100 + len(runs))
+            execute_runs(
+                runs, loaded.numerics, journal, Watched(2), numbers=numbers, among=wanted, progress=calls.append
+            )
         assert list(journal) == list(range(105, 112))
         assert journal[108]["record"] == runs[8].record.name
         assert float(journal[108]["beta"]) == runs[8].case.columns["beta"]

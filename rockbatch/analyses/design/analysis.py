@@ -5,12 +5,14 @@ its scan.
 """
 
 import csv
+import itertools
 import math
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from itertools import product
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rockbatch.analyses.design.search import middles
@@ -26,13 +28,13 @@ from rockbatch.analyses.design.tables import (
     values_table,
 )
 from rockbatch.analyses.design.trials import Trial, Trials, Written
+from rockbatch.batch.beside import packed_rows
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
-from rockbatch.batch.execution import InMemory
 from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.observers import observers_beside
 from rockbatch.batch.threads import Engine
-from rockbatch.batch.waves import Waves
+from rockbatch.batch.waves import Identity, Waves, identity
 from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import PASS, Verdict, as_table
@@ -43,15 +45,20 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.motions.spectrum_target import SpectrumTarget
-from rockbatch.results.columns import columns
-from rockbatch.results.labelled import as_dicts
+from rockbatch.results.beside_peaks import NAMING
+from rockbatch.results.columns import columns, read_cells
+from rockbatch.results.labelled import Row, as_dicts
 from rockbatch.results.run_json import describe, rocking_periods
+from rockbatch.simulation.observing import Observer
 from rockbatch.study import Case, Motions, Study
 from rockbatch.workflow.analysis import Analysis, AnalysisFolder, run_analysis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+OF_NO_RUN = ("title", "check", "suite", "design", "reference")
+"""Keys at the top of a study on which no run depends: with another limit, or another scan, finished runs are kept."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -170,18 +177,20 @@ def _write_tables(results: AnalysisFolder, spec: DesignSpec) -> dict[str, object
     if all(map(written.refusal, scan)):
         first_refused = f"with {_said(scan[0], spec)}: {written.refusal(scan[0])}"
         raise InputError(f"{study.path}: [design]: the study is refused with every value; {first_refused}")
+    of_runs = replace(study, varied=(*written.varied, *spec.paths))
+    observers = _observers_beside(study, motions)
     digest = digests(
         motions.motions,
-        studies=[study.text, *(text for _, text in study.check_files)],
+        studies={name: table for name, table in written.tables.items() if name not in OF_NO_RUN},
         cases=study.cases,
         scales=(study.motions.vertical, study.motions.polarity, study.motions.scale),
         numerics=(study.numerics, study.output),
+        columns=(columns(of_runs), [observer.table for observer in observers]),
     )
-    of_runs = replace(study, varied=(*written.varied, *spec.paths))
-    with _waves(results, of_runs, motions, digest) as waves:
+    with _waves(results, of_runs, observers, digest) as waves:
         trials = Trials(written, motions, waves, _on_suite(study, motions))
         first = tuple(case for trial in scan for case in written.cases(trial))
-        if not isinstance(waves.journal, InMemory):
+        if waves.lacks(trials.plan(scan)):
             _announce(results, spec, scan, len(first), motions)
             make_ready(replace(of_runs, cases=first), results.listener, waves.observers)
         requested = scan
@@ -204,27 +213,56 @@ def _said(trial: Trial, spec: DesignSpec) -> str:
     return ", ".join(f"{path} = {value:.10g}" for path, value in zip(spec.paths, trial.values, strict=True))
 
 
-@contextmanager
-def _waves(results: AnalysisFolder, study: Study, motions: MotionSet, digest: dict[str, str]) -> "Iterator[Waves]":
-    """Open the waves of runs: finished ones of the folder, or new ones in a journal, which is written as a table at the end."""
+def _observers_beside(study: Study, motions: MotionSet) -> list[Observer]:
+    """Return the observers of the tables that the checks of ``study`` need; [] if none is about a section or a capacity."""
     of_one_moment = any(rule.at_m is not None or rule.curve is not None for rule in study.checks)
     requested = observers_beside(study.output, motions.motions) if of_one_moment else ()
-    observers = [observer for observer in requested if observer.table in BESIDE]
+    return [observer for observer in requested if observer.table in BESIDE]
+
+
+@contextmanager
+def _waves(
+    results: AnalysisFolder, study: Study, observers: Sequence[Observer], digest: dict[str, str]
+) -> "Iterator[Waves]":
+    """Open the waves of runs in a journal, with those that are finished in the folder; write it as a table at the end.
+
+    The table has the runs that the search asked for, in its order, whichever of them were there.
+    """
     names = [observer.table for observer in observers]
-    engine, listener = results.engine, results.listener
-    if results.has(RUNS, digest):
-        with opened_text(results.directory / RUNS) as file:
-            rows = [{name: csv_plain(cell) for name, cell in row.items()} for row in csv.DictReader(file)]
-        finished = InMemory(columns(study))
-        finished.update(enumerate(rows))
-        waves = Waves(study, finished, engine, listener, observers)
-        waves.tables |= {name: as_dicts(read_table(results.directory / BESIDE[name])) for name in names}
-        listener.say(f"{count(len(rows), 'run')} are finished in {results.directory} (--fresh runs them again)")
-        yield waves
-        return
     with results.journal(RUNS, columns(study), digest, names) as journal:
-        yield Waves(study, journal, engine, listener, observers)
-        journal.write_in_order(results.directory / RUNS)
+        known = {identity(read_cells(cells), study.varied): number for number, cells in journal.rows()}
+        if results.has(RUNS, digest):
+            rows = {identity(row, study.varied): row for row in _finished(results.directory, study, names)}
+            results.listener.say(
+                f"{count(len(rows), 'run')} are finished in {results.directory} (--fresh runs them again)"
+            )
+            lacking = [name for name in rows if name not in known]
+            new = dict(zip(lacking, itertools.count(max(known.values(), default=-1) + 1), strict=False))
+            journal.add_all({number: rows[name] for name, number in new.items()})
+            known |= new
+        waves = Waves(study, journal, results.engine, results.listener, observers, known)
+        yield waves
+        journal.write_in_order(results.directory / RUNS, numbers=waves.numbers)
+
+
+def _finished(directory: Path, study: Study, names: Sequence[str]) -> Iterator[dict[str, float | str | None]]:
+    """Yield the cells of each finished run in ``directory``, and those of its rows in the tables of ``names`` beside them."""
+    naming, beside = {*NAMING, *study.varied}, dict[str, dict[Identity, list[Row]]]()
+    for name in names:
+        rows = as_dicts(read_table(directory / BESIDE[name]))
+        beside[name] = grouped(rows, lambda row: identity(row, study.varied))
+    with opened_text(directory / RUNS) as file:
+        for row in csv.DictReader(file):
+            cells = read_cells({name: csv_plain(cell) for name, cell in row.items()})
+            own = {name: of_runs.get(identity(cells, study.varied), ()) for name, of_runs in beside.items()}
+            yield cells | {
+                name: packed_rows([_without(each, naming) for each in of_run]) for name, of_run in own.items()
+            }
+
+
+def _without(row: Row, names: Container[str]) -> Row:
+    """Return the cells of a row but those of ``names``."""
+    return {name: cell for name, cell in row.items() if name not in names}
 
 
 def _announce(results: AnalysisFolder, spec: DesignSpec, scan: list[Trial], cases: int, motions: MotionSet) -> None:

@@ -142,11 +142,14 @@ class Trials:
         trials = [trial for trial in trials if trial not in self.judged]
         if not trials:
             return
-        cases = {trial: self.written.cases(trial) for trial in trials}
-        study = replace(self.waves.study, cases=tuple(case for of_trial in cases.values() for case in of_trial))
-        peaks = self.waves(Plan(study, self.motions))
+        peaks = self.waves(self.plan(trials))
         for name, of_name in grouped(trials, lambda trial: trial.design.case).items():
-            self._judge(name, {trial: cases[trial] for trial in of_name}, peaks)
+            self._judge(name, {trial: self.written.cases(trial) for trial in of_name}, peaks)
+
+    def plan(self, trials: Iterable[Trial]) -> Plan:
+        """Return the runs of trials; of one with which the study is refused there are none."""
+        cases = tuple(case for trial in trials for case in self.written.cases(trial))
+        return Plan(replace(self.waves.study, cases=cases), self.motions)
 
     def _judge(self, name: str, cases: Mapping[Trial, Sequence[Case]], peaks: "pd.DataFrame") -> None:
         """Judge the trials of a case by the checks that are about it, and note ``free`` and ``omitted`` of those that pass."""

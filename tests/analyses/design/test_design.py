@@ -477,7 +477,57 @@ def test_a_finished_search_with_sections_is_read_again(tmp_path, monkeypatch):
     pd.testing.assert_frame_equal(again.design_checks, found.design_checks, check_exact=True)
 
 
-def test_runs_of_a_search_with_other_limits_are_not_those_of_this_one(tmp_path, monkeypatch):
+@pytest.fixture
+def simulated(monkeypatch):
+    """The number of runs in each group that was carried out."""
+    real, numbers = rockbatch.batch.threads.outcomes_of, []
+
+    def counted(runs, *more):
+        numbers.append(len(runs))
+        return real(runs, *more)
+
+    monkeypatch.setattr(rockbatch.batch.threads, "outcomes_of", counted)
+    return numbers
+
+
+def csv_files(folder):
+    return {path.name: path.read_bytes() for path in folder.glob("*.csv")}
+
+
+def test_another_limit_or_another_scan_runs_only_values_that_were_not_run(tmp_path, simulated):
+    """Its files are those of a search of its own, also back at the first limit, of which only the runs in the table are left."""
+    first, changed = study(), study({"points": 7}, check=[ROTATION | {"at_most": 0.4}])
+    for of_study in (first, changed, first):
+        before = {row["pier.p"] for row in read_finished(tmp_path / "out")}
+        simulated.clear()
+        found = rb.design(of_study, tmp_path / "out", jobs=1)
+        made = sum(simulated)
+        rb.design(of_study, tmp_path / "alone", jobs=1, fresh=True)
+        assert csv_files(tmp_path / "out") == csv_files(tmp_path / "alone")
+        values = set(found.design_runs["pier.p"])
+        assert made == len(values - before)
+        assert not before or values & before
+
+
+def read_finished(folder):
+    """The rows of the runs that are finished in a folder; [] without any."""
+    path = folder / "design_runs.csv"
+    return read_table(path).to_dict("records") if path.exists() else []
+
+
+def test_another_limit_keeps_the_forces_in_sections_of_finished_runs(tmp_path, simulated):
+    stiffer = STIFF | {"at_least": 1.6e6}
+    for check in ([MOMENT, STIFF], [MOMENT, stiffer]):
+        of_study = study(OF_SPRINGS, cases=[SPRINGS], check=check, pier=TALL, output=SECTIONS)
+        before = len(simulated)
+        rb.design(of_study, tmp_path / "out", jobs=1)
+    made = sum(simulated[before:])
+    rb.design(of_study, tmp_path / "alone", jobs=1)
+    assert made == 2 < sum(simulated[before:]) - made
+    assert csv_files(tmp_path / "out") == csv_files(tmp_path / "alone")
+
+
+def test_an_interrupted_search_goes_on_with_another_limit_but_not_with_another_pier(tmp_path, monkeypatch):
     out, real, calls = tmp_path / "out", rockbatch.batch.threads.outcomes_of, []
 
     def interrupted(runs, *more):
@@ -490,8 +540,11 @@ def test_runs_of_a_search_with_other_limits_are_not_those_of_this_one(tmp_path, 
         patch.setattr(rockbatch.batch.threads, "outcomes_of", interrupted)
         with pytest.raises(KeyboardInterrupt):
             rb.design(study(), out, jobs=1)
-    with pytest.raises(InputError, match=r"finished runs, but something has changed since \(studies\)"):
-        rb.design(study(check=[ROTATION | {"at_most": 0.4}]), out, jobs=1)
+    with pytest.raises(InputError, match=r"finished runs, but something has changed since \(studies, cases\)"):
+        rb.design(study(pier=PIER | {"alpha": 0.19}), out, jobs=1)
+    found = rb.design(study(check=[ROTATION | {"at_most": 0.4}]), out, jobs=1)
+    alone = rb.design(study(check=[ROTATION | {"at_most": 0.4}]), jobs=1)
+    pd.testing.assert_frame_equal(found.design_runs, alone.design_runs, check_exact=True)
 
 
 @pytest.mark.usefixtures("pages")
