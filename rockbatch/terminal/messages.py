@@ -13,6 +13,8 @@ from rockbatch.motions import MotionSet
 from rockbatch.terminal.streams import give_up, say, tell
 
 SECONDS_BETWEEN_LINES = 2.0
+MOST_NAMES = 20
+"""Most records without a vertical component that are named; the report names all."""
 
 
 class Terminal(Listener):
@@ -28,7 +30,8 @@ class Terminal(Listener):
         for first, repeat in _repeated(motion_set):
             say(f"{first} and {repeat} have the same samples: checks count them once, curves twice; leave one out")
         if lacking := [motion.named for motion in motion_set.motions if motion.lacks_vertical]:
-            say(f"no vertical: {'; '.join(lacking)}")
+            more = len(lacking) - MOST_NAMES
+            say(f"no vertical: {'; '.join(lacking[:MOST_NAMES])}" + (f"; and {more:,} more" if more > 0 else ""))
         if motion_set.left_out:
             files = count(len(motion_set.left_out), "file")
             say(f"{files} left out: `rockbatch motions FOLDER` lists them with reasons")

@@ -18,6 +18,7 @@ from rockbatch.motions.selection import Selection, selected
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
+from rockbatch.terminal.messages import Terminal
 
 
 def component(values, raw: bool = False) -> Component:
@@ -208,6 +209,12 @@ def test_a_vertical_that_does_not_last_over_the_peak_is_none(tmp_path):
     write_at2(tmp_path, "sUP.AT2", wiggle(100, 2)[:20], title="X, 1/17/1994, STA, UP")
     assert read_motions(tmp_path).without_vertical == ["s000"]
     assert len(read_motions(tmp_path, vertical="required").unusable) == 1
+
+
+def test_of_many_records_without_a_vertical_the_first_are_named(capsys):
+    Terminal().motions(MotionSet([Motion(f"r{i}", 0.01, np.arange(3.0) + i, lacks_vertical=True) for i in range(1023)]))
+    said = capsys.readouterr().err
+    assert (said.count(";"), said.endswith("r19; and 1,003 more\n")) == (20, True)
 
 
 @pytest.mark.usefixtures("pages")
