@@ -400,7 +400,8 @@ def _between(low: float, high: float) -> str:
 def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> str:
     """Return the first unmet condition on the records: "5 stations count, EN 1998-1 asks for 7"; "" if all are met.
 
-    These are the least number, which the rule's ``least`` replaces, stations for a code, and ``per_event``.
+    These are the least number, which the rule's ``least`` replaces, stations for a code, ``per_event``, and a limit of "count" that
+    some records exceed if all do.
     """
     statistic = STATISTICS[rule.statistic or "max"]
     least, authority = statistic.least, statistic.code or (f"the {statistic.words}" if statistic.least > 1 else "")
@@ -413,4 +414,6 @@ def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> st
         return f"{statistic.code} counts stations"
     if of_event is not None and rule.per_event is not None and of_event.records > rule.per_event:
         return f"the check allows {rule.per_event} of one event"
+    if rule.statistic == "count" and rule.limit >= records:
+        return f"{records} {count}s count, and the check allows {rule.limit:g}, so that it decides nothing"
     return ""

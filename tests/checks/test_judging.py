@@ -110,6 +110,8 @@ def test_ratio_and_margin_are_the_distance_to_the_limit():
         ({"demand": "eta", "statistic": "mean"}, "statistic: eta is the same for all records"),
         ({"demand": "flight", "overturned": "unknown"}, "overturned: says nothing about flight"),
         ({"demand": "flight", "statistic": "asce7-16"}, "flight is yes or no"),
+        ({"demand": "overturned", "statistic": "median"}, 'overturned is yes or no; write "max" or "count"'),
+        ({"demand": "failed", "statistic": "p84"}, 'failed is yes or no; write "max" or "count"'),
         ({"statistic": "asce7-16", "failed": "left out"}, "failed: is unacceptable by ASCE 7-16"),
         ({"other_law": True}, "other_law: is for settlement_m and toe_settlement_m"),
     ],
