@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
+from rockbatch.checks.suite import Suite
 from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 
 NAMES = {"target": "suite to target", "vertical_target": "suite to vertical target"}
@@ -84,12 +85,28 @@ def suite_verdicts(info: Mapping[str, Any], scales: Iterable[float]) -> list[Ver
     verdicts: list[Verdict] = []
     at_scales = sorted(set(scales)) or [1.0]
     for name, target in targets.items():
-        if target is None or not target.get("required", target["factors"] != "none") or not any(target["mean_sa_g"]):
+        if target is None or not _is_judged(target):
             continue
         for scale in at_scales:
             of_code = _verticals(info) if name == NAMES["vertical_target"] else _conditions(target, scale)
             verdicts += [_verdict(name, condition, scale, target) for condition in (_share(target, scale), *of_code)]
     return verdicts
+
+
+def suite_of(info: Mapping[str, Any]) -> Suite:
+    """Return what run.json (``info``) knows of the motions."""
+    records, target = info["records"], info.get("target")
+    return Suite(
+        stations={record["record"]: record.get("station", "") for record in records},
+        events={record["record"]: record.get("event") or "" for record in records},
+        unrecorded={record["record"] for record in records if record["source"] in UNRECORDED},
+        code=str(target.get("code") or "") if target and _is_judged(target) else "",
+    )
+
+
+def _is_judged(target: Target) -> bool:
+    """Return whether the suite has to reach a target, and is not only compared with it; False without a fitted record."""
+    return bool(target.get("required", target["factors"] != "none")) and any(target["mean_sa_g"])
 
 
 def _share(target: Target, scale: float) -> Condition:

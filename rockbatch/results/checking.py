@@ -1,13 +1,14 @@
 """Design checks on a folder of results, or on a table: :func:`rockbatch.check`."""
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 
 from rockbatch.checks.judging import judge
 from rockbatch.checks.rule_files import Checks, given_rules, read_checks
 from rockbatch.checks.rules import Rule
-from rockbatch.checks.suite_target import suite_verdicts
+from rockbatch.checks.suite import Suite
+from rockbatch.checks.suite_target import suite_of, suite_verdicts
 from rockbatch.checks.verdicts import Verdict, as_table
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
@@ -80,26 +81,24 @@ def verdicts(
 ) -> list[Verdict]:
     """Return the verdicts of :func:`check`, one for each row, those on the suite first; ``InputError`` likewise."""
     given = None if rules is None else given_rules(rules)
-    records: Mapping[str, str] | None = None
-    events: Mapping[str, str] | None = None
     of_suite: list[Verdict] = []
     in_sections: dict[str, pd.DataFrame] = {}
     if isinstance(results, Saved | str | os.PathLike):
         saved = results if isinstance(results, Saved) else read_saved(Path(results))
         own_rules, count, _ = _own_checks(saved.info["study"], judged=given is None)
         table, cases = saved.peaks, saved.info["cases"]
-        records = {record["record"]: record.get("station", "") for record in saved.info["records"]}
-        events = {record["record"]: record.get("event") or "" for record in saved.info["records"]}
         for needs, (name, read) in _OF_SECTIONS.items():
             if (path := saved.directory / name).exists():
                 in_sections[needs] = read(path, saved.info["varied"])
         of_suite = suite_verdicts(saved.info, with_case(table)["scale"])
+        suite = suite_of(saved.info)
     else:
         if study is None:
             raise InputError('check: a table alone lacks its piers; pass its study: study = "pier.toml"')
         study = study if isinstance(study, Study) else load_study(study)
         own_rules, count = study.checks, study.count
         table, cases = given_table(results, study.varied), [describe_case(case) for case in study.cases]
+        suite = Suite(unrecorded={pulse.name for pulse in study.motions.pulses})
     judged = own_rules if given is None else given
     if not (judged or of_suite):
         raise InputError("no checks: the study has no [[check]]; add some, or pass a file of rules")
@@ -108,7 +107,7 @@ def verdicts(
     # The limits of a study's own rules are compared with its piers when the study is read
     doubted = given is not None
     sections, interaction = (in_sections.get(needs) for needs in _OF_SECTIONS)
-    of_cases = judge(judged, table, cases, records, count, sections, events, interaction=interaction, doubted=doubted)
+    of_cases = judge(judged, table, cases, suite, count, sections, interaction=interaction, doubted=doubted)
     return [*of_suite, *of_cases]
 
 
