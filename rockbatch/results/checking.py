@@ -1,8 +1,10 @@
 """Design checks on a folder of results, or on a table: :func:`rockbatch.check`."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+
+import numpy as np
 
 from rockbatch.checks.judging import judge
 from rockbatch.checks.rule_files import Checks, given_rules, read_checks
@@ -13,7 +15,10 @@ from rockbatch.checks.verdicts import Verdict, as_table
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.rows import with_case
+from rockbatch.common.showing import shown
+from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.cases import Case, alpha, top, width
+from rockbatch.quantities.rows import rows_of_cases, with_case
 from rockbatch.results.columns import given_table
 from rockbatch.results.interaction import INTERACTION, read_interaction
 from rockbatch.results.labelled import Item
@@ -25,6 +30,8 @@ from rockbatch.toml.reader import TomlFile
 
 PathLike = str | os.PathLike[str]
 
+_ROUNDING = 1e-6
+"""Share of a length in a table by which it may differ from that of the study."""
 _OF_SECTIONS = {"sections": (SECTIONS, read_sections), "interaction": (INTERACTION, read_interaction)}
 """Tables of forces in sections, each with the function that reads it, by the ``needs`` of demands."""
 
@@ -98,6 +105,7 @@ def verdicts(
         study = study if isinstance(study, Study) else load_study(study)
         own_rules, count = study.checks, study.count
         table, cases = given_table(results, study.varied), [describe_case(case) for case in study.cases]
+        _refuse_runs_of_others(with_case(table), cases)
         suite = Suite(unrecorded={pulse.name for pulse in study.motions.pulses})
     judged = own_rules if given is None else given
     if not (judged or of_suite):
@@ -109,6 +117,29 @@ def verdicts(
     sections, interaction = (in_sections.get(needs) for needs in _OF_SECTIONS)
     of_cases = judge(judged, table, cases, suite, count, sections, interaction=interaction, doubted=doubted)
     return [*of_suite, *of_cases]
+
+
+def _refuse_runs_of_others(runs: "pd.DataFrame", cases: Sequence[Case]) -> None:
+    """Raise ``InputError`` if a table has a run of no case of the study, or of a pier of other lengths than its case has."""
+    known = np.zeros(len(runs), dtype=bool)
+    for case, places in rows_of_cases(runs, cases):
+        known[places] = True
+        own = Rows(runs).at(places)
+        uplift = width(case) * alpha(case) * own.numbers("theta_max_over_alpha")
+        for name, expected in (("drift_height_m", np.full(len(own), top(case))), ("heel_uplift_m", uplift)):
+            found = own.numbers(name)
+            if (other := np.abs(found - expected) > _ROUNDING * np.abs(expected)).any():
+                first = int(np.flatnonzero(other)[0])
+                raise InputError(
+                    f"{name} = {found[first]:.6g} of {own.texts('record')[first]}, case {case['case']}, where the study's pier has "
+                    f"{expected[first]:.6g}: pass the study that produced the table"
+                )
+    if not known.all():
+        first = runs[~known].iloc[0]
+        keys = dict.fromkeys(key for case in cases for key in case["columns"])
+        values = (f"{key} = {first[key]}" for key in keys if first[key] == first[key])  # NaN of a case without the key
+        name = ", ".join((f"case {shown(first['case'])}", *values))
+        raise InputError(f"the table has a run of {name}, which the study does not have: pass the study that produced it")
 
 
 def _own_checks(study: Item, *, judged: bool) -> Checks:
