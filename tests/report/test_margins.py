@@ -188,6 +188,19 @@ def test_margins_stand_side_by_side_check_by_check(tmp_path):
     assert row[-1] == "+35 %"
 
 
+@pytest.mark.parametrize(("other", "words"), [
+    ({"statistic": "mean"}, "in B mean of theta_max_over_alpha at most 0.5 over stations"),
+    ({"count": "component"}, "in B maximum of theta_max_over_alpha at most 0.5 over components"),
+    ({"demand": "theta_max_rad", "at_most": 0.05}, "in B maximum of theta_max_rad at most 0.05 rad over stations"),
+])  # fmt: skip
+def test_checks_of_one_name_that_compare_other_things_have_no_difference(tmp_path, other, words):
+    """Means and maxima of the same runs differ without any change of the pier."""
+    folders = two(tmp_path, tables(), tables(check=[ROTATION | other]), ({"Te Mara": 0.1, "*": 0.3},) * 2)
+    row = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["answer"][2]
+    assert row[1] == f"rotation: in A maximum of theta_max_over_alpha at most 0.5 over stations, {words}"
+    assert row[-1] == "Lyttelton"  # what governs B: the difference behind it is empty
+
+
 def test_margins_at_each_scale_stand_in_rows_of_their_own(tmp_path):
     """0.2/0.5 = 40 % in A at either scale, 0.3/0.5 = 60 % and 0.45/0.5 = 90 % in B."""
     scaled = tables(motions={"pulse": PULSES[:1], "scale": [1.0, 1.5]})
