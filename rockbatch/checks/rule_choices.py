@@ -12,7 +12,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.naming import chosen
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import Case, weight
+from rockbatch.quantities.cases import Case, name_along, weight
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.demands import AT_HEIGHTS, OF_BASE
 
@@ -64,7 +64,7 @@ def fitted(rule: Rule, available: Available) -> Fitted:
     if DEMANDS[rule.demand].needs == OF_BASE:
         at = [math.nan]
     problems = [*_unavailable(rule, matches, available), *_no_section(rule, at, heights)]
-    piers = [case for case in available.piers if str(case["case"]) in cases]
+    piers = [case for case in available.piers if name_along(case) in cases]
     if available.piers:
         problems += _without_dead_load(rule, piers) if rule.curve else _implausible(rule, piers)
     return Fitted(rule, cases, scales, at, problems)
