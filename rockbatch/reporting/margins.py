@@ -33,7 +33,8 @@ def headline(pair: Pair) -> str:
 def _state(side: str, study: Finished) -> str:
     """Return what a study comes to: "A passes all in 2 of 3 cases, closest 83 % (…), and fails …"; "A has no limits".
 
-    Cases that pass come first, then those that fail, are not decided, are not checked; a suite that fails comes last.
+    Cases that pass come first, then those that fail, are not decided, are not checked; a suite that fails comes last, and behind
+    a pass the number of files that could not be used.
     """
     if not any(verdict.case for verdict in study.verdicts):
         return f"{side} has no limits"
@@ -46,7 +47,9 @@ def _state(side: str, study: Finished) -> str:
             share = share or (f" in all {len(rows)} cases" if len(rows) > 1 else "")
             parts.append(words(study, of_kind, share, len(rows) > 1))
     suite = any(verdict.verdict == FAIL for verdict in study.verdicts if not verdict.case)
-    return f"{side} {', and '.join(parts)}{', under a suite that fails its own checks' if suite else ''}"
+    missing = len(study.info["unusable"]) if PASS in kinds else 0
+    files = f", without {missing} file{'s' * (missing > 1)} that could not be used" if missing else ""
+    return f"{side} {', and '.join(parts)}{', under a suite that fails its own checks' if suite else ''}{files}"
 
 
 def _passing(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:

@@ -163,6 +163,20 @@ def test_a_suite_that_fails_its_own_checks_is_said_beside_what_passes(tmp_path):
     assert line.endswith(", under a suite that fails its own checks.")
 
 
+@pytest.mark.parametrize(("files", "words"), [(1, "1 file"), (2, "2 files")])
+def test_a_pass_without_all_of_its_files_says_so(tmp_path, files, words):
+    """One that fails does so whatever they hold."""
+    folders = two(tmp_path, tables(), tables(), (0.2, 0.9))
+    for path in folders:
+        info = json.loads((path / "run.json").read_text(encoding="utf-8"))
+        unusable = {"name": "WTMC.N", "source": "WTMC.V2A", "reason": "no unit", "station": "WTMC"}
+        (path / "run.json").write_text(json.dumps(info | {"unusable": [unusable] * files}), encoding="utf-8")
+    passing, failing = said(folders).split("; ")
+    assert passing.endswith(f", without {words} that could not be used")
+    assert failing.startswith("B fails")
+    assert "could not be used" not in failing
+
+
 def test_studies_without_limits_are_said_to_have_none(tmp_path):
     free = tables()
     del free["check"]
