@@ -31,7 +31,7 @@ from rockbatch.toml.reader import TomlFile
 PathLike = str | os.PathLike[str]
 
 _ROUNDING = 1e-6
-"""Share of a length in a table by which it may differ from that of the study."""
+"""Share of a length or a scale in a table by which it may differ from that of the study."""
 _OF_SECTIONS = {"sections": (SECTIONS, read_sections), "interaction": (INTERACTION, read_interaction)}
 """Tables of forces in sections, each with the function that reads it, by the ``needs`` of demands."""
 
@@ -105,7 +105,7 @@ def verdicts(
         study = study if isinstance(study, Study) else load_study(study)
         own_rules, count = study.checks, study.count
         table, cases = given_table(results, study.varied), [describe_case(case) for case in study.cases]
-        _refuse_runs_of_others(with_case(table), cases)
+        _refuse_runs_of_others(with_case(table), cases, study.motions.scale)
         suite = Suite(unrecorded={pulse.name for pulse in study.motions.pulses})
     judged = own_rules if given is None else given
     if not (judged or of_suite):
@@ -119,8 +119,15 @@ def verdicts(
     return [*of_suite, *of_cases]
 
 
-def _refuse_runs_of_others(runs: "pd.DataFrame", cases: Sequence[Case]) -> None:
-    """Raise ``InputError`` if a table has a run of no case of the study, or of a pier of other lengths than its case has."""
+def _refuse_runs_of_others(runs: "pd.DataFrame", cases: Sequence[Case], scales: Sequence[float]) -> None:
+    """Raise ``InputError`` if a table has a run of no case or scale of the study, or of a pier of other lengths than its case."""
+    of_study = np.isclose(runs["scale"].to_numpy(np.float64)[:, None], scales, rtol=_ROUNDING, atol=0.0).any(axis=1)
+    if not of_study.all():
+        listed = ", ".join(f"{scale:g}" for scale in scales)
+        raise InputError(
+            f"the table has a run at scale {runs['scale'][~of_study].iloc[0]:g}, and the study scales by {listed}: pass the "
+            "study that produced it"
+        )
     known = np.zeros(len(runs), dtype=bool)
     for case, places in rows_of_cases(runs, cases):
         known[places] = True
@@ -131,15 +138,17 @@ def _refuse_runs_of_others(runs: "pd.DataFrame", cases: Sequence[Case]) -> None:
             if (other := np.abs(found - expected) > _ROUNDING * np.abs(expected)).any():
                 first = int(np.flatnonzero(other)[0])
                 raise InputError(
-                    f"{name} = {found[first]:.6g} of {own.texts('record')[first]}, case {case['case']}, where the study's pier has "
-                    f"{expected[first]:.6g}: pass the study that produced the table"
+                    f"{name} = {found[first]:.6g} of {own.texts('record')[first]}, case {case['case']}, where the study's pier "
+                    f"has {expected[first]:.6g}: pass the study that produced the table"
                 )
     if not known.all():
-        first = runs[~known].iloc[0]
+        row = runs[~known].iloc[0]
         keys = dict.fromkeys(key for case in cases for key in case["columns"])
-        values = (f"{key} = {first[key]}" for key in keys if first[key] == first[key])  # NaN of a case without the key
-        name = ", ".join((f"case {shown(first['case'])}", *values))
-        raise InputError(f"the table has a run of {name}, which the study does not have: pass the study that produced it")
+        values = (f"{key} = {row[key]}" for key in keys if row[key] == row[key])  # NaN of a case without the key
+        name = ", ".join((f"case {shown(row['case'])}", *values))
+        raise InputError(
+            f"the table has a run of {name}, which the study does not have: pass the study that produced it"
+        )
 
 
 def _own_checks(study: Item, *, judged: bool) -> Checks:

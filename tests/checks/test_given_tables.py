@@ -70,6 +70,7 @@ def test_rows_of_unusable_files_are_in_no_suite_of_a_table_read_by_pandas(folder
     (lambda table: table.assign(status=table["status"].str.upper()), 'status = "OK": expected one of "ok", "overturned"'),
     (lambda table: table.replace({"case": {"rigid": "rock"}}), 'a run of case "rock", which the study does not have'),
     (lambda table: table.replace({"beta": {50: 60}}), 'a run of case "pads", beta = 60.0, which the study does not have'),
+    (lambda table: table.replace({"scale": {0.5: 0.6}}), "a run at scale 0.6, and the study scales by 0.5, 1: pass the study"),
     (lambda table: table.assign(drift_height_m=9.0), "drift_height_m = 9 of one-sine, case rigid, where the study's pier has"),
     (lambda table: table.assign(heel_uplift_m=table["heel_uplift_m"] * 1.01), "pass the study that produced the table"),
     (lambda table: pd.DataFrame(), "once each, as rockbatch.run returned it: record, case"),
