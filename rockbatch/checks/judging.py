@@ -407,8 +407,8 @@ def _between(low: float, high: float) -> str:
 def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> str:
     """Return the first unmet condition on the records: "5 stations count, EN 1998-1 asks for 7"; "" if all are met.
 
-    These are the least number, which the rule's ``least`` replaces, stations for a code, ``per_event``, and a limit of "count" that
-    some records exceed if all do.
+    These are the least number, which the rule's ``least`` replaces, stations for a code, ``per_event``, and a limit of "count"
+    below the number of records.
     """
     statistic = STATISTICS[rule.statistic or "max"]
     least, authority = statistic.least, statistic.code or (f"the {statistic.words}" if statistic.least > 1 else "")
@@ -419,8 +419,9 @@ def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> st
         return f"{counts}, {authority} asks for {least}" if authority else counts
     if statistic.code and count != "station":
         return f"{statistic.code} counts stations"
-    if of_event is not None and rule.per_event is not None and of_event.records > rule.per_event:
-        return f"the check allows {rule.per_event} of one event"
+    if of_event is not None and rule.per_event is not None and of_event.records + of_event.unknown > rule.per_event:
+        unknown = f", and of {of_event.unknown} it is not known" if of_event.unknown else ""
+        return f"the check allows {rule.per_event} of one event{unknown}"
     if rule.statistic == "count" and rule.limit >= records:
         return f"{counts}, and the check allows {rule.limit:g}, so that it decides nothing"
     return ""
@@ -438,5 +439,7 @@ def _unmet_by_stations(rule: Rule, counted_as: Texts, stations: Texts, unrecorde
         n = "1 station" if len(known) == 1 else f"{len(known)} stations"
         return f"{records} components of {n} count, the {statistic.words} asks for {statistic.least} stations"
     if statistic.code and unrecorded.any():
-        return f"{len({*counted_as[unrecorded]})} of {records} stations are pulses, and {statistic.code} asks for records"
+        return (
+            f"{len({*counted_as[unrecorded]})} of {records} stations are pulses, and {statistic.code} asks for records"
+        )
     return ""

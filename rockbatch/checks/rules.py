@@ -84,7 +84,8 @@ class Rule:
         What counts as one record, one of :data:`COUNTS`; ``None`` takes what [suite] of the study says, or "station". A code's
         statistic counts stations.
     per_event : int or None
-        With a code's statistic: the greatest number of records of one event with which anything passes; no limit unless given.
+        With a code's statistic: the greatest number of records of one event with which anything passes, where those of no known
+        event count as of one; no limit unless given.
     reason : str
         Clause, source, or why, in words.
     basis : "code", "literature" or "judgement"

@@ -139,10 +139,18 @@ def test_records_of_one_event_say_so_and_are_as_many_as_the_check_allows():
 
     assert of(statistic="mean").note == "no error estimate"  # no code's
     assert (of(statistic="en1998-2").verdict, told in of(statistic="en1998-2").note) == ("pass", True)
-    assert of(statistic="en1998-2", per_event=3).verdict == "pass"
-    few = of(statistic="en1998-2", per_event=2)
+    assert of(statistic="en1998-2", per_event=6).verdict == "pass"
+    few = of(statistic="en1998-2", per_event=5)  # those of no known event may be of the same one
     assert few.verdict == "not decided"
-    assert few.note.startswith("the check allows 2 of one event")
+    assert few.note.startswith("the check allows 5 of one event, and of 3 it is not known")
+    events |= {f"{station}{i}": "z" for station in "EFG" for i in (1, 2)}
+    assert of(statistic="en1998-2", per_event=3).verdict == "pass"
+    assert of(statistic="en1998-2", per_event=2).note.startswith("the check allows 2 of one event; ")
+    events.clear()
+    assert of(statistic="en1998-2", per_event=6).note.startswith(
+        "the check allows 6 of one event, and of 7 it is not known"
+    )
+    assert of(statistic="en1998-2", per_event=7).verdict == "pass"
     with pytest.raises(InputError, match="per_event: is for a code's statistic; leave it out"):
         of(per_event=2)
 
