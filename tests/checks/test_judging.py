@@ -122,6 +122,14 @@ def test_a_rule_that_makes_no_sense_is_refused_with_what_to_write(asked, problem
     assert any(problem in each for each in caught.value.messages)
 
 
+def test_a_run_without_an_error_among_others_is_no_estimate():
+    """As where runs of a fixed step are joined with others."""
+    joined = runs([0.1, 0.2], theta_max_error=[1e-6, math.nan], chaotic=0.0)
+    assert judged(joined).note == "no error estimate"
+    assert judged(joined.assign(theta_max_error=1e-6)).note == ""
+    assert judged(joined.assign(status=["ok", "failed"]), failed="left out", at_most=0.15).omits == ""
+
+
 def test_a_rule_says_in_words_what_it_asks_and_how_it_counts():
     rule = Rule("a", "theta_max_over_alpha", 1, statistic="count", above=0.5, failed="left out")
     assert rule.words == "number of records with theta_max_over_alpha above 0.5"
