@@ -219,6 +219,7 @@ class _Cases:
         details = (
             *details,
             *self._coverage(names),
+            *self._beyond(names),
             *self._cut_short(names),
             *self._omitted(names),
             *self._left_out(),
@@ -275,6 +276,19 @@ class _Cases:
             f"{', '.join(dict.fromkeys(check for _, check in of_words))}: {words}."
             for words, of_words in checks.items()
         )
+
+    def _beyond(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return a sentence on checks that these cases pass by a statistic though a record is beyond the limit; () for none.
+
+        Each has the record farthest beyond it: "Single records are beyond the limit: drift (Te Mara, 0.6 m).".
+        """
+        passed = [verdict for verdict in self._of(names, PASS) if wording.is_passed_by_statistic(verdict)]
+        farthest = {
+            check: max(same, key=lambda verdict: verdict.governing)
+            for check, same in grouped(passed, lambda verdict: verdict.check).items()
+        }
+        words = [f"{check} ({wording.demanded_by(row, self.record_of(row))})" for check, row in farthest.items()]
+        return (f"Single records are beyond the limit: {_listed(words, most=MOST_CHECKS)}.",) if words else ()
 
     def _omitted(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return a sentence, "drift, uplift: REMARK.", for each omission in demands of checks that these cases pass; or ()."""

@@ -21,7 +21,7 @@ SCATTER = 2.0
 
 
 class Bounds(NamedTuple):
-    """Demands of each record, or each run, shape (n,), and the bounds within which they lie, ``estimated`` if by error estimates.
+    """Demands of each record, or each run, shape (n,), and the bounds within which they lie, ``estimated`` if by errors of all.
 
     If the upper bound alone is infinite, ``value`` is the lower one.
     """
@@ -186,9 +186,10 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
         bounds = Bounds(value, value, np.where(open_, 1.0, value), False)
         return Demanded(bounds, counting, own, None, np.zeros(len(runs), dtype=bool), [])
 
-    estimated = bool(np.isfinite(error).any())
     at_least = np.isinf(error)  # the value is a lower bound, and nothing bounds it from above
     margin, wild = np.where(at_least, 0.0, np.nan_to_num(error)), _chaotic(demand, runs, error)
+    without = np.isnan(error) & ~wild & np.isfinite(value) & (status == "ok")
+    estimated = bool(np.isfinite(error).any() and not without.any())
     low = np.where(wild, value / SCATTER, np.maximum(value - margin, 0.0))
     high = np.where(wild, value * SCATTER, value + margin)
     by_other = None

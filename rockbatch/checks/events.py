@@ -29,8 +29,8 @@ class OfEvent(NamedTuple):
         return parts
 
 
-def largest_event(records: Texts, counted_as: Texts, events: Mapping[str, str]) -> OfEvent | None:
-    """Return the earthquake with the most records; None if none is known.
+def largest_event(records: Texts, counted_as: Texts, events: Mapping[str, str]) -> OfEvent:
+    """Return the earthquake with the most records; "" with none of them if none is known.
 
     ``records`` and ``counted_as`` have the component of each run and the record under which it counts, shape (n,); ``events``
     has the earthquake of each component, "" if it is not known. Of equal numbers the first counts.
@@ -39,7 +39,5 @@ def largest_event(records: Texts, counted_as: Texts, events: Mapping[str, str]) 
     for record, counted in zip(records, counted_as, strict=True):
         event_of[counted] = event_of.get(counted) or events.get(record, "")
     named = Counter(event for event in event_of.values() if event)
-    if not named:
-        return None
-    event, number = named.most_common(1)[0]
+    event, number = next(iter(named.most_common(1)), ("", 0))
     return OfEvent(event, number, len(event_of), len(event_of) - sum(named.values()))

@@ -7,19 +7,21 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.checks.bounds import SCATTER, Axis, Demanded, OfSuite, lacking, of_suite
 from rockbatch.checks.capacity import used
 from rockbatch.checks.endings import left_open
 from rockbatch.checks.events import OfEvent, largest_event
-from rockbatch.checks.omissions import OMISSIONS
+from rockbatch.checks.omissions import ERRORS, OMISSIONS, TARGET
 from rockbatch.checks.rule_choices import FAR, Available, Fitted, fitted
 from rockbatch.checks.rules import USUAL, Rule
+from rockbatch.checks.suite import Suite
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
-from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.arrays import Rows, Texts
 from rockbatch.quantities.cases import Case, has_device, is_across, names_along
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.quantities.demands import OF_BASE
@@ -39,10 +41,9 @@ def judge(
     rules: Sequence[Rule],
     peaks: "pd.DataFrame",
     cases: Sequence[Case],
-    records: Mapping[str, str] | None = None,
+    suite: Suite | None = None,
     count: str = "station",
     sections: "pd.DataFrame | None" = None,
-    events: Mapping[str, str] | None = None,
     *,
     interaction: "pd.DataFrame | None" = None,
     doubted: bool = False,
@@ -57,15 +58,13 @@ def judge(
         once.
     cases : sequence of mappings
         ``cases`` of run.json, or some of them; that across the axis of a pier follows the one along it.
-    records : mapping, optional
-        Names of all horizontal components, each with its station, empty if it is not known; a run that is missing counts as
-        failed. By default those in ``peaks``, with its column ``station``.
+    suite : Suite, optional
+        Its stations are those of all horizontal components, of which a run that is missing counts as failed; without any, those
+        in ``peaks``, with its column ``station``.
     count : str
         How those rules count that do not say it, one of :data:`rockbatch.checks.rules.COUNTS`; a code counts stations.
     sections : DataFrame, optional
         Rows of sections.csv, for rules about a section.
-    events : mapping, optional
-        Names of horizontal components, each with the earthquake that it is of, empty if it is not known.
     interaction : DataFrame, optional
         Rows of interaction.csv, for rules about the capacity of a section.
     doubted : bool
@@ -86,7 +85,8 @@ def judge(
     if runs.empty:
         raise InputError("there is no run to check")
     with_mirrors, scales = Rows(runs), [float(scale) for scale in runs["scale"].unique()]
-    stations = records or dict(zip(with_mirrors.texts("record"), with_mirrors.texts("station"), strict=True))
+    suite = suite or Suite()
+    stations = suite.stations or dict(zip(with_mirrors.texts("record"), with_mirrors.texts("station"), strict=True))
     at_heights = {
         needs: rows for needs, rows in (("sections", sections), ("interaction", interaction)) if rows is not None
     }
@@ -131,7 +131,7 @@ def judge(
             for fit, own in zip(fits, tables, strict=True):
                 if name in fit.cases and scale in fit.scales:
                     of_rule = [Axis(axis.case, axis.suite.same_rows_of(own)) for axis in axes]
-                    judged.append(_verdict(fit.rule, of_rule, scale, fit.rule.count or count, events or {}))
+                    judged.append(_verdict(fit.rule, of_rule, scale, fit.rule.count or count, suite))
             verdicts += left_open(judged, [axis.suite for axis in axes])
     return verdicts
 
@@ -156,7 +156,7 @@ def _has_columns(runs: "pd.DataFrame", columns: Collection[str]) -> bool:
     return any(name in runs for name in columns) or not any(COLUMNS[name].device in devices for name in columns)
 
 
-def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str, events: Mapping[str, str]) -> Verdict:
+def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str, suite: Suite) -> Verdict:
     """Return the verdict of a rule on a pier at one scale, on one or both ``axes``.
 
     If the demand is absent on one axis, the other decides alone; if on both, the verdict is "does not apply" with the reason.
@@ -167,7 +167,7 @@ def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str, events:
     if not applying:
         return replace(none, remarks=(absent[0],))
     per_case = DEMANDS[rule.demand].per_case
-    verdict = _of_case(rule, applying, none) if per_case else _of_suite(rule, applying, none, events)
+    verdict = _of_case(rule, applying, none) if per_case else _of_suite(rule, applying, none, suite)
     if len(axes) == 1 or verdict.verdict == DOES_NOT_APPLY:
         return verdict
     alone = [f"{_place(axis)} {reason}" for axis, reason in zip(axes, absent, strict=True) if reason]
@@ -283,7 +283,7 @@ def _with_numbers(verdict: Verdict, value: float, low: float, high: float) -> Ve
     return replace(verdict, value=value, low=low, high=high, ratio=ratio, margin=margin)
 
 
-def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[str, str]) -> Verdict:
+def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, motions: Suite) -> Verdict:
     """Return the verdict on a statistic of a suite; demands on two axes combine run by run: ``both_axes``, else the greater.
 
     Without a run that counts it is not decided, its numbers NaN. ``none`` is the verdict "does not apply", which gives the rest.
@@ -294,9 +294,17 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
     n, counting = len(demand.records.value), demand.counting
     count = "component" if unknown else none.count
     statistic = STATISTICS[none.statistic]
-    of_event = largest_event(suite.texts("record")[counting], counted_as[counting], events) if statistic.code else None
-    verdict, few = _decide(rule, demand.low, demand.high, _unmet(rule, count, n, of_event))
+    records = suite.texts("record")[counting]
+    of_event = largest_event(records, counted_as[counting], motions.events) if statistic.code else None
+    unmet = _unmet(rule, count, n, of_event) or _unmet_by_stations(
+        rule, counted_as[counting], suite.texts("station")[counting], np.isin(records, [*motions.unrecorded])
+    )
+    verdict, few = _decide(rule, demand.low, demand.high, unmet)
     left_out = {name for its in demand.axes for name in its.omitted if verdict != PASS or OMISSIONS[name].decides}
+    if not (demand.records.estimated or DEMANDS[rule.demand].event):
+        left_out.add(ERRORS)
+    if statistic.code != motions.code and statistic.code:
+        left_out.add(TARGET)
     omitted = [name for name in OMISSIONS if name in left_out]
     open_by = math.isinf(demand.high) and not all(OMISSIONS[name].decides for name in omitted)
     ends = [
@@ -304,15 +312,14 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
     ]
     remarks = [
         few or ("" if verdict != NOT_DECIDED or open_by else _between(demand.low, demand.high)),
+        _on_each(demand, axes),
         *(OMISSIONS[name].remark for name in omitted),
         _remark_if_far(rule, demand.value) if verdict == PASS else "",
-        _on_each(demand, axes),
         statistic.remark(demand.records.high) if statistic.remark and n else "",
         unknown,
         *(of_event.remarks if of_event else ()),
         "" if none.count == "component" else _remark_on_directions(lacking(counting, counted_as)),
         *dict.fromkeys(remark for of_axis in ends for remark in of_axis),
-        "" if demand.records.estimated or DEMANDS[rule.demand].event else "no error estimate",
         *dict.fromkeys(_remark_on_chaos(int(its.chaotic.sum())) for its in demand.axes),
     ]
     judged = replace(
@@ -400,17 +407,39 @@ def _between(low: float, high: float) -> str:
 def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> str:
     """Return the first unmet condition on the records: "5 stations count, EN 1998-1 asks for 7"; "" if all are met.
 
-    These are the least number, which the rule's ``least`` replaces, stations for a code, and ``per_event``.
+    These are the least number, which the rule's ``least`` replaces, stations for a code, ``per_event``, and a limit of "count"
+    below the number of records.
     """
     statistic = STATISTICS[rule.statistic or "max"]
     least, authority = statistic.least, statistic.code or (f"the {statistic.words}" if statistic.least > 1 else "")
     if rule.least is not None:
         least, authority = rule.least, "the check"
+    counts = f"1 {count} counts" if records == 1 else f"{records} {count}s count"
     if records < least:
-        counts = f"1 {count} counts" if records == 1 else f"{records} {count}s count"
         return f"{counts}, {authority} asks for {least}" if authority else counts
     if statistic.code and count != "station":
         return f"{statistic.code} counts stations"
-    if of_event is not None and rule.per_event is not None and of_event.records > rule.per_event:
-        return f"the check allows {rule.per_event} of one event"
+    if of_event is not None and rule.per_event is not None and of_event.records + of_event.unknown > rule.per_event:
+        unknown = f", and of {of_event.unknown} it is not known" if of_event.unknown else ""
+        return f"the check allows {rule.per_event} of one event{unknown}"
+    if rule.statistic == "count" and rule.limit >= records:
+        return f"{counts}, and the check allows {rule.limit:g}, so that it decides nothing"
+    return ""
+
+
+def _unmet_by_stations(rule: Rule, counted_as: Texts, stations: Texts, unrecorded: npt.NDArray[np.bool_]) -> str:
+    """Return what the statistic asks of stations and the suite does not have: "12 components of 1 station count, …"; or "".
+
+    Components of one station are not independent, and no code takes what nobody recorded. The arrays are of the runs that count,
+    shape (n,); an unknown station is "", and a station by itself.
+    """
+    statistic = STATISTICS[rule.statistic or "max"]
+    records, known = len({*counted_as}), {*stations} if (stations != "").all() else {*counted_as}
+    if len(known) < statistic.least <= records:
+        n = "1 station" if len(known) == 1 else f"{len(known)} stations"
+        return f"{records} components of {n} count, the {statistic.words} asks for {statistic.least} stations"
+    if statistic.code and unrecorded.any():
+        return (
+            f"{len({*counted_as[unrecorded]})} of {records} stations are pulses, and {statistic.code} asks for records"
+        )
     return ""

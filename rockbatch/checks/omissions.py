@@ -1,4 +1,5 @@
-"""Omissions of a force: landings on rigid ground, the modes of a shaft, its bending (THEORY.md, Forces)."""
+"""What a verdict leaves out: of a force landings on rigid ground, modes and bending of a shaft (THEORY.md, Forces); of every
+demand an error estimate, and the target spectrum that a code asks for."""
 
 from typing import NamedTuple
 
@@ -21,6 +22,7 @@ MODES, POINTS = "modes", "modes at a point"
 LANDINGS, LANDINGS_OF_FRAME = "landings", "landings of a frame"
 LANDINGS_OF_BENDING = "landings under a bending shaft"
 IMPULSES, BENDING = "impulses", "bending"
+ERRORS, TARGET = "errors", "target"
 
 FACTORS = "1.6 to 2.9"
 """Base shear by twenty finite elements over that of a rigid shaft, of twice the mass on its top (THEORY.md, Forces)."""
@@ -65,6 +67,8 @@ OMISSIONS = {
     BENDING: Omission(
         f"bending of the shaft is left out, with which a heavy one had {FACTORS} times its rigid base shear by finite elements"
     ),
+    TARGET: Omission("the motions are not judged by a target spectrum of its code"),
+    ERRORS: Omission("no error estimate"),
 }
 """Omissions by the names that checks.csv has for them, the gravest first."""
 

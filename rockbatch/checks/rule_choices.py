@@ -12,7 +12,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.naming import chosen
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import Case, weight
+from rockbatch.quantities.cases import Case, name_along, weight
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.demands import AT_HEIGHTS, OF_BASE
 
@@ -64,7 +64,7 @@ def fitted(rule: Rule, available: Available) -> Fitted:
     if DEMANDS[rule.demand].needs == OF_BASE:
         at = [math.nan]
     problems = [*_unavailable(rule, matches, available), *_no_section(rule, at, heights)]
-    piers = [case for case in available.piers if str(case["case"]) in cases]
+    piers = [case for case in available.piers if name_along(case) in cases]
     if available.piers:
         problems += _without_dead_load(rule, piers) if rule.curve else _implausible(rule, piers)
     return Fitted(rule, cases, scales, at, problems)
@@ -143,7 +143,8 @@ def _without_dead_load(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
 def _implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
     """Yield problems of a limit, or threshold of "count", that decides nothing; none if it is confirmed.
 
-    It is negative, next to 0 in mm, or in all ``cases`` above the greatest possible value or far from the size of the quantity.
+    It is negative, next to 0 in mm, not below 1 of an event, or in all ``cases`` above the greatest possible value or far from
+    the size of the quantity.
     """
     key = "above" if rule.statistic == "count" else rule.limit_key
     demand, value = DEMANDS[rule.demand], rule.above if rule.statistic == "count" else rule.limit
@@ -158,6 +159,8 @@ def _implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
     if value < 0:
         passing = "nothing" if key == "at_most" else "all"
         yield odd(f"{rule.demand} is counted without its sign, so that {passing} passes", "sign")
+    if demand.event and value >= 1:
+        yield odd(f"{rule.demand} is 0 or 1 for every record, so that nothing exceeds {value:g}", "limit")
     mine = [case for case in cases if demand.applies_to(case)]
     most = max((demand.ceiling.value(case) for case in mine if demand.ceiling), default=math.inf)
     shown = 1e-3 * most if rule.demand in ("top_drift_mm", "heel_uplift_mm") and math.isfinite(most) else 0.0

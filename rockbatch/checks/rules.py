@@ -50,6 +50,8 @@ srss
 """
 EITHER, LESSER = "on either axis", "the lesser of both axes"
 """Ways to combine events, and properties of a case of which more is better."""
+OF_EVENTS = ("max", "count", "mean")
+"""Statistics of events: whether any record has it, how many, and the share; a rank of ones and zeros says neither."""
 CONFIRMED = ("at_most", "at_least", "above", "capacity")
 MOST_SHARE = 10.0
 """Greatest share of a capacity that a limit may be."""
@@ -82,7 +84,8 @@ class Rule:
         What counts as one record, one of :data:`COUNTS`; ``None`` takes what [suite] of the study says, or "station". A code's
         statistic counts stations.
     per_event : int or None
-        With a code's statistic: the greatest number of records of one event with which anything passes; no limit unless given.
+        With a code's statistic: the greatest number of records of one event with which anything passes, where those of no known
+        event count as of one; no limit unless given.
     reason : str
         Clause, source, or why, in words.
     basis : "code", "literature" or "judgement"
@@ -485,7 +488,7 @@ def _wrong_for_code(rule: Rule) -> Iterator[tuple[str, str]]:
         )
     if rule.per_event is not None and not statistic.code:
         yield "per_event", "per_event: is for a code's statistic; leave it out"
-    if DEMANDS[rule.demand].event and statistic.code:
+    if DEMANDS[rule.demand].event and rule.statistic not in (None, *OF_EVENTS):
         text = f'statistic = "{rule.statistic}": is for quantities, and {rule.demand} is yes or no'
         yield "statistic", f'{text}; write "max" or "count"'
 

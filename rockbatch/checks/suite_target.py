@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
+from rockbatch.checks.suite import Suite
 from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 
 NAMES = {"target": "suite to target", "vertical_target": "suite to vertical target"}
@@ -38,6 +39,8 @@ class Code(NamedTuple):
         Times the period of the pier: between which periods the mean has to reach the target; 0 if it does not say.
     zero : bool
         Whether the mean at 0 s has to reach that of the target.
+    share : float
+        Share of the target that the mean has to reach, whatever the study asks for; 0 if it does not say.
     record, family : tuple
         Least and greatest factor of a record by least squares, and of all records besides; empty if it does not say.
     """
@@ -48,14 +51,15 @@ class Code(NamedTuple):
     shortest: float = 0.0
     longest: float = 0.0
     zero: bool = False
+    share: float = 0.0
     record: tuple[float, ...] = ()
     family: tuple[float, ...] = ()
 
 
 CODES = {
-    "EN 1998-1": Code("EN 1998-1, 3.2.3.1.2 (4)", 3, shortest=0.2, longest=2.0, zero=True),
-    "EN 1998-2": Code("EN 1998-2, 3.2.3", 3, "srss", 0.2, 1.5),
-    "ASCE 7-16": Code("ASCE 7-16, 16.2", 11, "rotd100", 0.2, 2.0),
+    "EN 1998-1": Code("EN 1998-1, 3.2.3.1.2 (4)", 3, shortest=0.2, longest=2.0, zero=True, share=0.9),
+    "EN 1998-2": Code("EN 1998-2, 3.2.3", 3, "srss", 0.2, 1.5, share=1.3),
+    "ASCE 7-16": Code("ASCE 7-16, 16.2", 11, "rotd100", 0.2, 2.0, share=0.9),
     "AASHTO": Code("AASHTO LRFD, 4.7.4.3.4b", 3),
     "NZS 1170.5": Code("NZS 1170.5, 5.5", 3, shortest=0.4, longest=1.3, record=(0.33, 3.0), family=(1.0, 1.3)),
 }
@@ -84,7 +88,7 @@ def suite_verdicts(info: Mapping[str, Any], scales: Iterable[float]) -> list[Ver
     verdicts: list[Verdict] = []
     at_scales = sorted(set(scales)) or [1.0]
     for name, target in targets.items():
-        if target is None or not target.get("required", target["factors"] != "none") or not any(target["mean_sa_g"]):
+        if target is None or not _is_judged(target):
             continue
         for scale in at_scales:
             of_code = _verticals(info) if name == NAMES["vertical_target"] else _conditions(target, scale)
@@ -92,14 +96,33 @@ def suite_verdicts(info: Mapping[str, Any], scales: Iterable[float]) -> list[Ver
     return verdicts
 
 
+def suite_of(info: Mapping[str, Any]) -> Suite:
+    """Return what run.json (``info``) knows of the motions."""
+    records, target = info["records"], info.get("target")
+    return Suite(
+        stations={record["record"]: record.get("station", "") for record in records},
+        events={record["record"]: record.get("event") or "" for record in records},
+        unrecorded={record["record"] for record in records if record["source"] in UNRECORDED},
+        code=str(target.get("code") or "") if target and _is_judged(target) else "",
+    )
+
+
+def _is_judged(target: Target) -> bool:
+    """Return whether the suite has to reach a target, and is not only compared with it; False without a fitted record."""
+    return bool(target.get("required", target["factors"] != "none")) and any(target["mean_sa_g"])
+
+
 def _share(target: Target, scale: float) -> Condition:
-    """Return the condition on the least ratio of the mean spectrum to the target; a ratio within 10⁻⁴ of the limit meets it."""
-    least, period = least_over_target(target)
-    value, limit = scale * least, float(target["at_least"])
-    if math.isclose(value, limit, rel_tol=_ROUNDING):
-        value = limit
+    """Return the condition that the study sets on the least ratio of the mean spectrum to the target."""
     words = "mean spectrum of the suite over its target"
-    return Condition(MEAN_OVER_TARGET, words, value, "at least", limit, "", (f"least at T = {period:.3g} s",), True)
+    return _reached(MEAN_OVER_TARGET, words, target, scale, float(target["at_least"]))
+
+
+def _reached(demand: str, words: str, target: Target, scale: float, share: float) -> Condition:
+    """Return the condition that the mean spectrum reaches a share of the target; a ratio within 10⁻⁴ of it meets it."""
+    least, period = least_over_target(target)
+    value = share if math.isclose(scale * least, share, rel_tol=_ROUNDING) else scale * least
+    return Condition(demand, words, value, "at least", share, "", (f"least at T = {period:.3g} s",), True)
 
 
 def _verticals(info: Mapping[str, Any]) -> Iterator[Condition]:
@@ -127,6 +150,8 @@ def _conditions(target: Target, scale: float) -> Iterator[Condition]:
         remarks = () if target["pairs"] == code.pairs else (other,)
         words = "stations with the measure of a pair"
         yield Condition("suite_pairs", words, paired, "at least", stations, remarks=remarks)
+    if float(target["at_least"]) < code.share:
+        yield _reached("suite_share", "mean over target by the code", target, scale, code.share)
     yield from _periods(target, code)
     at_zero, mean = _two(target, "zero_sa_g")
     if code.zero and at_zero > 0.0:

@@ -26,7 +26,7 @@ SEPARATOR = "; "
 """Between the remarks in the column ``note`` of checks.csv."""
 MEAN_OVER_TARGET = "mean_over_target"
 """Demand of the verdict on the mean spectrum of the suite."""
-_CONDITIONS = ("stations", "pairs", "shortest_period", "longest_period", "zero_period", "verticals")
+_CONDITIONS = ("stations", "pairs", "shortest_period", "longest_period", "zero_period", "verticals", "share")
 _FACTORS = ("least_record", "greatest_record", "least_family", "greatest_family")
 OF_SUITE = (
     MEAN_OVER_TARGET,

@@ -214,11 +214,27 @@ def governing(verdict: Verdict, record: str) -> str:
     text = f"{'left open by' if left_open else 'governs:' if alone else 'largest:'} {run(verdict, record)}"
     if verdict.is_ban:
         return text
+    return text + _demand_of_record(verdict)
+
+
+def demanded_by(verdict: Verdict, record: str) -> str:
+    """Return the run that governs, of the motion called ``record``, with its own demand: "Te Mara, N28W (+), 0.6 m"."""
+    return run(verdict, record) + _demand_of_record(verdict)
+
+
+def _demand_of_record(verdict: Verdict) -> str:
+    """Return ", 0.6 m at 72 m", the demand of the run that governs, ", beyond any limit" if it is infinite; "" for NaN."""
     if math.isnan(verdict.governing):
-        return text
+        return ""
     if math.isinf(verdict.governing):
-        return f"{text}, beyond any limit"
-    return f"{text}, {number(verdict.governing)} {_unit_of_demand(verdict)}".rstrip() + at(verdict.at_m)
+        return ", beyond any limit"
+    return f", {number(verdict.governing)} {_unit_of_demand(verdict)}".rstrip() + at(verdict.at_m)
+
+
+def is_passed_by_statistic(verdict: Verdict) -> bool:
+    """Return whether a check of a quantity passes though the demand of one record, its governing one, is beyond the limit."""
+    quantity = verdict.demand in DEMANDS and DEMANDS[verdict.demand].per_run and verdict.statistic != "count"
+    return quantity and verdict.verdict == PASS and verdict.governing > verdict.limit
 
 
 def _unit_of_demand(verdict: Verdict) -> str:

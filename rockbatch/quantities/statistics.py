@@ -163,7 +163,10 @@ def _asce7_16_remark(values: Values) -> str:
     """Return the number of unacceptable responses and its consequence, in words; empty for 0."""
     n = int(np.isinf(values).sum())
     if n == 1:
-        return "1 unacceptable response: 120 % of the median, or the mean of the others if greater"
+        return (
+            "1 unacceptable response, which Risk Categories I and II alone may have: 120 % of the median, or the mean of the "
+            "others if greater"
+        )
     return f"{n} unacceptable responses: more than 1" if n else ""
 
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from rockbatch.checks import Verdict
+from rockbatch.checks import Verdict, wording
 from rockbatch.checks.scorecard import Cell, Row, scorecard
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import grouped
@@ -33,7 +33,8 @@ def headline(pair: Pair) -> str:
 def _state(side: str, study: Finished) -> str:
     """Return what a study comes to: "A passes all in 2 of 3 cases, closest 83 % (…), and fails …"; "A has no limits".
 
-    Cases that pass come first, then those that fail, are not decided, are not checked; a suite that fails comes last.
+    Cases that pass come first, then those that fail, are not decided, are not checked; a suite that fails comes last, and behind
+    a pass the number of files that could not be used.
     """
     if not any(verdict.case for verdict in study.verdicts):
         return f"{side} has no limits"
@@ -46,7 +47,9 @@ def _state(side: str, study: Finished) -> str:
             share = share or (f" in all {len(rows)} cases" if len(rows) > 1 else "")
             parts.append(words(study, of_kind, share, len(rows) > 1))
     suite = any(verdict.verdict == FAIL for verdict in study.verdicts if not verdict.case)
-    return f"{side} {', and '.join(parts)}{', under a suite that fails its own checks' if suite else ''}"
+    missing = len(study.info["unusable"]) if PASS in kinds else 0
+    files = f", without {missing} file{'s' * (missing > 1)} that could not be used" if missing else ""
+    return f"{side} {', and '.join(parts)}{', under a suite that fails its own checks' if suite else ''}{files}"
 
 
 def _passing(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
@@ -138,9 +141,7 @@ def margins(pair: Pair) -> Markup:
         for check in checks:
             cells = [design.cells.get(check) if design else None for design in designs]
             written = [list(_written(study, cell)) for study, cell in zip(pair.studies, cells, strict=True)]
-            limits = list(dict.fromkeys(limit for _, limit in filter(None, cells)))
-            words = f"{check} {limits[0]}".rstrip() + (f", in B {limits[1]}" if len(limits) > 1 else "")
-            rows.append([" / ".join(labels), words, *written[0], *written[1], _change(cells)])
+            rows.append([" / ".join(labels), _asked(check, cells), *written[0], *written[1], _change(cells)])
     if not rows:
         return Markup("")
     heads = [Head("case"), Head("check")]
@@ -148,6 +149,31 @@ def margins(pair: Pair) -> Markup:
     return table(
         [*heads, Head("B − A", note="difference of the shares of the limit")], rows, prose=True, name="Margins"
     )
+
+
+def _asked(check: str, cells: Sequence[tuple[Cell, str] | None]) -> str:
+    """Return a check with its limit, and that of B if it is another: "uplift ≤ 0.1 m, in B ≤ 0.2 m".
+
+    If the studies do not compare the same with it, what each asks: "drift: in A mean of top_drift_m at most 1 m, in B …".
+    """
+    if not _is_same(cells):
+        asked = [
+            f"in {side} {wording.requirement(verdict)}" + (f" over {verdict.count}s" if verdict.count else "")
+            for side, verdict in zip(SIDES, _verdicts(cells), strict=True)
+        ]
+        return f"{check}: {', '.join(asked)}"
+    limits = list(dict.fromkeys(limit for _, limit in filter(None, cells)))
+    return f"{check} {limits[0]}".rstrip() + (f", in B {limits[1]}" if len(limits) > 1 else "")
+
+
+def _verdicts(cells: Sequence[tuple[Cell, str] | None]) -> list[Verdict]:
+    """Return the verdicts of the cells that are there."""
+    return [cell[0].verdict for cell in cells if cell]
+
+
+def _is_same(cells: Sequence[tuple[Cell, str] | None]) -> bool:
+    """Return whether both studies compare the same with the limit: demand, statistic, height, axes, and what a record is."""
+    return len({(verdict.words, verdict.count, verdict.demand) for verdict in _verdicts(cells)}) < 2
 
 
 def _designs(pair: Pair, place: int) -> dict[tuple[object, ...], Side]:
@@ -190,7 +216,12 @@ def _written(study: Finished, cell: tuple[Cell, str] | None) -> Iterator[object]
 
 
 def _change(cells: Sequence[tuple[Cell, str] | None]) -> str:
-    """Return the difference of the shares of the limit, B less A: "+12 %", "0 %" below 0.1 %; empty unless both are known."""
+    """Return the difference of the shares of the limit, B less A: "+12 %", "0 %" below 0.1 %; empty unless both are known.
+
+    Empty also if the studies do not compare the same with it.
+    """
+    if not _is_same(cells):
+        return ""
     ratios = [cell[0].verdict.ratio if cell and cell[0].percent else math.nan for cell in cells]
     change = ratios[1] - ratios[0]
     if not math.isfinite(change):

@@ -1,18 +1,24 @@
 """Design checks on a folder of results, or on a table: :func:`rockbatch.check`."""
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+
+import numpy as np
 
 from rockbatch.checks.judging import judge
 from rockbatch.checks.rule_files import Checks, given_rules, read_checks
 from rockbatch.checks.rules import Rule
-from rockbatch.checks.suite_target import suite_verdicts
+from rockbatch.checks.suite import Suite
+from rockbatch.checks.suite_target import suite_of, suite_verdicts
 from rockbatch.checks.verdicts import Verdict, as_table
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.rows import with_case
+from rockbatch.common.showing import shown
+from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.cases import Case, alpha, top, width
+from rockbatch.quantities.rows import rows_of_cases, with_case
 from rockbatch.results.columns import given_table
 from rockbatch.results.interaction import INTERACTION, read_interaction
 from rockbatch.results.labelled import Item
@@ -24,6 +30,8 @@ from rockbatch.toml.reader import TomlFile
 
 PathLike = str | os.PathLike[str]
 
+_ROUNDING = 1e-6
+"""Share of a length or a scale in a table by which it may differ from that of the study."""
 _OF_SECTIONS = {"sections": (SECTIONS, read_sections), "interaction": (INTERACTION, read_interaction)}
 """Tables of forces in sections, each with the function that reads it, by the ``needs`` of demands."""
 
@@ -80,26 +88,25 @@ def verdicts(
 ) -> list[Verdict]:
     """Return the verdicts of :func:`check`, one for each row, those on the suite first; ``InputError`` likewise."""
     given = None if rules is None else given_rules(rules)
-    records: Mapping[str, str] | None = None
-    events: Mapping[str, str] | None = None
     of_suite: list[Verdict] = []
     in_sections: dict[str, pd.DataFrame] = {}
     if isinstance(results, Saved | str | os.PathLike):
         saved = results if isinstance(results, Saved) else read_saved(Path(results))
         own_rules, count, _ = _own_checks(saved.info["study"], judged=given is None)
         table, cases = saved.peaks, saved.info["cases"]
-        records = {record["record"]: record.get("station", "") for record in saved.info["records"]}
-        events = {record["record"]: record.get("event") or "" for record in saved.info["records"]}
         for needs, (name, read) in _OF_SECTIONS.items():
             if (path := saved.directory / name).exists():
                 in_sections[needs] = read(path, saved.info["varied"])
         of_suite = suite_verdicts(saved.info, with_case(table)["scale"])
+        suite = suite_of(saved.info)
     else:
         if study is None:
             raise InputError('check: a table alone lacks its piers; pass its study: study = "pier.toml"')
         study = study if isinstance(study, Study) else load_study(study)
         own_rules, count = study.checks, study.count
         table, cases = given_table(results, study.varied), [describe_case(case) for case in study.cases]
+        _refuse_runs_of_others(with_case(table), cases, study.motions.scale)
+        suite = Suite(unrecorded={pulse.name for pulse in study.motions.pulses})
     judged = own_rules if given is None else given
     if not (judged or of_suite):
         raise InputError("no checks: the study has no [[check]]; add some, or pass a file of rules")
@@ -108,8 +115,40 @@ def verdicts(
     # The limits of a study's own rules are compared with its piers when the study is read
     doubted = given is not None
     sections, interaction = (in_sections.get(needs) for needs in _OF_SECTIONS)
-    of_cases = judge(judged, table, cases, records, count, sections, events, interaction=interaction, doubted=doubted)
+    of_cases = judge(judged, table, cases, suite, count, sections, interaction=interaction, doubted=doubted)
     return [*of_suite, *of_cases]
+
+
+def _refuse_runs_of_others(runs: "pd.DataFrame", cases: Sequence[Case], scales: Sequence[float]) -> None:
+    """Raise ``InputError`` if a table has a run of no case or scale of the study, or of a pier of other lengths than its case."""
+    of_study = np.isclose(runs["scale"].to_numpy(np.float64)[:, None], scales, rtol=_ROUNDING, atol=0.0).any(axis=1)
+    if not of_study.all():
+        listed = ", ".join(f"{scale:g}" for scale in scales)
+        raise InputError(
+            f"the table has a run at scale {runs['scale'][~of_study].iloc[0]:g}, and the study scales by {listed}: pass the "
+            "study that produced it"
+        )
+    known = np.zeros(len(runs), dtype=bool)
+    for case, places in rows_of_cases(runs, cases):
+        known[places] = True
+        own = Rows(runs).at(places)
+        uplift = width(case) * alpha(case) * own.numbers("theta_max_over_alpha")
+        for name, expected in (("drift_height_m", np.full(len(own), top(case))), ("heel_uplift_m", uplift)):
+            found = own.numbers(name)
+            if (other := np.abs(found - expected) > _ROUNDING * np.abs(expected)).any():
+                first = int(np.flatnonzero(other)[0])
+                raise InputError(
+                    f"{name} = {found[first]:.6g} of {own.texts('record')[first]}, case {case['case']}, where the study's pier "
+                    f"has {expected[first]:.6g}: pass the study that produced the table"
+                )
+    if not known.all():
+        row = runs[~known].iloc[0]
+        keys = dict.fromkeys(key for case in cases for key in case["columns"])
+        values = (f"{key} = {row[key]}" for key in keys if row[key] == row[key])  # NaN of a case without the key
+        name = ", ".join((f"case {shown(row['case'])}", *values))
+        raise InputError(
+            f"the table has a run of {name}, which the study does not have: pass the study that produced it"
+        )
 
 
 def _own_checks(study: Item, *, judged: bool) -> Checks:

@@ -181,7 +181,8 @@ NEEDED = (
 def given_table(table: object, varied: Sequence[str]) -> "pd.DataFrame":
     """Return a user's rows of peaks.csv, filtered or from ``pandas.read_csv``, with "" for missing texts and numbers as floats.
 
-    Raises ``InputError`` if it is no DataFrame, lacks a column of :data:`NEEDED`, has words for numbers, or repeats a run.
+    Raises ``InputError`` if it is no DataFrame, lacks a column of :data:`NEEDED`, has words for numbers, a status of no run, or
+    repeats a run.
     """
     if not isinstance(table, pd.DataFrame):
         raise InputError(f"expected the table that rockbatch.run returned, not {type(table).__name__}")
@@ -196,6 +197,10 @@ def given_table(table: object, varied: Sequence[str]) -> "pd.DataFrame":
             if rows[name].dtype != "float64" and name not in varied:
                 word = next(cell for cell in rows[name].dropna() if math.isnan(pd.to_numeric(cell, errors="coerce")))
                 raise InputError(f"{name} = {shown(str(word))}: expected a number")
+    known = rows["status"].isin(("", *STATUSES))
+    if not known.all():
+        word = rows.loc[~known, "status"].iloc[0]
+        raise InputError(f"status = {shown(word)}: expected one of {', '.join(map(shown, STATUSES))}")
     twice = (rows["case"] != "") & rows.duplicated(["record", "case", "polarity", "scale", *varied])
     if twice.any():
         record, case = rows.loc[twice, ["record", "case"]].iloc[0]

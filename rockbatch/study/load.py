@@ -23,7 +23,7 @@ from rockbatch.pier import described, symmetric
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.quantities.demands import AT_HEIGHTS
 from rockbatch.quantities.design import BOUND
-from rockbatch.study.both_axes import along_the_axis, with_other_axes
+from rockbatch.study.both_axes import with_other_axes
 from rockbatch.study.bound_keys import BOUNDS, read_bounds
 from rockbatch.study.case_keys import BASE_KEYS, CASE, WHICH_DEVICE
 from rockbatch.study.cases import read_cases
@@ -338,8 +338,7 @@ def _checked_study(file: TomlFile, motions: Motions) -> Study:
             ("motions", "polarity"),
             f"[motions]: {message}; keep one polarity, and list initial_rotation_rad = [0.05, -0.05] for the other side",
         )
-    along = along_the_axis(cases)
-    checks = read_checks(file, partial(_problems_of_rule, along, motion_spec, output, bool(piers)) if along else None)
+    checks = read_checks(file, partial(_problems_of_rule, cases, motion_spec, output, bool(piers)) if cases else None)
     output = output.also({key for rule in checks.rules for key in DEMANDS[rule.demand].brings})
     _place_brought(file)
     for kind, complain in parts("study.COMPLAINS"):
@@ -377,7 +376,7 @@ def _problems_of_rule(
 ) -> list[Problem]:
     """Return problems of a check: choices that the study lacks, and implausible limits if its piers are known."""
     available = Available(
-        cases=list(dict.fromkeys(case.name for case in cases)),
+        cases=list(dict.fromkeys(case.name_along for case in cases)),
         scales=motions.scale,
         output=[
             *DEMANDS[rule.demand].brings,
@@ -403,7 +402,8 @@ def _place_brought(file: TomlFile) -> None:
 def _as_in_run_json(case: Case) -> dict[str, object]:
     """Return the entries of a case in run.json that a limit is compared with."""
     pier, base = case.pier, case.base
-    return {"case": case.name, "base": base.name, "pier": described(pier), "parameters": base.parameters(pier)}
+    names = {"case": case.name, "across_of": case.across_of}
+    return names | {"base": base.name, "pier": described(pier), "parameters": base.parameters(pier)}
 
 
 def _heights(cases: Sequence[Case], output: Output) -> dict[str, set[float]]:

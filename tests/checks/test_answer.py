@@ -46,6 +46,23 @@ def test_the_worst_of_every_response_is_found_whatever_is_checked():
     assert in_words(found["top_drift_m"]) == "1.73 m (1,731 mm) at 14.422\u00a0m"
 
 
+def test_a_pass_names_the_record_that_is_beyond_the_limit_by_itself():
+    """By a mean below its limit, of several cases and bounds the farthest; not by a maximum, a count, or within the limit."""
+    record = {"record": "A", "station": "A", "polarity": "+"}
+    rows = [
+        verdict("pads", PASS, governing=0.6, **record), verdict("rock", PASS, governing=0.8, **record | {"record": "B"}),
+        verdict("rock", PASS, check="fall", governing=math.inf, **record), verdict("rock", PASS, check="low", governing=0.5),
+        verdict("rock", PASS, check="few", governing=0.9, statistic="count"),
+        verdict("rock", PASS, check="share", demand="overturned", governing=1.0, **record),
+    ]  # fmt: skip
+    (line,) = lines(rows)
+    assert line.verdict == PASS
+    told = "margin (record B (+), 0.8); fall (record A (+), beyond any limit)"
+    assert f"Single records are beyond the limit: {told}." in line.details
+    (line,) = lines([verdict("rock", PASS, governing=0.4, **record)])
+    assert not any("Single records" in detail for detail in line.details)
+
+
 def test_the_worst_at_each_scale_is_that_of_its_runs_alone():
     """Ties, values that are missing or rounding, a scale without a run that ends standing; the rows are in no order."""
     of_scales = {

@@ -13,6 +13,7 @@ from studies import study_text, write_study
 
 import rockbatch as rb
 from rockbatch.checks import Rule, judge
+from rockbatch.checks.suite import Suite
 from rockbatch.commands.check import answered
 from rockbatch.commands.summary import failed_later, warnings
 from rockbatch.common.errors import InputError
@@ -79,7 +80,7 @@ def test_words_of_notes_and_reasons_decide_nothing_in_random_tables(results, tab
         rng = np.random.default_rng(seed)
         peaks, rules = random_peaks(results.peaks, rng), rng.permutation(RULES)[: rng.integers(1, len(RULES) + 1)]
         both = (peaks, shuffled(peaks, rng))
-        before, after = (judge(rules, table, results.info["cases"], records) for table in both)
+        before, after = (judge(rules, table, results.info["cases"], Suite(records)) for table in both)
         assert repr(before) == repr(after), seed
         kinds |= {verdict.verdict for verdict in before}
         if seed % 50 == 0:

@@ -67,6 +67,12 @@ def test_rows_of_unusable_files_are_in_no_suite_of_a_table_read_by_pandas(folder
     (lambda table: pd.concat([table, table[:1]]), "the table has a run of one-sine, case rigid, twice; leave one out"),
     (lambda table: table.assign(theta_max_error="small"), 'theta_max_error = "small": expected a number'),
     (lambda table: table[table["polarity"] == "-"], "the table has mirror images only, and not the runs that they mirror"),
+    (lambda table: table.assign(status=table["status"].str.upper()), 'status = "OK": expected one of "ok", "overturned"'),
+    (lambda table: table.replace({"case": {"rigid": "rock"}}), 'a run of case "rock", which the study does not have'),
+    (lambda table: table.replace({"beta": {50: 60}}), 'a run of case "pads", beta = 60.0, which the study does not have'),
+    (lambda table: table.replace({"scale": {0.5: 0.6}}), "a run at scale 0.6, and the study scales by 0.5, 1: pass the study"),
+    (lambda table: table.assign(drift_height_m=9.0), "drift_height_m = 9 of one-sine, case rigid, where the study's pier has"),
+    (lambda table: table.assign(heel_uplift_m=table["heel_uplift_m"] * 1.01), "pass the study that produced the table"),
     (lambda table: pd.DataFrame(), "once each, as rockbatch.run returned it: record, case"),
     (lambda table: table.iloc[0], "expected the table that rockbatch.run returned, not Series"),
     (lambda table: table.to_dict("records"), "expected the table that rockbatch.run returned, not list"),
@@ -76,6 +82,16 @@ def test_a_table_that_cannot_be_judged_is_refused_with_what_it_lacks(folder, mad
     with pytest.raises(InputError) as refused:
         rb.check(made(read(results)), RULES, study=study)
     assert words in str(refused.value)
+
+
+def test_a_table_is_not_judged_by_a_study_of_another_pier(folder):
+    study, results = folder
+    pier = study.cases[0].pier
+    other = study.with_(pier={"alpha": 2.0 * pier.alpha})
+    with pytest.raises(InputError, match=r"^drift_height_m = .* pass the study that produced the table"):
+        rb.check(read(results), RULES, study=other)
+    lengths = ["drift_height_m", "heel_uplift_m"]
+    assert len(rb.check(read(results).drop(columns=lengths), RULES, study=study))
 
 
 def test_a_table_that_was_given_is_left_as_it_is(folder):

@@ -110,6 +110,8 @@ def test_ratio_and_margin_are_the_distance_to_the_limit():
         ({"demand": "eta", "statistic": "mean"}, "statistic: eta is the same for all records"),
         ({"demand": "flight", "overturned": "unknown"}, "overturned: says nothing about flight"),
         ({"demand": "flight", "statistic": "asce7-16"}, "flight is yes or no"),
+        ({"demand": "overturned", "statistic": "median"}, 'overturned is yes or no; write "max" or "count"'),
+        ({"demand": "failed", "statistic": "p84"}, 'failed is yes or no; write "max" or "count"'),
         ({"statistic": "asce7-16", "failed": "left out"}, "failed: is unacceptable by ASCE 7-16"),
         ({"other_law": True}, "other_law: is for settlement_m and toe_settlement_m"),
     ],
@@ -118,6 +120,14 @@ def test_a_rule_that_makes_no_sense_is_refused_with_what_to_write(asked, problem
     with pytest.raises(InputError) as caught:
         Rule(**({"name": "check", "demand": "theta_max_over_alpha", "at_most": 0.5} | asked))
     assert any(problem in each for each in caught.value.messages)
+
+
+def test_a_run_without_an_error_among_others_is_no_estimate():
+    """As where runs of a fixed step are joined with others."""
+    joined = runs([0.1, 0.2], theta_max_error=[1e-6, math.nan], chaotic=0.0)
+    assert judged(joined).note == "no error estimate"
+    assert judged(joined.assign(theta_max_error=1e-6)).note == ""
+    assert judged(joined.assign(status=["ok", "failed"]), failed="left out", at_most=0.15).omits == ""
 
 
 def test_a_rule_says_in_words_what_it_asks_and_how_it_counts():

@@ -186,6 +186,7 @@ def test_asce7_replaces_the_mean_when_one_response_is_unacceptable_and_fails_on_
     assert one.value == pytest.approx(0.84)
     assert one.verdict == "pass"
     assert "120 % of the median" in one.note
+    assert "which Risk Categories I and II alone may have" in one.note
     assert one.counted == f"1 {status} (infinite)"
     two = judged(eleven(status=[status, status, *["ok"] * 9]), statistic="asce7-16", at_most=1e6)
     assert (two.value, two.verdict) == (INF, "fail")

@@ -3,6 +3,7 @@
 import csv
 import math
 import statistics
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
@@ -14,6 +15,7 @@ import rockbatch as rb
 from rockbatch.checks import Rule, judge, read_verdicts
 from rockbatch.checks.events import OfEvent
 from rockbatch.checks.rule_files import load_rules
+from rockbatch.checks.suite import Suite
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError, MissingColumns
 from rockbatch.quantities.statistics import STATISTICS
@@ -34,7 +36,7 @@ def pairs(*stations, **cells):
 
 
 def judged(table, *, records=None, count="station", at_most=0.5, demand="theta_max_over_alpha", **asked):
-    (verdict,) = judge([Rule("check", demand, at_most, **asked)], table, [case()], records, count)
+    (verdict,) = judge([Rule("check", demand, at_most, **asked)], table, [case()], Suite(records or {}), count)
     return verdict
 
 
@@ -67,8 +69,60 @@ def test_a_code_asks_for_motions_of_stations_and_its_count_of_components_is_refu
 def test_components_that_may_be_of_one_station_meet_no_code():
     found = judged(pairs(*SEVEN).assign(station=""), statistic="en1998-1", at_most=1.0)
     assert (found.records, found.count, found.verdict) == (14, "component", "not decided")
-    assert found.note.startswith("EN 1998-1 counts stations; these results do not say")
+    assert found.note.startswith("EN 1998-1 counts stations; ")
+    assert "these results do not say" in found.note
     assert judged(pairs(*SEVEN).assign(station=""), statistic="mean", at_most=1.0).verdict == "pass"
+
+
+@pytest.mark.parametrize("statistic", ["p84", "p84_95", "p84_lognormal"])
+def test_many_directions_of_few_stations_are_not_the_records_that_a_quantile_asks_for(statistic):
+    least = STATISTICS[statistic].least
+    few, enough = ([(0.1, 0.11, 0.12, 0.13)] * n for n in (least - 1, least))
+    few, enough = (
+        judged(table_of(stations), statistic=statistic, count="component", at_most=1.0) for stations in (few, enough)
+    )
+    assert (few.records, few.verdict, enough.verdict) == (4 * (least - 1), "not decided", "pass")
+    told = f"{4 * (least - 1)} components of {least - 1} stations count, the {STATISTICS[statistic].words} asks for {least} "
+    assert few.note.startswith(f"{told}stations")
+
+
+def table_of(stations):
+    """Runs of stations S0, S1 …, each with the θ_max/α of its components."""
+    rows = [(f"S{i}", f"S{i}.{j}", theta) for i, station in enumerate(stations) for j, theta in enumerate(station)]
+    names, records, thetas = zip(*rows, strict=True)
+    return runs(thetas, record=names).assign(station=names, record=records)
+
+
+def test_pulses_are_no_records_that_a_code_takes():
+    table = pairs(*SEVEN)
+    for pulses, told in ((("B1", "B2"), "1 of 7 stations are pulses, and EN 1998-2 asks for records"), ((), "")):
+        rule = Rule("c", "theta_max_over_alpha", 1.0, statistic="en1998-2")
+        (found,) = judge([rule], table, [case()], Suite(unrecorded=pulses))
+        assert found.verdict == ("not decided" if pulses else "pass")
+        assert found.note.startswith(told)
+        (plain,) = judge([replace(rule, statistic="mean")], table, [case()], Suite(unrecorded=pulses))
+        assert plain.verdict == "pass"
+
+
+def test_a_study_of_pulses_meets_no_code_in_its_folder_and_as_a_table(tmp_path):
+    pulses = [SINE | {"name": f"p{i}", "amplitude_g": 0.1 + 0.01 * i, "duration_s": 1.0} for i in range(7)]
+    check = {"name": "c", "demand": "theta_max_over_alpha", "statistic": "en1998-1", "at_most": 0.9, "reason": "r"}
+    study = rb.load_study(write_study(tmp_path, study_text(pulses=pulses, cases=({"base": "rigid"},), check=[check])))
+    table = rb.run(study, out=tmp_path / "out")
+    for results, more in ((tmp_path / "out", {}), (table, {"study": study})):
+        (row,) = rb.check(results, **more).to_dict("records")
+        assert row["verdict"] == "not decided"
+        assert row["note"].startswith("7 of 7 stations are pulses")
+
+
+@pytest.mark.parametrize(("code", "omits"), [("EN 1998-2", ""), ("EN 1998-1", "target"), ("", "target")])
+def test_a_code_whose_target_judges_no_motion_says_so(code, omits):
+    rule = Rule("c", "theta_max_over_alpha", 1.0, statistic="en1998-2")
+    (found,) = judge([rule], pairs(*SEVEN, theta_max_error=0.0), [case()], Suite(code=code))
+    assert (found.omits, found.verdict) == (omits, "pass")
+    assert ("the motions are not judged by a target spectrum of its code" in found.note) == bool(omits)
+    (plain,) = judge([replace(rule, statistic="mean")], pairs(*SEVEN, theta_max_error=0.0), [case()], Suite(code=code))
+    assert (plain.omits, plain.note) == ("", "")
 
 
 def test_records_of_one_event_say_so_and_are_as_many_as_the_check_allows():
@@ -80,14 +134,23 @@ def test_records_of_one_event_say_so_and_are_as_many_as_the_check_allows():
     told = "3 of 7 stations are of one event, x 1999; of 3 of 7 stations the event is not known"
 
     def of(**asked):
-        (found,) = judge([Rule("c", "theta_max_over_alpha", 1.0, **asked)], table, [case()], events=events)
+        (found,) = judge([Rule("c", "theta_max_over_alpha", 1.0, **asked)], table, [case()], Suite(events=events))
         return found
 
     assert of(statistic="mean").note == "no error estimate"  # no code's
-    assert (of(statistic="en1998-2").verdict, of(statistic="en1998-2").note.startswith(told)) == ("pass", True)
+    assert (of(statistic="en1998-2").verdict, told in of(statistic="en1998-2").note) == ("pass", True)
+    assert of(statistic="en1998-2", per_event=6).verdict == "pass"
+    few = of(statistic="en1998-2", per_event=5)  # those of no known event may be of the same one
+    assert few.verdict == "not decided"
+    assert few.note.startswith("the check allows 5 of one event, and of 3 it is not known")
+    events |= {f"{station}{i}": "z" for station in "EFG" for i in (1, 2)}
     assert of(statistic="en1998-2", per_event=3).verdict == "pass"
-    few = of(statistic="en1998-2", per_event=2)
-    assert (few.verdict, few.note.startswith(f"the check allows 2 of one event; {told}")) == ("not decided", True)
+    assert of(statistic="en1998-2", per_event=2).note.startswith("the check allows 2 of one event; ")
+    events.clear()
+    assert of(statistic="en1998-2", per_event=6).note.startswith(
+        "the check allows 6 of one event, and of 7 it is not known"
+    )
+    assert of(statistic="en1998-2", per_event=7).verdict == "pass"
     with pytest.raises(InputError, match="per_event: is for a code's statistic; leave it out"):
         of(per_event=2)
 

@@ -139,6 +139,7 @@ def test_a_code_asks_what_it_asks_and_nothing_else():
     }
     assert conditions(code="EN 1998-2", pairs="srss", alone=1) == few | {
         "stations with the measure of a pair": (3, "at least", 4, False),
+        "mean over target by the code": (pytest.approx(0.9, rel=1e-4), "at least", 1.3, False),
         "shortest period of the range": (0.2, "at most", 0.2, True),
         "longest period of the range": (4.0, "at least", 3.0, True),
     }
@@ -159,6 +160,21 @@ def test_a_code_asks_what_it_asks_and_nothing_else():
         "greatest family factor": (1.2, "at most", 1.3, True),
     }
     assert conditions(code="") == {}
+
+
+@pytest.mark.parametrize(("code", "share"), [("EN 1998-1", 0.9), ("EN 1998-2", 1.3), ("ASCE 7-16", 0.9)])
+def test_a_study_that_asks_for_less_than_its_code_does_not_lower_the_code(code, share):
+    words = "mean over target by the code"
+    asked = {"code": code, "pairs": {"EN 1998-2": "srss", "ASCE 7-16": "rotd100"}.get(code, "apart")}
+    for over, met in ((0.3, False), (share - 0.01, False), (share, True)):
+        info = {"target": target(over, **CODE | asked | {"at_least": 0.3, "range_s": [0.2, 4.0]})}
+        of_study, of_code = "mean_over_target", "suite_share"
+        own, found = (row for row in suite_verdicts(info, [1.0]) if row.demand in (of_study, of_code))
+        assert (own.verdict, found.verdict) == (PASS, PASS if met else FAIL)
+        assert (found.value, found.limit, found.basis) == (pytest.approx(over, rel=1e-4), share, "code")
+        (scaled,) = (row for row in suite_verdicts(info, [0.5]) if row.words == words)
+        assert scaled.verdict == FAIL
+    assert words not in conditions(**asked, at_least=share)
 
 
 def test_conditions_on_what_is_scaled_are_at_the_scale():

@@ -5,9 +5,12 @@ import math
 import pandas as pd
 import pytest
 from check_samples import case, judged, runs
+from studies import study_text, write_study
 
 from rockbatch.checks import Rule, judge
+from rockbatch.common.errors import InputError
 from rockbatch.pier import RigidBase
+from rockbatch.study import load_study
 
 INF = math.inf
 
@@ -69,6 +72,34 @@ def test_a_median_says_nothing_of_records_beyond_it_unless_a_check_does(status):
     other = "failed" if status == "overturned" else "overturned"
     assert with_count(table, median, demand=other)[0] == "not decided"
     assert with_count(table, median, demand=status, scale=(1.0,)) == ["pass", "pass"]
+
+
+@pytest.mark.parametrize(("at_most", "verdicts"), [(2, ["pass", "pass"]), (3, ["pass", "not decided"])])
+def test_a_number_that_all_records_may_have_decides_nothing(at_most, verdicts):
+    table = runs([0.1, 0.2, 0.3], status=["ok", "ok", "overturned"])
+    median = Rule("median", "theta_max_over_alpha", 0.5, statistic="median")
+    assert with_count(table, median, at_most=at_most) == verdicts
+    found = judged(table, demand="overturned", statistic="count", at_most=3)
+    assert found.note == "3 stations count, and the check allows 3, so that it decides nothing"
+    twice = judged(runs([0.6, 0.7]), statistic="count", above=0.5, at_most=2)
+    assert (twice.value, twice.verdict) == (2, "not decided")
+
+
+@pytest.mark.parametrize("asked", [
+    {"at_most": 1}, {"at_most": 1, "statistic": "mean"}, {"at_most": 0, "above": 1, "statistic": "count"},
+])  # fmt: skip
+def test_a_limit_of_an_event_that_nothing_exceeds_is_refused_until_it_is_confirmed(tmp_path, asked):
+    table = runs([0.1, 0.2, 0.3], status="overturned")
+    key = "above" if "above" in asked else "at_most"
+    with pytest.raises(
+        InputError, match=f'is 0 or 1 for every record, so that nothing exceeds 1; .* confirm = \\["{key}"'
+    ):
+        judge([Rule("none", "overturned", **asked)], table, [case()], doubted=True)
+    assert judge([Rule("none", "overturned", **asked, confirm=(key,))], table, [case()], doubted=True)
+    with pytest.raises(InputError, match="nothing exceeds 1"):
+        load_study(
+            write_study(tmp_path, study_text(check=[{"name": "x", "demand": "overturned", "reason": "r"} | asked]))
+        )
 
 
 def test_a_check_of_other_cases_or_scales_says_nothing_of_this_one():

@@ -8,8 +8,10 @@ from typing import Any
 import pandas as pd
 
 from rockbatch.checks import Rule, Verdict, judge
+from rockbatch.checks.suite import Suite
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.quantities.catalogue import DEMANDS, FIXED, TRAILING, names
+from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 
@@ -52,8 +54,8 @@ SECTION = {
 }  # fmt: skip
 
 
-def judged(table, *, one=None, records=(), demand="theta_max_over_alpha", at_most=0.5, **asked):
-    """Return the verdict on one case by one rule."""
+def judged(table, *, one=None, records=(), demand="theta_max_over_alpha", at_most=0.5, suite=None, **asked):
+    """Return the verdict on one case by one rule, without ``suite`` of motions that are judged by the target of its code."""
     if "at_least" in asked:
         at_most = None
     place, sections = in_sections(table, demand)
@@ -61,7 +63,7 @@ def judged(table, *, one=None, records=(), demand="theta_max_over_alpha", at_mos
         [Rule("check", demand, at_most, **place | asked)],
         table,
         [one or case()],
-        dict.fromkeys(records, "") or None,
+        suite or Suite(dict.fromkeys(records, ""), code=STATISTICS[asked.get("statistic", "max")].code),
         sections=sections,
         interaction=interaction_of(table),
     )

@@ -163,6 +163,20 @@ def test_a_suite_that_fails_its_own_checks_is_said_beside_what_passes(tmp_path):
     assert line.endswith(", under a suite that fails its own checks.")
 
 
+@pytest.mark.parametrize(("files", "words"), [(1, "1 file"), (2, "2 files")])
+def test_a_pass_without_all_of_its_files_says_so(tmp_path, files, words):
+    """One that fails does so whatever they hold."""
+    folders = two(tmp_path, tables(), tables(), (0.2, 0.9))
+    for path in folders:
+        info = json.loads((path / "run.json").read_text(encoding="utf-8"))
+        unusable = {"name": "WTMC.N", "source": "WTMC.V2A", "reason": "no unit", "station": "WTMC"}
+        (path / "run.json").write_text(json.dumps(info | {"unusable": [unusable] * files}), encoding="utf-8")
+    passing, failing = said(folders).split("; ")
+    assert passing.endswith(f", without {words} that could not be used")
+    assert failing.startswith("B fails")
+    assert "could not be used" not in failing
+
+
 def test_studies_without_limits_are_said_to_have_none(tmp_path):
     free = tables()
     del free["check"]
@@ -186,6 +200,19 @@ def test_margins_stand_side_by_side_check_by_check(tmp_path):
     assert row[3].endswith("40 %")
     assert row[6].endswith("75 %")
     assert row[-1] == "+35 %"
+
+
+@pytest.mark.parametrize(("other", "words"), [
+    ({"statistic": "mean"}, "in B mean of theta_max_over_alpha at most 0.5 over stations"),
+    ({"count": "component"}, "in B maximum of theta_max_over_alpha at most 0.5 over components"),
+    ({"demand": "theta_max_rad", "at_most": 0.05}, "in B maximum of theta_max_rad at most 0.05 rad over stations"),
+])  # fmt: skip
+def test_checks_of_one_name_that_compare_other_things_have_no_difference(tmp_path, other, words):
+    """Means and maxima of the same runs differ without any change of the pier."""
+    folders = two(tmp_path, tables(), tables(check=[ROTATION | other]), ({"Te Mara": 0.1, "*": 0.3},) * 2)
+    row = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["answer"][2]
+    assert row[1] == f"rotation: in A maximum of theta_max_over_alpha at most 0.5 over stations, {words}"
+    assert row[-1] == "Lyttelton"  # what governs B: the difference behind it is empty
 
 
 def test_margins_at_each_scale_stand_in_rows_of_their_own(tmp_path):

@@ -148,8 +148,8 @@ def test_a_run_that_is_missing_leaves_the_case_open(tmp_path):
 
 def test_a_case_of_which_no_run_stands_is_not_checked(tmp_path):
     table = runs((0.1, 0.2), "rigid", status="overturned")
-    count = rb.Rule("few", "overturned", 2, statistic="count", reason="agreed")
-    decided, text = alone(folder(tmp_path / "out", table, [RIGID]), count)
+    share = rb.Rule("share", "overturned", 1.0, statistic="mean", reason="agreed", confirm=("at_most",))
+    decided, text = alone(folder(tmp_path / "out", table, [RIGID]), share)
     assert decided == DOES_NOT_APPLY
     assert text.startswith('Case "rigid" is not checked: no run ends standing.')
 

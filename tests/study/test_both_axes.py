@@ -49,6 +49,17 @@ def test_the_case_across_has_the_other_width_the_same_mass_and_the_same_springs(
         assert springs[1][name] == pytest.approx(springs[0][name], rel=1e-12), name
 
 
+@pytest.mark.parametrize(("at_most", "refused"), [(0.6, False), (0.8, True)])
+def test_a_limit_is_compared_with_both_widths(at_most, refused):
+    """At θ = α the heel rises 3 atan(3/20) = 0.447 m along the axis, and 4 atan(4/20) = 0.790 m across it."""
+    check = {"name": "uplift", "demand": "heel_uplift_m", "at_most": at_most, "reason": "keys"}
+    if refused:
+        with pytest.raises(InputError, match=r"heel_uplift_m above 0\.7896 is past the edge of overturning"):
+            study(check=[check])
+    else:
+        assert study(check=[check]).checks[0].at_most == at_most
+
+
 @pytest.mark.parametrize(
     "given",
     [

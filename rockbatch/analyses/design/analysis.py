@@ -8,7 +8,7 @@ import csv
 import itertools
 import math
 import os
-from collections.abc import Callable, Container, Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from itertools import product
@@ -36,7 +36,7 @@ from rockbatch.batch.observers import observers_beside
 from rockbatch.batch.threads import Engine
 from rockbatch.batch.waves import Identity, Waves, identity
 from rockbatch.checks.omissions import OMISSIONS
-from rockbatch.checks.suite_target import suite_verdicts
+from rockbatch.checks.suite_target import suite_of, suite_verdicts
 from rockbatch.checks.verdicts import PASS, Verdict, as_table
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
@@ -188,7 +188,8 @@ def _write_tables(results: AnalysisFolder, spec: DesignSpec) -> dict[str, object
         columns=(columns(of_runs), [observer.table for observer in observers]),
     )
     with _waves(results, of_runs, observers, digest) as waves:
-        trials = Trials(written, motions, waves, _on_suite(study, motions))
+        info = describe(study, motions)
+        trials = Trials(written, motions, waves, suite_of(info), _on_suite(study, info))
         first = tuple(case for trial in scan for case in written.cases(trial))
         if waves.lacks(trials.plan(scan)):
             _announce(results, spec, scan, len(first), motions)
@@ -286,18 +287,18 @@ def _bisected(trials: Trials, spec: DesignSpec) -> Iterator[Trial]:
         yield from (Trial(design, (middle, *others)) for middle in middles(verdicts, spec.width))
 
 
-def _on_suite(study: Study, motions: MotionSet) -> Callable[[Sequence[Case]], list[Verdict]]:
-    """Return a function from the cases of a trial to the verdicts on the suite by the study's targets, [] without any."""
+def _on_suite(study: Study, info: Mapping[str, Any]) -> Callable[[Sequence[Case]], list[Verdict]]:
+    """Return a function from the cases of a trial to the verdicts on the suite by the study's targets, [] without any.
+
+    ``info`` is what run.json says of study and motions.
+    """
     target = study.motions.target
-    if target is None and study.motions.vertical_target is None:
-        return lambda cases: []
-    info = describe(study, motions)
 
     def verdicts(cases: Sequence[Case]) -> list[Verdict]:
         own = info.get("target")
         if own is not None and isinstance(target, SpectrumTarget):  # a code's range is that of the piers
             own = own | rocking_periods(cases, target)
-        return suite_verdicts(info | {"target": own}, study.motions.scale)
+        return suite_verdicts({**info, "target": own}, study.motions.scale)
 
     return verdicts
 

@@ -13,6 +13,7 @@ from rockbatch.batch.plan import Plan
 from rockbatch.batch.waves import Waves
 from rockbatch.checks.judging import judge
 from rockbatch.checks.responses import RESPONSES, unlimited, worst_of_cases
+from rockbatch.checks.suite import Suite
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
@@ -122,12 +123,13 @@ class Trials:
     """All trials, each run and judged once; ``verdicts`` has those of every check.
 
     Of those that pass ``free`` has the responses without a limit, and ``omitted`` the checks whose demands leave something out,
-    by its name in :data:`rockbatch.checks.omissions.OMISSIONS`. ``suite`` returns the verdicts on the suite with the cases of a
-    trial: under one that fails nothing is decided.
+    by its name in :data:`rockbatch.checks.omissions.OMISSIONS`. ``of_motions`` is what is known of the motions; ``suite`` returns
+    the verdicts on the suite with the cases of a trial: under one that fails nothing is decided.
     """
 
-    def __init__(self, written: Written, motions: MotionSet, waves: Waves, suite: OnSuite) -> None:
-        self.written, self.motions, self.waves, self.suite = written, motions, waves, suite
+    def __init__(self, written: Written, motions: MotionSet, waves: Waves, of_motions: Suite, suite: OnSuite) -> None:
+        self.written, self.motions, self.waves = written, motions, waves
+        self.of_motions, self.suite = of_motions, suite
         self.judged: dict[Trial, Judged] = {}
         self.verdicts: list[Verdict] = []
         self.free: dict[str, None] = {}
@@ -153,7 +155,7 @@ class Trials:
 
     def _judge(self, name: str, cases: Mapping[Trial, Sequence[Case]], peaks: "pd.DataFrame") -> None:
         """Judge the trials of a case by the checks that are about it, and note ``free`` and ``omitted`` of those that pass."""
-        study, motions = self.waves.study, self.motions.motions
+        study = self.waves.study
         described = [describe_case(case) for of_trial in cases.values() for case in of_trial]
         names = frozenset(case.name_along for case in self.written.study.cases)
         about = (rule for rule in study.checks if not rule.case or name in chosen_by(tuple(rule.case), names))
@@ -163,10 +165,9 @@ class Trials:
             rules,
             runs,
             described,
-            {motion.name: motion.of_station for motion in motions},
+            self.of_motions,
             study.count,
             self._beside(SECTIONS, OF_SECTIONS),
-            {motion.name: motion.origin.event or "" for motion in motions},
             interaction=self._beside(INTERACTION, OF_INTERACTION),
         )
         self.verdicts += verdicts

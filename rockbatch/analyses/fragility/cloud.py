@@ -49,6 +49,9 @@ WIDER = 1.5
 LEAST_RECORDS = 4
 """Demands above the floor that a line needs."""
 
+ROUNDING = 1e-9
+"""Share of an intensity by which a median may be beyond it."""
+
 _WIDEST = 12.0
 """Greatest distance of ln x from the mean of the data at which medians are sought; beyond it a median is 0 or infinite."""
 
@@ -300,7 +303,7 @@ def fit_event(
     """Return the curve of an event such as overturning, logistic alone, or ``NoCurve`` with the reason.
 
     There is none if all records have the event or none has, with fewer than STATIONS_OF_CURVE, 3, stations, for one intensity,
-    and if the share does not grow with it.
+    if the share does not grow with it, and if the median lies outside the intensities: no line of demands leads there.
     """
     log_x, station = np.log(x), _alone(x) if station is None else station
     if not len(x):
@@ -312,7 +315,18 @@ def fit_event(
     share = _share(log_x, happened, station)
     if share is None or isinstance(share, NoCurve):
         return share or NoCurve("no record has the event")
-    return Cloud(1.0, None, share, confidence, float(log_x.mean()), len(np.unique(station)))
+    curve = Cloud(1.0, None, share, confidence, float(log_x.mean()), len(np.unique(station)))
+    return _outside(curve.median, x) or curve
+
+
+def _outside(median: float, x: Values) -> NoCurve | None:
+    """Return ``NoCurve`` with a bound for a median below or above all intensities, shape (n,); None for one among them."""
+    least, most = float(x.min()), float(x.max())
+    if median < least * (1.0 - ROUNDING):
+        return NoCurve(f"most records exceed the limit from {least:.4g} on: the median is below", below=least)
+    if median > most * (1.0 + ROUNDING):
+        return NoCurve(f"few records exceed the limit up to {most:.4g}: the median is above", above=most)
+    return None
 
 
 def _share(log_x: Values, happened: npt.NDArray[np.bool_], station: Numbers) -> Logistic | NoCurve | None:

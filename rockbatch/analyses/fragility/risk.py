@@ -244,7 +244,8 @@ def _row_of_bound(risk: RiskBound, spec: FragilitySpec, varied: Sequence[str]) -
             f"p_in_{years:g}_years_low": _probability(least, years),
             f"p_in_{years:g}_years_high": _probability(most, years),
         }
-    return row | {"note": "a bound by the shares of the records at the levels, without a curve"}
+    words = "a bound by the shares of these records at the levels, as if all motions had them: without a curve or an interval"
+    return row | {"note": words}
 
 
 def _probability(rate: float, years: float) -> float:

@@ -17,6 +17,7 @@ from rockbatch.analyses.fragility.cloud import Cloud, Demands, Logistic, Regress
 from rockbatch.analyses.fragility.cloud_tables import counts, note_on_cloud
 from rockbatch.analyses.fragility.curves import CloudPoint
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD
+from rockbatch.analyses.fragility.lognormal import NoCurve
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.common.errors import InputError
 from rockbatch.motions.hazard import HazardCurve
@@ -236,6 +237,16 @@ def test_events_without_a_curve_say_why():
     assert "no record exceeds the limit up to 0.5" in fit_event(x, np.zeros(5, bool)).reason
     assert "every record exceeds the limit from 0.1 on" in fit_event(x, np.ones(5, bool)).reason
     assert fit_event(np.array([]), np.array([], dtype=bool)).reason == "no record counts"
+
+
+def test_the_share_of_an_event_has_no_median_where_no_record_was_run():
+    """All but the second record fall, and in the reciprocals only it does: the share leads its median far from the records."""
+    x = np.array([0.4, 0.72, 0.78, 1.02, 1.44, 1.46, 1.74, 2.95])
+    fell = np.arange(8) != 1
+    below, above = fit_event(x, fell), fit_event(1.0 / x, ~fell)
+    assert below == NoCurve("most records exceed the limit from 0.4 on: the median is below", below=0.4)
+    assert above == NoCurve("few records exceed the limit up to 2.5: the median is above", above=2.5)
+    assert 0.4 < fit_event(x, np.arange(8) > 3).median < 2.95
 
 
 # The study

@@ -320,6 +320,7 @@ def test_a_limit_that_no_record_exceeds_has_the_rate_of_the_highest_level_as_bou
     (row,) = found.fragility_risk.to_dict("records")
     at_most = 1 / 475 * (0.02 / 0.2) ** (math.log(50 / 475) / math.log(0.2 / 0.05))
     assert (row["bound"], row["rate_most"], row["rate_least"]) == ("at most", pytest.approx(at_most), 0.0)
+    assert row["note"].endswith("as if all motions had them: without a curve or an interval")  # none of few is not none
     assert "rate_per_year" not in row
     assert found.info["curves"][0]["risk"]["rate_per_year"] is None
     assert found.fragility_deaggregation is None
