@@ -6,10 +6,13 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from messages import assert_states
 
 import rockbatch as rb
 from rockbatch.checks.rules import Rule
 from rockbatch.common.errors import InputError
+from rockbatch.common.units import rounded_up
+from rockbatch.pier import Base, problems
 
 G = 9.81
 PIER = rb.Pier.from_size(0.2, 15.0, 3.0, G)  # I0/M = R0²/3
@@ -93,7 +96,7 @@ MESSAGES: dict[str, tuple[Callable[[], object], list[float]]] = {
     "soft springs": (on(SOFT), [2.0, 1.0, least_beta(PIER)]),
     "a soft bed": (
         on(BED),
-        [2.0, 3.0, math.sqrt(3.0) * least_beta(PIER), 3.0 * (least_beta(PIER) / 2.0) ** 2],
+        [2.0, 3.0, rounded_up(math.sqrt(3.0) * least_beta(PIER)), 3.0 * (least_beta(PIER) / 2.0) ** 2],
     ),
     "springs that cannot carry a tendon": (
         on(rb.YieldingBase(50.0, eta=1.2, restraints=(rb.Tendon(psi=0.4, lam=0.1),))),
@@ -174,14 +177,57 @@ MESSAGES: dict[str, tuple[Callable[[], object], list[float]]] = {
 }
 
 
-def numbers_in(text):
-    """Return the numbers of a text, but for those in names such as R0."""
-    return [float(number) for number in re.findall(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", text.replace(",", ""))]
-
-
 @pytest.mark.parametrize("name", MESSAGES)
 def test_numbers_of_a_message_are_those_of_what_it_names(name):
     call, expected = MESSAGES[name]
     with pytest.raises(InputError) as refused:
         call()
-    assert numbers_in(str(refused.value)) == pytest.approx(expected, rel=0.05)
+    assert_states(str(refused.value), *expected)
+
+
+LONG = rb.Pier(0.2, P, 3.0, G, flexural_period_s=1.5)
+PULLED = (rb.Tendon(psi=0.4123456789, lam=0.1),)
+BOUNDS: dict[str, tuple[rb.Pier, Callable[[float], Base], float]] = {
+    "β of springs": (PIER, rb.ElasticBase, 2.0),
+    "β of yielding springs": (PIER, lambda beta: rb.YieldingBase(beta, eta=1.05, spring="epp"), 2.0),
+    "β of springs that give way": (PIER, lambda beta: rb.YieldingBase(beta, eta=1.02), 1.02 * least_beta(PIER)),
+    "β of springs under a shaft": (
+        LONG,
+        lambda beta: rb.ElasticBase(beta, zeta=0.1, shaft="elastic", kinematics="finite"),
+        1.0001 * least_beta(PIER),
+    ),
+    "β of a bed": (PIER, lambda beta: rb.FootingBase(beta, 3.0), 2.0),
+    "η of springs with a tendon": (PIER, lambda eta: rb.YieldingBase(5000.0, eta=eta, restraints=PULLED), 1.2),
+    "η of a backbone": (
+        PIER,
+        lambda eta: rb.YieldingBase(500.0, eta=eta, spring="backbone", backbone=((1.0, 1.0), (3.0, 1.7), (4.0, 1.7))),
+        0.3,
+    ),
+    "safety of a bed with a tendon": (PIER, lambda factor: rb.FootingBase(50.0, factor, restraints=PULLED), 1.2),
+}
+"""A pier, a base with a value that has to be above a bound, and such a value below it."""
+
+
+@pytest.mark.parametrize("name", BOUNDS)
+def test_a_value_above_the_bound_that_a_message_names_is_accepted_and_hardly_a_lesser_one(name):
+    pier, on_base, below = BOUNDS[name]
+    (refused,) = problems(pier, on_base(below))
+    bound = float(re.findall(r"above (?:1 \+ psi, |sqrt.* = )?([\d.]*\d)", refused.text)[-1])
+    assert not problems(pier, on_base(bound * (1.0 + 2e-6)))
+    assert problems(pier, on_base(bound * (1.0 - 1.1e-3)))
+
+
+def test_a_bed_that_hardly_carries_the_weight_has_no_period_in_full_contact():
+    """It gives way to the least tilt."""
+    assert rb.statics(PIER, rb.FootingBase(50.0, 1.0005)).full_contact_period_s is None
+
+
+@pytest.mark.parametrize("digits", [2, 4])
+def test_a_value_is_rounded_up_to_the_next_one_of_so_many_digits(digits):
+    """4.001 and 4001 steps of 0.001 are not the same number to a computer."""
+    last = 10 ** (digits - 1)
+    for steps in range(last, 10 * last):
+        value = float(f"{steps}e-3")
+        assert rounded_up(value, digits) == value
+        assert rounded_up(value * (1.0 - 1e-9), digits) == value
+        assert rounded_up(value * (1.0 + 1e-9), digits) == float(f"{steps + 1}e-3")
