@@ -1,0 +1,201 @@
+"""Sentences of designs and of fragility, read back: each value, count and name in them is that of what they speak of."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from messages import assert_states, said_by
+
+from rockbatch.analyses.design import answer as design
+from rockbatch.analyses.fragility.lognormal import Capacities, _degenerate, _outside
+from rockbatch.analyses.fragility.measures import own_measure
+from rockbatch.analyses.fragility.risk import note
+from rockbatch.analyses.fragility.scale_factors import in_words
+from rockbatch.analyses.fragility.statistics import cloud
+
+VARIED = [
+    {"path": "case.damper.f", "low": 0.02, "high": 0.2, "step": 0.0175},
+    {"path": "pier.width_m", "low": 5.0, "high": 9.0, "step": 0.45},
+]
+TRIED = {
+    "verdict": "pass", "case.damper.f": 0.06, "check": "drift", "reason": None, "ratio": 0.83, "under_bound": "soft ground",
+    "record": "LGP000", "at_scale": 1.5,
+}  # fmt: skip
+
+
+def ends(side, value, verdict, check, ratio, bound=None):
+    """Return what an interval has about its neighbour ``below`` or ``above``."""
+    said = {
+        "verdict": verdict,
+        "check": check,
+        "reason": None,
+        "ratio": ratio,
+        "under_bound": bound,
+        "record": "TCU052",
+    }
+    return {side: value} | {f"{side}_{key}": of_end for key, of_end in said.items()} | {f"{side}_at_scale": 1.0}
+
+
+def interval(
+    low, high, verdict="pass", below=(0.05, "fail", "drift", 1.27), above=(0.13, "fail", "uplift", 1.08), **more
+):
+    """Return an interval of values with one verdict; None stands for the end of the scan."""
+    neighbours = {}
+    for side, neighbour in (("below", below), ("above", above)):
+        neighbours |= ends(side, *(neighbour or (None, None, None, None)))
+    return {"verdict": verdict, "low": low, "high": high, "widest_step": 0.031} | neighbours | more
+
+
+def line(rows, find="least", tried=None):
+    about = {"vary": VARIED[:1], "find": find, "bounds": ["soft ground"]}
+    best = [TRIED, TRIED | {"case.damper.f": 0.11, "ratio": 0.94, "check": "uplift"}]
+    return lambda: [text for _, text in design._of_line(about, rows, tried or best)]
+
+
+def plane(rows, find="least"):
+    about = {"vary": VARIED, "find": find, "bounds": []}
+    return lambda: [text for _, text in design._of_map(about, rows)]
+
+
+def left_open(**info):
+    about = {
+        "vary": VARIED[:1], "width": 0.04, "without_limit": [], "omitted": [], "unusable": 0, "refused": [], "lacking": [],
+        "tried": 11,
+    }  # fmt: skip
+    return lambda: [text for _, text in design._remarks(about | info, [interval(0.06, 0.11)])]
+
+
+BEST = ["drift", 83.0, 1.5, "LGP000"]
+"""What governs the value that is tried first, as a sentence says it."""
+BELOW, ABOVE = ["fails", "drift", 127.0, "TCU052"], ["fails", "uplift", 108.0, "TCU052"]
+UNDECIDED = 0.05, "not decided", "tilt", 0.97
+WIDTH, FORCE = "pier.width_m", "case.damper.f"
+REFUSED = [{"values": [0.15, 7.25], "reason": "too wide"}, {"values": [0.17, 7.7], "reason": "too wide"}]
+FAILED = [TRIED | {"verdict": "fail", "ratio": 1.3}, TRIED | {"verdict": "fail", "ratio": 1.2, FORCE: 0.11}]
+POINTS = [0.06, 0.07, 0.08, 0.09, 0.11, 0.12, 0.13]
+DESIGNS = {
+    "the least value": (
+        line([interval(0.06, 0.2, above=None)]),
+        ["least case.damper.f", "every bound", 0.06, "drift under soft ground", *BEST[1:], 0.05, *BELOW],
+    ),
+    "the greatest value": (
+        line([interval(0.02, 0.11, below=None)], "greatest"),
+        ["greatest case.damper.f", 0.11, "uplift", 94.0, 1.5, "LGP000", 0.13, *ABOVE],
+    ),
+    "the end of the scan": (
+        line([interval(0.06, 0.2, below=None, above=None)]),
+        [FORCE, 0.06, "lower end", *BEST, "least value"],
+    ),
+    "gaps": (
+        line([interval(0.06, 0.08, above=UNDECIDED), interval(0.11, 0.19)]),
+        [
+            *(FORCE, 0.06, *BEST, 0.05, *BELOW, FORCE, 0.06, 0.08, "below it", *BELOW[:3], "above it", "tilt", 97.0),
+            *(0.11, 0.19, "below it", *BELOW[:3], "above it", *ABOVE[:3]),
+        ],
+    ),
+    "more gaps": (
+        line([interval(x, x) for x in POINTS]),
+        [FORCE, 0.06, *BEST, 0.05, *BELOW, "passes from"]
+        + [number for x in POINTS[: design.MOST_INTERVALS] for number in (x, x, 127.0, 108.0)]
+        + [len(POINTS) - design.MOST_INTERVALS],
+    ),
+    "values that are not decided": (
+        line([interval(0.03, 0.05, "not decided"), interval(0.06, 0.2, below=UNDECIDED, above=None)]),
+        [FORCE, 0.06, *BEST, 0.05, "not decided", "tilt", 97.0, "TCU052", 0.03, 0.05, "least", "low", 0.03],
+    ),
+    "no value": (
+        line([interval(0.02, 0.2, "fail")], tried=FAILED),
+        [FORCE, 0.02, 0.2, 0.11, "fails", "drift", 120.0, 1.5, "LGP000"],
+    ),
+    "the least of a map": (
+        plane(
+            [
+                interval(0.06, 0.1, **{WIDTH: 5.45}),
+                interval(0.04, 0.1, below=(0.03, "fail", "tilt", 1.44), **{WIDTH: 9.0}),
+                interval(0.1, 0.2, "fail", **{WIDTH: 6.35}),
+            ]
+        ),
+        ["least", FORCE, 0.04, WIDTH, 9.0, "end of its scan", 0.03, "tilt", 144.0, "TCU052", 1.0, 3.0, WIDTH, FORCE],
+    ),
+    "the greatest of a map": (
+        plane([interval(0.06, 0.1, **{WIDTH: 5.45}), interval(0.04, 0.2, above=None, **{WIDTH: 7.25})], "greatest"),
+        ["greatest", FORCE, 0.2, "its scan ends", WIDTH, 7.25],
+    ),
+    "steps without a run": (left_open(width=0.01), [0.031]),
+    "steps of a map": (left_open(vary=VARIED), [WIDTH, 0.45]),
+    "files and limits": (left_open(unusable=4, without_limit=["uplift", "tilt"]), ["uplift, tilt", 4.0]),
+    "refused values": (
+        left_open(vary=VARIED, refused=REFUSED, lacking=["rigid"]),
+        [WIDTH, 0.45, 2.0, 11.0, FORCE, 0.15, WIDTH, 7.25, "too wide", f"{FORCE} and {WIDTH}", "rigid"],
+    ),
+}
+
+
+def capacities(low, high):
+    return Capacities(np.array(low), np.array(high), np.arange(len(low)))
+
+
+def factors(scales, reached=(), lost=()):
+    """Return what is said of records with these factors by level, the intensities reached, and the levels lost."""
+    used = list(reached) or [{x: x for x in by_level} for by_level in scales]
+    plan = SimpleNamespace(used=used, not_used=list(lost) or [{} for _ in used], factor=lambda m, x: scales[m][x])
+    spec = SimpleNamespace(
+        levels=(0.2, 0.4), method="stripes", least_scale=0.25, most_scale=4.5, unit="g", label="SA(1.2 s)"
+    )
+    return lambda: in_words([plan], spec)
+
+
+RISK = SimpleNamespace(
+    rate=2e-3, interval=None, above=3e-4, below=2.6e-4, bounds=(1.7e-3, 2.9e-3), beyond_levels=(4e-4, 5e-4)
+)
+
+
+def rate():
+    hazard = SimpleNamespace(curve=SimpleNamespace(levels=(0.1, 0.3)), years=(50.0,))
+    return note(RISK, SimpleNamespace(hazard=hazard, levels=(0.15, 0.35, 0.85), unit="g"))
+
+
+FRAGILITY = {
+    "a median below": (lambda: _outside(0.05, capacities([0.0, 0.2], [0.1, 0.4])).reason, [0.1]),
+    "a median above": (lambda: _outside(0.95, capacities([0.0, 0.2], [0.1, 0.4])).reason, [0.4]),
+    "no record": (lambda: _degenerate(capacities([0.3, 0.7], [math.inf, math.inf])).reason, [0.7]),
+    "every record": (lambda: _degenerate(capacities([0.0, 0.0], [0.3, 0.2])).reason, [0.2]),
+    "a median between": (lambda: _degenerate(capacities([0.2, 0.3], [0.5, 0.45])).reason, [0.3, 0.45]),
+    "one level": (lambda: _degenerate(capacities([0.2, 0.4], [0.4, 0.6])).reason, [0.4]),
+    "a value of a measure": (
+        lambda: own_measure("AvgSa [g]", [("a", 0.2), ("b", -0.3), ("c", 0.1), ("c", 0.2)], 1.0),
+        ["b", "AvgSa", -0.3, 0.0, "c", "AvgSa"],
+    ),
+    "a heading without a unit": (
+        lambda: own_measure("FIV3", [("a", 0.2)], 1.0),
+        ['"FIV3"', '"FIV3 [g]"', '"FIV3 [-]"'],
+    ),
+    "a record without a value": (
+        lambda: own_measure("AvgSa [g]", [("LGP000", 0.2)], 1.0).of_records(["LGP090"]),
+        ["LGP090", '"AvgSa"', "LGP000"],
+    ),
+    "demands": (lambda: cloud([0.1, 0.2, 0.3], [1.0, 2.0, 3.0], 1.0, stations=["a", "b"]), [2.0, 3.0]),
+    "a limit": (lambda: cloud([0.1, 0.2], [1.0, 2.0], -0.4), ["limit", -0.4, 0.0]),
+    "a level": (lambda: cloud([0.1, 0.2, -0.3], [1.0, 2.0, 3.0], 1.0), [2.0, 0.0]),
+    "factors": (factors([{0.2: 0.5, 0.4: 1.7}, {0.2: 0.8}]), [0.5, 1.7, 0.8]),
+    "limits on factors": (
+        factors([{0.2: 0.5, 0.4: 1.7}, {0.2: 0.8}, {}], lost=[{}, {0.4: 4.4}, {0.2: 7.0, 0.4: 9.0}]),
+        [0.5, 1.7, 0.8, 0.25, 4.5, 2.0, 3.0, 0.2, 1.0, 3.0, 0.4],
+    ),
+    "factors away from a level": (
+        factors([{0.2: 0.5, 0.4: 1.7}, {0.2: 0.8}], [{0.2: 0.31, 0.4: 0.41}, {0.2: 0.17}]),
+        [0.5, 1.7, 0.8, 0.17, 0.31, 0.2, "SA(1.2 s)"],
+    ),
+    "rates from beyond": (
+        rate,
+        [15.0, 1.7e-3, 2.9e-3, 13.0, 20.0, 0.15, "g", 25.0, 0.85, "g"],
+    ),
+}
+MESSAGES = DESIGNS | FRAGILITY
+
+
+@pytest.mark.parametrize("name", MESSAGES)
+def test_what_a_sentence_names_is_what_it_speaks_of(name):
+    call, expected = MESSAGES[name]
+    assert_states(said_by(call), *expected)
