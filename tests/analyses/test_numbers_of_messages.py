@@ -1,18 +1,25 @@
 """Sentences of designs and of fragility, read back: each value, count and name in them is that of what they speak of."""
 
 import math
+import re
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 from messages import assert_states, said_by
 
 from rockbatch.analyses.design import answer as design
+from rockbatch.analyses.fragility import answer as fragility
+from rockbatch.analyses.fragility.curves import Undecided
 from rockbatch.analyses.fragility.lognormal import Capacities, _degenerate, _outside
 from rockbatch.analyses.fragility.measures import own_measure
 from rockbatch.analyses.fragility.risk import note
 from rockbatch.analyses.fragility.scale_factors import in_words
 from rockbatch.analyses.fragility.statistics import cloud
+from rockbatch.analyses.fragility.tables import _about_drawn, _about_undecided
+from rockbatch.analyses.sensitivity import answer as sensitivity
+from rockbatch.analyses.spectrum import answer as spectrum
 
 VARIED = [
     {"path": "case.damper.f", "low": 0.02, "high": 0.2, "step": 0.0175},
@@ -192,7 +199,122 @@ FRAGILITY = {
         [15.0, 1.7e-3, 2.9e-3, 13.0, 20.0, 0.15, "g", 25.0, 0.85, "g"],
     ),
 }
-MESSAGES = DESIGNS | FRAGILITY
+INPUTS = [
+    {"parameter": name, "total": total, "total_error": error, "swing": swing, "low": low, "high": high, "answer_low": at_low,
+     "answer_high": at_high, "answer_base": 0.412}
+    for name, total, error, swing, low, high, at_low, at_high in (
+        ("beta", 0.55, 0.04, 0.2, 30.0, 60.0, 0.31, 0.52), ("eta", 0.32, 0.03, 0.3, 2.1, 3.7, 0.29, 0.58),
+        ("mu", 0.21, 0.02, 0.1, 2.8, 3.1, 0.39, 0.42), ("zeta", 0.002, 0.001, 0.01, 0.02, 0.08, 0.41, 0.413),
+        ("alpha", 0.003, 0.002, 0.02, 0.11, 0.13, 0.4, 0.42),
+    )
+]  # fmt: skip
+SENSITIVITY = {
+    "the inputs of a case": (
+        lambda: plain_text(sensitivity._of_case(INPUTS)),
+        ["β", 0.55, 0.04, "η", 0.32, 0.03, "μ", 0.21, 0.02, 2.0, 0.01, "η", 0.29, 2.1, 0.58, 3.7, 0.412],
+    ),
+    "inputs of many cases": (
+        lambda: plain_text(sensitivity._in_most([INPUTS, INPUTS[1:], INPUTS, [INPUTS[0] | {"total": math.nan}]])),
+        [4.0, "cases", "β", 2.0, 0.55, 0.55, "η", 1.0, 0.32, 0.32, 1.0],
+    ),
+    "runs of a sample": (
+        lambda: sensitivity._of_runs({"statuses": {"ok": 80, "overturned": 7, "flight": 4, "failed": 3}, "overturned": 2.5}),
+        [11.0, 94.0, "runs", 2.5, 3.0, 94.0, "runs"],
+    ),
+}  # fmt: skip
+
+
+def plain_text(markup):
+    return re.sub(r"<[^>]*>", "", str(markup))
+
+
+def regions(*rows):
+    return pd.DataFrame(rows, columns=["map", "case", "outcome", "low", "high", "omega_p_over_p"])
+
+
+SUITE = pd.DataFrame({"count": [30, 28], "flight": [2, 3], "failed": [0, 4]})
+FALLING = (
+    ("sine", "rigid", "overturned after 1 impact", 2.15, 9.0, 3.5),
+    ("sine", "rigid", "overturned", 2.75, 9.0, 5.5),
+)
+STANDING = [("sine", "rigid", "standing", 0.5, 2.15, 3.5), ("sine", "rigid", "standing", 0.5, 7.5, 8.5)]
+SPECTRUM = {
+    "runs of a spectrum": (lambda: spectrum._of_runs(SUITE), [5.0, 62.0, "runs", 4.0, 62.0, "runs"]),
+    "the least pulse": (
+        lambda: spectrum._least_of({"cases": [{"case": "rigid"}], "varied_map": []}, regions(*FALLING, *STANDING), ["case"], ""),
+        ["least sine", 2.15, 3.5],
+    ),
+    "no pulse": (
+        lambda: spectrum._least_of({"cases": [{"case": "rigid"}], "varied_map": []}, regions(*STANDING), ["case"], ""),
+        ["sine", 3.5, 8.5, 7.5],
+    ),
+    "pulses that may overturn": (
+        lambda: spectrum._left_open(regions(*FALLING, ("sine", "rigid", "flight", 1.25, 2.15, 4.5), *STANDING)),
+        [1.25, 4.5],
+    ),
+}  # fmt: skip
+
+
+def curve(case, median, **more):
+    """Return a curve as fragility.json has it."""
+    undecided = {"runs": 60, "flight": 4, "failed": 3, "other": 2}
+    return {"case": case, "columns": {}, "median": median, "says_little": False, "undecided": undecided, "points": [],
+            "median_undecided": None, "stations": 17, "piers": 1, "capacities": []} | more  # fmt: skip
+
+
+ABOUT = {
+    "unit": "g",
+    "measure": "PGA",
+    "levels": [0.2, 0.9],
+    "varied": [],
+    "cases": [],
+    "records": 34,
+    "stations": 17,
+    "confidence": 0.9,
+}
+CURVES = [curve("a", None), curve("b", 0.4, says_little=True), curve("c", None)]
+UNDECIDED = Undecided(400, 10, 2, 5)
+FRAGILITY |= {
+    "components": (lambda: fragility._shared(ABOUT), [34.0, "records", 17.0, "stations"]),
+    "few earthquakes": (
+        lambda: fragility._shared(ABOUT | {"stations": 34, "events": 3}),
+        [3.0, "earthquakes"],
+    ),
+    "intervals by earthquake": (lambda: fragility._shared(ABOUT | {"events": 6, "by": "event"}), [6.0, "earthquakes"]),
+    "curves that say little": (
+        lambda: list(fragility._of_all(ABOUT | {"curves": CURVES, "stations": 34}))[:2],
+        [2.0, 3.0, 1.0, 3.0],
+    ),
+    "an extrapolation": (
+        lambda: fragility._left_open(ABOUT, curve("a", 1.3), []),
+        [0.2, 0.9, "g"],
+    ),
+    "undecided runs": (lambda: fragility._left_open(ABOUT, curve("a", None), []), [9.0, 60.0, "runs"]),
+    "kinds of undecided runs": (lambda: UNDECIDED.words, [17.0, 400.0, "runs", 10.0, "flew", 2.0, "failed", 5.0]),
+    "undecided runs that change nothing": (
+        lambda: _about_undecided(SimpleNamespace(undecided=UNDECIDED, readings=None)),
+        [17.0, 400.0, "runs", 10.0, 2.0, 5.0, "nothing"],
+    ),
+    "undecided runs on either side": (
+        lambda: _about_undecided(
+            SimpleNamespace(
+                undecided=UNDECIDED,
+                readings=[SimpleNamespace(median=0.31), SimpleNamespace(median=0.47)],
+                inconclusive=True,
+            )
+        ),
+        ["little", 17.0, 400.0, "runs", 10.0, 2.0, 5.0, "beyond", 0.31, "within", 0.47],
+    ),
+    "drawn inputs": (
+        lambda: _about_drawn(
+            SimpleNamespace(
+                drawn_share=SimpleNamespace(effects=[0.05, -0.02], errors=[0.012, 0.008]), fitted=None, drawn=["alpha", "eta"]
+            )
+        ),
+        ["alpha", 5.0, 1.2, "eta", -2.0, 0.8],
+    ),
+}  # fmt: skip
+MESSAGES = DESIGNS | FRAGILITY | SENSITIVITY | SPECTRUM
 
 
 @pytest.mark.parametrize("name", MESSAGES)
