@@ -6,13 +6,16 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from messages import assert_states
+from messages import assert_states, said_by
 
 import rockbatch as rb
 from rockbatch.checks.rules import Rule
 from rockbatch.common.errors import InputError
 from rockbatch.common.units import rounded_up
 from rockbatch.pier import Base, problems
+from rockbatch.pier.sections import section_heights
+from rockbatch.pier.statics import in_words
+from rockbatch.quantities.statistics import _asce7_16_remark, _p84_95_remark, _p84_remark
 
 G = 9.81
 PIER = rb.Pier.from_size(0.2, 15.0, 3.0, G)  # I0/M = R0²/3
@@ -70,6 +73,54 @@ def designed(width, between, points=10):
 
 
 SHAKEN = rb.Motion("shaken", 0.01, A)
+HEAVY = rb.Pier.from_size(0.2, 15.0, 3.0, G, mass_t=1850.0)
+SLENDER = rb.Pier(0.2, P, 3.0, G, flexural_period_s=1.2)
+
+
+def line_of_sheet(name, base, pier=HEAVY):
+    """Return a function that gives a line of the statics sheet."""
+    return lambda: in_words(rb.statics(pier, base))[name]
+
+
+def on_points(*points):
+    return lambda: rb.YieldingBase(500.0, eta=1.5, spring="backbone", backbone=points)
+
+
+def rocking(share):
+    """Return the period of a block that rocks with this share of α on rigid ground [s] (Housner 1963)."""
+    return 4.0 / P * math.acosh(1.0 / (1.0 - share))
+
+
+RANKED = np.arange(1.0, 8.0)
+TEXTS: dict[str, tuple[Callable[[], object], list[float | str]]] = {
+    "weight and settlement": (
+        line_of_sheet("at rest", rb.ElasticBase(50.0)),
+        [1850.0 * G, "kN", 1000.0 * G / (50.0 * P) ** 2, "mm"],
+    ),
+    "the moment": (line_of_sheet("moment", rb.RigidBase()), [B, "weight", B * 1850.0 * G, "kN m"]),
+    "the strength": (line_of_sheet("strength", rb.RigidBase()), [math.tan(0.2), "g", 0.0]),
+    "the vertical period": (
+        lambda: line_of_sheet("periods", rb.ElasticBase(50.0))().partition(",")[0],
+        ["vertical", 2.0 * math.pi / (50.0 * P), "s"],
+    ),
+    "a flexible pier": (
+        line_of_sheet("flexure", rb.RigidBase(), SLENDER),
+        [1.2 / rocking(0.1), 0.1, "α", 100.0 * (1.2 / rocking(0.1)) ** 2],
+    ),
+    "a first point at rest": (on_points((0.0, 0.3), (2.0, 1.0)), [0.0, 0.3, 0.0]),
+    "points out of order": (on_points((1.0, 1.0), (3.0, 1.5), (2.5, 1.7)), [2.5, 1.7, 3.0, 1.5]),
+    "points that fall": (on_points((1.0, 1.0), (3.0, 1.5), (4.0, 1.3)), [4.0, 1.3, 3.0, 1.5, 1.5]),
+    "points that steepen": (on_points((1.0, 1.0), (3.0, 1.5), (4.0, 2.1)), [3.0, 1.5, 4.0, 2.1, 0.6, 0.25]),
+    "a section above the top": (
+        lambda: section_heights(HEAVY, [3.5, 31.5]),
+        ["sections_m", 31.5, 0.0, 2.0 * H],
+    ),
+    "a quantile between ranks": (lambda: _p84_remark(RANKED), [7.0, 24.0, "%"]),
+    "a quantile by rank": (lambda: _p84_95_remark(np.arange(25.0)), ["rank", 25.0, 25.0]),
+    "unacceptable responses": (lambda: _asce7_16_remark(np.array([1.0, np.inf, np.inf, np.inf])), [3.0, 1.0]),
+}
+
+
 MESSAGES: dict[str, tuple[Callable[[], object], list[float]]] = {
     "a fast viscous damper": (tied(rb.Damper("viscous", nu=400.0)), [400.0, 1000.0 * G / (400.0 * P)]),
     "a weak viscous damper": (tied(rb.Damper("viscous", nu=1e-4)), [1e-4, 1.0, 100.0 * 1e-4 * P / G]),
@@ -175,6 +226,12 @@ MESSAGES: dict[str, tuple[Callable[[], object], list[float]]] = {
         [1.0, 2.5],
     ),
 }
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_numbers_of_a_text_are_those_of_what_it_names(name):
+    call, expected = TEXTS[name]
+    assert_states(said_by(call).replace("R0", ""), *expected)
 
 
 @pytest.mark.parametrize("name", MESSAGES)
