@@ -170,13 +170,16 @@ MESSAGES: dict[str, tuple[Callable[[], object], list[float]]] = {
         lambda: rb.Pier.from_size(0.2, 5.0, 3.0, G, mass_t=1e5),
         [1e5, 2.0 / 3.0 * B, 2.0 / 3.0 * H, 1e5, 27e5 / (8.0 * B**2 * H)],
     ),
-    "a motion without a step": (lambda: rb.Motion("m", 0.0, A), [0.0, 0.0]),
+    "a motion without a step": (lambda: rb.Motion("m", 0.0, A), ['"m"', "dt", 0.0, 0.0]),
     "a motion with a sample that is no number": (
         lambda: rb.Motion("m", 0.01, np.where(np.arange(400) == 37, np.nan, A)),
-        [37.0, 0.37],
+        ['"m"', "horizontal sample", 37.0, 0.37],
     ),
-    "a motion of two lengths": (lambda: rb.Motion("m", 0.01, A, A[:-3]), [400.0, 397.0]),
-    "a motion in a table": (lambda: rb.Motion("m", 0.01, A.reshape(2, 200)), [2.0, 200.0]),
+    "a motion of two lengths": (
+        lambda: rb.Motion("m", 0.01, A, A[:-3]),
+        ['"m"', 400.0, "horizontal", 397.0, "vertical"],
+    ),
+    "a motion in a table": (lambda: rb.Motion("m", 0.01, A.reshape(2, 200)), ['"m"', "horizontal", 2.0, 200.0]),
     "a motion in gal": (
         lambda: rb.simulate(PIER, rb.RigidBase(), rb.Motion("m", 0.01, 300.0 * A)),
         [300.0 / G, 2.0, 4.0, 0.01],

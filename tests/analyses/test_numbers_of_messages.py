@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 from messages import assert_states, said_by
 
+from rockbatch.analyses.accuracy import section as accuracy
 from rockbatch.analyses.design import answer as design
 from rockbatch.analyses.fragility import answer as fragility
 from rockbatch.analyses.fragility.curves import Undecided
@@ -18,8 +19,10 @@ from rockbatch.analyses.fragility.risk import note
 from rockbatch.analyses.fragility.scale_factors import in_words
 from rockbatch.analyses.fragility.statistics import cloud
 from rockbatch.analyses.fragility.tables import _about_drawn, _about_undecided
+from rockbatch.analyses.release.analysis import _Test
 from rockbatch.analyses.sensitivity import answer as sensitivity
 from rockbatch.analyses.spectrum import answer as spectrum
+from rockbatch.pier import Pier
 
 VARIED = [
     {"path": "case.damper.f", "low": 0.02, "high": 0.2, "step": 0.0175},
@@ -314,7 +317,66 @@ FRAGILITY |= {
         ["alpha", 5.0, 1.2, "eta", -2.0, 0.8],
     ),
 }  # fmt: skip
-MESSAGES = DESIGNS | FRAGILITY | SENSITIVITY | SPECTRUM
+PIER = Pier(0.2, 1.25, initial_rotation_rad=-0.08)
+MEASURED = SimpleNamespace(
+    case=SimpleNamespace(pier=PIER),
+    measured=SimpleNamespace(t=[0.7, 1.9, 2.8, 3.5]),
+    model=lambda value: SimpleNamespace(t=np.array([0.8, 2.0, 3.0, 3.6])),
+)
+"""A release with a mean half cycle of 0.9 s."""
+
+
+def fit(**values):
+    found = {
+        "value": 0.9,
+        "at_end": False,
+        "stretch": 1.0,
+        "stretch_error": 0.01,
+        "t_rms": 0.0045,
+        "amplitude_rms": 0.0012,
+    }
+    return SimpleNamespace(**found | values)
+
+
+def bounds(value, low, high):
+    return SimpleNamespace(value=value, low=low, high=high)
+
+
+def doubt(best, times=None, amplitudes=None):
+    return lambda: _Test._doubt(MEASURED, best, {"by_times": times, "by_amplitudes": amplitudes})
+
+
+RELEASE = {
+    "differences of a release": (
+        lambda: _Test._differences(MEASURED, fit()),
+        [4.5, "ms", 0.005, "half cycle", 1.2, "mrad", 0.015, "initial rotation"],
+    ),
+    "times that are stretched": (
+        doubt(fit(stretch=1.25, stretch_error=0.03)),
+        [1.25, 0.03, "p", 1.0, "rad/s", 1.25, "size"],
+    ),
+    "times and amplitudes apart": (
+        doubt(fit(), bounds(0.91, 0.9, 0.92), bounds(0.84, 0.82, 0.86)),
+        [0.91, 0.84],
+    ),
+}
+TWO = {"cases": [{"case": "rigid"}, {"case": "pads"}], "varied_map": []}
+ON_PADS = [("sine", "pads", *row[2:]) for row in FALLING]
+SPECTRUM |= {
+    "the least pulse of two cases": (
+        lambda: spectrum._least_of(TWO, regions(FALLING[1], *STANDING, *ON_PADS), ["case"], ""),
+        ["least sine", 2.15, 3.5, "pads", "the least of", 2.0, "cases"],
+    ),
+    "the same pulse in two cases": (
+        lambda: spectrum._least_of(TWO, regions(*FALLING, *STANDING, *ON_PADS), ["case"], ", the least of 5 maps"),
+        ["least sine", 2.15, 3.5, 2.0, 2.0, "cases", 5.0, "maps"],
+    ),
+}
+OWN = SimpleNamespace(error_max=3e-4, status_differs=2, tolerance=1e-4)
+ACCURACY = {
+    "an error above its tolerance": (lambda: accuracy._remarks(OWN, 5e-4), ["tolerance", 2.0, "of these runs", 5e-4]),
+}
+MESSAGES = DESIGNS | FRAGILITY | SENSITIVITY | SPECTRUM | RELEASE | ACCURACY
 
 
 @pytest.mark.parametrize("name", MESSAGES)

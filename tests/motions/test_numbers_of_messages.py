@@ -16,7 +16,8 @@ from rockbatch.motions.azimuths import components_along
 from rockbatch.motions.baseline import Offset, remove_offset
 from rockbatch.motions.common_span import on_common_samples, too_unlike
 from rockbatch.motions.component import Component
-from rockbatch.motions.design_spectra import NzsSpectrum
+from rockbatch.motions.design_spectra import AashtoSpectrum, NzsSpectrum
+from rockbatch.motions.doubles import _finding_on_copy, _reason
 from rockbatch.motions.fema_p695 import _split_name
 from rockbatch.motions.formats import read_record
 from rockbatch.motions.formats.time_steps import on_even_steps
@@ -201,6 +202,24 @@ MESSAGES = {
         lambda: rb.sequence([motion("a", samples=A + 3.0), motion("b")], name="all", pause=2.0),
         ["all", 2.0 * abs((A + 3.0)[:-1].sum() * 0.01 + 0.5 * 0.01 * (A[0] + 3.0)) / 2.0 / G, 2.0, 0.005],
     ),
+    "a copy that is less corrected": (
+        lambda: _reason(replace(FIRST, processed=False), replace(SECOND, processed=True), 0.45),
+        ["less corrected", 0.45, "times as large", "second_090.AT2"],
+    ),
+    "a copy": (lambda: _reason(FIRST, replace(FIRST, source="other.AT2"), None), ["copy of other.AT2"]),
+    "a copy of another size": (
+        lambda: _finding_on_copy(FIRST, SECOND, 2.5, decided=True).text,
+        ["first_000.AT2", 2.5],
+    ),
+    "a copy with another peak": (
+        lambda: _finding_on_copy(replace(FIRST, acceleration=3.5 * A), SECOND, None, decided=True).text,
+        ["first_000.AT2", 3.5],
+    ),
+    "the spectrum of NZS 1170.5": (
+        lambda: str(NzsSpectrum("D", 0.35, return_period_factor=1.3, fault_km=7.5)),
+        ["1170.5 subsoil D", 0.35, 1.3, 7.5, "km", 5.0],
+    ),
+    "the spectrum of AASHTO": (lambda: str(AashtoSpectrum(0.35, 0.85, 0.45)), [0.35, 0.85, 0.45, 5.0]),
     "a name of a package": (lambda: _split_name("NORTHR-MUL"), ["NORTHR-MUL"]),
     "a time that stands still": (
         lambda: on_even_steps(np.array([0.0, 0.1, 0.2, 0.2, 0.3]), np.zeros((5, 1))),
