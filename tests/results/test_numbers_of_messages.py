@@ -65,6 +65,17 @@ def test_more_wrong_cells_than_are_listed_are_said_to_follow_in_the_same_file(fo
     assert last == "peaks.csv: and more"
 
 
+def test_a_file_that_is_no_text_or_no_json_is_named_with_a_line_only_if_that_is_known(folder):
+    path = folder / "peaks.csv"
+    path.write_bytes(path.read_bytes().replace(b"RRS228", b"RRS\xff28", 1))
+    assert refusal(folder).startswith("peaks.csv: not a table ('utf-8' codec")
+    text = (folder / "run.json").read_text(encoding="utf-8")
+    (folder / "run.json").write_text("\n\n" + text[:-1], encoding="utf-8")
+    assert refusal(folder).startswith("run.json:3: not JSON (Expecting")
+    (folder / "run.json").write_bytes(b"\n\n\n" + text.encode().replace(b"RRS228", b"RRS\xff28", 1))
+    assert refusal(folder).startswith("run.json: not JSON ('utf-8' codec")
+
+
 def test_an_edited_table_is_named_with_the_rows_that_it_had(folder):
     info = json.loads((folder / "run.json").read_text(encoding="utf-8"))
     info["peaks"] = {"rows": 77, "sha256": "0" * 64}

@@ -1,6 +1,7 @@
 """Mistakes in studies, tables and arguments, read back: each line, key and value in a message is the one that is wrong."""
 
 import argparse
+import re
 
 import pytest
 from messages import assert_states, said_by
@@ -115,6 +116,17 @@ def test_of_two_mistakes_each_is_told_with_its_own_line_key_and_value(tmp_path, 
             line = study[: study.index(wrong)].count("\n") + 1
             (message,) = (message for message in messages if message.startswith(f"study.toml:{line}: "))
             assert_states(message.removeprefix(f"study.toml:{line}: ").replace("0..1", ""), *expected)
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_either_value_that_is_advised_for_one_that_is_missing_is_accepted(tmp_path, which):
+    pads = STUDY[STUDY.index("stiffness_kN_m = 2e6") :].partition("[[check]]")[0]
+    study = STUDY.replace(pads, "eta = 3.0\n\n").replace("mass_t = 1800.0\ndeck_mass_t = 900.0", "mass_t = 2700.0")
+    (message,) = messages_of(tmp_path, study)
+    advised = re.search(r"write for example (beta = .+), or (stiffness_kN_m = .+) with mass_t", message).groups()
+    path = tmp_path / "study.toml"
+    path.write_text(study.replace("eta = 3.0", f"{advised[which]}\neta = 3.0"), encoding="utf-8")
+    assert load_study(path).cases
 
 
 KINDS = {"record": text, "scale": positive}
