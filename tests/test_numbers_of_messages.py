@@ -6,10 +6,16 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from messages import assert_states, said_by
 
 import rockbatch as rb
 from rockbatch.checks.rules import Rule
 from rockbatch.common.errors import InputError
+from rockbatch.common.units import rounded_up
+from rockbatch.pier import Base, problems
+from rockbatch.pier.sections import section_heights
+from rockbatch.pier.statics import in_words
+from rockbatch.quantities.statistics import _asce7_16_remark, _p84_95_remark, _p84_remark
 
 G = 9.81
 PIER = rb.Pier.from_size(0.2, 15.0, 3.0, G)  # I0/M = R0²/3
@@ -67,6 +73,54 @@ def designed(width, between, points=10):
 
 
 SHAKEN = rb.Motion("shaken", 0.01, A)
+HEAVY = rb.Pier.from_size(0.2, 15.0, 3.0, G, mass_t=1850.0)
+SLENDER = rb.Pier(0.2, P, 3.0, G, flexural_period_s=1.2)
+
+
+def line_of_sheet(name, base, pier=HEAVY):
+    """Return a function that gives a line of the statics sheet."""
+    return lambda: in_words(rb.statics(pier, base))[name]
+
+
+def on_points(*points):
+    return lambda: rb.YieldingBase(500.0, eta=1.5, spring="backbone", backbone=points)
+
+
+def rocking(share):
+    """Return the period of a block that rocks with this share of α on rigid ground [s] (Housner 1963)."""
+    return 4.0 / P * math.acosh(1.0 / (1.0 - share))
+
+
+RANKED = np.arange(1.0, 8.0)
+TEXTS: dict[str, tuple[Callable[[], object], list[float | str]]] = {
+    "weight and settlement": (
+        line_of_sheet("at rest", rb.ElasticBase(50.0)),
+        [1850.0 * G, "kN", 1000.0 * G / (50.0 * P) ** 2, "mm"],
+    ),
+    "the moment": (line_of_sheet("moment", rb.RigidBase()), [B, "weight", B * 1850.0 * G, "kN m"]),
+    "the strength": (line_of_sheet("strength", rb.RigidBase()), [math.tan(0.2), "g", 0.0]),
+    "the vertical period": (
+        lambda: line_of_sheet("periods", rb.ElasticBase(50.0))().partition(",")[0],
+        ["vertical", 2.0 * math.pi / (50.0 * P), "s"],
+    ),
+    "a flexible pier": (
+        line_of_sheet("flexure", rb.RigidBase(), SLENDER),
+        [1.2 / rocking(0.1), 0.1, "α", 100.0 * (1.2 / rocking(0.1)) ** 2],
+    ),
+    "a first point at rest": (on_points((0.0, 0.3), (2.0, 1.0)), [0.0, 0.3, 0.0]),
+    "points out of order": (on_points((1.0, 1.0), (3.0, 1.5), (2.5, 1.7)), [2.5, 1.7, 3.0, 1.5]),
+    "points that fall": (on_points((1.0, 1.0), (3.0, 1.5), (4.0, 1.3)), [4.0, 1.3, 3.0, 1.5, 1.5]),
+    "points that steepen": (on_points((1.0, 1.0), (3.0, 1.5), (4.0, 2.1)), [3.0, 1.5, 4.0, 2.1, 0.6, 0.25]),
+    "a section above the top": (
+        lambda: section_heights(HEAVY, [3.5, 31.5]),
+        ["sections_m", 31.5, 0.0, 2.0 * H],
+    ),
+    "a quantile between ranks": (lambda: _p84_remark(RANKED), [7.0, 24.0, "%"]),
+    "a quantile by rank": (lambda: _p84_95_remark(np.arange(25.0)), ["rank", 25.0, 25.0]),
+    "unacceptable responses": (lambda: _asce7_16_remark(np.array([1.0, np.inf, np.inf, np.inf])), [3.0, 1.0]),
+}
+
+
 MESSAGES: dict[str, tuple[Callable[[], object], list[float]]] = {
     "a fast viscous damper": (tied(rb.Damper("viscous", nu=400.0)), [400.0, 1000.0 * G / (400.0 * P)]),
     "a weak viscous damper": (tied(rb.Damper("viscous", nu=1e-4)), [1e-4, 1.0, 100.0 * 1e-4 * P / G]),
@@ -93,7 +147,7 @@ MESSAGES: dict[str, tuple[Callable[[], object], list[float]]] = {
     "soft springs": (on(SOFT), [2.0, 1.0, least_beta(PIER)]),
     "a soft bed": (
         on(BED),
-        [2.0, 3.0, math.sqrt(3.0) * least_beta(PIER), 3.0 * (least_beta(PIER) / 2.0) ** 2],
+        [2.0, 3.0, rounded_up(math.sqrt(3.0) * least_beta(PIER)), 3.0 * (least_beta(PIER) / 2.0) ** 2],
     ),
     "springs that cannot carry a tendon": (
         on(rb.YieldingBase(50.0, eta=1.2, restraints=(rb.Tendon(psi=0.4, lam=0.1),))),
@@ -116,13 +170,16 @@ MESSAGES: dict[str, tuple[Callable[[], object], list[float]]] = {
         lambda: rb.Pier.from_size(0.2, 5.0, 3.0, G, mass_t=1e5),
         [1e5, 2.0 / 3.0 * B, 2.0 / 3.0 * H, 1e5, 27e5 / (8.0 * B**2 * H)],
     ),
-    "a motion without a step": (lambda: rb.Motion("m", 0.0, A), [0.0, 0.0]),
+    "a motion without a step": (lambda: rb.Motion("m", 0.0, A), ['"m"', "dt", 0.0, 0.0]),
     "a motion with a sample that is no number": (
         lambda: rb.Motion("m", 0.01, np.where(np.arange(400) == 37, np.nan, A)),
-        [37.0, 0.37],
+        ['"m"', "horizontal sample", 37.0, 0.37],
     ),
-    "a motion of two lengths": (lambda: rb.Motion("m", 0.01, A, A[:-3]), [400.0, 397.0]),
-    "a motion in a table": (lambda: rb.Motion("m", 0.01, A.reshape(2, 200)), [2.0, 200.0]),
+    "a motion of two lengths": (
+        lambda: rb.Motion("m", 0.01, A, A[:-3]),
+        ['"m"', 400.0, "horizontal", 397.0, "vertical"],
+    ),
+    "a motion in a table": (lambda: rb.Motion("m", 0.01, A.reshape(2, 200)), ['"m"', "horizontal", 2.0, 200.0]),
     "a motion in gal": (
         lambda: rb.simulate(PIER, rb.RigidBase(), rb.Motion("m", 0.01, 300.0 * A)),
         [300.0 / G, 2.0, 4.0, 0.01],
@@ -174,9 +231,10 @@ MESSAGES: dict[str, tuple[Callable[[], object], list[float]]] = {
 }
 
 
-def numbers_in(text):
-    """Return the numbers of a text, but for those in names such as R0."""
-    return [float(number) for number in re.findall(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", text.replace(",", ""))]
+@pytest.mark.parametrize("name", TEXTS)
+def test_numbers_of_a_text_are_those_of_what_it_names(name):
+    call, expected = TEXTS[name]
+    assert_states(said_by(call).replace("R0", ""), *expected)
 
 
 @pytest.mark.parametrize("name", MESSAGES)
@@ -184,4 +242,52 @@ def test_numbers_of_a_message_are_those_of_what_it_names(name):
     call, expected = MESSAGES[name]
     with pytest.raises(InputError) as refused:
         call()
-    assert numbers_in(str(refused.value)) == pytest.approx(expected, rel=0.05)
+    assert_states(str(refused.value), *expected)
+
+
+LONG = rb.Pier(0.2, P, 3.0, G, flexural_period_s=1.5)
+PULLED = (rb.Tendon(psi=0.4123456789, lam=0.1),)
+BOUNDS: dict[str, tuple[rb.Pier, Callable[[float], Base], float]] = {
+    "β of springs": (PIER, rb.ElasticBase, 2.0),
+    "β of yielding springs": (PIER, lambda beta: rb.YieldingBase(beta, eta=1.05, spring="epp"), 2.0),
+    "β of springs that give way": (PIER, lambda beta: rb.YieldingBase(beta, eta=1.02), 1.02 * least_beta(PIER)),
+    "β of springs under a shaft": (
+        LONG,
+        lambda beta: rb.ElasticBase(beta, zeta=0.1, shaft="elastic", kinematics="finite"),
+        1.0001 * least_beta(PIER),
+    ),
+    "β of a bed": (PIER, lambda beta: rb.FootingBase(beta, 3.0), 2.0),
+    "η of springs with a tendon": (PIER, lambda eta: rb.YieldingBase(5000.0, eta=eta, restraints=PULLED), 1.2),
+    "η of a backbone": (
+        PIER,
+        lambda eta: rb.YieldingBase(500.0, eta=eta, spring="backbone", backbone=((1.0, 1.0), (3.0, 1.7), (4.0, 1.7))),
+        0.3,
+    ),
+    "safety of a bed with a tendon": (PIER, lambda factor: rb.FootingBase(50.0, factor, restraints=PULLED), 1.2),
+}
+"""A pier, a base with a value that has to be above a bound, and such a value below it."""
+
+
+@pytest.mark.parametrize("name", BOUNDS)
+def test_a_value_above_the_bound_that_a_message_names_is_accepted_and_hardly_a_lesser_one(name):
+    pier, on_base, below = BOUNDS[name]
+    (refused,) = problems(pier, on_base(below))
+    bound = float(re.findall(r"above (?:1 \+ psi, |sqrt.* = )?([\d.]*\d)", refused.text)[-1])
+    assert not problems(pier, on_base(bound * (1.0 + 2e-6)))
+    assert problems(pier, on_base(bound * (1.0 - 1.1e-3)))
+
+
+def test_a_bed_that_hardly_carries_the_weight_has_no_period_in_full_contact():
+    """It gives way to the least tilt."""
+    assert rb.statics(PIER, rb.FootingBase(50.0, 1.0005)).full_contact_period_s is None
+
+
+@pytest.mark.parametrize("digits", [2, 4])
+def test_a_value_is_rounded_up_to_the_next_one_of_so_many_digits(digits):
+    """4.001 and 4001 steps of 0.001 are not the same number to a computer."""
+    last = 10 ** (digits - 1)
+    for steps in range(last, 10 * last):
+        value = float(f"{steps}e-3")
+        assert rounded_up(value, digits) == value
+        assert rounded_up(value * (1.0 - 1e-9), digits) == value
+        assert rounded_up(value * (1.0 + 1e-9), digits) == float(f"{steps + 1}e-3")

@@ -63,12 +63,15 @@ class FreeRocking:
 
     @property
     def in_full_contact(self) -> float | None:
-        """Return the period of small rocking on both supports [s]; None on rigid ground, or if the swings are uneven."""
+        """Return the period of small rocking on both supports [s]; None on rigid ground, or if the swings are uneven.
+
+        None also for a bed that hardly carries the weight, and gives way to the least tilt.
+        """
         if self.turn.on_pivots or not self.even:
             return None
         theta = 1e-3 * (self.turn.lift_off or self.pier.alpha)
         stiffness = self.pier.gravity * float(self.turn.at(np.array([theta])).moment[0]) / theta
-        return 2.0 * math.pi * math.sqrt((self.pier.inertia + self.turn.h**2) / stiffness)
+        return 2.0 * math.pi * math.sqrt((self.pier.inertia + self.turn.h**2) / stiffness) if stiffness > 0.0 else None
 
     @cached_property
     def _edges(self) -> list[float]:

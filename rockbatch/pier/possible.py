@@ -95,7 +95,7 @@ def problems(pier: Pier, base: Base) -> list[Problem]:
     if isinstance(base, YieldingBase) and base.eta < (least := least_eta(pier, base)):
         prestress = prestress_over_weight(pier, base.restraints)
         more = f" and the prestress of the tendons, psi = {prestress:g} of it" if prestress else ""
-        text = f"the springs cannot carry the weight{more}; eta must be above {_least_eta_in_words(base)}{rounded_up(least):g}"
+        text = f"the springs cannot carry the weight{more}; eta must be above {_least_eta_in_words(base)}{least:.6g}"
         wrong.append(Problem("eta", base.eta, text, kind=OutOfRange))
     return wrong
 
@@ -107,7 +107,7 @@ def _wrong_footing(pier: Pier, base: FootingBase) -> list[Problem]:
         over = "" if base.beta <= rigid else ", and by more under a shaft, which hangs over as it leans"
         text = (
             f"the bed is too soft to hold the pier upright, K_θ = ω_v² b²/3 must be above g h{over}; beta must be above "
-            f"{least:.4g}, the bed {(least / base.beta) ** 2:.3g} times as stiff"
+            f"{rounded_up(least):g}, the bed {(least / base.beta) ** 2:.3g} times as stiff"
         )
         wrong.append(Problem("beta", base.beta, text, kind=OutOfRange))
     if base.safety_factor is not None and not base.safety_factor > 1.0 + psi:
@@ -169,19 +169,20 @@ def _wrong_stiffness(pier: Pier, base: ElasticBase) -> list[Problem]:
     if not base.beta > pier.least_beta:
         text = (
             "the pier topples on its springs under its own weight; beta must be above "
-            f"sqrt((1+mu) cos(alpha)/mu)/sin(alpha) = {pier.least_beta:.4g}"
-            + (f", for these springs above {least:.4g}" if least > pier.least_beta else "")
+            f"sqrt((1+mu) cos(alpha)/mu)/sin(alpha) = {rounded_up(pier.least_beta):g}"
+            + (f", for these springs above {rounded_up(least):g}" if least > pier.least_beta else "")
         )
     elif base.beta > least:
         return []
     elif isinstance(base, YieldingBase):
         text = (
             "the least push topples the pier, because such springs near their yield force "
-            f"({_near_yield(base)}) give way on the loaded side; beta must be above {least:.4g}"
+            f"({_near_yield(base)}) give way on the loaded side; beta must be above {rounded_up(least):g}"
         )
     else:
         text = (
-            f"the pier topples on its springs, over which its shaft hangs as it leans; beta must be above {least:.4g}"
+            "the pier topples on its springs, over which its shaft hangs as it leans; beta must be above "
+            f"{rounded_up(least):g}"
         )
     return [Problem("beta", base.beta, text, kind=OutOfRange)]
 

@@ -152,8 +152,11 @@ def _collecting_problems(problems: list[Problem | str]) -> Iterator[None]:
 
 
 @contextmanager
-def _as_input_error(path: Path, line: str, kind: str, *damages: type[Exception]) -> Iterator[None]:
-    """Turn ``FileNotFoundError`` and ``damages`` into an ``InputError`` that the file is missing or not ``kind``."""
+def _as_input_error(path: Path, kind: str, *damages: type[Exception]) -> Iterator[None]:
+    """Turn ``FileNotFoundError`` and ``damages`` into an ``InputError`` that the file is missing or not ``kind``.
+
+    It has the line of a mistake in JSON; of bytes that are no text, and of nesting too deep, none is known.
+    """
     try:
         yield
     except FileNotFoundError:
@@ -161,13 +164,13 @@ def _as_input_error(path: Path, line: str, kind: str, *damages: type[Exception])
     except InputError:
         raise
     except damages as error:
-        line = f":{error.lineno}" if isinstance(error, json.JSONDecodeError) else line
+        line = f":{error.lineno}" if isinstance(error, json.JSONDecodeError) else ""
         raise InputError(f"{path}{line}: not {kind} ({error}); start `rockbatch run` again") from None
 
 
 def _read_info(path: Path) -> dict[str, Any]:
     """Read run.json; raise ``InputError`` with the parts that do not fit :data:`SHAPE`, up to :data:`MOST_PROBLEMS`."""
-    with _as_input_error(path, ":1", "JSON", ValueError, RecursionError):
+    with _as_input_error(path, "JSON", ValueError, RecursionError):
         info: Any = _legible(json.loads(read_text(path)))
     misfits = list(unfit(info, SHAPE, MOST_PROBLEMS))
     missing = [problem.place for problem in misfits if problem.missing and problem.place in SHAPE]
@@ -189,7 +192,7 @@ def _legible(value: Any) -> Any:
 
 def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
     """Read peaks.csv with the types of its columns; raise ``InputError`` with the bad cells of :func:`_bad_cells`."""
-    with _as_input_error(path, ":1", "a table", UnicodeDecodeError, csv.Error), opened_text(path) as file:
+    with _as_input_error(path, "a table", UnicodeDecodeError, csv.Error), opened_text(path) as file:
         head = next(csv.reader(file), [])
     if missing := [name for name in (*names(FIXED), *varied) if name not in head]:
         raise InputError(f"{path}:1: has no column {', '.join(missing)}; start `rockbatch run` again")

@@ -107,7 +107,7 @@ def test_what_excel_exports_in_any_country_is_read(tmp_path, text, encoding):
         ("time(s) NS(gal)\n0 1\n1 2\n".encode("utf-16-le"), "to be saved as UTF-8"),
         (b"\xff\xfe" + "0 1\n".encode("utf-16-le") + b"\x00", "begins as UTF-16 text"),
         (b"# NPTS = 4\n# time(s) NS(gal)\n0 1\n1 2\n2 3\n", "the header says 4 samples, but there are 3 rows"),
-        (b"# dt = fast\n# NS(gal)\n1\n2\n", "write dt = …, its sampling interval [s], under [motions]"),
+        (b"# dt = fast\n# NS(gal)\n1\n2\n", "write dt = … (its sampling interval [s]) under [motions]"),
         (b"# dt = -0.1\n# NS(gal)\n1\n2\n", 'found "dt = -0.1"; expected e.g. dt = 0.01 s'),
         (b"# time(s)\n1\n2\n", "a column of time and no other"),
         (b"# time(s) NS(gal)\n0 1\n1 1e300\n", "expected finite numbers"),

@@ -106,7 +106,7 @@ def _advice_text(choice: Statement, trial: _Trial, peak: float, gravity: float) 
         if key == "unit":
             words.append(_units(peak, gravity))
         elif key == "dt":
-            words.append("dt = …, its sampling interval [s],")
+            words.append("dt = … (its sampling interval [s])")
         else:
             written = f"[{', '.join(map(shown, value))}]" if isinstance(value, tuple) else shown(value)
             words.append(f"{key} = {written} {_MEANING[key]}")

@@ -193,8 +193,7 @@ def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) 
     end = next((i for i in range(len(lines), first, -1) if lines[i - 1].strip()), first)
     if end - first != needed:
         raise InputError(
-            f"the header says {count} values, {needed} lines from line {first + 1} on, but there are {end - first}; "
-            "fetch the file again"
+            f"{count} values from line {first + 1} on take {needed} lines, but there are {end - first}; fetch the file again"
         )
 
     def fields(line: str, index: int, expected: int) -> list[str]:

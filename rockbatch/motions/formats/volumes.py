@@ -221,7 +221,7 @@ def _pairs(lines: list[str], first: int, fields: dict[str, str]) -> tuple[_Sampl
     shifted = next((i for i in range(start, min(end, len(lines))) if indent and not lines[i].startswith(" ")), None)
     if shifted is not None:
         raise InputError(f'line {shifted + 1}: found "{lines[shifted][:40]}"; expected a blank and ten columns')
-    block = [""] * start + [line[indent:] for line in lines[start:end]]
+    block = lines[:start] + [line[indent:] for line in lines[start:end]]
     pairs = fixed_numbers(block, start, 2 * npts, _WIDTH, _PER_LINE)[0].reshape(npts, 2)
     dt, values, notes = from_pairs(pairs, f"channel {fields['label']} from line {first + 1} on")
     return _Samples(dt, values, fields["unit"], notes=notes, as_read=pairs[:, 1]), float(pairs[0, 0]), end
