@@ -4,6 +4,7 @@ A direction that no label states stays unknown: a vertical component would other
 """
 
 import re
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import combinations
@@ -128,12 +129,13 @@ def orientation_in(label: str) -> Orientation:
 
 _LETTER = r"[^\W\d_]"
 _PART = r"(?P<site>.*[^-_. ])[-_. ]+"
+_GLUED = r"DWN|UP|(?:UD|EW|NS)[12]?|VER|VERT|VRT"  # in names that they end without a separator
 _SITES_AND_LABELS = (
     (_PART, rf"(?i:N-S|S-N|E-W|W-E|U-D|Up-D(?:ow)?n|{_LETTER}+-axis|{_LETTER}+-(?:up|d(?:ow|w)?n))"),
     (_PART, rf"{_LETTER}+-{_LETTER}+"),  # Norte-Sur
     (_PART, r"[A-Z][NLGH][ZNE12][-_. ]+\d\d"),
     (_PART, rf"{_LETTER}+|\d{{3}}|[A-Za-z]+\d+[A-Za-z]*"),
-    (r"(?P<site>.*[A-Za-z0-9])", r"\d{3}|DWN|UP|(?:UD|EW|NS)[12]?|VER|VERT|VRT"),
+    (r"(?P<site>.*[A-Za-z0-9])", rf"\d{{3}}|{_GLUED}"),
     (r"(?P<site>.*\d)", r"(?i:DWN|UP|UD|EW|NS|VERT?|VRT)"),
     (r"(?P<site>.*\d\d)", r"(?i:[VZUNEW])"),  # chy080v
 )
@@ -242,6 +244,21 @@ def counted(stems: Iterable[str]) -> set[str]:
         if _in_series(int(stem[-3:]) for stem in group):
             numbered.update(group)
     return numbered
+
+
+def accidental(stems: Iterable[str]) -> set[str]:
+    """Return the stems that end in letters of a direction by chance: STATIONS in NS, DENVER in VER.
+
+    Such letters behind others are a direction only if another stem differs in its direction alone: ORRDWN beside ORR021.
+    """
+    split = {stem: split_stem(stem) for stem in stems}
+    of_site = Counter(site for site, orientation in split.values() if orientation)
+    glued = {
+        stem: re.search(rf"[A-Za-z]{re.escape(orientation.label)}", stem)
+        for stem, (_, orientation) in split.items()
+        if orientation and re.fullmatch(_GLUED, orientation.label)
+    }
+    return {stem for stem, match in glued.items() if match and of_site[split[stem][0]] < 2}
 
 
 def told_apart(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:

@@ -159,6 +159,25 @@ def test_files_counted_from_008_are_numbers_and_perpendicular_pairs_azimuths():
     }
 
 
+@pytest.mark.parametrize("word", ["NEW", "CORRECTIONS", "DENVER", "GROUP"])
+def test_words_that_end_in_letters_of_a_direction_hide_none_beside_them(tmp_path, word):
+    for label in ("UP", "NS", "EW"):
+        write_text(tmp_path, f"{label}_{word}.csv")
+    found = read_motions(tmp_path)
+    assert sorted(m.azimuth for m in found.motions) == [0.0, 90.0]
+    assert {m.vertical_source for m in found.motions} == {f"UP_{word}.csv"}
+    assert not found.unusable
+
+
+def test_a_word_alone_that_ends_in_letters_of_a_direction_is_asked_for(tmp_path):
+    write_text(tmp_path, "STATIONS.csv")
+    write_text(tmp_path, "ORRDWN.csv")
+    assert [file.reason[:19] for file in read_motions(tmp_path).unusable] == ["direction not known"] * 2
+    write_text(tmp_path, "ORR021.csv")
+    (motion,) = read_motions(tmp_path).motions
+    assert motion.vertical_source == "ORRDWN.csv"
+
+
 def test_a_series_of_numbered_files_asks_though_single_numbers_could_be_azimuths(tmp_path):
     for name in ("GM_010.txt", "GM_011.txt", "GM_012.txt"):
         write_text(tmp_path, name)
