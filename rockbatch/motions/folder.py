@@ -42,6 +42,7 @@ from rockbatch.motions.orientation import (
 )
 from rockbatch.motions.pairing import to_motions
 from rockbatch.motions.peer_search import Lists, listed_in, of_file
+from rockbatch.motions.quantities_in_names import companions_by_quantity
 from rockbatch.motions.record_file import ReadOptions, RecordFile
 from rockbatch.motions.sequences import ShockSequence, add_sequences
 from rockbatch.motions.sorted_files import statements_beside
@@ -217,6 +218,7 @@ def read_files(
     inventories += [file for path in roots if path.is_file() for file in inventories_beside(path)]
     stated = Inventories([(file.path, file.source, file.refusal) for file in inventories])
     beside, statements = statements_beside(files)
+    statements |= companions_by_quantity(files)
     files = [replace(file, companion=statements.get(file.path, file.companion)) for file in files]
     settings = _ReadSettings(
         manifest, options or ReadOptions(), gravity, offset or Offset(), _names(files), stated, beside, listed_in(files)

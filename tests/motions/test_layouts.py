@@ -378,3 +378,92 @@ def test_columns_of_one_file_may_be_stated_in_its_manifest(tmp_path):
     (motion,) = read_motions(tmp_path, gravity=1.0).motions
     assert (motion.azimuth, motion.vertical is not None) == (10.0, True)
     assert is_a(motion)
+
+
+# Velocities, displacements and counts
+
+
+@pytest.mark.parametrize("unit", ["cm/s", "M/S", "mm", "Counts", "V"])
+def test_a_unit_of_another_quantity_gives_way_to_a_manifest_only(tmp_path, unit):
+    for text in (
+        f"time (s),NS ({unit}),UD ({unit})\n" + in_columns(T, A, C),
+        f"unit: {unit}\nDT = 0.005 s\n" + in_columns(A),
+    ):
+        reason = why(tmp_path, text, unit="g")
+        assert f"numbers in {unit}, and accelerations are expected" in reason
+        assert "write unit = … for this file in motions.toml" in reason
+        (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x.txt"\nunit = "g"\n')
+        assert is_a(read(tmp_path, text).motions[0])
+        (tmp_path / "motions.toml").unlink()
+
+
+@pytest.mark.parametrize(
+    "line", ["Velocity time history", "Velocity record", "Displacement data", "Data type: velocity", "velocity"]
+)
+def test_a_header_of_velocities_above_bare_numbers_is_no_record(tmp_path, line):
+    text = f"Station X, 000\n{line}\nDT = 0.005 s\n" + in_columns(A)
+    assert "holds no accelerations" in why(tmp_path, text, unit="g")
+    assert is_a(only(tmp_path, text.replace(line, "Shear wave velocity: 360 m/s"), unit="g"))
+    assert is_a(only(tmp_path, text.replace("X, 000", "Acceleration"), unit="g"))
+
+
+@pytest.mark.parametrize(
+    ("acc", "vel", "disp"),
+    [
+        ("S_000_acc", "S_000_vel", "S_000_disp"),
+        ("acc_000", "velocity_000", "displacement_000"),
+        ("S052_A", "S052_V", "S052_D"),
+        ("s052a", "s052v", "s052d"),
+    ],
+)
+def test_files_called_velocity_and_displacement_beside_a_record_are_left_out(tmp_path, acc, vel, disp):
+    for name, values in ((acc, A), (vel, B), (disp, C)):
+        (tmp_path / f"{name}.txt").write_text(in_columns(values))
+    found = read_motions(tmp_path, options=ReadOptions(unit="g", dt=DT, role="horizontal"), gravity=1.0)
+    assert is_a(*found.motions)
+    assert not found.motions[0].vertical_source
+    assert {file.source: file.reason for file in found.left_out} == {
+        f"{vel}.txt": "no record: the velocity of a record",
+        f"{disp}.txt": "no record: the displacement of a record",
+    }
+
+
+def test_a_letter_v_without_a_and_d_beside_it_is_vertical(tmp_path):
+    for name, values in (("S052_L", A), ("S052_V", B), ("S052_T", C)):
+        (tmp_path / f"{name}.txt").write_text(in_columns(values))
+    found = read_motions(tmp_path, options=ReadOptions(unit="g", dt=DT), gravity=1.0)
+    assert [m.vertical_source for m in found.motions] == ["S052_V.txt"] * 2
+
+
+@pytest.mark.parametrize("heads", ["t a v d", "T A V D", "time acc vel dis", "t acc velocidad desplazamiento"])
+def test_columns_of_velocity_and_displacement_beside_an_acceleration_are_left_out(tmp_path, heads):
+    motion = only(tmp_path, heads + "\n" + in_columns(T, A, B, C, between=" "), unit="g")
+    assert is_a(motion)
+    assert motion.vertical is None
+    assert sum("left out" in note for note in motion.notes) == 2
+
+
+# What services and agencies write above their numbers
+
+
+def clock(i: int) -> str:
+    return f"2023-02-06T01:17:{35 + DT * i:09.6f}"
+
+
+@pytest.mark.parametrize("kind", ["TSPAIR", "SLIST", "GeoCSV", "JMA", "anc"])
+def test_headers_of_services_and_agencies_state_unit_step_and_count(tmp_path, kind):
+    head = f"TIMESERIES XX_S__HNE_D, {N} samples, 200 sps, 2023-02-06T01:17:35.000000, {kind}, FLOAT, CM/S**2\n"
+    words = [f"{a:+.6e}" for a in A]
+    times = "".join(f"{clock(i)}{{}}{a:.6f}\n" for i, a in enumerate(A))
+    text = {
+        "TSPAIR": head + times.replace("{}", "  "),
+        "SLIST": head + "".join("\t".join(words[i : i + 6]) + "\n" for i in range(0, N, 6)),
+        "GeoCSV": f"# dataset: GeoCSV 2.0\n# field_unit: UTC, CM/S**2\n# sample_count: {N}\n# sample_rate_hz: 200.0\n"
+        f"Time, Sample\n{times.replace('{}', ', ')}",
+        "JMA": f"SITE CODE= 47891\n SAMPLING RATE= 200Hz\n UNIT  = gal(cm/s/s)\n NS, UD\n{in_columns(A, B)}",
+        "anc": f"INTERVALO DE MUESTREO (SEGUNDOS): 0.005\nNUMERO DE DATOS: {N}\nUNIDADES: cm/s^2\n EW  VER\n"
+        + in_columns(A, B, between=" "),
+    }[kind]
+    motion = only(tmp_path, text)
+    assert motion.dt == DT
+    assert np.allclose(motion.horizontal, A / 100, atol=1e-8)

@@ -20,12 +20,15 @@ from rockbatch.motions.formats.column_header import (
     columns_with_units,
     columns_without_units,
     is_acceleration,
+    is_of_another_quantity,
     line_about_spectra,
+    other_series,
     seconds_in,
     spectrum_in,
     stated_count,
     stated_step,
     stated_unit,
+    with_quantities,
     without_index_name,
 )
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -35,7 +38,7 @@ from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.limits import SAME_STEP
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import orientation_in, same_azimuth
-from rockbatch.motions.record_file import ReadOptions, RecordFile, text_of
+from rockbatch.motions.record_file import ReadOptions, RecordFile, no_acceleration, text_of
 
 _COMPONENTS = ("000", "090", "up")
 _GROWING = 0.9  # of the steps of a column of time; those of an acceleration grow half the time
@@ -95,9 +98,7 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
     count = stated_count(header)
     if count is not None and count != len(table):
         raise InputError(f"the header says {count} samples, but there are {len(table)} rows; fetch the file again")
-    unit = stated_unit(header)
-    if unit is None or not is_acceleration(unit):  # an unknown unit counts as none
-        unit = options.unit or unit
+    unit = _believed(stated_unit(header), options)
     not_acceleration = [i for i, column in enumerate(columns) if column.other]
     used = [i for i, column in enumerate(columns) if not (column.is_time or column.other or column.label == "-")]
     units = {i: _unit_of(columns[i], unit, options) for i in used}
@@ -105,6 +106,9 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
     lacking = [
         _missing_unit(i, columns[i], units[i]) for i in used if not (units[i] if known else is_acceleration(units[i]))
     ]
+    other = next((i for i in used if units[i] and is_of_another_quantity(units[i])), None)
+    if lacking and other is not None:
+        raise no_acceleration(_column_name(other, columns[other]), f"numbers in {units[other]}")
     if lacking:
         untimed = not (stated_step(header) or options.dt or any(column.is_time for column in columns))
         message = "; ".join(lacking)
@@ -130,14 +134,19 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
     return recordings
 
 
-def _unit_of(column: Column, of_all: str | None, options: ReadOptions) -> str:
-    """Return a column's unit, else that ``of_all``, else "".
+def _believed(own: str | None, options: ReadOptions) -> str | None:
+    """Return the unit that a file states, or the study's if it states none that is known; one of another quantity stays.
 
-    A column's own unit that is not one of acceleration gives way to the study's, if stated.
+    Such a unit, as cm/s or counts, gives way only to a manifest's for this file.
     """
-    if column.unit and not is_acceleration(column.unit) and options.unit:
-        return options.unit
-    return column.unit or of_all or ""
+    if own and (is_acceleration(own) or (is_of_another_quantity(own) and "unit" not in options.instead)):
+        return own
+    return options.unit or own
+
+
+def _unit_of(column: Column, of_all: str | None, options: ReadOptions) -> str:
+    """Return a column's unit, as :func:`_believed`, else that ``of_all``, else ""."""
+    return (_believed(column.unit, options) if column.unit else of_all) or ""
 
 
 def _missing_unit(i: int, column: Column, unit: str) -> str:
@@ -175,8 +184,10 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
                 f"its header tells its {width} columns; the {len(stated)} that are stated are those of other files",
             )
     if columns is None:
+        if (line := other_series(header)) and "unit" not in options.instead:
+            raise no_acceleration(f'it, by "{line[:60]}" in its header,', "no accelerations")
         return _guessed_columns(header, table)
-    columns = _with_time(columns, table)
+    columns = _with_time(with_quantities(columns), table)
     if spectrum := spectrum_in(columns):
         raise NoRecord(f"{spectrum} is no time history; take the record of accelerations instead")
     return columns, notes

@@ -8,7 +8,7 @@ from itertools import chain
 import numpy as np
 
 from rockbatch.common.errors import InputError, NoRecord, Truncated, Unstated
-from rockbatch.motions.formats.column_header import columns_with_units, columns_without_units, stated_count
+from rockbatch.motions.formats.column_header import columns_with_units, columns_without_units, spelled_out, stated_count
 from rockbatch.motions.formats.fixed_width import is_cut_short, lines_of, without_end_marks
 from rockbatch.motions.formats.time_steps import grows_evenly
 from rockbatch.motions.limits import HUGE
@@ -69,7 +69,7 @@ def read_table(
             if rows and not comment:
                 raise _table_error(lines, f'line {i + 1}: found "{stripped[:60]}"; expected {width} numbers as above')
             if len(header) < _MOST_HEADER:
-                header.append(stripped.lstrip("#% \t")[:_LONGEST])
+                header += spelled_out(stripped.lstrip("#% \t")[:_LONGEST])
     if not rows:
         raise NoRecord("no columns of numbers found in it")
     pairs = None if wrapped and not named else _pairs(rows, remainder, width)
