@@ -349,7 +349,7 @@ def test_no_unit_is_advised_that_makes_no_earthquake_of_the_numbers():
 @pytest.mark.parametrize(
     ("header", "columns", "pga"),
     [
-        ("t (s), NS (cm/s2), EW, UD (cm/s2)", (981.0 * A, 0.5 * B, 981.0 * C), 0.5 * np.abs(B).max()),
+        ("t (s), NS (cm/s2), EW, UD (cm/s2)", (98.1 * A, 0.5 * B, 98.1 * C), 0.5 * np.abs(B).max()),
         ("t (s), NS, EW (mg), UD", (0.5 * A, 1000.0 * B, 0.0 * C), 0.5 * np.abs(A).max()),
     ],
 )
@@ -467,3 +467,28 @@ def test_headers_of_services_and_agencies_state_unit_step_and_count(tmp_path, ki
     motion = only(tmp_path, text)
     assert motion.dt == DT
     assert np.allclose(motion.horizontal, A / 100, atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("line", "azimuth", "vertical"),
+    [
+        ("Component: VERTICAL", None, True),
+        ("Component : N 12 E", 12.0, False),
+        ("Channel = HNZ", None, True),
+        ("Azimuth: 12", 12.0, False),
+        ("Componente: Vertical", None, True),
+        ("Direction: Up", None, True),
+    ],
+)
+@pytest.mark.parametrize("heads", ["time (s), acc (g)", "Acceleration in g"])
+def test_a_line_of_the_header_tells_the_direction_of_an_only_column(tmp_path, line, azimuth, vertical, heads):
+    (component,) = read_record(RecordFile(Path("x.txt"), "x.txt", f"{line}\n{heads}\n{in_columns(T, A)}".encode()))
+    assert (component.orientation.vertical, component.orientation.azimuth) == (vertical, azimuth)
+
+
+def test_a_vertical_by_its_header_under_a_horizontal_name_is_held_back(tmp_path):
+    (tmp_path / "x_090.txt").write_text(f"Component: UP\ntime (s), acc (g)\n{in_columns(T, A)}")
+    (refused,) = read_motions(tmp_path).unusable
+    assert 'its header says "UP", but its file is called "x_090.txt"' in refused.reason
+    (tmp_path / "x_090.txt").write_text(f"Component: 3\ntime (s), acc (g)\n{in_columns(T, A)}")
+    assert read_motions(tmp_path).motions[0].azimuth == 90.0

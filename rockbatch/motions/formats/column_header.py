@@ -50,6 +50,11 @@ _VALUE = re.compile(
 )  # the last alternative is a keyword of MIDAS or Abaqus
 _KEYED = re.compile(r"[^()\[\],;\t]*[:=]|\*[A-Za-z&-]+ *,")  # "File type: accelerations (g)" is no label
 _COMPONENTS = re.compile(r"^(?:components?|channels?|columns)\s*[:=]\s*(?P<labels>\S.*)$", re.IGNORECASE)
+_DIRECTION = re.compile(
+    r"^(?P<key>comp(?:onent)?|channel|direction|orientation|azimuth|componente|direcci[oó]n|canal|composante|richtung|"
+    r"komponente|bile[sş]en)\.?(?: (?:name|code))?\s*[:=]\s*(?P<label>\S.*?)\s*$",
+    re.IGNORECASE,
+)
 _STATED = re.compile(
     r"^(?:units?|field_unit|unidad(?:e?s)?|unidade|unit[ée]s?|unit[àa](?: di misura)?|einheit(?:en)?|birim[i]?|eenheid)\s*[:=]\s*"
     r"(?:UTC,\s*)?(?P<unit>\S+)",
@@ -292,6 +297,18 @@ def other_series(header: Sequence[str]) -> str:
 def line_about_spectra(header: Sequence[str]) -> str:
     """Return the first header line with a word for spectra; empty without one."""
     return next((line for line in header if _SPECTRA.search(line)), "")
+
+
+def stated_direction(header: Sequence[str]) -> str:
+    """Return the direction in a line such as ``Component: N 12 E``, ``Channel = HNZ`` or ``Azimuth: 12``; "" without one.
+
+    Numbers of components and channels are none.
+    """
+    for match in filter(None, map(_DIRECTION.match, header)):
+        label = f"{match['label']} deg" if match["key"].lower() == "azimuth" else match["label"]
+        if orientation_in(label).known:
+            return label
+    return ""
 
 
 def stated_unit(header: Sequence[str]) -> str | None:

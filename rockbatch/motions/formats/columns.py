@@ -26,6 +26,7 @@ from rockbatch.motions.formats.column_header import (
     seconds_in,
     spectrum_in,
     stated_count,
+    stated_direction,
     stated_step,
     stated_unit,
     with_quantities,
@@ -101,6 +102,7 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
     unit = _believed(stated_unit(header), options)
     not_acceleration = [i for i, column in enumerate(columns) if column.other]
     used = [i for i, column in enumerate(columns) if not (column.is_time or column.other or column.label == "-")]
+    columns = _with_direction(columns, used, header)
     units = {i: _unit_of(columns[i], unit, options) for i in used}
     known = any(map(is_acceleration, units.values()))  # then another unit makes only its own column unusable
     lacking = [
@@ -132,6 +134,13 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
         )
         recordings.append(recording)
     return recordings
+
+
+def _with_direction(columns: list[Column], used: Sequence[int], header: Sequence[str]) -> list[Column]:
+    """Return the columns, the only one that is ``used`` with the direction in a line of the header if its label tells none."""
+    if len(used) != 1 or orientation_in(columns[used[0]].label).known or not (direction := stated_direction(header)):
+        return columns
+    return [replace(column, label=direction) if i in used else column for i, column in enumerate(columns)]
 
 
 def _believed(own: str | None, options: ReadOptions) -> str | None:
