@@ -492,3 +492,29 @@ def test_a_vertical_by_its_header_under_a_horizontal_name_is_held_back(tmp_path)
     assert 'its header says "UP", but its file is called "x_090.txt"' in refused.reason
     (tmp_path / "x_090.txt").write_text(f"Component: 3\ntime (s), acc (g)\n{in_columns(T, A)}")
     assert read_motions(tmp_path).motions[0].azimuth == 90.0
+
+
+# Time in another place, and columns that are none
+
+
+@pytest.mark.parametrize("per_line", [1, 3, 4])
+def test_pairs_with_the_value_first_are_recognised(tmp_path, per_line):
+    words = [f"{a:.6f} {t:.3f}" for t, a in zip(T, A, strict=True)]
+    text = "".join(" ".join(words[i : i + per_line]) + "\n" for i in range(0, N, per_line))
+    assert is_a(only(tmp_path, text, unit="g"))
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_a_column_that_grows_by_one_is_not_taken_for_seconds(tmp_path, first):
+    text = "".join(f"{i + first} {a:.6f}\n" for i, a in enumerate(A))
+    assert 'columns = ["-", "000"]' in why(tmp_path, text, unit="g")
+    assert is_a(only(tmp_path, text, unit="g", columns=("-", "000"), dt=DT))
+    assert only(tmp_path, text, unit="g", columns=("time", "000")).dt == 1.0
+    text = in_columns(np.arange(N) + first, A, B, C, between=" ")
+    assert 'columns = ["-", "000", "090", "up"]' in why(tmp_path, text, unit="g")
+
+
+def test_the_column_of_time_is_advised_where_it_stands(tmp_path):
+    reason = why(tmp_path, in_columns(A, B, C, T, between=" "), unit="g")
+    assert 'write columns = ["000", "090", "up", "time"] if these' in reason
+    assert ",," not in why(tmp_path, in_columns(A, B, C, between=" "), unit="g")

@@ -266,27 +266,35 @@ def _with_time(columns: list[Column], table: Samples) -> list[Column]:
 
 
 def _guessed_columns(header: list[str], table: Samples) -> tuple[list[Column], tuple[str, ...]]:
-    """Return columns without labels, and notes: a single acceleration, or evenly growing times and acceleration.
+    """Return columns without labels, and notes: a single acceleration, or evenly growing times and acceleration, in either order.
 
-    Raises ``Unstated`` for another table, and ``InputError`` for two columns below a header about spectra.
+    Raises ``Unstated`` for another table, and one with whole seconds, which may be numbers of rows or ms instead, and
+    ``InputError`` for two columns below a header about spectra.
     """
     width = table.shape[1]
     if width == 1:
         return [Column("")], ()
-    if width == 2 and len(table) > 2 and grows_evenly(table[:, 0]):
+    even = [i for i in range(width) if len(table) > 2 and grows_evenly(table[:, i])]
+    time = even[0] if len(even) == 1 else None
+    counted = time is not None and _counts_rows(table[:, time])
+    if width == 2 and time is not None and not counted:
         if line := line_about_spectra(header):
             raise InputError(
                 f'found two columns without labels below "{line[:60]}": a spectrum is no time history; if this is one, '
                 'state columns = ["time", "000"], in the study or for this file in motions.toml'
             )
-        return [Column("time"), Column("")], ("first column, evenly growing, taken as time [s]",)
-    timed = grows_evenly(table[:, 0])
-    names = ("time", *_COMPONENTS) if timed else _COMPONENTS
-    columns = {"columns": (*names, *["-"] * width)[:width]}
+        columns = [Column("time" if i == time else "") for i in range(width)]
+        return columns, (f"{'second' if time else 'first'} column, evenly growing, taken as time [s]",)
+    names = [*_COMPONENTS, *["-"] * width][: width - (time is not None)]
+    if time is not None:
+        names.insert(time, "-" if counted else "time")
+    stated = {"columns": tuple(names)}
+    which = ", of which one grows by 1, as numbers of rows and ms do," if counted else ""
     raise Unstated(
-        f'found {width} columns and no header that says what they are, such as # time(s) NS(cm/s2) UD(cm/s2); "-" leaves one out',
+        f"found {width} columns{which} and no header that says what they are, such as # time(s) NS(cm/s2) UD(cm/s2); "
+        '"-" leaves one out',
         keys=("columns",),
-        choices=(columns,) if timed else ({"layout": "wrapped"}, columns),
+        choices=({"layout": "wrapped"}, stated) if time is None else (stated,),
     )
 
 
