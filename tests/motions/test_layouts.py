@@ -518,3 +518,49 @@ def test_the_column_of_time_is_advised_where_it_stands(tmp_path):
     reason = why(tmp_path, in_columns(A, B, C, T, between=" "), unit="g")
     assert 'write columns = ["000", "090", "up", "time"] if these' in reason
     assert ",," not in why(tmp_path, in_columns(A, B, C, between=" "), unit="g")
+
+
+# What headers state of the numbers
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["Scale factor: 0.5", "scale_factor = 0.5", "Factor de escala 0.5", "Acceleration in g x 0.5", "Scaling factor=.5"],
+)
+def test_a_factor_in_the_header_is_asked_for_and_a_manifest_answers(tmp_path, line):
+    text = f"{line}\nunits: g\nDT = 0.005 s\n{in_columns(A)}"
+    reason = why(tmp_path, text)
+    assert "write scale = " in reason
+    for factor in (0.5, 1.0):
+        (tmp_path / "motions.toml").write_text(f'[[record]]\nfile = "x.txt"\nscale = {factor}\n')
+        (motion,) = read(tmp_path, text).motions
+        assert np.allclose(motion.horizontal, factor * A, atol=1e-9)
+    (tmp_path / "motions.toml").unlink()
+    for applied in ("0.5", ".5"):
+        text = text.replace(applied, "1.0") if applied in line else text
+    assert is_a(only(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("line", "what"),
+    [
+        ("PGA (g): 0.72", "peak"),
+        ("PGA: 72 cm/s2", "peak"),
+        ("Peak acceleration = -0.72 g", "peak"),
+        ("Max. acc. = 0.72", "peak"),
+        ("Duration (s): 2.03", "duration"),
+        ("Record length = 2.03 sec", "duration"),
+    ],
+)
+def test_a_peak_and_a_duration_in_the_header_are_compared_with_the_samples(tmp_path, line, what):
+    text = f"{line}\nunits: g\nDT = 0.005 s\n{in_columns(A)}"
+    assert [finding.what for finding in only(tmp_path, text).findings] == [what]
+    right = text.replace("0.72", "0.36").replace("72 cm", "36 cm").replace("2.03", "1.015")
+    assert only(tmp_path, right).findings == ()
+
+
+def test_a_manifest_s_step_is_believed_before_the_header_s(tmp_path):
+    text = f"INTERVALO DE MUESTREO (SEGUNDOS): 200\nunits: g\n{in_columns(A)}"
+    assert "a sampling interval of 200 s" in why(tmp_path, text)
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x.txt"\ndt = 0.005\n')
+    assert is_a(read(tmp_path, text).motions[0])

@@ -1,5 +1,6 @@
 """Headers of tables, as people and programs write them: columns, units, count, interval."""
 
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -8,6 +9,7 @@ from itertools import pairwise
 from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.common.units import acceleration_factor, length_factor
 from rockbatch.motions.direction_words import folded
+from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.limits import HUGE, SAME_STEP
 from rockbatch.motions.orientation import orientation_in, orientation_of
 
@@ -75,6 +77,22 @@ _COUNT = re.compile(
     r"\s*[:=]?\s*(?P<npts>[0-9]{1,12})\b",
     re.IGNORECASE,
 )
+_OF_PEAK = re.compile(
+    r"\b(?:pga|(?:peak|max(?:imum)?\.?)(?: ground)? acc[a-z]*\.?)\s*(?:[(\[](?P<before>[^)\]]*)[)\]])?\s*[:=]\s*"
+    r"(?P<number>[-+]?\d*\.?\d+(?:e[-+]?\d+)?)\s*(?P<behind>[^\s,;]*)",
+    re.IGNORECASE,
+)
+_OF_DURATION = re.compile(
+    r"(?:^|[,;] *)(?:total |record )?(?:duration|record length|duraci[oó]n|dauer)"
+    r"\s*(?:[(\[]\s*(?:s|secs?|seconds|segundos)\s*[)\]])?\s*[:=]\s*(?P<number>\d*\.?\d+)(?=\s*(?:$|[,;]|(?:s|secs?|seconds|segundos)\b))",
+    re.IGNORECASE,
+)
+_OF_FACTOR = re.compile(
+    r"(?:\b(?:scale|scaling|multiplication|conversion)[ _]?factor\s*[:=]?|\bfactor de escala\s*[:=]?"
+    r"|\b(?:g|gals?|cm/s/s|[cm]?m/s\^?2)\s*[x×*])\s*(?P<number>\d*\.?\d+(?:e[-+]?\d+)?)",
+    re.IGNORECASE,
+)
+_BEYOND_ROUNDING = {"peak": (0.05, math.inf), "duration": (0.01, math.inf)}  # of another stage of processing, perhaps
 _SHORT = {"NORTHSOUTH": "NS", "EASTWEST": "EW", "UPDOWN": "UD"}
 _TIME = {"time", "times", "elapsed", "elapsedtime", "zeit", "tiempo", "temps", "tempo", "zaman", "時間", "时间"}
 _SECONDS = [prefix + word for word in _SECOND.split() if len(word) > 2 for prefix in ("", "in", "en")]
@@ -340,6 +358,23 @@ def is_acceleration(unit: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+def stated_of_samples(header: Sequence[str]) -> tuple[Stated, ...]:
+    """Return what lines such as ``PGA: 312.4 cm/s2`` and ``Duration (s) = 60`` state of the samples; a warning at most."""
+    statements = []
+    for quantity, pattern in (("peak", _OF_PEAK), ("duration", _OF_DURATION)):
+        for match in (match for line in header for match in pattern.finditer(line)):
+            units = (match["behind"], match["before"]) if quantity == "peak" else ()
+            unit = next((unit for unit in units if unit and is_acceleration(unit)), "")
+            statements.append(Stated(quantity, match["number"], unit, limits=_BEYOND_ROUNDING[quantity]))
+    return tuple(statements)
+
+
+def stated_factor(header: Sequence[str]) -> str:
+    """Return the factor other than 1 in a line such as ``Scale factor: 0.5`` or ``acceleration in g x 0.001``; "" without one."""
+    numbers = (match["number"] for line in header for match in _OF_FACTOR.finditer(line))
+    return next((number for number in numbers if float(number) not in (0.0, 1.0)), "")
 
 
 def stated_count(header: Sequence[str]) -> int | None:

@@ -27,6 +27,8 @@ from rockbatch.motions.formats.column_header import (
     spectrum_in,
     stated_count,
     stated_direction,
+    stated_factor,
+    stated_of_samples,
     stated_step,
     stated_unit,
     with_quantities,
@@ -36,7 +38,7 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
-from rockbatch.motions.limits import SAME_STEP
+from rockbatch.motions.limits import SAME_STEP, is_step
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import orientation_in, same_azimuth
 from rockbatch.motions.record_file import ReadOptions, RecordFile, no_acceleration, text_of
@@ -99,6 +101,7 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
     count = stated_count(header)
     if count is not None and count != len(table):
         raise InputError(f"the header says {count} samples, but there are {len(table)} rows; fetch the file again")
+    _refuse_factor(header, options)
     unit = _believed(stated_unit(header), options)
     not_acceleration = [i for i, column in enumerate(columns) if column.other]
     used = [i for i, column in enumerate(columns) if not (column.is_time or column.other or column.label == "-")]
@@ -130,10 +133,21 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
             values=values[:, i],
             unit=units[i],
             start=start,
+            stated=stated_of_samples(header) if len(used) == 1 else (),
             notes=(*notes, *omitted, *moved),
         )
         recordings.append(recording)
     return recordings
+
+
+def _refuse_factor(header: Sequence[str], options: ReadOptions) -> None:
+    """Raise ``Contradiction`` for a header that states a factor, applied or not, unless a manifest states ``scale``."""
+    factor = stated_factor(header)
+    if factor and "scale" not in options.instead:
+        raise Contradiction(
+            f"its header states a factor of {factor}, and not whether its numbers are multiplied by it already: for this file in "
+            f"motions.toml write scale = {factor} if they are not, or scale = 1 if they are"
+        )
 
 
 def _with_direction(columns: list[Column], used: Sequence[int], header: Sequence[str]) -> list[Column]:
@@ -311,7 +325,10 @@ def _on_one_step(
         raise InputError(f"found {len(times)} columns of time; expected one")
     stated = stated_step(header)
     if not times:
-        dt = stated.dt if stated else options.dt
+        impossible = (
+            stated is not None and not is_step(stated.dt) and "dt" in options.instead
+        )  # else it is noted (manifest)
+        dt = options.dt if stated is None or impossible else stated.dt
         if dt is None:
             raise NoStep("no column of time and no sampling interval")
         return dt, table, ()
