@@ -93,6 +93,13 @@ _OF_FACTOR = re.compile(
     re.IGNORECASE,
 )
 _BEYOND_ROUNDING = {"peak": (0.05, math.inf), "duration": (0.01, math.inf)}  # of another stage of processing, perhaps
+_POSITIVE_DOWN = re.compile(  # behind a label, and perhaps its unit: Up-down (cm/s/s) (+ is downward)
+    r"(?P<unit>\s*[(\[][^()\[\]]*[)\]])?\s*[(\[]\s*(?:\+|positive|pos\.?)\s*(?:is|:|=)?\s*(?:down(?:wards?)?|dwn)\s*[)\]]",
+    re.IGNORECASE,
+)
+_POSITIVE = re.compile(
+    r"\s*[(\[]\s*(?:\+|positive|pos\.?)\s*(?:is|:|=)?\s*(?:up|north|east)(?:wards?)?\s*[)\]]", re.IGNORECASE
+)
 _SHORT = {"NORTHSOUTH": "NS", "EASTWEST": "EW", "UPDOWN": "UD"}
 _TIME = {"time", "times", "elapsed", "elapsedtime", "zeit", "tiempo", "temps", "tempo", "zaman", "時間", "时间"}
 _SECONDS = [prefix + word for word in _SECOND.split() if len(word) > 2 for prefix in ("", "in", "en")]
@@ -249,13 +256,13 @@ def _is_of_motion(unit: str) -> bool:
 
 
 def spelled_out(line: str) -> list[str]:
-    """Return a header line, and what it states without names, as lines that do.
+    """Return a header line, and what it states without names, as lines that do; signs in brackets are in its labels.
 
-    "TIMESERIES XX_AAA__HNE_D, 3000 samples, 100 sps, …, M/S**2" has a count, a rate and a unit.
+    "TIMESERIES XX_AAA__HNE_D, 3000 samples, 100 sps, …, M/S**2" has a count, a rate and a unit; "Z (positive down)" is Z-down.
     """
     service = _OF_SERVICE.match(line)
     if service is None:
-        return [line]
+        return [_POSITIVE.sub("", _POSITIVE_DOWN.sub(lambda match: f"-down{match['unit'] or ''}", line))]
     return [line, f"NPTS = {service['npts']}", f"sampling rate = {service['rate']} Hz", f"unit: {service['unit']}"]
 
 
