@@ -564,3 +564,15 @@ def test_a_manifest_s_step_is_believed_before_the_header_s(tmp_path):
     assert "a sampling interval of 200 s" in why(tmp_path, text)
     (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x.txt"\ndt = 0.005\n')
     assert is_a(read(tmp_path, text).motions[0])
+
+
+def test_columns_of_several_stations_in_one_file_are_told_apart_by_their_names(tmp_path):
+    heads = ",".join(f"{station}_{way} (g)" for station in ("AAA", "BBB") for way in ("HNE", "HNN", "HNZ"))
+    values = [np.round(wiggle(N, seed, 0.3), 6) for seed in range(11, 17)]
+    found = read(tmp_path, f"time (s),{heads}\n{in_columns(T, *values)}")
+    assert [(m.of_station, m.vertical_source) for m in found.motions] == [
+        *[("AAA", "x.txt (AAA_HNZ)")] * 2,
+        *[("BBB", "x.txt (BBB_HNZ)")] * 2,
+    ]
+    found = read(tmp_path, f"time (s),{heads.replace('BBB', 'AAA')}\n{in_columns(T, *values)}")
+    assert not found.motions  # one direction twice of one station

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from rockbatch.common.errors import Contradiction, InputError, NoRecord, NoStep, NoUnit, Unstated
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.evidence import Kind
 from rockbatch.motions.formats.clock_times import in_seconds
 from rockbatch.motions.formats.column_header import (
@@ -40,7 +40,7 @@ from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.limits import SAME_STEP, is_step
 from rockbatch.motions.motion import Samples, Unusable
-from rockbatch.motions.orientation import orientation_in, same_azimuth
+from rockbatch.motions.orientation import orientation_in, same_azimuth, split_stem
 from rockbatch.motions.record_file import ReadOptions, RecordFile, no_acceleration, text_of
 
 _COMPONENTS = ("000", "090", "up")
@@ -83,8 +83,22 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
             overruled = file.options.overruled(recording.unit, recording.dt, file.gravity)
             recordings[i] = replace(recording, notes=(*recording.notes, *overruled))
     if len(recordings) > 1:
-        return to_components(file, [replace(recording, station=file.stem) for recording in recordings])
+        return to_components(file, _by_station(recordings, file.stem))
     return to_components(file, recordings)
+
+
+def _by_station(recordings: Sequence[Recording], stem: str) -> list[Recording]:
+    """Return the columns of a file called ``stem`` as of one station, or of those before their directions: AAA_HNE, BBB_HNE.
+
+    They are of several stations if directions repeat, but not within any of them.
+    """
+    sites = [split_stem(recording.label) for recording in recordings]
+    ways = [(site, way.vertical, way.azimuth, way.azimuth is None and way.label) for site, way in sites if way]
+    several = len({site for site, *_ in ways}) > 1 and len({way[1:] for way in ways}) < len(ways) == len(set(ways))
+    if not several or len(ways) < len(recordings) or not all(site for site, _ in sites):
+        return [replace(recording, station=stem) for recording in recordings]
+    named = zip(recordings, sites, strict=True)
+    return [replace(r, station=f"{stem}, {site}", sensor=Sensor(site.upper())) for r, (site, _) in named]
 
 
 def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[Recording]:
