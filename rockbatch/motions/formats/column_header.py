@@ -12,6 +12,7 @@ from rockbatch.motions.direction_words import folded
 from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.limits import HUGE, SAME_STEP
 from rockbatch.motions.orientation import orientation_in, orientation_of
+from rockbatch.motions.record_file import ReadOptions
 
 _SECOND = "s sec secs second seconds sek sekunde sekunden seg segundo segundos seconde secondes secondo secondi sn saniye сек 秒"
 SECONDS = dict.fromkeys(_SECOND.split(), 1.0) | {"ms": 1e-3, "msec": 1e-3}
@@ -58,7 +59,7 @@ _DIRECTION = re.compile(
     re.IGNORECASE,
 )
 _STATED = re.compile(
-    r"^(?:units?|field_unit|unidad(?:e?s)?|unidade|unit[ée]s?|unit[àa](?: di misura)?|einheit(?:en)?|birim[i]?|eenheid)\s*[:=]\s*"
+    r"^(?:units?|field[_]unit|unidad(?:e?s)?|unidade|unit[ée]s?|unit[àa](?: di misura)?|einheit(?:en)?|birim[i]?|eenheid)\s*[:=]\s*"
     r"(?:UTC,\s*)?(?P<unit>\S+)",
     re.IGNORECASE,
 )
@@ -73,7 +74,7 @@ _SAID = re.compile(  # acceleration in g; UNITS OF CM/S/S; Acceleration unit: ga
 )
 _PEAK = re.compile(r"\b(?:pga|peak|max(?:imum)?)\b", re.IGNORECASE)
 _COUNT = re.compile(
-    r"\b(?:npts|sample_count|(?:number|no\.?) of (?:points|samples)|n[uú]mero de (?:datos|muestras|puntos|dados|amostras))"
+    r"\b(?:npts|sample[_]count|(?:number|no\.?) of (?:points|samples)|n[uú]mero de (?:datos|muestras|puntos|dados|amostras))"
     r"\s*[:=]?\s*(?P<npts>[0-9]{1,12})\b",
     re.IGNORECASE,
 )
@@ -356,6 +357,16 @@ def stated_unit(header: Sequence[str]) -> str | None:
 def is_of_another_quantity(unit: str) -> bool:
     """Return whether a unit is one of velocity or displacement, or of counts and volts: "cm/s", "Counts"."""
     return _is_of_motion(unit) or unit.strip().lower() in _COUNTS
+
+
+def believed_unit(own: str | None, options: ReadOptions) -> str | None:
+    """Return the unit that a file states, or the study's if it states none that is known; one of another quantity stays.
+
+    Such a unit, as cm/s or counts, gives way only to a manifest's for this file.
+    """
+    if own and (is_acceleration(own) or (is_of_another_quantity(own) and "unit" not in options.instead)):
+        return own
+    return options.unit or own
 
 
 def is_acceleration(unit: str) -> bool:

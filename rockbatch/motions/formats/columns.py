@@ -17,6 +17,7 @@ from rockbatch.motions.formats.clock_times import in_seconds
 from rockbatch.motions.formats.column_header import (
     Column,
     StatedStep,
+    believed_unit,
     columns_with_units,
     columns_without_units,
     is_acceleration,
@@ -116,7 +117,7 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
     if count is not None and count != len(table):
         raise InputError(f"the header says {count} samples, but there are {len(table)} rows; fetch the file again")
     _refuse_factor(header, options)
-    unit = _believed(stated_unit(header), options)
+    unit = believed_unit(stated_unit(header), options)
     not_acceleration = [i for i, column in enumerate(columns) if column.other]
     used = [i for i, column in enumerate(columns) if not (column.is_time or column.other or column.label == "-")]
     columns = _with_direction(columns, used, header)
@@ -171,19 +172,9 @@ def _with_direction(columns: list[Column], used: Sequence[int], header: Sequence
     return [replace(column, label=direction) if i in used else column for i, column in enumerate(columns)]
 
 
-def _believed(own: str | None, options: ReadOptions) -> str | None:
-    """Return the unit that a file states, or the study's if it states none that is known; one of another quantity stays.
-
-    Such a unit, as cm/s or counts, gives way only to a manifest's for this file.
-    """
-    if own and (is_acceleration(own) or (is_of_another_quantity(own) and "unit" not in options.instead)):
-        return own
-    return options.unit or own
-
-
 def _unit_of(column: Column, of_all: str | None, options: ReadOptions) -> str:
-    """Return a column's unit, as :func:`_believed`, else that ``of_all``, else ""."""
-    return (_believed(column.unit, options) if column.unit else of_all) or ""
+    """Return a column's unit, as :func:`believed_unit`, else that ``of_all``, else ""."""
+    return (believed_unit(column.unit, options) if column.unit else of_all) or ""
 
 
 def _missing_unit(i: int, column: Column, unit: str) -> str:
