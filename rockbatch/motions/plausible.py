@@ -228,11 +228,11 @@ def displacement(candidate: Candidate) -> Finding | None:
 
 def faulty_samples(candidate: Candidate) -> Finding | None:
     """Return a gross finding on a filled gap within the strong motion, or on a peak that is a spike; else None."""
-    dt = candidate.component.dt
-    for name, samples in (("", candidate.component.acceleration), ("vertical: ", candidate.motion.vertical)):
+    component, motion = candidate.component, candidate.motion
+    for name, samples, dt in (("", component.acceleration, component.dt), ("vertical: ", motion.vertical, motion.dt)):
         if samples is None:
             continue
-        if gap := filled_gap(samples, dt if name == "" else candidate.motion.dt):
+        if gap := filled_gap(samples, dt):
             text = (
                 f"{name}a straight line of {gap.lasts:.3g} s from {gap.begins:.4g} s on, within the strong motion: a gap was "
                 "filled, and what happened in it is not known"

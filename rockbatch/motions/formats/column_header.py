@@ -59,8 +59,8 @@ _DIRECTION = re.compile(
     re.IGNORECASE,
 )
 _STATED = re.compile(
-    r"^(?:units?|field[_]unit|unidad(?:e?s)?|unidade|unit[ée]s?|unit[àa](?: di misura)?|einheit(?:en)?|birim[i]?|eenheid)\s*[:=]\s*"
-    r"(?:UTC,\s*)?(?P<unit>\S+)",
+    r"^(?:units?|field[_]unit|unidad(?:e?s)?|unidade|unit[ée]s?|unit[àa](?: di misura)?|einheit(?:en)?|birimi?|eenheid)"
+    r"\s*[:=]\s*(?:UTC,\s*)?(?P<unit>\S+)",
     re.IGNORECASE,
 )
 _OF_SERVICE = re.compile(  # of EarthScope's time series, in pairs or lists
