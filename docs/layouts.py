@@ -38,7 +38,7 @@ _LIMITS = """
 A number that differs by rounding is right; by less than the first of these limits, it is a note; by more, a warning; by more than
 the second, the record waits. A duration that is short by more than a second and 1 % waits, too. Exceptions: extremes of SAC,
 which some programs leave as they were, are a note up to a factor of 2; durations of CSMNC, which may leave out the time before
-the event, and those before the correction in Volume 2 and II, are a warning at most.
+the event, those before the correction in Volume 2 and II, and peaks and durations in text columns are a warning at most.
 
 """
 

@@ -253,7 +253,8 @@ _ACCELERATION_IN_M_S2 = {
     "in/s2": 0.0254,
     "ft/s2": 0.3048,
 }
-_ACCELERATION_IN_G = {"g": 1.0, "g/10": 0.1, "0.1g": 0.1, "mg": 1e-3, "ug": 1e-6, "%g": 0.01}
+_ACCELERATION_IN_G = {"g": 1.0, "mg": 1e-3, "ug": 1e-6, "%g": 0.01}
+_SHARE_OF_G = re.compile(r"(?P<times>\d*\.?\d+)[x*]?g|g/(?P<over>\d+)")  # 0.001 g, g/10
 _OTHER_SPELLINGS = {
     "inch": "in",
     "inches": "in",
@@ -296,6 +297,8 @@ def acceleration_factor(unit: str, gravity: float = GRAVITY) -> float:
     key = _OTHER_SPELLINGS.get(length, length) + slash + time
     if key in _ACCELERATION_IN_G:
         return gravity * _ACCELERATION_IN_G[key]
+    if (share := _SHARE_OF_G.fullmatch(key)) and (size := float(share["times"] or share["over"])) > 0.0:
+        return gravity * size if share["times"] else gravity / size
     if key not in _ACCELERATION_IN_M_S2:
         raise ValueError(f'unknown acceleration unit "{unit}"; write {ACCELERATIONS}')
     return _ACCELERATION_IN_M_S2[key]

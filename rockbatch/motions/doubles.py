@@ -4,13 +4,22 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
 from rockbatch.common.grouping import grouped
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.formats import is_usual
-from rockbatch.motions.likeness import Pairs, factor_between, pairs_of_one_recording, sets_of, suffix_of
+from rockbatch.motions.likeness import (
+    Pairs,
+    common_factor,
+    factor_between,
+    pairs_of_one_recording,
+    same_step,
+    sets_of,
+    suffix_of,
+)
 from rockbatch.motions.motion import Finding, LeftOut
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.plausible import gross_findings, in_a_borehole
@@ -52,7 +61,8 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     choice (``use = true``) is always used. A finding of the used component names copies that differ by a factor or in their
     peaks; if neither plausibility nor a file's name decides which factor is right, it has to be confirmed. Copies by a factor
     under other names stay, since suites are scaled on purpose, with a finding; if the factor is a ratio of units, both have
-    to be confirmed. A vertical in two sets of other horizontals is used with both, with a finding.
+    to be confirmed, as have components with the same samples at two steps. A vertical in two sets of other horizontals is used
+    with both, with a finding.
     """
     components, below = without_boreholes(components)
     pairs, scaled, denied = pairs_of_one_recording(components)
@@ -82,7 +92,12 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     for i, j in (pair for pair in scaled if not stands_for.keys() & pair):
         for k, other in ((i, components[j]), (j, components[i])):
             findings.setdefault(k, []).append(_factor_finding(components[k], other))
-    for i, j in (pair for pair in denied if not stands_for.keys() & pair):
+    stretched = list(_at_other_steps(components))
+    for i, j in (pair for pair in stretched if not stands_for.keys() & pair):
+        for k, other in ((i, components[j]), (j, components[i])):
+            text = f"{other.source} has the same samples with a step of {other.dt:g} s: one of their steps is wrong; check both"
+            findings.setdefault(k, []).append(Finding("step", text, gross=True))
+    for i, j in (pair for pair in denied if not stands_for.keys() & pair and pair not in stretched):
         for k, other in ((i, components[j]), (j, components[i])):
             text = f"{other.source} is the same sensor, event and direction by its header, and has other samples: check both"
             findings.setdefault(k, []).append(Finding("header", text))
@@ -92,6 +107,22 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
             own = (*component.findings, *findings.get(i, ()))
             remaining.append(replace(component, findings=own))
     return remaining, [*below, *left_out]
+
+
+def _at_other_steps(components: Sequence[Component]) -> Iterator[tuple[int, int]]:
+    """Yield places i < j of two components of two files with the same samples, perhaps times a factor, at different steps.
+
+    Those of two stations by their headers are not compared.
+    """
+    moving = [(i, c) for i, c in enumerate(components) if c.pga > 0.0]
+    for alike in grouped(
+        moving, lambda pair: (len(pair[1].acceleration), int(np.abs(pair[1].acceleration).argmax()))
+    ).values():
+        for (i, a), (j, b) in combinations(alike, 2):
+            one_file = file_of(a.source) == file_of(b.source)
+            apart = len({a.sensor.number, b.sensor.number} - {""}) > 1
+            if not (one_file or apart or same_step(a.dt, b.dt)) and common_factor(a.acceleration, b.acceleration):
+                yield i, j
 
 
 def _factor_finding(component: Component, other: Component) -> Finding:

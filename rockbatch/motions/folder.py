@@ -31,9 +31,18 @@ from rockbatch.motions.listed import NOT_LISTED
 from rockbatch.motions.manifest import Manifest, apply_entries, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.motion_set import MotionSet
-from rockbatch.motions.orientation import Orientation, counted, direction_of_suffix, is_clock, split_stem, told_apart
+from rockbatch.motions.orientation import (
+    Orientation,
+    accidental,
+    counted,
+    direction_of_suffix,
+    is_clock,
+    split_stem,
+    told_apart,
+)
 from rockbatch.motions.pairing import to_motions
 from rockbatch.motions.peer_search import Lists, listed_in, of_file
+from rockbatch.motions.quantities_in_names import companions_by_quantity
 from rockbatch.motions.record_file import ReadOptions, RecordFile
 from rockbatch.motions.sequences import ShockSequence, add_sequences
 from rockbatch.motions.sorted_files import statements_beside
@@ -209,6 +218,7 @@ def read_files(
     inventories += [file for path in roots if path.is_file() for file in inventories_beside(path)]
     stated = Inventories([(file.path, file.source, file.refusal) for file in inventories])
     beside, statements = statements_beside(files)
+    statements |= companions_by_quantity(files)
     files = [replace(file, companion=statements.get(file.path, file.companion)) for file in files]
     settings = _ReadSettings(
         manifest, options or ReadOptions(), gravity, offset or Offset(), _names(files), stated, beside, listed_in(files)
@@ -306,14 +316,14 @@ def _content(file: SourceFile, first: int | None = None) -> bytes:
 def _names(files: Sequence[SourceFile]) -> dict[Path, tuple[str, Orientation | None]]:
     """Return the station's part of each file's name and its direction, by the stem, else by the suffix (.EW), else None.
 
-    The names in one folder decide together whether digits are azimuths.
+    The names in one folder decide together whether digits are azimuths, and letters directions.
     """
     names: dict[Path, tuple[str, Orientation | None]] = {}
     for paths in grouped((file.path for file in files), lambda path: path.parent).values():
         stems = {path: archives.bare(path).stem for path in paths}
-        numbered, apart = counted(stems.values()), told_apart(stems.values())
+        by_chance, apart = counted(stems.values()) | accidental(stems.values()), told_apart(stems.values())
         for path, stem in stems.items():
-            alone = (stem, None) if stem in numbered else split_stem(stem)
+            alone = (stem, None) if stem in by_chance else split_stem(stem)
             site, direction = alone if alone[1] else apart.get(stem, alone)
             names[path] = site, direction or direction_of_suffix(archives.bare(path).suffix)
     return names

@@ -573,7 +573,7 @@ def copy_between(first: Samples, second: Samples) -> Copy | None:
     """
     if not (np.ptp(first) and np.ptp(second)):
         return None
-    if factor := _common_factor(first, second):
+    if factor := common_factor(first, second):
         return Copy(factor, 0.0)
     r, delay = alignment(first, second, parts=1)
     if abs(r) < _COPIED or not _is_significant(abs(r), first, second):
@@ -581,7 +581,7 @@ def copy_between(first: Samples, second: Samples) -> Copy | None:
     return Copy(r * float(np.linalg.norm(first - first.mean()) / np.linalg.norm(second - second.mean())), delay)
 
 
-def _common_factor(first: Samples, second: Samples) -> float:
+def common_factor(first: Samples, second: Samples) -> float:
     """Return the factor that makes the ``second`` series the ``first``, to 0.1 % of its peak; 0 if there is none."""
     if len(first) != len(second) or not second.any():
         return 0.0
@@ -591,5 +591,5 @@ def _common_factor(first: Samples, second: Samples) -> float:
 
 def factor_between(a: Component, b: Component) -> float | None:
     """Return the factor that makes samples of ``b`` those of ``a``; ``None`` if there is none, or it is within 0.5 % of 1."""
-    factor = _common_factor(a.acceleration, b.acceleration) if same_step(a.dt, b.dt) else 0.0
+    factor = common_factor(a.acceleration, b.acceleration) if same_step(a.dt, b.dt) else 0.0
     return None if not factor or abs(factor - 1.0) <= _NO_FACTOR else factor

@@ -217,12 +217,12 @@ def _file_exists(path: Path) -> bool:
 def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
     """Return ``options`` with unit, dt, layout, columns and sensitivity of the entries for the whole file.
 
-    These then replace the file's own statements.
+    These then replace the file's own statements, as does a scale.
     """
     for entry in entries:
         if entry.component is None:
             stated = {key: entry.values[key] for key in _OPTIONS if key in entry.values}
-            options = replace(options, **stated, instead=frozenset(stated))
+            options = replace(options, **stated, instead=frozenset(stated) | ({"scale"} & entry.values.keys()))
     return options
 
 

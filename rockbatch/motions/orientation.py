@@ -4,6 +4,7 @@ A direction that no label states stays unknown: a vertical component would other
 """
 
 import re
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import combinations
@@ -33,6 +34,7 @@ UNKNOWN = unknown()
 
 _VERTICAL = words("vertical") | pairs("up", "down") | pairs("above", "below")
 _UP, _DOWN = words("up"), words("down")
+_VERTICAL_WITH_SIGN = _VERTICAL - {"U"}  # U-Down is a pair
 _AZIMUTHS = {
     **dict.fromkeys(words("north") | words("ns") | pairs("north", "south"), 0.0),
     **dict.fromkeys(words("east") | words("ew") | pairs("east", "west"), 90.0),
@@ -71,7 +73,7 @@ def orientation_of(label: str) -> Orientation | None:
     key = _key(label)
     if key in _VERTICAL or key in _UP:
         return Orientation(label, vertical=True)
-    if key in _DOWN:
+    if key in _DOWN or re.sub("(?:DOWN|DWN)$", "", key) in _VERTICAL_WITH_SIGN - {key}:
         return Orientation(label, vertical=True, down=True)
     if key in _AZIMUTHS:
         return Orientation(label, azimuth=_AZIMUTHS[key])
@@ -116,6 +118,8 @@ def orientation_in(label: str) -> Orientation:
     bare = label.strip()
     if re.fullmatch(r"\d{1,2}", bare) and bare not in ("0", "00", "90"):
         return unknown(bare)
+    if _is_unknown_pair(bare):
+        return unknown(bare)
     site, at_end = split_stem(bare)
     before = orientation_of(site) if at_end else None
     if before and at_end and (before.vertical, before.azimuth) != (at_end.vertical, at_end.azimuth):
@@ -127,13 +131,15 @@ def orientation_in(label: str) -> Orientation:
 
 
 _LETTER = r"[^\W\d_]"
+_PAIR = re.compile(rf"{_LETTER}{{1,2}} ?- ?{_LETTER}")  # of opposite directions, in a language that is not known
 _PART = r"(?P<site>.*[^-_. ])[-_. ]+"
+_GLUED = r"DWN|UP|(?:UD|EW|NS)[12]?|VER|VERT|VRT"  # in names that they end without a separator
 _SITES_AND_LABELS = (
     (_PART, rf"(?i:N-S|S-N|E-W|W-E|U-D|Up-D(?:ow)?n|{_LETTER}+-axis|{_LETTER}+-(?:up|d(?:ow|w)?n))"),
     (_PART, rf"{_LETTER}+-{_LETTER}+"),  # Norte-Sur
     (_PART, r"[A-Z][NLGH][ZNE12][-_. ]+\d\d"),
     (_PART, rf"{_LETTER}+|\d{{3}}|[A-Za-z]+\d+[A-Za-z]*"),
-    (r"(?P<site>.*[A-Za-z0-9])", r"\d{3}|DWN|UP|(?:UD|EW|NS)[12]?|VER|VERT|VRT"),
+    (r"(?P<site>.*[A-Za-z0-9])", rf"\d{{3}}|{_GLUED}"),
     (r"(?P<site>.*\d)", r"(?i:DWN|UP|UD|EW|NS|VERT?|VRT)"),
     (r"(?P<site>.*\d\d)", r"(?i:[VZUNEW])"),  # chy080v
 )
@@ -171,7 +177,7 @@ def split_stem(stem: str) -> tuple[str, Orientation | None]:
     while True:
         for end in _ENDS:
             match = end.fullmatch(site)
-            if match is None or _is_number(match["site"], match["label"], site):
+            if match is None or _is_number(match["site"], match["label"], site) or _is_unknown_pair(site):
                 continue
             if orientation := _name_orientation(match["label"]):
                 return (stem, None) if _contradicted(orientation, stem) else (match["site"] + behind, orientation)
@@ -183,6 +189,11 @@ def split_stem(stem: str) -> tuple[str, Orientation | None]:
         if not _contradicted(orientation, stem):
             return re.sub(rf"(^|[-_. ]+){re.escape(orientation.label)}(?=[-_. ])", "", stem, count=1), orientation
     return stem, None
+
+
+def _is_unknown_pair(name: str) -> bool:
+    """Return whether a name is a pair of letters that is no direction as a whole: I-Z, F-L."""
+    return _PAIR.fullmatch(name) is not None and orientation_of(name) is None
 
 
 def _name_orientation(label: str) -> Orientation | None:
@@ -242,6 +253,21 @@ def counted(stems: Iterable[str]) -> set[str]:
         if _in_series(int(stem[-3:]) for stem in group):
             numbered.update(group)
     return numbered
+
+
+def accidental(stems: Iterable[str]) -> set[str]:
+    """Return the stems that end in letters of a direction by chance: STATIONS in NS, DENVER in VER.
+
+    Such letters behind others are a direction only if another stem differs in its direction alone: ORRDWN beside ORR021.
+    """
+    split = {stem: split_stem(stem) for stem in stems}
+    of_site = Counter(site for site, orientation in split.values() if orientation)
+    glued = {
+        stem: re.search(rf"[A-Za-z]{re.escape(orientation.label)}", stem)
+        for stem, (_, orientation) in split.items()
+        if orientation and re.fullmatch(_GLUED, orientation.label)
+    }
+    return {stem for stem, match in glued.items() if match and of_site[split[stem][0]] < 2}
 
 
 def told_apart(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:

@@ -254,7 +254,7 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
 
 
 def _with_unique_names(motions: Sequence[Motion], folders: Sequence[str]) -> list[Motion]:
-    """Return the motions with unique names: equal ones get the suffixes of files in one folder, then folders, then numbers."""
+    """Return the motions with unique names: equal ones get suffixes of files in one folder, then two folders, then numbers."""
     in_folder = Counter((folder, motion.name) for folder, motion in zip(folders, motions, strict=True))
 
     def with_suffix(i: int, name: str) -> str:
@@ -266,6 +266,10 @@ def _with_unique_names(motions: Sequence[Motion], folders: Sequence[str]) -> lis
     def with_folder(i: int, name: str) -> str:
         return f"{folders[i].rsplit('/', 1)[-1]}/{name}" if folders[i] else name
 
-    names = distinct([motion.name for motion in motions], with_suffix, with_folder)
+    def with_folder_above(i: int, name: str) -> str:
+        alike = in_folder[folders[i], motions[i].name] > 1  # which no folder tells apart
+        return name if alike or not folders[i] else f"{PurePosixPath(folders[i]).parent.name}/{name}"
+
+    names = distinct([motion.name for motion in motions], with_suffix, with_folder, with_folder_above)
     pairs = zip(motions, names, strict=True)
     return [motion if motion.name == name else replace(motion, name=name) for motion, name in pairs]

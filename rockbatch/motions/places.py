@@ -46,42 +46,45 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
         "levee, berm, isolator, isolation, isoltr, isol, midspan, mid span, wingwall, wing wall, shear wall, core wall, "
         "spillway, dam top, top of dam, dam body, upstream face, downstream face, pylon, superstructure, superstr, pier cap, "
         "pier top, top of pier, pier base, base of pier, tower top, top of tower, tower base, base of tower, hinge, pedestal, "
-        "anchor block, tailings dam, mezz, outlet, outlet works, intake, penstock, gatehouse, gate house",
+        "anchor block, tailings dam, mezz, outlet, outlet works, intake, penstock, gatehouse, gate house, soffit, structure type",
         "es pt": "techo, azotea, tejado, estribo, coronacion, corona de la presa, coronamiento, encepado, terraplen*, "
         "aislador*, cuerpo de la presa, aliviadero, vertedero, vertedouro, telhado, "
         "tabuleiro, coroamento, bloco de estacas, isolador*, corpo da barragem",
         "fr it": "toiture, culee, couronnement, semelle, isolateur, appareil d appui, corps du barrage, sottotetto, impalcato, "
         "coronamento, pila del ponte, isolatore, isolatori, corpo diga, evacuateur*, sfioratore",
-        "de": "dachgeschoss, ueberbau, uberbau, fahrbahnplatte, widerlager, dammkrone, mauerkrone, fundamentplatte, pfahlkopf*, "
+        "de": "dachgeschoss, ueberbau, uberbau, brueckenueberbau, bruckenuberbau, "
+        "fahrbahnplatte, widerlager, dammkrone, mauerkrone, fundamentplatte, pfahlkopf*, "
         "brueckenpfeiler*, bruckenpfeiler*, isolatorebene, grundablass, hochwasserentlastung",
         "tr el": "dolusavak, dipsavak, "
-        "catisi, tabliye, kenar ayak, kenar ayagi, orta ayak, kret, kreti, izolator*, taratsa, katastroma, "
+        "catisi, tabliye, tabliyesi, kenar ayak, kenar ayagi, orta ayak, kret, kreti, izolator*, taratsa, katastroma, "
         "akrovathro, mesovathro, epichoma, στεγη, ταρατσα, καταστρωμα, ακροβαθρο, στεψη, υποστυλωμα*, μεσοβαθρο, επιχωμα, "
         "μονωτηρ*",
         "ja zh": "okujo, okujou, kyodai, kyokyaku, menshin, 屋上, 床版, 橋台, 天端, 橋脚, フーチング, 盛土, 免震, "
         "屋顶, 屋頂, 楼顶, 桥面, 橋面, 桥台, 坝顶, 壩頂, 坝体, 桥墩, 橋墩, 承台, 路堤, 隔震",
         "ru": "крыша, крыши, крыше, кровля, чердак, насыпь, насыпи, свая, сваи, сваях, ростверк*, пролетн*, гребень плотины",
         "nl": "landhoofd*, brugdek, paalkop*, dijkkruin",
-        "ko fa": "옥상, 지붕, 교각, 교대, 상판, 말뚝, 성토, 면진, 주탑, سقف, پشت بام, پایه پل, خاکریز",
+        "ko fa": "옥상, 지붕, 교각, 교대, 상판, 말뚝, 성토, 면진, 주탑, سقف, پشت بام, پایه پل, خاکریز, تاج سد",
+        "ro id cs sl hr he": "acoperis*, atap, strecha, strese, streha, krov, krovu, גג",
     },
     "structure, in places only": {  # also names of towns, streets and people
         "en": "pier, bent, tower, span, wall, bearing, anchorage, approach*, gallery, wharf, quay, dock, crane, tank, silo, "
-        "stack, shaft, mast, dike, dyke, ramp, cable, saddle, chimney, joint, col, rf, tunnel, mine",
+        "stack, shaft, mast, dike, dyke, ramp, cable, saddle, chimney, joint, col, rf, tunnel, mine, terrace",
         "es": "ultimo piso, tablero, viga, cresta, cima, columna, zapata, cabezal, pilote, pila, pilon, galeria, torre, pilar*, "
-        "apoyo, muro",
-        "pt": "encontro, crista, coluna, sapata, estaca, aterro",
-        "fr": "toit, terrasse, tablier, poutre, crete, poteau*, pieu*, remblai, tour, pilier, mur",
-        "it": "tetto, copertura, trave, travi, spalla, spalle, ciglio, pilastro, pilastri, pilone, plinto, plinti, palo, pali, "
+        "apoyo, muro, losa, corona, cortina, campanario",
+        "pt": "laje, encontro, crista, coluna, sapata, estaca, aterro",
+        "fr": "dalle, toit, terrasse, tablier, poutre, crete, poteau*, pieu*, remblai, tour, pilier, mur",
+        "it": "soletta, campanile, "
+        "tetto, copertura, trave, travi, spalla, spalle, ciglio, pilastro, pilastri, pilone, plinto, plinti, palo, pali, "
         "rilevato, cunicolo",
         "de": "dach, traeger, trager, krone, stuetze*, stutze*, saeule*, saule*, pfeiler*, pfahl*, boeschung, damm, isolatoren, "
-        "lager, turm, mauer, bruecke, brucke",
-        "tr": "cati, teras, kiris*, kolon, kolonu, sutun*, somel, kazik*, dolgu, dolgusu, govde, govdesi, kule, ayak",
+        "lager, turm, glockenturm, mauer, staumauer, bruecke, brucke",
+        "tr": "cati, teras, kiris*, kolon, kolonu, sutun*, somel, kazik*, dolgu, dolgusu, govde, govdesi, kule, ayak, minare",
         "el": "stegi, doma, dokos, stepsi, kolona, stylos, vathro, pedilo*, passalo*, monotir*, efedrano, pyrgos, gefyra, δωμα, "
-        "πεδιλο",
+        "πεδιλο, βαθρο",
         "ja zh": "shouban, shoban, keta, tenba, tentan, hashira, futingu, kui, morido, wuding, loding, qiaomian, liang, qiaotai, "
         "badi, bading, zhuzi, qiaodun, chengtai, zhuang, ludi, gezhen*, 桁, 柱, 杭, 桩, 梁",
         "ru": "опора, опоры, опоре, колонна, колонны, колонне, балка, балки, балке, башня, башни, стена, стены, гребень",
-        "nl ko fa": "dak, pijler*, kolom, kolommen, ligger*, toren, kruin, 기둥, ستون, برج",
+        "nl ko fa hu": "dak, pijler*, kolom, kolommen, ligger*, toren, kruin, 기둥, ستون, برج, teto",
     },
     "borehole": {
         "en": "borehole*, bore hole, downhole*, down hole, dwnhl, dwnh, dhole, dh, bh, drillhole, drill hole, underground",
@@ -101,6 +104,9 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
         "ja zh": "fukasa, 深さ, 深度, shendu",
     },
     "surface": {"": "surface*, superficie*, oberflache*, yuzey*, epifaneia, επιφανεια, 地表, chihyo, dibiao"},
+    "base": {
+        "": "basement, base, foundation, lobby, lower level, parking level, sotano, keller, bodrum, sous sol, seminterrato"
+    },
     "near": {
         "en": "near, nr, adjacent, adj, beside, next to, away, from, outside, opposite, behind, beyond, downstream, upstream",
         "es pt fr it": "cerca, junto, lejos, perto, pres, a cote, vicino, presso",
@@ -114,6 +120,7 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
         "tr el": "kat, orofos, οροφος",
         "ja zh": "kai, f, lou, ceng, 階, 层, 層, 楼, 樓",
         "ru nl ko fa": "этаж*, verdieping*, 층, طبقه",
+        "ro id cs hu": "etaj, etajul, lantai, patro, podlazi, emelet",
     },
 }
 _STREETS = (  # behind a word, which is a name then
@@ -121,7 +128,16 @@ _STREETS = (  # behind a word, which is a name then
     "park view heights school college hospital library church mall center centre station creek lake valley hill hills canyon "
     "ranch island beach bay point city village town estates"
 )
-_ORDINALS = "second third fourth fifth sixth seventh eighth ninth tenth eleventh twelfth top upper"
+_POSITIONS = {"center", "centre", "bay", "point"}  # of these, words that place a sensor: "Roof center"
+_ORDINALS = (
+    "second third fourth fifth sixth seventh eighth ninth tenth eleventh twelfth top upper "
+    "segundo segunda tercer tercero tercera cuarto cuarta quinto quinta sexto septimo octavo noveno decimo ultimo ultima "
+    "terceiro terceira quarto deuxieme troisieme quatrieme cinquieme sixieme septieme huitieme neuvieme dixieme dernier "
+    "secondo terzo sesto settimo ottavo nono zweites zweiter drittes dritter viertes vierter funftes funfter oberstes oberster "
+    "ikinci ucuncu dorduncu besinci altinci yedinci sekizinci dokuzuncu onuncu ust δευτεροσ τριτοσ τεταρτοσ πεμπτοσ "
+    "второи третии четвертыи пятыи шестои последнии tweede derde vierde vijfde bovenste دوم سوم چهارم پنجم"
+)
+_IN_CHINESE = r"(?<!下)(?<!地)[二三四五六七八九十]+"  # floors; below the ground they begin with 地下
 _CARDINAL = re.compile(r"\b(?:north|south|east|west|n|s|e|w|nw|ne|sw|se|northwest|northeast|southwest|southeast)\b")
 _IN_BRACKETS = re.compile(r"\(([^()]+)\)")
 _LEAST_DEPTH = 2.0  # m: vaults of sensors at the surface are less deep
@@ -151,6 +167,13 @@ def stand(place: str, name: str) -> tuple[Stand, str]:
         if where is not Stand.GROUND:
             return where, name if text in name else text
     return Stand.GROUND, ""
+
+
+def tells_place(text: str) -> bool:
+    """Return whether the words for a place tell a floor, the ground, a structure or a borehole; False for "Chan 5" and ""."""
+    folded = _folded(text)
+    kinds = ("free field", "ground", "structure", "borehole", "depth", "surface", "floor", "base")
+    return _stand(text, False) is not Stand.GROUND or _pattern(*kinds).search(folded) is not None
 
 
 def depth_as_place(depth: float | None) -> str | None:
@@ -198,7 +221,7 @@ def _is_on_structure(text: str, is_name: bool) -> bool:
     if _pattern("free field").search(text):
         return False
     kinds = ("structure",) if is_name else ("structure", "structure, in places only")
-    first = next((m for m in _pattern(*kinds).finditer(text) if not _is_street(text, m.end())), None)
+    first = next((m for m in _pattern(*kinds).finditer(text) if not _is_street(text, m.end(), is_name)), None)
     if first is not None and not _is_beside(text[: first.start()]):
         return True
     if not is_name and re.search(rf"{_LENGTH} above\b", text):
@@ -213,10 +236,15 @@ def _is_beside(before: str) -> bool:
     return any(pattern.search(between) for pattern in (_pattern("near"), _CARDINAL, re.compile(_LENGTH)))
 
 
-def _is_street(text: str, end: int) -> bool:
-    """Return whether the word that ends at ``end`` is the name of a street or a town, by the word behind it: "Crest Drive"."""
+def _is_street(text: str, end: int, is_name: bool) -> bool:
+    """Return whether the word that ends at ``end`` is the name of a street or a town, by the word behind it: "Crest Drive".
+
+    In a place, which ``is_name`` of no station, "Crest center" is the middle of a crest.
+    """
     following = re.match(r"[ .]*([a-z]+)", text[end:])
-    return following is not None and following[1] in _STREETS.split()
+    if following is None or (not is_name and following[1] in _POSITIONS):
+        return False
+    return following[1] in _STREETS.split()
 
 
 @lru_cache(maxsize=1)
@@ -225,8 +253,9 @@ def _upper_floor() -> re.Pattern[str]:
     floor = _pattern("floor").pattern
     number = r"(?<![\d.b-])(?:[2-9]|[1-9]\d)(?![\d])"
     ordinal = r"(?:st|nd|rd|th|er|do|to|mo|e|eme|ieme|de|ste|o|a|°|º|ª|\.|os|οσ|inci|uncu|ncu|-?и|-?м)?"
-    words = "|".join(_ORDINALS.split())
-    return re.compile(rf"(?:{number}{ordinal}|\b(?:{words}))[ -]*(?:{floor})|(?:{floor})[ .#]*(?:no[. ]*)?{number}")
+    words = rf"\b(?:{'|'.join(_ORDINALS.split())})\b"
+    before = rf"(?:{number}{ordinal}|{words}|{_IN_CHINESE})[ -]*(?:{floor})"
+    return re.compile(rf"{before}|(?:{floor})[ .#]*(?:no[. ]*)?(?:{number}|{words})")
 
 
 def _is_below(text: str, is_name: bool) -> bool:
@@ -234,7 +263,7 @@ def _is_below(text: str, is_name: bool) -> bool:
     if _pattern("surface").search(text) and not re.search(r"below (?:the |ground )?surface", text):
         return False
     kinds = ("borehole",) if is_name else ("borehole", "borehole, in places only")
-    if any(not _is_street(text, match.end()) for match in _pattern(*kinds).finditer(text)):
+    if any(not _is_street(text, match.end(), is_name) for match in _pattern(*kinds).finditer(text)):
         return True
     return any(depth > _LEAST_DEPTH for depth in _depths(text, is_name))
 

@@ -13,8 +13,10 @@ from rockbatch.common.naming import fits
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
 from rockbatch.motions.component import Component
+from rockbatch.motions.faults import filled_gap, is_spike, missing_parts
 from rockbatch.motions.likeness import Copy, copy_between, same_step
 from rockbatch.motions.motion import Finding, Motion, Samples
+from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.places import Stand, stand
 
 LOWEST, HIGHEST = 0.001, 5.0
@@ -76,8 +78,10 @@ class Candidate:
 def unlikely_peak(candidate: Candidate) -> Finding | None:
     """Return a gross finding on a horizontal PGA outside 0.001–5 g, or a vertical one above 5 g; probably the unit is wrong.
 
-    From 2 to 5 g in a file in g it is not gross; None for any other PGA.
+    From 2 to 5 g in a file in g it is not gross; None for any other PGA, and a dead channel.
     """
+    if not _moves(candidate.component):
+        return None
     horizontal = candidate.motion.pga / candidate.gravity
     vertical = (candidate.motion.pga_vertical or 0.0) / candidate.gravity
     if LOWEST <= horizontal <= HIGHEST >= vertical:
@@ -94,6 +98,18 @@ def _strong_peak(peak: float) -> Finding | None:
         return None
     text = f"PGA {peak:.3g} g, as few records have; if its numbers are in m/s², it is {peak / GRAVITY:.2g} g: check the unit"
     return Finding("PGA", text, key="confirm_pga")
+
+
+def _moves(component: Component) -> bool:
+    """Return whether the samples of a component differ."""
+    return bool(np.ptp(component.acceleration) > 0.0)
+
+
+def dead_channel(candidate: Candidate) -> Finding | None:
+    """Return a gross finding on a horizontal component whose samples are all equal; else None."""
+    if _moves(candidate.component):
+        return None
+    return Finding("dead", "it never moves: a dead channel; leave it out by use = false in motions.toml", gross=True)
 
 
 def unlikely_samples(motion: Motion, gravity: float) -> list[str]:
@@ -210,15 +226,48 @@ def displacement(candidate: Candidate) -> Finding | None:
     return Finding("no PGD", text)
 
 
+def faulty_samples(candidate: Candidate) -> Finding | None:
+    """Return a gross finding on a filled gap within the strong motion, or on a peak that is a spike; else None."""
+    component, motion = candidate.component, candidate.motion
+    for name, samples, dt in (("", component.acceleration, component.dt), ("vertical: ", motion.vertical, motion.dt)):
+        if samples is None:
+            continue
+        if gap := filled_gap(samples, dt):
+            text = (
+                f"{name}a straight line of {gap.lasts:.3g} s from {gap.begins:.4g} s on, within the strong motion: a gap was "
+                "filled, and what happened in it is not known"
+            )
+            return Finding("gap", text, gross=True)
+        if is_spike(samples):
+            text = f"{name}its peak is a spike: without it, less than half of it remains; repair the record"
+            return Finding("spike", text, gross=True)
+    return None
+
+
+def incomplete_record(candidate: Candidate) -> Finding | None:
+    """Return a finding on a horizontal component that begins or ends within the strong motion; else None."""
+    parts = missing_parts(candidate.component.acceleration, candidate.component.dt)
+    if not parts or not _moves(candidate.component):
+        return None
+    return Finding("cut", f"it {' and '.join(parts)} within the strong motion: a part of the record is missing")
+
+
 def unequal_horizontals(candidate: Candidate) -> Finding | None:
-    """Return a finding on two horizontals of a station whose PGAs differ by a factor above 5; None else, or for one or three."""
-    if len(candidate.peaks) != 2:
+    """Return a finding on two horizontals of a station whose PGAs differ by a factor above 5; None else, or for one or three.
+
+    It is gross above 20 unless they are parallel, and for the weaker one alone if that is noise. A dead channel is not compared.
+    """
+    if len(candidate.peaks) != 2 or not all(_moves(component) for component, _ in candidate.peaks):
         return None
     (low, least), (high, most) = sorted(candidate.peaks, key=lambda peak: peak[1])
     if not most > UNEQUAL * least:
         return None
-    text = f"PGA of {high.name} is {most / max(least, 1e-300):.3g} times that of {low.name}: check their gains"
-    return Finding("unequal", text)
+    text = f"PGA of {high.name} is {most / least:.3g} times that of {low.name}"
+    if _is_noise(low.acceleration, high.acceleration):
+        text = f"{text}, which shakes alike from the first to the last sample: noise"
+        return Finding("unequal", text, gross=candidate.component is low)
+    parallel = same_azimuth(low.orientation.azimuth, high.orientation.azimuth)  # and so of two records
+    return Finding("unequal", f"{text}: check their gains", gross=most > FAINT * least and not parallel)
 
 
 def copied_horizontal(candidate: Candidate) -> Finding | None:
@@ -256,7 +305,7 @@ def unlike_vertical(candidate: Candidate) -> Finding | None:
     size = f"PGA of its vertical component is {ratio:.3g} times that of the horizontal ones"
     if faulty:
         return Finding("vertical", f"{size}: check their gains", gross=True)
-    if _growth_apart(motion.vertical) < STEADY and _growth_apart(motion.horizontal) > 2.0 * STEADY:
+    if _is_noise(motion.vertical, motion.horizontal):
         text = "its vertical component shakes alike from the first to the last sample, and the ground does not: noise"
         return Finding("vertical", text, gross=True)
     if SELDOM_BELOW <= ratio <= SELDOM_ABOVE:
@@ -270,6 +319,11 @@ def _changes(copy: Copy, dt: float) -> str:
     """Return in words how a copy differs from its original: " times 0.667, 0.05 s later"; "" for an equal copy."""
     times = "" if abs(copy.factor - 1.0) <= _SAME_SHAPE else f" times {copy.factor:.3g}"
     return times + (f", {abs(copy.delay) * dt:g} s {'later' if copy.delay > 0 else 'earlier'}" if copy.delay else "")
+
+
+def _is_noise(samples: Samples, other: Samples) -> bool:
+    """Return whether a series shakes alike from end to end, and the ``other`` one of its station does not."""
+    return _growth_apart(samples) < STEADY and _growth_apart(other) > 2.0 * STEADY
 
 
 def _growth_apart(samples: Samples) -> float:
@@ -314,10 +368,13 @@ def findings_of_readers(candidate: Candidate) -> Finding | None:
 
 
 JUDGES: tuple[Callable[[Candidate], Finding | None], ...] = (
+    dead_channel,
     unlikely_peak,
     no_zero_line,
     alternation,
     flat_top,
+    faulty_samples,
+    incomplete_record,
     displacement,
     unequal_horizontals,
     copied_horizontal,
@@ -336,7 +393,12 @@ def findings(candidate: Candidate) -> tuple[Finding, ...]:
 def gross_findings(component: Component) -> list[Finding]:
     """Return the gross findings on a component by itself, without those that a manifest confirms."""
     alone = Motion(
-        component.name, component.dt, component.acceleration, initial=component.initial, processed=component.processed
+        component.name,
+        component.dt,
+        component.acceleration,
+        initial=component.initial,
+        processed=component.processed,
+        confirm=("dt",),  # checked against the limits of recorders when it was read
     )
     return _unconfirmed(findings(Candidate(alone, component, (), GRAVITY)), component.confirmed)
 

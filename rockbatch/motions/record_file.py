@@ -46,7 +46,7 @@ class ReadOptions:
     layout : str or None
         "wrapped": a text file without columns is one series wrapped over lines.
     instead : frozenset of str
-        Names of these statements that a manifest makes for this file, with precedence over the file's own.
+        Names of these statements, and of ``scale``, that a manifest makes for this file, with precedence over the file's own.
 
     Examples
     --------

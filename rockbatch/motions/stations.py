@@ -168,7 +168,7 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
         list(map(station_of, firsts)),
         lambda i, name: f"{firsts[i].sensor.network or ''}.{name}".strip("."),
         lambda i, name: f"{name} {firsts[i].event}".strip(),
-        lambda i, name: f"{name} {firsts[i].folder.rsplit('/', 1)[-1]}".strip(),
+        lambda i, name: f"{name} {next((p for p in reversed(firsts[i].folder.split('/')) if p != name), '')}".strip(),
     )
     name_of = dict(zip(records, names, strict=True))
     return [name_of[first_of(i)] for i in range(len(stations))]

@@ -24,6 +24,8 @@ _ROOT = "FDSNStationXML"
 _LEVELS = ((_ROOT, "Network"), (_ROOT, "Network", "Station"), (_ROOT, "Network", "Station", "Channel"))
 _SENSITIVITY = "Response/InstrumentSensitivity"
 _TEXTS = (f"{_SENSITIVITY}/Value", f"{_SENSITIVITY}/InputUnits/Name", "Azimuth", "Dip", "Depth")  # below a channel
+_PLACE = "Description"  # below a channel: "Roof, NE corner"
+_SITE = "Site/Name"  # below a station
 _GAIN = "Response/Stage/StageGain/Value"
 _LONGEST = 200  # most characters of these texts
 _DEEPEST = 50  # elements within one another; the format has 9
@@ -49,6 +51,8 @@ class Channel:
     depth: float | None = None  # of the sensor below the surface [m]
     stages: float | None = None  # product of the gains of all stages, if the file has them
     file: str = ""
+    site: str = ""  # name of the station
+    place: str = ""  # of the sensor, in words
 
     @property
     def named(self) -> str:
@@ -192,6 +196,7 @@ class _Reader:
         self.channels: list[Channel] = []
         self.above: list[str] = []
         self.attributes: dict[str, dict[str, str]] = {}
+        self.site = ""
         self.texts: dict[str, str] = {}
         self.gains: list[float | None] = []
 
@@ -207,12 +212,15 @@ class _Reader:
         if tuple(self.above) in _LEVELS:
             self.attributes[name] = attributes
             self.texts, self.gains = {}, []
+            self.site = "" if tuple(self.above) != _LEVELS[-1] else self.site
 
     def data(self, text: str) -> None:
         """Keep the text of the elements of a channel that are read."""
         key = self._key
-        if (key in _TEXTS or key == _GAIN) and len(self.texts.get(key, "")) < _LONGEST:
+        if (key in (*_TEXTS, _PLACE, _GAIN)) and len(self.texts.get(key, "")) < _LONGEST:
             self.texts[key] = self.texts.get(key, "") + text[:_LONGEST]
+        elif tuple(self.above) == (*_LEVELS[1], *_SITE.split("/")) and len(self.site) < _LONGEST:
+            self.site += text[:_LONGEST]
 
     def end(self, tag: str) -> None:
         """Leave an element, and add the channel if it is one."""
@@ -246,6 +254,8 @@ class _Reader:
             depth=_number(depth),
             stages=math.prod(gains) or None if gains and len(gains) == len(self.gains) else None,
             file=self.file,
+            site=self.site.strip(),
+            place=self.texts.get(_PLACE, "").strip(),
         )
 
 

@@ -89,7 +89,7 @@ def _traced(form: str) -> bytes:
 
 def _table() -> str:
     rows = (f"{0.01 * i:.2f},{value:.5f}\n" for i, value in enumerate(wiggle(120)))
-    return "npts: 120\ndt: 0.01 s\ntime [s],acc [g]\n" + "".join(rows)
+    return "npts: 120\ndt: 0.01 s\nduration: 1.2 s\nPGA: 0.09 g\ntime [s],acc [g]\n" + "".join(rows)
 
 
 _N = r"(-?[\d.]+)"
@@ -283,7 +283,12 @@ HEADERS = [
     ),
     Header(
         *("text columns", "x_000.csv", _table().encode()),
-        {"count": factor(r"(npts: )(\d+)(\n)", 1.1), "step": factor(rf"(dt: ){_N}( s)", 2)},
+        {
+            "count": factor(r"(npts: )(\d+)(\n)", 1.1),
+            "step": factor(rf"(dt: ){_N}( s)", 2),
+            "duration": factor(rf"(duration: ){_N}( s)", 2),
+            "peak": factor(rf"(PGA: ){_N}( g)", 2),
+        },
     ),
 ]  # fmt: skip
 

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from motion_files import at2_text, wiggle
+from motion_files import at2_text, wiggle, write_at2
 
 from rockbatch.common.errors import InputError
+from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.formats import RecordFile, read_record
 from rockbatch.motions.formats.at2 import read_at2
 
@@ -181,3 +182,24 @@ def test_parentheses_agencies_dates_and_clocks_of_a_title_stay_out_of_each_other
 ):
     at2 = read(at2_text(VALUES, title=title)).stats.at2
     assert (at2.event, at2.date, at2.station, at2.component) == (event, date, station, component)
+
+
+@pytest.mark.parametrize(
+    ("unit", "in_g"), [("0.001 G", 1e-3), ("G/1000", 1e-3), ("0.1 G", 0.1), ("G/10", 0.1), ("%G", 0.01)]
+)
+def test_a_share_of_g_is_a_unit(tmp_path, unit, in_g):
+    values = wiggle(200)
+    write_at2(tmp_path, "x_000.AT2", values / in_g, unit=f"ACCELERATION TIME SERIES IN UNITS OF {unit}")
+    (motion,) = read_motions(tmp_path, gravity=1.0).motions
+    assert np.allclose(motion.horizontal, values, atol=1e-6)
+
+
+def test_an_unknown_unit_gives_way_to_a_statement_and_cm_s_to_a_manifest_only(tmp_path):
+    for unit, study in (("FURLONGS", 1), ("CM/S", 0)):
+        write_at2(tmp_path, "x_000.AT2", wiggle(200), unit=f"TIME SERIES IN UNITS OF {unit}")
+        (refused,) = read_motions(tmp_path).unusable
+        assert "write unit = " in refused.reason
+        assert len(read_motions(tmp_path, options=ReadOptions(unit="g")).motions) == study
+        (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x_000.AT2"\nunit = "g"\n')
+        assert len(read_motions(tmp_path).motions) == 1
+        (tmp_path / "motions.toml").unlink()

@@ -271,7 +271,7 @@ def test_an_event_that_is_a_time_is_shown_as_one(tmp_path):
 
 def test_turned_pairs_of_a_station_keep_their_sensor_in_their_names(tmp_path):
     for direction, suffix in ((1, "NS1"), (2, "EW1"), (4, "NS2"), (5, "EW2")):
-        (tmp_path / f"TST.{suffix}").write_text(knet_text(str(direction))[0])
+        (tmp_path / f"TST.{suffix}").write_text(knet_text(str(direction), seed=direction % 3)[0])
     lines = [f'[[record]]\nfile = "TST.{suffix}"\nuse = true\nconfirm = true\n' for suffix in ("NS1", "EW1")]
     (tmp_path / "motions.toml").write_text("".join(lines))
     names = [motion.name for motion in read_motions(tmp_path, azimuths=(30.0,)).motions]

@@ -176,6 +176,7 @@ def test_a_second_that_is_cut_off_is_a_warning_and_more_waits():
             "no PGD",
             "vertical",
             "copy",
+            "cut",
         }
         notes = {note.partition(",")[0] for motion in found for note in motion.notes if "duration" in note}
         remarks.append((len(found.motions), said, len(notes)))

@@ -51,6 +51,48 @@ def test_these_columns_are_vertical_and_positive_down(label):
     assert (found.known, found.vertical, found.down) == (True, True, True)
 
 
+@pytest.mark.parametrize("label", ["F-L", "I-Z", "S-J", "K-Ny", "É-D", "V-J"])
+def test_pairs_of_letters_in_an_unknown_language_are_no_direction(label, tmp_path):
+    assert not orientation_in(label).known
+    write_text(tmp_path, f"{label}.csv")
+    assert "direction not known" in read_motions(tmp_path).unusable[0].reason
+
+
+def test_a_letter_before_a_direction_in_several_files_is_their_station(tmp_path):
+    for way in "NEZ":
+        write_text(tmp_path, f"A-{way}.csv")
+    assert [motion.vertical_source for motion in read_motions(tmp_path).motions] == ["A-Z.csv"] * 2
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "time (s),N (g),Z (positive down) (g)",
+        "time (s),N (g),Vertical (g) (+ is downward)",
+        "time[s],N[g],Vert (+ down) [g]",
+        "Column 1: Time (s)\nColumn 2: N (g) (+ is northward)\nColumn 3: Up-down acceleration (g) (+ is downward)",
+    ],
+)
+@pytest.mark.parametrize(("word", "sign"), [("down", -1.0), ("up", 1.0)])
+def test_a_sign_in_brackets_turns_a_vertical(tmp_path, head, word, sign):
+    head = (
+        head.replace("downward", f"{word}ward")
+        .replace("(positive down)", f"(positive {word})")
+        .replace("+ down", f"+ {word}")
+    )
+    write_text(tmp_path, "x.csv", 2, head)
+    (motion,) = read_motions(tmp_path).motions
+    assert motion.vertical is not None
+    assert np.allclose(motion.vertical, sign * 2.0 * motion.horizontal, atol=2e-4)
+
+
+def test_a_y_that_points_up_beside_z_is_asked_for(tmp_path):
+    write_text(tmp_path, "x.csv", 3, "t (s),X (g),Y up (g),Z (g)")
+    found = read_motions(tmp_path)
+    assert not found.motions
+    assert "one direction, but other samples" in found.unusable[1].reason
+
+
 @pytest.mark.parametrize(
     ("label", "azimuth"),
     [
@@ -157,6 +199,25 @@ def test_files_counted_from_008_are_numbers_and_perpendicular_pairs_azimuths():
         "GM_009",
         "GM_010",
     }
+
+
+@pytest.mark.parametrize("word", ["NEW", "CORRECTIONS", "DENVER", "GROUP"])
+def test_words_that_end_in_letters_of_a_direction_hide_none_beside_them(tmp_path, word):
+    for label in ("UP", "NS", "EW"):
+        write_text(tmp_path, f"{label}_{word}.csv")
+    found = read_motions(tmp_path)
+    assert sorted(m.azimuth for m in found.motions) == [0.0, 90.0]
+    assert {m.vertical_source for m in found.motions} == {f"UP_{word}.csv"}
+    assert not found.unusable
+
+
+def test_a_word_alone_that_ends_in_letters_of_a_direction_is_asked_for(tmp_path):
+    write_text(tmp_path, "STATIONS.csv")
+    write_text(tmp_path, "ORRDWN.csv")
+    assert [file.reason[:19] for file in read_motions(tmp_path).unusable] == ["direction not known"] * 2
+    write_text(tmp_path, "ORR021.csv")
+    (motion,) = read_motions(tmp_path).motions
+    assert motion.vertical_source == "ORRDWN.csv"
 
 
 def test_a_series_of_numbered_files_asks_though_single_numbers_could_be_azimuths(tmp_path):

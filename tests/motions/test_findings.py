@@ -251,7 +251,7 @@ def test_where_the_displacement_runs_away_there_is_no_pgd_and_it_is_said(tmp_pat
     assert told["stays"]["pgd_m"] > 0
     assert told["stays"]["findings"] == []
     assert told["runs"]["pgd_m"] is None
-    assert [finding["what"] for finding in told["runs"]["findings"]] == ["no PGD"]
+    assert [finding["what"] for finding in told["runs"]["findings"]] == ["cut", "no PGD"]
     assert any(note.startswith("no PGD: integrated displacement drifts to ") for note in told["runs"]["notes"])
 
 

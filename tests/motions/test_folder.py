@@ -279,6 +279,13 @@ def test_motions_of_one_name_get_their_folder_in_front(tmp_path):
     assert [motion.name for motion in read_motions(tmp_path).motions] == ["a/x", "b/x", "y"]
 
 
+def test_folders_of_one_name_are_told_apart_by_those_above(tmp_path):
+    for seed, folder in enumerate(("st1/acc", "st2/acc")):
+        write_at2(tmp_path / folder, "N.AT2", wiggle(200, seed), title="nothing")
+    found = read_motions(tmp_path)
+    assert [(m.name, m.of_station) for m in found.motions] == [("st1/acc/N", "acc st1"), ("st2/acc/N", "acc st2")]
+
+
 def test_all_missing_paths_are_one_error_with_suggestions(tmp_path):
     (tmp_path / "records").mkdir()
     with pytest.raises(InputError) as caught:

@@ -192,6 +192,13 @@ def test_sensors_side_by_side_of_opposite_sign_are_held_back(tmp_path, azimuth, 
     assert len(found) == (0 if wrong else 2)
 
 
+@pytest.mark.parametrize("factor", [1.0, -1.0, 4.0])
+def test_sensors_side_by_side_with_one_motion_under_two_azimuths_are_held_back(tmp_path, factor):
+    two_sensors(tmp_path, factor, noise=0.01, channel="HNE")
+    found = read_motions(tmp_path, options=ReadOptions(sensitivity=1e5))
+    assert ["one of their azimuths is wrong" in one.reason for one in found.unusable] == [True, True]
+
+
 @pytest.mark.parametrize(
     ("down", "factor", "agree"), [(False, 1.0, True), (False, -1.0, False), (True, 1.0, False), (True, -1.0, True)]
 )
@@ -210,7 +217,7 @@ def test_verticals_side_by_side_are_compared_as_positive_up(down, factor, agree)
         (1.05, 0.0, {}),
         (4.0, 0.5, {}),
         (4.0, 0.0, {"station": "OTHER"}),
-        (4.0, 0.0, {"channel": "HNE"}),
+        (4.0, 0.0, {"channel": "HN1"}),
         (4.0, 0.0, {"starttime": trace("HNN").stats.starttime + 3600}),
     ],
 )

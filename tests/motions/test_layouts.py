@@ -349,7 +349,7 @@ def test_no_unit_is_advised_that_makes_no_earthquake_of_the_numbers():
 @pytest.mark.parametrize(
     ("header", "columns", "pga"),
     [
-        ("t (s), NS (cm/s2), EW, UD (cm/s2)", (981.0 * A, 0.5 * B, 981.0 * C), 0.5 * np.abs(B).max()),
+        ("t (s), NS (cm/s2), EW, UD (cm/s2)", (98.1 * A, 0.5 * B, 98.1 * C), 0.5 * np.abs(B).max()),
         ("t (s), NS, EW (mg), UD", (0.5 * A, 1000.0 * B, 0.0 * C), 0.5 * np.abs(A).max()),
     ],
 )
@@ -378,3 +378,201 @@ def test_columns_of_one_file_may_be_stated_in_its_manifest(tmp_path):
     (motion,) = read_motions(tmp_path, gravity=1.0).motions
     assert (motion.azimuth, motion.vertical is not None) == (10.0, True)
     assert is_a(motion)
+
+
+# Velocities, displacements and counts
+
+
+@pytest.mark.parametrize("unit", ["cm/s", "M/S", "mm", "Counts", "V"])
+def test_a_unit_of_another_quantity_gives_way_to_a_manifest_only(tmp_path, unit):
+    for text in (
+        f"time (s),NS ({unit}),UD ({unit})\n" + in_columns(T, A, C),
+        f"unit: {unit}\nDT = 0.005 s\n" + in_columns(A),
+    ):
+        reason = why(tmp_path, text, unit="g")
+        assert f"numbers in {unit}, and accelerations are expected" in reason
+        assert "write unit = … for this file in motions.toml" in reason
+        (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x.txt"\nunit = "g"\n')
+        assert is_a(read(tmp_path, text).motions[0])
+        (tmp_path / "motions.toml").unlink()
+
+
+@pytest.mark.parametrize(
+    "line", ["Velocity time history", "Velocity record", "Displacement data", "Data type: velocity", "velocity"]
+)
+def test_a_header_of_velocities_above_bare_numbers_is_no_record(tmp_path, line):
+    text = f"Station X, 000\n{line}\nDT = 0.005 s\n" + in_columns(A)
+    assert "holds no accelerations" in why(tmp_path, text, unit="g")
+    assert is_a(only(tmp_path, text.replace(line, "Shear wave velocity: 360 m/s"), unit="g"))
+    assert is_a(only(tmp_path, text.replace("X, 000", "Acceleration"), unit="g"))
+
+
+@pytest.mark.parametrize(
+    ("acc", "vel", "disp"),
+    [
+        ("S_000_acc", "S_000_vel", "S_000_disp"),
+        ("acc_000", "velocity_000", "displacement_000"),
+        ("S052_A", "S052_V", "S052_D"),
+        ("s052a", "s052v", "s052d"),
+    ],
+)
+def test_files_called_velocity_and_displacement_beside_a_record_are_left_out(tmp_path, acc, vel, disp):
+    for name, values in ((acc, A), (vel, B), (disp, C)):
+        (tmp_path / f"{name}.txt").write_text(in_columns(values))
+    found = read_motions(tmp_path, options=ReadOptions(unit="g", dt=DT, role="horizontal"), gravity=1.0)
+    assert is_a(*found.motions)
+    assert not found.motions[0].vertical_source
+    assert {file.source: file.reason for file in found.left_out} == {
+        f"{vel}.txt": "no record: the velocity of a record",
+        f"{disp}.txt": "no record: the displacement of a record",
+    }
+
+
+def test_a_letter_v_without_a_and_d_beside_it_is_vertical(tmp_path):
+    for name, values in (("S052_L", A), ("S052_V", B), ("S052_T", C)):
+        (tmp_path / f"{name}.txt").write_text(in_columns(values))
+    found = read_motions(tmp_path, options=ReadOptions(unit="g", dt=DT), gravity=1.0)
+    assert [m.vertical_source for m in found.motions] == ["S052_V.txt"] * 2
+
+
+@pytest.mark.parametrize("heads", ["t a v d", "T A V D", "time acc vel dis", "t acc velocidad desplazamiento"])
+def test_columns_of_velocity_and_displacement_beside_an_acceleration_are_left_out(tmp_path, heads):
+    motion = only(tmp_path, heads + "\n" + in_columns(T, A, B, C, between=" "), unit="g")
+    assert is_a(motion)
+    assert motion.vertical is None
+    assert sum("left out" in note for note in motion.notes) == 2
+
+
+# What services and agencies write above their numbers
+
+
+def clock(i: int) -> str:
+    return f"2023-02-06T01:17:{35 + DT * i:09.6f}"
+
+
+@pytest.mark.parametrize("kind", ["TSPAIR", "SLIST", "GeoCSV", "JMA", "anc"])
+def test_headers_of_services_and_agencies_state_unit_step_and_count(tmp_path, kind):
+    head = f"TIMESERIES XX_S__HNE_D, {N} samples, 200 sps, 2023-02-06T01:17:35.000000, {kind}, FLOAT, CM/S**2\n"
+    words = [f"{a:+.6e}" for a in A]
+    times = "".join(f"{clock(i)}{{}}{a:.6f}\n" for i, a in enumerate(A))
+    text = {
+        "TSPAIR": head + times.replace("{}", "  "),
+        "SLIST": head + "".join("\t".join(words[i : i + 6]) + "\n" for i in range(0, N, 6)),
+        "GeoCSV": f"# dataset: GeoCSV 2.0\n# field_unit: UTC, CM/S**2\n# sample_count: {N}\n# sample_rate_hz: 200.0\n"
+        f"Time, Sample\n{times.replace('{}', ', ')}",
+        "JMA": f"SITE CODE= 47891\n SAMPLING RATE= 200Hz\n UNIT  = gal(cm/s/s)\n NS, UD\n{in_columns(A, B)}",
+        "anc": f"INTERVALO DE MUESTREO (SEGUNDOS): 0.005\nNUMERO DE DATOS: {N}\nUNIDADES: cm/s^2\n EW  VER\n"
+        + in_columns(A, B, between=" "),
+    }[kind]
+    motion = only(tmp_path, text)
+    assert motion.dt == DT
+    assert np.allclose(motion.horizontal, A / 100, atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("line", "azimuth", "vertical"),
+    [
+        ("Component: VERTICAL", None, True),
+        ("Component : N 12 E", 12.0, False),
+        ("Channel = HNZ", None, True),
+        ("Azimuth: 12", 12.0, False),
+        ("Componente: Vertical", None, True),
+        ("Direction: Up", None, True),
+    ],
+)
+@pytest.mark.parametrize("heads", ["time (s), acc (g)", "Acceleration in g"])
+def test_a_line_of_the_header_tells_the_direction_of_an_only_column(tmp_path, line, azimuth, vertical, heads):
+    (component,) = read_record(RecordFile(Path("x.txt"), "x.txt", f"{line}\n{heads}\n{in_columns(T, A)}".encode()))
+    assert (component.orientation.vertical, component.orientation.azimuth) == (vertical, azimuth)
+
+
+def test_a_vertical_by_its_header_under_a_horizontal_name_is_held_back(tmp_path):
+    (tmp_path / "x_090.txt").write_text(f"Component: UP\ntime (s), acc (g)\n{in_columns(T, A)}")
+    (refused,) = read_motions(tmp_path).unusable
+    assert 'its header says "UP", but its file is called "x_090.txt"' in refused.reason
+    (tmp_path / "x_090.txt").write_text(f"Component: 3\ntime (s), acc (g)\n{in_columns(T, A)}")
+    assert read_motions(tmp_path).motions[0].azimuth == 90.0
+
+
+# Time in another place, and columns that are none
+
+
+@pytest.mark.parametrize("per_line", [1, 3, 4])
+def test_pairs_with_the_value_first_are_recognised(tmp_path, per_line):
+    words = [f"{a:.6f} {t:.3f}" for t, a in zip(T, A, strict=True)]
+    text = "".join(" ".join(words[i : i + per_line]) + "\n" for i in range(0, N, per_line))
+    assert is_a(only(tmp_path, text, unit="g"))
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_a_column_that_grows_by_one_is_not_taken_for_seconds(tmp_path, first):
+    text = "".join(f"{i + first} {a:.6f}\n" for i, a in enumerate(A))
+    assert 'columns = ["-", "000"]' in why(tmp_path, text, unit="g")
+    assert is_a(only(tmp_path, text, unit="g", columns=("-", "000"), dt=DT))
+    assert only(tmp_path, text, unit="g", columns=("time", "000")).dt == 1.0
+    text = in_columns(np.arange(N) + first, A, B, C, between=" ")
+    assert 'columns = ["-", "000", "090", "up"]' in why(tmp_path, text, unit="g")
+
+
+def test_the_column_of_time_is_advised_where_it_stands(tmp_path):
+    reason = why(tmp_path, in_columns(A, B, C, T, between=" "), unit="g")
+    assert 'write columns = ["000", "090", "up", "time"] if these' in reason
+    assert ",," not in why(tmp_path, in_columns(A, B, C, between=" "), unit="g")
+
+
+# What headers state of the numbers
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["Scale factor: 0.5", "scale_factor = 0.5", "Factor de escala 0.5", "Acceleration in g x 0.5", "Scaling factor=.5"],
+)
+def test_a_factor_in_the_header_is_asked_for_and_a_manifest_answers(tmp_path, line):
+    text = f"{line}\nunits: g\nDT = 0.005 s\n{in_columns(A)}"
+    reason = why(tmp_path, text)
+    assert "write scale = " in reason
+    for factor in (0.5, 1.0):
+        (tmp_path / "motions.toml").write_text(f'[[record]]\nfile = "x.txt"\nscale = {factor}\n')
+        (motion,) = read(tmp_path, text).motions
+        assert np.allclose(motion.horizontal, factor * A, atol=1e-9)
+    (tmp_path / "motions.toml").unlink()
+    for applied in ("0.5", ".5"):
+        text = text.replace(applied, "1.0") if applied in line else text
+    assert is_a(only(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("line", "what"),
+    [
+        ("PGA (g): 0.72", "peak"),
+        ("PGA: 72 cm/s2", "peak"),
+        ("Peak acceleration = -0.72 g", "peak"),
+        ("Max. acc. = 0.72", "peak"),
+        ("Duration (s): 2.03", "duration"),
+        ("Record length = 2.03 sec", "duration"),
+    ],
+)
+def test_a_peak_and_a_duration_in_the_header_are_compared_with_the_samples(tmp_path, line, what):
+    text = f"{line}\nunits: g\nDT = 0.005 s\n{in_columns(A)}"
+    assert [finding.what for finding in only(tmp_path, text).findings] == [what]
+    right = text.replace("0.72", "0.36").replace("72 cm", "36 cm").replace("2.03", "1.015")
+    assert only(tmp_path, right).findings == ()
+
+
+def test_a_manifest_s_step_is_believed_before_the_header_s(tmp_path):
+    text = f"INTERVALO DE MUESTREO (SEGUNDOS): 200\nunits: g\n{in_columns(A)}"
+    assert "a sampling interval of 200 s" in why(tmp_path, text)
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x.txt"\ndt = 0.005\n')
+    assert is_a(read(tmp_path, text).motions[0])
+
+
+def test_columns_of_several_stations_in_one_file_are_told_apart_by_their_names(tmp_path):
+    heads = ",".join(f"{station}_{way} (g)" for station in ("AAA", "BBB") for way in ("HNE", "HNN", "HNZ"))
+    values = [np.round(wiggle(N, seed, 0.3), 6) for seed in range(11, 17)]
+    found = read(tmp_path, f"time (s),{heads}\n{in_columns(T, *values)}")
+    assert [(m.of_station, m.vertical_source) for m in found.motions] == [
+        *[("AAA", "x.txt (AAA_HNZ)")] * 2,
+        *[("BBB", "x.txt (BBB_HNZ)")] * 2,
+    ]
+    found = read(tmp_path, f"time (s),{heads.replace('BBB', 'AAA')}\n{in_columns(T, *values)}")
+    assert not found.motions  # one direction twice of one station

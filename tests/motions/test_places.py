@@ -1,7 +1,7 @@
 """Where a sensor stands: texts as agencies write them, in several languages, on structures, in boreholes and on the ground."""
 
 import pytest
-from fixed_column_files import csmip_channel
+from fixed_column_files import cosmos_text, csmip_channel
 from motion_files import wiggle, write_at2
 
 from rockbatch.motions import ReadOptions, read_motions
@@ -34,6 +34,12 @@ ON_STRUCTURES = (
     "Stepsi", "okujo", "屋上", "3F", "RF", "5階", "橋脚", "Qiaodun", "bading", "坝顶", "免震層", "12 m above ground",
     "Top Floor", "Upper Deck", "Bent cap", "Pile-cap", "Footing (Pier 3)", "Col. B4 base", "Abtmt 2", "Ftng, Bent 5",
     "Ground level of pier", "Ground floor of tower", "Grnd Lvl, column 3",
+    "Edificio, tercer piso", "Quinto nivel", "Piso tercero", "Corona de la cortina", "Losa 2", "Laje", "Secondo piano",
+    "Terzo livello", "Campanile", "Dernier étage", "Troisième étage", "Zweites Stockwerk", "Brückenüberbau Feldmitte",
+    "Staumauer", "Üçüncü kat", "En üst kat", "Köprü tabliyesi", "Minare", "Γέφυρα, βάθρο", "τρίτος όροφος", "三階", "第三层",
+    "五楼", "третий этаж", "derde verdieping", "etaj 3", "Acoperiș bloc", "Lantai 5", "Atap gedung", "طبقه سوم", "تاج سد",
+    "střecha", "krov zgrade", "tető", "גג", "Terrace", "Soffit of span 2",
+    "Roof center", "Crest Center", "Deck centre",
 )
 ON_GROUND = (
     "Freefield", "Free field, 100 m from the deck", "Ground floor", "1st Floor", "Basement", "Ground - N of pier 2",
@@ -46,7 +52,8 @@ ON_GROUND = (
     "Toe - downstream", "FF", "Ground - 20m S of Abut 1", "Basement; center", "Slab on grade", "Campo libero",
     "Surface", "Concrete pad", "Level -1", "Grnd Lvl near Bent 3", "Free Field - N of Bent 3", "Base: center",
     "1st Floor: SE corner", "Surface, near abutment", "Embankment toe", "Terreno a 20 m de pila 3",
-    "Suelo junto a pila 2", "Grade, 15 ft from column",
+    "Suelo junto a pila 2", "Grade, 15 ft from column", "Primer piso", "Primo piano", "Erster Stock", "一階", "地下二階", "1楼",
+    "etaj 1", "Lantai 1", "birinci kat", "первый этаж",
 )
 BELOW = (
     "Downhole", "Downhole 30 m", "DH 30m", "Dwnhl", "Borehole", "Depth 30 m", "30 m depth", "30m deep", "-30 m",
@@ -70,7 +77,8 @@ STATIONS_ON_GROUND = (
     "Krestena", "Alta 5 m", "Palo Alto", "East Palo Alto", "Palos Verdes", "La Cresta", "Zapata", "Santa Pila",
     "Shi Zhuang", "Chimney Rock", "San Pedro - Palos Verdes", "Lagerheim", "Bridge Street Fire Sta",
     "Columbia - Airport", "Santa Cruz Pier", "Bent Creek", "Stone Tower Inn", "Wall Springs", "Piermont",
-    "Top of the World", "Terrasse-Vaudreuil", "Remblai", "Damm",
+    "Top of the World", "Terrasse-Vaudreuil", "Remblai", "Damm", "Terrace", "Quinto", "Segundo Ruiz Belvis", "San Pietro 2",
+    "Cortina d'Ampezzo", "Losa del Obispo",
 )
 STATIONS_ON_STRUCTURES = (
     "Madeup Dam L Abut", "Madeup Dam - Southwest Abutment", "Dam (crest)", "Dam, Crest", "ELAZIG KEBAN (KRET-CREST)",
@@ -155,6 +163,48 @@ def test_a_depth_in_station_xml_or_sac_is_that_of_a_borehole(tmp_path, depth, us
     found = read_motions(tmp_path, options=ReadOptions(unit="g"))
     assert len(found) == 2 * used
     assert all('"depth 30 m" is in a borehole' in one.reason for one in found.unusable)
+
+
+@pytest.mark.parametrize(
+    ("site", "place", "words"),
+    [
+        ("Atwood Bldg", "Roof, NE corner", "Roof, NE corner"),
+        ("Lower Dam, Crest", "", "Lower Dam, Crest"),
+        ("Array", "Borehole", "Borehole"),
+        ("Tower Rd", "Kinemetrics Episensor", ""),
+    ],
+)
+def test_a_structure_in_the_words_of_station_xml_is_told(tmp_path, site, place, words):
+    from waveform_files import channel_xml, station_xml, trace, write_mseed
+
+    write_mseed(tmp_path / "n.mseed", trace("HNN"))
+    channel = channel_xml("HNN").replace("<Azimuth>", f"<Description>{place}</Description><Azimuth>")
+    station_xml(tmp_path, f"<Site><Name>{site}</Name></Site>", channel)
+    found = read_motions(tmp_path)
+    assert (len(found.motions), len(found.unusable)) == ((0, 1) if words else (1, 0))
+    assert all(one.reason.startswith(f'"{words}" is in a ') for one in found.unusable)
+
+
+@pytest.mark.parametrize(
+    ("code", "place", "used"),
+    [
+        (10, "Chan 5", 0),
+        (11, "", 0),
+        (12, "NE corner", 0),
+        (11, "Free Field", 1),
+        (10, "Basement", 1),
+        (1, "Chan 5", 1),
+    ],
+)
+def test_the_type_of_a_cosmos_station_tells_a_structure_where_its_words_do_not(tmp_path, code, place, used):
+    values = wiggle(400, scale=90.0)
+    head, integers, *remainder = cosmos_text(values, location=place or " ").partition("Format= (10I8)\n")
+    numbers = remainder[0]
+    changed = numbers[: 8 * 10 + 1 + 8 * 8] + f"{code:8d}" + numbers[8 * 10 + 1 + 8 * 9 :]
+    (tmp_path / "x.V1c").write_text(head + integers + changed, encoding="latin-1")
+    found = read_motions(tmp_path)
+    assert len(found.motions) == used
+    assert used or "structure" in only_reason(found)
 
 
 def test_a_dam_s_toe_and_crest_are_told_apart_by_the_station_of_an_at2_file(tmp_path):

@@ -9,7 +9,8 @@ from contradictions import CONTRADICTIONS, read_as
 
 from rockbatch.motions import read_motions
 
-PEAKS = [wrong for wrong in CONTRADICTIONS if wrong.statement == "peak"]
+# in text columns a peak is a warning at most
+PEAKS = [wrong for wrong in CONTRADICTIONS if wrong.statement == "peak" and wrong.header.format != "text columns"]
 
 
 @pytest.mark.parametrize("wrong", PEAKS, ids=lambda wrong: wrong.header.format)

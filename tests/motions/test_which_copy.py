@@ -247,3 +247,16 @@ def test_copies_by_a_factor_under_other_names_are_all_used_and_say_so(tmp_path):
     assert len(found.motions) == 2
     assert len({motion.station for motion in found.motions}) == 1
     assert [[finding.what for finding in motion.findings] for motion in found.motions] == [["factor"], ["factor"]]
+
+
+@pytest.mark.parametrize("factor", [1.0, 9.81, -1.0])
+@pytest.mark.parametrize("second", [title("0"), "nothing"])
+def test_copies_with_another_step_are_held_back_and_each_step_is_named(tmp_path, factor, second):
+    values = wiggle(400)
+    write_at2(tmp_path / "a", "x000.AT2", values, title=title("0"))
+    write_at2(tmp_path / "b", "y000.AT2", factor * values, dt=".0050", title=second)
+    found = read_motions(tmp_path)
+    assert not found.motions
+    steps = [reason.partition("with a step of ")[2][:5].strip() for reason in (one.reason for one in found.unusable)]
+    assert steps == ["0.005", "0.01"]
+    assert not any("other samples" in one.reason for one in found.unusable)

@@ -55,7 +55,8 @@ def with_advice(error: Unstated, read: Read, options: ReadOptions, gravity: floa
             advice.append(_advice_text(choice, trial, max((c.pga for c in without_unit), default=0.0), gravity))
     problem = "; ".join(error.messages)
     if advice:
-        message = f"{problem}; write {', or '.join(advice)} {where}"
+        choices_in_words = ", or ".join([*(text.rstrip(",") for text in advice[:-1]), advice[-1]])
+        message = f"{problem}; write {choices_in_words} {where}"
     else:
         message = f"{problem}; what could be stated makes no record of it: {trials[0].refusal}"
     stated = dict.fromkeys(key for trial in trials for key in (*trial.stated, *error.keys) if trial.components)

@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from rockbatch.common.errors import InputError, NoRecord, NoUnit, Truncated
-from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import Component, Sensor
+from rockbatch.motions.formats.column_header import believed_unit, is_acceleration, is_of_another_quantity
 from rockbatch.motions.formats.fixed_width import (
     LOOKED_AT,
     aligned_numbers,
@@ -25,7 +25,7 @@ from rockbatch.motions.limits import MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import orientation_of
 from rockbatch.motions.origin import origin_of
-from rockbatch.motions.record_file import RecordFile
+from rockbatch.motions.record_file import RecordFile, no_acceleration
 
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[ED][-+]?\d+)?"
 _COUNT_AND_STEP = (
@@ -33,7 +33,7 @@ _COUNT_AND_STEP = (
     re.compile(rf"^\s*(?P<npts>\d+)\s*,?\s+(?P<dt>{_NUMBER})\s*,?\s*NPTS\s*,?\s*DT\b", re.IGNORECASE),
     re.compile(rf"\bNPTS\s*,\s*DT\s*[=:]?\s*(?P<npts>\d+)[,\s]+(?P<dt>{_NUMBER})", re.IGNORECASE),
 )
-_UNIT = re.compile(r"\bUNITS?\s*(?:OF|[=:])\s*\(?\s*([A-Z0-9/*^²]+)", re.IGNORECASE)
+_UNIT = re.compile(r"\bUNITS?\s*(?:OF|[=:])\s*\(?\s*((?:[0-9.]+ )?[A-Z0-9./*^²%]+)", re.IGNORECASE)
 _IN_G = re.compile(r"\(\s*(g)\s*\)", re.IGNORECASE)  # in common copies of El Centro 1940
 _MONTH = r"(?:jan|feb|mar|apr|may|jun|jul|aug|sep|oct|nov|dec)[a-z]*\.?"
 _DATE = re.compile(
@@ -80,13 +80,13 @@ def read_component(file: RecordFile) -> list[Component | Unusable]:
     Raises ``InputError`` for an incomplete file, one of velocities or displacements, or without a unit that is known or stated.
     """
     (recording,) = _parse(file.data.decode("latin-1"))
-    unit = recording.unit or file.options.unit
+    unit = believed_unit(recording.unit, file.options)
     if unit is None:
         raise NoUnit('no unit in the header ("… IN UNITS OF G")')
-    try:
-        acceleration_factor(unit, file.gravity)
-    except ValueError as error:
-        raise InputError(f"header: {error}") from None
+    if is_of_another_quantity(unit):
+        raise no_acceleration("it, by its header,", f"numbers in {unit}")
+    if not is_acceleration(unit):
+        raise NoUnit(f'the unit "{unit}" of its header is not known')
     notes = (*recording.notes, *file.options.overruled(unit, recording.dt, file.gravity))
     return to_components(file, [replace(recording, unit=unit, notes=notes)])
 
@@ -120,7 +120,7 @@ def _parse(text: str) -> list[Recording]:
             label=component,
             dt=dt,
             values=_values(without_end_marks(text), sum(map(len, lines[: first + 1])), npts),
-            unit=unit[1] if unit else "",
+            unit=unit[1].rstrip(".") if unit else "",
             station=", ".join(part.upper() for part in (event, date, station)) if station and date else "",
             sensor=Sensor(station.upper()),
             event=f"{event} {date}" if date else "",

@@ -1,14 +1,18 @@
 """Headers of tables, as people and programs write them: columns, units, count, interval."""
 
+import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.common.units import acceleration_factor, length_factor
+from rockbatch.motions.direction_words import folded
+from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.limits import HUGE, SAME_STEP
 from rockbatch.motions.orientation import orientation_in, orientation_of
+from rockbatch.motions.record_file import ReadOptions
 
 _SECOND = "s sec secs second seconds sek sekunde sekunden seg segundo segundos seconde secondes secondo secondi sn saniye сек 秒"
 SECONDS = dict.fromkeys(_SECOND.split(), 1.0) | {"ms": 1e-3, "msec": 1e-3}
@@ -18,8 +22,15 @@ SECONDS = dict.fromkeys(_SECOND.split(), 1.0) | {"ms": 1e-3, "msec": 1e-3}
 _SLOWEST = 1.0  # Hz: a lower "rate" is probably an interval
 _RATE_UNITS = ("hz", "sps", "samples/sec", "samples/s", "pts/sec", "points/sec", "1/s")
 _SAMPLE = r"sampl(?:e|es|ing)[ _-]?"
-_INTERVAL = rf"dt|delta ?t|Δt|time[ _-]?(?:step|increment|interval)|{_SAMPLE}(?:interval|period|step|time)"
-_RATE = rf"{_SAMPLE}(?:rate|freq(?:uency)?)|samples[ _-]per[ _-]sec(?:ond)?|sps"
+_INTERVAL = (
+    rf"dt|delta ?t|Δt|time[ _-]?(?:step|increment|interval)|{_SAMPLE}(?:interval|period|step|time)|"
+    "intervalo? de (?:muestreo|tiempo|amostragem)|paso de tiempo|pas d['e] ?(?:temps|[eé]chantillonnage)|"
+    "passo di campionamento|intervallo di campionamento|abtastintervall|zeitschritt|örnekleme aral[iı]ğ[iı]"
+)
+_RATE = (
+    rf"{_SAMPLE}(?:rate|freq(?:uency)?)|samples[ _-]per[ _-]sec(?:ond)?|sps|(?:frecuencia|tasa) de muestreo|"
+    "taxa de amostragem|fr[eé]quence d'[eé]chantillonnage|frequenza di campionamento|abtastrate|örnekleme frekans[iı]"
+)
 _SPACED = r"(?:equally[ _-])?spaced at|(?:equal|time|sec) intervals? of|at intervals? of"
 _STEP_UNITS = "|".join(re.escape(unit) for unit in sorted((*SECONDS, *_RATE_UNITS), key=len, reverse=True))
 _STEP = re.compile(
@@ -42,7 +53,20 @@ _VALUE = re.compile(
 )  # the last alternative is a keyword of MIDAS or Abaqus
 _KEYED = re.compile(r"[^()\[\],;\t]*[:=]|\*[A-Za-z&-]+ *,")  # "File type: accelerations (g)" is no label
 _COMPONENTS = re.compile(r"^(?:components?|channels?|columns)\s*[:=]\s*(?P<labels>\S.*)$", re.IGNORECASE)
-_STATED = re.compile(r"^units?\s*[:=]\s*(?P<unit>\S+)", re.IGNORECASE)
+_DIRECTION = re.compile(
+    r"^(?P<key>comp(?:onent)?|channel|direction|orientation|azimuth|componente|direcci[oó]n|canal|composante|richtung|"
+    r"komponente|bile[sş]en)\.?(?: (?:name|code))?\s*[:=]\s*(?P<label>\S.*?)\s*$",
+    re.IGNORECASE,
+)
+_STATED = re.compile(
+    r"^(?:units?|field[_]unit|unidad(?:e?s)?|unidade|unit[ée]s?|unit[àa](?: di misura)?|einheit(?:en)?|birimi?|eenheid)"
+    r"\s*[:=]\s*(?:UTC,\s*)?(?P<unit>\S+)",
+    re.IGNORECASE,
+)
+_OF_SERVICE = re.compile(  # of EarthScope's time series, in pairs or lists
+    r"^TIMESERIES\s+\S+,\s*(?P<npts>\d{1,9}) samples,\s*(?P<rate>[\d.]{1,12}) sps,.*,\s*(?P<unit>[^\s,]+)$",
+    re.IGNORECASE,
+)
 _SAID = re.compile(  # acceleration in g; UNITS OF CM/S/S; Acceleration unit: gal; Acc. (cm/s2)
     r"(?:\bunits? of|\b(?:acc|accel|acceleration|amplitude|data)s?\.?(?:[ _]*(?:data|values|units?|time series|time history))?"
     r"\s*(?:\bin\b(?: units? of)?|[:=(\[]))\s*(?P<unit>[^\s,;()\[\]]+)",
@@ -50,7 +74,32 @@ _SAID = re.compile(  # acceleration in g; UNITS OF CM/S/S; Acceleration unit: ga
 )
 _PEAK = re.compile(r"\b(?:pga|peak|max(?:imum)?)\b", re.IGNORECASE)
 _COUNT = re.compile(
-    r"\b(?:npts|(?:number|no\.?) of (?:points|samples))\s*[:=]?\s*(?P<npts>[0-9]{1,12})\b", re.IGNORECASE
+    r"\b(?:npts|sample[_]count|(?:number|no\.?) of (?:points|samples)|n[uú]mero de (?:datos|muestras|puntos|dados|amostras))"
+    r"\s*[:=]?\s*(?P<npts>[0-9]{1,12})\b",
+    re.IGNORECASE,
+)
+_OF_PEAK = re.compile(
+    r"\b(?:pga|(?:peak|max(?:imum)?\.?)(?: ground)? acc[a-z]*\.?)\s*(?:[(\[](?P<before>[^)\]]*)[)\]])?\s*[:=]\s*"
+    r"(?P<number>[-+]?\d*\.?\d+(?:e[-+]?\d+)?)\s*(?P<behind>[^\s,;]*)",
+    re.IGNORECASE,
+)
+_OF_DURATION = re.compile(
+    r"(?:^|[,;] *)(?:total |record )?(?:duration|record length|duraci[oó]n|dauer)"
+    r"\s*(?:[(\[]\s*(?:s|secs?|seconds|segundos)\s*[)\]])?\s*[:=]\s*(?P<number>\d*\.?\d+)(?=\s*(?:$|[,;]|(?:s|secs?|seconds|segundos)\b))",
+    re.IGNORECASE,
+)
+_OF_FACTOR = re.compile(
+    r"(?:\b(?:scale|scaling|multiplication|conversion)[ _]?factor\s*[:=]?|\bfactor de escala\s*[:=]?"
+    r"|\b(?:g|gals?|cm/s/s|[cm]?m/s\^?2)\s*[x×*])\s*(?P<number>\d*\.?\d+(?:e[-+]?\d+)?)",
+    re.IGNORECASE,
+)
+_BEYOND_ROUNDING = {"peak": (0.05, math.inf), "duration": (0.01, math.inf)}  # of another stage of processing, perhaps
+_POSITIVE_DOWN = re.compile(  # behind a label, and perhaps its unit: Up-down (cm/s/s) (+ is downward)
+    r"(?P<unit>\s*[(\[][^()\[\]]*[)\]])?\s*[(\[]\s*(?:\+|positive|pos\.?)\s*(?:is|:|=)?\s*(?:down(?:wards?)?|dwn)\s*[)\]]",
+    re.IGNORECASE,
+)
+_POSITIVE = re.compile(
+    r"\s*[(\[]\s*(?:\+|positive|pos\.?)\s*(?:is|:|=)?\s*(?:up|north|east)(?:wards?)?\s*[)\]]", re.IGNORECASE
 )
 _SHORT = {"NORTHSOUTH": "NS", "EASTWEST": "EW", "UPDOWN": "UD"}
 _TIME = {"time", "times", "elapsed", "elapsedtime", "zeit", "tiempo", "temps", "tempo", "zaman", "時間", "时间"}
@@ -72,10 +121,22 @@ _FREQUENCIES = {"FREQ", "FREQS", "FREQUENCY", "FREQUENCIES", "HZ", "OMEGA"}
 _PER_SECOND = {"hz", "1/s", "rad/s", "rad/sec"}
 _ORDINATE = re.compile(r"P?S[AVD]E?|PSEUDO|SPECTR(?:AL|UM|A)|ROTD\d+|GMROT[DI]\d+|FAS|FOURIER", re.IGNORECASE)
 _SPECTRA = re.compile(r"\b(?:(?i:spectr(?:al|um|a)|fourier)|PSA|Sae?|FAS)\b")
+_VELOCITY = "VEL VELO VELOC VELOCITY VELOCITIES VELOCIDAD VELOCIDADE VELOCITA VITESSE GESCHWINDIGKEIT HIZ"
+_DISPLACEMENT = (
+    "DIS DISP DISPL DISPLACEMENT DISPLACEMENTS DESPLAZAMIENTO DESLOCAMENTO SPOSTAMENTO DEPLACEMENT VERSCHIEBUNG DEPLASMAN "
+    "YERDEGISTIRME"
+)
 _OTHERS = {
-    **dict.fromkeys(("VEL", "VELO", "VELOC", "VELOCITY"), "velocity"),
-    **dict.fromkeys(("DISP", "DISPL", "DISPLACEMENT"), "displacement"),
+    **dict.fromkeys(_VELOCITY.split(), "velocity"),
+    **dict.fromkeys(_DISPLACEMENT.split(), "displacement"),
 }
+_BY_LETTER = {"A": "acceleration", "V": "velocity", "D": "displacement"}
+_COUNTS = {"count", "counts", "ct", "cts", "v", "mv", "volt", "volts"}
+_OTHER_SERIES = re.compile(
+    r"\b(?:velocity|displacement)\b(?= *(?:[(\[]|(?:time|histor|series|data|record|trace|in\b)))|^(?:velocity|displacement)$"
+    r"|\b(?:quantity|type)\s*[:=]\s*(?:vel|disp)\w*",
+    re.IGNORECASE,
+)
 
 
 @dataclass(frozen=True)
@@ -115,7 +176,14 @@ class Column:
     @property
     def _words(self) -> set[str]:
         """Return the words of its label in capitals."""
-        return {word.upper() for word in re.findall(r"[A-Za-z]+\d*", self.label)}
+        return set(re.findall(r"[A-Z]+\d*", folded(self.label)))
+
+
+def with_quantities(columns: Sequence[Column]) -> list[Column]:
+    """Return the columns, those called V and D beside an A as velocity and displacement: V is no vertical one there."""
+    if not _BY_LETTER.keys() <= {column.label.upper() for column in columns}:
+        return list(columns)
+    return [replace(column, label=_BY_LETTER.get(column.label.upper(), column.label)) for column in columns]
 
 
 def spectrum_in(columns: Sequence[Column]) -> str:
@@ -188,6 +256,17 @@ def _is_of_motion(unit: str) -> bool:
     return length_factor(length) is not None and (not slash or time in SECONDS)
 
 
+def spelled_out(line: str) -> list[str]:
+    """Return a header line, and what it states without names, as lines that do; signs in brackets are in its labels.
+
+    "TIMESERIES XX_AAA__HNE_D, 3000 samples, 100 sps, …, M/S**2" has a count, a rate and a unit; "Z (positive down)" is Z-down.
+    """
+    service = _OF_SERVICE.match(line)
+    if service is None:
+        return [_POSITIVE.sub("", _POSITIVE_DOWN.sub(lambda match: f"-down{match['unit'] or ''}", line))]
+    return [line, f"NPTS = {service['npts']}", f"sampling rate = {service['rate']} Hz", f"unit: {service['unit']}"]
+
+
 def without_index_name(header: Sequence[str]) -> list[str]:
     """Return the header lines that begin with the name of a row index, "", "index" or "No.", without that name."""
     return [_INDEX.sub("", line) for line in header if _INDEX.match(line)]
@@ -234,9 +313,28 @@ def _column(match: re.Match[str]) -> Column:
     return Column(_short_label(label), unit)
 
 
+def other_series(header: Sequence[str]) -> str:
+    """Return the first header line that calls the samples velocities or displacements; "" if none does, or one accelerations."""
+    if any(re.search(r"\bacc", line, re.IGNORECASE) for line in header):
+        return ""
+    return next((line for line in header if _OTHER_SERIES.search(line.strip())), "")
+
+
 def line_about_spectra(header: Sequence[str]) -> str:
     """Return the first header line with a word for spectra; empty without one."""
     return next((line for line in header if _SPECTRA.search(line)), "")
+
+
+def stated_direction(header: Sequence[str]) -> str:
+    """Return the direction in a line such as ``Component: N 12 E``, ``Channel = HNZ`` or ``Azimuth: 12``; "" without one.
+
+    Numbers of components and channels are none.
+    """
+    for match in filter(None, map(_DIRECTION.match, header)):
+        label = f"{match['label']} deg" if match["key"].lower() == "azimuth" else match["label"]
+        if orientation_in(label).known:
+            return label
+    return ""
 
 
 def stated_unit(header: Sequence[str]) -> str | None:
@@ -250,8 +348,25 @@ def stated_unit(header: Sequence[str]) -> str | None:
             raise NoRecord(f'found "{midas[0]}"; expected accelerations, *UNIT&TYPE, GRAV, ACCEL')
         return _MIDAS_UNITS.get(midas["unit"].upper(), midas["unit"])
     stated = next((match["unit"].rstrip(".,;") for line in header if (match := _STATED.match(line))), None)
+    if stated and is_acceleration(first := stated.partition("(")[0]):  # gal(cm/s/s)
+        return first
     units = (match["unit"].rstrip(".") for line in header if not _PEAK.search(line) for match in _SAID.finditer(line))
     return stated or next((unit for unit in units if is_acceleration(unit)), None)
+
+
+def is_of_another_quantity(unit: str) -> bool:
+    """Return whether a unit is one of velocity or displacement, or of counts and volts: "cm/s", "Counts"."""
+    return _is_of_motion(unit) or unit.strip().lower() in _COUNTS
+
+
+def believed_unit(own: str | None, options: ReadOptions) -> str | None:
+    """Return the unit that a file states, or the study's if it states none that is known; one of another quantity stays.
+
+    Such a unit, as cm/s or counts, gives way only to a manifest's for this file.
+    """
+    if own and (is_acceleration(own) or (is_of_another_quantity(own) and "unit" not in options.instead)):
+        return own
+    return options.unit or own
 
 
 def is_acceleration(unit: str) -> bool:
@@ -261,6 +376,23 @@ def is_acceleration(unit: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+def stated_of_samples(header: Sequence[str]) -> tuple[Stated, ...]:
+    """Return what lines such as ``PGA: 312.4 cm/s2`` and ``Duration (s) = 60`` state of the samples; a warning at most."""
+    statements = []
+    for quantity, pattern in (("peak", _OF_PEAK), ("duration", _OF_DURATION)):
+        for match in (match for line in header for match in pattern.finditer(line)):
+            units = (match["behind"], match["before"]) if quantity == "peak" else ()
+            unit = next((unit for unit in units if unit and is_acceleration(unit)), "")
+            statements.append(Stated(quantity, match["number"], unit, limits=_BEYOND_ROUNDING[quantity]))
+    return tuple(statements)
+
+
+def stated_factor(header: Sequence[str]) -> str:
+    """Return the factor other than 1 in a line such as ``Scale factor: 0.5`` or ``acceleration in g x 0.001``; "" without one."""
+    numbers = (match["number"] for line in header for match in _OF_FACTOR.finditer(line))
+    return next((number for number in numbers if float(number) not in (0.0, 1.0)), "")
 
 
 def stated_count(header: Sequence[str]) -> int | None:

@@ -11,31 +11,38 @@ from dataclasses import replace
 import numpy as np
 
 from rockbatch.common.errors import Contradiction, InputError, NoRecord, NoStep, NoUnit, Unstated
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.evidence import Kind
 from rockbatch.motions.formats.clock_times import in_seconds
 from rockbatch.motions.formats.column_header import (
     Column,
     StatedStep,
+    believed_unit,
     columns_with_units,
     columns_without_units,
     is_acceleration,
+    is_of_another_quantity,
     line_about_spectra,
+    other_series,
     seconds_in,
     spectrum_in,
     stated_count,
+    stated_direction,
+    stated_factor,
+    stated_of_samples,
     stated_step,
     stated_unit,
+    with_quantities,
     without_index_name,
 )
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
-from rockbatch.motions.limits import SAME_STEP
+from rockbatch.motions.limits import SAME_STEP, is_step
 from rockbatch.motions.motion import Samples, Unusable
-from rockbatch.motions.orientation import orientation_in, same_azimuth
-from rockbatch.motions.record_file import ReadOptions, RecordFile, text_of
+from rockbatch.motions.orientation import orientation_in, same_azimuth, split_stem
+from rockbatch.motions.record_file import ReadOptions, RecordFile, no_acceleration, text_of
 
 _COMPONENTS = ("000", "090", "up")
 _GROWING = 0.9  # of the steps of a column of time; those of an acceleration grow half the time
@@ -77,8 +84,22 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
             overruled = file.options.overruled(recording.unit, recording.dt, file.gravity)
             recordings[i] = replace(recording, notes=(*recording.notes, *overruled))
     if len(recordings) > 1:
-        return to_components(file, [replace(recording, station=file.stem) for recording in recordings])
+        return to_components(file, _by_station(recordings, file.stem))
     return to_components(file, recordings)
+
+
+def _by_station(recordings: Sequence[Recording], stem: str) -> list[Recording]:
+    """Return the columns of a file called ``stem`` as of one station, or of those before their directions: AAA_HNE, BBB_HNE.
+
+    They are of several stations if directions repeat, but not within any of them.
+    """
+    sites = [split_stem(recording.label) for recording in recordings]
+    ways = [(site, way.vertical, way.azimuth, way.azimuth is None and way.label) for site, way in sites if way]
+    several = len({site for site, *_ in ways}) > 1 and len({way[1:] for way in ways}) < len(ways) == len(set(ways))
+    if not several or len(ways) < len(recordings) or not all(site for site, _ in sites):
+        return [replace(recording, station=stem) for recording in recordings]
+    named = zip(recordings, sites, strict=True)
+    return [replace(r, station=f"{stem}, {site}", sensor=Sensor(site.upper())) for r, (site, _) in named]
 
 
 def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[Recording]:
@@ -95,16 +116,19 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
     count = stated_count(header)
     if count is not None and count != len(table):
         raise InputError(f"the header says {count} samples, but there are {len(table)} rows; fetch the file again")
-    unit = stated_unit(header)
-    if unit is None or not is_acceleration(unit):  # an unknown unit counts as none
-        unit = options.unit or unit
+    _refuse_factor(header, options)
+    unit = believed_unit(stated_unit(header), options)
     not_acceleration = [i for i, column in enumerate(columns) if column.other]
     used = [i for i, column in enumerate(columns) if not (column.is_time or column.other or column.label == "-")]
+    columns = _with_direction(columns, used, header)
     units = {i: _unit_of(columns[i], unit, options) for i in used}
     known = any(map(is_acceleration, units.values()))  # then another unit makes only its own column unusable
     lacking = [
         _missing_unit(i, columns[i], units[i]) for i in used if not (units[i] if known else is_acceleration(units[i]))
     ]
+    other = next((i for i in used if units[i] and is_of_another_quantity(units[i])), None)
+    if lacking and other is not None:
+        raise no_acceleration(_column_name(other, columns[other]), f"numbers in {units[other]}")
     if lacking:
         untimed = not (stated_step(header) or options.dt or any(column.is_time for column in columns))
         message = "; ".join(lacking)
@@ -124,20 +148,33 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
             values=values[:, i],
             unit=units[i],
             start=start,
+            stated=stated_of_samples(header) if len(used) == 1 else (),
             notes=(*notes, *omitted, *moved),
         )
         recordings.append(recording)
     return recordings
 
 
-def _unit_of(column: Column, of_all: str | None, options: ReadOptions) -> str:
-    """Return a column's unit, else that ``of_all``, else "".
+def _refuse_factor(header: Sequence[str], options: ReadOptions) -> None:
+    """Raise ``Contradiction`` for a header that states a factor, applied or not, unless a manifest states ``scale``."""
+    factor = stated_factor(header)
+    if factor and "scale" not in options.instead:
+        raise Contradiction(
+            f"its header states a factor of {factor}, and not whether its numbers are multiplied by it already: for this file in "
+            f"motions.toml write scale = {factor} if they are not, or scale = 1 if they are"
+        )
 
-    A column's own unit that is not one of acceleration gives way to the study's, if stated.
-    """
-    if column.unit and not is_acceleration(column.unit) and options.unit:
-        return options.unit
-    return column.unit or of_all or ""
+
+def _with_direction(columns: list[Column], used: Sequence[int], header: Sequence[str]) -> list[Column]:
+    """Return the columns, the only one that is ``used`` with the direction in a line of the header if its label tells none."""
+    if len(used) != 1 or orientation_in(columns[used[0]].label).known or not (direction := stated_direction(header)):
+        return columns
+    return [replace(column, label=direction) if i in used else column for i, column in enumerate(columns)]
+
+
+def _unit_of(column: Column, of_all: str | None, options: ReadOptions) -> str:
+    """Return a column's unit, as :func:`believed_unit`, else that ``of_all``, else ""."""
+    return (believed_unit(column.unit, options) if column.unit else of_all) or ""
 
 
 def _missing_unit(i: int, column: Column, unit: str) -> str:
@@ -175,8 +212,10 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
                 f"its header tells its {width} columns; the {len(stated)} that are stated are those of other files",
             )
     if columns is None:
+        if (line := other_series(header)) and "unit" not in options.instead:
+            raise no_acceleration(f'it, by "{line[:60]}" in its header,', "no accelerations")
         return _guessed_columns(header, table)
-    columns = _with_time(columns, table)
+    columns = _with_time(with_quantities(columns), table)
     if spectrum := spectrum_in(columns):
         raise NoRecord(f"{spectrum} is no time history; take the record of accelerations instead")
     return columns, notes
@@ -246,27 +285,35 @@ def _with_time(columns: list[Column], table: Samples) -> list[Column]:
 
 
 def _guessed_columns(header: list[str], table: Samples) -> tuple[list[Column], tuple[str, ...]]:
-    """Return columns without labels, and notes: a single acceleration, or evenly growing times and acceleration.
+    """Return columns without labels, and notes: a single acceleration, or evenly growing times and acceleration, in either order.
 
-    Raises ``Unstated`` for another table, and ``InputError`` for two columns below a header about spectra.
+    Raises ``Unstated`` for another table, and one with whole seconds, which may be numbers of rows or ms instead, and
+    ``InputError`` for two columns below a header about spectra.
     """
     width = table.shape[1]
     if width == 1:
         return [Column("")], ()
-    if width == 2 and len(table) > 2 and grows_evenly(table[:, 0]):
+    even = [i for i in range(width) if len(table) > 2 and grows_evenly(table[:, i])]
+    time = even[0] if len(even) == 1 else None
+    counted = time is not None and _counts_rows(table[:, time])
+    if width == 2 and time is not None and not counted:
         if line := line_about_spectra(header):
             raise InputError(
                 f'found two columns without labels below "{line[:60]}": a spectrum is no time history; if this is one, '
                 'state columns = ["time", "000"], in the study or for this file in motions.toml'
             )
-        return [Column("time"), Column("")], ("first column, evenly growing, taken as time [s]",)
-    timed = grows_evenly(table[:, 0])
-    names = ("time", *_COMPONENTS) if timed else _COMPONENTS
-    columns = {"columns": (*names, *["-"] * width)[:width]}
+        columns = [Column("time" if i == time else "") for i in range(width)]
+        return columns, (f"{'second' if time else 'first'} column, evenly growing, taken as time [s]",)
+    names = [*_COMPONENTS, *["-"] * width][: width - (time is not None)]
+    if time is not None:
+        names.insert(time, "-" if counted else "time")
+    stated = {"columns": tuple(names)}
+    which = ", of which one grows by 1, as numbers of rows and ms do," if counted else ""
     raise Unstated(
-        f'found {width} columns and no header that says what they are, such as # time(s) NS(cm/s2) UD(cm/s2); "-" leaves one out',
+        f"found {width} columns{which} and no header that says what they are, such as # time(s) NS(cm/s2) UD(cm/s2); "
+        '"-" leaves one out',
         keys=("columns",),
-        choices=(columns,) if timed else ({"layout": "wrapped"}, columns),
+        choices=({"layout": "wrapped"}, stated) if time is None else (stated,),
     )
 
 
@@ -283,7 +330,10 @@ def _on_one_step(
         raise InputError(f"found {len(times)} columns of time; expected one")
     stated = stated_step(header)
     if not times:
-        dt = stated.dt if stated else options.dt
+        impossible = (
+            stated is not None and not is_step(stated.dt) and "dt" in options.instead
+        )  # else it is noted (manifest)
+        dt = options.dt if stated is None or impossible else stated.dt
         if dt is None:
             raise NoStep("no column of time and no sampling interval")
         return dt, table, ()

@@ -22,9 +22,11 @@ from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.motion import Initial, Samples
 from rockbatch.motions.orientation import orientation_of
 from rockbatch.motions.origin import origin_of
+from rockbatch.motions.places import tells_place
 
 _UNITS = {2: "g", 4: "cm/s2", 10: "gal"}  # the specification's unit codes of accelerations
 _DIRECTIONS = {400: "Up", 401: "Down", 402: "Vert", 600: "Long", 601: "Tran", 700: "H1", 701: "H2"}  # else azimuths
+_STRUCTURES = {10: "building", 11: "bridge", 12: "dam", 13: "wharf", 14: "tunnel", 15: "lifeline", 20: "other"}
 _HEADERS = 100  # integers, and real numbers
 _TITLE = re.compile(
     r"^(?P<what>\S.*?) *\(Format v(?P<version>\d\d\.\d\d) with +(?P<lines>\d{1,3}) text lines\)", re.I | re.A
@@ -183,7 +185,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
             f"{missing} of {len(values)} values are {header.unknown:g}, which marks those that are missing"
         )
     fields, seed = header.fields, _SCNL.search(header.comments)
-    network, station, place = fields["network"], fields["code"], fields["place"]
+    network, station, place = fields["network"], fields["code"], _place(header)
     location, channel = (seed["location"].strip("-"), seed["channel"]) if seed else ("", "")
     corrected = not header.what.lower().startswith(("raw", "uncorr"))
     description = ", ".join(filter(None, [location, place, "corrected" if corrected else "uncorrected"]))
@@ -214,6 +216,14 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
         notes=(f"location: {place}",) if place else (),
         header={"station": line_at(header.text, _STATION).strip(), "event": event.strip()},
     )
+
+
+def _place(header: _Header) -> str:
+    """Return the location in words; with the station's type (integer 19), if that is a structure and the words tell no place."""
+    words, structure = header.fields["place"], _STRUCTURES.get(header.integers[18])
+    if structure is None or tells_place(words):
+        return words
+    return f"{words} (structure type: {structure})".strip()
 
 
 def _initial(header: _Header) -> Initial | None:

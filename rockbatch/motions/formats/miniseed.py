@@ -19,7 +19,7 @@ from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Finding, Samples, Unusable
 from rockbatch.motions.orientation import is_clock, not_acceleration, orientation_of
 from rockbatch.motions.origin import origin_of
-from rockbatch.motions.places import depth_as_place
+from rockbatch.motions.places import Stand, depth_as_place, stand
 from rockbatch.motions.record_file import RecordFile, no_acceleration
 
 _YEARS = 1900, 2100
@@ -162,7 +162,8 @@ def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -
     start = stats.starttime.timestamp
     entry = None if "sensitivity" in file.options.instead else _epoch_with_sensitivity(file, trace)
     covering = (epoch for epoch in file.inventories.epochs_of(trace.id) if epoch.start <= start < epoch.end)
-    statements = _directions(trace.id, entry or next(covering, None))
+    described = entry or next(covering, None)
+    statements = _directions(trace.id, described)
     if entry is not None:
         assert entry.sensitivity
         unit, sensitivity = entry.unit, entry.sensitivity
@@ -191,9 +192,18 @@ def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -
         raw=True,
         processed=False,
         origin=origin_of(date=stats.starttime.strftime("%Y-%m-%d"), station=_station(trace)),
-        sensor=Sensor(stats.station, stats.network, stats.location, depth_as_place(entry.depth if entry else None)),
+        sensor=Sensor(stats.station, stats.network, stats.location, _place(described) if described else None),
         notes=(origin,),
     )
+
+
+def _place(channel: stationxml.Channel) -> str | None:
+    """Return the depth of a sensor, or StationXML's words that place its channel or station on a structure or in a borehole.
+
+    ``None`` for the ground: other words for it would only tell it apart from the same sensor in another format.
+    """
+    where, words = stand(channel.place, channel.site)
+    return depth_as_place(channel.depth) or (words if where is not Stand.GROUND else None)
 
 
 def _station(trace: "obspy.Trace") -> str:

@@ -8,7 +8,7 @@ from itertools import chain
 import numpy as np
 
 from rockbatch.common.errors import InputError, NoRecord, Truncated, Unstated
-from rockbatch.motions.formats.column_header import columns_with_units, columns_without_units, stated_count
+from rockbatch.motions.formats.column_header import columns_with_units, columns_without_units, spelled_out, stated_count
 from rockbatch.motions.formats.fixed_width import is_cut_short, lines_of, without_end_marks
 from rockbatch.motions.formats.time_steps import grows_evenly
 from rockbatch.motions.limits import HUGE
@@ -69,7 +69,7 @@ def read_table(
             if rows and not comment:
                 raise _table_error(lines, f'line {i + 1}: found "{stripped[:60]}"; expected {width} numbers as above')
             if len(header) < _MOST_HEADER:
-                header.append(stripped.lstrip("#% \t")[:_LONGEST])
+                header += spelled_out(stripped.lstrip("#% \t")[:_LONGEST])
     if not rows:
         raise NoRecord("no columns of numbers found in it")
     pairs = None if wrapped and not named else _pairs(rows, remainder, width)
@@ -130,14 +130,18 @@ def _count_and_step(numbers: Sequence[float]) -> tuple[float, str] | None:
 def _pairs(rows: Sequence[float], remainder: Sequence[float], width: int) -> Samples | None:
     """Return numbers as pairs of time and value, shape (npts, 2); ``None`` unless at least five whose times grow evenly.
 
-    Programs for structures write several pairs on a line; they differ from other tables by these times.
+    Programs for structures write several pairs on a line; they differ from other tables by these times. Several on a line may
+    have the value first.
     """
     numbers = np.array([*rows, *remainder]) if remainder else np.array(rows)
     if width % 2 or len(numbers) % 2 or len(numbers) < 2 * _FEWEST_PAIRS:
         return None
     pairs = numbers.reshape(-1, 2)
-    times = pairs[1:, 0]  # a count and a step may stand above them
-    return pairs if np.isfinite(pairs).all() and grows_evenly(times) else None
+    if not np.isfinite(pairs).all():
+        return None
+    if grows_evenly(pairs[1:, 0]):  # a count and a step may stand above them
+        return pairs
+    return pairs[:, ::-1] if width > 2 and grows_evenly(pairs[:, 1]) else None
 
 
 def _below_its_count(header: list[str], pairs: Samples) -> tuple[list[str], Samples]:
