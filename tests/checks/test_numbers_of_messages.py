@@ -9,6 +9,7 @@ from messages import assert_states, said_by
 
 from rockbatch.checks import answer, judging, remarks, suite_target
 from rockbatch.checks.coverage import Stations
+from rockbatch.checks.events import OfEvent
 from rockbatch.checks.responses import Worst, in_words
 from rockbatch.checks.rule_choices import FAR, _implausible, _no_section, _unavailable, _without_dead_load
 from rockbatch.checks.rules import Rule
@@ -66,7 +67,7 @@ MESSAGES = {
         [8.0, "stations", "the check", 12.0],
     ),
     "stations of one event": (
-        lambda: judging._unmet(rule(statistic="asce7-16", per_event=3), "station", 11, SimpleNamespace(records=5)),
+        lambda: judging._unmet(rule(statistic="asce7-16", per_event=3), "station", 11, OfEvent("Kaikoura 2016", 5, 11, 0)),
         [3.0],
     ),
     "a rotation": (response("theta_max_over_alpha", 0.6), [0.6, math.degrees(0.12), 0.12]),
