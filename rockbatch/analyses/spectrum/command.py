@@ -62,7 +62,9 @@ def shown(info: Entry, suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
 
 
 def _evenly(values: np.ndarray) -> np.ndarray:
-    """Return at most :data:`MOST_LINES` of ``values``, those that are nearest to evenly spaced ones."""
+    """Return at most :data:`MOST_LINES` of ``values``: of more than these, those that are nearest to evenly spaced ones."""
+    if len(values) <= MOST_LINES:
+        return values
     targets = np.linspace(values[0], values[-1], MOST_LINES)
     return values[np.unique(np.abs(values[:, None] - targets).argmin(axis=0))]
 

@@ -6,6 +6,7 @@ import pandas as pd
 import pytest
 
 from rockbatch.analyses.spectrum.answer import answer, of_maps, of_spectra
+from rockbatch.analyses.spectrum.command import shown_maps
 
 INFO = {"axis": "two_pi_over_p_s", "varied": ["alpha", "two_pi_over_p_s"], "motions": 3, "varied_map": []}
 
@@ -40,6 +41,17 @@ def test_the_largest_piers_that_overturn_are_of_the_worst_panel():
         "α = 0.2 rad, pads.",
     ]
     assert not remarks
+
+
+def test_a_case_without_the_key_that_others_vary_is_a_panel_and_is_named():
+    """Rigid ground has no β; one with the same β is the same panel."""
+    info = INFO | {"varied": [*INFO["varied"], "beta"]}
+    pads, rock = suite(("pads", 0.1, 4, 1, 0.7), beta=40.0), suite(("rock", 0.1, 4, 0, 0.9), beta=math.nan)
+    largest, greatest = of_spectra(info, pd.concat([pads, rock]))[0]
+    assert largest.endswith(", in the worst of 2 panels.")
+    assert greatest.endswith(", rock.")
+    same, other = pd.concat([pads, pads.assign(median=0.9)]), pd.concat([pads, pads.assign(beta=math.nan)])
+    assert [of_spectra(info, each)[0][0].endswith(" of 2 panels.") for each in (same, other)] == [False, True]
 
 
 @pytest.mark.parametrize(("motions", "words"), [(3, "any of 3 motions"), (1, "one motion")])
@@ -131,6 +143,32 @@ def test_of_many_maps_the_worst_has_a_sentence():
     assert said.startswith(
         "The least map 1 that overturns the pier has a_p/(g tan α) = 3.1, at ω_p/p = 2, the least of 4 maps."
     )
+
+
+@pytest.mark.parametrize(
+    ("frequencies", "printed"),
+    [
+        ([1.0, 1.1, 1.2, 10.0], [1.0, 1.1, 1.2, 10.0]),
+        (range(1, 13), range(1, 13)),
+        (range(1, 35), range(1, 35, 3)),  # twelve that are evenly spaced from 1 to 34
+        ([*range(1, 35, 3), 1.1, 1.2, 33.9], range(1, 35, 3)),
+    ],
+)
+def test_the_terminal_has_the_regions_of_every_map_at_up_to_twelve_frequencies(frequencies, printed):
+    rows = [
+        row
+        for x in sorted(map(float, frequencies))
+        for row in (("rock", x, "safe", 1.0, 2.25), ("rock", x, FELL, 2.25, 9.0))
+    ]
+    pads = [("pads", 2.0, "safe", 1.0, 9.0)]
+    blocks = shown_maps(INFO, pd.concat([regions(*rows), regions(*pads, name="ricker")])).split("\n\n")
+    of_rock = f"1 to 2.25 safe; 2.25 to 9 {FELL}"
+    heads, lines = zip(*((head, lines) for head, *lines in map(str.splitlines, blocks)), strict=True)
+    assert [head.split(";")[0] for head in heads] == ["one-sine, rock", "ricker, pads"]
+    assert [line.split(maxsplit=3) for line in lines[0]] == [
+        ["omega_p/p", "=", f"{x:.4g}", of_rock] for x in map(float, printed)
+    ]
+    assert [line.split(maxsplit=3) for line in lines[1]] == [["omega_p/p", "=", "2", "1 to 9 safe"]]
 
 
 def test_only_symbols_get_subscripts_and_names_are_text():
