@@ -54,7 +54,7 @@ MEASURE = {
     ),
     "period_s": Key(positive, "1.0", "Period of the oscillator of `sa_g`.", usual=PERIOD),
     "damping": Key(
-        Number("a fraction of critical damping, within 0..1", low=0.0, high=1.0, below=True),
+        Number("a fraction of critical damping, 0 or above and below 1", low=0.0, high=1.0, below=True),
         "0.05",
         "Damping of the oscillators, as a fraction of critical damping.",
     ),

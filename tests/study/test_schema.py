@@ -2,7 +2,9 @@
 
 import importlib
 import json
+import math
 import pkgutil
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
@@ -286,6 +288,35 @@ def test_every_example_is_taken_by_the_reader_and_by_the_schema(name):
 def test_a_kind_says_what_it_takes(kind, schema, words):
     assert kind.schema() == schema
     assert kind.words == words
+
+
+NUMBER = r"(-?\d[\d.]*(?:e-?\d+)?)"
+STATED = {  # words of bounds, and the bounds
+    rf"from {NUMBER} to {NUMBER}": lambda low, high: Bounds(low, high),
+    rf"within {NUMBER}\.\.{NUMBER}": lambda low, high: Bounds(low, high),
+    rf"of {NUMBER} to {NUMBER} s": lambda low, high: Bounds(low, high),
+    rf"above {NUMBER} and at most {NUMBER}": lambda low, high: Bounds(low, high, above=True),
+    rf"above {NUMBER} and below {NUMBER}": lambda low, high: Bounds(low, high, above=True, below=True),
+    rf"{NUMBER} or above and below {NUMBER}": lambda low, high: Bounds(low, high, below=True),
+    rf"{NUMBER} or (?:above|a number above it)": lambda low: Bounds(low, math.inf),
+    rf"above {NUMBER}": lambda low: Bounds(low, math.inf, above=True),
+    "a number|other than 0": lambda: Bounds(-math.inf, math.inf),
+}
+
+
+def test_the_words_of_a_number_have_the_bounds_within_which_it_is_taken():
+    """Of all keys of all files; those of a quantity write their own words, which are above."""
+    found = {key.kind for _, section in SECTIONS for key in section.values() if isinstance(key.kind, kinds.Number)}
+    plain = {kind for kind in found if kind.bounds is None}
+    assert len(plain) > 10
+    for kind in plain:
+        bounds, stated = next(
+            (bounds, match) for words, bounds in STATED.items() if (match := re.search(words, kind.text))
+        )
+        limits = bounds(*map(float, stated.groups()))
+        assert (kind.low, kind.high) == (limits.low, limits.high), kind.text
+        for end in {kind.low, kind.high} - {-math.inf, math.inf}:
+            assert takes(Key(kind, "", ""), end) == (end in limits), f"{kind.text}: {end:g}"
 
 
 def test_the_schema_can_be_written(capsys):
