@@ -349,6 +349,21 @@ def test_where_what_is_not_decided_adjoins_the_value_found_the_answer_says_how_f
     assert beyond == "From 2 to 2.9 nothing is decided, so that the least value that passes may be as low as 2."
 
 
+@pytest.mark.parametrize(("find", "side"), [("least", "above it"), ("greatest", "below it")])
+@pytest.mark.parametrize("number", [1, 2, 5, 6, 9])
+def test_values_that_pass_with_gaps_between_are_listed_up_to_five_intervals(number, find, side):
+    """Odd numbers pass, even ones fail."""
+    verdicts = {float(n): PASS if n % 2 else FAIL for n in range(2 * number + 1)}
+    found, gaps = said_of(verdicts, find=find, width=2.0)
+    end, beyond = (1, 0) if find == "least" else (2 * number - 1, 2 * number)
+    assert found == f"The {find} pier.p found that passes every check is {end}. At {beyond} it fails: as it is."
+    start, _, listed = gaps.partition(" passes from ")
+    assert start == f"Not every value {side} passes: pier.p"
+    fails = " (below it fails: as it is; above it fails: as it is)"
+    more = f" and {number - 5} more" if number > 5 else ""
+    assert listed == "; from ".join(f"{n} to {n}{fails}" for n in range(1, 2 * min(number, 5), 2)) + f"{more}."
+
+
 def test_a_file_of_the_suite_that_cannot_be_used_is_told():
     assert "2 files of the suite could not be used: what passes does so without these." in said_of(
         {1.0: PASS}, unusable=2

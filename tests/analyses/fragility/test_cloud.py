@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from fragility_samples import of_statuses
 from report_page import Page
 from scipy.optimize import brentq, minimize
 from scipy.special import expit
@@ -15,13 +16,14 @@ import rockbatch as rb
 from rockbatch.analyses.fragility import cloud
 from rockbatch.analyses.fragility.cloud import Cloud, Demands, Logistic, Regression, fit, fit_event
 from rockbatch.analyses.fragility.cloud_tables import counts, note_on_cloud
-from rockbatch.analyses.fragility.curves import CloudPoint
+from rockbatch.analyses.fragility.curves import CloudPoint, assess
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD
 from rockbatch.analyses.fragility.lognormal import NoCurve
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.common.errors import InputError
 from rockbatch.motions.hazard import HazardCurve
 from rockbatch.study import load_study
+from rockbatch.study.suite import ground_motions
 
 LN_A, B, SIGMA, ALPHA = math.log(0.6), 1.2, 0.5, (-1.5, 3.0)
 LIMIT = 0.3
@@ -291,6 +293,42 @@ def test_the_command_runs_every_record_as_it_is_and_fits_what_its_table_shows(tm
     levels = list(found.info["levels"])
     assert levels == sorted(levels)
     assert levels == pytest.approx(sorted(of_rotation["intensity"].unique()), rel=1e-9)
+
+
+def test_the_readings_are_those_of_all_doubtful_runs_counted_either_way(tmp_path):
+    """Of 28 runs of 7 records two overturned, one flew and one failed."""
+    loaded = load_study(study(tmp_path))
+    ended = {(0, 3): "overturned", (1, 3): "overturned", (2, 3): "flight", (3, 2): "failed"}
+    noise = np.random.default_rng(7).normal(0.0, 0.3, (7, 4))
+    seen = []
+
+    def simulate(runs):
+        of_record = [sorted(point.intensity for point in runs.points if point.motion == m) for m in range(7)]
+        places = [(point.motion, of_record[point.motion].index(point.intensity)) for point in runs.points]
+        x = np.array([point.intensity for point in runs.points])
+        status = np.array([ended.get(place, "ok") for place in places])
+        demand = np.where(status == "ok", 0.5 * x * np.exp([noise[place] for place in places]), math.nan)
+        seen.append((x, demand, status, np.array([point.motion for point in runs.points])))
+        return of_statuses(list(status)).assign(theta_max_over_alpha=demand)
+
+    curves = {
+        curve.limit.name: curve
+        for curve in assess(loaded, read_fragility(loaded), ground_motions(loaded).motions, simulate)
+    }
+    ((x, demand, status, record),) = seen
+    fell, open_, none, every = status == "overturned", np.isin(status, ["flight", "failed"]), status == "", status != ""
+    counted = [(~open_, fell, none), (every, fell | open_, none), (every, fell, open_)]
+    of_demands = [
+        fit(Demands(x[of], demand[of], over[of], within[of], record[of]), 0.5, 0.005) for of, over, within in counted
+    ]
+    of_events = [fit_event(x[of], over[of], 0.95, record[of]) for of, over, _ in counted]
+    for name, expected in (("rotation", of_demands), ("overturning", of_events)):
+        curve = curves[name]
+        found = (curve.fitted, curve.readings.exceeded, curve.readings.withstood)
+        medians = [one.median for one in expected]
+        assert [one.median for one in found] == pytest.approx(medians, rel=1e-9), name
+        assert len({round(median, 2) for median in medians}) == 3
+        assert curve.undecided.words == "2 of 28 runs undecided: 1 flew, 1 failed"
 
 
 @pytest.mark.parametrize(("beyond", "words"), [

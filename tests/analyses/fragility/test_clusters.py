@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import scipy.stats
 
+from rockbatch.analyses.fragility.cloud import _design_effect
 from rockbatch.analyses.fragility.clusters import clusters
 from rockbatch.analyses.fragility.statistics import capacities, cloud, rate_bounds, stripes
 from rockbatch.common.errors import InputError
@@ -59,6 +60,21 @@ def test_a_line_through_pairs_has_the_scatter_of_stations():
     line = scipy.stats.linregress(at, means)
     drawn = cloud(np.exp(log_x), np.exp(log_d), 1.0, stations=STATIONS).line.draws
     assert scipy.stats.kstest((drawn[:, 1] - line.slope) / line.stderr, scipy.stats.t(5).cdf).statistic < 0.06
+
+
+@pytest.mark.parametrize("of_a_station", [1, 2, 5])
+def test_draws_of_a_share_are_wider_by_what_records_of_a_station_have_in_common(of_a_station):
+    """Of n equal records each of k stations the variance is n k/(k − 2) times that of independent ones, and of no others smaller;
+    Student's quantile stands in place of the normal one, but for records that are each of a station by itself.
+    """
+    station = np.repeat(np.arange(7), of_a_station)
+    student = (scipy.stats.t(6).ppf(0.975) / scipy.stats.norm.ppf(0.975)) ** 2
+    of_stations = np.random.default_rng(3).standard_normal(7)
+    equal = _design_effect(np.repeat(of_stations, of_a_station), station)
+    assert equal == pytest.approx(of_a_station * 7 / 5 * student if of_a_station > 1 else 1.0, rel=1e-12)
+    signs = np.resize([1.0, -1.0], of_a_station)
+    opposite = _design_effect(np.outer(of_stations, signs - signs.mean()).ravel() + 1e-9, station)
+    assert opposite == pytest.approx(student if of_a_station > 1 else 1.0, rel=1e-12)
 
 
 @pytest.mark.parametrize("stations", ["ABCDEFG", range(7)])

@@ -64,6 +64,29 @@ def test_a_limit_that_is_exceeded_after_overturning_is_not_called_the_first():
     assert line.endswith("dispersion of 0.40. No other limit has a lower median.")
 
 
+NOT_KNOWN = {
+    "below": {"exceeded": (10, 10, 10, 10), "median_bound": BELOW},
+    "between": {"exceeded": (0, 0, 10, 10), "median_bound": BELOW | {"is": "between", "above": 0.5, "below": 1.0}},
+    "above": {"exceeded": (0, 0, 0, 1), "median_bound": BELOW | {"is": "above", "above": 2.0, "below": None}},
+}
+
+
+@pytest.mark.parametrize(
+    ("overturning", "other", "first"),
+    [
+        (0.6, 0.5, True), (0.6, 0.6, False), (0.6, 0.7, False), ("below", "below", True), ("below", 0.3, False),
+        (1.1, "between", True), (0.9, "between", False), ("between", 0.9, True), ("between", 1.1, False),
+        ("above", "above", False), ("above", 2.5, True), (0.6, "above", False),
+    ],
+)  # fmt: skip
+def test_a_limit_is_exceeded_first_if_its_median_is_lower_or_below_all_levels(overturning, other, first):
+    """Of a median between two levels the upper one counts; below all levels neither of two is known to be the lower."""
+    known = [NOT_KNOWN.get(median) or {"median": median} for median in (overturning, other)]
+    (line,), _ = said(curve(**known[0]), curve(limit="tilt", **known[1]))
+    assert ("The limit exceeded first, tilt (theta > 1), has a median" in line) == first
+    assert ("No other limit has a lower median." in line) != first
+
+
 def test_a_curve_without_a_fit_that_is_weaker_than_all_others_comes_first():
     """Every record exceeds the limit at the lowest level on pads: their median is not known, but below that of rock."""
     (line,), marked = said(curve("rock", median=0.6), curve("pads", exceeded=(10, 10, 10, 10), median_bound=BELOW))

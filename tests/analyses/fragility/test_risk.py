@@ -424,6 +424,17 @@ def test_mistakes_in_a_file_of_a_hazard_are_named_with_its_line(tmp_path, conten
     assert message in "\n".join(caught.value.messages)
 
 
+@pytest.mark.parametrize("points", ["0.1,0.01\n0.2,0.02", "0.2,0.02\n0.1,0.01", "0.2,0.02"])
+def test_mistakes_in_the_points_of_a_file_stand_at_the_line_that_names_it(tmp_path, points):
+    (tmp_path / "hazard.csv").write_text(f"levels_g,rate_per_year\n{points}\n", encoding="utf-8")
+    path = study(tmp_path, {"years": [50], "file": "hazard.csv"})
+    line = path.read_text(encoding="utf-8").splitlines().index('file = "hazard.csv"') + 1
+    with pytest.raises(InputError) as caught:
+        read_fragility(load_study(path))
+    (problem,) = caught.value.messages
+    assert problem.startswith(f"{path}:{line}: [fragility.hazard]: ")
+
+
 def test_mistakes_of_added_dispersions_are_named(tmp_path):
     wrong = [{"name": "a", "value": 0.3}, {"name": "a", "value": 30}, {"value": 0.1}]
     with pytest.raises(InputError) as caught:
