@@ -307,6 +307,15 @@ def test_panels_apart_have_their_captions_and_a_single_one_without_has_none():
     assert [dict(item.attrib) for item in entries] == [{}, {"data-of": "case", "data-value": "pads"}]
 
 
+def test_a_figure_whose_marks_have_no_label_has_no_legend():
+    """An empty list would be read out as one."""
+    for marks, legends in (((Polyline(X, Y),), 0), ((Polyline(X, Y, label="line"),), 1), ((), 0)):
+        for captioned in ({}, {"caption": "caption"}):
+            lists = list(parsed(svg.drawn(figure(*marks, **captioned))).iter("ul"))
+            assert len(lists) == legends
+            assert all(len(entries) for entries in lists)
+
+
 def test_stretched_panels_have_words_of_one_size_in_either_view():
     x, y = np.linspace(0.0, 10.0, 101), np.sin(np.linspace(0.0, 10.0, 101))
     marks = [Polyline(x, y, "y"), Points(np.full(1, 3.0), np.full(1, 0.5)), Words(8.0, 0.0, "late")]

@@ -9,6 +9,7 @@ from rules_of_checks import FLIGHT, MARGIN, STUDY, rules_file
 
 import rockbatch as rb
 from rockbatch.checks import read_verdicts
+from rockbatch.commands.check import answered
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 
@@ -89,6 +90,28 @@ def test_files_that_could_not_be_used_are_reported_beside_the_verdicts(tmp_path,
     )
     assert main(["check", str(out)]) == 1
     assert "? notes could not be used: notes.txt: no record." in capsys.readouterr().out
+
+
+def test_a_case_is_one_row_with_its_worst_bound_and_with_all_each_bound_has_its_numbers(tmp_path, capsys):
+    bounds = {"": 0.2, "stiff": 0.3, "soft": 0.4}
+    table = pd.concat([runs([value], bound=bound) for bound, value in bounds.items()])
+    out = folder(tmp_path / "out", table, [case(bound=bound) for bound in bounds], MARGIN)
+    assert main(["check", str(out)]) == 0
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert [row for row in rows if row[:1] == ["pads"]] == [["pads", "0.4", "✓", "80", "%", "(soft)"]]
+    assert main(["check", str(out), "--all"]) == 0
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert [row[2] for row in rows if row[:1] == ["margin"] and row[-1] == "pass"] == ["0.2", "0.3", "0.4"]
+    heads = [" ".join(row) for row in rows if row[:1] in (["pads"], ["pads,"], ["pads:"])]
+    assert len(heads) == 4
+    assert [bound for bound in ("stiff", "soft") for head in heads[:3] if bound in head] == ["stiff", "soft"]
+
+
+def test_without_checks_the_greatest_responses_at_any_scale_are_one_row_a_case(tmp_path):
+    table = pd.concat([runs([0.4, 0.3], scale=1.0), runs([0.2, 0.1], scale=2.0)], ignore_index=True)
+    printed = answered([], rb.open_results(folder(tmp_path / "out", table, [case()])))
+    (row,) = (line.split() for line in printed.splitlines() if line.startswith("pads"))
+    assert row[1] == "0.4"
 
 
 def test_a_case_that_no_check_chooses_is_reported_and_is_no_failed_check(tmp_path, capsys):

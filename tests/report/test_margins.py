@@ -3,6 +3,7 @@
 import copy
 import json
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -213,6 +214,17 @@ def test_checks_of_one_name_that_compare_other_things_have_no_difference(tmp_pat
     row = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["answer"][2]
     assert row[1] == f"rotation: in A maximum of theta_max_over_alpha at most 0.5 over stations, {words}"
     assert row[-1] == "Lyttelton"  # what governs B: the difference behind it is empty
+
+
+def test_long_names_of_stations_break_into_lines(tmp_path):
+    """A name of one line would push what stands behind it off the page."""
+    name = "recorded at the north abutment of the old railway bridge over the river"
+    one = tables(motions={"pulse": [PULSES[0] | {"name": name}]})
+    text = write_comparison(*two(tmp_path, one, one)).read_text(encoding="utf-8").replace("\u00a0", " ")
+    drawn = re.findall(r'<div class="wide([^"]*)"[^>]*aria-label="([^"]*)"[^>]*><table>(.*?)</table>', text)
+    named = {title: kind for kind, title, body in drawn if re.search(rf"<td[^>]*>(<span[^>]*>)?{name}", body)}
+    assert "Margins" in named
+    assert set(named.values()) == {" prose"}
 
 
 def test_margins_at_each_scale_stand_in_rows_of_their_own(tmp_path):
@@ -426,6 +438,17 @@ def test_checks_of_a_file_beside_the_study_are_compared_too(tmp_path):
 def test_cases_paired_by_inputs_differ_in_values_only(tmp_path):
     rows = inputs(two(tmp_path, tables(), tables(case=[SPRINGS | DEVICES | {"name": "x", "zeta": 0.1}])))
     assert rows == {"case springs, zeta": ("0.05", "0.1")}
+
+
+def test_a_case_without_a_name_has_that_of_its_base_and_other_tables_their_number(tmp_path):
+    def unnamed(stiffness, force):
+        dampers = [{"kind": "viscous", "nu": 0.1, "exponent": 1.0}, {"kind": "friction", "force_kN": force}]
+        return tables(case=[{"base": "elastic", "stiffness_kN_m": stiffness, "zeta": 0.05, "damper": dampers}])
+
+    assert inputs(two(tmp_path, unnamed(2e6, 100.0), unnamed(3e6, 200.0))) == {
+        "case elastic, stiffness_kN_m": ("2 × 10⁶", "3 × 10⁶"),
+        "case elastic, damper 2, force_kN": ("100", "200"),
+    }
 
 
 def test_what_one_study_has_is_shown_with_lists_in_brackets_and_names_of_tables(tmp_path):

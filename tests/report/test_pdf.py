@@ -248,6 +248,17 @@ def test_a_span_in_a_cell_keeps_what_its_class_says():
     assert r"  \ \[m\]" in set_
 
 
+def test_the_heads_of_a_table_are_repeated_and_its_rows_are_not():
+    """Typst repeats what is in the header of a table on each page; the head of a row stays in it."""
+    heads = '<tr><th colspan="2">over</th></tr><tr><th scope="col">name</th><th scope="col">value</th></tr>'
+    rows = "".join(f'<tr><th scope="row">r{n}</th><td>v{n}</td></tr>' for n in range(2))
+    set_ = blocks(parsed(f"<table><thead>{heads}</thead><tbody>{rows}</tbody></table>"), Setting({}))
+    header, body = set_.split("table.header(")[1].split("]), ")
+    cells = [re.findall(r"\)\[(\w+)", part) for part in (header + "]", body)]
+    assert cells == [["over", "name", "value"], ["r0", "v0", "r1", "v1"]]
+    assert "columns: (auto, auto,)" in set_
+
+
 def test_strips_of_two_columns_share_the_width_and_have_their_heads_above():
     strip = '<svg class="plot strip"></svg><span class="ends"></span>'
     row = f'<div class="row"><span class="of">r1</span>{strip}{strip}</div>'
