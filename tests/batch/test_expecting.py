@@ -1,6 +1,7 @@
 """What a dry run says, held against what the run then leaves."""
 
 import math
+import re
 from contextlib import contextmanager
 from itertools import pairwise
 
@@ -110,6 +111,9 @@ def test_nothing_is_written(study, tmp_path, monkeypatch, capsys):
     told = capsys.readouterr().out
     assert "= 15 runs" in told
     assert "on 1 thread, measured on 15 of them" in told
+    sizes = re.search(r"^peaks\.csv: about (\S+) MB; histories: about (\S+) MB$", told, re.MULTILINE).groups()
+    found = expected(load_study(study), 1, Listener())
+    assert [1e6 * float(size) for size in sizes] == pytest.approx([found.table, found.histories], rel=0.05)
 
 
 def test_runs_that_are_tried_are_spread_and_not_too_many_steps(monkeypatch):

@@ -256,13 +256,17 @@ def test_a_command_shows_the_cache_and_clears_it_but_for_what_is_not_its_own(cac
     assert main(["cache"]) == 0
     assert capsys.readouterr().out == f"{cache}: 0 compiled kernels, 0.0 MB of at most 500 MB\n"
     kept_files(cache, 3)
+    kept.keep("large", "identity", bytes(2_600_000))
+    first, last = (time.mktime((2031, 5, day, 12, 0, 0, 0, 0, -1)) for day in (3, 14))
+    for name, used in (("f-0", last - 1.0), ("f-1", first), ("f-2", last - 1.0), ("large", last)):
+        os.utime(cache / f"{name}.kernel", (used, used))
     (cache / "notes.txt").write_text("not ours")
     assert main(["cache"]) == 0
     shown, used = capsys.readouterr().out.splitlines()
-    assert shown == f"{cache}: 3 compiled kernels, 0.0 MB of at most 500 MB"
-    assert time.strftime("between %Y-%m-%d", time.localtime(time.time() - 3 * 86_400.0)) in used
+    assert shown == f"{cache}: 4 compiled kernels, 2.6 MB of at most 500 MB"
+    assert used == f"last used between 2031-05-03 and 2031-05-14; removed when unused for {kept.UNUSED_DAYS} days"
     assert main(["cache", "--clear"]) == 0
-    assert capsys.readouterr().out == f"{cache}: removed 3 compiled kernels, 0.0 MB\n"
+    assert capsys.readouterr().out == f"{cache}: removed 4 compiled kernels, 2.6 MB\n"
     assert [path.name for path in cache.iterdir()] == ["notes.txt"]
 
 
