@@ -92,7 +92,7 @@ def test_files_that_could_not_be_used_are_reported_beside_the_verdicts(tmp_path,
     assert "? notes could not be used: notes.txt: no record." in capsys.readouterr().out
 
 
-def test_a_case_is_one_row_with_its_worst_bound_and_with_all_each_bound_has_its_numbers(tmp_path, capsys):
+def test_a_case_is_one_row_with_its_worst_bound_and_each_bound_has_its_numbers(tmp_path, capsys):
     bounds = {"": 0.2, "stiff": 0.3, "soft": 0.4}
     table = pd.concat([runs([value], bound=bound) for bound, value in bounds.items()])
     out = folder(tmp_path / "out", table, [case(bound=bound) for bound in bounds], MARGIN)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -105,6 +106,16 @@ def test_terminal_csv_and_page_have_the_same_columns(tmp_path, capsys):
         assert f"{float(row['pga_h_g']):.3f}" in printed
         assert f"{float(row['pga_h_g']):.3f}" in page
         assert f"{float(row['d5_95_s']):.1f}" in printed
+
+
+def test_the_terminal_says_below_a_record_why_it_is_held_back_or_to_be_checked():
+    shown = [re.sub(r"  +.*\d", "", line) for line in overview(found()).splitlines()]
+    begin = next(place for place, line in enumerate(shown) if line.startswith("record")) + 1
+    assert shown[begin : shown.index("", begin)] == [
+        "tiny", "    held back: PGA", "B", "    held back: no unit", "which", "    held back: contradiction",
+        "odder", "    to check: no PGD", "odd", "    to check: no PGD", "strong", "A", "weak",
+    ]  # fmt: skip
+    assert shown[0] == "7 files: 6 usable recordings of 5 stations, 5 not used, 2 left out"
 
 
 @pytest.mark.slow

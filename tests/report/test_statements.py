@@ -137,6 +137,29 @@ def test_a_run_that_does_not_end_standing_is_in_the_statement(tmp_path, status):
     assert f"runs that do not end standing: 1 {status}" in text
 
 
+@pytest.mark.parametrize(
+    ("status", "theta", "share"),
+    [
+        ("ok", 0.3, "60 % of the limit, 0.2 to spare"),
+        ("ok", 0.5, "100 % of the limit, 0 to spare"),
+        ("ok", 0.7, "140 % of the limit, 0.2 beyond it"),
+        ("flight", 0.3, "at least 60 % of the limit, at most 0.2 to spare"),
+        ("flight", 0.7, "at least 140 % of the limit, at least 0.2 beyond it"),
+    ],
+)
+def test_share_and_margin_of_a_run_that_ended_early_are_bounds(tmp_path, status, theta, share):
+    table = runs((0.1, theta), "rigid", status=["ok", status], theta_max_error=0.0)
+    _, text = alone(folder(tmp_path / "out", table, [RIGID]), FREE)
+    assert f", where at most 0.5 is allowed ({share})" in text
+
+
+def test_what_is_required_is_not_called_allowed(tmp_path):
+    """η of the pads is 2.5."""
+    asked = rb.Rule("reserve", "eta", at_least=2.0, reason="agreed")
+    _, text = alone(folder(tmp_path / "out", runs((0.1,)), [case()]), asked)
+    assert "is 2.5, where at least 2 is required (80 % of the limit, 0.5 to spare)" in text
+
+
 def test_a_run_that_is_missing_leaves_the_case_open(tmp_path):
     results = folder(tmp_path / "out", runs((0.1, 0.2, 0.3), "rigid"), [RIGID])
     peaks = (results / "peaks.csv").read_text(encoding="utf-8").splitlines(keepends=True)

@@ -6,7 +6,7 @@ from studies import study_text, write_study
 
 import rockbatch as rb
 from rockbatch.pier import described
-from rockbatch.reporting.structure import base_of, pier_of, restraints_of
+from rockbatch.reporting.structure import base_of, device_in_words, pier_of, restraints_of
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 
@@ -70,6 +70,58 @@ def test_a_value_that_is_no_number_makes_no_pier_though_an_equal_one_does():
     assert pier_of({"pier": pier}).p == 1.0
     assert pier_of({"pier": pier | {"p": True}}) is None
     assert pier_of({"pier": pier | {"p": [1.0]}}) is None
+
+
+BARE, HEAVY = rb.Pier(0.2, 1.0), rb.Pier(0.2, 1.0, mass_t=1000.0)
+STIFFNESS = 9810.0 * HEAVY.size / HEAVY.half_width**2
+"""That of λ = 1 under the weight of HEAVY, 9810 kN [kN/m]."""
+
+
+@pytest.mark.parametrize(
+    ("device", "place", "over_weight", "in_units"),
+    [
+        (rb.Damper("friction", f=0.1), "friction damper at each pivot", "f = 0.1", "F = 981 kN"),
+        (rb.Damper("friction", f=0.1, at="left"), "friction damper at the left pivot", "f = 0.1", "F = 981 kN"),
+        (rb.Damper("friction", f=0.1, at="right"), "friction damper at the right pivot", "f = 0.1", "F = 981 kN"),
+        (rb.Damper("friction", f=0.1, at=0.0), "friction damper on the axis", "f = 0.1", "F = 981 kN"),
+        (rb.Damper("friction", f=0.1, at=0.4), "friction damper 0.4 m right of the axis", "f = 0.1", "F = 981 kN"),
+        (rb.Damper("friction", f=0.1, at=-0.4), "friction damper 0.4 m left of the axis", "f = 0.1", "F = 981 kN"),
+        (rb.Damper("viscous", nu=0.1, exponent=0.3), "viscous damper at each pivot", "ν = 0.1, a = 0.3", "C = 100 kN (s/m)^0.3"),
+        (rb.Damper("viscous", nu=0.1, exponent=1.0, at="deck"), "viscous damper at the deck", "ν = 0.1, a = 1", "C = 100 kN s/m"),
+        (
+            rb.Damper("hysteretic", f=0.1, yield_m=0.005), "hysteretic damper at each pivot",
+            "f = 0.1, uy = 5 mm, n = 5", "F = 981 kN, uy = 5 mm, n = 5",
+        ),
+        (
+            rb.Tendon(psi=0.1, lam=0.5), "tendon on the axis", "ψ = 0.1, λ = 0.5",
+            f"P0 = 981 kN, kt = {0.5 * STIFFNESS:,.0f} kN/m",
+        ),
+        (
+            rb.Stop(gap_m=0.01, lam=2.0, restitution=0.5), "lift stop at each pivot", "gap = 10 mm, λ = 2, e = 0.5",
+            f"gap = 10 mm, k = {2.0 * STIFFNESS:,.0f} kN/m, e = 0.5",
+        ),
+        (
+            rb.Stop(gap_m=0.01, lam=2.0, at="left"), "lift stop at the left pivot", "gap = 10 mm, λ = 2, e = 1",
+            f"gap = 10 mm, k = {2.0 * STIFFNESS:,.0f} kN/m, e = 1",
+        ),
+        (
+            rb.DeckSpring(lam=2.0), "deck spring on both sides", "λ = 2, gap = 0 mm, e = 1",
+            f"k = {2.0 * STIFFNESS:,.0f} kN/m, gap = 0 mm, e = 1",
+        ),
+        (
+            rb.DeckSpring(lam=2.0, side="right"), "deck spring on the right", "λ = 2, gap = 0 mm, e = 1",
+            f"k = {2.0 * STIFFNESS:,.0f} kN/m, gap = 0 mm, e = 1",
+        ),
+        (
+            rb.DeckSpring(lam=2.0, gap_m=0.02, side="left", restitution=0.7, height_m=3.0),
+            "deck spring on the left, 3 m high", "λ = 2, gap = 20 mm, e = 0.7",
+            f"k = {2.0 * STIFFNESS:,.0f} kN/m, gap = 20 mm, e = 0.7",
+        ),
+    ],
+)  # fmt: skip
+def test_a_device_is_said_with_its_place_and_in_kilonewtons_if_the_mass_is_known(device, place, over_weight, in_units):
+    for pier, numbers in ((BARE, over_weight), (HEAVY, in_units)):
+        assert device_in_words(pier, device).replace("\u00a0", " ") == f"{place}, {numbers}"
 
 
 def test_a_base_that_cannot_be_has_no_statics():
