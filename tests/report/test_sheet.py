@@ -216,6 +216,8 @@ def test_a_pier_that_a_bound_changes_has_the_name_of_the_bound_among_the_inputs(
     rows = Page(sheet_of(tmp_path, cases=cases, varied=("bound",))).tables["inputs"]
     piers = [row for row in rows if row[1:2] == ["0.13"]]
     assert [row[0] for row in piers] == ["foot", "foot: traffic, more traffic"]
+    alone = Page(sheet_of(tmp_path, cases=cases[:2], varied=("bound",))).tables["inputs"]
+    assert [row[0] for row in (*rows, *alone) if "R0 [m]" in row] == ["case", "α [rad]"]  # one pier needs no name
 
 
 def test_the_numbers_of_the_ground_are_among_the_inputs_as_they_were_given(tmp_path):
@@ -275,6 +277,18 @@ def test_digests_of_study_results_program_and_records_are_on_the_sheet(tmp_path)
     assert found["study file"] == results.info["study"]["sha256"]
     assert found["results"] == of_peaks
     assert found["program"] == "af72ea222bd896a1…"
+    computed = (
+        "Computed with python 3.11.2, numpy 2.3.1, numba 0.62.0 on Linux x86_64, 2 cores, 2025-11-21T10:00:00+00:00."
+    )
+    assert computed in Page(made(results).html()).text
+
+
+def test_digests_that_are_not_known_are_said_not_to_be_noted(tmp_path):
+    """Those of results that an earlier version wrote."""
+    rows = Page(sheet_of(tmp_path)).tables["digests"]
+    assert {row[0]: row[2] for row in rows if row[0] in ("results", "program", "record")} == dict.fromkeys(
+        ("results", "program", "record"), "not noted"
+    )
 
 
 def test_rows_beyond_what_is_printed_are_counted(tmp_path):
