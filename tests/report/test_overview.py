@@ -2,13 +2,14 @@
 
 import re
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
 import pytest
 from browser import browse, needs_chromium
 from check_samples import verdict
-from report_page import Page
+from report_page import Page, dot_rows
 from report_samples import FIG7, case_entry, write_results
 
 import rockbatch.reporting
@@ -180,7 +181,49 @@ def test_a_limit_far_above_all_peaks_does_not_crowd_them(tmp_path):
     dots = [re.findall(r'<use [^>]*x="([\d.]+)%"', text) for text in (before, after)]
     assert dots[0] == dots[1] != []
     assert 0.0 < min(map(float, dots[0])) < 80.0 < max(map(float, dots[0])) < 97.0  # of the width, the axis ends at 97
-    assert "beyond the axis, at θ/α = " in Page(after).text
+    theta = 100.0 / (PIER.alpha * 2.0 * PIER.height)
+    assert f"limit of bearings, 100 m (median) (rigid): beyond the axis, at θ/α = {theta:.3g}" in Page(after).text
+
+
+def test_each_scale_has_its_own_limits_and_records_stand_by_the_worst_of_all(tmp_path):
+    """ERZ-NS is the weaker of two as recorded and the stronger at twice that, where alone a limit is; a count has none."""
+    changes = {(name, "rigid"): {"theta_max_over_alpha": theta} for name, theta in (("ERZ-NS", 0.1), ("SYL360", 0.2))}
+    cases = [case_entry("rigid", {}, PIER, RigidBase())]
+    write_results(tmp_path, records=[("ERZ-NS", 0.5), ("SYL360", 0.8)], cases=cases, scales=(1.0, 2.0), changes=changes)
+    peaks = pd.read_csv(tmp_path / "peaks.csv", keep_default_na=False)
+    worst = (peaks["record"] == "ERZ-NS") & (peaks["scale"] == 2.0)
+    peaks.assign(theta_max_over_alpha=peaks["theta_max_over_alpha"].mask(worst, 0.4)).to_csv(
+        tmp_path / "peaks.csv", index=False
+    )
+    drifts = [0.3 * PIER.alpha * 2.0 * PIER.height, 0.15 * PIER.alpha * 2.0 * PIER.height]
+    judged = [replace(drift(drifts[0]), scale=2.0), replace(drift(drifts[1]), scale=2.0, statistic="count")]
+    write_verdicts(tmp_path, judged)
+    text = write_report(tmp_path, []).read_text(encoding="utf-8")
+    assert [row.words.split()[0] for row in dot_rows(text)] == ["ERZ-NS", "SYL360"]
+    own = of_the_answer(tmp_path / "report.html")
+    strips = [
+        re.findall(r"<svg.*?</svg>", row, re.DOTALL) for row in re.findall(r'<div class="row.*?</div>', own, re.DOTALL)
+    ]
+    assert [[strip.count('class="limit') for strip in row] for row in strips] == [[0, 1]] * 2
+
+
+@pytest.mark.parametrize(("number", "single"), [(14, 14), (15, 13)])
+def test_of_more_than_fourteen_records_the_worst_thirteen_have_a_row_each(tmp_path, number, single):
+    records = [(f"R{i:02d}", 0.5) for i in range(number)]
+    changes = {(name, "rigid"): {"theta_max_over_alpha": 0.5 - 0.01 * i} for i, (name, _) in enumerate(records)}
+    write_results(tmp_path, records=records, cases=[case_entry("rigid", {}, PIER, RigidBase())], changes=changes)
+    found = [
+        row.words for row in dot_rows(write_report(tmp_path, []).read_text(encoding="utf-8")) if row.role != "folded"
+    ]
+    assert [words[:3] for words in found[:single]] == [f"R{i:02d}" for i in range(single)]
+    assert found[single:] == ([f"the other {number - single} records"] if number > single else [])
+
+
+def test_flights_in_the_picture_are_counted_with_the_highest_of_them(tmp_path):
+    heights = {("ERZ-NS", "1"): 0.005, ("SYL360", "1"): 0.0123, ("SYL360", "2"): 0.001}
+    write_results(tmp_path, changes={at: {"flight_s": 1.0, "flight_height_m": h} for at, h in heights.items()})
+    said = Page(of_the_answer(write_report(tmp_path, []))).text
+    assert "In 3 runs the pier left the ground altogether, by up to 12.3 mm; it was guided down." in said
 
 
 def test_cases_that_differ_by_dampers_differ_in_mark_and_colour(tmp_path):
