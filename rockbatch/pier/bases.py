@@ -17,7 +17,7 @@ from rockbatch.pier.block import Pier
 from rockbatch.pier.first_loading import Curve, Straight
 from rockbatch.pier.footing_base import FootingBase
 from rockbatch.pier.frequencies import static_deflection, vertical_frequency, yield_deflection
-from rockbatch.pier.laws import LAWS, Law, SpringLaw
+from rockbatch.pier.laws import LAWS, WITH_POINTS, Law, SpringLaw
 from rockbatch.pier.restraints import Restraint, described_restraints
 from rockbatch.pier.shafts import WithShaft
 from rockbatch.pier.supports import FIXED_BY_POINTS, beta_of, eta_of, of_backbone, unlikely_supports
@@ -290,8 +290,8 @@ class YieldingBase(ElasticBase):
 
     @property
     def has_points(self) -> bool:
-        """Return True if the curve of these springs is given by points."""
-        return self.law.has_points
+        """Return True if the curve of these springs is given by points; False for an unknown law, which is refused."""
+        return self.spring in WITH_POINTS
 
     @property
     def ratchets(self) -> bool:
