@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from core_samples import values_of
 
 from rockbatch.core.devices.laws import (
     CLOSES,
@@ -142,3 +143,29 @@ def test_the_exponent_that_pages_state_of_hysteretic_dampers_is_that_of_their_la
     """ż = (ė/u_y)(1 − |z|ⁿ) in loading."""
     loading = response(STEEL, 0.0, 1.0, 0.5, TAUT, OPENS)
     assert loading.state_rate == pytest.approx(STEEL.stiffness * (1.0 - 0.5**STEEL_EXPONENT), rel=1e-14)
+
+
+def error_of_a_step(time, h, a):
+    """Error of a Runge–Kutta step of ``h`` in the velocity that a force τᵃ takes, from ``time`` to a reversal on."""
+    simpson = h / 6.0 * (time**a + 4.0 * (time - 0.5 * h) ** a + (time - h) ** a)
+    return abs(simpson - (time ** (a + 1.0) - (time - h) ** (a + 1.0)) / (a + 1.0))
+
+
+@pytest.mark.parametrize("a", [0.1, 0.3, 0.5])
+def test_steps_towards_a_reversal_all_have_about_the_same_error(a, uncompiled):
+    """Within a factor of 6 from a sample before the reversal to a thousandth of it; of steps ~ τ by one of 1000."""
+    times, step = [10.0 ** (-0.25 * k) for k in range(13)], 0.02  # of a run, over the sampling interval
+    calls = [("devices.pull", "share_near_reversal", DAMPER._replace(linear_below=0.0), time, 1.0) for time in times]
+    errors = [
+        error_of_a_step(time, step * share, a) for time, share in zip(times, uncompiled(values_of, calls), strict=True)
+    ]
+    assert max(errors) < 6.0 * min(errors)
+
+
+def test_a_step_a_sample_before_a_reversal_is_half_and_none_shrinks_in_the_linear_part(uncompiled):
+    """At 2 m/s a sample; the damper is linear below 0.01 m/s."""
+    half, linear, still = uncompiled(
+        values_of, [("devices.pull", "share_near_reversal", DAMPER, speed, 2.0) for speed in (-2.0, 0.01, 0.0)]
+    )
+    assert half == 0.5
+    assert still == linear == pytest.approx(0.5 * 0.005**0.75)

@@ -12,6 +12,7 @@ from scipy.interpolate import CubicHermiteSpline
 from rockbatch.core.block.lanes import LANE
 from rockbatch.core.block.model import BlockTraits
 from rockbatch.core.clock import EVENTFUL
+from rockbatch.core.devices.lanes import equipment_of
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.run import Settings
 from rockbatch.core.springs import lanes as spring_lanes
@@ -24,10 +25,28 @@ from rockbatch.core.springs.reversal import pivots
 from rockbatch.core.system import one_pass, rates
 from rockbatch.core.table import LANES, move, table
 from rockbatch.core.types import Ground, Instant
-from rockbatch.pier import Pier, YieldingBase
-from rockbatch.simulation import springs
+from rockbatch.pier import Pier, RigidBase, YieldingBase
+from rockbatch.simulation import block, springs
+from rockbatch.simulation.elements import IDLE
+from rockbatch.simulation.models import system_of
 
 KINDS = {"block": (BlockTraits(), LANE), "springs": (SpringTraits(None, None, None), spring_lanes.LANE)}
+
+
+def test_all_numbers_of_lanes_begin_where_a_line_of_the_cache_does():
+    """At a multiple of 64 bytes; those of devices, too, as many as there are."""
+    system = system_of(block(Pier(alpha=0.2, p=1.0), RigidBase()))
+    for size in range(1, 9):
+        devices = equipment_of(system, [([IDLE] * size, (), math.nan)])
+        arrays = [table(LANE)[0], devices.lanes, devices.shared, devices.grips]
+        assert [array.ctypes.data % 64 for array in arrays] == [0, 0, 0, 0]
+        assert all(offset % 64 == 0 for array in arrays for offset in offsets_of(array.dtype))
+
+
+def offsets_of(kind):
+    """Yield the offset of each number of a lane in a record, those of its parts included."""
+    for part, offset in kind.fields.values():
+        yield from (offset + inside for inside in (offsets_of(part) if part.names else [0]))
 
 
 @pytest.mark.parametrize("lane", [lane for _, lane in KINDS.values()], ids=list(KINDS))

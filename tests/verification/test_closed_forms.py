@@ -329,8 +329,8 @@ def test_whole_exponents_by_products_are_powers(n):
     assert power(1.0, n) == 1.0
 
 
-def test_a_whole_exponent_gives_what_the_same_number_with_pow_gives(uncompiled):
-    """Runs with n = 2 as a whole number and as one that is next to it."""
+def test_a_whole_exponent_gives_what_a_real_one_next_to_it_gives(uncompiled):
+    """Runs with n = 2 by products and with 2 + 1e-13 by the power of a real exponent."""
     motion = pulse("sine", 0.5, dt=0.02, end=1.5)
     whole, near = (
         uncompiled(run_fixed, FIG5, YieldingBase(50.0, 0.1, eta=2.2, n=n), motion, 4, 0.0, wait=False)

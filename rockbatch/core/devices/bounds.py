@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from rockbatch.core.devices.elongation import Gap, lifted
 from rockbatch.core.devices.laws import SPRING, STICKS, TAUT, TENDON, YIELDING, Use, tension
-from rockbatch.core.devices.pull import GROWTH, TRAVEL
+from rockbatch.core.devices.pull import TRAVEL, share_near_reversal
 from rockbatch.core.kernel import inlined
 from rockbatch.core.roots import NO_ACCELERATION, excess, inner_points
 from rockbatch.core.system import in_pass
@@ -73,8 +73,8 @@ def keeps_way(of, mode, c):
 
 @inlined
 def keeps_steep(of, mode, c):
-    """Return a number that is positive if a viscous damper keeps its direction, and, of exponent < 1, its step obeys GROWTH."""
-    near = GROWTH * max(abs(c.start.speed), of.linear_below) / (c.steepest * c.dt)
+    """Return a number that is positive if a viscous damper keeps its direction, and, of exponent < 1, needs no shorter step."""
+    near = share_near_reversal(of, c.start.speed, c.steepest * c.dt)
     return -1.0 if of.exponent < 1.0 and near < 1.0 else _keeps_direction(mode.goes, c)
 
 

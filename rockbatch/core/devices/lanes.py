@@ -13,7 +13,7 @@ from rockbatch.core.devices.laws import ELEMENT, FRICTION, USE, Element, Use
 from rockbatch.core.devices.pull import END, Devices, bounds_steps
 from rockbatch.core.kernel import hook, inlined, kernel
 from rockbatch.core.system import in_pass
-from rockbatch.core.table import LANES, get, lanes_of, move, put, taken
+from rockbatch.core.table import LANES, aligned, get, lanes_of, move, put, taken
 from rockbatch.core.types import Pull
 
 
@@ -150,7 +150,7 @@ def equipment_of(system, starts):
             *((name, state) for name in ("stage", "inner", "rates", "ahead")),
         ]
     )
-    lanes, others = np.zeros(n, DEVICE_LANE), np.zeros(1, shared)
+    lanes, others = aligned(n, DEVICE_LANE), aligned(1, shared)
     others["verdict"]["ended"] = 1.0  # padding never asks for rates
     all_elements = [of for elements, _, _ in starts for of in elements]
     return Equipment(
@@ -169,11 +169,11 @@ def equipment_of(system, starts):
         any(map(bounds_steps, all_elements)),
         all(of.kind in system.passed and of.give == 0.0 for of in all_elements),
         _rubbing(starts[0][0]),
-        np.zeros(5, lanes_of({"grip": Grip})["grip"]).view(np.recarray),
-        lanes.view(np.recarray),
-        others.view(np.recarray),
-        lanes.view("f8").reshape(-1, LANES),
-        others.view("f8").reshape(-1, LANES),
+        aligned(5, lanes_of({"grip": Grip})["grip"]),
+        lanes,
+        others,
+        lanes.view("f8", np.ndarray).reshape(-1, LANES),
+        others.view("f8", np.ndarray).reshape(-1, LANES),
     )
 
 

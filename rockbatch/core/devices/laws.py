@@ -114,10 +114,8 @@ def linear(of, elongation, speed, state, mode, goes):
 @inlined
 def viscous(of, elongation, speed, state, mode, goes):
     """Return the Response of a viscous damper, linear for |speed| below ``linear_below``."""
-    if abs(speed) < of.linear_below:
-        pull = of.slope * speed
-    else:
-        pull = math.copysign(of.coefficient * abs(speed) ** of.exponent, speed) if speed != 0.0 else 0.0
+    beyond = math.copysign(of.coefficient * power(abs(speed), of.exponent), speed)
+    pull = of.slope * speed if abs(speed) < of.linear_below else beyond
     return Response(pull, 0.0, pull * speed)
 
 

@@ -244,7 +244,7 @@ def _law(respond, clear, most, state_at_end=None):
 
 
 _linear = _law(linear, no_event, most_of_linear)
-_by_powers = _law(viscous, keeps_steep, most_of_powers)  # not vectorised
+_by_powers = _law(viscous, keeps_steep, most_of_powers)
 _tendon = _law(tendon, keeps_mode_of, most_of_tendon)
 _hysteretic = _law(hysteretic, keeps_branch, most_of_hysteretic, _snapped)
 _friction = _law(friction, keeps_way, most_of_friction)

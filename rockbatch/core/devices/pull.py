@@ -46,7 +46,8 @@ TRAVEL = 0.5
 """Greatest elongation of a hysteretic damper over u_y in a step of a whole sample; proportionally less in shorter steps."""
 
 GROWTH = 0.5
-"""Greatest relative change of the speed of a viscous damper in a step: |ė|^a has no Taylor series at 0."""
+"""Longest step of a viscous damper of exponent < 1 at a sampling interval from a velocity reversal, over the step of the run:
+|ė|^a has no Taylor series at 0."""
 
 FINE = 0.2
 """Longest step times the rate of vibration against a stop, or of relaxation of a braced damper."""
@@ -340,8 +341,18 @@ def step_resolving_devices(under, devices, start, h, dt):
             way = (abs(here.speed) + lift * h) * dt * of.stiffness
             share = min(share, TRAVEL / way) if way > 0.0 else share
         elif lift > 0.0:
-            share = min(share, max(GROWTH * max(abs(here.speed), of.linear_below) / (lift * dt), NEAREST))
+            share = min(share, max(share_near_reversal(of, here.speed, lift * dt), NEAREST))
     return share * h
+
+
+@inlined
+def share_near_reversal(of, speed, gain):
+    """Return the share of a step that resolves a viscous damper at ``speed`` [m/s], which changes by ``gain`` in a sample.
+
+    At the time τ from the reversal the error of a step h is about τᵃ⁻⁴ h⁵: it hardly depends on τ for h ~ τ^¾.
+    """
+    time = max(abs(speed), of.linear_below) / gain
+    return GROWTH * math.sqrt(time * math.sqrt(time))
 
 
 @kernel

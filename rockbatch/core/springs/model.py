@@ -19,8 +19,8 @@ IMPACTS = {"landing": LANDING, "housner": HOUSNER}
 class Springs(NamedTuple):
     """A pier on two springs, per unit mass.
 
-    The types of the last six select code when kernels are compiled: a call of ``pow``, ``sin`` or ``cos`` in an unused
-    branch would keep the common model, n = 5, first-order and undamped, from being vectorised.
+    The types of the last six select code when kernels are compiled: what an unused branch
+    computes would slow down the common model, n = 5, first-order and undamped.
     """
 
     half_width: float  # b [m]
