@@ -45,7 +45,6 @@ def distinct(names: Sequence[str], *longer: Callable[[int, str], str]) -> list[s
             while (numbered := f"{name} ({counts[name]})") in taken:
                 counts[name] += 1
             names[i] = numbered
-            taken.add(numbered)
     return names
 
 

@@ -180,7 +180,7 @@ def flat_top(candidate: Candidate) -> Finding | None:
     """Return a gross finding on a flat top of four samples or more at the peak, or several of five in all: clipped; else None."""
     for name, samples in (("", candidate.component.acceleration), ("vertical: ", candidate.motion.vertical)):
         tops = [] if samples is None else flat_tops(samples)
-        if max(tops, default=0) >= _LONG_TOP or (len(tops) > 1 and sum(tops) > _LONG_TOP):
+        if max(tops, default=0) >= _LONG_TOP or sum(tops) > _LONG_TOP:
             text = (
                 f"{name}flat tops: {sum(tops)} samples at its largest value, in rows of {max(tops)} and less: clipped by the "
                 "recorder, its true peak is not known"

@@ -363,6 +363,19 @@ def test_peaks_of_smooth_and_of_coarsely_printed_records_are_no_flat_tops(digits
     assert flat_tops(np.round(slow, digits)) == []
 
 
+@pytest.mark.parametrize(
+    ("rows", "clipped"),
+    [((3,), False), ((4,), True), ((2, 2), False), ((2, -2), False), ((2, 3), True), ((2, -3), True), ((2, 2, -1), False)],
+)
+def test_four_samples_in_a_row_or_five_in_several_are_clipped(tmp_path, rows, clipped):
+    samples = smooth()
+    for place, row in enumerate(rows):  # below zero where negative
+        samples[1000 + 100 * place :][: abs(row)] = np.copysign(1.2, row)
+    write_at2(tmp_path, "x000.AT2", 0.4 * samples, title=title("0"))
+    (motion,) = read_motions(tmp_path, confirmed=["x000"]).motions
+    assert ("clipped" in whats(motion)) == clipped
+
+
 def test_a_clipped_vertical_is_a_finding_of_its_motion(tmp_path):
     write_at2(tmp_path, "x000.AT2", 0.4 * smooth(), title=title("0"))
     write_at2(tmp_path, "x-UP.AT2", 0.4 * np.clip(smooth(seed=4), -0.5, 0.5), title=title("UP"))
