@@ -199,6 +199,27 @@ def test_both_renderers_write_the_same_ticks():
     assert list(Axis("", 1.1, 1.3, log=True, about=2).ticks()) == pytest.approx([1.1, 1.2, 1.3])
 
 
+@pytest.mark.parametrize("about", [1, 3, 5, 6])
+@pytest.mark.parametrize("high", [0.3, 1.0, 1.01, 2.4, 7.0, 40.0, 990.0])
+@pytest.mark.parametrize("low", [0.0, -0.4, -90.0])
+def test_ticks_of_an_axis_are_the_multiples_of_the_least_round_step_wide_enough(low, high, about):
+    round_steps = sorted(digits * 10.0**n for n in range(-3, 5) for digits in (1.0, 2.0, 2.5, 5.0))
+    step = next(step for step in round_steps if step * about >= (high - low) * (1.0 - 1e-9))
+    expected = [n * step for n in range(-10_000, 10_001) if low - 1e-9 <= n * step <= high + 1e-9]
+    assert list(Axis("", low, high, about=about).ticks()) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("about", [3, 5, 6])
+@pytest.mark.parametrize("number", range(2, 15))
+def test_ticks_of_a_long_logarithmic_axis_are_as_many_powers_of_ten_as_are_asked_for(number, about):
+    ticks = list(Axis("", 1e-6, 10.0 ** (number - 7), log=True, about=about).ticks())
+    if number <= 3:  # 1, 2, 5, 10, 20, 50 and 100: seven or fewer
+        assert ticks == pytest.approx([digit * 10.0**n for n in range(-6, number - 6) for digit in (1, 2, 5)][: -2])
+    else:
+        every = next(n for n in range(1, number) if len(range(0, number, n)) <= about)
+        assert ticks == pytest.approx([10.0 ** (n - 6) for n in range(0, number, every)])
+
+
 def test_axes_hold_their_values():
     held = spanning("", np.array([1.0, math.nan, 4.0]))
     assert (held.low, held.high) == (0.0, pytest.approx(4.24))

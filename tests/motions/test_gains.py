@@ -1,5 +1,9 @@
 """Which gain applies: all StationXML that covers a record is asked, and sensors side by side are compared."""
 
+import math
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from motion_files import wiggle
@@ -11,6 +15,7 @@ from rockbatch.motions.colocated import with_gains_compared
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.manifest_draft import draft
 from rockbatch.motions.orientation import Orientation
+from rockbatch.motions.stationxml import Channel, contradiction
 
 RECORD = "n.mseed"
 
@@ -88,6 +93,42 @@ def test_a_channel_without_dates_has_the_epoch_of_its_station(folder):
     xml_in(folder / "old.xml", undated, attributes='startDate="2001-01-01" endDate="2016-01-01"')
     xml_in(folder / "new.xml", channel_xml("HNN"))
     assert pga(folder) == pytest.approx(np.abs(trace("HNN").data - trace("HNN").data.mean()).max() / 2e5)
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_each_gain_stands_beside_the_file_that_states_it(folder, turn):
+    for file, value in zip(("a.xml", "b.xml")[::turn], (2e5, 5e5), strict=True):
+        xml_in(folder / file, channel_xml("HNN", value=value))
+    stated = re.findall(r"(\d+) counts per M/S\*\*2 \((.)\.xml, epoch", reason(folder))
+    assert sorted(stated) == [("200000", "ab"[::turn][0]), ("500000", "ab"[::turn][1])]
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+@pytest.mark.parametrize(
+    ("first", "second", "agree"),
+    [
+        ({}, {"sensitivity": 2e5 * 1.0009}, True),
+        ({}, {"sensitivity": 2e5 * 1.0012}, False),
+        ({}, {"sensitivity": 2e3, "unit": "CM/S**2"}, True),
+        ({"unit": "M/S"}, {"unit": "M/S"}, True),
+        ({"unit": "M/S"}, {"unit": "M/S", "sensitivity": 2e5 * 1.0001}, False),
+        ({}, {"stages": 2e5 * 1.049}, True),
+        ({}, {"stages": 2e5 * 0.951}, True),
+        ({}, {"stages": 2e5 * 1.051}, False),
+        ({}, {"stages": 2e5 * 0.949}, False),
+        ({}, {"dip": 0.9}, True),
+        ({}, {"dip": -1.1}, False),
+        ({}, {"dip": None, "azimuth": 90.0}, True),
+        ({}, {"azimuth": None}, True),
+        ({}, {"azimuth": 359.1}, True),
+        ({}, {"azimuth": 358.9}, False),
+        ({"dip": 79.0}, {"dip": 79.0, "azimuth": 90.0}, False),
+        ({"dip": -81.0}, {"dip": -81.0, "azimuth": 90.0}, True),
+    ],
+)
+def test_epochs_agree_within_the_limits_of_gains_and_directions(first, second, agree, turn):
+    channel = Channel("CI.LRL..HNN", 0.0, math.inf, 2e5, "M/S**2", azimuth=0.0, dip=0.0)
+    assert (contradiction([replace(channel, **first), replace(channel, **second)][::turn]) == "") == agree
 
 
 def test_epochs_that_point_elsewhere_contradict_each_other(folder):
