@@ -214,7 +214,7 @@ def test_ticks_of_an_axis_are_the_multiples_of_the_least_round_step_wide_enough(
 def test_ticks_of_a_long_logarithmic_axis_are_as_many_powers_of_ten_as_are_asked_for(number, about):
     ticks = list(Axis("", 1e-6, 10.0 ** (number - 7), log=True, about=about).ticks())
     if number <= 3:  # 1, 2, 5, 10, 20, 50 and 100: seven or fewer
-        assert ticks == pytest.approx([digit * 10.0**n for n in range(-6, number - 6) for digit in (1, 2, 5)][: -2])
+        assert ticks == pytest.approx([digit * 10.0**n for n in range(-6, number - 6) for digit in (1, 2, 5)][:-2])
     else:
         every = next(n for n in range(1, number) if len(range(0, number, n)) <= about)
         assert ticks == pytest.approx([10.0 ** (n - 6) for n in range(0, number, every)])

@@ -131,6 +131,11 @@ def test_extremes_of_a_sac_header_may_be_off_by_a_factor_of_two_at_most():
         assert sac(lambda data, both=both: both[0](both[1](scaled(10.0)(data)))) == ([], [])
 
 
+@pytest.mark.parametrize("place", [1, 2, 5, 6, 34, 57, 58, 70, 71, 72, 73, 74, 75, 85, 86, 105])
+def test_any_number_of_a_sac_header_that_is_not_needed_may_be_undefined_alone(place):
+    assert sac(word(4 * place, "<f" if place < 70 else "<i", lambda _: -12345)) == ([], [])
+
+
 def test_the_times_of_a_sac_header_count_from_1970_in_some_files():
     def from_1970(data: bytes) -> bytes:
         begins = np.float32(1562383163.0)

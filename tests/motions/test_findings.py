@@ -365,7 +365,15 @@ def test_peaks_of_smooth_and_of_coarsely_printed_records_are_no_flat_tops(digits
 
 @pytest.mark.parametrize(
     ("rows", "clipped"),
-    [((3,), False), ((4,), True), ((2, 2), False), ((2, -2), False), ((2, 3), True), ((2, -3), True), ((2, 2, -1), False)],
+    [
+        ((3,), False),
+        ((4,), True),
+        ((2, 2), False),
+        ((2, -2), False),
+        ((2, 3), True),
+        ((2, -3), True),
+        ((2, 2, -1), False),
+    ],
 )
 def test_four_samples_in_a_row_or_five_in_several_are_clipped(tmp_path, rows, clipped):
     samples = smooth()

@@ -3,6 +3,7 @@
 import math
 import re
 from dataclasses import replace
+from datetime import UTC, datetime
 
 import numpy as np
 import pytest
@@ -129,6 +130,37 @@ def test_each_gain_stands_beside_the_file_that_states_it(folder, turn):
 def test_epochs_agree_within_the_limits_of_gains_and_directions(first, second, agree, turn):
     channel = Channel("CI.LRL..HNN", 0.0, math.inf, 2e5, "M/S**2", azimuth=0.0, dip=0.0)
     assert (contradiction([replace(channel, **first), replace(channel, **second)][::turn]) == "") == agree
+
+
+@pytest.mark.parametrize(
+    ("dates", "covers"),
+    [
+        ("", True),
+        ('startDate="2019-07-06"', True),
+        ('startDate="2019-07-07"', False),
+        ('endDate="2019-07-07"', True),
+        ('endDate="2019-07-06"', False),
+        ('startDate="2019-07-06T05:19:00+02:00"', True),
+        ('startDate="2019-07-05T21:00:00-08:00"', False),
+    ],
+)
+def test_an_epoch_is_open_at_an_end_that_has_no_date(folder, dates, covers):
+    dated = 'startDate="2017-11-15T19:20:00" endDate="2599-12-31T00:00:00"'
+    xml_in(folder / "a.xml", channel_xml("HNN").replace(dated, dates))
+    assert len(read_motions(folder)) == int(covers)
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "epoch"),
+    [
+        (datetime(2010, 1, 2), datetime(2012, 3, 4, 5, 6, 7), "2010-01-02 to 2012-03-04T05:06:07"),
+        (datetime(2010, 1, 2, 3), datetime(2599, 12, 31), "2010-01-02T03:00:00 to now"),
+        (None, None, "… to now"),
+    ],
+)
+def test_an_epoch_is_named_by_its_days_with_a_clock_where_it_is_not_midnight(start, end, epoch):
+    first, last = (time.replace(tzinfo=UTC).timestamp() if time else math.inf for time in (start, end))
+    assert Channel("", first, last, None, "", None, None, file="a.xml").named == f"a.xml, epoch {epoch}"
 
 
 def test_epochs_that_point_elsewhere_contradict_each_other(folder):

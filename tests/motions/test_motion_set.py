@@ -91,6 +91,8 @@ def test_a_notebook_shows_the_first_of_many_rows_and_escapes_names():
     assert "<12>" not in html
     assert "&lt;12&gt;" not in html
     assert "and 8 more" in html
+    shown = [rb.MotionSet([motion(f"{i}", 1.0) for i in range(n)])._repr_html_() for n in (12, 13)]
+    assert ["<p>and" in html for html in shown] == [False, True]
     assert [cell for cell in re.findall("<th>(.*?)</th>", html) if cell.isdecimal()] == []  # no numbers of rows
 
 
