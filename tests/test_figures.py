@@ -12,6 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from figure_makers import makers
+from matplotlib.colors import same_color
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
@@ -20,6 +21,7 @@ from rockbatch.common.figures import description, paper
 from rockbatch.common.figures.description import (
     COLOURS,
     DASHES,
+    ENDED,
     Area,
     Axis,
     Figure,
@@ -148,6 +150,28 @@ def test_every_kind_of_mark_is_drawn_on_paper_with_its_legend():
     legend, whole = (each.get_window_extent() for each in (drawn.legends[0], drawn))
     assert legend.width < 1.1 * whole.width
     assert legend.height < axes.get_window_extent().height < 0.8 * whole.height
+
+
+@pytest.mark.parametrize("width_mm", [40.0, 88.0, 166.0])
+@pytest.mark.parametrize("title", ["", "Peaks", f"Peaks of {NASTY}", "Peaks of " + "many records " * 9])
+def test_the_title_of_a_figure_is_on_paper_above_its_panels(title, width_mm):
+    drawn = paper.drawn(replace(figure(MARKS[0], caption="caption"), title=title), width_mm)
+    drawn.draw_without_rendering()
+    (axes,) = drawn.axes
+    assert drawn.get_suptitle().split() == title.replace("$", r"\$").split()
+    if title:
+        assert drawn._suptitle.get_window_extent().y0 >= axes.title.get_window_extent().y1
+        assert drawn._suptitle.get_window_extent().width <= drawn.bbox.width
+
+
+@pytest.mark.parametrize("status", ENDED)
+def test_a_run_that_ended_is_in_the_colour_of_alarm_and_one_without_a_result_is_not(status):
+    shown = figure(Points(X[:1], Y[:1], look=sign_of(status)))
+    (axes,) = paper.drawn(shown, 88.0).axes
+    (sign,) = axes.lines
+    is_alarm = same_color(sign.get_color(), paper.ALARM)
+    assert is_alarm == (status != "failed")
+    assert any("alarm" in node.get("class", "") for node in parsed(svg.drawn(shown)).iter()) == is_alarm
 
 
 def test_on_paper_the_second_of_two_rigid_lines_is_paler_and_open_marks_are_hollow():

@@ -248,7 +248,7 @@ def _sized(figure: Figure, width_mm: float, tallest: float) -> tuple[Arranged, f
 
 def _title(figure: Figure, width_mm: float) -> list[str]:
     """Return the lines of a figure's title."""
-    return textwrap.wrap(figure.title, int(0.6 * width_mm))
+    return textwrap.wrap(figure.title, int(0.5 * width_mm))
 
 
 def _columns_of_legend(labels: Collection[str], width_mm: float) -> int:
