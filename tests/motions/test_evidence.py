@@ -12,9 +12,9 @@ from rockbatch.common.errors import Contradiction
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.directions import _without_statement
-from rockbatch.motions.evidence import Kind, Statement
+from rockbatch.motions.evidence import Kind, Statement, same_direction
 from rockbatch.motions.manifest_draft import write_manifest
-from rockbatch.motions.orientation import Orientation
+from rockbatch.motions.orientation import Orientation, orientation_in
 
 SHAKES = {"a": 1, "b": 2, "c": 3}
 """Seeds of three series that do not resemble each other."""
@@ -467,3 +467,33 @@ def test_a_void_angle_leaves_the_direction_to_what_else_tells_it_or_to_nothing()
         found = _without_statement(component, void, "all say so")
         assert found.orientation.azimuth == azimuth
         assert found.findings[-1].text == f"azimuth 0°, which tells nothing (all say so); {instead}"
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "same"),
+    [
+        ("UP", "DOWN", True),
+        ("UP", "N", False),
+        ("N", "360", True),
+        ("S89E", "90", True),
+        ("S88E", "90", False),
+        ("359", "001", False),
+        ("N", "S", False),
+        ("L", "l", True),
+        ("L", "T", False),
+        ("L", "N", False),
+        ("12", "12", False),  # behind a word it may count components
+        ("nobody", "nobody", False),
+    ],
+)
+def test_directions_are_the_same_if_both_are_known_and_agree_within_a_degree(first, second, same):
+    one, other = map(orientation_in, (first, second))
+    assert same_direction(one, other) is same_direction(other, one) is same
+
+
+@pytest.mark.parametrize("label", ["L", "000"])
+def test_an_unknown_direction_is_not_that_of_a_known_one_of_its_label(label):
+    known = orientation_in(label)
+    for pair in ((known, replace(known, known=False)), (replace(known, known=False), known)):
+        assert not same_direction(*pair)
+    assert not same_direction(Orientation(""), Orientation(""))

@@ -73,6 +73,16 @@ def test_stored_components_have_the_azimuths_of_their_names_and_are_square():
 
 
 @needs_package
+def test_records_of_the_package_are_left_out_by_name_whether_they_can_be_used_or_not():
+    both = {"fema": [("SYL", 0), ("CPM", 0)], "leave_out": ["RSN1086_SYL000"]}
+    for vertical, used, unusable in ((False, ["RSN825_CPM000"], []), ("required", [], ["RSN825_CPM000"])):
+        found = read_motions([], vertical=vertical, **both)
+        assert [(file.name, file.named) for file in found.left_out] == [("RSN1086_SYL000", True)]
+        assert [motion.name for motion in found.motions] == used
+        assert [file.name for file in found.unusable] == unusable
+
+
+@needs_package
 def test_unknown_stations_azimuths_and_missing_paths_are_one_error(tmp_path):
     with pytest.raises(InputError) as caught:
         read_motions(tmp_path / "missing", fema=[("SLY", 0), ("SYL", 400)])

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from agency_files import knet_text, moment
 from motion_files import wiggle
+from obspy import UTCDateTime
 from waveform_files import COUNTS, START, channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.common.errors import InputError
@@ -240,6 +241,18 @@ def test_sac_files_are_read_in_the_stated_unit(tmp_path, byteorder):
     (motion,) = read_motions(tmp_path, options=ReadOptions(unit="g"), gravity=10.0).motions
     assert motion.dt == 0.02  # not the single precision 0.0199999996 of its header
     np.testing.assert_allclose(motion.horizontal, (data - data.mean()) * 10.0, atol=1e-6)  # single precision
+
+
+@pytest.mark.parametrize("start", ["2019-07-06T03:19:25.437", "1999-12-31T23:59:59.999", "2000-03-01T00:00:00.001"])
+@pytest.mark.parametrize("begins", [0.0, -12.5, 3600.25])
+def test_a_sac_file_starts_at_its_day_and_clock_and_b(tmp_path, start, begins):
+    sent = trace("HNE", wiggle(300).astype(np.float32), UTCDateTime(start) + begins)
+    sent.stats.sac = {"b": begins}  # by which its day and clock are those of ``start``
+    sent.write(str(tmp_path / "e.sac"), format="SAC")
+    (read,) = read_record(
+        RecordFile(tmp_path / "e.sac", "e.sac", (tmp_path / "e.sac").read_bytes(), ReadOptions(unit="g"))
+    )
+    assert read.start == pytest.approx(UTCDateTime(start).timestamp + begins, abs=1e-5)
 
 
 def test_a_number_where_sac_has_its_version_makes_no_sac_file_of_another_name(tmp_path):

@@ -13,6 +13,7 @@ from waveform_files import START, channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
+from rockbatch.motions.common_span import too_unlike
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import columns, miniseed, with_obspy
 from rockbatch.motions.formats.with_obspy import CHECKS
@@ -198,6 +199,23 @@ def test_components_whose_common_samples_would_be_too_many_are_not_brought_toget
     found = read_motions(tmp_path, confirmed=["*"])
     assert [motion.vertical for motion in found.motions] == [None]
     assert "more than 250 common samples" in found.unusable[0].reason
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "fit"),
+    [
+        ((0.01, 251), (0.02, 126), True),  # 2.5 s
+        ((0.01, 252), (0.02, 127), False),
+        ((0.01, 9), (0.02, 900), True),
+        ((0.01, 900), (0.02, 9), True),
+        ((0.01, 9), (0.2, 9), True),
+        ((0.01, 9), (0.201, 9), False),
+    ],
+)
+def test_the_shorter_component_and_the_finer_step_decide_how_many_samples_are_common(monkeypatch, first, second, fit):
+    monkeypatch.setattr("rockbatch.motions.common_span.MOST_SAMPLES", 250)
+    components = [Component("c", dt, np.zeros(npts)) for dt, npts in (first, second)]
+    assert [too_unlike(*pair) == "" for pair in (components, components[::-1])] == [fit, fit]
 
 
 def test_a_common_span_is_built_where_both_are_and_nowhere_else():

@@ -61,6 +61,22 @@ def test_pairs_on_a_line_are_recognised_and_no_sample_is_lost(tmp_path, per_line
     assert is_a(only(tmp_path, pairs(per_line, between, end), unit="g", layout="wrapped"))
 
 
+@pytest.mark.parametrize("sign", ["#", "%", " # ", "%%"])
+@pytest.mark.parametrize("comment", ["", "0.5 0.6", "words", "words #", "words %"])
+def test_comments_stand_anywhere_in_a_table(tmp_path, sign, comment):
+    above, *rows = ("time(s) NS(g)\n" + in_columns(T, A)).splitlines()
+    for place in (0, 1, 50, len(rows)):
+        lines = [above, *rows[:place], f"{sign}{comment}", *rows[place:]]
+        assert is_a(only(tmp_path, "\n".join(lines)))
+
+
+@pytest.mark.parametrize("line", ["words", "words #", "0.5 0.6 %"])
+def test_other_lines_in_a_table_are_refused_whatever_they_end_with(tmp_path, line):
+    above, *rows = ("time(s) NS(g)\n" + in_columns(T, A)).splitlines()
+    found = read(tmp_path, "\n".join([above, *rows[:50], line, *rows[50:]]))
+    assert "line 52: found" in found.unusable[0].reason
+
+
 def test_an_amplitude_of_abaqus_is_read(tmp_path):
     text = f"*Amplitude, name=EQ, definition=TABULAR\n{pairs(4, ', ', ',')}** end of amplitude\n"
     assert is_a(only(tmp_path, text, "eq.inp", unit="g"))

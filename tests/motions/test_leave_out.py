@@ -62,6 +62,27 @@ def test_a_usable_record_is_left_out_and_one_of_a_manifest_counts_as_named(folde
     assert (left.station, left.named) == ("RSN9", True)
 
 
+def test_what_a_manifest_leaves_out_keeps_its_reason_where_a_name_fits_it_too(folder):
+    (folder / "motions.toml").write_text('[[record]]\nfile = "lobby/RSN9_C_D000.txt"\nuse = false\n')
+    found = read_motions(folder, leave_out=["RSN9"])
+    reasons = {file.name: file.reason for file in found.left_out}
+    assert sorted(reasons) == ["RSN9_C_D000", "RSN9_C_D090"]
+    assert ["leave_out" in reasons[name] for name in sorted(reasons)] == [False, True]
+
+
+@pytest.mark.parametrize(("azimuths", "left"), [((0.0, 30.0), "X_az030"), ((30.0,), "X_UNTURNED000")])
+def test_what_comes_of_turning_a_pair_is_left_out_by_its_own_name(tmp_path, azimuths, left):
+    for name in ("X_000", "X_090", "X_UNTURNED000"):
+        write_at2(tmp_path, f"{name}.AT2", wiggle(50, len(name)), title=f"Made-up, 1/17/1994, {name[:3]}, {name[-3:]}")
+    all_of_them = read_motions(tmp_path, azimuths=azimuths)
+    found = read_motions(tmp_path, azimuths=azimuths, leave_out=[left])
+    (gone,) = found.left_out
+    assert (gone.name, gone.named) == (left, True)
+    assert "X_" in gone.source
+    for kept, before in ((found.motions, all_of_them.motions), (found.unusable, all_of_them.unusable)):
+        assert [one.name for one in kept] == [one.name for one in before if one.name != left]
+
+
 def test_a_name_that_matches_nothing_is_refused_with_the_one_that_was_meant(folder):
     with pytest.raises(InputError) as caught:
         read_motions(folder, leave_out=["RSN9_C_D001", "RSN9*", "nobody"])

@@ -135,8 +135,8 @@ def test_an_event_without_a_year_has_that_of_its_origin_time():
     """The line before it has the place, the next one the station."""
     text = cosmos_text().replace(" of Fri Nov 30, 2018 17:29 UTC", "").replace("Señor", "Alum Rock")
     assert {component.origin.event for component in read(text, "x.V1c")} == {"Alum Rock Quake 2018"}
-    (component,) = read(dyna_text(EVENT_DATE_YYYYMMDD="20090406"), "x.ASC")
-    assert component.origin.event == "Made Up 2009"
+    (component,) = read(dyna_text(EVENT_DATE_YYYYMMDD="20090406", EVENT_ID=""), "x.ASC")
+    assert (component.origin.event, component.event) == ("Made Up 2009", "MADE UP")
 
 
 @pytest.mark.parametrize("form", ["SAC", "MSEED"])

@@ -81,6 +81,18 @@ def test_a_list_without_a_factor_costs_no_record(tmp_path, text):
     assert all(motion.listed.scale is None for motion in found)
 
 
+@pytest.mark.parametrize("damaged", [b'"' + b"x" * 200_000, b"\xff\xfe\x00\xd8x"], ids=["cell", "code"])
+def test_a_list_that_cannot_be_read_gives_no_factors_of_another_folder(tmp_path, damaged):
+    for folder, content in (
+        ("a", listing(row(6)).encode()),
+        ("b", damaged),
+        ("c", listing(row(6, scale="2")).encode()),
+    ):
+        write_at2(tmp_path / folder, f"RSN6_{folder}_180.AT2", wiggle(300, ord(folder), 0.2))
+        (tmp_path / folder / "_SearchResults.csv").write_bytes(content)
+    assert [motion.listed.scale for motion in read_motions(tmp_path)] == [1.5, None, 2.0]
+
+
 def test_a_study_scales_records_by_the_factors_of_the_list(tmp_path):
     records = tmp_path / "records"
     records.mkdir()
