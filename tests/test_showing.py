@@ -18,6 +18,7 @@ VALUES = [True, False, 0, -7, 2**63, 0.5, 1e-9, "", "a b", 'say "a"', "C:\\a\\b"
 @pytest.mark.parametrize("value", VALUES)
 def test_a_shown_value_is_the_one_that_toml_reads(value):
     assert tomllib.loads(f"value = {shown(value)}")["value"] == value
+    assert "\\u" not in shown(value)  # letters of any alphabet are shown, not their codes
 
 
 @pytest.mark.parametrize("limit", [20, 60])
