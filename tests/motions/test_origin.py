@@ -4,6 +4,7 @@ import csv
 import io
 import json
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 
 import pytest
@@ -29,7 +30,7 @@ ROOT = Path(__file__).parents[2]
         ("IMPERIAL VALLEY, CA  EARTHQUAKE", "15 OCT 1979 - 2317 UTC", "Imperial Valley 1979"),
         ("Imperial Valley-06", "10/15/1979", "Imperial Valley-06 1979"),
         ("CAPE MENDOCINO", "04/25/92 1806", "Cape Mendocino 1992"),
-        ("X", "1/17/29", "X 1929"),  # no year is after today
+        ("X", "1/17/04", "X 2004"),
         ("KOBE 01/16/95 2046", "", "KOBE 1995"),
         ("X", "2046", "X"),
         ("Record of Point MacKenzie Earthquake of Fri Nov 30, 2018 17:29 UTC", "", "Point MacKenzie 2018"),
@@ -42,10 +43,19 @@ ROOT = Path(__file__).parents[2]
         ("", "2018-01-24 19:51", "2018-01-24"),
         ("", "", ""),
         ("   ,", "", ""),
+        ("10/15/1979", "", "10/15/1979"),
     ],
 )
 def test_an_event_is_called_by_its_name_and_year(event, date, called):
     assert origin_of(event, date=date).event == called
+
+
+def test_no_year_of_two_digits_or_four_is_after_today():
+    today = datetime.now().year
+    for year, understood in ((today, today), (today + 1, today - 99)):
+        assert origin_of("X", date=f"1/17/{year % 100:02d}").event == f"X {understood}"
+    assert origin_of("X", date=f"{today}").event == f"X {today}"
+    assert origin_of("X", date=f"{today + 1}").event == "X"
 
 
 @pytest.mark.parametrize(
@@ -191,6 +201,9 @@ def test_the_records_that_come_with_it_are_called_by_event_station_and_direction
         ("X 1994", "San Antonio Dam - Toe", "X 1994, San Antonio Dam, 000"),
         ("X 1994", "Fire Station", "X 1994, Fire Station, 000"),
         ("", "Meloland", "Meloland, 000"),
+        ("X 1994", "", "X 1994, 000"),
+        ("X 1994", "A very long name of it - Harbor", "X 1994, Harbor, 000"),
+        ("X 1994", "A very long name of it - Docks", "X 1994, A very long name of…, 000"),
     ],
 )  # fmt: skip
 def test_a_label_keeps_year_place_and_direction_of_long_names(event, station, called):
@@ -198,6 +211,16 @@ def test_a_label_keeps_year_place_and_direction_of_long_names(event, station, ca
     assert origin.label == called
     assert origin.full_label == ", ".join(filter(None, (event, station, "000")))
     assert Origin().label == Origin().full_label == ""
+
+
+@pytest.mark.parametrize("over", [-1, 0, 1, 40])
+def test_events_of_34_letters_and_stations_of_20_are_whole_and_longer_ones_are_cut(over):
+    for most, short in ((34, lambda text: Origin(text).short_event), (20, lambda text: Origin("", text).short_station)):
+        name = ("abcdefghij" * 9)[: most + over]
+        assert short(name) == (name if over <= 0 else f"{name[: most - 1]}…")
+    dated = ("abcdefghij" * 9)[: 34 + over - 5] + " 1994"
+    shortened = Origin(dated).short_event
+    assert shortened == dated if over <= 0 else (len(shortened), shortened[-6:]) == (34, "… 1994")
 
 
 def test_motions_that_would_share_a_label_have_longer_ones():
