@@ -54,6 +54,20 @@ def test_an_offset_can_be_kept_or_taken_off_by_the_mean_of_all_or_before_the_eve
     assert before.notes == ("offset 1.5 m/s² removed (mean from 0 to 0.1 s, before the event)",)
 
 
+@pytest.mark.parametrize("dt", [0.1, 0.01, 0.005, 0.004])
+@pytest.mark.parametrize("first", [0, 3, 29])
+def test_the_samples_at_both_ends_of_a_window_are_within_it(dt, first):
+    values = np.arange(80.0) ** 2
+    for last in range(first + 1, 80):
+        window = round(first * dt, 6), round(last * dt, 6)  # as people write them: 0.3, not 3 · 0.1
+        freed = remove_offset(Component("c", dt, values), Offset("pre-event", window))
+        assert values[0] - freed.acceleration[0] == pytest.approx(np.mean(values[first : last + 1]))
+        between = round((first - 0.5) * dt, 6), round((last + 0.5) * dt, 6)
+        if between[0] >= 0.0 and last < 79:
+            freed = remove_offset(Component("c", dt, values), Offset("pre-event", between))
+            assert values[0] - freed.acceleration[0] == pytest.approx(np.mean(values[first : last + 1]))
+
+
 def test_a_window_that_a_record_does_not_have_costs_that_record_only(tmp_path):
     write_at2(tmp_path, "long.AT2", wiggle(300), title="nothing, 000")
     write_at2(tmp_path, "short.AT2", wiggle(50), title="nothing, 000")
