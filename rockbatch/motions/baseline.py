@@ -52,7 +52,9 @@ def remove_offset(component: Component, offset: Offset) -> Component:
         acceleration, note = without_offset(component.acceleration)
     else:
         start, end = offset.window_s
-        inside = component.acceleration[math.ceil(start / component.dt - 1e-9) : math.floor(end / component.dt + 1e-9) + 1]
+        inside = component.acceleration[
+            math.ceil(start / component.dt - 1e-9) : math.floor(end / component.dt + 1e-9) + 1
+        ]
         if end > component.duration or len(inside) == 0:
             raise InputError(f"offset_window_s = [{start:g}, {end:g}] is not within its {component.duration:g} s")
         mean = float(inside.mean())

@@ -127,7 +127,9 @@ def test_a_unam_file_in_exponents_is_read(tmp_path):
     np.testing.assert_allclose(two.horizontal * 100, B - B.mean(), atol=1e-9)
 
 
-@pytest.mark.parametrize("rate", [1.0, 120.0, 125.0, 128.0, 150.0, 204.8, 250.0, 256.0, 300.0, 409.6, 500.0, 512.0, 1e5])
+@pytest.mark.parametrize(
+    "rate", [1.0, 120.0, 125.0, 128.0, 150.0, 204.8, 250.0, 256.0, 300.0, 409.6, 500.0, 512.0, 1e5]
+)
 def test_sac_files_of_every_usual_rate_are_read(tmp_path, rate):
     write_sac(tmp_path / "x.sac", "HNN", rate=rate)
     (motion,) = read_motions(tmp_path, options=ReadOptions(unit="m/s2"), confirmed=["*"]).motions
