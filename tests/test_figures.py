@@ -247,9 +247,24 @@ def test_ticks_of_a_long_logarithmic_axis_are_as_many_powers_of_ten_as_are_asked
 def test_axes_hold_their_values():
     held = spanning("", np.array([1.0, math.nan, 4.0]))
     assert (held.low, held.high) == (0.0, pytest.approx(4.24))
-    assert spanning("", np.array([])).high > 0.0
+    for nothing in ([], [0.0], [0.0, math.nan]):
+        held = spanning("", np.array(nothing))
+        assert (held.low, held.high) == (-1.0, 1.0)
+    held = spanning("", np.array([-4.0, 1.0]), np.array([math.inf, 6.0]), margin=0.1)
+    assert (held.low, held.high) == (-5.0, 7.0)
+    for nothing in ([], [0.0], [-1.0, math.nan, math.inf]):
+        held = log_spanning("", np.array(nothing))
+        assert 0.05 < held.low < 0.1 < 1.0 < held.high < 2.0
     held = log_spanning("", np.array([0.0, 0.1, math.inf, 10.0]))
     assert 0.05 < held.low < 0.1 < 10.0 < held.high < 20.0
+    for values, ends in (
+        ([], (1.0, 10.0)),
+        ([0.5, 0.02, 30.0], (0.01, 100.0)),
+        ([10.0], (10.0, 100.0)),
+        ([0.5], (0.1, 1.0)),
+    ):
+        held = decades("", values)
+        assert (held.low, held.high) == pytest.approx(ends)
     assert decades("", [0.5]).fraction(np.array([0.1, 1.0])).tolist() == [0.0, 1.0]
 
 
