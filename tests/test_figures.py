@@ -219,6 +219,9 @@ def test_both_renderers_write_the_same_ticks():
     assert (written([]), written([0.0]), written([0.25])) == ([], ["0"], ["0.25"])
     assert written([-20_000.0, 0.0, 5_000.0, 20_000.0]) == ["−20,000", "0", "5000", "20,000"]
     assert written([1e-4, 1e-2, 1.0]) == ["10⁻⁴", "10⁻²", "1"]
+    assert written([1e-3, 1e-2, 0.1]) == ["10⁻³", "10⁻²", "10⁻¹"]
+    assert written([1.0, 10.0, 100.0, 1e3, 1e4, 1e5]) == ["1", "10", "100", "1000", "10000", "10⁵"]
+    assert written([0.1, 0.5, 2.0]) == ["0.1", "0.5", "2.0"]
     assert list(Axis("", 0.0, 2.0, last=1.0, about=4).ticks()) == [0.0, 0.5, 1.0]
     assert list(Axis("", 1.1, 1.3, log=True, about=2).ticks()) == pytest.approx([1.1, 1.2, 1.3])
 
