@@ -1,5 +1,6 @@
 """Files that would cost their folder: for ever to read, more memory than there is, words that rule a terminal, links out."""
 
+import re
 import struct
 import tracemalloc
 
@@ -13,7 +14,7 @@ from waveform_files import START, channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
-from rockbatch.motions.common_span import too_unlike
+from rockbatch.motions.common_span import on_common_samples, too_unlike
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import columns, miniseed, with_obspy
 from rockbatch.motions.formats.with_obspy import CHECKS
@@ -218,9 +219,24 @@ def test_the_shorter_component_and_the_finer_step_decide_how_many_samples_are_co
     assert [too_unlike(*pair) == "" for pair in (components, components[::-1])] == [fit, fit]
 
 
+@pytest.mark.parametrize("late", [0.0, 0.013, 0.5, -0.013])
+@pytest.mark.parametrize("steps", [(0.02, 0.03), (0.03, 0.02), (0.02, 0.02)])
+def test_components_that_are_the_time_itself_are_the_same_on_common_samples(steps, late):
+    starts = (0.0, late)
+    parts = [
+        Component("c", dt, start + dt * np.arange(200), start=start) for dt, start in zip(steps, starts, strict=True)
+    ]
+    common = on_common_samples(*parts, ("one", "two"))
+    np.testing.assert_allclose(common.first, common.second, atol=1e-12)
+    assert common.first[0] == pytest.approx(max(starts), abs=common.dt)
+    for note in common.notes:
+        if "interpolated" in note:
+            of_steps = re.findall(r"([\d.]+) s (one|two)", note)
+            assert [(float(dt), name) for dt, name in of_steps] == [(steps[0], "one"), (steps[1], "two")]
+
+
 def test_a_common_span_is_built_where_both_are_and_nowhere_else():
     """Ten samples at the end of a long record take memory for ten samples."""
-    from rockbatch.motions.common_span import on_common_samples
     from rockbatch.motions.orientation import Orientation
 
     long = Component("h", 0.01, wiggle(10**6), Orientation("000", azimuth=0.0), start=1e9)
