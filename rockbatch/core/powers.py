@@ -40,7 +40,7 @@ def _float(bits):
 
 @inlined
 def _real_power(x, a):
-    """Return xᵃ for a > 0 and x = 0 or 2⁻¹⁰²² ≤ x < ∞, 0 instead of powers below 2⁻¹⁰²²; a power above 2¹⁰²³ is wrong."""
+    """Return xᵃ for a > 0 and x = 0 or 2⁻¹⁰²² ≤ x < ∞; 0 instead of powers below 2⁻¹⁰²², and inf of those above 2¹⁰²⁴."""
     bits = _bits(x)
     exponent = (bits + _FROM_ROOT) >> _MANTISSA
     m = _float(bits + _ONE - (exponent << _MANTISSA))
@@ -51,7 +51,7 @@ def _real_power(x, a):
     short = _float(_bits(a) & _SHORT)
     product, rest = short * whole, (a - short) * whole + a * log
     log = product + rest
-    rounded = log + _ROUND
+    rounded = min(log, 1023.0) + _ROUND
     u = _LN_2 * ((product - (rounded - _ROUND)) + rest)
     cube = u * u * u
     root = 1.0 + u * (polynomial(_LOW, u) + cube * cube * polynomial(_HIGH, u))

@@ -51,6 +51,15 @@ def test_powers_of_0_and_1_are_exact_and_tiny_ones_are_0(n):
     assert power(10.0 ** (-309.0 / max(n, 1.03)), max(n, 1.03)) == 0.0
 
 
+@pytest.mark.parametrize(("x", "n"), [(2.1, 1000.0), (1e200, 1.9), (1e300, 9.9), (1e308, 1000.0)])
+def test_powers_beyond_the_largest_float_are_infinite(x, n):
+    """As in Python, where they are an error: a step far too long ends in no number instead of in any."""
+    with pytest.raises(OverflowError):
+        math.pow(x, n)
+    assert power(x, n) == math.inf
+    assert power(x**0.5, 1.99999) == pytest.approx(x**0.999995, rel=1e-12)
+
+
 def lanes() -> np.record:
     table, rng = np.zeros(1, TABLE).view(np.recarray)[0], np.random.default_rng(7)
     table.x[:], table.exponent[:] = 10.0 ** rng.uniform(-6.0, 1.0, NUMBERS), rng.uniform(0.1, 2.0, NUMBERS)
