@@ -42,6 +42,21 @@ def test_the_worst_check_is_the_first_column_and_the_best_case_the_first_row():
     assert card.rows[0].cells[0] is None  # soil says nothing of it
 
 
+def test_a_ban_that_fails_is_worse_than_any_share_of_a_limit_and_another_is_better():
+    ban = {"demand": "overturned", "statistic": "max", "limit": 0.5}
+    worst_first = [
+        (FAIL, 2.0, ban), (FAIL, 3.0, {}), (FAIL, 1.1, {}), (NOT_DECIDED, 1.5, {}), (NOT_DECIDED, 0.4, {}),
+        (NOT_DECIDED, 0.0, ban), (NOT_DECIDED, math.nan, {}), (PASS, 0.9, {}), (PASS, 0.0, {}), (PASS, 0.2, ban),
+    ]  # fmt: skip
+    found = [
+        verdict("a", kind, check=f"c{i}", ratio=share, **more) for i, (kind, share, more) in enumerate(worst_first)
+    ]
+    for given in (found, found[::-1], found[::2] + found[1::2]):
+        assert [column.check for column in scorecard(given, name_of).columns] == [f"c{i}" for i in range(len(found))]
+    without = scorecard([verdict("a", DOES_NOT_APPLY, check="none", ratio=9.0), *found], name_of)
+    assert without.columns[-1].check == "none" or without.columns[-2].check == "none"
+
+
 def test_columns_that_fail_or_are_open_always_stand_and_others_up_to_a_number():
     failing = [verdict("a", "fail", check=f"f{i}", ratio=2.0) for i in range(5)]
     passing = [verdict("a", "pass", check=f"p{i}", ratio=0.1 * i) for i in range(5)]
@@ -53,7 +68,9 @@ def test_columns_that_fail_or_are_open_always_stand_and_others_up_to_a_number():
 
 @pytest.mark.parametrize(
     ("unit", "limit", "sense", "shown"),
-    [("m", 0.05, "at most", "≤ 50 mm"), ("m", 1.5, "at most", "≤ 1.5 m"), ("rad", 0.01, "at most", "≤ 10 mrad"),
+    [("m", 0.05, "at most", "≤ 50 mm"), ("m", 1.5, "at most", "≤ 1.5 m"), ("m", 1.0, "at most", "≤ 1 m"),
+     ("m/s", 0.25, "at most", "≤ 250 mm/s"), ("m/s", 2.5, "at most", "≤ 2.5 m/s"), ("kN", 0.5, "at most", "≤ 0.5 kN"),
+     ("rad", 0.01, "at most", "≤ 10 mrad"),
      ("", 2.0, "at least", "≥ 2"), ("kN", 300_000.0, "at most", "≤ 300,000 kN")],
 )  # fmt: skip
 def test_limits_stand_in_units_of_their_size(unit, limit, sense, shown):
@@ -73,6 +90,44 @@ def test_a_cell_never_shows_a_demand_on_the_other_side_of_its_limit(value, ratio
     one = verdict("a", "fail", unit="m", limit=0.05, value=value, ratio=ratio, high=high)
     shown = scorecard([one], name_of).rows[0].cells[0]
     assert (shown.value.replace("\u00a0", " "), shown.percent.replace("\u00a0", " ")) == cell
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "shown"),
+    [(0.02, 0.03, "20 – 30"), (0.025, 0.03, "25 – 30"), (0.0, 0.025, "0 – 25"), (0.025, 0.025, ""), (0.025 - 1e-9, 0.025, ""),
+     (0.02, math.inf, "")],
+)  # fmt: skip
+def test_a_cell_has_the_bounds_of_a_demand_where_digits_that_are_shown_differ(low, high, shown):
+    one = verdict("a", "pass", unit="m", limit=0.05, value=0.025, low=low, high=high)
+    assert scorecard([one], name_of).rows[0].cells[0].bounds == shown
+
+
+@pytest.mark.parametrize(("heights", "shared"), [((7.5, 7.5), True), ((7.5, 9.0), False), ((7.5, math.nan), True)])
+def test_a_height_is_in_the_head_if_all_have_it_and_else_in_their_cells(heights, shared):
+    found = [verdict(name, "pass", at_m=at) for name, at in zip("ab", heights, strict=True)]
+    card = scorecard(found, name_of)
+    assert ("7.5\u00a0m" in card.columns[0].at) == shared
+    assert {row.name: "7.5\u00a0m" in row.cells[0].value for row in card.rows} == {"a": not shared, "b": False}
+    assert shared or {row.name: "9\u00a0m" in row.cells[0].value for row in card.rows} == {"a": False, "b": True}
+    assert scorecard([verdict("a", "pass")], name_of).columns[0].at == ""
+
+
+@pytest.mark.parametrize("event", [{}, {"demand": "overturned", "statistic": "max", "limit": 0.0, "value": 1.0}])
+def test_a_cell_names_the_bound_of_the_design_under_which_it_is_worst(event):
+    under = [
+        verdict("a", FAIL, ratio=ratio, columns={"bound": name}, **event) for name, ratio in (("", 1.2), ("soft", 1.5))
+    ]
+    assert scorecard(under, name_of).rows[0].cells[0].design_bound == "soft"
+    assert scorecard(under[:1], name_of).rows[0].cells[0].design_bound == ""
+
+
+def test_a_case_of_which_no_run_stands_is_told_from_one_without_checks():
+    fallen = [CaseRuns(name, {}, 1.0, 4, {"overturned": 4}) for name in ("a", "b")]
+    a, b = sorted(scorecard([verdict("a", PASS)], name_of, fallen).rows)
+    assert (a.verdict, b.verdict) == (DOES_NOT_APPLY, DOES_NOT_APPLY)
+    assert a.in_words != b.in_words
+    none = Row("c", DOES_NOT_APPLY, [None])
+    assert b.in_words == none.in_words
 
 
 def test_a_ban_stands_in_words():

@@ -16,7 +16,19 @@ from rockbatch.core.devices.laws import HYSTERETIC, MAXWELL, VISCOUS
 from rockbatch.motions.motion import Motion
 from rockbatch.outcome.changes import Sized, greatest_change
 from rockbatch.outcome.outcome import Failure, Outcome
-from rockbatch.pier import Damper, DeckSpring, ElasticBase, Part, Pier, RigidBase, Tendon, YieldingBase
+from rockbatch.pier import (
+    Damper,
+    DeckSpring,
+    ElasticBase,
+    FootingBase,
+    Part,
+    Pier,
+    RigidBase,
+    Tendon,
+    YieldingBase,
+    rocking_frequency,
+    vertical_frequency,
+)
 from rockbatch.pier.vibration import greatest_rate_of_shaft
 from rockbatch.simulation import (
     Run,
@@ -33,7 +45,7 @@ from rockbatch.simulation.agreement import windows
 from rockbatch.simulation.elements import elements
 from rockbatch.simulation.restraints import _at_rest
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
-from rockbatch.simulation.steps import fastest_rate, readings
+from rockbatch.simulation.steps import fastest_rate, patience, readings
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 
@@ -320,6 +332,24 @@ def test_residuals_that_a_changed_motion_moves_have_no_error(monkeypatch):
     assert outcome.settlement_error == pytest.approx(2e-6)
 
 
+@pytest.mark.parametrize(("step", "error"), [(2.2e-5, None), (1.8e-5, pytest.approx(1e-7))])
+def test_residuals_that_come_no_nearer_by_more_than_the_tolerance_are_tried_again(monkeypatch, step, error):
+    """In units of α: 1e-4 of 0.2 rad, though the last halving agrees and every count does."""
+    near, moved = 0.001 + 2.0 * step, {"theta_res": 0.002, "settlement": 0.01}
+    levels = [0.001, 0.001 + step, near, near + 1e-7]
+    asked = scripted(
+        monkeypatch,
+        *(
+            ok(0.1 + 0.01 * (i == 0) + 0.001 * (i == 1), theta_res=theta, settlement=0.01)
+            for i, theta in enumerate(levels)
+        ),
+        weaker=ok(0.1, **moved),
+    )
+    outcome = run_to_tolerance(FIG5, ON_SPRINGS, SINE, 1e-4)
+    assert len(asked) == 4
+    assert outcome.theta_res_error == error
+
+
 def test_the_error_of_a_settlement_is_what_halving_the_step_changes_and_its_drift(monkeypatch):
     wait = readings(FIG5, ON_SPRINGS, SINE.dt)[1] * SINE.dt
     steady = [ok(0.1, theta_res=0.001, settlement=settlement) for settlement in (0.01, 0.010002)]
@@ -556,12 +586,38 @@ def test_steps_respect_how_fast_a_shaft_vibrates_or_creeps_beside_a_rotation(dam
         replace(Pier.of_parts(4.0, parts, top_m=20.0), flexural_period_s=0.4),
         RigidBase(shaft="elastic", flexural_damping=damping),
     )
-    modes, turning = base.modes(pier), pier.inertia + pier.height**2
+    modes = base.modes(pier)
     n, frequency = len(modes.frequency), np.array([0.0, *modes.frequency])
-    mass = np.block([[np.array([[turning]]), modes.coupling[None]], [modes.coupling[:, None], np.eye(n)]])
-    soft, slow = (-np.linalg.solve(mass, np.diag(each)) for each in (frequency**2, 2.0 * damping * frequency))
-    rates = np.linalg.eigvals(np.block([[np.zeros((n + 1, n + 1)), np.eye(n + 1)], [soft, slow]]))
-    assert greatest_rate_of_shaft(pier, base, turning) == pytest.approx(np.abs(rates).max(), rel=1e-6)
+
+    def greatest(turning, stiffness=0.0):
+        """Return the greatest rate beside a rotation of this inertia, which a spring holds."""
+        mass = np.block([[np.array([[turning]]), modes.coupling[None]], [modes.coupling[:, None], np.eye(n)]])
+        springs, dashpots = np.diag([stiffness, *modes.frequency**2]), np.diag(2.0 * damping * frequency)
+        soft, slow = (-np.linalg.solve(mass, each) for each in (springs, dashpots))
+        return np.abs(np.linalg.eigvals(np.block([[np.zeros((n + 1, n + 1)), np.eye(n + 1)], [soft, slow]]))).max()
+
+    beside, about_pivot = pier.inertia + pier.height**2, pier.inertia + pier.height**2 + pier.half_width**2
+    assert greatest_rate_of_shaft(pier, base, beside) == pytest.approx(greatest(beside), rel=1e-6)
+    assert fastest_rate(pier, base) == pytest.approx(greatest(about_pivot), rel=1e-6)
+    held = replace(base, restraints=(Tendon(psi=0.1, lam=50.0, at=0.0),))
+    (tendon,) = elements(pier, held)
+    both = greatest(about_pivot, tendon.stiffness * pier.half_width**2)
+    assert both * (1.0 - 1e-9) <= fastest_rate(pier, held) <= 1.5 * both
+
+
+@pytest.mark.parametrize("dt", [0.005, 0.02])
+def test_residuals_are_read_after_five_vertical_periods_and_whole_ones_of_rocking(dt):
+    """THEORY.md: 40/p at most after the record; the second reading at least as long after the first as that after the record."""
+    vertical, rocking = (2.0 * math.pi / of(FIG5, ON_SPRINGS) for of in (vertical_frequency, rocking_frequency))
+    first, second = readings(FIG5, ON_SPRINGS, dt)
+    assert first * dt == pytest.approx(5.0 * vertical, abs=dt)
+    assert first * dt >= 5.0 * vertical
+    periods = round(second * dt / rocking)
+    assert second * dt == pytest.approx(periods * rocking, abs=dt)
+    assert (periods - 1) * rocking < 5.0 * vertical <= periods * rocking
+    for base in (RigidBase(), ElasticBase(40.0), FootingBase(40.0)):
+        assert readings(FIG5, base, dt) == (0, 0)
+    assert patience(FIG5, dt) * dt == pytest.approx(40.0 / FIG5.p, abs=dt + 1e-9)
 
 
 @pytest.mark.parametrize(("devices", "rate"), RATES)
