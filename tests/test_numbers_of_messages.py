@@ -269,7 +269,7 @@ BOUNDS: dict[str, tuple[rb.Pier, Callable[[float], Base], float]] = {
 
 
 @pytest.mark.parametrize("name", BOUNDS)
-def test_a_value_above_the_bound_that_a_message_names_is_accepted_and_hardly_a_lesser_one(name):
+def test_a_value_above_the_bound_of_a_message_is_accepted_and_a_lesser_one_is_not(name):
     pier, on_base, below = BOUNDS[name]
     (refused,) = problems(pier, on_base(below))
     bound = float(re.findall(r"above (?:1 \+ psi, |sqrt.* = )?([\d.]*\d)", refused.text)[-1])

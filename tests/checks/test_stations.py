@@ -75,7 +75,7 @@ def test_components_that_may_be_of_one_station_meet_no_code():
 
 
 @pytest.mark.parametrize("statistic", ["p84", "p84_95", "p84_lognormal"])
-def test_many_directions_of_few_stations_are_not_the_records_that_a_quantile_asks_for(statistic):
+def test_many_directions_of_few_stations_are_too_few_records_for_a_quantile(statistic):
     least = STATISTICS[statistic].least
     few, enough = ([(0.1, 0.11, 0.12, 0.13)] * n for n in (least - 1, least))
     few, enough = (

@@ -162,7 +162,7 @@ def test_steps_towards_a_reversal_all_have_about_the_same_error(a, uncompiled):
     assert max(errors) < 6.0 * min(errors)
 
 
-def test_a_step_a_sample_before_a_reversal_is_half_and_none_shrinks_in_the_linear_part(uncompiled):
+def test_a_step_a_sample_before_a_reversal_is_half_and_not_less_in_the_linear_part(uncompiled):
     """At 2 m/s a sample; the damper is linear below 0.01 m/s."""
     half, linear, still = uncompiled(
         values_of, [("devices.pull", "share_near_reversal", DAMPER, speed, 2.0) for speed in (-2.0, 0.01, 0.0)]

@@ -142,7 +142,7 @@ def test_foundations_have_short_names_or_letters_and_rigid_ground_is_a_line(base
         assert own == [*range(len(own))]
 
 
-def test_foundations_under_bounds_have_letters_of_their_own_and_the_bound_in_their_label():
+def test_foundations_under_bounds_have_their_own_letters_and_the_bound_in_labels():
     bases = {"rigid": HARD, "1": PAD, "2": replace(PAD, eta=3.5)}
     nominal = named({(name,): [case(name, base)] for name, base in bases.items()}, (), {})
     designs = {(*key, ""): one for key, one in nominal.items()}

@@ -65,7 +65,7 @@ def test_more_wrong_cells_than_are_listed_are_said_to_follow_in_the_same_file(fo
     assert last == "peaks.csv: and more"
 
 
-def test_a_file_that_is_no_text_or_no_json_is_named_with_a_line_only_if_that_is_known(folder):
+def test_a_file_that_is_no_text_or_no_json_is_named_with_a_line_if_it_is_known(folder):
     path = folder / "peaks.csv"
     path.write_bytes(path.read_bytes().replace(b"RRS228", b"RRS\xff28", 1))
     assert refusal(folder).startswith("peaks.csv: not a table ('utf-8' codec")
@@ -114,7 +114,7 @@ def test_a_table_in_hand_is_refused_with_the_column_the_cell_or_the_run():
     assert_states(said_by(lambda: given_table(table.assign(impacts=["4", "many", "9"]), ())), "impacts", '"many"')
 
 
-def test_a_choice_of_histories_that_fits_several_or_none_is_answered_with_those_there_are(folder):
+def test_a_choice_of_histories_that_fits_several_or_none_is_told_those_there_are(folder):
     results = rb.open_results(folder)
     records = [name for name, _ in FIG7]
     index = pd.DataFrame({"record": records, "case": "pads", "eta": np.arange(6) + 0.5, "status": "ok"})

@@ -367,7 +367,7 @@ def test_a_record_of_nearly_nothing_does_not_flatten_the_other_spectra():
         ({"mean_sa_g": [1.0] * 3, "target_sa_g": [1.0] * 2}, False),
     ],
 )  # fmt: skip
-def test_spectra_of_a_folder_are_drawn_only_if_each_has_a_value_at_every_rising_period(changes, drawn):
+def test_spectra_are_drawn_only_if_each_has_a_value_at_every_rising_period(changes, drawn):
     assert drawable({"damping": 0.05, "period_s": PERIODS, "sa_g": [[1.0, 1.0, 1.0]]} | changes) == drawn
 
 
