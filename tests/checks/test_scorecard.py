@@ -42,6 +42,19 @@ def test_the_worst_check_is_the_first_column_and_the_best_case_the_first_row():
     assert card.rows[0].cells[0] is None  # soil says nothing of it
 
 
+def test_a_ban_is_beyond_every_share_of_a_limit_where_it_fails_and_below_them_where_it_does_not():
+    ban = {"demand": "overturned", "statistic": "max", "limit": 0.5}
+    worst_first = [
+        (FAIL, 2.0, ban), (FAIL, 3.0, {}), (FAIL, 1.1, {}), (NOT_DECIDED, 1.5, {}), (NOT_DECIDED, 0.4, {}),
+        (NOT_DECIDED, 0.0, ban), (NOT_DECIDED, math.nan, {}), (PASS, 0.9, {}), (PASS, 0.0, {}), (PASS, 0.2, ban),
+    ]  # fmt: skip
+    found = [verdict("a", kind, check=f"c{i}", ratio=share, **more) for i, (kind, share, more) in enumerate(worst_first)]
+    for given in (found, found[::-1], found[::2] + found[1::2]):
+        assert [column.check for column in scorecard(given, name_of).columns] == [f"c{i}" for i in range(len(found))]
+    without = scorecard([verdict("a", DOES_NOT_APPLY, check="none", ratio=9.0), *found], name_of)
+    assert without.columns[-1].check == "none" or without.columns[-2].check == "none"
+
+
 def test_columns_that_fail_or_are_open_always_stand_and_others_up_to_a_number():
     failing = [verdict("a", "fail", check=f"f{i}", ratio=2.0) for i in range(5)]
     passing = [verdict("a", "pass", check=f"p{i}", ratio=0.1 * i) for i in range(5)]

@@ -556,12 +556,23 @@ def test_steps_respect_how_fast_a_shaft_vibrates_or_creeps_beside_a_rotation(dam
         replace(Pier.of_parts(4.0, parts, top_m=20.0), flexural_period_s=0.4),
         RigidBase(shaft="elastic", flexural_damping=damping),
     )
-    modes, turning = base.modes(pier), pier.inertia + pier.height**2
+    modes = base.modes(pier)
     n, frequency = len(modes.frequency), np.array([0.0, *modes.frequency])
-    mass = np.block([[np.array([[turning]]), modes.coupling[None]], [modes.coupling[:, None], np.eye(n)]])
-    soft, slow = (-np.linalg.solve(mass, np.diag(each)) for each in (frequency**2, 2.0 * damping * frequency))
-    rates = np.linalg.eigvals(np.block([[np.zeros((n + 1, n + 1)), np.eye(n + 1)], [soft, slow]]))
-    assert greatest_rate_of_shaft(pier, base, turning) == pytest.approx(np.abs(rates).max(), rel=1e-6)
+
+    def greatest(turning, stiffness=0.0):
+        """Return the greatest rate beside a rotation of this inertia, which a spring holds."""
+        mass = np.block([[np.array([[turning]]), modes.coupling[None]], [modes.coupling[:, None], np.eye(n)]])
+        springs, dashpots = np.diag([stiffness, *modes.frequency**2]), np.diag(2.0 * damping * frequency)
+        soft, slow = (-np.linalg.solve(mass, each) for each in (springs, dashpots))
+        return np.abs(np.linalg.eigvals(np.block([[np.zeros((n + 1, n + 1)), np.eye(n + 1)], [soft, slow]]))).max()
+
+    beside, about_pivot = pier.inertia + pier.height**2, pier.inertia + pier.height**2 + pier.half_width**2
+    assert greatest_rate_of_shaft(pier, base, beside) == pytest.approx(greatest(beside), rel=1e-6)
+    assert fastest_rate(pier, base) == pytest.approx(greatest(about_pivot), rel=1e-6)
+    held = replace(base, restraints=(Tendon(psi=0.1, lam=50.0, at=0.0),))
+    (tendon,) = elements(pier, held)
+    both = greatest(about_pivot, tendon.stiffness * pier.half_width**2)
+    assert both * (1.0 - 1e-9) <= fastest_rate(pier, held) <= 1.5 * both
 
 
 @pytest.mark.parametrize(("devices", "rate"), RATES)

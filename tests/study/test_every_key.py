@@ -850,6 +850,30 @@ NO_OTHER_VALUE = {("[[case]]", "flexural_impact"), ("[[bound]]", "preset")}
 """Keys that take one value only; what a preset stands for is in test_design_bounds.py."""
 
 
+ONE_EACH = {"name", "gravity", "base", "backbone_mm_kN", "other_width_m", "kind", "at", "side"}
+"""Keys of piers, cases and devices that name a case, or decide what else belongs to it: these are no lists."""
+ANOTHER = {
+    "impact": "landing", "formula": "gazetas", "radiation": True, "flight": "guided", "spring": "bouc-wen", "shaft": "elastic",
+    "kinematics": "first-order", "flexural_damping_kind": "modal", "strips": 10,
+}  # fmt: skip
+"""A value beside that of USES, for words and what is even."""
+LISTS = [
+    pytest.param(use, key, id=f"{header} {key}")
+    for header in USES
+    if header.strip("[]").partition(".")[0] in ("pier", "case")
+    for key, use in USES[header].items()
+    if key != "confirm" and key not in ONE_EACH and (header, key) != ("[[case.deck_spring]]", "height_m")
+]
+
+
+@pytest.mark.parametrize(("use", "key"), LISTS)
+def test_each_value_of_a_list_is_a_case_for_every_key_but_those_that_say_what_it_is(use, key):
+    values = [use.value, ANOTHER.get(key) if key in ANOTHER else use.value + (1 if isinstance(use.value, int) else 0.01)]
+    cases = rb.Study.from_dict(use._replace(value=values).changed(key)).cases
+    shown = [[] if value == "rigid" else [value] for value in values]  # keys of a shaft are columns where it bends
+    assert [list(one.columns.values()) for one in cases] == shown
+
+
 def test_another_value_of_a_key_with_one_is_refused():
     assert is_taken(Use(BENDING, ("case", 0), "rate").changed("flexural_impact")) == [False]
 
