@@ -86,6 +86,10 @@ def test_every_demand_is_what_a_hand_computes_from_the_row(demand):
     assert (found.low, found.value, found.high) == tuple(map(pytest.approx, (value - error, value, value + error)))
 
 
+def test_a_demand_is_in_its_list_by_the_name_that_a_hand_computes():
+    assert BY_HAND.keys() == DEMANDS.keys()
+
+
 @pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if demand.needs == "forces"])
 def test_the_error_of_forces_leaves_a_limit_within_it_undecided(demand):
     value, _ = BY_HAND[demand]

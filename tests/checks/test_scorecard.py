@@ -42,7 +42,7 @@ def test_the_worst_check_is_the_first_column_and_the_best_case_the_first_row():
     assert card.rows[0].cells[0] is None  # soil says nothing of it
 
 
-def test_a_ban_is_beyond_every_share_of_a_limit_where_it_fails_and_below_them_where_it_does_not():
+def test_a_ban_that_fails_is_worse_than_any_share_of_a_limit_and_another_is_better():
     ban = {"demand": "overturned", "statistic": "max", "limit": 0.5}
     worst_first = [
         (FAIL, 2.0, ban), (FAIL, 3.0, {}), (FAIL, 1.1, {}), (NOT_DECIDED, 1.5, {}), (NOT_DECIDED, 0.4, {}),
@@ -86,6 +86,16 @@ def test_a_cell_never_shows_a_demand_on_the_other_side_of_its_limit(value, ratio
     one = verdict("a", "fail", unit="m", limit=0.05, value=value, ratio=ratio, high=high)
     shown = scorecard([one], name_of).rows[0].cells[0]
     assert (shown.value.replace("\u00a0", " "), shown.percent.replace("\u00a0", " ")) == cell
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "shown"),
+    [(0.02, 0.03, "20 – 30"), (0.025, 0.03, "25 – 30"), (0.0, 0.025, "0 – 25"), (0.025, 0.025, ""), (0.025 - 1e-9, 0.025, ""),
+     (0.02, math.inf, "")],
+)  # fmt: skip
+def test_a_cell_has_the_bounds_of_a_demand_where_digits_that_are_shown_differ(low, high, shown):
+    one = verdict("a", "pass", unit="m", limit=0.05, value=0.025, low=low, high=high)
+    assert scorecard([one], name_of).rows[0].cells[0].bounds == shown
 
 
 def test_a_ban_stands_in_words():

@@ -8,11 +8,12 @@ import pytest
 from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.common.figures.description import ENDED, Look, Points, Polyline, Rule, Span, line_of
+from rockbatch.common.figures.description import COLOURS, ENDED, Look, Points, Polyline, Rule, Span, line_of
 from rockbatch.common.units import GRAVITY
 from rockbatch.results import figures
 from rockbatch.results.figures import OVER, distributions, peaks_of_all, tooltip
 from rockbatch.results.labelled import groups_of, labelled
+from rockbatch.results.spectra_figure import drawable, response_spectra
 
 STUDY = study_text(
     title="Panels",
@@ -291,3 +292,70 @@ def test_on_self_similar_axes_a_run_that_did_not_move_is_none_that_stood_or_fell
         }
         assert marks[""].shade[1].tolist() == [0.5, 0.5]
         assert marks["did not move"].look.open
+
+
+# Response spectra
+
+
+PERIODS = [0.1, 0.5, 2.0]
+
+
+def spectra_of(values, **more):
+    """Return the panel of spectra with these accelerations [g] at three periods, and its lines by their names."""
+    item = {"damping": 0.05, "period_s": PERIODS, "sa_g": values} | more
+    (panel,) = response_spectra(item, [f"m{i}" for i in range(len(values))], more.get("fitted")).panels
+    return panel, {mark.name: mark for mark in panel.marks if isinstance(mark, Polyline)}
+
+
+def test_spectra_of_a_few_records_are_drawn_beside_their_median_over_all_periods():
+    panel, lines = spectra_of([[0.5, 1.0, 0.2], [0.4, 3.0, 0.1], [0.1, 0.9, 0.05]])
+    assert [lines[name].y.tolist() for name in ("m0", "m1", "m2")] == [[0.5, 1.0, 0.2], [0.4, 3.0, 0.1], [0.1, 0.9, 0.05]]
+    assert lines["median"].y.tolist() == [0.4, 1.0, 0.1]
+    assert lines.keys() == {"m0", "m1", "m2", "median"}
+    assert (panel.x.low, panel.x.high, panel.x.log) == (0.1, 2.0, True)
+    assert (0.025 < panel.y.low < 0.05, 3.0 < panel.y.high < 6.0, panel.y.log) == (True, True, True)
+    assert spectra_of([[0.5, 1.0, 0.2]])[1].keys() == {"m0"}
+
+
+def test_spectra_of_many_records_are_faint_beside_their_quantiles():
+    panel, lines = spectra_of([[0.01 + i, 1.01 + i, 2.01 + i] for i in range(101)])
+    assert [lines[name].y[0] for name in ("16 %", "median", "84 %")] == pytest.approx([16.01, 50.01, 84.01])
+    assert {lines[f"m{i}"].look for i in range(101)} == {Look("faint")}
+    assert {mark.label for mark in panel.marks} == {"", "median", "16 and 84 %"}
+    for records in (COLOURS, COLOURS + 1):
+        _, lines = spectra_of([[1.0, 1.0, 1.0]] * records)
+        assert (lines["m0"].label, "16 %" in lines) == (("m0", False) if records == COLOURS else ("", True))
+
+
+def test_spectra_with_a_target_are_drawn_beside_it_and_the_mean_that_was_fitted():
+    panel, lines = spectra_of(
+        [[0.5, 1.0, 0.2], [0.4, 3.0, 0.1]], target_sa_g=[9.0, 2.0, 0.01], mean_sa_g=[0.45, 2.0, 0.15], fitted=(0.2, 1.5)
+    )
+    assert lines["target"].y.tolist() == [9.0, 2.0, 0.01]
+    assert lines["mean of the records"].y.tolist() == [0.45, 2.0, 0.15]
+    assert lines.keys() == {"m0", "m1", "target", "mean of the records"}
+    (span,) = (mark for mark in panel.marks if isinstance(mark, Span))
+    assert (span.axis, span.low, span.high) == ("x", 0.2, 1.5)
+    assert (panel.y.low < 0.01, panel.y.high > 9.0) == (True, True)
+
+
+def test_a_record_of_nearly_nothing_does_not_flatten_the_other_spectra():
+    panel, lines = spectra_of([[25.0, 50.0, 10.0], [1e-9, 0.0, 1e-9]])
+    assert panel.y.low == pytest.approx(1e-4 * 50.0, rel=0.5)
+    assert set(lines["m1"].y) == {panel.y.low}
+    nothing, flat = spectra_of([[0.0, 0.0, 0.0]])
+    assert 0.0 < nothing.y.low < nothing.y.high
+    assert set(flat["m0"].y) == {nothing.y.low}
+
+
+@pytest.mark.parametrize(
+    ("changes", "drawn"),
+    [
+        ({}, True), ({"period_s": [0.1, 0.5, 0.5]}, False), ({"period_s": [0.0, 0.5, 2.0]}, False), ({"sa_g": [[1.0, 1.0]]}, False),
+        ({"period_s": [0.1], "sa_g": [[1.0]]}, False), ({"sa_g": [[1.0, -1e-9, 1.0]]}, False), ({"sa_g": [[1.0, None, 0.0]]}, True),
+        ({"mean_sa_g": [1.0, 1.0, 1.0]}, False), ({"mean_sa_g": [1.0] * 3, "target_sa_g": [1.0] * 3}, True),
+        ({"mean_sa_g": [1.0] * 3, "target_sa_g": [1.0] * 2}, False),
+    ],
+)  # fmt: skip
+def test_spectra_of_a_folder_are_drawn_only_if_each_has_a_value_at_every_rising_period(changes, drawn):
+    assert drawable({"damping": 0.05, "period_s": PERIODS, "sa_g": [[1.0, 1.0, 1.0]]} | changes) == drawn

@@ -23,7 +23,7 @@ from rockbatch.core.devices.lanes import equipment_of
 from rockbatch.core.history import MOMENT
 from rockbatch.core.run import march
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Damper, DeckSpring, ElasticBase, Pier, RigidBase, Tendon, problems, recentres
+from rockbatch.pier import Damper, DeckSpring, ElasticBase, Pier, RigidBase, Stop, Tendon, problems, recentres
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
 from rockbatch.simulation.elements import elements
 from rockbatch.simulation.models import block
@@ -394,6 +394,31 @@ def test_a_damper_at_the_deck_holds_the_block_where_it_balances_the_weight(side)
     end, devices = SimpleNamespace(theta_end=side * theta), (damper, DeckSpring(0.01))
     rests = rests_on_rigid_base(pier, base(*devices), end, [side * z, 0.0], [False] * 2)
     assert rests == pytest.approx(side * brentq(moment, 0.0, theta, xtol=1e-15), rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("gap", "deepest", "e", "closed"),
+    [(0.01, 0.0, 0.6, True), (0.01, 0.14, 0.95, True), (0.1, 0.0, 0.6, False), (0.01, 0.2, 0.6, False)],
+)
+def test_a_stop_that_opens_before_the_block_rests_pulls_no_more(gap, deepest, e, closed):
+    """The stop goes up by k, and after a compression down by k/e² until it opens; the damper is elastic from the end on."""
+    b, k, z, yield_m, theta = FIG5.half_width, 0.5 * GRAVITY * FIG5.size / FIG5.half_width**2, 0.2, 0.05, 0.1
+
+    def pull(tilt):
+        u = 2.0 * b * math.sin(0.5 * tilt)
+        return max(0.0, min(k * (u - gap), k / e**2 * (u - gap - deepest) + k * deepest))
+
+    def moment(tilt):
+        steel = 0.5 * GRAVITY * (z + 2.0 * b * (math.sin(0.5 * tilt) - math.sin(0.5 * theta)) / yield_m)
+        return GRAVITY * FIG5.size * math.sin(FIG5.alpha - tilt) + (steel + pull(tilt)) * b * math.cos(0.5 * tilt)
+
+    devices = Damper("hysteretic", f=0.5, yield_m=yield_m, at=0.0), Stop(gap, 0.5, e, at=0.0)
+    expected = brentq(moment, 0.0, theta, xtol=1e-15)
+    assert (pull(expected) > 0.0) == closed
+    assert pull(theta) > 0.0
+    for side in (1.0, -1.0):
+        rests = rests_on_rigid_base(FIG5, base(*devices), SimpleNamespace(theta_end=side * theta), [z, deepest], [False] * 2)
+        assert rests == pytest.approx(side * expected, rel=1e-10)
 
 
 @pytest.mark.parametrize("damper", [Damper("friction", f=2.0), Damper("hysteretic", f=2.0, yield_m=0.005)])
