@@ -99,8 +99,7 @@ def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
 def why_none(name: str, cases: Iterable[Case]) -> str:
     """Return the reason why no case has this parameter of a device, "damper_2.f", without asking whether one has."""
     table, key = name.split(".")
-    match = TABLE.fullmatch(table)
-    what, number = match.groups() if match else (table, None)
+    ((what, number),) = TABLE.findall(table)
     most, kinds, heavy = 0, set(), False
     for case in cases:
         devices = [device for device in case.base.restraints if device.what == what]
@@ -108,7 +107,7 @@ def why_none(name: str, cases: Iterable[Case]) -> str:
         kinds |= {device.kind for device in devices if isinstance(device, Damper)}
     if not most:
         return f"no case of the study has a {what}"
-    if number is not None and int(number) > most:
+    if number and int(number) > most:
         return f"no case of the study has a {what} {number}"
     if key in IN_KN and not heavy:
         return "it goes with a pier of known mass (mass_t)"
