@@ -19,6 +19,7 @@ from rockbatch.pier import (
     Damper,
     DeckSpring,
     ElasticBase,
+    FootingBase,
     Part,
     Pier,
     RigidBase,
@@ -34,7 +35,7 @@ from rockbatch.pier import (
 )
 from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.devices import doubt as pier_doubt
-from rockbatch.pier.frequencies import fastest
+from rockbatch.pier.frequencies import fastest, rocking_frequency
 from rockbatch.pier.plausibility import wrong_restraints
 from rockbatch.pier.sizes import unlikely_deck, unlikely_heights, unlikely_inertia
 from rockbatch.simulation import run_fixed
@@ -253,13 +254,20 @@ def test_deflections_and_frequency_follow_from_each_other():
 
 @pytest.mark.parametrize("zeta", [0.0, 0.3, 0.9, 1.0])
 @pytest.mark.parametrize("alpha", [0.2, 1.2])
-def test_the_fastest_rate_is_the_largest_root_of_heave_and_rocking_in_full_contact(alpha, zeta):
-    """By NumPy's roots, per unit mass: two springs ω_v²/2 and two dashpots ζ ω_v at ±b; the weight tips by g h."""
+@pytest.mark.parametrize(("base", "squared"), [(ElasticBase, 1.0), (FootingBase, 1.0 / 3.0)])
+def test_the_fastest_rate_is_the_largest_root_of_heave_and_rocking_in_full_contact(alpha, zeta, base, squared):
+    """By NumPy's roots, per unit mass: two springs ω_v²/2 and two dashpots ζ ω_v at ±b; the weight tips by g h.
+
+    A bed of the same stiffness from −b to b has the mean square b²/3 of its places in the place of b².
+    """
     pier, omega = Pier(alpha, 1.0), 20.0
-    b, h = pier.half_width, pier.height
+    b2, h = squared * pier.half_width**2, pier.height
     heave = np.roots([1.0, 2.0 * zeta * omega, omega**2])
-    rocking = np.roots([pier.inertia + h**2, 2.0 * zeta * omega * b**2, (omega * b) ** 2 - pier.gravity * h])
-    assert fastest(pier, ElasticBase(omega, zeta=zeta)) == pytest.approx(np.abs([*heave, *rocking]).max(), rel=1e-6)
+    rocking = np.roots([pier.inertia + h**2, 2.0 * zeta * omega * b2, omega**2 * b2 - pier.gravity * h])
+    assert fastest(pier, base(omega, zeta=zeta)) == pytest.approx(np.abs([*heave, *rocking]).max(), rel=1e-6)
+    undamped = (omega**2 * b2 - pier.gravity * h) / (pier.inertia + h**2)
+    assert rocking_frequency(pier, base(omega, zeta=zeta)) ** 2 == pytest.approx(undamped, rel=1e-12)
+    assert rocking_frequency(pier, base(0.1, zeta=zeta)) == 0.0  # it topples
 
 
 def test_the_base_tilts_less_than_the_residual_the_nearer_to_toppling():

@@ -23,7 +23,7 @@ from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import silent
 from rockbatch.batch.observers import observers_of
-from rockbatch.batch.threads import Threads
+from rockbatch.batch.threads import Threads, cores
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.results.columns import columns
@@ -149,6 +149,13 @@ def test_ctrl_c_while_workers_are_waited_for_closes_the_cluster(monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         Dask(workers=1).__enter__()
     assert closed == [rockbatch.batch.dask.GONE_S]
+
+
+def test_a_cluster_of_ones_own_has_the_workers_asked_for_or_one_for_each_core():
+    assert [Dask(workers=workers).workers for workers in (1, 3, None)] == [1, 3, cores()]
+    for workers in (0, -1):
+        with pytest.raises(InputError, match=f"workers = {workers}: must be 1 or above"):
+            Dask(workers=workers)
 
 
 def test_without_dask_the_engine_says_how_to_get_it(monkeypatch):

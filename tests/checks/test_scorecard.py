@@ -48,7 +48,9 @@ def test_a_ban_that_fails_is_worse_than_any_share_of_a_limit_and_another_is_bett
         (FAIL, 2.0, ban), (FAIL, 3.0, {}), (FAIL, 1.1, {}), (NOT_DECIDED, 1.5, {}), (NOT_DECIDED, 0.4, {}),
         (NOT_DECIDED, 0.0, ban), (NOT_DECIDED, math.nan, {}), (PASS, 0.9, {}), (PASS, 0.0, {}), (PASS, 0.2, ban),
     ]  # fmt: skip
-    found = [verdict("a", kind, check=f"c{i}", ratio=share, **more) for i, (kind, share, more) in enumerate(worst_first)]
+    found = [
+        verdict("a", kind, check=f"c{i}", ratio=share, **more) for i, (kind, share, more) in enumerate(worst_first)
+    ]
     for given in (found, found[::-1], found[::2] + found[1::2]):
         assert [column.check for column in scorecard(given, name_of).columns] == [f"c{i}" for i in range(len(found))]
     without = scorecard([verdict("a", DOES_NOT_APPLY, check="none", ratio=9.0), *found], name_of)

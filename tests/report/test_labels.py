@@ -17,7 +17,7 @@ from rockbatch.quantities.labels import digits_that_tell, in_full, plain, quanti
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.finished_analysis import named as named_by
 from rockbatch.reporting.labels import head
-from rockbatch.results.labels import named
+from rockbatch.results.labels import named, under_bounds
 from rockbatch.workflow.analysis import AnalysisFolder
 
 MASS = {"width_m": 4.0, "height_m": 20.0, "mass_t": 1000.0}
@@ -140,6 +140,21 @@ def test_foundations_have_short_names_or_letters_and_rigid_ground_is_a_line(base
     for rigid in (True, False):
         own = [one.index for one in found if one.rigid is rigid]
         assert own == [*range(len(own))]
+
+
+def test_foundations_under_bounds_have_letters_of_their_own_and_the_bound_in_their_label():
+    bases = {"rigid": HARD, "1": PAD, "2": replace(PAD, eta=3.5)}
+    nominal = named({(name,): [case(name, base)] for name, base in bases.items()}, (), {})
+    designs = {(*key, ""): one for key, one in nominal.items()}
+    found = under_bounds(designs, [(name, bound) for name in bases for bound in ("", "stiff", "soft")])
+    of = {key: (one.label.replace("\u00a0", " "), one.tick, one.rigid, one.index) for key, one in found.items()}
+    assert of == {
+        ("rigid", ""): ("rigid", "a", True, 0), ("rigid", "stiff"): ("rigid: stiff", "b", True, 1),
+        ("rigid", "soft"): ("rigid: soft", "c", True, 2), ("1", ""): ("1: η = 2.5", "a", False, 0),
+        ("1", "stiff"): ("1: η = 2.5, stiff", "b", False, 1), ("1", "soft"): ("1: η = 2.5, soft", "c", False, 2),
+        ("2", ""): ("2: η = 3.5", "d", False, 3), ("2", "stiff"): ("2: η = 3.5, stiff", "e", False, 4),
+        ("2", "soft"): ("2: η = 3.5, soft", "f", False, 5),
+    }  # fmt: skip
 
 
 def test_a_run_says_what_else_than_its_foundation_tells_it_from_others_of_its_record(tmp_path):

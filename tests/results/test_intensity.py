@@ -1,12 +1,14 @@
 """Intensity measures beside the peaks: their values, who is asked, and what overturned runs count for."""
 
 import math
+import re
 
 import numpy as np
 import pandas as pd
 import pytest
 import scipy.stats
 from motion_files import wiggle, write_at2
+from report_page import Page
 from studies import COSINE, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
@@ -14,6 +16,8 @@ from rockbatch.common.errors import InputError
 from rockbatch.motions import measures
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.observers.intensity.order import order_of
+from rockbatch.observers.intensity.section import section
+from rockbatch.reporting.finished import read
 from rockbatch.results import suite_statistics
 from rockbatch.results.suite_statistics import distribution
 
@@ -229,3 +233,13 @@ def test_the_worst_records_and_the_most_frequent_reasons_come_first():
     reasons = ["not settled: a", "not settled: b", "left alone; c", "other", "left alone: d", "not settled"]
     failed = pd.DataFrame({"status": ["failed"] * 6, "reason": reasons})
     assert suite_statistics.reasons_of_failure(failed) == {"not settled": 3, "left alone": 2}
+
+
+def test_the_page_has_a_row_for_each_case_and_scale_and_names_both(results):
+    shown = Page(section(read(results.directory, ()))).tables[""]
+    rows = [row for row in shown if row[0] != "case"]
+    of_rows = [same.iloc[0] for _, same in results.intensity_order.groupby(["case", "alpha", "scale"], sort=False)]
+    assert [float(row[1]) for row in rows] == 2 * [same["scale"] for same in of_rows]
+    assert {row[1] for row in rows} == {"1", "1.5"}
+    alphas = [float(re.search(r"α = ([\d.]+)", row[0].replace("\u00a0", " "))[1]) for row in rows]
+    assert alphas == 2 * [same["alpha"] for same in of_rows]

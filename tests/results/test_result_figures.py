@@ -309,7 +309,11 @@ def spectra_of(values, **more):
 
 def test_spectra_of_a_few_records_are_drawn_beside_their_median_over_all_periods():
     panel, lines = spectra_of([[0.5, 1.0, 0.2], [0.4, 3.0, 0.1], [0.1, 0.9, 0.05]])
-    assert [lines[name].y.tolist() for name in ("m0", "m1", "m2")] == [[0.5, 1.0, 0.2], [0.4, 3.0, 0.1], [0.1, 0.9, 0.05]]
+    assert [lines[name].y.tolist() for name in ("m0", "m1", "m2")] == [
+        [0.5, 1.0, 0.2],
+        [0.4, 3.0, 0.1],
+        [0.1, 0.9, 0.05],
+    ]
     assert lines["median"].y.tolist() == [0.4, 1.0, 0.1]
     assert lines.keys() == {"m0", "m1", "m2", "median"}
     assert (panel.x.low, panel.x.high, panel.x.log) == (0.1, 2.0, True)
@@ -351,8 +355,9 @@ def test_a_record_of_nearly_nothing_does_not_flatten_the_other_spectra():
 @pytest.mark.parametrize(
     ("changes", "drawn"),
     [
-        ({}, True), ({"period_s": [0.1, 0.5, 0.5]}, False), ({"period_s": [0.0, 0.5, 2.0]}, False), ({"sa_g": [[1.0, 1.0]]}, False),
-        ({"period_s": [0.1], "sa_g": [[1.0]]}, False), ({"sa_g": [[1.0, -1e-9, 1.0]]}, False), ({"sa_g": [[1.0, None, 0.0]]}, True),
+        ({}, True), ({"period_s": [0.1, 0.5, 0.5]}, False), ({"period_s": [0.0, 0.5, 2.0]}, False),
+        ({"sa_g": [[1.0, 1.0]]}, False), ({"period_s": [0.1], "sa_g": [[1.0]]}, False),
+        ({"sa_g": [[1.0, -1e-9, 1.0]]}, False), ({"sa_g": [[1.0, None, 0.0]]}, True),
         ({"mean_sa_g": [1.0, 1.0, 1.0]}, False), ({"mean_sa_g": [1.0] * 3, "target_sa_g": [1.0] * 3}, True),
         ({"mean_sa_g": [1.0] * 3, "target_sa_g": [1.0] * 2}, False),
     ],

@@ -320,6 +320,24 @@ def test_residuals_that_a_changed_motion_moves_have_no_error(monkeypatch):
     assert outcome.settlement_error == pytest.approx(2e-6)
 
 
+@pytest.mark.parametrize(("step", "error"), [(2.2e-5, None), (1.8e-5, pytest.approx(1e-7))])
+def test_residuals_that_come_no_nearer_by_more_than_the_tolerance_are_tried_again(monkeypatch, step, error):
+    """In units of α: 1e-4 of 0.2 rad, though the last halving agrees and every count does."""
+    near, moved = 0.001 + 2.0 * step, {"theta_res": 0.002, "settlement": 0.01}
+    levels = [0.001, 0.001 + step, near, near + 1e-7]
+    asked = scripted(
+        monkeypatch,
+        *(
+            ok(0.1 + 0.01 * (i == 0) + 0.001 * (i == 1), theta_res=theta, settlement=0.01)
+            for i, theta in enumerate(levels)
+        ),
+        weaker=ok(0.1, **moved),
+    )
+    outcome = run_to_tolerance(FIG5, ON_SPRINGS, SINE, 1e-4)
+    assert len(asked) == 4
+    assert outcome.theta_res_error == error
+
+
 def test_the_error_of_a_settlement_is_what_halving_the_step_changes_and_its_drift(monkeypatch):
     wait = readings(FIG5, ON_SPRINGS, SINE.dt)[1] * SINE.dt
     steady = [ok(0.1, theta_res=0.001, settlement=settlement) for settlement in (0.01, 0.010002)]

@@ -868,7 +868,10 @@ LISTS = [
 
 @pytest.mark.parametrize(("use", "key"), LISTS)
 def test_each_value_of_a_list_is_a_case_for_every_key_but_those_that_say_what_it_is(use, key):
-    values = [use.value, ANOTHER.get(key) if key in ANOTHER else use.value + (1 if isinstance(use.value, int) else 0.01)]
+    values = [
+        use.value,
+        ANOTHER.get(key) if key in ANOTHER else use.value + (1 if isinstance(use.value, int) else 0.01),
+    ]
     cases = rb.Study.from_dict(use._replace(value=values).changed(key)).cases
     shown = [[] if value == "rigid" else [value] for value in values]  # keys of a shaft are columns where it bends
     assert [list(one.columns.values()) for one in cases] == shown

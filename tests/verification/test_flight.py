@@ -127,15 +127,23 @@ def test_a_pier_that_the_ground_does_not_bear_and_that_gains_no_height_has_not_f
 @pytest.mark.parametrize("name", list(MOTIONS))
 def test_a_flight_above_the_limit_of_the_base_is_noted_with_both_in_mm(name):
     height = 1e3 * run_fixed(PIER, RigidBase(flight_limit_mm=1e4), MOTIONS[name], 4).flight_height
-    above, below = (run_fixed(PIER, RigidBase(flight_limit_mm=share * height), MOTIONS[name], 4) for share in (0.98, 1.02))
-    assert [float(number) for number in re.findall(r"[\d.]+", above.note)] == pytest.approx([height, 0.98 * height], rel=0.05)
+    above, below = (
+        run_fixed(PIER, RigidBase(flight_limit_mm=share * height), MOTIONS[name], 4) for share in (0.98, 1.02)
+    )
+    assert [float(number) for number in re.findall(r"[\d.]+", above.note)] == pytest.approx(
+        [height, 0.98 * height], rel=0.05
+    )
     assert below.note == ""
 
 
 def test_a_peak_that_is_the_release_is_noted_of_a_run_that_went_through():
     """The one that is cut short by a flight may have turned further."""
     leaning = replace(PIER, initial_rotation_rad=0.05)
-    motions = {"still": given([0], [0]), "shaken": given([0, 0.5, 0.5, 0.5], [0]), "falling": given([0], [0, -1.5, -1.5, -1.5])}
+    motions = {
+        "still": given([0], [0]),
+        "shaken": given([0, 0.5, 0.5, 0.5], [0]),
+        "falling": given([0], [0, -1.5, -1.5, -1.5]),
+    }
     found = {
         (name, pier.initial_rotation_rad): run_fixed(pier, RigidBase(flight="stop"), motion, 4)
         for name, motion in motions.items()

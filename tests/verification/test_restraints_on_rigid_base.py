@@ -417,7 +417,9 @@ def test_a_stop_that_opens_before_the_block_rests_pulls_no_more(gap, deepest, e,
     assert (pull(expected) > 0.0) == closed
     assert pull(theta) > 0.0
     for side in (1.0, -1.0):
-        rests = rests_on_rigid_base(FIG5, base(*devices), SimpleNamespace(theta_end=side * theta), [z, deepest], [False] * 2)
+        rests = rests_on_rigid_base(
+            FIG5, base(*devices), SimpleNamespace(theta_end=side * theta), [z, deepest], [False] * 2
+        )
         assert rests == pytest.approx(side * expected, rel=1e-10)
 
 
