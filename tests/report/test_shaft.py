@@ -3,6 +3,7 @@
 import shutil
 
 import numpy as np
+import pandas as pd
 import pytest
 from report_page import Page
 from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
@@ -13,6 +14,7 @@ from rockbatch.observers.sections import section as shaft
 from rockbatch.observers.sections.figure import over_height
 from rockbatch.reporting.finished import read
 from rockbatch.results.labelled import groups_of
+from rockbatch.results.reading import EditedTable
 from rockbatch.results.sections import SECTIONS
 
 PIER = {"width_m": 3.0, "height_m": 14.0, "mass_t": 400.0, "deck_mass_t": 200.0}
@@ -56,6 +58,22 @@ def test_the_envelopes_of_every_case_are_in_the_table_and_drawn(out):
     assert [mark.y.tolist() for mark in pads] == 2 * [[0.0, 7.0, 14.0]]
     assert np.all(pads[0].x < pads[1].x)
     assert pads[0].x[1] == rows["section_axial_least_kN"].min()
+
+
+def test_runs_that_were_cut_short_are_counted_and_raise_an_alarm(out, tmp_path):
+    folder = shutil.copytree(out, tmp_path / "out")
+    peaks = pd.read_csv(folder / "peaks.csv", dtype=str, keep_default_na=False)
+    of_pads = peaks.index[peaks["case"] == "pads"]
+    assert len(of_pads) == 2
+    for ended, words in ((["flight"], "1 of 2"), (["flight", "failed"], "0 of 2")):
+        peaks.loc[of_pads[: len(ended)], "status"] = ended
+        peaks.to_csv(folder / "peaks.csv", index=False)
+        with pytest.warns(EditedTable):
+            section = shaft.section(read(folder, ()))
+        counts = {(row[0], row[8]) for row in Page(section).tables[""] if row[0] in ("rigid", "pads")}
+        assert counts == {("rigid", "2 of 2"), ("pads", words)}
+        assert section.count('"alarm"') == 3 + 1  # sections of the pads, and the legend
+    assert '"alarm"' not in shaft.section(read(out, ()))
 
 
 def test_a_pier_without_a_mass_has_forces_over_it(tmp_path):

@@ -1,5 +1,7 @@
 """Values that only a wrong unit explains: told with what is usual, and taken once they are confirmed."""
 
+import re
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -294,6 +296,27 @@ def test_python_refuses_sizes_and_pulses_until_they_are_confirmed(make, name):
     with pytest.raises(InputError, match=rf'^{name} = .*write confirm = \["{name}"\]$'):
         make()
     make(confirm=(name,))
+
+
+K = 1e3
+IN_MM: dict[str, tuple[Callable[[], object], set[str]]] = {
+    "rectangle": (lambda: rb.Pier.rectangle(7 * K, 28 * K), {"width_m = 7", "height_m = 28"}),
+    "size": (lambda: rb.Pier.from_size(0.2, 15 * K), {"size_m = 15"}),
+    "deck": (lambda: rb.Pier.with_deck(7 * K, 28 * K, 2000, 1000), {"width_m = 7", "height_m = 28"}),
+    "deck alone": (lambda: rb.Pier(0.2, 1.0, deck_height_m=15 * K), {"deck_height_m = 15"}),
+    "top alone": (lambda: rb.Pier(0.2, 1.0, top_m=15 * K), {"top_m = 15"}),
+    "parts": (lambda: rb.Pier.of_parts(7 * K, [rb.Part.shaft(7 * K, 28 * K, 2000)]), {"width_m = 7"}),
+}
+
+
+@pytest.mark.parametrize("way", IN_MM)
+def test_every_way_to_make_a_pier_asks_whether_lengths_are_in_mm(way):
+    """All lengths are wrong alike, so that no share of one in another tells."""
+    make, right = IN_MM[way]
+    with pytest.raises(InputError) as caught:
+        make()
+    said = [re.findall(r"if it is in mm, write (\w+ = [\d.]+);", message) for message in caught.value.messages]
+    assert {remedy for remedies in said for remedy in remedies} == right
 
 
 def test_a_motion_in_gal_is_refused_where_it_is_run():
