@@ -1,18 +1,23 @@
 """The figures of finished results show the rows of the table."""
 
+import json
 import math
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
+from check_samples import verdict
 from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.common.figures.description import COLOURS, ENDED, Look, Points, Polyline, Rule, Span, line_of
 from rockbatch.common.units import GRAVITY
+from rockbatch.observers.interaction.figure import over_axial_force
 from rockbatch.results import figures
 from rockbatch.results.figures import OVER, distributions, peaks_of_all, tooltip
 from rockbatch.results.labelled import groups_of, labelled
+from rockbatch.results.labels import Series
 from rockbatch.results.spectra_figure import drawable, response_spectra
 
 STUDY = study_text(
@@ -364,3 +369,64 @@ def test_a_record_of_nearly_nothing_does_not_flatten_the_other_spectra():
 )  # fmt: skip
 def test_spectra_of_a_folder_are_drawn_only_if_each_has_a_value_at_every_rising_period(changes, drawn):
     assert drawable({"damping": 0.05, "period_s": PERIODS, "sa_g": [[1.0, 1.0, 1.0]]} | changes) == drawn
+
+
+# Effects over the axial force, and their capacity
+
+
+CURVE = ((-800.0, 0.0), (0.0, 6e3), (2e3, 9e3), (9e3, 16e3), (20e3, 0.0))
+"""Points of a capacity (N [kN], M [kN m]) or (N, V [kN])."""
+
+
+def panel_over_axial_force(axial, *, at_m=2.5, places=(0, 0, 0), curve=CURVE):
+    """Return the panel of three rows at these axial forces, with effects 100, 300 and 200, of the ``places`` in two series."""
+    checked = verdict("pads", "pass", check="foot", capacity=json.dumps(curve), at_m=at_m)
+    height, effect = (math.nan, "shear_kN") if math.isnan(at_m) else (at_m, "moment_kNm")
+    rows = pd.DataFrame(
+        {"series": places, "height_m": height, "axial_kN": axial, "shear_kN": np.nan, "moment_kNm": np.nan}
+    )
+    rows[effect] = [100.0, 300.0, 200.0]
+    series = [Series("pads", "a", False, 0), Series("more pads", "b", False, 1)]
+    (panel,) = over_axial_force([(checked, rows)], series).panels
+    return panel
+
+
+@pytest.mark.parametrize(
+    ("axial", "low", "high"),
+    [
+        ((1000.0, 4000.0, 5000.0), -800.0, 6500.0),  # 1500 beyond 0 would be beyond its end
+        ((100.0, 400.0, 500.0), -150.0, 650.0),
+        ((-100.0, 400.0, 500.0), -250.0, 650.0),
+        ((1000.0, 4000.0, 18e3), -800.0, 20e3),  # beyond both its ends
+        ((-400.0, -300.0, -100.0), -520.0, 20.0),
+    ],
+)
+def test_a_capacity_is_drawn_around_the_axial_forces_of_its_runs_and_no_further(axial, low, high):
+    """From 0 at least, and 3/10 of the greatest |N| beyond both, with every corner between them, and straight."""
+    capacity, envelope = panel_over_axial_force(axial).marks
+    inner = [n for n, _ in CURVE if low < n < high]
+    assert capacity.x.tolist() == pytest.approx([low, *inner, high])
+    assert capacity.y.tolist() == pytest.approx(np.interp([low, *inner, high], *zip(*CURVE, strict=True)).tolist())
+    assert envelope.x.tolist() == list(axial)
+    assert envelope.y.tolist() == [100.0, 300.0, 200.0]
+
+
+def test_every_foundation_has_its_envelope_in_its_own_look_and_axes_that_hold_all():
+    panel = panel_over_axial_force((1000.0, 4000.0, 5000.0), places=(0, 1, 1))
+    capacity, pads, more = panel.marks
+    assert [mark.label for mark in panel.marks] == ["capacity", "pads", "more pads"]
+    assert (capacity.look, pads.look, more.look) == (Look("limit"), line_of(0), line_of(1))
+    assert (pads.x.tolist(), more.x.tolist()) == ([1000.0], [4000.0, 5000.0])
+    for axis, along in ((panel.x, "x"), (panel.y, "y")):
+        drawn = np.concatenate([getattr(mark, along) for mark in panel.marks])
+        assert axis.low <= drawn.min() < drawn.max() <= axis.high
+
+
+def test_a_section_shows_moments_at_its_height_and_the_base_shears():
+    section, base = (panel_over_axial_force((1e3, 4e3, 5e3), at_m=at_m) for at_m in (2.5, math.nan))
+    assert [(panel.x.label, panel.y.label) for panel in (section, base)] == [
+        ("N [kN]", "M [kN m]"),
+        ("N [kN]", "V [kN]"),
+    ]
+    assert (section.caption, base.caption) == ("foot", "foot")
+    assert ("2.5 m" in section.note, any(map(str.isdigit, base.note))) == (True, False)

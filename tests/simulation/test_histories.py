@@ -227,6 +227,14 @@ def test_an_overturned_pier_says_so_in_its_row_and_in_its_repr():
     assert np.isnan(response.theta_max_error)
 
 
+def test_a_single_run_is_of_the_motion_as_it_is_whenever_its_histories_are_read(response):
+    """Read at once beside forces, or later: by the scale 1 and the polarity +, which neither its words nor its row change."""
+    at_once = rb.simulate(PIER, BASES["rigid"], PULSE, quiet_s=0.0, forces=True)
+    for one in (response, at_once):
+        assert (one.scale, one.polarity, one.row["scale"], one.row["polarity"]) == (1.0, "+", 1.0, "+")
+        assert repr(one).startswith(f"<response {PULSE.name}, {one.case}")
+
+
 def test_a_response_tells_of_itself_in_a_few_lines(response):
     lines = repr(response).splitlines()
     assert len(lines) <= 8
