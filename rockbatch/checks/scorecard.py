@@ -183,7 +183,7 @@ def _cell(verdict: Verdict, column: Column) -> Cell:
     if verdict.verdict == DOES_NOT_APPLY or math.isnan(verdict.value):
         return Cell(verdict, "", "")
     if verdict.is_ban:
-        return Cell(verdict, wording.demanded(verdict), "", named)
+        return Cell(verdict, wording.demanded(verdict), "", design_bound=named)
     bound = "≥\u00a0" if verdict.is_lower_bound else ""
     limit = verdict.limit * column.factor
     value = wording.compared(verdict.value * column.factor, limit, 3)

@@ -68,7 +68,8 @@ def test_columns_that_fail_or_are_open_always_stand_and_others_up_to_a_number():
 
 @pytest.mark.parametrize(
     ("unit", "limit", "sense", "shown"),
-    [("m", 0.05, "at most", "≤ 50 mm"), ("m", 1.5, "at most", "≤ 1.5 m"), ("rad", 0.01, "at most", "≤ 10 mrad"),
+    [("m", 0.05, "at most", "≤ 50 mm"), ("m", 1.5, "at most", "≤ 1.5 m"), ("m", 1.0, "at most", "≤ 1 m"),
+     ("m/s", 0.25, "at most", "≤ 250 mm/s"), ("m/s", 2.5, "at most", "≤ 2.5 m/s"), ("kN", 0.5, "at most", "≤ 0.5 kN"), ("rad", 0.01, "at most", "≤ 10 mrad"),
      ("", 2.0, "at least", "≥ 2"), ("kN", 300_000.0, "at most", "≤ 300,000 kN")],
 )  # fmt: skip
 def test_limits_stand_in_units_of_their_size(unit, limit, sense, shown):
@@ -98,6 +99,34 @@ def test_a_cell_never_shows_a_demand_on_the_other_side_of_its_limit(value, ratio
 def test_a_cell_has_the_bounds_of_a_demand_where_digits_that_are_shown_differ(low, high, shown):
     one = verdict("a", "pass", unit="m", limit=0.05, value=0.025, low=low, high=high)
     assert scorecard([one], name_of).rows[0].cells[0].bounds == shown
+
+
+@pytest.mark.parametrize(("heights", "shared"), [((7.5, 7.5), True), ((7.5, 9.0), False), ((7.5, math.nan), True)])
+def test_a_height_is_in_the_head_if_all_have_it_and_else_in_their_cells(heights, shared):
+    found = [verdict(name, "pass", at_m=at) for name, at in zip("ab", heights, strict=True)]
+    card = scorecard(found, name_of)
+    assert ("7.5\u00a0m" in card.columns[0].at) == shared
+    assert {row.name: "7.5\u00a0m" in row.cells[0].value for row in card.rows} == {"a": not shared, "b": False}
+    assert shared or {row.name: "9\u00a0m" in row.cells[0].value for row in card.rows} == {"a": False, "b": True}
+    assert scorecard([verdict("a", "pass")], name_of).columns[0].at == ""
+
+
+@pytest.mark.parametrize("event", [{}, {"demand": "overturned", "statistic": "max", "limit": 0.0, "value": 1.0}])
+def test_a_cell_names_the_bound_of_the_design_under_which_it_is_worst(event):
+    under = [
+        verdict("a", FAIL, ratio=ratio, columns={"bound": name}, **event) for name, ratio in (("", 1.2), ("soft", 1.5))
+    ]
+    assert scorecard(under, name_of).rows[0].cells[0].design_bound == "soft"
+    assert scorecard(under[:1], name_of).rows[0].cells[0].design_bound == ""
+
+
+def test_a_case_of_which_no_run_stands_is_told_from_one_without_checks():
+    fallen = [CaseRuns(name, {}, 1.0, 4, {"overturned": 4}) for name in ("a", "b")]
+    a, b = sorted(scorecard([verdict("a", PASS)], name_of, fallen).rows)
+    assert (a.verdict, b.verdict) == (DOES_NOT_APPLY, DOES_NOT_APPLY)
+    assert a.in_words != b.in_words
+    none = Row("c", DOES_NOT_APPLY, [None])
+    assert b.in_words == none.in_words
 
 
 def test_a_ban_stands_in_words():
