@@ -90,6 +90,16 @@ def test_a_demand_is_in_its_list_by_the_name_that_a_hand_computes():
     assert BY_HAND.keys() == DEMANDS.keys()
 
 
+@pytest.mark.parametrize("name", DEMANDS)
+def test_the_name_of_a_demand_ends_with_its_unit(name):
+    plain = DEMANDS[name].unit.replace("²", "2").replace("/", "_")
+    endings = {plain.replace(" ", "_"), plain.replace(" ", "")}
+    assert not DEMANDS[name].unit or name.endswith(tuple(f"_{ending}" for ending in endings))
+    assert DEMANDS[name].unit or not name.endswith(
+        ("_m", "_mm", "_rad", "_s", "_s2", "_g", "_kN", "_kNm", "_kJ", "_kg", "_MPa")
+    )
+
+
 @pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if demand.needs == "forces"])
 def test_the_error_of_forces_leaves_a_limit_within_it_undecided(demand):
     value, _ = BY_HAND[demand]
@@ -118,6 +128,7 @@ def test_a_run_that_failed_after_its_motion_breaks_a_limit_that_it_passed_before
     found = judged(pd.concat([failed, runs([0.1], record="other", station="other")]))
     assert (found.verdict, found.high) == (verdict, INF)
     assert found.low == pytest.approx(0.1 if math.isnan(error) else reached - error)
+    assert ("no error estimate" in found.remarks) == math.isnan(error)
     radians = judged(failed, demand="theta_max_rad", at_most=0.5 * 0.2)
     assert radians.verdict == verdict
     assert judged(failed, demand="settlement_m", at_most=0.0).verdict == "not decided"

@@ -16,7 +16,19 @@ from rockbatch.core.devices.laws import HYSTERETIC, MAXWELL, VISCOUS
 from rockbatch.motions.motion import Motion
 from rockbatch.outcome.changes import Sized, greatest_change
 from rockbatch.outcome.outcome import Failure, Outcome
-from rockbatch.pier import Damper, DeckSpring, ElasticBase, Part, Pier, RigidBase, Tendon, YieldingBase
+from rockbatch.pier import (
+    Damper,
+    DeckSpring,
+    ElasticBase,
+    FootingBase,
+    Part,
+    Pier,
+    RigidBase,
+    Tendon,
+    YieldingBase,
+    rocking_frequency,
+    vertical_frequency,
+)
 from rockbatch.pier.vibration import greatest_rate_of_shaft
 from rockbatch.simulation import (
     Run,
@@ -33,7 +45,7 @@ from rockbatch.simulation.agreement import windows
 from rockbatch.simulation.elements import elements
 from rockbatch.simulation.restraints import _at_rest
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
-from rockbatch.simulation.steps import fastest_rate, readings
+from rockbatch.simulation.steps import fastest_rate, patience, readings
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
 
@@ -591,6 +603,21 @@ def test_steps_respect_how_fast_a_shaft_vibrates_or_creeps_beside_a_rotation(dam
     (tendon,) = elements(pier, held)
     both = greatest(about_pivot, tendon.stiffness * pier.half_width**2)
     assert both * (1.0 - 1e-9) <= fastest_rate(pier, held) <= 1.5 * both
+
+
+@pytest.mark.parametrize("dt", [0.005, 0.02])
+def test_residuals_are_read_after_five_vertical_periods_and_whole_ones_of_rocking(dt):
+    """THEORY.md: 40/p at most after the record; the second reading at least as long after the first as that after the record."""
+    vertical, rocking = (2.0 * math.pi / of(FIG5, ON_SPRINGS) for of in (vertical_frequency, rocking_frequency))
+    first, second = readings(FIG5, ON_SPRINGS, dt)
+    assert first * dt == pytest.approx(5.0 * vertical, abs=dt)
+    assert first * dt >= 5.0 * vertical
+    periods = round(second * dt / rocking)
+    assert second * dt == pytest.approx(periods * rocking, abs=dt)
+    assert (periods - 1) * rocking < 5.0 * vertical <= periods * rocking
+    for base in (RigidBase(), ElasticBase(40.0), FootingBase(40.0)):
+        assert readings(FIG5, base, dt) == (0, 0)
+    assert patience(FIG5, dt) * dt == pytest.approx(40.0 / FIG5.p, abs=dt + 1e-9)
 
 
 @pytest.mark.parametrize(("devices", "rate"), RATES)
