@@ -69,7 +69,8 @@ def test_columns_that_fail_or_are_open_always_stand_and_others_up_to_a_number():
 @pytest.mark.parametrize(
     ("unit", "limit", "sense", "shown"),
     [("m", 0.05, "at most", "≤ 50 mm"), ("m", 1.5, "at most", "≤ 1.5 m"), ("m", 1.0, "at most", "≤ 1 m"),
-     ("m/s", 0.25, "at most", "≤ 250 mm/s"), ("m/s", 2.5, "at most", "≤ 2.5 m/s"), ("kN", 0.5, "at most", "≤ 0.5 kN"), ("rad", 0.01, "at most", "≤ 10 mrad"),
+     ("m/s", 0.25, "at most", "≤ 250 mm/s"), ("m/s", 2.5, "at most", "≤ 2.5 m/s"), ("kN", 0.5, "at most", "≤ 0.5 kN"),
+     ("rad", 0.01, "at most", "≤ 10 mrad"),
      ("", 2.0, "at least", "≥ 2"), ("kN", 300_000.0, "at most", "≤ 300,000 kN")],
 )  # fmt: skip
 def test_limits_stand_in_units_of_their_size(unit, limit, sense, shown):
