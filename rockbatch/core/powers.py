@@ -55,7 +55,8 @@ def _real_power(x, a):
     u = _LN_2 * ((product - (rounded - _ROUND)) + rest)
     cube = u * u * u
     root = 1.0 + u * (polynomial(_LOW, u) + cube * cube * polynomial(_HIGH, u))
-    return 0.0 if min(x, log + 1022.0) <= 0.0 else root * _float((_bits(rounded) + _BIAS) << _MANTISSA)
+    found = 0.0 if min(x, log + 1022.0) <= 0.0 else root * _float((_bits(rounded) + _BIAS) << _MANTISSA)
+    return found + 0.0 * x  # NaN for NaN and inf, whose bits would make a number
 
 
 @inlined
@@ -63,7 +64,7 @@ def power(x, n):
     """Return xⁿ for x ≥ 0; ``n`` None stands for 5, an int is at most LARGEST_WHOLE = 10, and a float greater than 0.
 
     Whole exponents are products of squares. The error with a float is at most 3 units in the last place for n ≤ 1, 8 for n ≤ 3,
-    and 25 for n ≤ 10.
+    and 25 for n ≤ 10, if x is 0 or at least 2⁻¹⁰²²; of NaN and inf it is NaN.
     """
     if n is None:
         square = x * x

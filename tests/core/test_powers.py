@@ -60,6 +60,16 @@ def test_powers_beyond_the_largest_float_are_infinite(x, n):
     assert power(x**0.5, 1.99999) == pytest.approx(x**0.999995, rel=1e-12)
 
 
+@pytest.mark.parametrize("n", [0.3, 2.5, 9.9])
+def test_what_is_no_number_stays_none(n):
+    """A run that has none fails; its bits would make a finite force."""
+    table = lanes()
+    table.x[:2], table.exponent[:] = (math.nan, math.inf), n
+    side_by_side(table, NUMBERS)
+    assert np.isnan(table.power).tolist() == [True, True, *[False] * (NUMBERS - 2)]
+    assert math.isnan(power(math.nan, n))
+
+
 def lanes() -> np.record:
     table, rng = np.zeros(1, TABLE).view(np.recarray)[0], np.random.default_rng(7)
     table.x[:], table.exponent[:] = 10.0 ** rng.uniform(-6.0, 1.0, NUMBERS), rng.uniform(0.1, 2.0, NUMBERS)
