@@ -66,9 +66,10 @@ class Waves:
         """Return the number of runs asked for so far, all of which are finished."""
         return len(self.numbers)
 
-    def lacks(self, runs: Runs) -> bool:
-        """Return whether one of the ``runs`` is not known."""
-        return self._known is None or any(identity_of(run, self.study.varied) not in self._known for run in runs)
+    def lacking(self, runs: Runs) -> int:
+        """Return how many of the ``runs`` are not known."""
+        known = self._known or ()
+        return sum(identity_of(run, self.study.varied) not in known for run in runs)
 
     def _numbered(self, runs: Runs) -> Sequence[int]:
         """Return the numbers of ``runs`` in the journal: those known, and new ones."""

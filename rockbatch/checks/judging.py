@@ -434,7 +434,7 @@ def _unmet_by_stations(rule: Rule, counted_as: Texts, stations: Texts, unrecorde
     shape (n,); an unknown station is "", and a station by itself.
     """
     statistic = STATISTICS[rule.statistic or "max"]
-    records, known = len({*counted_as}), {*stations} if (stations != "").all() else {*counted_as}
+    records, known = len({*counted_as}), {*np.where(stations == "", counted_as, stations)}
     if len(known) < statistic.least <= records:
         n = "1 station" if len(known) == 1 else f"{len(known)} stations"
         return f"{records} components of {n} count, the {statistic.words} asks for {statistic.least} stations"

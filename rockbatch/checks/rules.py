@@ -490,7 +490,7 @@ def _wrong_for_code(rule: Rule) -> Iterator[tuple[str, str]]:
         yield "per_event", "per_event: is for a code's statistic; leave it out"
     if DEMANDS[rule.demand].event and rule.statistic not in (None, *OF_EVENTS):
         text = f'statistic = "{rule.statistic}": is for quantities, and {rule.demand} is yes or no'
-        yield "statistic", f'{text}; write "max" or "count"'
+        yield "statistic", f"{text}; write {' or '.join(map(shown, OF_EVENTS))}"
 
 
 def _wrong_for_demand(rule: Rule) -> Iterator[tuple[str, str]]:

@@ -237,7 +237,9 @@ def in_other_units(name: str, value: float, holds: Callable[[float], bool], most
 
 
 def rounded_up(value: float, digits: int = 4) -> float:
-    """Return a positive value rounded up to so many significant digits, as the least value that a message may advise."""
+    """Return a positive value rounded up to so many significant digits, as the least that a message may advise; inf is inf."""
+    if math.isinf(value):
+        return value
     nearest, unit = float(f"{value:.{digits}g}"), 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
     return nearest if nearest >= value else float(f"{nearest + unit:.{digits}g}")
 

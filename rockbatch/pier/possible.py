@@ -95,7 +95,8 @@ def problems(pier: Pier, base: Base) -> list[Problem]:
     if isinstance(base, YieldingBase) and base.eta < (least := least_eta(pier, base)):
         prestress = prestress_over_weight(pier, base.restraints)
         more = f" and the prestress of the tendons, psi = {prestress:g} of it" if prestress else ""
-        text = f"the springs cannot carry the weight{more}; eta must be above {_least_eta_in_words(base)}{least:.6g}"
+        above = f"{_least_eta_in_words(base)}{rounded_up(least, 7):.7g}"
+        text = f"the springs cannot carry the weight{more}; eta must be above {above}"
         wrong.append(Problem("eta", base.eta, text, kind=OutOfRange))
     return wrong
 

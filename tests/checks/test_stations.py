@@ -84,6 +84,10 @@ def test_many_directions_of_few_stations_are_too_few_records_for_a_quantile(stat
     assert (few.records, few.verdict, enough.verdict) == (4 * (least - 1), "not decided", "pass")
     told = f"{4 * (least - 1)} components of {least - 1} stations count, the {STATISTICS[statistic].words} asks for {least} "
     assert few.note.startswith(f"{told}stations")
+    table = table_of([(0.1,) * 24])
+    table.loc[0, "station"] = ""
+    found = judged(table, statistic=statistic, count="component", at_most=1.0)
+    assert (found.verdict, found.note.partition(" count,")[0]) == ("not decided", "24 components of 2 stations")
 
 
 def table_of(stations):

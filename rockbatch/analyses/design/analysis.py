@@ -191,8 +191,8 @@ def _write_tables(results: AnalysisFolder, spec: DesignSpec) -> dict[str, object
         info = describe(study, motions)
         trials = Trials(written, motions, waves, suite_of(info), _on_suite(study, info))
         first = tuple(case for trial in scan for case in written.cases(trial))
-        if waves.lacks(trials.plan(scan)):
-            _announce(results, spec, scan, len(first), motions)
+        if lacking := waves.lacking(trials.plan(scan)):
+            _announce(results, spec, scan, len(first), motions, lacking)
             make_ready(replace(of_runs, cases=first), results.listener, waves.observers)
         requested = scan
         while requested:
@@ -266,15 +266,17 @@ def _without(row: Row, names: Container[str]) -> Row:
     return {name: cell for name, cell in row.items() if name not in names}
 
 
-def _announce(results: AnalysisFolder, spec: DesignSpec, scan: list[Trial], cases: int, motions: MotionSet) -> None:
-    """Say how many runs the scan takes, and how many at most the bisection of a change of verdict."""
+def _announce(
+    results: AnalysisFolder, spec: DesignSpec, scan: list[Trial], cases: int, motions: MotionSet, lacking: int
+) -> None:
+    """Say how many runs the scan takes that are not finished, and how many at most the bisection of a change of verdict."""
     study, designs = results.study, len({trial.design for trial in scan})
     of_case = len(motions.motions) * len(study.motions.scale)
     first = spec.vary[0]
     halvings = math.ceil(math.log2(first.step / spec.width))
     per_value = -(-cases * of_case // len(scan))
     values = " × ".join(f"{varied.points} values of {varied.path}" for varied in spec.vary)
-    runs = f"{count(cases * of_case, 'run')}{once(study)} on {results.engine}"
+    runs = f"{count(lacking, 'run')}{once(study)} on {results.engine}"
     narrowed = f"narrowed from {first.step:.4g} to {spec.width:g}, up to {count(halvings * per_value, 'run')} each"
     results.listener.say(f"{values} × {count(designs, 'design')}: {runs}; then each change of verdict is {narrowed}")
 

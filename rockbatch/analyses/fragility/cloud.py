@@ -323,9 +323,9 @@ def _outside(median: float, x: Values) -> NoCurve | None:
     """Return ``NoCurve`` with a bound for a median below or above all intensities, shape (n,); None for one among them."""
     least, most = float(x.min()), float(x.max())
     if median < least * (1.0 - ROUNDING):
-        return NoCurve(f"most records exceed the limit from {least:.4g} on: the median is below", below=least)
+        return NoCurve(f"the median by the fit is below all intensities, which begin at {least:.4g}", below=least)
     if median > most * (1.0 + ROUNDING):
-        return NoCurve(f"few records exceed the limit up to {most:.4g}: the median is above", above=most)
+        return NoCurve(f"the median by the fit is above all intensities, which end at {most:.4g}", above=most)
     return None
 
 
