@@ -20,6 +20,7 @@ BEGINS, ENDS = 0.4, 0.25
 
 Real records have 0.26 and 0.08."""
 
+_FADED = 0.1  # greatest share of the peak within a second before, and at the first sample behind, the zeros between two shocks
 _STRAIGHT = 1e-3  # of the median second difference: nothing recorded is as straight, but rounding is
 _FEWEST = 8  # samples of a filled gap
 _LAST, _SHARE = 0.5, 0.05  # s, and greatest share of the record
@@ -36,7 +37,8 @@ class Gap(NamedTuple):
 def filled_gap(samples: Samples, dt: float) -> Gap | None:
     """Return the longest straight line between 5 and 95 % of ∫a² dt if it is longer than :data:`FILLED`; else ``None``.
 
-    Zeros, a held value and linear interpolation are straight. ``None`` also if half of the series is, as film read at points.
+    Zeros, a held value and linear interpolation are straight. ``None`` also if half of the series is, as film read at points, and
+    for a line between two shocks, before which the motion has faded and behind which it begins from rest.
     """
     energy = np.cumsum(np.square(samples))
     if len(samples) < _FEWEST or not energy[-1] > 0.0:
@@ -44,14 +46,15 @@ def filled_gap(samples: Samples, dt: float) -> Gap | None:
     first, last = np.searchsorted(energy, np.multiply(_STRONG, energy[-1]))
     bends = np.abs(np.diff(samples[first : last + 2], 2))
     straight = np.concatenate(([0], bends < _STRAIGHT * np.median(bends), [0])) if len(bends) else np.zeros(2)
-    starts, ends = np.flatnonzero(np.diff(straight) == 1), np.flatnonzero(np.diff(straight) == -1)
-    if not len(starts):
-        return None
-    longest = int((ends - starts).argmax())
-    count = int(ends[longest] - starts[longest])
-    if count < _FEWEST or count * dt <= FILLED:
-        return None
-    return Gap(float(first + starts[longest]) * dt, count * dt)
+    starts, ends = (first + np.flatnonzero(np.diff(straight) == step) for step in (1, -1))
+    rest, second = _FADED * np.abs(samples).max(), round(1.0 / dt)
+    gaps = [
+        (int(end - start), int(start))
+        for start, end in zip(starts, ends, strict=True)
+        if end - start >= _FEWEST and np.abs(samples[max(start - second, 0) : end + 3]).max() > rest
+    ]
+    count, start = max(gaps, default=(0, 0))
+    return Gap(start * dt, count * dt) if count * dt > FILLED else None
 
 
 def is_spike(samples: Samples) -> bool:
@@ -67,12 +70,15 @@ def is_spike(samples: Samples) -> bool:
     return bool(np.abs(without).max() < SPIKE * np.abs(samples[i]))
 
 
-def missing_parts(samples: Samples, dt: float) -> list[str]:
-    """Return "begins" and "ends" in a list for a series that does so within the strong motion; [] for others, and at rest."""
+class AtRest(NamedTuple):
+    """Whether a series begins and ends at rest, and not within the strong motion."""
+
+    begins: bool
+    ends: bool
+
+
+def at_rest(samples: Samples, dt: float) -> AtRest:
+    """Return whether a series begins and ends with small samples beside its peak; both are true for one that never moves."""
     peak = float(np.abs(samples).max(initial=0.0))
-    if peak == 0.0:
-        return []
     last = max(min(round(_LAST / dt), int(_SHARE * len(samples))), 1)
-    shares = {"begins": abs(samples[0]), "ends": np.abs(samples[-last:]).max()}
-    limits = {"begins": BEGINS, "ends": ENDS}
-    return [part for part, share in shares.items() if share > limits[part] * peak]
+    return AtRest(bool(abs(samples[0]) <= BEGINS * peak), bool(np.abs(samples[-last:]).max() <= ENDS * peak))

@@ -131,7 +131,7 @@ def orientation_in(label: str) -> Orientation:
 
 
 _LETTER = r"[^\W\d_]"
-_PAIR = re.compile(rf"{_LETTER}{{1,2}} ?- ?{_LETTER}")  # of opposite directions, in a language that is not known
+_PAIR = re.compile(rf"{_LETTER} ?- ?{_LETTER}")  # of opposite directions, in a language that is not known
 _PART = r"(?P<site>.*[^-_. ])[-_. ]+"
 _GLUED = r"DWN|UP|(?:UD|EW|NS)[12]?|VER|VERT|VRT"  # in names that they end without a separator
 _SITES_AND_LABELS = (
@@ -258,16 +258,25 @@ def counted(stems: Iterable[str]) -> set[str]:
 def accidental(stems: Iterable[str]) -> set[str]:
     """Return the stems that end in letters of a direction by chance: STATIONS in NS, DENVER in VER.
 
-    Such letters behind others are a direction only if another stem differs in its direction alone: ORRDWN beside ORR021.
+    So may a word in capitals alone, a word in VER, and one beside another direction: UP_GROUP. Their letters are a direction only
+    if another stem differs in its direction alone: ORRDWN beside ORR021.
     """
     split = {stem: split_stem(stem) for stem in stems}
     of_site = Counter(site for site, orientation in split.values() if orientation)
-    glued = {
-        stem: re.search(rf"[A-Za-z]{re.escape(orientation.label)}", stem)
-        for stem, (_, orientation) in split.items()
-        if orientation and re.fullmatch(_GLUED, orientation.label)
+    return {
+        stem
+        for stem, (site, orientation) in split.items()
+        if orientation and of_site[site] < 2 and _is_end_of_word(orientation.label, stem)
     }
-    return {stem for stem, match in glued.items() if match and of_site[split[stem][0]] < 2}
+
+
+def _is_end_of_word(label: str, stem: str) -> bool:
+    """Return whether a direction's letters may be the end of a word in a stem: True for DENVER, False for KobeNS, KOBE_TAKNS."""
+    if not re.fullmatch(_GLUED, label) or not re.search(rf"[A-Z]{label}", stem):
+        return False
+    words = [orientation_of(word) for word in re.split(r"[-_. ]+", stem) if not word.isdigit()]
+    directed = any(word and (word.vertical or word.azimuth is not None) for word in words)
+    return directed or label.startswith("VER") or (stem.isalpha() and stem.isupper())
 
 
 def told_apart(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:

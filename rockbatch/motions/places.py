@@ -47,7 +47,8 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
         "spillway, dam top, top of dam, dam body, upstream face, downstream face, pylon, superstructure, superstr, pier cap, "
         "pier top, top of pier, pier base, base of pier, tower top, top of tower, tower base, base of tower, hinge, pedestal, "
         "anchor block, tailings dam, mezz, outlet, outlet works, intake, penstock, gatehouse, gate house, soffit, structure type",
-        "es pt": "techo, azotea, tejado, estribo, coronacion, corona de la presa, coronamiento, encepado, terraplen*, "
+        "es pt": "techo, azotea, tejado, estribo, coronacion, corona de la presa, corona de la cortina, "
+        "cortina de la presa, coronamiento, encepado, terraplen*, "
         "aislador*, cuerpo de la presa, aliviadero, vertedero, vertedouro, telhado, "
         "tabuleiro, coroamento, bloco de estacas, isolador*, corpo da barragem",
         "fr it": "toiture, culee, couronnement, semelle, isolateur, appareil d appui, corps du barrage, sottotetto, impalcato, "
@@ -68,12 +69,12 @@ _PLACES = {  # word* is the beginning of one; commas part words, blanks in them 
     },
     "structure, in places only": {  # also names of towns, streets and people
         "en": "pier, bent, tower, span, wall, bearing, anchorage, approach*, gallery, wharf, quay, dock, crane, tank, silo, "
-        "stack, shaft, mast, dike, dyke, ramp, cable, saddle, chimney, joint, col, rf, tunnel, mine, terrace",
+        "stack, shaft, mast, dike, dyke, ramp, cable, saddle, chimney, joint, col, rf, tunnel, mine",
         "es": "ultimo piso, tablero, viga, cresta, cima, columna, zapata, cabezal, pilote, pila, pilon, galeria, torre, pilar*, "
-        "apoyo, muro, losa, corona, cortina, campanario",
+        "apoyo, muro, losa, campanario",
         "pt": "laje, encontro, crista, coluna, sapata, estaca, aterro",
         "fr": "dalle, toit, terrasse, tablier, poutre, crete, poteau*, pieu*, remblai, tour, pilier, mur",
-        "it": "soletta, campanile, "
+        "it": "soletta, "
         "tetto, copertura, trave, travi, spalla, spalle, ciglio, pilastro, pilastri, pilone, plinto, plinti, palo, pali, "
         "rilevato, cunicolo",
         "de": "dach, traeger, trager, krone, stuetze*, stutze*, saeule*, saule*, pfeiler*, pfahl*, boeschung, damm, isolatoren, "
@@ -128,7 +129,7 @@ _STREETS = (  # behind a word, which is a name then
     "park view heights school college hospital library church mall center centre station creek lake valley hill hills canyon "
     "ranch island beach bay point city village town estates"
 )
-_POSITIONS = {"center", "centre", "bay", "point"}  # of these, words that place a sensor: "Roof center"
+_POSITIONS = {"center", "centre"}  # of these, words that place a sensor: "Roof center"
 _ORDINALS = (
     "second third fourth fifth sixth seventh eighth ninth tenth eleventh twelfth top upper "
     "segundo segunda tercer tercero tercera cuarto cuarta quinto quinta sexto septimo octavo noveno decimo ultimo ultima "

@@ -13,7 +13,7 @@ from rockbatch.common.naming import fits
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
 from rockbatch.motions.component import Component
-from rockbatch.motions.faults import filled_gap, is_spike, missing_parts
+from rockbatch.motions.faults import at_rest, filled_gap, is_spike
 from rockbatch.motions.likeness import Copy, copy_between, same_step
 from rockbatch.motions.motion import Finding, Motion, Samples
 from rockbatch.motions.orientation import same_azimuth
@@ -245,11 +245,12 @@ def faulty_samples(candidate: Candidate) -> Finding | None:
 
 
 def incomplete_record(candidate: Candidate) -> Finding | None:
-    """Return a finding on a horizontal component that begins or ends within the strong motion; else None."""
-    parts = missing_parts(candidate.component.acceleration, candidate.component.dt)
-    if not parts or not _moves(candidate.component):
+    """Return a finding on a horizontal component that does not begin or end at rest; else None."""
+    rest = at_rest(candidate.component.acceleration, candidate.component.dt)
+    if all(rest) or not _moves(candidate.component):
         return None
-    return Finding("cut", f"it {' and '.join(parts)} within the strong motion: a part of the record is missing")
+    parts = " or ".join(part for part, rests in (("begin", rest.begins), ("end", rest.ends)) if not rests)
+    return Finding("cut", f"it does not {parts} at rest: if it was recorded, a part is missing")
 
 
 def unequal_horizontals(candidate: Candidate) -> Finding | None:

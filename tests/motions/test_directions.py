@@ -220,6 +220,18 @@ def test_a_word_alone_that_ends_in_letters_of_a_direction_is_asked_for(tmp_path)
     assert motion.vertical_source == "ORRDWN.csv"
 
 
+@pytest.mark.parametrize("stem", ["RSN1120_KOBE_TAKNS", "ElCentroNS", "KobeNS", "RSN1120_KOBE_TAKUP"])
+def test_letters_of_a_direction_count_whatever_files_lie_beside(tmp_path, stem):
+    write_text(tmp_path, f"{stem}.csv")
+    write_text(tmp_path, "TaftEW.csv")
+    assert not [file for file in read_motions(tmp_path).unusable if "direction not known" in file.reason]
+
+
+def test_two_letters_before_a_direction_are_no_pair(tmp_path):
+    assert [orientation_in(f"AC-{way}").vertical for way in "NEZ"] == [False, False, True]
+    assert all(orientation_in(f"AC-{way}").known for way in "NEZ")
+
+
 def test_a_series_of_numbered_files_asks_though_single_numbers_could_be_azimuths(tmp_path):
     for name in ("GM_010.txt", "GM_011.txt", "GM_012.txt"):
         write_text(tmp_path, name)

@@ -7,7 +7,7 @@ from motion_files import needs_records, real_components, wiggle, write_at2
 from rockbatch.motions import fema_p695, read_motions
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.doubles import without_doubles
-from rockbatch.motions.faults import FILLED, filled_gap, is_spike, missing_parts
+from rockbatch.motions.faults import FILLED, at_rest, filled_gap, is_spike
 from rockbatch.motions.orientation import Orientation
 
 DT = 0.01
@@ -69,6 +69,17 @@ def test_straight_lines_beside_the_strong_motion_and_those_of_film_are_no_gap():
     assert filled_gap(A[:3], DT) is None
 
 
+def test_zeros_between_two_shocks_of_one_file_are_no_gap_and_others_are():
+    envelope = np.interp(np.arange(600), (0, 80, 400, 500, 600), (0.0, 1.0, 1.0, 0.02, 0.0))
+    shock = envelope * A
+    shocks = np.concatenate([shock, np.zeros(300), 0.8 * shock])
+    assert filled_gap(shocks, DT) is None
+    cut_before = np.concatenate([shock[:300], np.zeros(300), 0.8 * shock])
+    assert filled_gap(cut_before, DT) is not None
+    shocks[300:360] = 0.0
+    assert filled_gap(shocks, DT) == pytest.approx((3.0, 0.58), abs=0.03)
+
+
 def test_a_dead_horizontal_is_called_dead_and_its_unit_is_not_doubted(tmp_path):
     found = station(tmp_path, A, 0.0 * B)
     (refused,) = found.unusable
@@ -88,13 +99,14 @@ def test_noise_is_held_back_alone_and_a_wrong_gain_with_its_pair(tmp_path):
 
 def test_a_record_that_begins_or_ends_in_the_strong_motion_has_a_finding(tmp_path):
     peak = int(np.abs(A).argmax())
-    for cut, parts in ((A[peak:], "begins"), (A[: peak + 1], "ends")):
+    turned = np.concatenate([A[peak:], A[: peak + 1]])
+    for cut, parts in ((A[peak:], "begin"), (A[: peak + 1], "end"), (turned, "begin or end")):
         (finding,) = [
             f for m in station(tmp_path, cut).motions for f in m.findings if f.what == "cut" and m.name == "X000"
         ]
-        assert finding.text.startswith(f"it {parts} within the strong motion")
-    assert missing_parts(A, DT) == []
-    assert missing_parts(np.zeros(9), DT) == []
+        assert finding.text.startswith(f"it does not {parts} at rest")
+    assert at_rest(A, DT) == (True, True)
+    assert at_rest(np.zeros(9), DT) == (True, True)
 
 
 def test_copies_of_one_sample_a_second_cost_no_other_record():
@@ -113,6 +125,6 @@ def test_no_real_record_has_a_fault():
     assert len(components) > 200
     for c in components:
         samples = c.acceleration - (c.acceleration.mean() if c.raw else 0.0)
-        assert (filled_gap(samples, c.dt), is_spike(samples), missing_parts(samples, c.dt)) == (None, False, []), (
+        assert (filled_gap(samples, c.dt), is_spike(samples), at_rest(samples, c.dt)) == (None, False, (True, True)), (
             c.source
         )

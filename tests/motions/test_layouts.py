@@ -424,6 +424,21 @@ def test_a_header_of_velocities_above_bare_numbers_is_no_record(tmp_path, line):
 
 
 @pytest.mark.parametrize(
+    "line",
+    [
+        "Shear wave velocity in top 30 m: 300 m/s",
+        "baseline corrected; displacement time history ends at zero",
+        "Initial velocity (m/s): 0",
+        "Peak velocity (cm/s) = 31",
+        "Event type: displacement on strike-slip fault",
+    ],
+)
+def test_a_velocity_in_a_comment_is_none_of_the_samples(tmp_path, line):
+    for unit in ("unit: g\n", ""):
+        assert is_a(only(tmp_path, f"Station X, 000\n{unit}{line}\nDT = 0.005 s\n{in_columns(A)}", unit="g"))
+
+
+@pytest.mark.parametrize(
     ("acc", "vel", "disp"),
     [
         ("S_000_acc", "S_000_vel", "S_000_disp"),
@@ -546,7 +561,7 @@ def test_the_column_of_time_is_advised_where_it_stands(tmp_path):
 def test_a_factor_in_the_header_is_asked_for_and_a_manifest_answers(tmp_path, line):
     text = f"{line}\nunits: g\nDT = 0.005 s\n{in_columns(A)}"
     reason = why(tmp_path, text)
-    assert "write scale = " in reason
+    assert "write scale = … with this factor" in reason  # reasons of several files are shown by the first one
     for factor in (0.5, 1.0):
         (tmp_path / "motions.toml").write_text(f'[[record]]\nfile = "x.txt"\nscale = {factor}\n')
         (motion,) = read(tmp_path, text).motions
@@ -555,6 +570,27 @@ def test_a_factor_in_the_header_is_asked_for_and_a_manifest_answers(tmp_path, li
     for applied in ("0.5", ".5"):
         text = text.replace(applied, "1.0") if applied in line else text
     assert is_a(only(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "Conversion factor: 980.665 cm/s2 per g",
+        "Instrument scale factor = 1.2345 V/g",
+        "acceleration in g x 9.81 m/s2",
+        "Target PGA = 0.5 g",
+        "Arias intensity: 1.2 m/s, duration: 8.2 s",
+    ],
+)
+def test_constants_and_targets_of_a_header_say_nothing_of_its_samples(tmp_path, line):
+    motion = only(tmp_path, f"{line}\nunits: g\nDT = 0.005 s\n{in_columns(A)}")
+    assert is_a(motion)
+    assert not {finding.what for finding in motion.findings} & {"peak", "duration"}
+
+
+@pytest.mark.parametrize("line", ["unit: 0.1 g", "acceleration in units of 0.1 g"])
+def test_a_share_of_g_is_a_unit_of_a_table(tmp_path, line):
+    assert is_a(only(tmp_path, f"{line}\nDT = 0.005 s\n{in_columns(10.0 * A)}"))
 
 
 @pytest.mark.parametrize(
@@ -592,3 +628,19 @@ def test_columns_of_several_stations_in_one_file_are_told_apart_by_their_names(t
     ]
     found = read(tmp_path, f"time (s),{heads.replace('BBB', 'AAA')}\n{in_columns(T, *values)}")
     assert not found.motions  # one direction twice of one station
+
+
+@pytest.mark.parametrize(("one", "other"), [("raw", "corrected"), ("acc", "acc2")])
+def test_columns_of_one_sensor_twice_contradict_each_other(tmp_path, one, other):
+    heads = ",".join(f"{name}_{way} (g)" for name in (one, other) for way in "NE")
+    drift = np.linspace(0.0, 0.01, N)
+    found = read(tmp_path, f"time (s),{heads}\n{in_columns(T, A, B, A + drift, B - drift)}")
+    assert not found.motions
+
+
+def test_the_roof_beside_the_base_in_one_file_is_held_back(tmp_path):
+    heads = ",".join(f"{name}_{way} (g)" for name in ("base", "roof") for way in "NE")
+    values = [np.round(wiggle(N, seed, 0.3), 6) for seed in range(21, 25)]
+    found = read(tmp_path, f"time (s),{heads}\n{in_columns(T, *values)}")
+    assert {motion.of_station for motion in found.motions} == {"BASE"}
+    assert [one.reason[:21] for one in found.unusable] == ['"roof" is in a struct'] * 2

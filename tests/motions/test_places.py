@@ -35,10 +35,10 @@ ON_STRUCTURES = (
     "Top Floor", "Upper Deck", "Bent cap", "Pile-cap", "Footing (Pier 3)", "Col. B4 base", "Abtmt 2", "Ftng, Bent 5",
     "Ground level of pier", "Ground floor of tower", "Grnd Lvl, column 3",
     "Edificio, tercer piso", "Quinto nivel", "Piso tercero", "Corona de la cortina", "Losa 2", "Laje", "Secondo piano",
-    "Terzo livello", "Campanile", "Dernier étage", "Troisième étage", "Zweites Stockwerk", "Brückenüberbau Feldmitte",
+    "Terzo livello", "Dernier étage", "Troisième étage", "Zweites Stockwerk", "Brückenüberbau Feldmitte",
     "Staumauer", "Üçüncü kat", "En üst kat", "Köprü tabliyesi", "Minare", "Γέφυρα, βάθρο", "τρίτος όροφος", "三階", "第三层",
     "五楼", "третий этаж", "derde verdieping", "etaj 3", "Acoperiș bloc", "Lantai 5", "Atap gedung", "طبقه سوم", "تاج سد",
-    "střecha", "krov zgrade", "tető", "גג", "Terrace", "Soffit of span 2",
+    "střecha", "krov zgrade", "tető", "גג", "Roof terrace", "Soffit of span 2",
     "Roof center", "Crest Center", "Deck centre",
 )
 ON_GROUND = (
@@ -52,7 +52,9 @@ ON_GROUND = (
     "Toe - downstream", "FF", "Ground - 20m S of Abut 1", "Basement; center", "Slab on grade", "Campo libero",
     "Surface", "Concrete pad", "Level -1", "Grnd Lvl near Bent 3", "Free Field - N of Bent 3", "Base: center",
     "1st Floor: SE corner", "Surface, near abutment", "Embankment toe", "Terreno a 20 m de pila 3",
-    "Suelo junto a pila 2", "Grade, 15 ft from column", "Primer piso", "Primo piano", "Erster Stock", "一階", "地下二階", "1楼",
+    "Suelo junto a pila 2", "Grade, 15 ft from column", "Alluvial terrace", "Corona", "Cortina", "Campanile",
+    "Primer piso", "Primo piano", "Erster Stock", "一階", "地下二階", "1楼",
+    "Penstock Bay", "Mine Bay", "Wharf Bay", "Cable Bay", "Span Point", "Tunnel point", "Tower Point Rd",
     "etaj 1", "Lantai 1", "birinci kat", "первый этаж",
 )
 BELOW = (

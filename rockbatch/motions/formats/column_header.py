@@ -60,7 +60,7 @@ _DIRECTION = re.compile(
 )
 _STATED = re.compile(
     r"^(?:units?|field[_]unit|unidad(?:e?s)?|unidade|unit[ée]s?|unit[àa](?: di misura)?|einheit(?:en)?|birimi?|eenheid)"
-    r"\s*[:=]\s*(?:UTC,\s*)?(?P<unit>\S+)",
+    r"\s*[:=]\s*(?:UTC,\s*)?(?P<unit>(?:\d*\.?\d+ )?\S+)",
     re.IGNORECASE,
 )
 _OF_SERVICE = re.compile(  # of EarthScope's time series, in pairs or lists
@@ -69,7 +69,7 @@ _OF_SERVICE = re.compile(  # of EarthScope's time series, in pairs or lists
 )
 _SAID = re.compile(  # acceleration in g; UNITS OF CM/S/S; Acceleration unit: gal; Acc. (cm/s2)
     r"(?:\bunits? of|\b(?:acc|accel|acceleration|amplitude|data)s?\.?(?:[ _]*(?:data|values|units?|time series|time history))?"
-    r"\s*(?:\bin\b(?: units? of)?|[:=(\[]))\s*(?P<unit>[^\s,;()\[\]]+)",
+    r"\s*(?:\bin\b(?: units? of)?|[:=(\[]))\s*(?P<unit>(?:(?<=units of )\d*\.?\d+ )?[^\s,;()\[\]]+)",
     re.IGNORECASE,
 )
 _PEAK = re.compile(r"\b(?:pga|peak|max(?:imum)?)\b", re.IGNORECASE)
@@ -90,9 +90,11 @@ _OF_DURATION = re.compile(
 )
 _OF_FACTOR = re.compile(
     r"(?:\b(?:scale|scaling|multiplication|conversion)[ _]?factor\s*[:=]?|\bfactor de escala\s*[:=]?"
-    r"|\b(?:g|gals?|cm/s/s|[cm]?m/s\^?2)\s*[x×*])\s*(?P<number>\d*\.?\d+(?:e[-+]?\d+)?)",
+    r"|\b(?:g|gals?|cm/s/s|[cm]?m/s\^?2)\s*[x×*])\s*(?P<number>(?:\d++(?:\.\d*+)?+|\.\d++)(?:e[-+]?\d++)?+)"
+    r"(?!\s*(?:per\b|[^\s/]*/|g\b|gals?\b))",  # with a unit it is a constant: 980.665 cm/s2 per g, 1.2345 V/g
     re.IGNORECASE,
 )
+_OF_NO_SAMPLES = re.compile(r"\b(?:target|design|arias|significant|bracketed)\b", re.IGNORECASE)
 _BEYOND_ROUNDING = {"peak": (0.05, math.inf), "duration": (0.01, math.inf)}  # of another stage of processing, perhaps
 _POSITIVE_DOWN = re.compile(  # behind a label, and perhaps its unit: Up-down (cm/s/s) (+ is downward)
     r"(?P<unit>\s*[(\[][^()\[\]]*[)\]])?\s*[(\[]\s*(?:\+|positive|pos\.?)\s*(?:is|:|=)?\s*(?:down(?:wards?)?|dwn)\s*[)\]]",
@@ -133,8 +135,9 @@ _OTHERS = {
 _BY_LETTER = {"A": "acceleration", "V": "velocity", "D": "displacement"}
 _COUNTS = {"count", "counts", "ct", "cts", "v", "mv", "volt", "volts"}
 _OTHER_SERIES = re.compile(
-    r"\b(?:velocity|displacement)\b(?= *(?:[(\[]|(?:time|histor|series|data|record|trace|in\b)))|^(?:velocity|displacement)$"
-    r"|\b(?:quantity|type)\s*[:=]\s*(?:vel|disp)\w*",
+    r"^(?:(?:ground|corrected|uncorrected|relative) )*(?:velocity|displacement)(?: *[(\[][^)\]]*[)\]])?"
+    r"(?: *(?:time|histor|series|data|record|trace|in units?)\w*[^:=]*)?$"
+    r"|^(?:data |record |file )?(?:quantity|type)\s*[:=]\s*(?:vel|disp)\w*(?: time histor\w*)?$",
     re.IGNORECASE,
 )
 
@@ -382,7 +385,8 @@ def stated_of_samples(header: Sequence[str]) -> tuple[Stated, ...]:
     """Return what lines such as ``PGA: 312.4 cm/s2`` and ``Duration (s) = 60`` state of the samples; a warning at most."""
     statements = []
     for quantity, pattern in (("peak", _OF_PEAK), ("duration", _OF_DURATION)):
-        for match in (match for line in header for match in pattern.finditer(line)):
+        lines = [line for line in header if not _OF_NO_SAMPLES.search(line)]
+        for match in (match for line in lines for match in pattern.finditer(line)):
             units = (match["behind"], match["before"]) if quantity == "peak" else ()
             unit = next((unit for unit in units if unit and is_acceleration(unit)), "")
             statements.append(Stated(quantity, match["number"], unit, limits=_BEYOND_ROUNDING[quantity]))

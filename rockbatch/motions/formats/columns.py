@@ -7,6 +7,7 @@ and are therefore an ObsPy waveform format, "BBP".
 import codecs
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
@@ -45,6 +46,7 @@ from rockbatch.motions.orientation import orientation_in, same_azimuth, split_st
 from rockbatch.motions.record_file import ReadOptions, RecordFile, no_acceleration, text_of
 
 _COMPONENTS = ("000", "090", "up")
+_REPEATED = 0.9  # correlation of a motion with itself, corrected; two stations have less
 _GROWING = 0.9  # of the steps of a column of time; those of an acceleration grow half the time
 
 
@@ -91,15 +93,25 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
 def _by_station(recordings: Sequence[Recording], stem: str) -> list[Recording]:
     """Return the columns of a file called ``stem`` as of one station, or of those before their directions: AAA_HNE, BBB_HNE.
 
-    They are of several stations if directions repeat, but not within any of them.
+    They are of several stations if directions repeat, but not within any of them, and if none is a copy of another's.
     """
     sites = [split_stem(recording.label) for recording in recordings]
     ways = [(site, way.vertical, way.azimuth, way.azimuth is None and way.label) for site, way in sites if way]
     several = len({site for site, *_ in ways}) > 1 and len({way[1:] for way in ways}) < len(ways) == len(set(ways))
-    if not several or len(ways) < len(recordings) or not all(site for site, _ in sites):
+    if not several or len(ways) < len(recordings) or not all(site for site, _ in sites) or _repeats(recordings, ways):
         return [replace(recording, station=stem) for recording in recordings]
     named = zip(recordings, sites, strict=True)
-    return [replace(r, station=f"{stem}, {site}", sensor=Sensor(site.upper())) for r, (site, _) in named]
+    return [replace(r, station=f"{stem}, {site}", sensor=Sensor(site.upper(), place=site)) for r, (site, _) in named]
+
+
+def _repeats(recordings: Sequence[Recording], ways: Sequence[tuple[object, ...]]) -> bool:
+    """Return whether a column is nearly proportional to another one of its direction, as raw_N is to corrected_N."""
+    for (a, way), (b, other) in combinations(zip(recordings, ways, strict=True), 2):
+        if way[1:] == other[1:]:
+            first, second = (recording.values - recording.values.mean() for recording in (a, b))
+            if abs(first @ second) > _REPEATED * np.linalg.norm(first) * np.linalg.norm(second):
+                return True
+    return False
 
 
 def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[Recording]:
@@ -161,7 +173,7 @@ def _refuse_factor(header: Sequence[str], options: ReadOptions) -> None:
     if factor and "scale" not in options.instead:
         raise Contradiction(
             f"its header states a factor of {factor}, and not whether its numbers are multiplied by it already: for this file in "
-            f"motions.toml write scale = {factor} if they are not, or scale = 1 if they are"
+            "motions.toml write scale = … with this factor if they are not, or scale = 1 if they are"
         )
 
 
@@ -212,7 +224,8 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
                 f"its header tells its {width} columns; the {len(stated)} that are stated are those of other files",
             )
     if columns is None:
-        if (line := other_series(header)) and "unit" not in options.instead:
+        unstated = not is_acceleration(stated_unit(header) or "")
+        if unstated and "unit" not in options.instead and (line := other_series(header)):
             raise no_acceleration(f'it, by "{line[:60]}" in its header,', "no accelerations")
         return _guessed_columns(header, table)
     columns = _with_time(with_quantities(columns), table)
