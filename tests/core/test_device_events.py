@@ -211,3 +211,14 @@ def test_a_hysteretic_damper_is_drawn_out_by_half_its_yield_deflection_in_a_step
         steel = STEEL._replace(offset=-B, stiffness=stiffness)
         longest = uncompiled(longest_step, block(FIG5, RigidBase()), rocking(20.0), steel, dt)
         assert longest * speed == pytest.approx(0.5 / stiffness, rel=0.02)
+
+
+def test_a_brace_whose_damper_still_rests_is_resolved_by_the_speed_of_its_ends(uncompiled):
+    """The step is 0.2 over the rate of relaxation, which grows with |ė| to the power of 1 − a."""
+    m, dt = block(FIG5, RigidBase()), 0.01
+    hung = HUNG._replace(offset=-B, exponent=0.5, quickest=1e3)
+    for omega in (OMEGA, 4.0 * OMEGA):
+        speed = 2.0 * B * math.cos(0.5 * THETA) * omega
+        longest = uncompiled(longest_step, m, rocking(omega), hung, dt)
+        assert longest == pytest.approx(0.2 / (1e3 * math.sqrt(speed)), rel=1e-9)
+        assert longest < dt

@@ -2,9 +2,11 @@
 
 import math
 
+import numpy as np
 import pytest
-from core_samples import values_of
+from core_samples import FIG5, filled, values_of
 
+from rockbatch.core.block.model import Rocking, Stance
 from rockbatch.core.devices.laws import (
     CLOSES,
     CONTACT,
@@ -27,7 +29,12 @@ from rockbatch.core.devices.laws import (
     stop_force,
     stored,
 )
+from rockbatch.core.observe.peaks import Place, RecordedDevices
+from rockbatch.core.observe.rows import Step
+from rockbatch.core.types import Ground
+from rockbatch.pier import RigidBase
 from rockbatch.pier.first_loading import STEEL_EXPONENT
+from rockbatch.simulation import block
 from rockbatch.simulation.elements import IDLE
 
 INF = math.inf
@@ -169,3 +176,32 @@ def test_a_step_a_sample_before_a_reversal_is_half_and_not_less_in_the_linear_pa
     )
     assert half == 0.5
     assert still == linear == pytest.approx(0.5 * 0.005**0.75)
+
+
+def test_the_devices_of_a_step_pull_by_their_laws_inside_it(uncompiled):
+    """A damper 2b from the pivot, C ė^½, and a spring at the deck; inside the step the block turns four times as fast."""
+    theta, cosine = 0.1, math.cos(0.05)
+    m, b, h = block(FIG5, RigidBase()), FIG5.half_width, FIG5.height
+    oil, band = DAMPER._replace(offset=-b), BAND._replace(height=9.0, swing=b, way=-1.0)
+    slope, on_right = b * math.cos(theta) - h * math.sin(theta), Stance(0.0, 1.0, 1.0, 1.0)
+
+    def turning(omega):
+        return Rocking(b * math.sin(theta) - h * (1.0 - math.cos(theta)), theta, slope * omega, omega)
+
+    def force(omega):
+        return 3.0 * math.sqrt(2.0 * b * cosine * omega) / cosine
+
+    y, still = turning(0.2), Ground(0.0, 0.0, 0.0, 0.0)
+    place = Place(1, Step(y, y, y, y, on_right, 0.01, still, still), 0.5)
+    pulls, pushes = np.array([[force(0.2) + 0.7, 0.0]] * 2), np.full(2, 9.0)
+    of_foot, of_deck = (
+        RecordedDevices([oil], np.zeros((2, 1)), 0.0),
+        RecordedDevices([oil, band], np.zeros((2, 2)), 0.0),
+    )
+    call = ("observe.peaks", "under_devices_within", of_foot, m, pulls, place, turning(0.8))
+    (under,) = uncompiled(values_of, [call])
+    assert under.pull.force == pytest.approx(force(0.8) + 0.7, rel=1e-9)  # 0.7 of friction at both ends
+    found = uncompiled(filled, ("observe.peaks", "push_deck_within", of_deck, m, place, y), pushes)
+    assert found.tolist() == pytest.approx(
+        [9.0, 25.0 * (9.0 * math.sin(theta) + b * (1.0 - math.cos(theta)))], rel=1e-9
+    )

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from core_samples import FIG5, doubts_of_grips, rows_by_pass_and_by_events, values_of
+from scipy.interpolate import CubicHermiteSpline
 
 from rockbatch.core.devices.bounds import Course
 from rockbatch.core.devices.elongation import Gap
@@ -177,6 +178,20 @@ def test_the_pass_leaves_a_greatest_force_inside_a_sub_step_to_scalar_code(uncom
     found = uncompiled(values_of, calls)
     assert [most for most, _ in found] == pytest.approx([2.5, 3.7, 3.9])
     assert [stronger > 0.0 for _, stronger in found] == [True, False, False]
+
+
+def test_what_the_pass_takes_as_greatest_is_exceeded_nowhere_inside(uncompiled):
+    """Of random cubics that turn: where no more is suspected, 101 points have none; of those far below it there is none."""
+    rng, h, s = np.random.default_rng(4), 0.1, np.linspace(0.0, 1.0, 101)
+    ends = [
+        tuple(map(float, (f0, d0, f1, -d1))) for f0, d0, f1, d1 in rng.uniform([0, 0, 0, 0], [1, 20, 1, 20], (200, 4))
+    ]
+    calls = [("devices.bounds", "_greatest", *each, h, best) for each in ends for best in (0.0, 1.0, 9.0)]
+    for (*_, f0, d0, f1, d1, _, best), (most, beyond) in zip(calls, uncompiled(values_of, calls), strict=True):
+        inside = np.abs(CubicHermiteSpline([0.0, h], [f0, f1], [d0, d1])(h * s)).max()
+        assert most == max(best, f0, f1)
+        assert beyond > 0.0 or inside <= most
+        assert beyond <= 0.0 or best < 9.0
 
 
 def test_a_hysteretic_damper_counts_as_plastic_within_rounding(uncompiled):

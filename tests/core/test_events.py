@@ -6,14 +6,14 @@ from itertools import permutations
 
 import numpy as np
 import pytest
-from core_samples import EVERY_KIND, FIG5, broadband, hard_case, hard_seeds, pulse, steady
+from core_samples import EVERY_KIND, FIG5, broadband, hard_case, hard_seeds, pulse, steady, values_of
 from reference_solver import reference
 from scipy.interpolate import CubicHermiteSpline
 
 import rockbatch as rb
 from rockbatch import simulate
 from rockbatch.core.block.equations import constrained, on_side
-from rockbatch.core.block.model import Rocking
+from rockbatch.core.block.model import Rocking, Stance
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import entry
 from rockbatch.core.rk4 import rk4
@@ -22,8 +22,12 @@ from rockbatch.core.search import EventFunctions, _earliest, nearby
 from rockbatch.core.springs.equations import holding, pivot_acceleration, touching
 from rockbatch.core.springs.events import settle
 from rockbatch.core.springs.model import Contact, State, Supports
+from rockbatch.core.springs.reversal import Pivot
 from rockbatch.core.system import rates
 from rockbatch.core.types import (
+    CONTACT_LEFT,
+    IMPACT_BOTH,
+    IMPACT_LEFT,
     LEFT,
     NO_EVENT,
     RIGHT,
@@ -261,6 +265,59 @@ def test_both_pivots_landing_at_one_instant_keep_the_pier_upright(kinematics, ep
     assert run.impacts == expected.impacts
     assert run.t_flight == pytest.approx(expected.t_flight, abs=1e-6)
     assert rows[run.rows - 1].v == pytest.approx(expected.v, abs=1e-6)
+
+
+@pytest.mark.parametrize(("velocity", "kind"), [(-0.2, IMPACT_BOTH), (0.0, IMPACT_LEFT), (0.2, IMPACT_LEFT)])
+def test_a_pivot_lands_with_the_other_only_if_both_fall(velocity, kind, uncompiled):
+    """An upright pier in flight, both pivots on their supports; landed together both keep a share ε of their velocities."""
+    m = springs(FIG5, YieldingBase(20.0, 0.3, flight="guided", eta=3.0))
+    b, left = m.half_width, -0.5
+    falls = State(0.0, 0.0, 0.5 * (left + velocity), 0.5 * (left - velocity) / b, 0.0, 0.0)
+    now, still = (
+        Moment(falls, Contact(0.0, 0.0, 0.0, 0.0, 0.0), Supports(0.0, 0.0, 0.0, 0.0)),
+        Ground(0.0, 0.0, 0.0, 0.0),
+    )
+    ((after, found),) = uncompiled(values_of, [("springs.transitions", "handle", m, now, CONTACT_LEFT, still)])
+    speeds = after.y.v_rate + b * after.y.omega, after.y.v_rate - b * after.y.omega
+    assert found == kind
+    assert speeds[0] == pytest.approx(0.3 * left, rel=1e-9)
+    assert (speeds[1] == pytest.approx(0.3 * velocity, rel=1e-9)) == (kind == IMPACT_BOTH)
+
+
+def test_a_gap_within_rounding_is_open_unless_the_pivot_moves_or_falls(uncompiled):
+    m = springs(FIG5, ElasticBase(50.0))
+    tiny, g = 1e-13 * m.yield_deflection, m.gravity
+    cases = [
+        (0.0, 0.0, 0.0),
+        (-tiny, 0.0, 0.0),
+        (-tiny, 0.0, g),
+        (-tiny, 0.0, -g),
+        (-tiny, 1.0, g),
+        (-20.0 * tiny, 0.0, g),
+    ]
+    found = uncompiled(values_of, [("springs.events", "_gap", m, *case) for case in cases])
+    opened = 10.0 * tiny
+    assert found == pytest.approx([opened, opened, opened, -tiny, -tiny, -20.0 * tiny], rel=1e-9, abs=0.0)
+
+
+def test_a_spring_pressed_beyond_its_strength_is_no_softer_than_at_it(uncompiled):
+    """δ_y dz/dv = 1 − |z|ⁿ on the inelastic branch: half at z = −0.5 for n = 1, none from −1 on."""
+    m = springs(FIG5, YieldingBase(50.0, 0.1, eta=2.3, n=1.0))
+    pressed = Pivot(-1.0, -0.5)
+    calls = [("springs.reversal", "reversal", m, -1.0, pressed, 0.0, pressed, z, 0.01) for z in (-0.5, -1.0, -1.05)]
+    assert [found.softness for found in uncompiled(values_of, calls)] == pytest.approx([0.5, 0.0, 0.0], abs=1e-12)
+
+
+@pytest.mark.parametrize("top", [-1.0, 0.0, 1.0])
+def test_the_deck_of_a_frame_in_flight_changes_corners_at_no_tilt(top, uncompiled):
+    frame = block(Pier.frame(Pier.rectangle(2.0, 12.0, mass_t=60.0), 4, 180.0), RigidBase())
+    y, k = Rocking(0.3, 0.1, 0.0, -0.4), Rocking(0.0, -0.4, 0.0, 0.0)
+    calls = [
+        ("block.events", "_deck_tilt", m, y, k, Stance(0.0, 0.0, top, top)) for m in (frame, block(FIG5, RigidBase()))
+    ]
+    of_frame, of_block = uncompiled(values_of, calls)
+    assert of_frame == ((0.1 * top, -0.4 * top) if top else (1.0, 0.0))
+    assert of_block == (1.0, 0.0)
 
 
 def test_a_brief_separation_inside_one_large_step_is_seen():

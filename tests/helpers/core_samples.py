@@ -137,6 +137,12 @@ def values_of(calls):
         ]
 
 
+def filled(call, out):
+    """Return ``out`` as a function of the core fills it in, the last argument of such a call as :func:`values_of` makes."""
+    values_of([(*call, out)])
+    return out
+
+
 def gaps_of(pier, base, devices, states):
     """Return the Gap of each device in each state of a pier on springs."""
     m = springs(pier, base)
@@ -145,10 +151,10 @@ def gaps_of(pier, base, devices, states):
 
 
 def held_pivots(pier, base, states):
-    """Return of each pair of a state and its accelerations which pivots, left and right, friction holds where they are."""
+    """Return of each pair of a state and its accelerations which event functions are of a pivot that friction holds in place."""
     m, devices = springs(pier, base), SimpleNamespace(level=[0.0])
     moments = [SimpleNamespace(y=y, k=k, contact=SimpleNamespace(top=0.0)) for y, k in states]
-    return [tuple(_is_held(m, devices, now, 0.0, i) for i in range(2)) for now in moments]
+    return [tuple(_is_held(m, devices, now, 0.0, i) for i in range(OF_PIER)) for now in moments]
 
 
 def lane_of_springs(**values):

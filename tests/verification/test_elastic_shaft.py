@@ -799,6 +799,11 @@ def test_a_run_is_over_where_energy_or_moment_no_longer_suffice(uncompiled):
     beyond = Moment(state_at(m, 1.0, (0.0, far, *leans), np.zeros(2 + n)), stance(1.0, 1.0), None)
     calls.append(("flexure.ending", "_cannot_reach", m, None, beyond, m.tipping))
     expected.append(False)
+    for side in (-1.0, 1.0):  # at rest close to the summit, on either side of it: the levels beyond it fall again
+        least, limit = 0.98 * side * m.tipping, 0.99 * m.tipping
+        at_rest = state_at(m, side, (0.0, least, *leaning(side, least)), np.zeros(2 + n))
+        calls.append(("flexure.ending", "_cannot_reach", m, None, Moment(at_rest, stance(side, side), None), limit))
+        expected.append(True)
     phases = np.linspace(0.0, 2.0 * math.pi, 20001)[:, None]
     spring = of.frequency**2 * (np.cos(phases) + 2.0 * of.damping_ratio * np.sin(phases))
     moments = abs((of.shape * of.z) @ share) * spring.max(axis=0) + G * abs(of.shape @ share)
