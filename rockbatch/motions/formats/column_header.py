@@ -90,8 +90,8 @@ _OF_DURATION = re.compile(
 )
 _OF_FACTOR = re.compile(
     r"(?:\b(?:scale|scaling|multiplication|conversion)[ _]?factor\s*[:=]?|\bfactor de escala\s*[:=]?"
-    r"|\b(?:g|gals?|cm/s/s|[cm]?m/s\^?2)\s*[x×*])\s*(?P<number>(?:\d++(?:\.\d*+)?+|\.\d++)(?:e[-+]?\d++)?+)"
-    r"(?!\s*(?:per\b|[^\s/]*/|g\b|gals?\b))",  # with a unit it is a constant: 980.665 cm/s2 per g, 1.2345 V/g
+    r"|\b(?:g|gals?|cm/s/s|[cm]?m/s\^?2)\s*[x×*])\s*(?P<number>(?:\d++(?:\.\d*+)?|\.\d++)(?:e[-+]?\d++)?)"
+    r"(?![\d.]|e[-+]?\d|\s*(?:per\b|[^\s/]*/|g\b|gals?\b))",  # with a unit it is a constant: 980.665 cm/s2 per g, 1.2345 V/g
     re.IGNORECASE,
 )
 _OF_NO_SAMPLES = re.compile(r"\b(?:target|design|arias|significant|bracketed)\b", re.IGNORECASE)
