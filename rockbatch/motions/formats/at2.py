@@ -81,7 +81,7 @@ def read_component(file: RecordFile) -> list[Component | Unusable]:
     """
     (recording,) = _parse(file.data.decode("latin-1"))
     unit = believed_unit(recording.unit, file.options)
-    if unit is None:
+    if not unit:
         raise NoUnit('no unit in the header ("… IN UNITS OF G")')
     if is_of_another_quantity(unit):
         raise no_acceleration("it, by its header,", f"numbers in {unit}")
