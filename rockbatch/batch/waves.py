@@ -20,7 +20,7 @@ from rockbatch.simulation.observing import Observer
 from rockbatch.study import Study
 
 Identity = tuple[object, ...]
-"""What tells a run from others of a study: record, case, polarity, scale and varied values, as peaks.csv has them."""
+"""Key of a run in its study: record, case, polarity, scale and varied values, as written in peaks.csv."""
 
 
 def identity(cells: Mapping[str, object], varied: Sequence[str]) -> Identity:

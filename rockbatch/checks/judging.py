@@ -428,10 +428,10 @@ def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> st
 
 
 def _unmet_by_stations(rule: Rule, counted_as: Texts, stations: Texts, unrecorded: npt.NDArray[np.bool_]) -> str:
-    """Return what the statistic asks of stations and the suite does not have: "12 components of 1 station count, …"; or "".
+    """Return the first unmet condition on stations: "12 components of 1 station count, …"; "" if all are met.
 
-    Components of one station are not independent, and no code takes what nobody recorded. The arrays are of the runs that count,
-    shape (n,); an unknown station is "", and a station by itself.
+    Components of one station are not independent, and codes require recorded motions. All arrays describe the runs that count,
+    shape (n,). An unknown station is ""; its record counts as a station.
     """
     statistic = STATISTICS[rule.statistic or "max"]
     records, known = len({*counted_as}), {*np.where(stations == "", counted_as, stations)}

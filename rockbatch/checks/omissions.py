@@ -1,5 +1,5 @@
-"""What a verdict leaves out: of a force landings on rigid ground, modes and bending of a shaft (THEORY.md, Forces); of every
-demand an error estimate, and the target spectrum that a code asks for."""
+"""Omissions of a verdict: landings, modes and bending in forces (THEORY.md, Forces), the error estimate, and the target spectrum
+that a code requires."""
 
 from typing import NamedTuple
 

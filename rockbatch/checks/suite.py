@@ -1,4 +1,4 @@
-"""What is known of the motions of a suite beside their runs, which statistics of codes depend on."""
+"""Properties of a suite of motions that statistics of codes depend on: stations, events, records and target spectrum."""
 
 from collections.abc import Collection, Mapping
 from typing import NamedTuple
@@ -12,7 +12,7 @@ class Suite(NamedTuple):
     stations, events : mapping
         Station and earthquake of each component, empty if it is not known.
     unrecorded : collection of str
-        Components that nobody recorded: pulses, and ground that does not move.
+        Components that are not records: pulses, and still ground.
     code : str
         The code by whose conditions the suite is held against its target spectrum; empty if it is not.
     """

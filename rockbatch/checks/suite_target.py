@@ -97,7 +97,7 @@ def suite_verdicts(info: Mapping[str, Any], scales: Iterable[float]) -> list[Ver
 
 
 def suite_of(info: Mapping[str, Any]) -> Suite:
-    """Return what run.json (``info``) knows of the motions."""
+    """Return the :class:`Suite` of motions that run.json (``info``) describes."""
     records, target = info["records"], info.get("target")
     return Suite(
         stations={record["record"]: record.get("station", "") for record in records},

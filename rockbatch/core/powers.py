@@ -55,8 +55,8 @@ def _real_power(x, a):
     u = _LN_2 * ((product - (rounded - _ROUND)) + rest)
     cube = u * u * u
     root = 1.0 + u * (polynomial(_LOW, u) + cube * cube * polynomial(_HIGH, u))
-    found = 0.0 if min(x, log + 1022.0) <= 0.0 else root * _float((_bits(rounded) + _BIAS) << _MANTISSA)
-    return found + 0.0 * x  # NaN for NaN and inf, whose bits would make a number
+    result = 0.0 if min(x, log + 1022.0) <= 0.0 else root * _float((_bits(rounded) + _BIAS) << _MANTISSA)
+    return result + 0.0 * x  # NaN for NaN and inf, whose bits would make a number
 
 
 @inlined

@@ -58,7 +58,7 @@ def filled_gap(samples: Samples, dt: float) -> Gap | None:
 
 
 def is_spike(samples: Samples) -> bool:
-    """Return whether the peak is one of one or two samples, without which less than half of it remains; False at an end.
+    """Return True for a spike: a peak of one or two samples whose removal leaves less than half of it; False at an end.
 
     The sample before or behind such a peak has less than half of it.
     """

@@ -260,7 +260,7 @@ def _is_of_motion(unit: str) -> bool:
 
 
 def spelled_out(line: str) -> list[str]:
-    """Return a header line, and what it states without names, as lines that do; signs in brackets are in its labels.
+    """Return a header line, and a named line for each property it states without a name; signs in brackets are in its labels.
 
     "TIMESERIES XX_AAA__HNE_D, 3000 samples, 100 sps, …, M/S**2" has a count, a rate and a unit; "Z (positive down)" is Z-down.
     """

@@ -580,6 +580,14 @@ def test_the_command_counts_its_runs_beforehand_and_prints_the_answer(tmp_path, 
     assert main(["design", str(write_study(tmp_path, worse, "worse.toml")), "--out", str(tmp_path / "worse")]) == 1
 
 
+@pytest.mark.usefixtures("pages")
+def test_the_command_counts_only_runs_that_are_not_finished(tmp_path, capsys):
+    for design, runs in ((SIZE, 4), (SIZE | {"between": [1.0, 2.6], "points": 5}, 1)):
+        text = study_text(pier=PIER, pulses=[PULSE], cases=[RIGID], check=[ROTATION], design=design)
+        assert main(["design", str(write_study(tmp_path, text)), "--out", str(tmp_path / "out")]) == 0
+        assert f"values of pier.p × 1 design: {runs} run" in capsys.readouterr().err
+
+
 # Mistakes
 
 
