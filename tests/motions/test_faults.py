@@ -47,6 +47,13 @@ def test_a_spike_holds_the_component_back_and_a_wider_peak_does_not(tmp_path, wi
     assert not is_spike(with_spike(9))
 
 
+@pytest.mark.parametrize(("share", "spike"), [(0.49, True), (0.51, False)])
+def test_a_peak_is_a_spike_if_less_than_half_remains_without_it(share, spike):
+    a = np.where(np.arange(600) < 300, 0.8, 1.0) * np.sin(np.arange(600) / 20)
+    a[100] = np.abs(np.delete(a, 100)).max() / share
+    assert is_spike(a) == spike
+
+
 def test_gaps_and_spikes_of_a_vertical_hold_both_motions_back(tmp_path):
     for up, word in (
         (with_gap("zeros") / 2, "vertical: a straight line"),
