@@ -14,8 +14,9 @@ from rockbatch.batch.threads import cores
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import is_plain, remove
 from rockbatch.common.observers import parts, tables
+from rockbatch.quantities.rows import PEAKS
 from rockbatch.results.beside_peaks import write
-from rockbatch.results.columns import PEAKS, unusable_rows
+from rockbatch.results.columns import unusable_rows
 from rockbatch.results.histories_file import HISTORIES
 from rockbatch.results.labelled import Row
 from rockbatch.results.opened import Results, open_results

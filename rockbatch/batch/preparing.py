@@ -21,8 +21,9 @@ from rockbatch.common.grouping import closest
 from rockbatch.common.observers import tables
 from rockbatch.common.version import __version__
 from rockbatch.motions import MotionSet
+from rockbatch.quantities.rows import PEAKS
 from rockbatch.results.beside_peaks import SEMICOLONS
-from rockbatch.results.columns import JOURNAL, PEAKS, columns
+from rockbatch.results.columns import JOURNAL, columns
 from rockbatch.results.histories_file import HISTORIES
 from rockbatch.results.labelled import Row
 from rockbatch.results.reading import edited

@@ -13,10 +13,11 @@ from rockbatch.checks.capacity import Curve, problems
 from rockbatch.checks.omissions import MODES, OMISSIONS
 from rockbatch.checks.rules import COUNTS, is_ban
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import csv_plain, csv_text, legible, opened_text, write_whole
+from rockbatch.common.files import csv_plain, csv_text, is_plain, legible, opened_text, sha256_of, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.design import BOUND
+from rockbatch.quantities.rows import PEAKS
 from rockbatch.quantities.statistics import STATISTICS
 
 PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY = "pass", "fail", "not decided", "does not apply"
@@ -24,6 +25,8 @@ CHECKS = "checks.csv"
 """File of the verdicts, beside peaks.csv."""
 SEPARATOR = "; "
 """Between the remarks in the column ``note`` of checks.csv."""
+JUDGED = "peaks_sha256"
+"""Column of checks.csv with the digest of the peaks.csv that was judged."""
 MEAN_OVER_TARGET = "mean_over_target"
 """Demand of the verdict on the mean spectrum of the suite."""
 _CONDITIONS = ("stations", "pairs", "shortest_period", "longest_period", "zero_period", "verticals", "share")
@@ -185,23 +188,41 @@ def _table(verdicts: Iterable[Verdict]) -> tuple[list[str], list[dict[str, objec
 def write_verdicts(directory: Path, verdicts: Iterable[Verdict]) -> Path:
     """Write checks.csv into ``directory``, whole or not at all; return its path."""
     path = Path(directory) / CHECKS
-    write_whole(path, csv_text(*_table(verdicts)))
+    columns, rows = _table(verdicts)
+    judged = {JUDGED: _digest_of_peaks(path)}
+    write_whole(path, csv_text([*columns, *judged], [row | judged for row in rows]))
     return path
 
 
+def _digest_of_peaks(path: Path) -> str:
+    """Return the digest of the peaks.csv beside checks.csv at ``path``; "" without one."""
+    peaks = path.with_name(PEAKS)
+    return sha256_of(peaks) if is_plain(peaks) else ""
+
+
 def read_verdicts(directory: Path) -> list[Verdict]:
-    """Read checks.csv in ``directory``; empty without one, ``InputError`` if it is damaged."""
+    """Read checks.csv in ``directory``; empty without one.
+
+    Raises ``InputError`` if it is damaged, or judges another peaks.csv than the one beside it; an earlier version did not write
+    which it judged.
+    """
     path = Path(directory) / CHECKS
     plain = functools.cache(lambda cell: legible(csv_plain(cell), keep="\t\r\n"))  # most cells occur many times
     try:
         with opened_text(path) as file:
-            return [_from_row({name: plain(cell) for name, cell in row.items()}) for row in csv.DictReader(file)]
+            rows = [{name: plain(cell) for name, cell in row.items()} for row in csv.DictReader(file)]
+        verdicts = [_from_row(row) for row in rows]
     except FileNotFoundError:
         return []
     except InputError:
         raise
     except (AttributeError, KeyError, TypeError, ValueError, csv.Error) as error:
         raise InputError(f"{path}: damaged ({error}); start `rockbatch check` again") from None
+    if {row.get(JUDGED, "") for row in rows} - {"", _digest_of_peaks(path)}:
+        raise InputError(
+            f"{path}: its verdicts are on another {PEAKS} than is there now; start `rockbatch check` again"
+        )
+    return verdicts
 
 
 def _from_row(row: Mapping[str, str]) -> Verdict:
@@ -216,7 +237,9 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
             raise ValueError(f"{name} = {values[name]!r}")
     if values.get("omits") and not {*values["omits"].split(", ")} <= OMISSIONS.keys():
         raise ValueError(f"omits = {values['omits']!r}")
-    columns = {name: text if name == BOUND else _value(text) for name, text in row.items() if name not in _KINDS}
+    columns = {
+        name: text if name == BOUND else _value(text) for name, text in row.items() if name not in {*_KINDS, JUDGED}
+    }
     verdict = Verdict(
         columns={name: value for name, value in columns.items() if value != "" or name == BOUND}, **values
     )

@@ -11,6 +11,7 @@ from rockbatch.quantities.arrays import MISSING, Rows, Texts
 from rockbatch.quantities.cases import Case, of_pier
 from rockbatch.quantities.catalogue import MIRROR_OF
 
+PEAKS = "peaks.csv"
 NOT_RUN = "not run"
 
 

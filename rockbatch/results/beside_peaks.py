@@ -12,8 +12,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier
 from rockbatch.quantities.catalogue import TEXTS
-from rockbatch.quantities.rows import as_in_peaks, simulated, with_case
-from rockbatch.results.columns import PEAKS
+from rockbatch.quantities.rows import PEAKS, as_in_peaks, simulated, with_case
 from rockbatch.results.labelled import Row
 from rockbatch.study import Study
 

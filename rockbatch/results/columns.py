@@ -19,9 +19,9 @@ from rockbatch.outcome.outcome import Failure, Outcome
 from rockbatch.pier import Pier
 from rockbatch.quantities.arrays import texts_in
 from rockbatch.quantities.catalogue import COLUMNS, COUNTS, FACTS, FIXED, MIRROR_OF, OPTIONAL, TEXTS, TRAILING, names
+from rockbatch.quantities.rows import PEAKS
 from rockbatch.study import Case, Study
 
-PEAKS = "peaks.csv"
 JOURNAL = f"{PEAKS}.part"
 """Finished runs of an unfinished table."""
 

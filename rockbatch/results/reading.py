@@ -19,7 +19,8 @@ from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
 from rockbatch.common.version import __version__
 from rockbatch.quantities.catalogue import COUNTS, FACTS, FIXED, TEXTS, TRAILING, UNBOUNDED, names
-from rockbatch.results.columns import PEAKS, STATUSES, numbers_or_words
+from rockbatch.quantities.rows import PEAKS
+from rockbatch.results.columns import STATUSES, numbers_or_words
 from rockbatch.results.labelled import Item
 from rockbatch.results.run_json import INFO, SHAPE
 from rockbatch.results.shape import unfit

@@ -24,7 +24,8 @@ from rockbatch.pier.bases import BASES
 from rockbatch.pier.free_rocking import FreeRocking
 from rockbatch.pier.statics import COMPARED
 from rockbatch.pier.traits import BOUNDS, WORDS
-from rockbatch.results.columns import PEAKS, units
+from rockbatch.quantities.rows import PEAKS
+from rockbatch.results.columns import units
 from rockbatch.results.labelled import Item, Row
 from rockbatch.results.shape import Maybe
 from rockbatch.study import Case, Study

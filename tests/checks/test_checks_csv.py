@@ -10,7 +10,7 @@ from rules_of_checks import MARGIN, STUDY, rules_file
 import rockbatch as rb
 from rockbatch.checks import read_verdicts, write_verdicts
 from rockbatch.commands.cli import main
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import EditedTable, InputError
 from rockbatch.results.checking import verdicts
 
 
@@ -69,3 +69,22 @@ def test_a_listed_value_of_zero_stays_with_its_verdict(tmp_path):
 def test_a_line_break_in_the_name_of_a_case_stays_as_run_json_has_it(tmp_path):
     write_verdicts(tmp_path, [verdict("a\nb\tc", "pass")])
     assert [one.case for one in read_verdicts(tmp_path)] == ["a\nb\tc"]
+
+
+def test_verdicts_on_another_table_than_is_there_now_are_shown_by_no_page(tmp_path):
+    """A report, a sheet or a comparison took the verdicts on all rows beside the figures of those that were left."""
+    out = tmp_path / "out"
+    rb.run(rules_file(tmp_path / "pier.toml", STUDY), out=out)
+    write_verdicts(out, verdicts(out, [rb.Rule("margin", "theta_max_over_alpha", 0.5)]))
+    rb.report(out, out)
+    lines = (out / "peaks.csv").read_text(encoding="utf-8").splitlines(keepends=True)
+    (out / "peaks.csv").write_text("".join(lines[:-1]), encoding="utf-8")
+    advice = r"on another peaks\.csv than is there now; start `rockbatch check` again"
+    for shows in (rb.report, rb.statement, lambda folder: rb.report(folder, folder)):
+        with pytest.warns(EditedTable), pytest.raises(InputError, match=advice):
+            shows(out)
+    with pytest.warns(EditedTable):
+        write_verdicts(out, verdicts(out, [rb.Rule("margin", "theta_max_over_alpha", 0.5)]))
+    with pytest.warns(EditedTable):
+        written = rb.report(out)
+    assert "not decided" in set(written.checks["verdict"])

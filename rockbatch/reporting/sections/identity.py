@@ -1,9 +1,9 @@
 """What identifies the results: digests of the study, the records, the results and the program."""
 
+from rockbatch.quantities.rows import PEAKS
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.reporting.table import Head, table
-from rockbatch.results.columns import PEAKS
 
 OF_RECORDS = (
     "The digest of a record is that of its time step and accelerations [m/s²] as they were run, before the study's scale, in 64 "

@@ -8,12 +8,12 @@ from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import COLUMNS, DEMANDS, report_columns
 from rockbatch.quantities.design import BOUND
 from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR
+from rockbatch.quantities.rows import PEAKS
 from rockbatch.reporting.finished import Finished, worst_first
 from rockbatch.reporting.labels import counted, head, symbol
 from rockbatch.reporting.markup import Markup, join, number, tag
 from rockbatch.reporting.table import MOST_ROWS, THETA_FORMAT, Head, alarm, table
 from rockbatch.reporting.templates import render
-from rockbatch.results.columns import PEAKS
 from rockbatch.results.labelled import Row, as_dicts
 
 if TYPE_CHECKING:
