@@ -13,7 +13,7 @@ from rockbatch.checks.bounds import SCATTER, Axis, Demanded, OfSuite, lacking, o
 from rockbatch.checks.capacity import used
 from rockbatch.checks.endings import left_open
 from rockbatch.checks.events import OfEvent, largest_event
-from rockbatch.checks.omissions import ERRORS, OMISSIONS, TARGET
+from rockbatch.checks.omissions import DIRECTIONS, ERRORS, EVENTS, NAMED, OMISSIONS, TARGET
 from rockbatch.checks.rule_choices import FAR, Available, Fitted, fitted
 from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.checks.suite import Suite
@@ -305,6 +305,11 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, motions: Suite) -
         left_out.add(ERRORS)
     if statistic.code != motions.code and statistic.code:
         left_out.add(TARGET)
+    if of_event and of_event.records > 1 and rule.per_event is None:
+        left_out.add(EVENTS)
+    lacks = {} if none.count == "component" else lacking(counting, counted_as)
+    if lacks:
+        left_out.add(DIRECTIONS)
     omitted = [name for name in OMISSIONS if name in left_out]
     open_by = math.isinf(demand.high) and not all(OMISSIONS[name].decides for name in omitted)
     ends = [
@@ -313,12 +318,12 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, motions: Suite) -
     remarks = [
         few or ("" if verdict != NOT_DECIDED or open_by else _between(demand.low, demand.high)),
         _on_each(demand, axes),
-        *(OMISSIONS[name].remark for name in omitted),
+        *(OMISSIONS[name].remark for name in omitted if name not in NAMED),
         _remark_if_far(rule, demand.value) if verdict == PASS else "",
         statistic.remark(demand.records.high) if statistic.remark and n else "",
         unknown,
         *(of_event.remarks if of_event else ()),
-        "" if none.count == "component" else _remark_on_directions(lacking(counting, counted_as)),
+        _remark_on_directions(lacks),
         *dict.fromkeys(remark for of_axis in ends for remark in of_axis),
         *dict.fromkeys(_remark_on_chaos(int(its.chaotic.sum())) for its in demand.axes),
     ]
@@ -384,7 +389,7 @@ def _remark_on_directions(records: Mapping[str, tuple[int, int]]) -> str:
         return ""
     names = [f"{name} ({used} of {total})" for name, (used, total) in records.items()]
     more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-    return f"not every direction counts, and the worst may be another: {', '.join(names[:MOST_NAMES])}{more}"
+    return f"{OMISSIONS[DIRECTIONS].remark}: {', '.join(names[:MOST_NAMES])}{more}"
 
 
 def _decide(rule: Rule, low: float, high: float, unmet: str = "") -> tuple[str, str]:

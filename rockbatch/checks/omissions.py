@@ -1,5 +1,5 @@
-"""Omissions of a verdict: landings, modes and bending in forces (THEORY.md, Forces), the error estimate, and the target spectrum
-that a code requires."""
+"""Omissions of a verdict: landings, modes and bending in forces (THEORY.md, Forces), directions of a record, the error estimate,
+and what a code asks of motions: independence, and a target spectrum."""
 
 from typing import NamedTuple
 
@@ -23,6 +23,8 @@ LANDINGS, LANDINGS_OF_FRAME = "landings", "landings of a frame"
 LANDINGS_OF_BENDING = "landings under a bending shaft"
 IMPULSES, BENDING = "impulses", "bending"
 ERRORS, TARGET = "errors", "target"
+NAMED = DIRECTIONS, EVENTS = ("directions", "events")
+"""Omissions about records, which a verdict's own remark names."""
 
 FACTORS = "1.6 to 2.9"
 """Base shear by twenty finite elements over that of a rigid shaft, of twice the mass on its top (THEORY.md, Forces)."""
@@ -67,6 +69,8 @@ OMISSIONS = {
     BENDING: Omission(
         f"bending of the shaft is left out, with which a heavy one had {FACTORS} times its rigid base shear by finite elements"
     ),
+    DIRECTIONS: Omission("not every direction counts, and the worst may be another"),
+    EVENTS: Omission("stations of one earthquake count as independent motions, unless per_event limits their number"),
     TARGET: Omission("the motions are not judged by a target spectrum of its code"),
     ERRORS: Omission("no error estimate"),
 }

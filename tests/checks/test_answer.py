@@ -63,6 +63,15 @@ def test_a_pass_names_the_record_that_is_beyond_the_limit_by_itself():
     assert not any("Single records" in detail for detail in line.details)
 
 
+def test_a_pass_says_that_directions_are_missing_and_that_stations_are_of_one_event():
+    """Both stood in the notes of the whole list alone, and the answer was green without them."""
+    (line,) = lines([verdict("pads", PASS, omits="directions, events"), verdict("rock", PASS, omits="events")])
+    assert [words.split(" the limit: ")[-1] for words in line.details[1:]] == [
+        "margin: not every direction counts, and the worst may be another.",
+        "margin: stations of one earthquake count as independent motions, unless per_event limits their number.",
+    ]
+
+
 def test_the_worst_at_each_scale_is_that_of_its_runs_alone():
     """Ties, values that are missing or rounding, a scale without a run that ends standing; the rows are in no order."""
     of_scales = {
