@@ -52,6 +52,8 @@ LEAST_RECORDS = 4
 ROUNDING = 1e-9
 """Share of an intensity by which a median may be beyond it."""
 
+_OPEN = "its interval has no end among them, and nothing bounds it"
+
 _WIDEST = 12.0
 """Greatest distance of ln x from the mean of the data at which medians are sought; beyond it a median is 0 or infinite."""
 
@@ -246,7 +248,7 @@ def fit(runs: Demands, limit: float, floor: float, confidence: float = 0.95) -> 
 
     There is none with fewer than STATIONS_OF_CURVE, 3, stations or LEAST_RECORDS, 4, demands above the floor, if all are of one
     intensity or on one line, if demand or overturning does not grow with the intensity, or if all runs or none exceed the limit
-    and the median lies outside them.
+    and the median lies outside them: of that it has the bound of :func:`_outside`.
 
     σ has n − 2 in its denominator, and its draws are those of a χ² variable, so that without censored demands the intervals of
     the line are Student's. The logistic part is penalised as Firth (1993, Biometrika 80(1):27–38) proposes, which
@@ -255,7 +257,7 @@ def fit(runs: Demands, limit: float, floor: float, confidence: float = 0.95) -> 
     log_x, stands, station = np.log(runs.x), ~runs.overturned, runs.of_station
     if refusal := _refused(station):
         return refusal
-    share = _share(log_x, runs.overturned, station)
+    share = _share(log_x, runs.overturned, station, confidence)
     if isinstance(share, NoCurve):
         return share
     exact = stands & ~runs.within & (runs.demand > floor)
@@ -276,10 +278,7 @@ def fit(runs: Demands, limit: float, floor: float, confidence: float = 0.95) -> 
         return NoCurve("the demand does not grow with the intensity")
     curve = Cloud(limit, line, share, confidence, float(log_x.mean()), len(np.unique(station)))
     beyond = runs.overturned | (exact & (runs.demand > limit))
-    least, most = float(runs.x.min()), float(runs.x.max())
-    if (beyond.all() and curve.median < least) or (not beyond.any() and curve.median > most):
-        return _without_both(runs.x, beyond)
-    return curve
+    return curve if beyond.any() and not beyond.all() else _outside(curve, runs.x) or curve
 
 
 def _refused(station: Numbers) -> NoCurve | None:
@@ -287,14 +286,26 @@ def _refused(station: Numbers) -> NoCurve | None:
     return NoCurve(too_few(stations)) if 0 < stations < STATIONS_OF_CURVE else None
 
 
-def _without_both(x: Values, happened: npt.NDArray[np.bool_]) -> NoCurve:
-    """Return the bound of the median if all records exceed the limit, or none does; no curve can be fitted then."""
+def _without_both(x: Values, happened: npt.NDArray[np.bool_], station: Numbers, confidence: float) -> NoCurve:
+    """Return the bound of the median if all records exceed the limit, or none does; no curve can be fitted then.
+
+    As many stations as :func:`_sign_test` asks for have a record beyond the bound; with fewer there is none.
+    """
+    log_x, least = np.log(x), _sign_test(confidence)
+    sign, reason = -1.0, f"no record exceeds the limit up to {x.max():.4g}: stronger ones are needed"
     if happened.all():
-        return NoCurve(
-            f"every record exceeds the limit from {x.min():.4g} on: the median is below, weaker ones are needed",
-            below=float(x.min()),
-        )
-    return NoCurve(f"no record exceeds the limit up to {x.max():.4g}: the median is above", above=float(x.max()))
+        sign, reason = 1.0, f"every record exceeds the limit from {x.min():.4g} on: weaker ones are needed"
+    farthest = sorted(float((sign * log_x[station == number]).min()) for number in np.unique(station))
+    if len(farthest) < least:
+        return NoCurve(f"{reason}, and a bound of the median needs {least} stations")
+    bound = math.exp(sign * farthest[least - 1])
+    return NoCurve(reason, below=bound) if happened.all() else NoCurve(reason, above=bound)
+
+
+def _sign_test(confidence: float) -> int:
+    """Return the least number of stations of which chance, at the median, brings all to one side as seldom as beyond an end of
+    an interval: 6 for 95 %."""
+    return math.ceil(-math.log2(0.5 - 0.5 * confidence))
 
 
 def fit_event(
@@ -310,33 +321,42 @@ def fit_event(
         return NoCurve("no record counts")
     if refusal := _refused(station):
         return refusal
-    if happened.all() or not happened.any():
-        return _without_both(x, happened)
-    share = _share(log_x, happened, station)
+    if not happened.any():
+        return _without_both(x, happened, station, confidence)
+    share = _share(log_x, happened, station, confidence)
     if share is None or isinstance(share, NoCurve):
         return share or NoCurve("no record has the event")
     curve = Cloud(1.0, None, share, confidence, float(log_x.mean()), len(np.unique(station)))
-    return _outside(curve.median, x) or curve
+    return _outside(curve, x) or curve
 
 
-def _outside(median: float, x: Values) -> NoCurve | None:
-    """Return ``NoCurve`` with a bound for a median below or above all intensities, shape (n,); None for one among them."""
+def _outside(curve: Cloud, x: Values) -> NoCurve | None:
+    """Return ``NoCurve`` for a median below or above all intensities, shape (n,); None for one among them.
+
+    Its bound is the end of its interval, or the nearest intensity if that is beyond it; without an end among the intensities it
+    has none.
+    """
     least, most = float(x.min()), float(x.max())
-    if median < least * (1.0 - ROUNDING):
-        return NoCurve(f"the median by the fit is below all intensities, which begin at {least:.4g}", below=least)
-    if median > most * (1.0 + ROUNDING):
-        return NoCurve(f"the median by the fit is above all intensities, which end at {most:.4g}", above=most)
+    low, high = curve.median_interval or (0.0, math.inf)
+    if curve.median < least * (1.0 - ROUNDING):
+        reason = f"the median by the fit is below all intensities, which begin at {least:.4g}"
+        return NoCurve(reason, below=max(high, least)) if high <= most else NoCurve(f"{reason}: {_OPEN}")
+    if curve.median > most * (1.0 + ROUNDING):
+        reason = f"the median by the fit is above all intensities, which end at {most:.4g}"
+        return NoCurve(reason, above=min(low, most)) if low >= least else NoCurve(f"{reason}: {_OPEN}")
     return None
 
 
-def _share(log_x: Values, happened: npt.NDArray[np.bool_], station: Numbers) -> Logistic | NoCurve | None:
+def _share(
+    log_x: Values, happened: npt.NDArray[np.bool_], station: Numbers, confidence: float
+) -> Logistic | NoCurve | None:
     """Return the logistic share that overturns; None if no record did, ``NoCurve`` if all did, their intensities
     are the same, or the share does not grow.
     """
     if not happened.any():
         return None
     if happened.all():
-        return _without_both(np.exp(log_x), happened)
+        return _without_both(np.exp(log_x), happened, station, confidence)
     if np.ptp(log_x) < 1e-6:
         return NoCurve("all records have the same intensity: a share over it needs a cloud of them")
     share = _logistic(log_x, happened, station)

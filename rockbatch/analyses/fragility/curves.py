@@ -177,7 +177,7 @@ class Curve:
         """Return the levels at which runs count, and the least and greatest shares of records beyond the limit, shape (n,) each.
 
         Undecided ones are within it for the least, beyond it for the greatest. With capacities a record is beyond it from the
-        upper end of its bracket on for the least, above the lower end for the greatest; of a cloud each run is a level.
+        upper end of its bracket on for the least, above the lower end for the greatest. Not for clouds.
         """
         counting = [stripe for stripe in self.stripes if stripe.records]
         levels = np.array([stripe.level for stripe in counting])

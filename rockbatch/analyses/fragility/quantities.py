@@ -71,10 +71,11 @@ def of_curves(info: Entry) -> list[Head]:
     ]
 
 
-def bound_in_words(bound: Entry, measure: str, unit: str, every: str = "there") -> str:
+def bound_in_words(bound: Entry, measure: str, unit: str) -> str:
     """Return the bound of a median: "below PGV 1.5 m/s: every record exceeds it there", or "3 of 20 records exceed it there".
 
-    Likewise "above …: no record exceeds it there", and "between … and …: …"; ``every``, in place of "there", is where they count.
+    Likewise "above …: no record exceeds it there", and "between … and …: …". That of a cloud, "above PGV 0.8 m/s (95 %): 3 of 20
+    records exceed it", counts the records of all intensities.
     """
 
     def intensity(end: str) -> str:
@@ -83,11 +84,11 @@ def bound_in_words(bound: Entry, measure: str, unit: str, every: str = "there") 
     if bound["is"] == "between":
         ends = f"{intensity('above')} and {intensity('below')}"
         return f"between {ends}: no record exceeds it at the first, every one at the second"
-    exceeded, records = bound["exceeded"], bound["records"]
+    exceeded, records, confidence = bound["exceeded"], bound["records"], bound.get("confidence")
     some = f"{exceeded} of {records} records exceed" if exceeded else "no record exceeds"
-    return (
-        f"{bound['is']} {intensity(bound['is'])}: {'every record exceeds' if exceeded == records else some} it {every}"
-    )
+    level, place = (f" ({100 * confidence:g} %)", "") if confidence else ("", " there")
+    words = "every record exceeds" if exceeded == records else some
+    return f"{bound['is']} {intensity(bound['is'])}{level}: {words} it{place}"
 
 
 def _median(curve: Curve) -> object:

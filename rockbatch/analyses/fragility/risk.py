@@ -87,13 +87,16 @@ class RiskBound:
 
 
 def rate_bounds_of(curves: Sequence[Curve], spec: FragilitySpec) -> list[RiskBound]:
-    """Return bounds of the annual rate of every curve with a bound instead of a median; [] without a hazard."""
+    """Return bounds of the annual rate of every curve with a bound instead of a median, not of clouds; [] without a hazard.
+
+    Each intensity of a cloud has a single record, whose share, 0 or 1, bounds no rate.
+    """
     if spec.hazard is None:
         return []
     hazard = spec.hazard.curve
     bounds = []
     for curve in curves:
-        if isinstance(curve.fitted, NoCurve) and curve.fitted.is_bound:
+        if isinstance(curve.fitted, NoCurve) and curve.fitted.is_bound and not curve.cloud:
             levels, least, most = curve.shares
             bounds.append(RiskBound(curve, rate_bounds(levels, least, most, hazard.rate(levels))))
     return bounds

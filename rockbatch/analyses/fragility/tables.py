@@ -203,7 +203,7 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
         "reason": curve.limit.reason,
         "counting": curve.limit.counting,
         "median": None,
-        "median_bound": _bound(curve),
+        "median_bound": _bound(curve, spec.confidence),
         "median_interval": None,
         "dispersion": None,
         "dispersion_interval": None,
@@ -289,10 +289,11 @@ def _or_none(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _bound(curve: Curve) -> dict[str, object] | None:
+def _bound(curve: Curve, confidence: float) -> dict[str, object] | None:
     """Return the bound of an unknown median, "below", "above" or "between", with its intensities; None if it has no bound.
 
-    ``exceeded`` of ``records`` with a decided run are beyond the limit at the bound, the upper one of two; of a cloud, of all.
+    ``exceeded`` of ``records`` with a decided run are beyond the limit at the bound, the upper one of two; of a cloud, of all,
+    whose bound holds with the ``confidence``.
     """
     fitted = curve.fitted
     if not isinstance(fitted, NoCurve) or not fitted.is_bound:
@@ -304,7 +305,8 @@ def _bound(curve: Curve) -> dict[str, object] | None:
     exceeded, records = (
         sum(numbers) for numbers in zip(*((s.exceeded, s.records - s.undecided) for s in at), strict=True)
     )
-    return {"is": kind, "above": low, "below": high, "exceeded": exceeded, "records": records}
+    bound = {"is": kind, "above": low, "below": high, "exceeded": exceeded, "records": records}
+    return bound | {"confidence": confidence} if curve.cloud else bound
 
 
 def _finite_or_none(bounds: tuple[float, float] | None) -> list[float | None] | None:
@@ -321,7 +323,7 @@ def note(curve: Curve, spec: FragilitySpec) -> str:
     fitted = curve.fitted
     notes = [_about_undecided(curve)]
     if isinstance(fitted, NoCurve):
-        bound = _bound(curve)
+        bound = _bound(curve, spec.confidence)
         notes.append(f"the median is {bound_in_words(bound, spec.label, spec.unit)}" if bound else fitted.reason)
     else:
         if not spec.levels[0] <= fitted.median <= spec.levels[-1]:  # of a cloud, whose line goes on

@@ -18,7 +18,6 @@ from rockbatch.analyses.fragility.cloud import Cloud, Demands, Logistic, Regress
 from rockbatch.analyses.fragility.cloud_tables import counts, note_on_cloud
 from rockbatch.analyses.fragility.curves import CloudPoint, assess
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD
-from rockbatch.analyses.fragility.lognormal import NoCurve
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.common.errors import InputError
 from rockbatch.motions.hazard import HazardCurve
@@ -246,9 +245,51 @@ def test_the_share_of_an_event_has_no_median_where_no_record_was_run():
     x = np.array([0.4, 0.72, 0.78, 1.02, 1.44, 1.46, 1.74, 2.95])
     fell = np.arange(8) != 1
     below, above = fit_event(x, fell), fit_event(1.0 / x, ~fell)
-    assert below == NoCurve("the median by the fit is below all intensities, which begin at 0.4", below=0.4)
-    assert above == NoCurve("the median by the fit is above all intensities, which end at 2.5", above=2.5)
+    assert below.reason == "the median by the fit is below all intensities, which begin at 0.4"
+    assert above.reason.startswith("the median by the fit is above all intensities, which end at 2.5")
     assert 0.4 < fit_event(x, np.arange(8) > 3).median < 2.95
+
+
+def test_the_bound_of_a_median_is_the_end_of_its_interval():
+    """It was the nearest intensity, of a fit that leaves a median twice as far among the records open, or any."""
+    x = np.array([0.4, 0.72, 0.78, 1.02, 1.44, 1.46, 1.74, 2.95])
+    fell = np.arange(8) != 1
+    below, above = fit_event(x, fell), fit_event(1.0 / x, ~fell)
+    share = cloud._share(np.log(x), fell, np.arange(8), 0.95)
+    fitted_share = Cloud(1.0, None, share, 0.95, float(np.log(x).mean()), 8)
+    assert fitted_share.median < 0.4 < 0.8 < fitted_share.median_interval[1]
+    assert below.below == fitted_share.median_interval[1]
+    assert (above.is_bound, above.reason.split(": ")[1]) == (
+        False,
+        "its interval has no end among them, and nothing bounds it",
+    )
+    assert not fit_event(x, fell, station=np.arange(8) // 2).is_bound  # four stations have no interval
+
+
+def test_where_no_record_exceeds_a_limit_the_line_bounds_the_median_by_its_interval():
+    rng = np.random.default_rng(1)
+    x = np.exp(rng.normal(0.0, 0.5, 12))
+    demand = 0.6 * x * np.exp(rng.normal(0.0, 0.3, 12))
+    runs = Demands(x, demand, np.zeros(12, bool), np.zeros(12, bool))
+    near, far = (fit(runs, times * demand.max(), 1e-3) for times in (1.01, 9.0))
+    draws = cloud._line(np.log(x), np.log(demand), np.array([]), np.array([]), np.arange(12)).draws
+    low = np.quantile((np.log(1.01 * demand.max()) - draws[:, 0]) / draws[:, 1], 0.025)
+    assert (near.above, far.above) == (pytest.approx(min(np.exp(low), x.max()), rel=0.02), pytest.approx(x.max()))
+
+
+@pytest.mark.parametrize(
+    ("stations", "expected"), [(range(12), 6), (np.arange(12) // 2, 1), (np.arange(12) // 3, None)]
+)
+def test_records_on_one_side_bound_a_median_by_the_sixth_station(stations, expected):
+    """Six on one side of their median have a chance of 1.6 %, five of 3.1 %, where an interval of 95 % leaves 2.5 % out."""
+    x = np.linspace(0.1, 1.2, 12)
+    stronger = fit_event(x, np.zeros(12, bool), station=np.array(stations))
+    weaker = fit_event(1.0 / x, np.ones(12, bool), station=np.array(stations))
+    if expected is None:
+        assert stronger.reason.endswith("stronger ones are needed, and a bound of the median needs 6 stations")
+        assert weaker.reason.endswith("weaker ones are needed, and a bound of the median needs 6 stations")
+    found = (stronger.above, 1.0 / weaker.below)
+    assert found == pytest.approx((x[expected], x[expected]) if expected is not None else (0.0, 0.0))
 
 
 # The study
@@ -390,3 +431,17 @@ def test_how_a_run_counts_is_said_in_a_word(tmp_path, demand, state, status, cou
     run = CloudPoint(0, 0.3, demand, status, state)
     found = {rule.name: counts(run, SimpleNamespace(limit=rule), spec) for rule in spec.limits}
     assert found == {"overturning": of_an_event, "rotation": counted}
+
+
+def test_a_cloud_without_exceedances_has_a_bound_with_its_confidence_and_no_rate(tmp_path):
+    """One record stands at each intensity: its share, 0, was the bound of a rate as if all motions had it."""
+    hazard = {"hazard": {"levels_m_s": [0.1, 0.3, 1.0], "return_period_years": [30, 150, 2500]}}
+    found = rb.fragility(study(tmp_path, check=0.9, motions={"scale": [0.5]}, fragility=hazard))
+    curve = next(curve for curve in found.info["curves"] if curve["limit_state"] == "overturning")
+    bound = curve["median_bound"]
+    assert (bound["is"], bound["confidence"], bound["exceeded"], bound["records"]) == ("above", 0.95, 0, 7)
+    assert bound["above"] == pytest.approx(sorted(point["level"] for point in curve["points"])[1], rel=1e-9)
+    assert "(95 %): no record exceeds it" in curve["note"]
+    assert curve["risk"] is None
+    row = found.fragility_risk.set_index("limit_state").loc["overturning"]
+    assert row["note"].startswith("no record exceeds the limit up to ")
