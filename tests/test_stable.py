@@ -24,12 +24,12 @@ def test_nothing_that_the_last_release_promised_is_gone():
 @pytest.mark.parametrize(
     ("group", "name", "parts", "lost"),
     [
-        ("python", "check", ["results", "*", "study="], ["rules is gone"]),
-        ("python", "check", ["results", "*", "rules=", "study="], ["results, rules stand otherwise"]),
-        ("python", "check", ["rules=", "results", "*", "study="], ["results, rules stand otherwise"]),
-        ("python", "check", ["results", "rules", "*", "study="], ["rules has to be given"]),
-        ("python", "check", ["results", "rules=", "*", "study=", "folder"], ["folder has to be given"]),
-        ("python", "check", ["results=", "rules=", "more=", "*", "study=", "folder="], []),
+        ("python", "check", ["results", "*", "study=", "motions="], ["rules is gone"]),
+        ("python", "check", ["results", "*", "rules=", "study=", "motions="], ["results, rules stand otherwise"]),
+        ("python", "check", ["rules=", "results", "*", "study=", "motions="], ["results, rules stand otherwise"]),
+        ("python", "check", ["results", "rules", "*", "study=", "motions="], ["rules has to be given"]),
+        ("python", "check", ["results", "rules=", "*", "study=", "motions=", "folder"], ["folder has to be given"]),
+        ("python", "check", ["results=", "rules=", "more=", "*", "study=", "motions=", "folder="], []),
         ("commands", "report", ["DIR", "OTHER=", "*", "--pair=", "--all=", "--paper=", "--sheet="], ["--out is gone"]),
         (
             "commands",

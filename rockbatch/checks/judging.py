@@ -296,7 +296,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, motions: Suite) -
     statistic = STATISTICS[none.statistic]
     records = suite.texts("record")[counting]
     of_event = largest_event(records, counted_as[counting], motions.events) if statistic.code else None
-    unmet = _unmet(rule, count, n, of_event) or _unmet_by_stations(
+    unmet = _unmet(rule, count, n, of_event, known=bool(motions.events)) or _unmet_by_stations(
         rule, counted_as[counting], suite.texts("station")[counting], np.isin(records, [*motions.unrecorded])
     )
     verdict, few = _decide(rule, demand.low, demand.high, unmet)
@@ -409,11 +409,11 @@ def _between(low: float, high: float) -> str:
     return f"between {low:.4g} and {'any value' if math.isinf(high) else f'{high:.4g}'}"
 
 
-def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> str:
+def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None, *, known: bool) -> str:
     """Return the first unmet condition on the records: "5 stations count, EN 1998-1 asks for 7"; "" if all are met.
 
     These are the least number, which the rule's ``least`` replaces, stations for a code, ``per_event``, and a limit of "count"
-    below the number of records.
+    below the number of records. ``known`` is False of a table alone, which has no events.
     """
     statistic = STATISTICS[rule.statistic or "max"]
     least, authority = statistic.least, statistic.code or (f"the {statistic.words}" if statistic.least > 1 else "")
@@ -426,6 +426,7 @@ def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> st
         return f"{statistic.code} counts stations"
     if of_event is not None and rule.per_event is not None and of_event.records + of_event.unknown > rule.per_event:
         unknown = f", and of {of_event.unknown} it is not known" if of_event.unknown else ""
+        unknown += "" if known else ": pass the motions of the table, too"
         return f"the check allows {rule.per_event} of one event{unknown}"
     if rule.statistic == "count" and rule.limit >= records:
         return f"{counts}, and the check allows {rule.limit:g}, so that it decides nothing"

@@ -23,9 +23,10 @@ from rockbatch.results.columns import given_table
 from rockbatch.results.interaction import INTERACTION, read_interaction
 from rockbatch.results.labelled import Item
 from rockbatch.results.reading import Saved, read_saved
-from rockbatch.results.run_json import INFO, describe_case
+from rockbatch.results.run_json import INFO, describe, describe_case
 from rockbatch.results.sections import SECTIONS, read_sections
-from rockbatch.study import Study, load_study
+from rockbatch.study import Motions, Study, given_study
+from rockbatch.study.suite import ground_motions
 from rockbatch.toml.reader import TomlFile
 
 PathLike = str | os.PathLike[str]
@@ -42,6 +43,7 @@ def check(
     rules: PathLike | Iterable[Rule] | None = None,
     *,
     study: PathLike | Study | None = None,
+    motions: Motions = None,
 ) -> "pd.DataFrame":
     """Check results against rules.
 
@@ -50,11 +52,14 @@ def check(
     results : path, opened results or DataFrame
         A folder written by ``rockbatch run``, the results that :func:`rockbatch.open_results` returned, the table that
         :func:`rockbatch.run` returned, some of its rows, or peaks.csv as read by ``pandas.read_csv``. Records without a row
-        in a table are not part of the suite.
+        in a table are not part of the suite, unless ``motions`` are given.
     rules : path or iterable of Rule, optional
         A TOML file with [[check]] tables, or the rules themselves; by default the study's own.
     study : path or Study, optional
         The study that produced a table; folders contain theirs.
+    motions : path, MotionSet, Motion or list of Motion, optional
+        The motions of a table, as :func:`rockbatch.run` takes them. By them codes' statistics know earthquakes and target
+        spectrum, as those of a folder do; without them ``per_event`` is not decided.
 
     Returns
     -------
@@ -66,7 +71,7 @@ def check(
     ------
     InputError
         For mistakes in the rules, with line numbers, for rules that do not apply to the results, for missing columns, without any
-        rule, and for a table without its ``study``.
+        rule, for a table without its ``study``, and for ``motions`` that lack one of its records.
 
     Examples
     --------
@@ -76,7 +81,7 @@ def check(
     0  rotation  rigid    pass
     1  rotation   pads    pass
     """
-    judged = verdicts(results, rules, study=study)
+    judged = verdicts(results, rules, study=study, motions=motions)
     return as_table(judged)
 
 
@@ -85,6 +90,7 @@ def verdicts(
     rules: PathLike | Iterable[Rule] | None = None,
     *,
     study: PathLike | Study | None = None,
+    motions: Motions = None,
 ) -> list[Verdict]:
     """Return the verdicts of :func:`check`, one for each row, those on the suite first; ``InputError`` likewise."""
     given = None if rules is None else given_rules(rules)
@@ -102,11 +108,15 @@ def verdicts(
     else:
         if study is None:
             raise InputError('check: a table alone lacks its piers; pass its study: study = "pier.toml"')
-        study = study if isinstance(study, Study) else load_study(study)
+        study = given_study(study, motions)
         own_rules, count = study.checks, study.count
         table, cases = given_table(results, study.varied), [describe_case(case) for case in study.cases]
         _refuse_runs_of_others(with_case(table), cases, study.motions.scale)
         suite = Suite(unrecorded={pulse.name for pulse in study.motions.pulses})
+        if motions is not None:
+            info = describe(study, ground_motions(study))
+            of_suite, suite = suite_verdicts(info, with_case(table)["scale"]), suite_of(info)
+            _refuse_other_records(with_case(table)["record"], suite)
     judged = own_rules if given is None else given
     if not (judged or of_suite):
         raise InputError("no checks: the study has no [[check]]; add some, or pass a file of rules")
@@ -117,6 +127,14 @@ def verdicts(
     sections, interaction = (in_sections.get(needs) for needs in _OF_SECTIONS)
     of_cases = judge(judged, table, cases, suite, count, sections, interaction=interaction, doubted=doubted)
     return [*of_suite, *of_cases]
+
+
+def _refuse_other_records(records: "pd.Series", suite: Suite) -> None:
+    """Raise ``InputError`` for a record of a table that the motions of its suite lack."""
+    if lacking := [record for record in records.unique() if record not in suite.stations]:
+        raise InputError(
+            f"motions: have no {shown(lacking[0])}, of which the table has a run: pass those that it was run with"
+        )
 
 
 def _refuse_runs_of_others(runs: "pd.DataFrame", cases: Sequence[Case], scales: Sequence[float]) -> None:

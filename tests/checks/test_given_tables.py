@@ -1,5 +1,7 @@
 """A table that a user has is judged as the folder that it comes from, however pandas keeps it, or is refused with words."""
 
+from pathlib import Path
+
 import pandas as pd
 import pytest
 from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
@@ -8,6 +10,7 @@ import rockbatch as rb
 from rockbatch.checks import Rule
 from rockbatch.common.errors import InputError
 
+RECORDS = Path(__file__).parents[2] / "motions" / "near_fault"
 RULES = [
     Rule("rotation", "theta_max_over_alpha", 0.1, statistic="mean"),
     Rule("settlement", "settlement_m", 0.001),
@@ -119,3 +122,26 @@ def test_choices_and_limits_of_given_rules_that_do_not_fit_are_refused_together(
         ]
     with pytest.raises(InputError, match="no such case"):
         rb.check(out, wrong[:1])
+
+
+@pytest.mark.slow
+def test_a_table_with_its_motions_is_judged_by_codes_as_its_folder(tmp_path):
+    """A table alone knows no earthquake and no target, and says what to pass for them."""
+    target = {"spectrum": "EN 1998-1", "type": 1, "ground": "C", "ag_g": 0.2, "period_range_s": [0.4, 2.0]}
+    motions = {"path": str(RECORDS), "target": target}
+    study = rb.load_study(write_study(tmp_path, study_text(pulses=(), motions=motions, cases=[RIGID])))
+    rules = [Rule("mean", "theta_max_over_alpha", 0.5, statistic="en1998-1", per_event=3)]
+    rb.run(study, out=tmp_path / "out")
+    expected = rb.check(tmp_path / "out", rules).drop(columns="governing")
+    table = read(tmp_path / "out")
+    found = rb.check(table, rules, study=study, motions=RECORDS).drop(columns="governing")
+    pd.testing.assert_frame_equal(found, expected, check_dtype=False)
+    of_case = found.iloc[-1]
+    assert (len(found) > 3, of_case["verdict"], of_case["omits"]) == (True, "pass", "")
+    (alone,) = rb.check(table, rules, study=study).to_dict("records")
+    advice = "the check allows 3 of one event, and of 5 it is not known: pass the motions of the table, too"
+    assert (alone["verdict"], alone["note"].split("; ")[0]) == ("not decided", advice)
+    missing = rb.check(table[table["record"] != table["record"][0]], rules, study=study, motions=RECORDS)
+    assert missing["counted"].iloc[-1] == "1 not run (unknown)"
+    with pytest.raises(InputError, match=r"motions: have no .*: pass those that it was run with"):
+        rb.check(table, rules, study=study, motions=RECORDS / "kaikoura2016_wtmc")
