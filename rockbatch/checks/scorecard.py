@@ -123,7 +123,7 @@ def scorecard(
     free = without_limits({name: of_case for name, of_case in by_case.items() if _worst(of_case) == PASS}, worst)
     for name, of_case in by_case.items():
         under = of_case[0].scale in failing
-        worst_last = sorted(of_case, key=badness)
+        worst_last = sorted(reversed(of_case), key=badness)  # of equals the nominal one, which is first
         own = {verdict.check: _under_failing_suite(verdict) if under else verdict for verdict in worst_last}
         cells = [_cell(own[column.check], column) if column.check in own else None for column in columns]
         kind = DOES_NOT_APPLY if name in fallen and _worst(of_case) == PASS else _worst(of_case)

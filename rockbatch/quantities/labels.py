@@ -97,14 +97,26 @@ def record_labels(info: Mapping[str, Any]) -> dict[str, str]:
 def quantity(key: str, value: object, digits: int = 10, case: Case | None = None) -> str:
     """Describe a value of a study key: "β = 40", "Fy = 45,000 kN", with no-break spaces, or "kinematics finite".
 
-    ``case``, from run.json, supplies the exponent in a viscous damper's unit, "C = 900 kN (s/m)^0.3", and the number of
-    points of a backbone: "spring backbone of 3 points".
+    ``case``, from run.json, supplies the exponent in a viscous damper's unit, "C = 900 kN (s/m)^0.3", and the points of a
+    backbone: "spring backbone of 3 points to 40,000 kN at 200 mm".
     """
     symbol, unit = symbol_of(key, case)
     if not isinstance(value, float | int):
-        points = backbone(case) if key == "spring" and case is not None else ()
-        return f"{symbol} {value} of {len(points)} points" if points else f"{symbol} {value}"
+        points = _last_point(case) if key == "spring" and case is not None and backbone(case) else ""
+        return f"{symbol} {value}{points}"
     return f"{symbol} = {plain(value, digits)} {unit}".strip().replace(" ", "\u00a0")
+
+
+def _last_point(case: Case) -> str:
+    """Return the number of points of a backbone, and the last: " of 3 points to 40,000 kN at 200 mm"; without a mass in M g/2."""
+    points, parameters = backbone(case), case["parameters"]
+    deflection, force = points[-1]
+    if "yield_kN" in parameters:
+        reached = f"{plain(force * parameters['yield_kN'], 4)} kN"
+    else:
+        reached = f"{plain(force * parameters['eta'], 4)} M g/2"
+    text = f"{len(points)} points to {reached} at {plain(1000.0 * deflection * parameters['delta_y_m'], 4)} mm"
+    return f" of {text}".replace(" kN", "\u00a0kN").replace(" mm", "\u00a0mm")
 
 
 def symbol_of(key: str, case: Case | None = None) -> tuple[str, str]:

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from rockbatch.quantities.cases import Case
+from rockbatch.quantities.cases import Case, backbone
 from rockbatch.quantities.labels import digits_that_tell, quantity, titled
 from rockbatch.quantities.quantity import FOOTING
 from rockbatch.study import PIER_KEYS
@@ -128,10 +128,12 @@ def _constants(cases: Sequence[Case], given: Collection[str]) -> dict[str, objec
     """Return the parameters and varied values of a foundation that are equal on every pier, except keys of the pier and None.
 
     Of β and the stiffness, and of η and the yield force, the one with units is kept if it is in ``given``, since the other then
-    depends on the pier; else the one without. β of a footing is left out unless it is given.
+    depends on the pier; else the one without. β of a footing is left out unless it is given, and η of a backbone, which is that
+    of its first corner, where a check of η is of its greatest force.
     """
     first, *further = [case["parameters"] | case["columns"] for case in cases]
     omitted = {free if unit in given else unit for free, unit in SAME.items()}.union(PIER_KEYS)
     omitted |= {"beta"} if cases[0]["base"] in FOOTING and "beta" not in given else set()
+    omitted |= {"eta"} if backbone(cases[0]) else set()
     kept = {key: value for key, value in first.items() if key not in omitted and value is not None}
     return {key: value for key, value in kept.items() if all(values.get(key) == value for values in further)}

@@ -114,11 +114,12 @@ def test_a_height_is_in_the_head_if_all_have_it_and_else_in_their_cells(heights,
 
 @pytest.mark.parametrize("event", [{}, {"demand": "overturned", "statistic": "max", "limit": 0.0, "value": 1.0}])
 def test_a_cell_names_the_bound_of_the_design_under_which_it_is_worst(event):
-    under = [
-        verdict("a", FAIL, ratio=ratio, columns={"bound": name}, **event) for name, ratio in (("", 1.2), ("soft", 1.5))
-    ]
+    kinds = (("", PASS, 0.9), ("soft", FAIL, 1.5))
+    under = [verdict("a", kind, ratio=ratio, columns={"bound": name}, **event) for name, kind, ratio in kinds]
     assert scorecard(under, name_of).rows[0].cells[0].design_bound == "soft"
     assert scorecard(under[:1], name_of).rows[0].cells[0].design_bound == ""
+    alike = [replace(under[0], columns={"bound": name}) for name in ("", "soft")]  # it fails as it is nominally, too
+    assert scorecard(alike, name_of).rows[0].cells[0].design_bound == ""
 
 
 def test_a_case_of_which_no_run_stands_is_told_from_one_without_checks():

@@ -10,6 +10,7 @@ from rockbatch.checks.remarks import weak_supports
 from rockbatch.common.figures.description import Look, Rule
 from rockbatch.outcome.figures import _springs
 from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.quantities.labels import quantity
 from rockbatch.reporting.differing import _shown
 from rockbatch.reporting.sections.studied import _foundations
 from rockbatch.results.labels import named
@@ -63,11 +64,18 @@ def test_the_table_of_foundations_says_which_columns_are_those_of_a_first_corner
     assert "backbone" not in str(_foundations(SimpleNamespace(info={"cases": [pads], "varied": []})))
 
 
-def test_a_label_says_how_many_points_a_backbone_has():
+def test_a_label_says_how_many_points_a_backbone_has_and_which_is_the_last():
+    """Not its η: that of the first corner, 1.4 and 0.7, stood beside checks of η by the greatest force, and told no two apart."""
     base = rb.YieldingBase(beta=60.0, eta=2.5, epsilon=0.05, spring="epp")
     three, epp = entry(POINTS), describe_case(Case("stiff", case_of(POINTS).pier, base, {}))
     labels = [series.label for series in named({("pads",): [three], ("stiff",): [epp]}, (), {}).values()]
-    assert ["spring backbone of 3 points" in labels[0], "spring epp" in labels[1]] == [True, True], labels
+    told = "spring backbone of 3 points to 38,000\u00a0kN at 40\u00a0mm"
+    assert [told in labels[0], "spring epp" in labels[1], "η" in labels[0]] == [True, True, False], labels
+    unweighed = entry(POINTS)
+    share = 38e3 / (0.5 * 3000.0 * 9.81)
+    del unweighed["parameters"]["yield_kN"]
+    words = quantity("spring", "backbone", case=unweighed)
+    assert words == f"spring backbone of 3 points to {share:.4g} M g/2 at 40\u00a0mm"
 
 
 def test_a_comparison_shows_the_points_of_a_backbone_as_pairs():
