@@ -186,7 +186,9 @@ def test_inputs_without_chance_have_no_error_if_enough_capacities_are_known(know
     low[24], high[24] = 0.0, 1.01 * x[24]  # exceeded at its lowest intensity: no more known than those that never were
     found = contribution(Capacities(low, high, np.ones(25), np.eye(25)), scores, correlation)
     if known < 20:
-        assert found.reason == "with them the runs beyond the limit are separated from the others: more of both would tell"
+        assert (
+            found.reason == "with them the runs beyond the limit are separated from the others: more of both would tell"
+        )
         return
     assert found.effects == pytest.approx((0.6, -0.2), abs=0.01)
     assert found.errors == (0.0, 0.0)
