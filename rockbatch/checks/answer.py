@@ -292,7 +292,7 @@ class _Cases:
 
     def _omitted(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return a sentence, "drift, uplift: REMARK.", for each omission in demands of checks that these cases pass; or ()."""
-        passed = [(name, verdict.check) for verdict in self._of(names, PASS) for name in verdict.omitted]
+        passed = [(name, verdict.check) for verdict in self._of(names, PASS) for name in verdict.omits]
         checks = grouped(passed, lambda pair: pair[0])
         sentences = []
         for name in (name for name in OMISSIONS if name in checks):

@@ -34,11 +34,10 @@ class CaseRuns(NamedTuple):
     @property
     def in_words(self) -> str:
         """Number of runs that do not end standing, in words: "2 of 10 runs overturned, 1 failed"; empty for 0."""
-        counts = [f"{n} {ENDED[status]}" for status, n in self.ended.items()]
-        if not counts:
-            return ""
-        first, _, rest = counts[0].partition(" ")
-        return ", ".join([f"{first} of {self.runs} runs {rest}", *counts[1:]])
+        of_runs = (f" of {self.runs} runs", *[""] * len(self.ended))
+        return ", ".join(
+            f"{n}{of} {ENDED[status]}" for (status, n), of in zip(self.ended.items(), of_runs, strict=False)
+        )
 
 
 def joined(cases: Sequence[CaseRuns]) -> CaseRuns:

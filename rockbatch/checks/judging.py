@@ -333,7 +333,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, motions: Suite) -
         verdict=verdict,
         count=count,
         remarks=tuple(filter(None, remarks)),
-        omits=", ".join(omitted),
+        omits=tuple(omitted),
     )
     if demand.governing is None:
         return judged

@@ -80,8 +80,8 @@ class Verdict:
         Demand of that run; NaN without one.
     at_m : float
         Height above the pivots at which the demand is read [m]: of drift, or of a section; NaN of others.
-    omits : str
-        What the demand leaves out, the gravest first: names of :data:`rockbatch.checks.omissions.OMISSIONS`; empty for nothing.
+    omits : tuple of str
+        What the demand leaves out, the gravest first: names of :data:`rockbatch.checks.omissions.OMISSIONS`.
     axes : str
         How the demands on both axes of a pier combine, in words; empty on one axis.
     capacity : str
@@ -117,7 +117,7 @@ class Verdict:
     polarity: str = ""
     governing: float = math.nan
     at_m: float = math.nan
-    omits: str = ""
+    omits: tuple[str, ...] = ()
     axes: str = ""
     capacity: str = ""
 
@@ -132,19 +132,14 @@ class Verdict:
         return SEPARATOR.join(self.remarks)
 
     @property
-    def omitted(self) -> list[str]:
-        """Return the names of :data:`rockbatch.checks.omissions.OMISSIONS` in the demand, the gravest first; [] for none."""
-        return self.omits.split(", ") if self.omits else []
-
-    @property
     def left_open(self) -> str:
         """Return the first omission that leaves the demand without an upper bound, by name; empty if there is none."""
-        return next((name for name in self.omitted if not OMISSIONS[name].decides), "")
+        return next((name for name in self.omits if not OMISSIONS[name].decides), "")
 
     @property
     def is_lower_bound(self) -> bool:
         """True if the upper bound alone is infinite: the demand is at least its value. False if that is for modes left out."""
-        return math.isinf(self.high) and math.isfinite(self.value) and MODES not in self.omitted
+        return math.isinf(self.high) and math.isfinite(self.value) and MODES not in self.omits
 
     @property
     def is_ban(self) -> bool:
@@ -179,7 +174,7 @@ def _table(verdicts: Iterable[Verdict]) -> tuple[list[str], list[dict[str, objec
     rows: list[dict[str, object]] = []
     varied: dict[str, None] = {}
     for verdict in verdicts:
-        rows.append(vars(verdict) | {"note": verdict.note} | verdict.columns)
+        rows.append(vars(verdict) | {"note": verdict.note, "omits": ", ".join(verdict.omits)} | verdict.columns)
         varied |= dict.fromkeys(verdict.columns)
     first, last = ("check", "case"), [name for name in _KINDS if name not in ("check", "case", "columns")]
     return [*first, *varied, *last], rows
@@ -229,13 +224,14 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
     """Return the verdict in a row of checks.csv. Raises ``KeyError`` or ``ValueError`` for a damaged one."""
     values: dict[str, Any] = {}
     for name, kind in _KINDS.items():
-        if name not in ("columns", "note") and (name in row or name not in _LATER):
+        if name not in ("columns", "note", "omits") and (name in row or name not in _LATER):
             values[name] = kind(row[name] or ("nan" if kind is float else ""))
     values["remarks"] = tuple(row["note"].split(SEPARATOR)) if row["note"] else ()
+    values["omits"] = tuple(row["omits"].split(", ")) if row.get("omits") else ()
     for name, words in _WORDS.items():
         if values.get(name, "") not in words:
             raise ValueError(f"{name} = {values[name]!r}")
-    if values.get("omits") and not {*values["omits"].split(", ")} <= OMISSIONS.keys():
+    if not {*values["omits"]} <= OMISSIONS.keys():
         raise ValueError(f"omits = {values['omits']!r}")
     columns = {
         name: text if name == BOUND else _value(text) for name, text in row.items() if name not in {*_KINDS, JUDGED}

@@ -78,9 +78,14 @@ def report(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def sign(verdict: str) -> str:
+    """Return the sign of a verdict, "✓" or "✗"; an ASCII one, "+" or "x", if stdout cannot show it."""
+    return shown(SIGNS[verdict], _PLAIN[verdict])
+
+
 def mark(verdict: str) -> str:
-    """Return sign and word of a verdict: "✓ pass", "✗ FAIL"; an ASCII sign, "+" or "x", if stdout cannot show it."""
-    return f"{shown(SIGNS[verdict], _PLAIN[verdict])} {_LOUD.get(verdict, verdict)}"
+    """Return sign and word of a verdict: "✓ pass", "✗ FAIL"."""
+    return f"{sign(verdict)} {_LOUD.get(verdict, verdict)}"
 
 
 def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved, whole: bool = False) -> int:
@@ -124,7 +129,7 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
     stations = stations_of(saved.info)
     for line in answer(verdicts, at_scales, case_of, record_of, suites, stations):
         words = " ".join((f"{line.text}: {line.cases}." if line.cases else f"{line.text}.", *line.details))
-        lines.append(_coloured(filled(f"{mark(line.verdict).split()[0]} {_plain(words)}"), line.verdict))
+        lines.append(_coloured(filled(f"{sign(line.verdict)} {_plain(words)}"), line.verdict))
     ended, planned = (sum(counts) for counts in zip(*((sum(s.ended.values()), s.runs) for s in suites), strict=True))
     if not checked:
         lines.append("No limits were set, so nothing was checked. Add some: rockbatch check DIR --rules FILE.")

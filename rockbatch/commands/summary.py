@@ -57,10 +57,12 @@ def _worst(runs: "pd.DataFrame", records: Mapping[str, str], case_of: Callable[[
     """Return, as text, the number of runs of each status, and a table of the ten runs with the greatest rotations."""
     ended = ", ".join(f"{n} {status}" for status, n in runs["status"].value_counts().items())
     rows = [
-        [records[run["record"]], case_of(run), run["status"], *(f"{run[name]:.4g}" for name in _PEAK)]
+        [
+            *(records[run["record"]], case_of(run), run["status"]),
+            *(f"{run[name]:.4g}" if run[name] == run[name] else "" for name in _PEAK),
+        ]
         for run in as_dicts(runs.nlargest(10, _PEAK[0]))
     ]
-    rows = [["" if cell == "nan" else cell for cell in row] for row in rows]
     head = ["record", "case", "status", *_PEAK]
     return f"{len(runs)} runs: {ended}\nThe largest theta_max/alpha\n{in_width(head, rows, names=2)}"
 

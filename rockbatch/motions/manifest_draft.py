@@ -119,7 +119,7 @@ def _record_table(
         text += "# azimuth =\n" if orientation.azimuth is None else ""
         text += "".join(f"# {f.key} = true   # {legible(f.text)}\n" for f in gross_findings(component))
     if double:
-        text += f"# use = true   # {legible(double.partition(';')[0])}\n"
+        text += f"# use = true   # {legible(double)}\n"
     return text + f"# station = {_toml_value(station)}\n# magnitude =\n# distance_km =\n"
 
 

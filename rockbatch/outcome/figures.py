@@ -25,7 +25,7 @@ from rockbatch.common.figures.description import (
     thin,
     without_repeats,
 )
-from rockbatch.pier import yield_deflection
+from rockbatch.pier import device_names, yield_deflection
 
 Response = Any
 """A :class:`rockbatch.Response`, whose module imports this one."""
@@ -148,7 +148,9 @@ def reduced(response: Response, look: Look, pixels: int = 900, most_devices: int
         moving,
         _band(response),
         _springs(response, look, pixels // 8),
-        tuple(_device(response, name, look, pixels // 8) for name in _devices(response)[:most_devices]),
+        tuple(
+            _device(response, name, look, pixels // 8) for name in device_names(response.base.restraints)[:most_devices]
+        ),
     )
 
 
@@ -381,13 +383,6 @@ def _bed(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
         marks = [Polyline(*without_repeats(theta, values, pixels), y.plain, look=look)]
         panels.append(Panel(x, y, marks, "bed", width=WIDTH / 2, height=LOOPS, reads="plane"))
     return tuple(panels)
-
-
-def _devices(response: Response) -> list[str]:
-    """Return the names of the devices in order, the same name once for a pair at both pivots; [] without devices."""
-    columns = () if response.restraints is None else response.restraints
-    names = (str(name).removesuffix(" force") for name in columns if str(name).endswith(" force"))
-    return list(dict.fromkeys(name.removesuffix(" left").removesuffix(" right") for name in names))
 
 
 def _device(response: Response, name: str, look: Look, pixels: int) -> Panel:

@@ -13,7 +13,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
 from rockbatch.common.units import ColumnUnits
-from rockbatch.pier import Base, Pier
+from rockbatch.pier import Base, Pier, place_names
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -326,11 +326,13 @@ class Response(Shown):
 
         if self.restraints is None:
             raise InputError(f"{self._title}: there are no devices")
-        columns = list(self.restraints.columns[1:])
-        elongation, pull = (self.restraints[columns[first::2]].to_numpy(dtype=np.float64) for first in (0, 1))
+        names = place_names(self.pier, self.base.restraints)
+        elongation, pull = (
+            self.restraints[[f"{name} {what}" for name in names]].to_numpy(dtype=np.float64)
+            for what in ("elongation", "force")
+        )
         work = work_of(self.pier, self.base, Courses(elongation, pull), least_stroke_m)
         mass = math.nan if self.pier.mass_t is None else self.pier.mass_t
-        names = [name.removesuffix(" elongation") for name in columns[::2]]
         table = {"travel_m": work.travel, "energy_J_kg": work.lost, "energy_kJ": mass * work.lost}
         table |= {"half_cycles": work.half_cycles.astype(np.int64), "strain_over_yield": work.strain}
         return pd.DataFrame(table, index=pd.Index(names, name="device"))

@@ -32,7 +32,9 @@ from rockbatch.pier.laws import WITH_POINTS as WITH_POINTS
 from rockbatch.pier.laws import SpringLaw as SpringLaw
 from rockbatch.pier.parts import Part as Part
 from rockbatch.pier.places import Place as Place
+from rockbatch.pier.places import device_names as device_names
 from rockbatch.pier.places import offsets as offsets
+from rockbatch.pier.places import place_names as place_names
 from rockbatch.pier.places import places as places
 from rockbatch.pier.places import recentres as recentres
 from rockbatch.pier.places import symmetric as symmetric

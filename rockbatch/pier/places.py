@@ -1,6 +1,7 @@
 """Places of devices under a pier and beside its deck; symmetry and re-centring."""
 
 import math
+from collections import Counter
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -39,6 +40,25 @@ def places(pier: Pier, restraint: Restraint) -> tuple[Place, ...]:
     if isinstance(restraint.at, str):
         return (Place(-b if restraint.at == "left" else b),)
     return (Place(float(restraint.at)),)
+
+
+def device_names(restraints: tuple[Restraint, ...]) -> list[str]:
+    """Return the name of each device, numbered by its kind: "damper 1", "damper 2", "deck spring 1"."""
+    counts = Counter[str]()
+    names = []
+    for device in restraints:
+        counts[device.what] += 1
+        names.append(f"{device.what.replace('_', ' ')} {counts[device.what]}")
+    return names
+
+
+def place_names(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
+    """Return the name of the device at each place, of two with its side: "damper 1 left", "damper 1 right", "tendon 1"."""
+    return [
+        f"{name}{side}"
+        for name, device in zip(device_names(restraints), restraints, strict=True)
+        for side in ([""] if len(places(pier, device)) == 1 else [" left", " right"])
+    ]
 
 
 def offsets(pier: Pier, restraint: Restraint) -> tuple[float, ...]:

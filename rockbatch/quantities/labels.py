@@ -31,6 +31,7 @@ SYMBOLS = {
     "deck_height_m": ("deck height", "m"),
     "deck_inertia_t_m2": ("deck inertia", "t m²"),
     "top_m": ("top", "m"),
+    "two_pi_over_p_s": ("2π/p", "s"),
     "omega_g_over_p": ("ω_g/p", ""),
     "pga_over_g_tan_alpha": ("PGA/(g tan α)", ""),
     "flexural_period_s": ("flexural period", "s"),

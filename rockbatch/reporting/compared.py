@@ -207,7 +207,7 @@ def only_in_one(pair: Pair) -> Markup:
             rows.append(
                 [name, study.case_of(group.iloc[0]), len(group), first_of(list(dict.fromkeys(group["record"])), 6)]
             )
-    heads = [Head("study"), Head("case"), Head("runs"), Head("records")]
+    heads = [Head("study"), Head("case", key=True), Head("runs"), Head("records")]
     return table(heads, rows, name="Runs in one study only") if rows else Markup("")
 
 

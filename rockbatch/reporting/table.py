@@ -29,7 +29,8 @@ class Head(NamedTuple):
     """Head of a column: its text, the format of its numbers, a tooltip, and a head over several columns.
 
     ``value`` is the key of its cells in the items of :func:`listed`, or a function of an item. The page's script lets
-    readers select rows by a column with ``filter``.
+    readers select rows by a column with ``filter``. A table too wide for paper has its columns that identify a row in each
+    part: the first, and those next to it that have a ``filter`` or are a ``key``.
     """
 
     text: str
@@ -38,6 +39,7 @@ class Head(NamedTuple):
     group: str = ""
     value: str | Callable[[Item], object] = ""
     filter: bool = False
+    key: bool = False
 
     def value_in(self, item: Item) -> object:
         """Return the cell of an item; None if the item lacks the key."""
@@ -133,7 +135,7 @@ def _parts(
     Texts of more than ``longest`` characters wrap.
     """
     wide = {i: _width(heads[i], [row[i] for row in rows], longest) for i in used}
-    keys = [used[0], *takewhile(lambda i: heads[i].filter or heads[i].text == "case", used[1:])]
+    keys = [used[0], *takewhile(lambda i: heads[i].filter or heads[i].key, used[1:])]
     parts = [[*keys]]
     for i in used[len(keys) :]:
         if sum(wide[place] for place in parts[-1]) + wide[i] > PAPER and len(parts[-1]) > len(keys):

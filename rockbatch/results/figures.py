@@ -121,7 +121,7 @@ def peaks_of_all(results: Labelled, info: Item) -> Figure:
     sides = [runs.loc[of_group.index, []].assign(side=words) for words, of_group in groups_of(runs, results.piers)]
     side = pd.concat(sides)["side"]
     if runs["polarity"].nunique() > 1:
-        side = (side + ", " + runs["polarity"]).str.removeprefix(", ")
+        side = side.where(side == "", side + ", ") + runs["polarity"]
     names = by_pga(worst_records(runs, MOST_PANELS), info)
     shown = runs.assign(side=side)[runs["record"].isin(names)]
     labels = record_labels(info)

@@ -38,7 +38,7 @@ class Series:
     """A foundation in figures: a marker, or a line for rigid ground without devices.
 
     ``tick`` is its short label on axes; ``index`` counts the rigid foundations, or the others, from 0; ``has_values`` tells a
-    label that has values from a case's bare name.
+    label that has values from a case's bare name, ``has_tick`` one that begins with the tick.
     """
 
     label: str
@@ -46,6 +46,7 @@ class Series:
     rigid: bool
     index: int
     has_values: bool = False
+    has_tick: bool = False
 
     def with_values(self, words: Iterable[str]) -> str:
         """Return the label followed by further values: "pads: β = 40, p = 1 rad/s", or "pads: p = 1 rad/s" of "pads"."""
@@ -53,8 +54,8 @@ class Series:
 
     @property
     def keyed(self) -> str:
-        """Return the label for a legend after the tick, "a – pads: β = 40"; alone if rigid, or if its case is the tick."""
-        return self.label if self.rigid or self.label.split(":")[0] == self.tick else f"{self.tick} – {self.label}"
+        """Return the label for a legend after the tick, "a – pads: β = 40"; alone if rigid, or if it begins with it."""
+        return self.label if self.rigid or self.has_tick else f"{self.tick} – {self.label}"
 
 
 def named(
@@ -92,8 +93,9 @@ def named(
         words = [quantity(name, constants[key][name], digits[name], cases[key][0]) for name in distinguishing]
         case, index = str(key[0]), count[kind]
         count[kind] += 1
-        label = ", ".join(words) if words and alone else titled(case, words)
-        series[key] = Series(label, case if short else _tick(index), kind, index, bool(words))
+        untitled = bool(words) and alone
+        label, tick = ", ".join(words) if untitled else titled(case, words), case if short else _tick(index)
+        series[key] = Series(label, tick, kind, index, bool(words), has_tick=short and not untitled)
     return series
 
 

@@ -1,7 +1,6 @@
 """Devices of a recorded run: forces, elongations, and the energy balance with them."""
 
 import math
-from collections import Counter
 from typing import NamedTuple
 
 import numpy as np
@@ -28,24 +27,13 @@ from rockbatch.core.observe.rows import contact_of, state_of
 from rockbatch.core.types import Result
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.device_work import Courses, Work, work_of
-from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase, places
+from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase, place_names
 from rockbatch.simulation.elements import elements, prestress
 from rockbatch.simulation.models import footing, model, springs
 from rockbatch.simulation.starting import start_of
 
 AT_REST = 1e-9
 """Velocity in units of R0 α p that counts as zero in a history."""
-
-
-def names(pier: Pier, base: Base) -> list[str]:
-    """Return the names of devices at each place, in order: "damper 1 left", "damper 1 right", "tendon 1", "deck spring 1"."""
-    labels, counts = list[str](), Counter[str]()
-    for device in base.restraints:
-        counts[device.what] += 1
-        sides = [""] if len(places(pier, device)) == 1 else [" left", " right"]
-        name = device.what.replace("_", " ")
-        labels += [f"{name} {counts[device.what]}{side}" for side in sides]
-    return labels
 
 
 def apart(base: Base, rows: np.recarray) -> tuple[np.recarray, Samples]:
@@ -115,7 +103,7 @@ def device_histories(pier: Pier, base: Base, rows: np.recarray) -> DeviceHistori
 def loops(pier: Pier, base: Base, t: Samples, histories: DeviceHistories) -> "pd.DataFrame":
     """Return a table of elongation [m] and force [N/kg] of every device at every time ``t`` [s]."""
     table = {"t": t}
-    for j, name in enumerate(names(pier, base)):
+    for j, name in enumerate(place_names(pier, base.restraints)):
         table |= {f"{name} elongation": histories.elongation[:, j], f"{name} force": histories.pull[:, j]}
     return pd.DataFrame(table)
 

@@ -233,10 +233,10 @@ VERTICAL_TARGET = Section(
         "What the vertical component of each record is scaled to by a factor of its own, in place of that of its horizontal one, "
         "with the keys of `[motions.target]` but for `pairs`."
     ),
-    {
-        name: replace(key, words=key.words.replace("horizontal component", "vertical component"))
-        for name, key in TARGET.items()
-        if name != "pairs"
+    {name: key for name, key in TARGET.items() if name != "pairs"}
+    | {
+        "pga_g": replace(MEASURE["pga_g"], words="Peak ground acceleration of the vertical component."),
+        "pgv_m_s": replace(MEASURE["pgv_m_s"], words="Peak ground velocity of the vertical component."),
     },
     homes=(Target, SpectrumTarget),
     also=_ALSO,

@@ -166,7 +166,7 @@ def test_a_cloud_shows_demands_its_line_with_a_deviation_and_its_limit():
     kinds = ("line", 0.1), ("line", 0.2), ("below", 0.001), ("overturned", None), ("undecided", None)
     runs = [{"x": 0.2 * (n + 1), "counts": counts, "demand": demand} for n, (counts, demand) in enumerate(kinds)]
     line = {"ln_a": math.log(0.4), "b": 1.5, "sigma": 0.3}
-    cloud = {"limit": 0.25, "floor": 0.005, "line": line, "runs": runs}
+    cloud = {"limit": 0.25, "floor": 0.005, "demand": "theta_max_over_alpha", "line": line, "runs": runs}
     shown = entry("pads", "rotation", cloud=cloud)
     others = [entry("rock", limit, cloud=cloud | change) for limit, change in (
         ("overturning", {"floor": None}), ("none", {"limit": 0.0}), ("any", {"limit": math.inf}), ("bare", {"line": None}),
@@ -174,7 +174,7 @@ def test_a_cloud_shows_demands_its_line_with_a_deviation_and_its_limit():
     figure = clouds({"measure": "PGV", "unit": "m/s", "levels": [1.0], "curves": [entry("rock"), *others, shown]})
     assert [panel.caption for panel in figure.panels] == ["bare, rock", "rotation, pads"]
     panel = figure.panels[1]
-    assert (panel.x.label, panel.y.label) == ("PGV [m/s]", "rotation")
+    assert (panel.x.label, panel.y.label) == ("PGV [m/s]", "theta_max_over_alpha")
     (limit,) = of_kind(panel.marks, Rule)
     assert (limit.axis, limit.at.tolist()) == ("y", [0.25])
     below, through, above = sorted(of_kind(panel.marks, Polyline), key=lambda mark: np.nanmedian(mark.y / mark.x**1.5))

@@ -237,8 +237,8 @@ def regions(*rows):
 
 SUITE = pd.DataFrame({"count": [30, 28], "flight": [2, 3], "failed": [0, 4]})
 FALLING = (
-    ("sine", "rigid", "overturned after 1 impact", 2.15, 9.0, 3.5),
-    ("sine", "rigid", "overturned", 2.75, 9.0, 5.5),
+    ("sine", "rigid", "overturned with impact", 2.15, 9.0, 3.5),
+    ("sine", "rigid", "overturned without impact", 2.75, 9.0, 5.5),
 )
 STANDING = [("sine", "rigid", "standing", 0.5, 2.15, 3.5), ("sine", "rigid", "standing", 0.5, 7.5, 8.5)]
 SPECTRUM = {

@@ -13,7 +13,7 @@ from report_page import Page, figures, svg_texts
 from report_samples import FIG7, FOUNDATIONS, case_entry, response, write_results
 
 from rockbatch.common.figures.description import SHAPES, thin
-from rockbatch.pier import Pier, RigidBase, YieldingBase, yield_deflection
+from rockbatch.pier import Damper, Pier, RigidBase, YieldingBase, yield_deflection
 from rockbatch.reporting import write_report
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.svg import curve
@@ -151,7 +151,8 @@ def test_loops_of_devices_are_in_kn_within_their_picture(tmp_path):
     columns = {"t": tied.t}
     for side in ("left", "right"):
         columns |= {f"damper 1 {side} elongation": way, f"damper 1 {side} force": 0.45 * np.sign(np.gradient(way))}
-    tied = replace(tied, restraints=pd.DataFrame(columns))
+    base = RigidBase(restraints=(Damper("friction", f=0.045),))
+    tied = replace(tied, base=base, restraints=pd.DataFrame(columns))
     write_results(tmp_path)
     text = write_report(tmp_path, [bare, tied]).read_text(encoding="utf-8")
     drawn = readable(text)

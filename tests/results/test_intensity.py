@@ -230,9 +230,11 @@ def test_the_worst_records_and_the_most_frequent_reasons_come_first():
         "reason": ["", "", "", "", "", "x"],
     })  # fmt: skip
     assert suite_statistics.worst_records(table, 3) == ["c", "b", "d"]
-    reasons = ["not settled: a", "not settled: b", "left alone; c", "other", "left alone: d", "not settled"]
-    failed = pd.DataFrame({"status": ["failed"] * 6, "reason": reasons})
-    assert suite_statistics.reasons_of_failure(failed) == {"not settled": 3, "left alone": 2}
+    kinds = ["contacts", "not settled", "ratchets", "not settled", "ratchets", "not settled"]
+    failed = pd.DataFrame(
+        {"status": ["failed"] * 6, "failure": kinds, "reason": ["c", "at 1: a", "z", "at 2: b", "y", "at 3"]}
+    )
+    assert suite_statistics.reasons_of_failure(failed) == {"at 1: a": 3, "z": 2}
 
 
 def test_the_page_has_a_row_for_each_case_and_scale_and_names_both(results):

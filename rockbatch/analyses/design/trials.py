@@ -184,7 +184,7 @@ class Trials:
                 free = unlimited(worst.get(key, []), own)
                 self.free |= dict.fromkeys(RESPONSES[each.demand].words for each in free)
                 for verdict in own:
-                    for name in verdict.omitted:
+                    for name in verdict.omits:
                         self.omitted.setdefault(name, {})[verdict.check] = None
 
     def _beside(self, name: str, numbers: Iterable[str]) -> "pd.DataFrame | None":

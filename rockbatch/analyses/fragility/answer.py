@@ -67,7 +67,8 @@ def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
     curve = min(curves, key=_strength)
     decided = _decided(curve)
     total = sum(point["records"] - point["undecided"] for point in decided)
-    case = f" for {label(info, curve)}, the lowest of {len(curves)} cases" if len(curves) > 1 else ""
+    lowest = f"{label(info, curve)}, the lowest of {len(curves)} cases" if len(curves) > 1 else ""
+    case = f" for {lowest}" if lowest else ""
     if curve["median"] is not None:
         said = f"has a median of {_median(info, curve)}{case}"
         overlaps = any(_overlap(curve, each) for each in curves if each is not curve)
@@ -79,7 +80,7 @@ def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
         said += f", in any of {len(curves)} cases" if case else ""
     elif curve.get("median_bound"):
         said = f"has a median {bound_in_words(curve['median_bound'], info['measure'], info['unit'])}"
-        said += f" ({case.removeprefix(' for ')})" if case else ""
+        said += f" ({lowest})" if lowest else ""
     else:
         said = f"has no median{case}: {curve.get('no_curve') or 'no curve could be fitted'}"
     return sentence(f"{subject} {said}", _left_open(info, curve, curves))

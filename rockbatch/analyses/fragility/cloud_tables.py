@@ -63,7 +63,7 @@ def described_cloud(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
     return {
         "limit": threshold(curve.limit),
         "floor": None if event else spec.censored_below * threshold(curve.limit),
-        "demand": "" if event else DEMANDS[curve.limit.demand].words,
+        "demand": "" if event else curve.limit.demand,
         "line": None if line is None else {"ln_a": line.intercept, "b": line.slope, "sigma": line.sigma},
         "logistic": None if share is None else {"alpha_0": share.intercept, "alpha_1": share.slope},
         "runs": [_described_run(run, curve, spec) for run in curve.cloud],

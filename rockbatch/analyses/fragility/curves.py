@@ -142,7 +142,7 @@ class Curve:
         What each run came to; of cloud analysis only, whose ``stripes`` are these runs one by one.
     drawn : tuple of str
         Names of the inputs that are drawn for its case.
-    drawn_share : Contribution, str or None
+    drawn_share : Contribution, NoCurve or None
         What these contribute to its dispersion, or why that is not known; None if nothing is drawn.
     cases : int
         Number of the cases that share it: piers, and both axes of one.
@@ -158,7 +158,7 @@ class Curve:
     windows: Windows | None = None
     cloud: tuple[CloudPoint, ...] = ()
     drawn: tuple[str, ...] = ()
-    drawn_share: Contribution | str | None = None
+    drawn_share: Contribution | NoCurve | None = None
     cases: int = 1
 
     @property

@@ -170,9 +170,7 @@ def _cloud(info: Entry, entry: Curve, look: Look) -> Panel:
     demands = [run["demand"] for run in runs if run["counts"] == "line"] + [cloud["limit"], cloud["floor"]]
     x = log_spanning(_intensity(info), np.array([run["x"] for run in runs], dtype=float), margin=0.1)
     top = 1.5 * max(demands)
-    y = Axis(
-        str(entry["words"]).split(" > ")[0], min(demands) / 1.2, top * (top / min(demands)) ** 0.1, log=True, last=top
-    )
+    y = Axis(cloud["demand"], min(demands) / 1.2, top * (top / min(demands)) ** 0.1, log=True, last=top)
     marks: list[Mark] = [
         Rule("y", np.array([float(cloud["limit"])]), look=Look("limit"), title=f"limit {cloud['limit']:g}")
     ]

@@ -252,8 +252,8 @@ class Contribution:
 
 def contribution(
     capacities: Capacities, scores: Values, correlation: Values, confidence: float = 0.95
-) -> Contribution | str:
-    """Return the contribution of k inputs, drawn with normal ``scores`` of shape (n, k), or why it is unknown, in words.
+) -> Contribution | NoCurve:
+    """Return the contribution of k inputs, drawn with normal ``scores`` of shape (n, k), or why it is unknown.
 
     It is unknown if the capacities have no curve, if they are fewer than LEAST_PER_PARAMETER, 5, for each of k + 2 parameters,
     or if the scores separate those beyond the limit from the others. It is 0 at least, and exact, with errors of 0, if
@@ -266,19 +266,19 @@ def contribution(
     assert capacities.station is not None
     n, k = scores.shape
     if refusal := _degenerate(capacities):
-        return refusal.reason
+        return refusal
     if n < LEAST_PER_PARAMETER * (k + 2):
-        return f"{n} runs or capacities are too few to tell {k + 2} parameters"
+        return NoCurve(f"{n} runs or capacities are too few to tell {k + 2} parameters")
     likelihood = _Likelihood(capacities, scores)
     best = likelihood.maximum()
     if best is None:
-        return NOT_RISING
+        return NoCurve(NOT_RISING)
     _, b, *factors = best
     effects = -likelihood.width * np.array(factors) / b
     if likelihood.value(*best)[0] > -SEPARATED * n:  # nothing is left to chance
         brackets = (capacities.low > 0) & np.isfinite(capacities.high)
         if brackets.sum() < LEAST_PER_PARAMETER * (k + 2):
-            return "with them the runs beyond the limit are separated from the others: more of both would tell"
+            return NoCurve("with them the runs beyond the limit are separated from the others: more of both would tell")
         whole = math.sqrt(effects @ correlation @ effects)
         return Contribution(whole, (whole, whole), tuple(effects.tolist()), k * (0.0,))
     slopes, hessian = likelihood.derivatives(best)

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -19,19 +19,34 @@ from rockbatch.toml.kinds import positive, text
 
 
 class Measure(NamedTuple):
-    """A measure that a study names: the key of its levels, their unit, and whether it is relative to a pier."""
+    """A measure that a study names: the key of its levels, their unit, its value of a motion, given the settings and g, and of
+    a measure relative to a pier the factor that makes it so.
+    """
 
     levels: str
     unit: str
-    of_pier: bool = False
+    value: Callable[[Motion, Any, float], float]
+    per_pier: Callable[[Pier], float] | None = None
+
+
+def _pga(motion: Motion, _: object, gravity: float) -> float:
+    return motion.pga / gravity
+
+
+def _pgv(motion: Motion, *_: object) -> float:
+    return float(pgv(motion.horizontal, motion.dt, motion.initial))
+
+
+def _sa(motion: Motion, spec: Any, gravity: float) -> float:
+    return float(spectral_acceleration(motion.horizontal, motion.dt, [spec.period_s], spec.damping)[0]) / gravity
 
 
 MEASURES = {
-    "PGA": Measure("levels_g", "g"),
-    "PGV": Measure("levels_m_s", "m/s"),
-    "Sa": Measure("levels_g", "g"),
-    "PGA/(g tan alpha)": Measure("levels", "", of_pier=True),
-    "p PGV/(g tan alpha)": Measure("levels", "", of_pier=True),
+    "PGA": Measure("levels_g", "g", _pga),
+    "PGV": Measure("levels_m_s", "m/s", _pgv),
+    "Sa": Measure("levels_g", "g", _sa),
+    "PGA/(g tan alpha)": Measure("levels", "", _pga, lambda pier: 1.0 / math.tan(pier.alpha)),
+    "p PGV/(g tan alpha)": Measure("levels", "", _pgv, lambda pier: pier.p / pier.gravity / math.tan(pier.alpha)),
 }
 LEVELS = ("levels_g", "levels_m_s", "levels")
 
@@ -128,16 +143,10 @@ def as_they_come(motions: Sequence[Motion], spec: Any, gravity: float) -> list[f
     if spec.own is not None:
         values = spec.own.of_records([motion.name for motion in motions])
         return [value * motion.factor**spec.own.power for value, motion in zip(values, motions, strict=True)]
-    if spec.measure.startswith("PGA"):
-        return [float(motion.pga) / gravity for motion in motions]
-    if "PGV" in spec.measure:
-        return [float(pgv(motion.horizontal, motion.dt, motion.initial)) for motion in motions]
-    spectra = (spectral_acceleration(motion.horizontal, motion.dt, [spec.period_s], spec.damping) for motion in motions)
-    return [float(sa[0]) / gravity for sa in spectra]
+    return [MEASURES[spec.measure].value(motion, spec, gravity) for motion in motions]
 
 
 def over_uplift(measure: str, pier: Pier) -> float:
     """Return the factor on a motion's measure for a pier: 1, or of relative ones 1/tan α on g and p/(g tan α) on m/s."""
-    if not MEASURES[measure].of_pier:
-        return 1.0
-    return (pier.p / pier.gravity if "PGV" in measure else 1.0) / math.tan(pier.alpha)
+    per_pier = MEASURES[measure].per_pier
+    return 1.0 if per_pier is None else per_pier(pier)

@@ -23,7 +23,7 @@ def level_of(info: Entry) -> str:
 
 def names_of_curves(info: Entry) -> tuple[Head, Head]:
     """Return the heads of the columns that name a curve: its limit and its case."""
-    return Head("limit", value="limit_state"), Head("case", value=lambda curve: label(info, curve))
+    return Head("limit", value="limit_state"), Head("case", key=True, value=lambda curve: label(info, curve))
 
 
 def of_curves(info: Entry) -> list[Head]:

@@ -119,7 +119,7 @@ class FragilitySpec:
     @property
     def of_pier(self) -> bool:
         """Return whether intensities are relative to a pier, so that piers share a curve."""
-        return self.own is None and MEASURES[self.measure].of_pier
+        return self.own is None and MEASURES[self.measure].per_pier is not None
 
     @property
     def power(self) -> float:

@@ -373,11 +373,10 @@ def _about_drawn(curve: Curve) -> str:
     Empty if none is drawn, or if there is no curve for that same reason.
     """
     share = curve.drawn_share
-    reason = curve.fitted.reason if isinstance(curve.fitted, NoCurve) else ""
-    if share is None or share == reason:  # there is no curve, for the same reason
+    if share is None or share == curve.fitted:  # there is no curve, for the same reason
         return ""
-    if isinstance(share, str):
-        return f"what the drawn inputs contribute is not known: {share}"
+    if isinstance(share, NoCurve):
+        return f"what the drawn inputs contribute is not known: {share.reason}"
     effects = ", ".join(
         f"{name} {100 * effect:+.1f} ± {100 * error:.1f} %"
         for name, effect, error in zip(curve.drawn, share.effects, share.errors, strict=True)

@@ -6,12 +6,12 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from rockbatch.analyses.spectrum.figures import ACROSS
+from rockbatch.analyses.spectrum.map_regions import FLIGHT, OVERTURNED, UNDECIDED
 from rockbatch.common.analyses import Entry
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.labels import plain, quantity
+from rockbatch.quantities.labels import plain, quantity, symbol_of
 from rockbatch.reporting.finished_analysis import answered, named
-from rockbatch.reporting.labels import counted, symbol
+from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, escape
 from rockbatch.reporting.table import sub
 from rockbatch.results.labelled import as_dicts
@@ -129,8 +129,8 @@ def _listed(words: Iterable[str]) -> str:
 
 def _axis(axis: str) -> tuple[str, str]:
     """Return symbol and unit of ``axis``, a column: "2π/p" and "\u00a0s" of "two_pi_over_p_s"; "" for a column without unit."""
-    words, _, unit = ACROSS.get(axis, symbol(axis)).partition(",")[0].partition(" [")
-    return words, f"\u00a0{unit.rstrip(']')}" if unit else ""
+    words, unit = symbol_of(axis)
+    return words, f"\u00a0{unit}" if unit else ""
 
 
 def _peak(value: float) -> str:
@@ -150,13 +150,13 @@ def of_maps(info: Info, regions: "pd.DataFrame") -> tuple[list[str], list[str]]:
 
 def _least(regions: "pd.DataFrame") -> float:
     """Return the least amplitude that overturns in a map, infinite without any."""
-    amplitudes = regions.loc[regions["outcome"].str.startswith("overturned"), "low"]
+    amplitudes = regions.loc[regions["outcome"].isin(OVERTURNED), "low"]
     return float(amplitudes.min()) if len(amplitudes) else math.inf
 
 
 def _worst(regions: "pd.DataFrame") -> "pd.DataFrame":
     """Return the regions that begin with the least amplitude that overturns."""
-    return regions[regions["outcome"].str.startswith("overturned") & (regions["low"] == _least(regions))]
+    return regions[regions["outcome"].isin(OVERTURNED) & (regions["low"] == _least(regions))]
 
 
 def _least_of(info: Info, regions: "pd.DataFrame", keys: list[str], of: str) -> str:
@@ -178,7 +178,7 @@ def _least_of(info: Info, regions: "pd.DataFrame", keys: list[str], of: str) -> 
 def _left_open(regions: "pd.DataFrame") -> Iterator[str]:
     """Yield remarks on lower amplitudes that may overturn, too: by flight, undecided, or beyond the ends of the map."""
     least, worst, frequencies = _least(regions), _worst(regions)["omega_p_over_p"], regions["omega_p_over_p"]
-    for outcome, words in (("flight", "the run ends by flight"), ("undecided", "it is undecided what the pier does")):
+    for outcome, words in ((FLIGHT, "the run ends by flight"), (UNDECIDED, "it is undecided what the pier does")):
         rows = regions[(regions["outcome"] == outcome) & (regions["low"] < least)]
         if len(rows):
             lowest = rows[rows["low"] == rows["low"].min()]

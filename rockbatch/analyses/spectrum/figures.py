@@ -5,7 +5,17 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from rockbatch.analyses.spectrum.map_regions import Outline, areas, between, inside, strips
+from rockbatch.analyses.spectrum.map_regions import (
+    FLIGHT,
+    OUTRIGHT,
+    UNDECIDED,
+    WITH_IMPACT,
+    Outline,
+    areas,
+    between,
+    inside,
+    strips,
+)
 from rockbatch.common.analyses import Entry
 from rockbatch.common.figures.description import COLOURS, Area, Axis, Figure, Look, Mark, Panel, Points, Polyline, Span
 from rockbatch.common.lazy import pd
@@ -17,19 +27,16 @@ ROW = 0.06
 """Height of a row of marks of overturned runs over that of the axes: one for each slenderness, or they would hide each other."""
 MOST_RECORDS = 60
 """Most curves of single records in a panel."""
-ACROSS = {
-    "two_pi_over_p_s": "2π/p [s]",
-    "size_m": "R_0 [m]",
-    "omega_g_over_p": "ω_g/p,  ω_g = PGA/PGV",
-}
+ACROSS = {"size_m": "R_0 [m]", "omega_g_over_p": "ω_g/p,  ω_g = PGA/PGV"}
+"""Labels of axes, where they are not symbol and unit."""
 QUANTILES = {"median": 0, "p16": 2, "p84": 1}
 """Dashes of the statistics of the suite."""
 FELL = "overturned or ended by flight"
 REGIONS = {
-    "overturned with impact": (2, "overturns after an impact or more (mode 1)"),
-    "overturned without impact": (1, "overturns without impact (mode 2)"),
-    "flight": (3, "leaves the ground with both pivots: the run ends"),
-    "undecided": (4, "not decided: the run did not settle"),
+    WITH_IMPACT: (2, "overturns after an impact or more (mode 1)"),
+    OUTRIGHT: (1, "overturns without impact (mode 2)"),
+    FLIGHT: (3, "leaves the ground with both pivots: the run ends"),
+    UNDECIDED: (4, "not decided: the run did not settle"),
 }
 """Colour and words of each region of a map; none where the pier stands."""
 

@@ -13,6 +13,10 @@ import numpy as np
 from rockbatch.common.figures.description import Array
 from rockbatch.common.lazy import pd
 
+SAFE, FLIGHT, UNDECIDED = "safe", "flight", "undecided"
+WITH_IMPACT, OUTRIGHT = OVERTURNED = ("overturned with impact", "overturned without impact")
+"""Ends of a run, those by overturning together; undecided is one that did not converge, e.g. near a boundary."""
+
 Outline = tuple[Array, Array]
 """Frequencies and amplitudes of a line."""
 

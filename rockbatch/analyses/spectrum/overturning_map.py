@@ -8,6 +8,7 @@ frequency in number and order: :mod:`rockbatch.analyses.spectrum.map_search` fin
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
+from rockbatch.analyses.spectrum.map_regions import FLIGHT, OUTRIGHT, SAFE, UNDECIDED, WITH_IMPACT
 from rockbatch.analyses.spectrum.map_search import End, Point, Points, Region, Search, regions
 from rockbatch.analyses.spectrum.study import MapSpec
 from rockbatch.batch.plan import Made
@@ -21,15 +22,6 @@ from rockbatch.study import Case
 
 FILE = "overturning_map.csv"
 RUNS = "overturning_runs.csv"
-
-SAFE, WITH_IMPACT, OUTRIGHT, FLIGHT, UNDECIDED = (
-    "safe",
-    "overturned with impact",
-    "overturned without impact",
-    "flight",
-    "undecided",
-)
-"""Ends of a run; undecided is one that did not converge, e.g. near a boundary."""
 
 SAMPLES = 400
 """Samples of a period: a sine that is linear between them moves a boundary by 2e-5 of itself (2π/SAMPLES)²/12."""

@@ -102,7 +102,8 @@ def _half_weight(pier: Pier) -> float | None:
     return None if pier.mass_t is None else 0.5 * pier.mass_t * pier.gravity
 
 
-_PIVOT = "greatest force of {} support over half the weight"
+_PIVOT_KN = "greatest force of {} support"
+_PIVOT = f"{_PIVOT_KN} over half the weight"
 _PIVOT_MORE = ", including its dashpot; of a rigid base, when it carries all of N"
 _GAP, _GAP_MORE = (
     "heel gap: greatest height of {} pivot above its support",
@@ -133,7 +134,7 @@ QUANTITIES = (
     _in_kilonewtons("pivot_force_left_kN", "pivot_left", "kN", "support L", _half_weight, Limit(), landing=True),
     _in_kilonewtons(
         "pivot_force_right_kN", "pivot_right", "kN", "support R", _half_weight,
-        greater("pivot_force/_kN", _PIVOT.removesuffix(" over half the weight"))[0], landing=True,
+        greater("pivot_force/_kN", _PIVOT_KN)[0], landing=True,
     ),
     _force("heel_gap_left_m", _GAP.format("each"), "heel_gap_left", "m", "heel gap L [mm]", ".1f", 1000, more=_GAP_MORE),
     _force(

@@ -25,7 +25,7 @@ def section(finished: Finished) -> Markup:
     def cells(run: dict[str, Any]) -> list[object]:
         return [finished.case_of(run), *(on_scale(column.name, run[column.name]) for column in shown)]
 
-    heads = [Head("record"), Head("case"), *map(head, shown)]
+    heads = [Head("record"), Head("case", key=True), *map(head, shown)]
     places = list(zip(finished.runs["series"], finished.runs["pier"], strict=True))
     available = np.array([finished.cases[pair]["parameters"].get("friction", np.inf) for pair in places])
     impulsive = np.array([lands_by_impulse(finished.cases[pair]) for pair in places])

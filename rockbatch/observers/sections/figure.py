@@ -19,28 +19,28 @@ def over_height(groups: "Iterable[tuple[str, pd.DataFrame]]", series: Sequence[S
     for words, runs in groups:
         heads, columns = columns_in(runs)
         height = spanning("height [m]", runs["height_m"].to_numpy())
-        for caption, names in _OVER_HEIGHT.items():
+        for caption, forces in _OVER_HEIGHT.items():
             marks = [
-                _envelope(runs[runs["series"] == place], columns[name], series[place])
+                _envelope(runs[runs["series"] == place], columns[name], which, series[place])
                 for place in runs["series"].unique()
-                for name in names
+                for name, which in forces.items()
             ]
-            forces = spanning(heads[names[0]], *(mark.x for mark in marks))
-            panels.append(Panel(forces, height, marks, caption, words, 240.0, 200.0))
+            across = spanning(heads[next(iter(forces))], *(mark.x for mark in marks))
+            panels.append(Panel(across, height, marks, caption, words, 240.0, 200.0))
     return Figure(panels, "Envelopes of shear, moment and axial force over the height of the shaft")
 
 
 _OVER_HEIGHT = {
-    "greatest shear": ("shear",),
-    "greatest moment": ("moment",),
-    "least and greatest axial force": ("axial_least", "axial_greatest"),
+    "greatest shear": {"shear": "max"},
+    "greatest moment": {"moment": "max"},
+    "least and greatest axial force": {"axial_least": "min", "axial_greatest": "max"},
 }
+"""Captions of panels, with their forces and which of the values of a foundation's runs each line shows."""
 
 
-def _envelope(runs: "pd.DataFrame", column: str, foundation: Series) -> Polyline:
-    """Return the line of a column of sections.csv over height: the greatest of a foundation's runs, or least of the least N."""
-    of_heights = runs.groupby("height_m")[column]
-    values = of_heights.min() if "least" in column else of_heights.max()
+def _envelope(runs: "pd.DataFrame", column: str, which: str, foundation: Series) -> Polyline:
+    """Return the line of a column of sections.csv over height: the greatest or least, "max" or "min", of a foundation's runs."""
+    values = runs.groupby("height_m")[column].agg(which)
     look = Look("level", dash=foundation.index % DASHES) if foundation.rigid else line_of(foundation.index)
     x, y = values.to_numpy(np.float64), values.index.to_numpy(np.float64)
     return Polyline(x, y, look=look, label=foundation.label, title=foundation.label)

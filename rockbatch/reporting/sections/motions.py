@@ -114,7 +114,7 @@ def unusable(finished: Finished) -> Markup:
         [finished.shown(run["record"]), finished.case_of(run), "", run["reason"]] for run in as_dicts(failed[:most])
     ]
     rows += [[]] * (len(failed) - most)  # not shown
-    heads = [Head("record"), Head("case"), Head("file"), Head("why")]
+    heads = [Head("record"), Head("case", key=True), Head("file"), Head("why")]
     shown = table(heads, rows, prose=True, name="Not used") if rows else Markup("")
     left_out = finished.info.get("left_out")
     if not left_out:

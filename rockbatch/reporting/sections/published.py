@@ -21,7 +21,7 @@ def section(finished: Finished) -> Markup:
     if not references:
         return Markup("")
     keys = [*finished.info["varied"], *(key for key in ("polarity", "scale") if runs[key].nunique() > 1)]
-    heads = [Head("record"), Head("case"), *(Head(symbol(key)) for key in keys)]
+    heads = [Head("record"), Head("case", key=True), *(Head(symbol(key)) for key in keys)]
     heads += [Head(join(THETA, ", ours"), THETA_FORMAT), Head(join(THETA, ", published"))]
     heads += [Head("difference [%]", "+.1f"), Head("source")]
     rows: list[list[object]] = []

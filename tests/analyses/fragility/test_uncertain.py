@@ -186,7 +186,9 @@ def test_inputs_without_chance_have_no_error_if_enough_capacities_are_known(know
     low[24], high[24] = 0.0, 1.01 * x[24]  # exceeded at its lowest intensity: no more known than those that never were
     found = contribution(Capacities(low, high, np.ones(25), np.eye(25)), scores, correlation)
     if known < 20:
-        assert found == "with them the runs beyond the limit are separated from the others: more of both would tell"
+        assert (
+            found.reason == "with them the runs beyond the limit are separated from the others: more of both would tell"
+        )
         return
     assert found.effects == pytest.approx((0.6, -0.2), abs=0.01)
     assert found.errors == (0.0, 0.0)
@@ -196,7 +198,9 @@ def test_inputs_without_chance_have_no_error_if_enough_capacities_are_known(know
 
 def test_few_runs_do_not_tell_what_inputs_contribute():
     capacities, scores = made_capacities(19, np.random.default_rng(1))
-    assert contribution(capacities, scores, np.eye(2)) == "19 runs or capacities are too few to tell 4 parameters"
+    assert (
+        contribution(capacities, scores, np.eye(2)).reason == "19 runs or capacities are too few to tell 4 parameters"
+    )
     assert contribution(*made_capacities(20, np.random.default_rng(1)), np.eye(2)).dispersion > 0.0
 
 
