@@ -23,6 +23,7 @@ from rockbatch.motions.stations import by_station
 
 _COPIED = (Kind.CODE, Kind.HEADER)  # statements that programs copy from the first file to the others
 _SQUARE = 5.0  # degrees by which the azimuths of a pair may be off a right angle
+_IN_A_PLANE = 0.7  # of the sum of squares of three components: those of a plane have 0, independent ones 1
 _ASKEW = 30.0  # degrees off a right angle beyond which no sensor is built
 
 
@@ -39,7 +40,8 @@ def _judge_set(station: Sequence[Component]) -> list[Component]:
     """Return the components of a set with their decided directions, or all held back if statements or directions contradict."""
     components = _copies_as_their_originals(_with_names(station))
     # copied headers are void whatever they say; only then can the remaining statements speak for or against angles of 0°
-    for i, statement, reason in [*_copied_headers(components), *_void_defaults(components)]:
+    void = [*_copied_headers(components), *_numbered_channels(components), *_void_defaults(components)]
+    for i, statement, reason in void:
         components[i] = _without_statement(components[i], statement, reason)
     components = list(map(_with_believed_defaults, components))
     contradictions = {i: text for i, c in enumerate(components) if (text := _contradiction(c))}
@@ -131,6 +133,20 @@ def _copied_headers(components: Sequence[Component]) -> Iterator[tuple[int, Stat
             yield from ((i, statement, "all files of its set have it") for i, statement in of_kind)
 
 
+def _numbered_channels(components: Sequence[Component]) -> Iterator[tuple[int, Statement, str]]:
+    """Yield place, statement and reason of codes and headers that number three components of a sensor: HN1 and HN2 beside HN3.
+
+    The vertical one may be any of these.
+    """
+    labels = {(c.sensor, c.orientation.label.upper()) for c in components}
+    for i, component in enumerate(components):
+        for statement in () if _by_user(component) else component.statements:
+            label = statement.orientation.label.upper()
+            third = f"{label[:-1]}3"
+            if statement.kind in _COPIED and label[-1:] in ("1", "2") and (component.sensor, third) in labels:
+                yield i, statement, f"beside {third}, which may be horizontal, it may be vertical"
+
+
 def _void_defaults(components: Sequence[Component]) -> Iterator[tuple[int, Statement, str]]:
     """Yield place, statement and reason of angles of 0° that are void: other statements contradict them, or other components do.
 
@@ -198,6 +214,8 @@ def _impossible_pairs(
         if _of_one_sensor(components[i], components[j]) and not _same_samples(components[i], components[j]):
             yield i, j, f"{_components_and_statements(components[i], components[j])}: one direction, but other samples"
     horizontals = [i for i, c in enumerate(components) if not c.orientation.vertical]
+    if len(horizontals) == 3 and horizontals == places and not alike and (why := _independent_triple(components)):
+        yield from ((i, j, why) for i, j in sorted(pairs))
     if len(horizontals) == 2 and tuple(horizontals) in pairs:
         i, j = horizontals
         if why := _skew_pair(components[i], components[j]):
@@ -228,6 +246,25 @@ def _skew_pair(a: Component, b: Component) -> str:
     if abs((first - second) % 180.0 - 90.0) <= _ASKEW:
         return ""
     return f"{_components_and_statements(a, b)} are {abs(first - second):g}° apart, and no sensor's horizontal components are"
+
+
+def _independent_triple(components: Sequence[Component]) -> str:
+    """Return a message on three horizontals of one sensor that are no motion in a plane: one may be vertical; "" for others.
+
+    For those in a plane sin(φ₂ − φ₃) a₁ + sin(φ₃ − φ₁) a₂ + sin(φ₁ − φ₂) a₃ = 0. Others are those of several sensors, files of
+    different steps or starts, and unknown azimuths.
+    """
+    azimuths = [c.orientation.azimuth for c in components if c.orientation.azimuth is not None]
+    if len(azimuths) < 3 or len({(c.sensor, c.start, c.dt) for c in components}) > 1:
+        return ""
+    phi = np.radians(azimuths)
+    shortest = min(len(c.acceleration) for c in components)
+    across = np.sin(np.roll(phi, -1) - np.roll(phi, -2))[:, None]
+    turned = across * np.array([c.acceleration[:shortest] for c in components])
+    if np.linalg.norm(turned.sum(axis=0)) <= _IN_A_PLANE * np.linalg.norm(turned):
+        return ""
+    said = _components_and_statements(*components)
+    return f"{said}: no combination of two is the third, as of horizontal components: is one vertical?"
 
 
 def _components_and_statements(*components: Component) -> str:

@@ -37,6 +37,7 @@ from rockbatch.motions.orientation import (
     counted,
     direction_of_suffix,
     is_clock,
+    numbered,
     split_stem,
     told_apart,
 )
@@ -321,7 +322,8 @@ def _names(files: Sequence[SourceFile]) -> dict[Path, tuple[str, Orientation | N
     names: dict[Path, tuple[str, Orientation | None]] = {}
     for paths in grouped((file.path for file in files), lambda path: path.parent).values():
         stems = {path: archives.bare(path).stem for path in paths}
-        by_chance, apart = counted(stems.values()) | accidental(stems.values()), told_apart(stems.values())
+        by_chance = set.union(*(rule(stems.values()) for rule in (counted, numbered, accidental)))
+        apart = told_apart(stems.values())
         for path, stem in stems.items():
             alone = (stem, None) if stem in by_chance else split_stem(stem)
             site, direction = alone if alone[1] else apart.get(stem, alone)

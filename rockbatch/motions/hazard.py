@@ -137,7 +137,7 @@ def problems(
     if shape not in ("points", "quadratic"):
         yield None, f'shape = "{shape}": write "points" or "quadratic"'
     if len(levels) != len(rates):
-        yield None, f"{len(levels)} levels and {len(rates)} rates: write a rate for each level"
+        yield None, f"levels and rates: {len(levels)} and {len(rates)}; write a rate for each level"
         return
     if not levels:
         yield None, "there is no point: write levels and their rates"

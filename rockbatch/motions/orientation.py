@@ -255,6 +255,12 @@ def counted(stems: Iterable[str]) -> set[str]:
     return numbered
 
 
+def numbered(stems: Iterable[str]) -> set[str]:
+    """Return the stems that end in 1 or 2 beside one that ends in 3: of HN1, HN2 and HN3 any may be vertical."""
+    names = set(stems)
+    return {stem for stem in names if stem[-1:] in ("1", "2") and not stem[-2:].isdigit() and f"{stem[:-1]}3" in names}
+
+
 def accidental(stems: Iterable[str]) -> set[str]:
     """Return the stems that end in letters of a direction by chance: STATIONS in NS, DENVER in VER.
 

@@ -365,7 +365,7 @@ def test_a_hazard_in_a_file_is_that_of_its_points(tmp_path):
         ({"levels_g": [0.1, 0.2], "rate_per_year": [475, 2475]}, "return periods are return_period_years"),
         ({"levels_g": [0.1, 0.2], "rate_per_year": [0.01, 0.02]}, "0.02 per year at 0.2 after 0.01 at 0.1: a stronger motion"),
         ({"levels_g": [0.2, 0.1], "rate_per_year": [0.02, 0.01]}, "level 0.1 after 0.2: write them in rising order"),
-        ({"levels_g": [0.2, 0.1, 0.3], "rate_per_year": [0.02, 0.01]}, "3 levels and 2 rates"),
+        ({"levels_g": [0.2, 0.1, 0.3], "rate_per_year": [0.02, 0.01]}, "levels and rates: 3 and 2; write"),
         ({"levels_g": [0.2], "rate_per_year": [0.02]}, "one point says no slope: write a second one, or slope"),
         ({"levels_g": [0.1, 0.2], "rate_per_year": [0.02, 0.01], "slope": 3.0}, "slope and 2 points"),
         ({"levels_g": [0.1, 0.2], "rate_per_year": [0.02, 0.01], "shape": "quadratic"}, "a parabola needs three points"),
