@@ -21,7 +21,6 @@ from rockbatch.terminal.streams import in_width, say, show
 MOST_CASES = 12
 """Most cases whose curves are printed."""
 
-Sheets = Sequence[tuple[Case, Statics]]
 Array = npt.NDArray[np.float64]
 Line = Mapping[Any, object]
 

@@ -53,16 +53,16 @@ def exceedance(q: float, n: int) -> float:
     return 1.0 - (q * (n - 1) + 1.0) / (n + 1)
 
 
-def tolerance_rank(n: int, q: float = P84, confidence: float = CONFIDENCE) -> int | None:
-    """Return the least rank, from 1, whose value among ``n`` bounds the quantile ``q`` with this confidence, for any
+def tolerance_rank(n: int) -> int | None:
+    """Return the least rank, from 1, whose value among ``n`` bounds the 84 % quantile with 95 % confidence, for any
     distribution; None if not even the greatest value does.
 
-    The k-th is below the quantile if k or more values are: P(X_(k) ≥ x_q) = P(Bin(n, q) < k) (Wilks 1941).
+    The k-th is below the quantile if k or more values are: P(X_(k) ≥ x_q) = P(Bin(n, 0.84) < k) (Wilks 1941).
     """
     below = 0.0
     for k in range(1, n + 1):
-        below += math.comb(n, k - 1) * q ** (k - 1) * (1.0 - q) ** (n - k + 1)
-        if below >= confidence:
+        below += math.comb(n, k - 1) * P84 ** (k - 1) * (1.0 - P84) ** (n - k + 1)
+        if below >= CONFIDENCE:
             return k
     return None
 

@@ -83,7 +83,7 @@ def give_up(stream: TextIO, error: OSError) -> None:
     with suppress(OSError, ValueError):  # its remaining buffer must not fail again on closing
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
     if stream is sys.stdout and error.errno != errno.EPIPE:
-        tell(sys.stderr, f"the output cannot be printed ({error.strerror}); the command goes on")
+        tell(sys.stderr, f"the output cannot be printed ({error.strerror}); the command continues")
 
 
 def is_lost(stream: TextIO) -> bool:
@@ -161,15 +161,14 @@ def in_width(
     rows: Sequence[Sequence[str]],
     names: int = 1,
     left: Collection[int] = (),
-    most: int = sys.maxsize,
 ) -> str:
     """Return a table as text: ``rows`` of cells below their heads.
 
     The first ``names`` columns, which identify a row, and those at ``left`` are flush left, the others flush right. Columns
     beyond the terminal's width follow in a further table, with the names repeated; names take at most half of the width.
-    Outside a terminal a line has up to ``most`` characters.
+    Outside a terminal lines have any length.
     """
-    edge, left = width() or most, {*range(names), *left}
+    edge, left = width() or sys.maxsize, {*range(names), *left}
     lines = [list(map(showable, line)) for line in (head, *rows)]
     for place in range(names):
         for line, cell in zip(lines, shortened([line[place] for line in lines], edge // (2 * names)), strict=True):

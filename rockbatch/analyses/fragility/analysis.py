@@ -203,7 +203,7 @@ def fragility(
 
 def _of_pier(spec: FragilitySpec) -> bool:
     """Return whether cases across a pier's axis are taken, too: if the measure is over g tan α, so that axes share a curve."""
-    return spec.of_pier
+    return spec.per_pier is not None
 
 
 def _write_tables(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, object]:

@@ -261,7 +261,7 @@ def _shared_by(case: Case, spec: FragilitySpec) -> Hashable:
 
     With another measure each case has its own.
     """
-    if not spec.of_pier:
+    if spec.per_pier is None:
         return id(case)
     return case.name_along, *((name, each) for name, each in case.columns.items() if name not in PIER_KEYS)
 

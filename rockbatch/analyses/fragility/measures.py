@@ -144,9 +144,3 @@ def as_they_come(motions: Sequence[Motion], spec: Any, gravity: float) -> list[f
         values = spec.own.of_records([motion.name for motion in motions])
         return [value * motion.factor**spec.own.power for value, motion in zip(values, motions, strict=True)]
     return [MEASURES[spec.measure].value(motion, spec, gravity) for motion in motions]
-
-
-def over_uplift(measure: str, pier: Pier) -> float:
-    """Return the factor on a motion's measure for a pier: 1, or of relative ones 1/tan α on g and p/(g tan α) on m/s."""
-    per_pier = MEASURES[measure].per_pier
-    return 1.0 if per_pier is None else per_pier(pier)

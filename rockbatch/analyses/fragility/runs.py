@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from rockbatch.analyses.fragility.clusters import clusters
 from rockbatch.analyses.fragility.limit_states import LEFT_OUT, demands, states
-from rockbatch.analyses.fragility.measures import as_they_come, over_uplift
+from rockbatch.analyses.fragility.measures import as_they_come
 from rockbatch.analyses.fragility.stripes import members
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.uncertain import Drawn, Draws
@@ -98,7 +98,7 @@ def level_plans(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) ->
     gravity = study.cases[0].pier.gravity
     unscaled = intensities(motions, spec, gravity)
     scales_by_level = members(study.file(), spec.stripes, [motion.name for motion in motions])
-    if not spec.of_pier:
+    if spec.per_pier is None:
         return [_level_plan(study, spec, motions, unscaled, scales_by_level)] * len(study.cases)
     of_axes = {tuple(motions): unscaled}
     plans = []
@@ -106,7 +106,7 @@ def level_plans(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) ->
         on_axis = tuple(map(case.motion, motions))
         if on_axis not in of_axes:
             of_axes[on_axis] = intensities(on_axis, spec, gravity)
-        over = over_uplift(spec.measure, case.pier)
+        over = spec.per_pier(case.pier)
         relative = [x * over for x in of_axes[on_axis]]
         plans.append(_level_plan(study, spec, motions, relative, scales_by_level))
     return plans

@@ -25,7 +25,7 @@ def scales(
     and ``intensity`` what it comes to; ``used`` is False where the factor is beyond the limits of the study.
     """
     of_cases: list[tuple[dict[str, object], LevelPlan]] = [({}, plans[0])]
-    if spec.of_pier:
+    if spec.per_pier is not None:
         names_of: list[dict[str, object]] = [
             {"case": case.name, **{name: case.columns.get(name) for name in varied}} for case in cases
         ]
@@ -47,7 +47,7 @@ def described_scales(plans: Sequence[LevelPlan], spec: FragilitySpec, names: Seq
     The keys are ``records``, ``factors``, ``used``, ``limits`` and ``said``, in words; the first three are [] for a cloud, and
     for a measure relative to a pier.
     """
-    if spec.method == "cloud" or spec.of_pier:
+    if spec.method == "cloud" or spec.per_pier is not None:
         return {"records": [], "factors": [], "used": [], "limits": [None, None], "said": in_words(plans, spec)}
     plan = plans[0]
     factors, used = [], []

@@ -1,7 +1,7 @@
 """Fragility curves in a study file: [fragility]."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
@@ -25,7 +25,7 @@ from rockbatch.checks.rules import Rule
 from rockbatch.common.grouping import closest
 from rockbatch.common.naming import chosen, chosen_by
 from rockbatch.common.showing import shown
-from rockbatch.pier import Base
+from rockbatch.pier import Base, Pier
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.load import Study
 from rockbatch.study.target_keys import PERIOD
@@ -117,9 +117,9 @@ class FragilitySpec:
         return self.measure.replace("alpha", "α")
 
     @property
-    def of_pier(self) -> bool:
-        """Return whether intensities are relative to a pier, so that piers share a curve."""
-        return self.own is None and MEASURES[self.measure].per_pier is not None
+    def per_pier(self) -> Callable[[Pier], float] | None:
+        """Return the factor that makes intensities relative to a pier, so that piers share a curve; None of other measures."""
+        return None if self.own else MEASURES[self.measure].per_pier
 
     @property
     def power(self) -> float:
@@ -223,8 +223,8 @@ FRAGILITY = Section(
         "censored_below": Key(
             share,
             "0.05",
-            "Share of a limit below which a demand counts as small, without its value: piers that hardly lift off have "
-            "logarithms that say nothing about the limit.",
+            "Share of a limit below which a demand is censored, that is counts as small, without its value: the "
+            "logarithms of very small demands say nothing about the limit.",
             only=_CLOUD,
         ),
         "checks": Key(

@@ -200,11 +200,11 @@ def spanning(label: str, *arrays: Array, margin: float = 0.06, about: int = 5) -
     return Axis(label, low - room * (low < 0 or high == low), high + room, about=about)
 
 
-def log_spanning(label: str, *arrays: Array, margin: float = 0.15, about: int = 6) -> Axis:
+def log_spanning(label: str, *arrays: Array, margin: float = 0.15) -> Axis:
     """Return a logarithmic axis that holds every positive finite value with a margin; about 0.1 to 1 without any."""
     values = np.concatenate([array[(array > 0) & np.isfinite(array)] for array in arrays])
     low, high = (float(values.min()), float(values.max())) if len(values) else (0.1, 1.0)
-    return Axis(label, low / (1.0 + margin), high * (1.0 + margin), log=True, about=about)
+    return Axis(label, low / (1.0 + margin), high * (1.0 + margin), log=True, about=6)
 
 
 def decades(label: str, values: Iterable[float], about: int = 6) -> Axis:

@@ -8,7 +8,7 @@ from studies import seven_pulses, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analyses.fragility.answer import of_curves
-from rockbatch.analyses.fragility.measures import over_uplift, own_measure
+from rockbatch.analyses.fragility.measures import MEASURES, own_measure
 from rockbatch.common.errors import InputError
 from rockbatch.motions.measures import arias_intensity
 from rockbatch.pier import Pier
@@ -116,8 +116,8 @@ def test_measures_and_levels_that_do_not_belong_together_are_refused(tmp_path, f
 
 def test_intensities_over_uplift_are_those_of_the_spectrum_of_a_pier():
     pier = Pier(0.2, 1.5)
-    assert over_uplift("PGA/(g tan alpha)", pier) == pytest.approx(1 / math.tan(0.2))
-    assert over_uplift("p PGV/(g tan alpha)", pier) == pytest.approx(1.5 / (9.81 * math.tan(0.2)))
+    assert MEASURES["PGA/(g tan alpha)"].per_pier(pier) == pytest.approx(1 / math.tan(0.2))
+    assert MEASURES["p PGV/(g tan alpha)"].per_pier(pier) == pytest.approx(1.5 / (9.81 * math.tan(0.2)))
 
 
 @pytest.mark.slow
