@@ -472,7 +472,7 @@ def test_a_run_ends_with_its_report_whatever_becomes_of_stdout_and_stderr(tmp_pa
 @pytest.mark.parametrize(
     ("code", "told"),
     [
-        (errno.ENOSPC, "the output cannot be printed (No space left on device); the command goes on\n"),
+        (errno.ENOSPC, "the output cannot be printed (No space left on device); the command continues\n"),
         (errno.EPIPE, ""),
     ],
 )

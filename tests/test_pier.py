@@ -375,7 +375,7 @@ def test_what_is_impossible_of_devices_under_a_pier_is_said_once(devices, said):
         (lambda: YieldingBase.from_stiffness(TALL, 2e6, 4e6), ["yield_kN = 4e+06: 302 times what the support carries"]),
         (
             lambda: YieldingBase.from_stiffness(TALL, 2e6, 4e4, eta=2.5),
-            ["yield_kN = 40000: eta is given, too, which fixes the same"],
+            ["yield_kN = 40000: eta is given, too, which sets the same quantity"],
         ),
     ],
 )

@@ -126,7 +126,7 @@ def test_every_key_of_any_file_has_the_line_it_is_written_on(tables):
     assert {at: lines[at] for at in expected} == expected
 
 
-RULES = "texts stand in quotes, decimals behind a point, and a number alone; [[…]] above each of several tables"
+RULES = "texts belong in quotes, decimals take a point, and numbers no unit; [[…]] above each of several tables"
 NOT_TOML = [  # a text, the line that is wrong, and why
     ("a = 1\nbase = rigid\n", 2, "invalid value"), ('notes = """a"""\nbase = rigid\n', 2, "invalid value"),
     ("alpha = 0,13\n", 1, "expected newline or end of document after a statement"), ("alpha: 0.13\n", 1, "expected '=' after"),

@@ -47,7 +47,7 @@ OMISSIONS = {
         decides=False,
     ),
     POINTS: Omission(
-        "the acceleration of a point of a shaft that bends on dashpots may grow with every mode, by more than its error has: "
+        "the acceleration of a point of a shaft that bends on dashpots may grow with every mode by more than its error states: "
         "take it from a program with finite elements",
         decides=False,
     ),

@@ -307,7 +307,7 @@ _CAPACITY = Other(
 CHECK = Section(
     ("check",),
     (
-        "A design check: a demand, how it is summed up over the records, and a limit. `rockbatch check` holds results against it."
+        "A design check: a demand, its statistic over the records, and a limit. `rockbatch check` compares results with it."
     ),
     {
         "name": Key(text, '"overturning margin"', "Its name in the table of verdicts.", required=True),

@@ -287,7 +287,7 @@ def counting(verdicts: Iterable[Verdict]) -> list[str]:
     """Return a sentence for each way of counting records that the verdicts use: by station, by component."""
     sentences = {
         "station": "A record is a station: its components, angles and polarities are its directions, and the worst counts.",
-        "component": "A record is a horizontal component, with the worse of its polarities; those of a station count apart.",
+        "component": "A record is a horizontal component, with the worse of its polarities; those of a station count separately.",
     }
     counts = {verdict.count for verdict in verdicts}
     return [sentence for kind, sentence in sentences.items() if kind in counts]

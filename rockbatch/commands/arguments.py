@@ -233,7 +233,7 @@ COMMANDS = {
                 case_pair,
                 "A=B",
                 "compare the case A of the first folder with B of the second; by default cases of one name, and those "
-                "that are left by the inputs that differ least",
+                "remaining ones by the inputs that differ least",
                 action="append",
                 default=[],
             ),
@@ -256,7 +256,7 @@ COMMANDS = {
         "commands.statement.main",
         {
             "directory": _FOLDER,
-            "--case": value(str, "NAME", "only of the case of this name, or of those of a pattern with * and ?"),
+            "--case": value(str, "NAME", "only the case of this name, or the cases that match a pattern with * and ?"),
         },
     ),
     **{name: _of_analysis(name, door) for name, door in doors().items() if door.help},

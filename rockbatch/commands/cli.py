@@ -141,7 +141,7 @@ def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Se
     if word.lower() == "help":
         return [*_with_command(rest[:1], root), "--help"] if rest else ["--help"]
     if word in ("rockbatch", "python") and (command := next((each for each in rest if each in COMMANDS), "")):
-        root.error(f"what stands before the command is left out; did you mean {' '.join(rest[rest.index(command) :])}?")
+        root.error(f"words before the command are not allowed; did you mean {' '.join(rest[rest.index(command) :])}?")
     if word.endswith(".toml"):
         root.error(f"there is no command {word}; did you mean run {word}?")
     synonyms = (name for name, words in _COMMANDS_MEANT.items() if word.lower() in words.split())

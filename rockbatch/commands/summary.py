@@ -114,7 +114,7 @@ def failed_later(runs: "pd.DataFrame") -> str:
     if ratchet:
         share = "in all of them" if ratchet == n else f"in {ratchet:,}"
         laws = without_ratcheting("or")
-        advice = f"; {share} the springs ratchet on free vibration: take spring = {laws}, or zeta of 0.2 or more"
+        advice = f"; {share} the springs ratchet in free vibration: take spring = {laws}, or zeta of 0.2 or more"
     return f"{n:,} failed only after the motion: {IN_MOTION} has the peak until then, a lower bound{advice}"
 
 

@@ -343,7 +343,7 @@ def _too_large(packed: int, most: int) -> str:
     """Return the reason to refuse a file of ``packed`` bytes that unpacks to more than ``most``."""
     if most == LARGEST:
         return f"unpacks to more than {LARGEST // 2**20} MiB"
-    return f"unpacks to more than {_GROWTH} times its {packed} bytes, as no record does; unpack it if it is one"
+    return f"unpacks to more than {_GROWTH} times its {packed} bytes, more than any record; unpack it yourself if it is one"
 
 
 def _member_path(name: str) -> PurePosixPath:

@@ -175,7 +175,7 @@ def _without_statement(component: Component, void: Statement, reason: str) -> Co
     remaining = tuple(s for s in component.statements if s is not void)
     orientation = decided_orientation(remaining, component.orientation.label)
     believed = next((s for s in remaining if s.orientation is orientation), None)
-    instead = f"decided by: {believed.words}" if believed else "nothing else tells its azimuth"
+    instead = f"decided by: {believed.words}" if believed else "its azimuth is stated nowhere else"
     finding = Finding("direction", f"{void.words}, which tells nothing ({reason}); {instead}")
     findings = (*component.findings, finding)
     return replace(component, statements=remaining, orientation=orientation, findings=findings)

@@ -215,7 +215,7 @@ def tell_use_of_originals(left_out: Iterable[LeftOut], motions: MotionSet) -> li
     def fate(file: LeftOut) -> str:
         if file.of in used:
             return ", which is used; write use = true in motions.toml to use this one"
-        return ", which is not used either, for a reason of its own" if file.of in refused else ""
+        return ", which is not used either, for another reason" if file.of in refused else ""
 
     return [replace(file, reason=file.reason + fate(file)) if file.of else file for file in left_out]
 

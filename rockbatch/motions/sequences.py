@@ -373,7 +373,7 @@ def add_sequences(
     alone = {name for entry in sequences if entry.alone for name in entry.records}
     for name, whole in parts.items():
         if name not in alone:
-            reason = f"a shock of the sequence {shown(whole)}; alone = true there runs it on its own, too"
+            reason = f"a shock of the sequence {shown(whole)}; alone = true there also runs it on its own"
             refused.append(LeftOut(name, by_name[name].files, reason))
     parts_only = parts.keys() - alone
     pulse_names = {pulse.name for pulse in pulses}

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any, NamedTuple
 
-RELEASED = "theta_max is the rotation from which the pier was let go, beyond which it has not turned"
+RELEASED = "theta_max is the rotation from which the pier was let go, which it did not exceed"
 """Note on a run whose greatest rotation is its initial one."""
 
 LEANS = "lean"

@@ -316,7 +316,7 @@ class YieldingBase(ElasticBase):
         """
         if yield_kN is not None:
             if "eta" in rest:
-                text = "eta is given, too, which fixes the same; keep one"
+                text = "eta is given, too, which sets the same quantity; keep one"
                 refuse([Problem("yield_kN", yield_kN, text, kind=Contradiction)])
             rest["eta"] = eta_of(pier, yield_kN)
             refuse(unlikely_supports(pier, rest.get("confirm", ()), yield_kN=yield_kN))

@@ -147,11 +147,11 @@ class Damper(Device):
                 speed = share ** (-1.0 / self.exponent)
                 yield Doubt("nu", f"at {1000.0 * speed:.2g} mm/s one damper has the force of the pier's weight already")
             elif 0.0 < share < LEAST_FORCE:
-                yield Doubt("nu", f"at 1 m/s it has {100.0 * share:.2g} % of the pier's weight, as good as nothing")
+                yield Doubt("nu", f"at 1 m/s it has {100.0 * share:.2g} % of the pier's weight, practically nothing")
         elif self.f > 1.0:
             yield Doubt("f", f"one damper has {self.f:.3g} times the pier's weight")
         elif 0.0 < self.f < LEAST_FORCE:
-            yield Doubt("f", f"it has {100.0 * self.f:.2g} % of the pier's weight, as good as nothing")
+            yield Doubt("f", f"it has {100.0 * self.f:.2g} % of the pier's weight, practically nothing")
         if self.kind == "hysteretic" and not THINNEST <= self.yield_m <= WIDEST:
             yield Doubt(
                 "yield_m", f"the damper yields at {1000.0 * self.yield_m:.2g} mm, where steel ones do at 1 to 20 mm"

@@ -136,7 +136,7 @@ class FootingBase(WithShaft):
             text = "is missing: MPa and MN/m³ are of a pier whose mass is known"
             wrong.append(Problem("mass_t", None, text, kind=MissingKey))
         if bearing_MPa is not None and rest.get("safety_factor") is not None:
-            text = "safety_factor is given, too, which fixes the same; keep one"
+            text = "safety_factor is given, too, which sets the same quantity; keep one"
             wrong.append(Problem("bearing_MPa", bearing_MPa, text, kind=Contradiction))
         refuse(wrong)
         assert pier.mass_t is not None

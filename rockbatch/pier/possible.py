@@ -116,7 +116,7 @@ def _wrong_footing(pier: Pier, base: FootingBase) -> list[Problem]:
         text = f"the bed cannot carry the weight{more}; it must be above {1.0 + psi:g}"
         wrong.append(Problem("safety_factor", base.safety_factor, text, kind=OutOfRange))
     if pier.initial_rotation_rad and base.restraints:
-        text = "a pier with devices is let go on springs or rigid ground only; leave one out"
+        text = "a pier with devices can be released on springs or rigid ground only; leave one out"
         wrong.append(Problem("initial_rotation_rad", pier.initial_rotation_rad, text, kind=Contradiction))
     return wrong
 
@@ -132,7 +132,7 @@ def _wrong_bending(pier: Pier, base: Base) -> list[Problem]:
     if base.on_springs:
         wrong += [Problem("shaft", "elastic", text, kind=Contradiction) for text in _wrong_under_shaft(base)]
     if isinstance(base, RigidBase) and base.restitution is not None:
-        text = "what a blow takes of a shaft that bends follows from the momenta of its modes; leave it out"
+        text = "the loss of a bending shaft at an impact follows from the momenta of its modes; leave this out"
         wrong.append(Problem("restitution", base.restitution, text, kind=Contradiction))
     return wrong
 

@@ -127,7 +127,7 @@ class Tendon(Device):
     def doubts(self, pier: Pier) -> Iterator[Doubt]:
         for name, force, words in (("psi", self.psi, "its prestress is"), ("strength", self.strength, "it yields at")):
             if 0.0 < force < LEAST_FORCE:
-                yield Doubt(name, f"{words} {100.0 * force:.2g} % of the pier's weight, as good as nothing")
+                yield Doubt(name, f"{words} {100.0 * force:.2g} % of the pier's weight, practically nothing")
         if MOST_STRENGTH < self.strength < math.inf:
             yield Doubt("strength", f"it yields at {self.strength:.3g} times the pier's weight")
         if self.lam > MOST_LAMBDA:
@@ -136,7 +136,7 @@ class Tendon(Device):
             yield Doubt("lam", f"it adds {share:.3g} times the pier's weight at a rotation of 0.01 α already")
         elif 0.0 < self.lam < SOFTEST[self.what]:
             yield Doubt(
-                "lam", f"it adds {100.0 * self.lam:.2g} % of the pier's weight at a rotation of α, as good as nothing"
+                "lam", f"it adds {100.0 * self.lam:.2g} % of the pier's weight at a rotation of α, practically nothing"
             )
         if self.psi == 0.0 == self.lam:
             yield Doubt(
@@ -309,7 +309,7 @@ def _stiffness_doubts(pier: Pier, device: Stop | DeckSpring, travel: float) -> I
         yield Doubt("lam", f"it bears the pier's weight at a deflection of {1000.0 / stiffness:.2g} mm")
     if (share := stiffness * travel * pier.alpha) < SOFTEST[device.what]:
         yield Doubt(
-            "lam", f"it bears {100.0 * share:.2g} % of the pier's weight at a rotation of α, as good as nothing"
+            "lam", f"it bears {100.0 * share:.2g} % of the pier's weight at a rotation of α, practically nothing"
         )
 
 

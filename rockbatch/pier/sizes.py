@@ -84,7 +84,7 @@ def falls(alpha: float, theta: float) -> list[Problem]:
     if abs(theta) < alpha:
         return []
     degrees = _if_in_degrees(theta) if abs(theta) > 0.5 else ""
-    text = f"must be below alpha = {alpha:.4g} rad in magnitude, beyond which a pier that is let go falls{degrees}"
+    text = f"must be below alpha = {alpha:.4g} rad in magnitude, beyond which a released pier overturns{degrees}"
     return [Problem("initial_rotation_rad", theta, text, kind=OutOfRange)]
 
 

@@ -83,7 +83,7 @@ FACTS = (
     Fact("strength_over_alpha", "static strength, θ/α", ".3g", "rotation at which it is reached"),
     Fact("moment_over_weight_m", "greatest moment over weight [m]", ".4g", "about the more heavily loaded pivot"),
     Fact("moment_kN_m", "greatest moment [kN m]", ",.0f", "the same with the weight"),
-    Fact("dampers_over_rest", "dampers over the rest at 0.1 α", ".2f", "of moments; below 1 the pier returns"),
+    Fact("dampers_over_rest", "damper/restoring moment, 0.1 α", ".2f", "ratio of moments; below 1 the pier returns"),
     Fact("unstable_over_alpha", "unstable equilibrium, θ/α", ".4g", "without dampers"),
     Fact("vertical_period_s", "vertical period [s]", ".3g", "of both supports, elastic"),
     Fact("full_contact_period_s", "rocking period in full contact [s]", ".3g", "before lift-off, elastic"),
@@ -293,7 +293,7 @@ def in_words(sheet: Statics) -> dict[str, str]:
     return {
         "at rest": ", ".join(filter(None, at_rest)),
         "lift-off": acceleration(
-            sheet.lift_off_g, sheet.lift_off_rad, "never: the support that bears more yields before"
+            sheet.lift_off_g, sheet.lift_off_rad, "never: the more heavily loaded support yields before"
         ),
         "strength": acceleration(
             sheet.strength_g, sheet.strength_rad, "rises with the rotation, as tendons or stops hold the pier"

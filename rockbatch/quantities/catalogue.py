@@ -75,7 +75,7 @@ def _most_ductility(case: Case) -> float:
     return MOST_DUCTILITY * (points[-1][0] if points else 1.0)
 
 
-_SPENT = Ceiling(_most_ductility, "is more than any support bears")
+_SPENT = Ceiling(_most_ductility, "is more than any support carries")
 
 
 def _displacements(name: str, lever: Lever) -> tuple[Limit, Limit]:

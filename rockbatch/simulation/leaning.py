@@ -120,7 +120,7 @@ def noted_lean(outcome: Outcome, parts: Apart, alpha: float) -> Outcome:
     if outcome.status != "ok" or not parts.leans:
         return outcome
     remark = (
-        f"theta_max is mostly lean: the base leaned by {parts.lean / alpha:.4f} alpha then, about which the pier rocked by "
+        f"theta_max is mostly lean: the base leaned by {parts.lean / alpha:.4f} alpha then; the pier rocked about it by "
         f"{parts.rocking_then / alpha:.4f} alpha, and by {parts.rocking / alpha:.4f} alpha at most, at {parts.t:.2f} s"
     )
     return outcome.noted(remark, theta_max_is=LEANS)

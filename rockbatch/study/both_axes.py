@@ -53,7 +53,7 @@ def _obstacles(case: Case, motions: MotionSpec, names: Container[object]) -> Ite
     if case.base.bends:
         yield 'a shaft that bends has another period across the axis; write a case and a [pier] for each axis, or shaft = "rigid"'
     if case.pier.initial_rotation_rad or motions.still_s is not None:
-        yield "a pier that is let go turns in one plane; leave initial_rotation_rad and still_s, or this, out"
+        yield "a released pier rotates in one plane; leave initial_rotation_rad and still_s, or this, out"
     if len(motions.azimuths) != 1 and not isinstance(motions.override, MotionSet):
         yield (
             "pairs are turned to the axis; write axis_deg in [motions], the direction of width_m in degrees from north"
@@ -61,7 +61,7 @@ def _obstacles(case: Case, motions: MotionSpec, names: Container[object]) -> Ite
         )
     if isinstance(motions.target, SpectrumTarget) and motions.target.pairs == "apart":
         yield (
-            'pairs = "apart" in [motions.target], its default, fits one component and leaves the other as it comes; write '
+            'pairs = "apart" in [motions.target], its default, scales one component and leaves the other as recorded; write '
             'pairs = "srss" (EN 1998-2), "rotd100" (ASCE 7), "rotd50" or "geomean"'
         )
 

@@ -116,7 +116,9 @@ _OF_TABLES = "|".join(rf"^{what}_[1-9][0-9]*_({'|'.join(keys)})$" for what, keys
 
 REFERENCE = Section(
     ("reference",),
-    ("A published value to print beside the results. Keys that the study varies tell the case from its siblings."),
+    (
+        "A published value to print beside the results. Keys that the study varies select the case among those of its name."
+    ),
     {
         "record": Key(text, '"*LGP*"', "Names of the records, as a pattern with * and ?.", required=True),
         "case": Key(text, '"rigid"', "Name of the case.", required=True),
@@ -333,7 +335,7 @@ def _checked_study(file: TomlFile, motions: Motions) -> Study:
         message = "devices on one side make another run of the reversed motion, not the mirror image"
         file.complain(("motions", "polarity"), f"[motions]: {message}; keep one polarity")
     if len(motion_spec.polarity) > 1 and any(read.pier.initial_rotation_rad for read in piers):
-        message = "a pier that is let go from a rotation has another run of the reversed motion, not the mirror image"
+        message = "a pier released from a rotation responds differently to the reversed motion, not as its mirror image"
         file.complain(
             ("motions", "polarity"),
             f"[motions]: {message}; keep one polarity, and list initial_rotation_rad = [0.05, -0.05] for the other side",

@@ -146,8 +146,7 @@ MOTIONS = Section(
         "still_s": Key(
             within(Bounds(0.1, 1e4, " [s]")),
             "20.0",
-            "Ground that does not move for so long [s], as one motion more, for a pier with `initial_rotation_rad` that "
-            "is let go.",
+            "Duration [s] of a still ground, added as a motion, for a pier that is released from `initial_rotation_rad`.",
         ),
         "select": Key(_TABLE, "{ pga_g = [0.1, inf] }", "Which records are used; see `[motions.select]`."),
         "target": Key(_TABLE, "{ pga_g = 0.4 }", "What each record is scaled to; see `[motions.target]`."),

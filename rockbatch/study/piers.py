@@ -106,8 +106,8 @@ PIER = Section(
         "flexural_period_s": Key(
             within(BOUNDS["flexural_period_s"]),
             "0.6",
-            "First period of the pier with its deck, fixed at its base. The statics sheet holds it against the period "
-            "of rocking, to see whether the pier is rigid; runs take it as rigid unless a case says `shaft = "
+            "First period of the pier with its deck, fixed at its base. The statics sheet compares it with the period "
+            "of rocking, to show whether the pier is rigid; runs take it as rigid unless a case has `shaft = "
             '"elastic"`.',
             many=True,
             usual=USUAL["flexural_period_s"],
@@ -122,7 +122,8 @@ PIER = Section(
         "initial_rotation_rad": Key(
             within(BOUNDS["initial_rotation_rad"]),
             "0.05",
-            "Rotation at which the pier is held, and let go at the first sample of the motion; positive to the right, below α. A "
+            "Rotation at which the pier is held and from which it is released at the first sample of the motion; "
+            "positive to the right, below α. A "
             "still ground, `still_s` of [motions], makes it a release test.",
             many=True,
             usual=USUAL["initial_rotation_rad"],
@@ -169,7 +170,7 @@ PIER = Section(
             ("size_m", "half the diagonal"): "diagonal",
             "write alpha = atan(width/height), in radians": "slenderness slendernessratio aspectratio",
             "write mu = M R0²/I0, or a [[pier.part]] with its inertia_t_m2": "inertia i0 momentofinertia",
-            "units stand in the names of keys; leave it out": "unit units",
+            "units are part of the names of keys; leave it out": "unit units",
             "write deck_mass_t and deck_height_m in [pier]": "deck",
             "write flexural_period_s, 1 over it in Hz": "frequency frequencyhz fhz f1hz",
         }
@@ -184,7 +185,7 @@ PIER = Section(
             ("height_m", "part"),
             "height_m: the parts say how high the pier is; call it top_m if drift is to be read at this height, or leave it out",
         ),
-        Clash(("mass_t", "part"), "mass_t: the parts say what the pier weighs; leave it out"),
+        Clash(("mass_t", "part"), "mass_t: the mass of the pier is that of its parts; leave it out"),
         Clash(
             ("deck_mass_t",),
             "mass_t is missing beside deck_mass_t, of the pier without its deck; write for example mass_t = 2000.0",
@@ -233,7 +234,7 @@ PIER = Section(
         ),
         Clash(
             ("top_m", "columns"),
-            "top_m: the deck of a frame keeps level, so all of it drifts as the tops of the columns do; leave it out",
+            "top_m: the deck of a frame stays level and drifts as the tops of the columns; leave it out",
         ),
     ),
 )
@@ -274,7 +275,7 @@ PART = Section(
         "shear_rigidity_kN": Key(
             positive,
             "2.0e7",
-            "G A_s of the part, by which it gives in shear, too; default: it does not.",
+            "G A_s of the part, its stiffness in shear; default: rigid in shear.",
             many=True,
         ),
         "width_m": Key(

@@ -129,7 +129,7 @@ DAMPER = Section(
     instead=_ONE_EACH
     | names(
         {
-            "write yield_mm, the force over the stiffness, or brace_kN_m of what the damper hangs on": "stiffness k k0 "
+            "write yield_mm, the force over the stiffness, or brace_kN_m of its brace": "stiffness k k0 "
             "k1 initialstiffness",
             "write coefficient_kN_s_m, or nu = C/(M p)": "zeta xi dampingratio",
             "write force_kN, friction times the normal force, or f, that force over the weight": "mu friction",

@@ -166,8 +166,8 @@ SPECTRUM = {
         choice(*PAIRS),
         '"srss"',
         'Whether each component has its own spectrum, "apart", or each station one of both components: "srss" as in EN 1998-2, '
-        '"geomean", "rotd50" (median direction), or "rotd100" (maximum direction, as in ASCE 7). With `sa_g`, what of a pair '
-        "that is; not srss.",
+        '"geomean", "rotd50" (median direction), or "rotd100" (maximum direction, as in ASCE 7). With `sa_g`, the measure '
+        "of a pair; not srss.",
     ),
     "at_least": Key(
         positive,
@@ -230,7 +230,7 @@ TARGET = Section(
 VERTICAL_TARGET = Section(
     ("motions", "vertical_target"),
     (
-        "What the vertical component of each record is scaled to by a factor of its own, in place of that of its horizontal one, "
+        "What the vertical component of each record is scaled to, by its own factor instead of that of the horizontal component, "
         "with the keys of `[motions.target]` but for `pairs`."
     ),
     {name: key for name, key in TARGET.items() if name != "pairs"}

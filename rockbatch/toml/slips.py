@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 _LONGEST = 80  # characters of a reason, and of a line, that are shown
 
-_RULES = "texts stand in quotes, decimals behind a point, and a number alone; [[…]] above each of several tables"
+_RULES = "texts belong in quotes, decimals take a point, and numbers no unit; [[…]] above each of several tables"
 
 _MOST_LINES, _MOST_TRIED = 2_000, 10  # lines that are searched for a slip, and meanings of which the text is tried
 _LONGEST_LINE = 300

@@ -80,7 +80,7 @@ def test_a_release_test(tmp_path):
     scatter, over = f"{fit['scatter']:.2g}", f"{fit['over_housner']:.3f}"
     ends, housner = f"{fit['low']:.4g} to {fit['high']:.4g}", f"{fit['value'] / fit['over_housner']:.4g}"
     rows = page.tables["release"]
-    assert rows[0] == ["case", "fitted", "value", "interval", "scatter", "of Housner's"]
+    assert rows[0] == ["case", "fitted", "value", "interval", "scatter", "over Housner's"]
     assert rows[1] == ["rigid", "restitution", value, bounds, scatter, over]
     words = (
         f"rigid: restitution = {value} (95 %: {ends}), Housner's is {housner}; it scatters by ±{scatter} from impact to"

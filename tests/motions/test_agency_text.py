@@ -417,7 +417,7 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
         (dyna_text(np.tile(A, 3)).rstrip()[:-1], "x.ASC", "line 148: .*the file is cut"),
         (renadic_text().replace("  0.055", "  0.050", 1), "x.v1", "channel L from line 1 on: time does not grow"),
         (csmnc_text(kind="UNCORRECTED VELOCITY"), "x.dat", 'line 11: found "VELOCITY"; expected accelerations'),
-        (afad_text(**{"RAW PGA VALUES (gal)": None}), "x.txt", "which tells the unit"),
+        (afad_text(**{"RAW PGA VALUES (gal)": None}), "x.txt", "which states the unit"),
         (resorce_text(**{"Number of Data": "40"}), "x.cor.acc", "line 19: found .* after the 40 declared values"),
         (emod3d_text(count=NPTS - 6), "HALS.090", f"{NPTS - 6} values from line "),
         (caltech_text(declared=False).replace(f"{NPTS:6d}  INS", f"{NPTS - 8:6d}  INS"), "x.V2", r"line \d+: found"),

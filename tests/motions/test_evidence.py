@@ -461,7 +461,7 @@ def test_a_void_angle_leaves_the_direction_to_what_else_tells_it_or_to_nothing()
     code = Statement(Kind.NAME, 'channel "HNE"', Orientation("HNE", azimuth=90.0))
     bare = Component("c", 0.01, wiggle(100), Orientation("0", azimuth=0.0), statements=(void,))
     for component, azimuth, instead in (
-        (bare, None, "nothing else tells its azimuth"),
+        (bare, None, "its azimuth is stated nowhere else"),
         (replace(bare, statements=(void, code)), 90.0, 'decided by: channel "HNE"'),
     ):
         found = _without_statement(component, void, "all say so")

@@ -184,7 +184,7 @@ def test_on_a_footing_the_answer_says_that_strips_leave_more_than_the_steps(tmp_
     foot = case("foot", FootingBase(30.0, 3.0))
     results = folder(tmp_path / "out", runs((0.1, 0.2), "foot", theta_max_error=7e-4), [foot])
     assert (
-        "0.0007 α (0.0001 α allowed, besides what the strips of a footing leave)."
+        "0.0007 α (0.0001 α allowed, besides the error of a footing's strips)."
         in Page(section_of(results, answer)).text
     )
     said = "is at most 0.0001, or on a footing a tenth of the error of its strips."
@@ -222,10 +222,10 @@ def test_the_answer_counts_runs_that_flew_apart_from_those_that_ended_so(tmp_pat
 
 
 @pytest.mark.parametrize(("status", "words"), [
-    ("ok", "No run asks more friction than its interface has, of 30 runs."),
-    ("overturned", "No run asks more friction than its interface has, of 30 runs."),
-    ("flight", "Of 30 runs, 2 were not seen through; none of the other 28 asks more friction than its interface has."),
-    ("failed", "Of 30 runs, 2 were not seen through; none of the other 28 asks more friction than its interface has."),
+    ("ok", "No run demands more friction than its interface has, of 30 runs."),
+    ("overturned", "No run demands more friction than its interface has, of 30 runs."),
+    ("flight", "Of 30 runs, 2 stopped early; none of the other 28 demands more friction than its interface has."),
+    ("failed", "Of 30 runs, 2 stopped early; none of the other 28 demands more friction than its interface has."),
 ])  # fmt: skip
 def test_the_friction_of_all_runs_is_claimed_of_those_that_were_seen_through(tmp_path, status, words):
     pier = Pier(alpha=0.13, p=0.38)

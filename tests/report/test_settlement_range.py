@@ -42,7 +42,7 @@ def test_the_page_says_by_which_law_a_settlement_is_if_the_other_was_not_asked_f
     path, out = write_study(tmp_path, study_text(cases=(PADS | {"eta": 2.2, "epsilon": 0.1},))), tmp_path / "out"
     assert "settlement_other_law_m" not in rb.run(path, out)
     text = Page((out / "report.html").read_text(encoding="utf-8")).text
-    assert "Settlement and residual rotation are by the Bouc–Wen law alone; [output] both_laws = true" in text
+    assert "Settlement and residual rotation are those of the Bouc–Wen law alone; [output] both_laws = true" in text
 
 
 def test_springs_that_do_not_creep_have_one_settlement_and_no_warning(tmp_path, capsys):
@@ -89,6 +89,6 @@ def test_a_range_that_no_run_has_and_springs_that_do_not_creep_are_passed_over()
     for table, base, parts in ((none, SOFT, (False, False)), (alone, SOFT, (False, True)), (none, None, None)):
         cases = [RIGID] if base is None else [RIGID, case("pads", base)]
         words = remark(SimpleNamespace(runs=pd.DataFrame(table), info={"cases": cases}, place_of=str))
-        said = ("the range between both laws" in words, "by the Bouc–Wen law alone" in words)
+        said = ("the range between both laws" in words, "those of the Bouc–Wen law alone" in words)
         assert said == parts if parts else words == ""
         assert warning(table, str) == ""

@@ -105,7 +105,7 @@ def test_the_page_and_the_terminal_say_so_and_a_check_that_it_breaks_fails(tmp_p
     printed = capsys.readouterr()
     assert (
         "1 failed only after the motion: theta_max_in_motion_over_alpha has the peak until then, a lower bound; in all of them "
-        'the springs ratchet on free vibration: take spring = "epp" or "hardening", or zeta of 0.2 or more'
+        'the springs ratchet in free vibration: take spring = "epp" or "hardening", or zeta of 0.2 or more'
     ) in " ".join(printed.err.split())
     verdicts = {line.split(",")[0]: line for line in (tmp_path / "out/checks.csv").read_text("utf-8").splitlines()}
     assert ",fail," in verdicts["broken"]

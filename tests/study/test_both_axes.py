@@ -128,7 +128,7 @@ def test_both_components_have_one_axis_and_factor_and_are_of_turned_records(tmp_
     ("change", "message"),
     [
         ({"pier": {"alpha": 0.2, "p": 1.0}}, '[[case]] "rock": other_width_m: needs width_m of [pier]'),
-        ({"pier": PIER | {"initial_rotation_rad": 0.01}}, "a pier that is let go turns in one plane"),
+        ({"pier": PIER | {"initial_rotation_rad": 0.01}}, "a released pier rotates in one plane"),
         ({"cases": [BLOCK, RIGID | {"name": "rock across"}]}, 'the case across the axis is called "rock across"'),
         ({"cases": [BLOCK | {"other_width_m": 30.0}]}, 'other_width_m = 30: more than the height, 20 m'),
         ({"cases": [BLOCK | {"name": ["x"]}]}, "expected one value, not a list"),
@@ -147,7 +147,7 @@ def test_what_cannot_be_run_on_both_axes_is_said_at_the_key(change, message):
 @pytest.mark.parametrize(
     ("motions", "message"),
     [
-        ({"axis_deg": 30, "still_s": 5.0}, "a pier that is let go turns in one plane; leave initial_rotation_rad and still_s"),
+        ({"axis_deg": 30, "still_s": 5.0}, "a released pier rotates in one plane; leave initial_rotation_rad and still_s"),
         ({}, "write axis_deg in [motions], the direction of width_m in degrees from north"),
         ({"every_deg": 30}, ", instead of every_deg"),
         ({"axis_deg": 30, "target": {"spectrum": [[0.1, 0.8], [3.0, 0.2]], "period_range_s": [0.2, 2.0]}},

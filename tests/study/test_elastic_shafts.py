@@ -40,7 +40,7 @@ def messages(tmp_path, **tables):
          'shaft = "elastic": flexural_period_s is missing'),
         ({"pier": {"alpha": 0.15, "p": 0.5, "mu": 4.0, "flexural_period_s": 0.9}, "cases": [BENDS]},
          'shaft = "elastic": mu = 4 does not say how the mass is spread'),
-        ({"cases": [BENDS | {"restitution": 0.9}]}, "restitution = 0.9: what a blow takes of a shaft that bends"),
+        ({"cases": [BENDS | {"restitution": 0.9}]}, "restitution = 0.9: the loss of a bending shaft at an impact"),
         ({"cases": [BENDS | {"flexural_impact": "rate"}]},
          'flexural_impact = "rate": to carry the rate of the deflection over would create energy'),
         ({"cases": [BENDS | {"flexural_impact": "rates"}]},

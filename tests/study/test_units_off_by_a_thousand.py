@@ -26,7 +26,7 @@ TABLES = {  # by the table that is varied: all that is usual
     "stop lambda": {"gap_mm": 100.0, "lambda": 20.0}, "deck_spring lambda": {"lambda": 1.0},
 }  # fmt: skip
 PIERS = ("pier", "deck", "held", "size", "p")
-NOTHING = "as good as nothing"
+NOTHING = "practically nothing"
 SMALL = [  # table, key, value as written, and what is said of it
     ("pier", "width_m", 0.008, "less than 0.01 m"),
     ("pier", "height_m", 0.03, "less than 0.05 m"),

@@ -60,7 +60,7 @@ def test_residuals_of_a_run_that_is_waited_for_to_the_end_are_read_twice(benchma
     """Undamped Bouc–Wen springs go on yielding: the error has their drift, so that zeros behind the motion stay within it."""
     case = benchmark("independent.pool").cases(None, 7, "Bouc-Wen")[9]
     outcome = run_to_tolerance(case.pier, case.base, case.motion, 1e-4)
-    assert "still the energy for a greater rotation" in outcome.note
+    assert "still has the energy for a greater rotation" in outcome.note
     assert outcome.theta_res_drift != 0.0
     zeros = np.zeros(readings(case.pier, case.base, case.motion.dt)[1])
     vertical = None if case.motion.vertical is None else np.append(case.motion.vertical, zeros)

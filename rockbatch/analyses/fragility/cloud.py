@@ -270,7 +270,7 @@ def fit(runs: Demands, limit: float, floor: float, confidence: float = 0.95) -> 
         return NoCurve("all records have the same intensity: a line needs a cloud of them")
     log_demand = np.log(runs.demand[exact])
     if np.abs(np.polyval(np.polyfit(log_x[exact], log_demand, 1), log_x[exact]) - log_demand).max() < 1e-7:
-        return NoCurve("all demands are on one line over the intensity, and nothing tells the dispersion")
+        return NoCurve("all demands are on one line over the intensity, so that the dispersion is unknown")
     censored = stands & ~exact
     bounds = np.log(np.where(runs.within, limit, floor))[censored]
     line = _line(log_x[exact], log_demand, log_x[censored], bounds, np.concatenate((station[exact], station[censored])))

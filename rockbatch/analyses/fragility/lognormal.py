@@ -268,7 +268,7 @@ def contribution(
     if refusal := _degenerate(capacities):
         return refusal
     if n < LEAST_PER_PARAMETER * (k + 2):
-        return NoCurve(f"{n} runs or capacities are too few to tell {k + 2} parameters")
+        return NoCurve(f"{n} runs or capacities are too few to fit {k + 2} parameters")
     likelihood = _Likelihood(capacities, scores)
     best = likelihood.maximum()
     if best is None:
@@ -278,7 +278,7 @@ def contribution(
     if likelihood.value(*best)[0] > -SEPARATED * n:  # nothing is left to chance
         brackets = (capacities.low > 0) & np.isfinite(capacities.high)
         if brackets.sum() < LEAST_PER_PARAMETER * (k + 2):
-            return NoCurve("with them the runs beyond the limit are separated from the others: more of both would tell")
+            return NoCurve("with them the runs beyond the limit are separated from the others: more of both are needed")
         whole = math.sqrt(effects @ correlation @ effects)
         return Contribution(whole, (whole, whole), tuple(effects.tolist()), k * (0.0,))
     slopes, hessian = likelihood.derivatives(best)
@@ -309,13 +309,13 @@ def _degenerate(capacities: Capacities) -> NoCurve | None:
     if highest < lowest:
         reason = (
             f"no record exceeds the limit at {highest:.4g}, every one at {lowest:.4g}: the median is between, and levels "
-            "between them would tell the dispersion"
+            "between them would show the dispersion"
         )
         return NoCurve(reason, above=highest, below=lowest)
     if highest == lowest:
         return NoCurve(
             f"{highest:.4g} is the only level at which some records exceed the limit and others do not: levels nearer to it "
-            "would tell the dispersion"
+            "would show the dispersion"
         )
     return None
 

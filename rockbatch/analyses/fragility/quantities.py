@@ -52,12 +52,12 @@ def of_curves(info: Entry) -> list[Head]:
         Head(
             "of it drawn",
             ".2f",
-            "what the drawn inputs contribute to β, as a root of squares",
+            "contribution of the drawn inputs to β, combined by the root of the sum of squares",
             value=lambda curve: _drawn(curve).get("dispersion"),
         ),
         Head(
             level,
-            note="interval of what the drawn inputs contribute, by the standard error of its square",
+            note="interval of the contribution of the drawn inputs, by the standard error of its square",
             value=lambda curve: _interval("dispersion_interval")(_drawn(curve)),
         ),
         Head(
@@ -114,7 +114,12 @@ def of_rates(info: Entry, written: Callable[[float], str]) -> list[Head]:
     """
     level = level_of(info)
     return [
-        Head("dispersion", ".2f", "β with what the study adds", value=lambda curve: curve["risk"]["dispersion_total"]),
+        Head(
+            "dispersion",
+            ".2f",
+            "β with the dispersion that the study adds",
+            value=lambda curve: curve["risk"]["dispersion_total"],
+        ),
         Head("rate [1/year]", note="mean annual rate of exceedance", value=_rate(written)),
         Head(level, note="interval of the rate by the fit", value=_rates("rate_low", "rate_high", written)),
         Head(

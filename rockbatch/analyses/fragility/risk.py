@@ -175,23 +175,21 @@ def note(risk: Risk, spec: FragilitySpec) -> str:
         )
     if len(points) > 1 and risk.below > NOTABLE * risk.rate:
         notes.append(
-            f"{_share(risk.below, risk)} comes from below its lowest point, where its first slope goes on, though hazard curves "
-            "flatten there: too much, rather"
+            f"{_share(risk.below, risk)} comes from below its lowest point, extrapolated by its first slope, though "
+            f"hazard curves flatten there: the rate is rather too high"
         )
     weaker, stronger = risk.beyond_levels
     if weaker > NOTABLE * risk.rate:
         notes.append(
             f"{_share(weaker, risk)} comes from below the lowest intensity that was run, {spec.levels[0]:.3g} {spec.unit}: "
-            "from the tail of the fitted curve, which no run has tried"
+            "from the tail of the fitted curve, where nothing was run"
         )
     if stronger > NOTABLE * risk.rate:
         notes.append(
             f"{_share(stronger, risk)} comes from above the highest that was run, {spec.levels[-1]:.3g} {spec.unit}"
         )
     if risk.rate * max(spec.hazard.years) > 3.0:
-        notes.append(
-            "several exceedances in the longest of the periods: the probability is all but 1 whatever the pier"
-        )
+        notes.append("several exceedances in the longest of the periods: the probability is close to 1 for any pier")
     return "; ".join(notes)
 
 

@@ -331,7 +331,7 @@ def note(curve: Curve, spec: FragilitySpec) -> str:
         if fitted.median_interval is None:
             stations = count(fitted.stations, "station")
             notes.append(
-                f"no intervals: records of {stations}, and {STATIONS_OF_INTERVAL} are needed to tell their scatter"
+                f"no intervals: records of {stations}, and {STATIONS_OF_INTERVAL} are needed to estimate their scatter"
             )
         ends = [bound for interval in (fitted.median_interval, fitted.dispersion_interval) for bound in interval or ()]
         if any(map(math.isinf, ends)):

@@ -288,8 +288,8 @@ class _Test:
             and (times.low > amplitudes.high or amplitudes.low > times.high)
         ):
             return (
-                f"times and amplitudes ask for values that differ by more than their intervals, {times.value:.4g} and "
-                f"{amplitudes.value:.4g}: size, slenderness or initial rotation may be others than stated"
+                f"times and amplitudes give values that differ by more than their intervals, {times.value:.4g} and "
+                f"{amplitudes.value:.4g}: size, slenderness or initial rotation may differ from those stated"
             )
         if fit.t_rms > POOR_TIMES * first or fit.amplitude_rms > POOR_AMPLITUDES * start:
             return "poor: no value describes the test; check size, slenderness, initial rotation and the clock"

@@ -29,7 +29,7 @@ FIT = (
     Head("value", ".4g", value="value"),
     Head("interval", value=interval),
     Head("scatter", ".2g", "standard deviation from impact to impact, beside errors of reading", value="scatter"),
-    Head("of Housner's", ".3f", "over the value that keeps the angular momentum", value="over_housner"),
+    Head("over Housner's", ".3f", "over the value that keeps the angular momentum", value="over_housner"),
 )
 """Heads of a table of release.csv."""
 

@@ -106,7 +106,7 @@ def _of_runs(suite: "pd.DataFrame") -> Iterator[str]:
     if flight:
         yield f"{flight} of {runs} were ended by flight, and count as overturned."
     if failed:
-        yield f"{failed} of {runs} failed, and count in nothing here."
+        yield f"{failed} of {runs} failed, and are left out here."
 
 
 def _order(axis: str) -> str:
@@ -178,7 +178,10 @@ def _least_of(info: Info, regions: "pd.DataFrame", keys: list[str], of: str) -> 
 def _left_open(regions: "pd.DataFrame") -> Iterator[str]:
     """Yield remarks on lower amplitudes that may overturn, too: by flight, undecided, or beyond the ends of the map."""
     least, worst, frequencies = _least(regions), _worst(regions)["omega_p_over_p"], regions["omega_p_over_p"]
-    for outcome, words in ((FLIGHT, "the run ends by flight"), (UNDECIDED, "it is undecided what the pier does")):
+    for outcome, words in (
+        (FLIGHT, "the run ends by flight"),
+        (UNDECIDED, "it is not decided whether the pier overturns"),
+    ):
         rows = regions[(regions["outcome"] == outcome) & (regions["low"] < least)]
         if len(rows):
             lowest = rows[rows["low"] == rows["low"].min()]

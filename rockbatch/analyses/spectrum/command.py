@@ -29,7 +29,7 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
         failed = int((result.spectrum["status"] == "failed").sum())
         if failed:
             runs = count(len(result.spectrum), "run")
-            say(f"{failed} of {runs} failed and count in no quantile; the column reason says why")
+            say(f"{failed} of {runs} failed and are left out of the quantiles; the column reason says why")
     if result.overturning_map is not None:
         show(shown_maps(result.info, result.overturning_map))
     print_files(result)

@@ -250,7 +250,7 @@ def _without_size(table: Table, study: Study, bases: Mapping[str, Base]) -> None
         )
     if study.motions.scale != (1.0,):
         table.complain(
-            f"{SELF_SIMILAR}: every motion is scaled to {INTENSITY}, whatever scale says in [motions]; leave scale out",
+            f"{SELF_SIMILAR}: every motion is scaled to {INTENSITY}, so scale in [motions] has no effect; leave it out",
             SELF_SIMILAR,
         )
 

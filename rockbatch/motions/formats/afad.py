@@ -43,7 +43,7 @@ def parse(text: str) -> list[Recording]:
     key = next((key for key in header if _PEAKS.search(key)), "")
     fields, peaks = _PEAKS.search(key), {match["label"]: match["peak"] for match in _PEAK.finditer(header.get(key, ""))}
     if fields is None or set(peaks) != set(labels):
-        raise InputError('the header lacks "RAW PGA VALUES (gal) : (N-S) … (E-W) … (U-D) …", which tells the unit')
+        raise InputError('the header lacks "RAW PGA VALUES (gal) : (N-S) … (E-W) … (U-D) …", which states the unit')
     station, began = header.get("STATION ID", ""), header.get("RECORD TIME", "")
     place, event = header.get("PLACE", ""), header.get("EARTHQUAKE DATE", "")
     recordings = []

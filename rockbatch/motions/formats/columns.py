@@ -221,7 +221,7 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
             raise InputError(f"found {width} columns; the study states columns = {list(stated)}")
         else:
             notes = (
-                f"its header tells its {width} columns; the {len(stated)} that are stated are those of other files",
+                f"its header describes its {width} columns; the {len(stated)} that are stated are those of other files",
             )
     if columns is None:
         unstated = not is_acceleration(stated_unit(header) or "")

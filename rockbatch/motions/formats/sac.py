@@ -83,7 +83,7 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
         raise no_acceleration("its header says that it", kind)
     if options.unit is None and options.sensitivity is None:
         raise NoUnit(
-            "SAC files do not tell their unit reliably (sensitivity = … for counts per m/s² is a statement of it, too)"
+            "SAC files do not state their unit reliably (sensitivity = … for counts per m/s² is a statement of it, too)"
         )
     start, day = _start(numbers)
     statements = _directions(channel, numbers)

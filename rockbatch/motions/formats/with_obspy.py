@@ -55,7 +55,7 @@ def _volume_exponent(data: bytes) -> int:
         if length <= 7:
             raise InputError(f"SEED volume: a blockette of {length} bytes; expected more than 7: it is damaged")
         offset += length
-    raise InputError("SEED volume: no blockette tells the length of its records; fetch MiniSEED instead")
+    raise InputError("SEED volume: no blockette states the length of its records; fetch MiniSEED instead")
 
 
 def _data_record(record: bytes) -> None:

@@ -117,7 +117,7 @@ QUANTITIES = (
         bending=True, directed=True,
     ),
     *_over_mass(
-        "normal_force", "greatest normal force N of all supports", "normal_force", "m/s^2", "N", more=", likewise", landing=True,
+        "normal_force", "greatest normal force N of all supports", "normal_force", "m/s^2", "N", more=", as for V", landing=True,
     ),
     _force(
         "friction_demand", "greatest V over N at the same time", "friction_demand", "1", "V/N", ".4f", unbounded=True,

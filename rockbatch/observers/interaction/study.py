@@ -34,7 +34,7 @@ OUTPUT = Section(
             boolean,
             "true",
             "Whether interaction.csv has the normal force of the base and its shear of the same moment. A check of "
-            "`base_shear_over_capacity` has them kept, too; write it for checks to come.",
+            "`base_shear_over_capacity` keeps them, too; set it for checks to be written later.",
         ),
     },
     homes=(Interaction,),

@@ -224,7 +224,7 @@ def _error(finished: Finished) -> str:
         error = error.quantize(Decimal(1).scaleb(error.adjusted()), ROUND_UP)
         allowed = Decimal(repr(float(numerics["tolerance"])))
         unknown = f"; unknown in {counted(lacking, 'run')}" if lacking else ""
-        strips = ", besides what the strips of a footing leave" * any(
+        strips = ", besides the error of a footing's strips" * any(
             case["base"] in FOOTING for case in finished.info["cases"]
         )
         return f"Error of rotations: at most {error:f} α ({allowed:f} α allowed{strips}){unknown}."

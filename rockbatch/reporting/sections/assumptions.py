@@ -110,7 +110,7 @@ def _flight(cases: Collection[Case]) -> str:
 def _sliding(cases: Collection[Case]) -> str:
     known = [case for case in cases if case["parameters"].get("friction") is not None]
     if not known:
-        return "The feet do not slide, whatever the friction that this needs: keys have to bear it."
+        return "The feet do not slide, whatever friction this requires: shear keys must carry the rest."
     friction = _listed({number(float(case["parameters"]["friction"])) for case in known})
     return f"The feet do not slide; runs that would, at a friction of {friction}{_only(known, cases)}, are marked."
 
@@ -134,8 +134,8 @@ def _devices(cases: Collection[Case]) -> str:
     if not any(list(devices(case)) for case in cases):
         return ""
     return (
-        "Devices act between the pier and ground or neighbours that move with the ground; their laws do not degrade, and nothing "
-        "of them breaks or reaches the end of its travel."
+        "Devices act between the pier and ground or neighbours that move with the ground; they do not degrade, break "
+        "or reach the end of their travel."
     )
 
 

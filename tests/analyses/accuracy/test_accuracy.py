@@ -283,7 +283,7 @@ FIXED = OWN | {"method": "located", "substeps": "2", "tolerance": "", "error_max
     ({"status_differs": "1"}, "", ["1 of these runs ends otherwise than the reference, and has no error"]),
     ({"status_differs": "2"}, "", ["2 of these runs end otherwise than the reference, and have no error"]),
     ({"reference_change": "1e-5"}, "", ["the references themselves are known to 1e-05 only"]),
-    ({"error_max": ""}, "", ["no run was measured with it that stands as its reference does"]),
+    ({"error_max": ""}, "", ["no measured run with it ends standing as its reference does"]),
 ])  # fmt: skip
 def test_the_page_opens_with_error_and_time_and_marks_omissions(tmp_path, change, words, marked):
     with open(tmp_path / "accuracy.csv", "w", encoding="utf-8", newline="") as file:

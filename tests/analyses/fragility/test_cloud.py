@@ -329,7 +329,7 @@ def test_the_command_runs_every_record_as_it_is_and_fits_what_its_table_shows(tm
     assert overturning.fitted.line is None
     assert overturning.fitted.median > curve.fitted.median
     html = next(path for path in found.save(tmp_path / "out") if path.suffix == ".html").read_text(encoding="utf-8")
-    assert "Cloud analysis of records as they are: of the records that stand a line" in Page(html).text
+    assert "Cloud analysis of records as they are: a line through the logarithms" in Page(html).text
     assert "each counts once at every scale" in found.info["scales"]["said"]
     levels = list(found.info["levels"])
     assert levels == sorted(levels)
@@ -385,7 +385,7 @@ def test_what_a_curve_rests_on_is_said(tmp_path, beyond, words):
     runs += 2 * [CloudPoint(8, 0.3, 0.004, "ok", WITHSTOOD)]
     for curve in (exactly(), exactly(share=None)):
         said = note_on_cloud(SimpleNamespace(limit=spec.limits[1], cloud=runs, fitted=curve), spec)
-        assert said.pop() == "2 records below 1 % of the limit count as small, without their value"
+        assert said.pop() == "2 records below 1 % of the limit are censored: they count as small, without their value"
         assert (curve.overturning is None) == (
             "no record overturns: their share counts as 0 at every intensity" in said
         )

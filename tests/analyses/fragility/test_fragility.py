@@ -114,7 +114,7 @@ def test_notes_say_why_there_is_no_curve_and_what_one_rests_on():
         words = "the median is extrapolated beyond the intensities that were run"
         assert said(replace(fitted, median=median)) == beyond * words
     few = replace(fitted, median_interval=None, dispersion_interval=None, stations=4)
-    assert said(few) == "no intervals: records of 4 stations, and 5 are needed to tell their scatter"
+    assert said(few) == "no intervals: records of 4 stations, and 5 are needed to estimate their scatter"
     for name in ("median_interval", "dispersion_interval"):
         assert said(replace(fitted, **{name: (0.3, math.inf)})).startswith("the records leave the intervals open")
     assert (
@@ -186,7 +186,7 @@ def test_where_first_exceedances_were_looked_for_is_said_once_and_drawn(ida):
     page = Page((out / "analyses.html").read_text(encoding="utf-8"))
     told = json.loads((out / "fragility.json").read_text(encoding="utf-8"))
     words = "in steps of 0.25 % from the lowest level up (rigid)", "at the levels alone, up to 100 % apart (pads)"
-    assert "Strips above: intensities that were looked at." in page.text
+    assert "Strips above: intensities that were searched." in page.text
     for text in (page.text, printed):
         assert [text.count(each) for each in words] == [1, 1]
     by_case = {one["case"]: one["looked"] for one in told["curves"] if one["limit_state"] == "overturning"}

@@ -127,7 +127,7 @@ def test_given_factors_are_taken_as_they_are(tmp_path):
         "to intensities away from their levels, 0.6 to 1 at 0.6 g: is PGA the measure" in found.info["scales"]["said"]
     )
     page = Page(saved(found, tmp_path))
-    assert "each level with records of its own" in page.text
+    assert "each level with its own records" in page.text
     assert "Factors on the records as they were recorded" in page.text
 
 

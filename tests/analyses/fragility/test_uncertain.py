@@ -187,7 +187,7 @@ def test_inputs_without_chance_have_no_error_if_enough_capacities_are_known(know
     found = contribution(Capacities(low, high, np.ones(25), np.eye(25)), scores, correlation)
     if known < 20:
         assert (
-            found.reason == "with them the runs beyond the limit are separated from the others: more of both would tell"
+            found.reason == "with them the runs beyond the limit are separated from the others: more of both are needed"
         )
         return
     assert found.effects == pytest.approx((0.6, -0.2), abs=0.01)
@@ -198,9 +198,7 @@ def test_inputs_without_chance_have_no_error_if_enough_capacities_are_known(know
 
 def test_few_runs_do_not_tell_what_inputs_contribute():
     capacities, scores = made_capacities(19, np.random.default_rng(1))
-    assert (
-        contribution(capacities, scores, np.eye(2)).reason == "19 runs or capacities are too few to tell 4 parameters"
-    )
+    assert contribution(capacities, scores, np.eye(2)).reason == "19 runs or capacities are too few to fit 4 parameters"
     assert contribution(*made_capacities(20, np.random.default_rng(1)), np.eye(2)).dispersion > 0.0
 
 

@@ -206,7 +206,7 @@ WORDS = (
     "measured values differ from computed ones by root mean square: times by 20 ms (0.05 of a mean half cycle), amplitudes by "
     "2 mrad (0.02 of the initial rotation)"
 )
-APART = "times and amplitudes ask for values that differ by more than their intervals"
+APART = "times and amplitudes give values that differ by more than their intervals"
 
 
 @pytest.mark.parametrize(

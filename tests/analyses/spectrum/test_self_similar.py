@@ -144,7 +144,7 @@ def test_other_spectra_are_drawn_over_each_of_their_axes_and_not_over_this_one()
     (("pga_over_g_tan_alpha = [1.5, 2.5]\n", ""), 31, "pga_over_g_tan_alpha is missing beside omega_g_over_p; write for"),
     (("omega_g_over_p = [3.0, 6.0]", "p = [1, 2]"), 33, "pga_over_g_tan_alpha = [1.5, 2.5]: goes with omega_g_over_p"),
     (("omega_g_over_p = [3.0, 6.0]", "omega_g_over_p = [6.0, 3.0]"), 31, "expected a range"),
-    (("[[motions.pulse]]", "[motions]\nscale = 2.0\n\n[[motions.pulse]]"), 34, "leave scale out"),
+    (("[[motions.pulse]]", "[motions]\nscale = 2.0\n\n[[motions.pulse]]"), 34, "so scale in [motions] has no effect"),
     (("pga_over_g_tan_alpha = [1.5", "pga_over_g_tan_alpha = [0"), 33, "pga_over_g_tan_alpha = 0: expected a number above 0"),
 ])  # fmt: skip
 def test_keys_that_do_not_fit_are_reported_with_their_line(tmp_path, change, line, words):

@@ -79,7 +79,7 @@ def test_flights_and_failed_runs_are_counted_below():
     assert remarks == [
         "The largest piers that were run overturn: larger ones may, too.",
         "2 of 10 runs were ended by flight, and count as overturned.",
-        "4 of 10 runs failed, and count in nothing here.",
+        "4 of 10 runs failed, and are left out here.",
     ]
 
 
@@ -116,7 +116,7 @@ def test_the_least_amplitude_is_that_of_the_worst_case_with_its_frequency():
          "one-sine: that is at the end of the map's frequencies, and beyond it less may overturn the pier."),
         (("rock", 2.5, "flight", 1.2, 9), "one-sine: from a_p/(g tan α) = 1.2 on, at ω_p/p = 2.5, the run ends by flight."),
         (("rock", 2.5, "undecided", 1.2, 1.3),
-         "one-sine: from a_p/(g tan α) = 1.2 on, at ω_p/p = 2.5, it is undecided what the pier does."),
+         "one-sine: from a_p/(g tan α) = 1.2 on, at ω_p/p = 2.5, it is not decided whether the pier overturns."),
     ],
 )  # fmt: skip
 def test_what_may_overturn_below_the_least_amplitude_is_said(row, remark):
