@@ -20,6 +20,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.outcome.response import Response
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case
+from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.quantities.labels import record_labels
 from rockbatch.quantities.rows import NOT_RUN, counts_as, simulated
 from rockbatch.reporting.finished_analysis import Contents
@@ -28,7 +29,7 @@ from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.results.labelled import Labelled, Row, by_pga, foundation_key, groups_of, labelled, pier_key
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.reading import Saved
-from rockbatch.results.sections import SECTIONS, read_sections
+from rockbatch.results.sections import SECTIONS, read_forces
 
 if TYPE_CHECKING:
     from pandas.core.groupby import DataFrameGroupBy
@@ -107,7 +108,7 @@ class Finished(Contents, Labelled):
     def sections(self) -> "pd.DataFrame":
         """Return the rows of sections.csv; empty if the study asks for none."""
         path = self.directory / SECTIONS
-        return read_sections(path, self.info["varied"]) if path.exists() else pd.DataFrame()
+        return read_forces(path, self.info["varied"], OF_SECTIONS) if path.exists() else pd.DataFrame()
 
     def section_heights(self, case: Case) -> tuple[float, ...]:
         """Return the heights [m] of a case's sections, of sections.csv and of its checks, ascending."""

@@ -18,13 +18,13 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, alpha, top, width
+from rockbatch.quantities.demands import OF_INTERACTION, OF_SECTIONS
 from rockbatch.quantities.rows import rows_of_cases, with_case
 from rockbatch.results.columns import given_table
-from rockbatch.results.interaction import INTERACTION, read_interaction
 from rockbatch.results.labelled import Item
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.run_json import INFO, describe, describe_case
-from rockbatch.results.sections import SECTIONS, read_sections
+from rockbatch.results.sections import INTERACTION, SECTIONS, read_forces
 from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
 from rockbatch.toml.reader import TomlFile
@@ -33,8 +33,8 @@ PathLike = str | os.PathLike[str]
 
 _ROUNDING = 1e-6
 """Share of a length or a scale in a table by which it may differ from that of the study."""
-_OF_SECTIONS = {"sections": (SECTIONS, read_sections), "interaction": (INTERACTION, read_interaction)}
-"""Tables of forces in sections, each with the function that reads it, by the ``needs`` of demands."""
+_OF_SECTIONS = {"sections": (SECTIONS, OF_SECTIONS), "interaction": (INTERACTION, OF_INTERACTION)}
+"""Tables of forces in sections, each with its columns, by the ``needs`` of demands."""
 
 
 @checked
@@ -100,9 +100,9 @@ def verdicts(
         saved = results if isinstance(results, Saved) else read_saved(Path(results))
         own_rules, count, _ = _own_checks(saved.info["study"], judged=given is None)
         table, cases = saved.peaks, saved.info["cases"]
-        for needs, (name, read) in _OF_SECTIONS.items():
+        for needs, (name, columns) in _OF_SECTIONS.items():
             if (path := saved.directory / name).exists():
-                in_sections[needs] = read(path, saved.info["varied"])
+                in_sections[needs] = read_forces(path, saved.info["varied"], columns)
         of_suite = suite_verdicts(saved.info, with_case(table)["scale"])
         suite = suite_of(saved.info)
     else:

@@ -15,13 +15,14 @@ from rockbatch.common.observers import from_observer
 from rockbatch.common.showing import Shown, several, shown
 from rockbatch.outcome.response import Response
 from rockbatch.quantities.catalogue import in_words
+from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.quantities.rows import simulated, with_case
 from rockbatch.results.beside_peaks import present
 from rockbatch.results.columns import with_units
 from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.labelled import Labelled, labelled
 from rockbatch.results.reading import Saved, read_saved
-from rockbatch.results.sections import SECTIONS, read_sections
+from rockbatch.results.sections import SECTIONS, read_forces
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -61,7 +62,9 @@ class Results(Shown, Saved):
     @cached_property
     def sections(self) -> "pd.DataFrame":
         """``sections.csv``: forces in sections of the shaft; ``InputError`` without [output] sections."""
-        return read_sections(present(self.directory / SECTIONS, "[output] sections = 5"), self.info["varied"])
+        return read_forces(
+            present(self.directory / SECTIONS, "[output] sections = 5"), self.info["varied"], OF_SECTIONS
+        )
 
     def plot_cdf(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
         """Draw the distribution of θ_max/α over the records as a matplotlib Figure.

@@ -1,4 +1,4 @@
-"""sections.csv: forces in sections of the shaft, a row for each section of each run."""
+"""Forces in sections of each run: sections.csv, a row for each section; interaction.csv, one for each corner of the envelope."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -10,7 +10,7 @@ from rockbatch.pier import Pier
 from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.results.beside_peaks import read_beside
 
-SECTIONS = "sections.csv"
+SECTIONS, INTERACTION = "sections.csv", "interaction.csv"
 
 
 def section_rows(pier: Pier, sections: Sequence[Section]) -> list[dict[str, Any]]:
@@ -27,9 +27,9 @@ def as_table(rows: Iterable[dict[str, Any]]) -> "pd.DataFrame":
     return pd.DataFrame(list(rows), columns=list(OF_SECTIONS), dtype="float64")
 
 
-def read_sections(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
-    """Read sections.csv of a study with these ``varied`` keys; ``InputError`` if a column is missing or has texts."""
-    return read_beside(path, varied, OF_SECTIONS).astype(dict.fromkeys(OF_SECTIONS, "float64"))
+def read_forces(path: Path, varied: Sequence[str], columns: Iterable[str]) -> "pd.DataFrame":
+    """Read ``columns`` of either table of a study with these ``varied`` keys; ``InputError`` if one is missing or has texts."""
+    return read_beside(path, varied, columns).astype(dict.fromkeys(columns, "float64"))
 
 
 def columns_in(runs: "pd.DataFrame") -> tuple[dict[str, str], dict[str, str]]:

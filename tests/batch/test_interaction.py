@@ -9,7 +9,8 @@ from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.checks.judging import judge
 from rockbatch.checks.rules import Rule
-from rockbatch.results.interaction import INTERACTION, read_interaction
+from rockbatch.quantities.demands import OF_INTERACTION
+from rockbatch.results.sections import INTERACTION, read_forces
 
 PIER = {"width_m": 3.0, "height_m": 14.0, "mass_t": 400.0, "deck_mass_t": 200.0}
 PULSES = [SINE | {"duration_s": 2.0}, COSINE | {"duration_s": 2.0}]
@@ -65,7 +66,7 @@ def test_the_share_of_the_foot_is_that_of_the_stored_histories_by_another_polygo
     assert joint.loc["pads", "value"] == pytest.approx(max(of_joint), rel=0.02)
     assert max(of_joint) <= joint.loc["pads", "high"]
     assert checks.loc["rigid", "verdict"] == "not decided"  # a landing on rigid ground is no force
-    table, sections = read_interaction(tmp_path / "out" / INTERACTION, []), results.sections
+    table, sections = read_forces(tmp_path / "out" / INTERACTION, [], OF_INTERACTION), results.sections
     keys = ["record", "case", "height_m"]
     base = table[table["height_m"].isna()].groupby(["record", "case"])
     assert results.peaks.set_index(["record", "case"])["normal_force_kN"].to_dict() == pytest.approx(
@@ -156,7 +157,7 @@ def test_a_table_without_rows_is_read_and_decides_nothing_where_all_runs_failed(
     """Where a run went through there have to be rows: its checks are refused, not passed over."""
     rows = tmp_path / INTERACTION
     rows.write_text("record,case,polarity,scale\n")
-    empty = read_interaction(rows, ["beta"])
+    empty = read_forces(rows, ["beta"], OF_INTERACTION)
     assert (len(empty), [*empty][4:6], empty["height_m"].dtype) == (0, ["beta", "height_m"], float)
     rules = [
         Rule(**{**FOOT, "capacity": tuple(map(tuple, CURVE))}),

@@ -22,9 +22,8 @@ from rockbatch.common.naming import chosen_by
 from rockbatch.motions import MotionSet
 from rockbatch.quantities.demands import OF_INTERACTION, OF_SECTIONS
 from rockbatch.quantities.design import of_design
-from rockbatch.results.interaction import INTERACTION
 from rockbatch.results.run_json import describe_case
-from rockbatch.results.sections import SECTIONS
+from rockbatch.results.sections import INTERACTION, SECTIONS
 from rockbatch.study import Case, Study
 from rockbatch.study.bound_keys import key_at
 from rockbatch.study.design_bounds import Change

@@ -10,7 +10,7 @@ from rockbatch.observers.interaction.study import Interaction
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier.sections import section_heights
 from rockbatch.quantities.demands import OF_INTERACTION
-from rockbatch.results.interaction import INTERACTION
+from rockbatch.results.sections import INTERACTION
 from rockbatch.simulation.base_forces import at_rows
 from rockbatch.simulation.coarser import of_model
 from rockbatch.simulation.error_control import CHANCE

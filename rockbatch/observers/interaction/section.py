@@ -8,7 +8,7 @@ from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.templates import render
-from rockbatch.results.interaction import INTERACTION, read_interaction
+from rockbatch.results.sections import INTERACTION, read_forces
 
 MOST_CHECKS = 8
 """Most checks that are drawn."""
@@ -23,7 +23,7 @@ def section(finished: Finished) -> Markup:
     of_checks = grouped((verdict for verdict in finished.verdicts if verdict.capacity), lambda verdict: verdict.check)
     if not (path.exists() and of_checks):
         return Markup("")
-    rows = read_interaction(path, finished.info["varied"])
+    rows = read_forces(path, finished.info["varied"], OF_INTERACTION)
     runs = finished.runs.merge(rows, on=[name for name in rows if name not in OF_INTERACTION])
     checks = []
     for verdict, *_ in list(of_checks.values())[:MOST_CHECKS]:
