@@ -15,7 +15,7 @@ from rockbatch.common.units import rounded_up
 from rockbatch.pier import Base, problems
 from rockbatch.pier.sections import section_heights
 from rockbatch.pier.statics import in_words
-from rockbatch.quantities.statistics import _asce7_16_remark, _p84_95_remark, _p84_remark
+from rockbatch.quantities.statistics import _asce7_16_remark, _between_ranks, _p84_95_remark
 
 G = 9.81
 PIER = rb.Pier.from_size(0.2, 15.0, 3.0, G)  # I0/M = R0²/3
@@ -115,7 +115,7 @@ TEXTS: dict[str, tuple[Callable[[], object], list[float | str]]] = {
         lambda: section_heights(HEAVY, [3.5, 31.5]),
         ["sections_m", 31.5, 0.0, 2.0 * H],
     ),
-    "a quantile between ranks": (lambda: _p84_remark(RANKED), [7.0, 24.0, "%"]),
+    "a quantile between ranks": (lambda: _between_ranks(len(RANKED)), [7.0, 24.0, "%"]),
     "a quantile by rank": (lambda: _p84_95_remark(np.arange(25.0)), ["rank", 25.0, 25.0]),
     "unacceptable responses": (lambda: _asce7_16_remark(np.array([1.0, np.inf, np.inf, np.inf])), [3.0, 1.0]),
 }

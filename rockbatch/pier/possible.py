@@ -95,7 +95,7 @@ def problems(pier: Pier, base: Base) -> list[Problem]:
     if isinstance(base, YieldingBase) and base.eta < (least := least_eta(pier, base)):
         prestress = prestress_over_weight(pier, base.restraints)
         more = f" and the prestress of the tendons, psi = {prestress:g} of it" if prestress else ""
-        above = f"{_least_eta_in_words(base)}{rounded_up(least, 7):.7g}"
+        above = f"{'' if base.has_points else '1 + psi, '}{rounded_up(least, 7):.7g}"
         text = f"the springs cannot carry the weight{more}; eta must be above {above}"
         wrong.append(Problem("eta", base.eta, text, kind=OutOfRange))
     return wrong
@@ -186,11 +186,6 @@ def _wrong_stiffness(pier: Pier, base: ElasticBase) -> list[Problem]:
             f"{rounded_up(least):g}"
         )
     return [Problem("beta", base.beta, text, kind=OutOfRange)]
-
-
-def _least_eta_in_words(base: YieldingBase) -> str:
-    """Return "1 + psi, ", or of springs that may bear more than F_y nothing."""
-    return "" if base.has_points else "1 + psi, "
 
 
 def _near_yield(base: YieldingBase) -> str:

@@ -74,11 +74,6 @@ def _between_ranks(n: int) -> str:
     )
 
 
-def _p84_remark(values: Values) -> str:
-    """Return how the quantile of these values is found, as :func:`_between_ranks` does for their number."""
-    return _between_ranks(len(values))
-
-
 def _p84_95(values: Values) -> float:
     """Return the value at :func:`tolerance_rank`, or the greatest if there are too few for a rank."""
     rank = tolerance_rank(len(values))
@@ -220,7 +215,11 @@ STATISTICS = {
     "mean": Statistic("mean", _mean),
     "median": Statistic("median", lambda values: quantile(values, 0.5)),
     "p84": Statistic(
-        "84 % quantile", lambda values: quantile(values, P84), 6, remark=_p84_remark, coverage=_between_ranks
+        "84 % quantile",
+        lambda values: quantile(values, P84),
+        6,
+        remark=lambda values: _between_ranks(len(values)),
+        coverage=_between_ranks,
     ),
     "p84_95": Statistic("84 % quantile with 95 % confidence", _p84_95, 18, remark=_p84_95_remark),
     "p84_lognormal": Statistic(

@@ -88,12 +88,12 @@ def _undecided(study: Finished, rows: Sequence[Row], share: str, several: bool) 
     return f"is not decided{share}{f' ({reasons})' if reasons else ''}"
 
 
-def _unchecked(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
-    """Return that cases are not checked: "is not checked in 2 of 3 cases"."""
-    return f"is not checked{share}"
-
-
-_IN_WORDS = {PASS: _passing, FAIL: _failing, NOT_DECIDED: _undecided, DOES_NOT_APPLY: _unchecked}
+_IN_WORDS = {
+    PASS: _passing,
+    FAIL: _failing,
+    NOT_DECIDED: _undecided,
+    DOES_NOT_APPLY: lambda study, rows, share, several: f"is not checked{share}",
+}
 """What is said of cases, by the verdict on them, in this order."""
 
 

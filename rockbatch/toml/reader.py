@@ -495,11 +495,7 @@ def _has_required(file: Path, sections: Sequence[Section]) -> bool:
     return all(re.search(rf"^[ \t]*\[+[ \t]*{name}[ \t]*\]", text, re.MULTILINE) for name in names)
 
 
-def with_slashes(written: str) -> str:
-    r"""Return a path with slashes for backslashes, and for characters that TOML made of these, as a line break of "C:\new"."""
-    return written.translate(_SLASHED)
-
-
+# slashes for backslashes, and for characters that TOML made of these, as the line break in "C:\new"
 _SLASHED = str.maketrans({"\\": "/", "\n": "/n", "\t": "/t", "\r": "/r", "\b": "/b", "\f": "/f", "\x1b": "/e"})
 
 
@@ -522,7 +518,7 @@ def nearby(path: Path, written: str) -> str:
     It is ``written`` with slashes if it has backslashes, which begin other characters in a text of TOML, whether there is such a
     file or not; else that of :func:`_spelt_out`; else a file of similar name beside ``path``.
     """
-    if (slashed := with_slashes(written)) != written:
+    if (slashed := written.translate(_SLASHED)) != written:
         return f"; did you mean {shown(slashed)}? Slashes do on every system"
     if (other := _spelt_out(path, written)) is not None:
         return f"; did you mean {shown(other)}?"

@@ -8,7 +8,7 @@ import csv
 import itertools
 import math
 import os
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from itertools import product
@@ -257,13 +257,9 @@ def _finished(directory: Path, study: Study, names: Sequence[str]) -> Iterator[d
             cells = read_cells({name: csv_plain(cell) for name, cell in row.items()})
             own = {name: of_runs.get(identity(cells, study.varied), ()) for name, of_runs in beside.items()}
             yield cells | {
-                name: packed_rows([_without(each, naming) for each in of_run]) for name, of_run in own.items()
+                name: packed_rows([{n: cell for n, cell in each.items() if n not in naming} for each in of_run])
+                for name, of_run in own.items()
             }
-
-
-def _without(row: Row, names: Container[str]) -> Row:
-    """Return the cells of a row but those of ``names``."""
-    return {name: cell for name, cell in row.items() if name not in names}
 
 
 def _announce(

@@ -197,13 +197,8 @@ def fragility(
         jobs,
         fresh,
         progress,
-        _of_pier,
+        lambda spec: spec.per_pier is not None,  # axes of a pier then share a curve, so that both are taken
     )
-
-
-def _of_pier(spec: FragilitySpec) -> bool:
-    """Return whether cases across a pier's axis are taken, too: if the measure is over g tan α, so that axes share a curve."""
-    return spec.per_pier is not None
 
 
 def _write_tables(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, object]:
