@@ -107,7 +107,7 @@ class Written:
         try:
             study = Study.from_dict(tables, self.study.path, motions=self.study.motions.override)
         except InputError as error:
-            return str(error.messages[0]).removeprefix(f"{self.study.path}: ")
+            return str(replace(error.problems[0], place=""))
         columns: dict[str, float | str] = dict(zip(self.spec.paths, values, strict=True))
         own = [each for each in study.cases if each.name_along == case]
         by_design = grouped(own, self._design)
