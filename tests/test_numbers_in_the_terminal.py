@@ -113,7 +113,9 @@ def test_faults_are_listed_by_reason_the_rarest_first_and_the_rest_counted():
 
 
 def test_the_records_that_govern_a_check_are_counted_over_its_cases():
-    cells = [SimpleNamespace(verdict=SimpleNamespace(record=name)) for name in ("a", "b", "a", "", "a")] + [None]
+    cells = [
+        SimpleNamespace(verdict=SimpleNamespace(record=name, is_ban=True)) for name in ("a", "b", "a", "", "a")
+    ] + [None]
     (line,) = scorecard._governing([("drift", cells)], lambda verdict: f"record {verdict.record}")
     assert_states(line, "governs drift", "record a", 3.0, 4.0, "record b", 1.0, 4.0)
 

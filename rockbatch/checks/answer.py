@@ -218,6 +218,7 @@ class _Cases:
             details = (f"Closest to its limit: {self._place(closest)} at {wording.percent(closest.ratio)}.",)
         details = (
             *details,
+            *self._alone(names),
             *self._coverage(names),
             *self._beyond(names),
             *self._cut_short(names),
@@ -261,6 +262,12 @@ class _Cases:
         """Return a sentence on the cases with runs that do not end standing, by :meth:`_with_ends`; () if all runs stand."""
         ended = [name for name in names if any(runs.ended for runs in self.runs.get(name, ()))]
         return (f"Not every run ends standing: {self._with_ends(ended)}.",) if ended else ()
+
+    def _alone(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return "Under one station only." if no check that these cases pass counts more than one record; () otherwise."""
+        passed = [verdict for verdict in self._of(names, PASS) if verdict.statistic]
+        alone = passed and max(verdict.records for verdict in passed) == 1
+        return (f"Under one {passed[0].count} only.",) if alone else ()
 
     def _coverage(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return the sentences of statistics on how many further records may exceed them, each after the checks that these cases

@@ -137,6 +137,13 @@ class Verdict:
         return next((name for name in self.omits if not OMISSIONS[name].decides), "")
 
     @property
+    def why_open(self) -> str:
+        """Return why a verdict is not decided, by its omission without an upper bound, else its first remark; "" of others."""
+        if self.verdict != NOT_DECIDED:
+            return ""
+        return OMISSIONS[self.left_open].remark if self.left_open else next(iter(self.remarks), "")
+
+    @property
     def is_lower_bound(self) -> bool:
         """True if the upper bound alone is infinite: the demand is at least its value. False if that is for modes left out."""
         return math.isinf(self.high) and math.isfinite(self.value) and MODES not in self.omits

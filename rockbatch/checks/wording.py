@@ -210,11 +210,18 @@ def governing(verdict: Verdict, record: str) -> str:
     if not verdict.record:
         return ""
     left_open = is_left_open(verdict)
-    alone = verdict.is_ban or verdict.governing == verdict.value
-    text = f"{'left open by' if left_open else 'governs:' if alone else 'largest:'} {run(verdict, record)}"
+    text = f"{'left open by' if left_open else 'governs:' if is_alone(verdict) else 'largest:'} {run(verdict, record)}"
     if verdict.is_ban:
         return text
     return text + _demand_of_record(verdict)
+
+
+def is_alone(verdict: Verdict) -> bool:
+    """Return whether the run that governs sets the value of the check, and is not only the largest of a mean or a rank.
+
+    True for a value that is not known.
+    """
+    return verdict.is_ban or verdict.governing == verdict.value or math.isnan(verdict.value)
 
 
 def demanded_by(verdict: Verdict, record: str) -> str:

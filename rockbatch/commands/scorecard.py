@@ -9,7 +9,7 @@ from rockbatch.checks.coverage import CaseRuns
 from rockbatch.checks.responses import LOST, RESPONSES, Worst, heights_of, standing
 from rockbatch.checks.scorecard import MOST_CASES, OPEN_CASES, Cell, scorecard
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, PASS
-from rockbatch.checks.wording import SIGNS
+from rockbatch.checks.wording import SIGNS, is_alone
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import Case
@@ -54,9 +54,10 @@ def of_checks(
 def _governing(
     columns: Sequence[tuple[str, Sequence[Cell | None]]], record_of: Callable[[Verdict], str]
 ) -> Iterator[str]:
-    """Yield for each check with governing records a line with these, the most frequent first.
+    """Yield for each check with governing records a line with these, the most frequent first: "governs drift: NAME".
 
-    Several are each followed by the number of cases that they govern: "NAME (2 of 3 cases)".
+    "largest in drift: …" if they do not set its value, as under a mean. Several are each followed by the number of cases that
+    they govern: "NAME (2 of 3 cases)".
     """
     for check, cells in columns:
         verdicts = [cell.verdict for cell in cells if cell and cell.verdict.record]
@@ -64,7 +65,8 @@ def _governing(
         several = len(records) > 1
         names = [f"{name} ({count} of {len(verdicts)} cases)" if several else name for name, count in records]
         if names:
-            yield filled(f"governs {check}: {'; '.join(names)}")
+            word = "governs" if all(map(is_alone, verdicts)) else "largest in"
+            yield filled(f"{word} {check}: {'; '.join(names)}")
 
 
 def of_responses(

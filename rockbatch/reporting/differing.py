@@ -238,6 +238,12 @@ def _of_motions(a: Finished, b: Finished) -> list[Difference]:
     return rows
 
 
+def other_motions(a: Finished, b: Finished) -> bool:
+    """Return whether two studies ran other motions, or the same at other scales or polarities."""
+    requested = [{*zip(x.runs["record"], x.runs["scale"], x.runs["polarity"], strict=True)} for x in (a, b)]
+    return requested[0] != requested[1] or any(_differ(a.records[name], b.records[name]) for name in a.records)
+
+
 def _differ(first: Mapping[str, Any], second: Mapping[str, Any]) -> bool:
     """Return whether two records are different motions, by their digests, or by their numbers if an earlier version wrote one."""
     if "digest" in first and "digest" in second:

@@ -10,6 +10,7 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import grouped
 from rockbatch.quantities.design import of_design
 from rockbatch.quantities.rows import as_in_peaks
+from rockbatch.reporting.differing import other_motions
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, tag
 from rockbatch.reporting.pair import SIDES, Pair
@@ -23,11 +24,26 @@ DIGITS = 1e-3
 def headline(pair: Pair) -> str:
     """Return which study passes, by how much, and which fails what: "A passes all, closest 83 % (…); B fails ….".
 
-    If no verdict of either is on a case, it says that neither study has limits.
+    If no verdict of either is on a case, it says that neither study has limits; of two with limits, which of motions and checks
+    are other ones, so that the shares do not compare the piers alone.
     """
     if not any(verdict.case for study in pair.studies for verdict in study.verdicts):
         return "Neither study has limits, so that neither passes or fails."
-    return "; ".join(_state(side, study) for side, study in zip(SIDES, pair.studies, strict=True)) + "."
+    states = "; ".join(_state(side, study) for side, study in zip(SIDES, pair.studies, strict=True))
+    return f"{states}.{_unlike(*pair.studies)}"
+
+
+def _unlike(a: Finished, b: Finished) -> str:
+    """Return " Their motions and checks are not the same.", or one of both; "" if they are, or if one has no limits."""
+    checks = [{_requirement(verdict) for verdict in study.verdicts if verdict.case} for study in (a, b)]
+    kinds = {"motions": other_motions(a, b), "checks": checks[0] != checks[1]}
+    words = " and ".join(kind for kind, differ in kinds.items() if differ)
+    return f" Their {words} are not the same." if words and all(checks) else ""
+
+
+def _requirement(verdict: Verdict) -> tuple[object, ...]:
+    """Return what a check asks: its name, demand, statistic, way of counting, sense and limit."""
+    return verdict.check, verdict.demand, verdict.statistic, verdict.count, verdict.sense, verdict.limit
 
 
 def _state(side: str, study: Finished) -> str:

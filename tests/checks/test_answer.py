@@ -1,6 +1,7 @@
 """The answer to a set of checks: in order, in numbers, and never green where nothing limits what governs."""
 
 import math
+from dataclasses import replace
 
 import pandas as pd
 import pytest
@@ -61,6 +62,20 @@ def test_a_pass_names_the_record_that_is_beyond_the_limit_by_itself():
     assert f"Single records are beyond the limit: {told}." in line.details
     (line,) = lines([verdict("rock", PASS, governing=0.4, **record)])
     assert not any("Single records" in detail for detail in line.details)
+
+
+def test_a_pass_under_one_record_says_so():
+    """A mean or a maximum of one is no statistic."""
+    rows = [
+        verdict("pads", PASS, records=1),
+        verdict("pads", PASS, check="bearing", demand="eta", statistic="", records=0),
+    ]
+    (line,) = lines([replace(row, count="station" if row.statistic else "") for row in rows])
+    assert "Under one station only." in line.details
+    (line,) = lines([*rows, verdict("pads", PASS, check="drift", records=2)])
+    assert not any("only" in words for words in line.details)
+    (line,) = lines([verdict("pads", PASS, check="bearing", demand="eta", statistic="", records=0)])
+    assert not any("only" in words for words in line.details)
 
 
 def test_a_pass_says_that_directions_are_missing_and_that_stations_are_of_one_event():

@@ -198,13 +198,14 @@ def test_the_text_counts_columns_left_out_and_names_unchecked_cases():
 
 
 def test_the_text_names_the_records_that_govern_each_check_the_most_frequent_first():
-    found = [
-        replace(verdict(case, PASS), record=record) for case, record in zip("abc", ("r2", "r1", "r1"), strict=True)
-    ]
-    found += [replace(verdict(case, FAIL, check="q"), record="r3") for case in "ab"]
+    rows = zip("abc", ("r2", "r1", "r1"), strict=True)
+    found = [verdict(case, PASS, record=record, value=0.3, governing=0.3) for case, record in rows]
+    found += [verdict(case, FAIL, check="q", record="r3", value=0.6, governing=0.6) for case in "ab"]
+    found += [verdict("a", PASS, check="mean", record="r4", value=0.2, governing=math.inf)]  # sets no mean
     text = of_checks(found, name_of, (), (), lambda verdict: verdict.record.upper())
     said = [line for line in text.splitlines() if line.startswith("governs ")]
     assert said == ["governs q: R3", f"governs {found[0].check}: R1 (2 of 3 cases); R2 (1 of 3 cases)"]
+    assert "largest in mean: R4" in text.splitlines()
 
 
 def test_a_response_without_a_limit_on_both_axes_is_named_once():

@@ -146,14 +146,41 @@ def test_a_check_that_fails_in_two_cases_is_one_check_and_another_is_one_more(tm
     cases = [SPRINGS, SPRINGS | {"name": "soft"}]
     checks = [ROTATION, ROTATION | {"name": "strict", "at_most": 0.1}]
     folders = two(tmp_path, tables(), tables(case=cases, check=checks), (0.2, 0.6))
-    assert said(folders).split("; ")[1] == "B fails strict at 600 % (springs, Lyttelton) and 1 more in all 2 cases."
+    assert (
+        said(folders)
+        .split("; ")[1]
+        .startswith("B fails strict at 600 % (springs, Lyttelton) and 1 more in all 2 cases.")
+    )
 
 
 def test_a_check_that_an_event_never_happens_is_not_the_closest_to_its_limit(tmp_path):
     """A ban, of which the ratio is 0 or 1, is no margin, unlike the rotation's 40 %."""
     never = {"name": "stands", "demand": "overturned", "at_most": 0.9, "reason": "agreed"}
     folders = two(tmp_path, tables(check=[never]), tables(check=[ROTATION, never]))
-    assert said(folders) == "A is not decided (no limit on rotation); B passes all, closest 40 % (rotation, Lyttelton)."
+    told = "A is not decided (no limit on rotation); B passes all, closest 40 % (rotation, Lyttelton)."
+    assert said(folders) == f"{told} Their checks are not the same."
+
+
+@pytest.mark.parametrize(
+    ("other", "kinds"),
+    [
+        ({"motions": {"pulse": PULSES[:1]}}, "motions"),
+        ({"motions": {"pulse": [PULSES[0], PULSES[1] | {"amplitude_g": 0.5}]}}, "motions"),
+        ({"check": [ROTATION | {"at_most": 0.6}]}, "checks"),
+        (
+            {"check": [ROTATION | {"statistic": "mean"}], "motions": {"pulse": PULSES[1:]}},
+            "motions and checks",
+        ),
+        (
+            {"case": [SPRINGS | {"zeta": 0.1}], "numerics": {"substeps": 4}, "check": [ROTATION | {"reason": "code"}]},
+            "",
+        ),
+    ],
+)
+def test_the_first_line_says_if_shares_are_of_other_motions_or_limits(tmp_path, other, kinds):
+    """Half the motion, or a limit twice as high, looked like a better pier."""
+    text = said(two(tmp_path, tables(), tables(**other)))
+    assert text.endswith(f". Their {kinds} are not the same." if kinds else "closest 40 % (rotation, Lyttelton).")
 
 
 def test_a_suite_that_fails_its_own_checks_is_said_beside_what_passes(tmp_path):

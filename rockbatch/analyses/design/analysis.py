@@ -318,6 +318,8 @@ def _described(trials: Trials, spec: DesignSpec, written: Written, study: Study)
         "omitted": [
             {"checks": list(checks), "remark": OMISSIONS[name].remark} for name, checks in trials.omitted.items()
         ],
+        "beyond": list(trials.beyond),
+        "cut_short": trials.cut_short,
         "tried": len(trials.judged),
         "passing": len(passing),
         "refused": refused,

@@ -35,7 +35,7 @@ def answer(info: Entry, intervals: "pd.DataFrame", values: "pd.DataFrame") -> li
     said: list[Said] = []
     for label, own in by_design(info, rows).items():
         several = len(info["designs"]) > 1 or info["lacking"]
-        of_one = _of_map(info, own) if len(info["vary"]) > 1 else _of_line(info, own, tried[label])
+        of_one = (_of_map if len(info["vary"]) > 1 else _of_line)(info, own, tried[label])
         said += [(verdict, f"{label}: {words}" if several else capital(words)) for verdict, words in of_one]
     return [*said, *_remarks(info, rows)]
 
@@ -68,8 +68,8 @@ def plain(value: float) -> str:
 def governs(row: Entry, end: str = "", short: bool = False) -> str:
     """Return what governs at a value, or at an ``end`` of an interval: "drift under soft ground at 101 %, in LGP000".
 
-    Without a check it is the reason, or empty. A ratio that is 0 or infinite and a scale of 1 are left out, and so is the record
-    if ``short``.
+    Without a check it is the reason, or empty; of what is not decided the reason follows. A ratio that is 0 or infinite and a
+    scale of 1 are left out, and so are record and reason if ``short``.
     """
     prefix = f"{end}_" if end else ""
     check, reason = row[f"{prefix}check"], row[f"{prefix}reason"]
@@ -79,7 +79,10 @@ def governs(row: Entry, end: str = "", short: bool = False) -> str:
     words = f"{check} under {bound}" if is_known(bound) else str(check)
     words += f" at {percent(ratio)}".replace("\u00a0", " ") if is_known(ratio) and 0.0 < ratio < math.inf else ""
     words += f", scale {scale:g}" if scale != 1.0 else ""
-    return f"{words}, in {record}" if is_known(record) and not short else words
+    if short:
+        return words
+    words += f", in {record}" if is_known(record) else ""
+    return f"{words}: {reason}" if is_known(reason) else words
 
 
 def _of_line(info: Entry, rows: Sequence[Entry], tried: Sequence[Entry]) -> Iterator[Said]:
@@ -93,7 +96,7 @@ def _of_line(info: Entry, rows: Sequence[Entry], tried: Sequence[Entry]) -> Iter
         low, high = (plain(info["vary"][0][end]) for end in ("low", "high"))
         yield (
             _verdict_without_pass(rows),
-            f"no value of {path} that was run from {low} to {high} passes every check{_nearest(tried, path)}.",
+            f"no value of {path} that was run from {low} to {high} passes every check{_nearest(tried, [path])}.",
         )
         return
     row = passing[0 if find == "least" else -1]
@@ -133,7 +136,8 @@ def _interval(row: Entry) -> str:
             if is_known(row[end])
             else ": end of the scan"
         )
-        ends.append(f"{end}{state}")
+        is_open = row[f"{end}_verdict"] == NOT_DECIDED and is_known(row[f"{end}_reason"])
+        ends.append(f"{end}{state}, {row[f'{end}_reason']}" if is_open else f"{end}{state}")
     return f"{plain(row['low'])} to {plain(row['high'])} ({'; '.join(ends)})"
 
 
@@ -149,20 +153,21 @@ def _verdict_without_pass(rows: Sequence[Entry]) -> str:
     return NOT_DECIDED if any(row["verdict"] == NOT_DECIDED for row in rows) else FAIL
 
 
-def _nearest(tried: Sequence[Entry], path: str) -> str:
+def _nearest(tried: Sequence[Entry], paths: Sequence[str]) -> str:
     """Return the value nearest to passing: "; nearest is 4, which fails: drift at 120 %, in LGP000"; empty if all are refused.
 
-    A value that is not decided is nearer than one that fails, then one with a lower ratio.
+    Of two keys it has both values. A value that is not decided is nearer than one that fails, then one with a lower ratio.
     """
     order = {NOT_DECIDED: 0, FAIL: 1}
     candidates = [row for row in tried if row["verdict"] in order]
     if not candidates:
         return ""
     nearest = min(candidates, key=lambda row: (order[row["verdict"]], row["ratio"] if is_known(row["ratio"]) else 0.0))
-    return f"; nearest is {plain(nearest[path])}, which {_STATES[nearest['verdict']]}: {governs(nearest)}"
+    values = ", ".join(plain(nearest[path]) for path in paths)
+    return f"; nearest is {values}, which {_STATES[nearest['verdict']]}: {governs(nearest)}"
 
 
-def _of_map(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
+def _of_map(info: Entry, rows: Sequence[Entry], tried: Sequence[Entry]) -> Iterator[Said]:
     """Yield sentences on the passing values of two keys: the least or greatest of the first over all values of the second.
 
     Then at how many values of the second none passes, if any; a single sentence if no pair passes.
@@ -170,7 +175,8 @@ def _of_map(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
     (path, other), find = (varied["path"] for varied in info["vary"]), info["find"]
     passing, number = [row for row in rows if row["verdict"] == PASS], len({row[other] for row in rows})
     if not passing:
-        yield _verdict_without_pass(rows), "no pair of values that was run passes every check."
+        nearest = _nearest(tried, [path, other])
+        yield _verdict_without_pass(rows), f"no pair of values that was run passes every check{nearest}."
         return
     end, outer, best = ("low", "below", min) if find == "least" else ("high", "above", max)
     row = best(passing, key=lambda each: float(each[end]))
@@ -191,7 +197,8 @@ def _of_map(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
 
 
 def _remarks(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
-    """Yield what the answer leaves open: steps without a run, responses without a limit, omissions of demands, unusable files.
+    """Yield what the answer leaves open: steps without a run, responses without a limit, single records, runs and demands that
+    passes leave out, unusable files.
 
     Then, without a verdict, how many values are refused, with the first reason, and which cases lack the keys.
     """
@@ -207,6 +214,13 @@ def _remarks(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
         yield NOT_DECIDED, f"Between the values of {other['path']}, {other['step']:.4g} apart, nothing was run."
     if info["without_limit"]:
         yield NOT_DECIDED, f"No limit is set on {', '.join(info['without_limit'])}, of designs that pass."
+    if info["beyond"]:
+        yield NOT_DECIDED, f"Single records are beyond the limit, with values that pass: {', '.join(info['beyond'])}."
+    if info["cut_short"]:
+        yield (
+            NOT_DECIDED,
+            f"Not every run ends standing, with {info['cut_short']} of {info['passing']} values that pass.",
+        )
     for omitted in info["omitted"]:
         yield NOT_DECIDED, f"{', '.join(omitted['checks'])}: {omitted['remark']}."
     if info["unusable"]:

@@ -11,10 +11,12 @@ from rockbatch.analyses.design.study import DesignSpec, rounded
 from rockbatch.analyses.design.written import with_value
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.waves import Waves
+from rockbatch.checks.coverage import CaseRuns, runs_of_cases
 from rockbatch.checks.judging import judge
-from rockbatch.checks.responses import RESPONSES, unlimited, worst_of_cases
+from rockbatch.checks.responses import RESPONSES, Worst, unlimited, worst_of_cases
 from rockbatch.checks.suite import Suite
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, NOT_DECIDED, PASS, Verdict
+from rockbatch.checks.wording import is_passed_by_statistic
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
@@ -47,7 +49,7 @@ class Trial(NamedTuple):
 
 
 class Judged(NamedTuple):
-    """The verdict on a trial, the check that governs it, and the reason of a refusal.
+    """The verdict on a trial, the check that governs it, and the reason why it is refused or not decided.
 
     The check that fails most governs what fails, of what is not decided the one that is nearest to failing or beyond, and of
     what passes the one that is closest to its limit.
@@ -121,9 +123,10 @@ class Written:
 class Trials:
     """All trials, each run and judged once; ``verdicts`` has those of every check.
 
-    Of those that pass ``free`` has the responses without a limit, and ``omitted`` the checks whose demands leave something out,
-    by its name in :data:`rockbatch.checks.omissions.OMISSIONS`. ``of_motions`` is what is known of the motions; ``suite`` returns
-    the verdicts on the suite with the cases of a trial: under one that fails nothing is decided.
+    Of those that pass ``free`` has the responses without a limit, ``omitted`` the checks whose demands leave something out, by
+    its name in :data:`rockbatch.checks.omissions.OMISSIONS`, ``beyond`` the checks that a single record exceeds, and
+    ``cut_short`` is the number of those with runs that do not end standing. ``of_motions`` is what is known of the motions;
+    ``suite`` returns the verdicts on the suite with the cases of a trial: under one that fails nothing is decided.
     """
 
     def __init__(self, written: Written, motions: MotionSet, waves: Waves, of_motions: Suite, suite: OnSuite) -> None:
@@ -133,6 +136,8 @@ class Trials:
         self.verdicts: list[Verdict] = []
         self.free: dict[str, None] = {}
         self.omitted: dict[str, dict[str, None]] = {}
+        self.beyond: dict[str, None] = {}
+        self.cut_short = 0
 
     def execute(self, requested: Iterable[Trial]) -> None:
         """Run and judge those trials that are not judged yet; one with which the study is refused is REFUSED without a run."""
@@ -153,7 +158,7 @@ class Trials:
         return Plan(replace(self.waves.study, cases=cases), self.motions)
 
     def _judge(self, name: str, cases: Mapping[Trial, Sequence[Case]], peaks: "pd.DataFrame") -> None:
-        """Judge the trials of a case by the checks that are about it, and note ``free`` and ``omitted`` of those that pass."""
+        """Judge the trials of a case by the checks that are about it, and :meth:`_note` what those that pass leave out."""
         study = self.waves.study
         described = [describe_case(case) for of_trial in cases.values() for case in of_trial]
         names = frozenset(case.name_along for case in self.written.study.cases)
@@ -172,6 +177,8 @@ class Trials:
         self.verdicts += verdicts
         of_values = grouped(verdicts, lambda verdict: _values(verdict.columns, self.written.spec))
         worst = grouped(worst_of_cases(runs, described), lambda each: _values(each.case["columns"], self.written.spec))
+        counted = runs_of_cases(runs, described, len(self.motions.motions))
+        suites = grouped(counted, lambda each: _values(each.columns, self.written.spec))
         for trial in cases:
             key = trial.values, trial.design.columns
             own = of_values.get(key, [])
@@ -180,11 +187,16 @@ class Trials:
                 [*own, *(replace(verdict, verdict=NOT_DECIDED) for verdict in of_suite)]
             )
             if judged.verdict == PASS:
-                free = unlimited(worst.get(key, []), own)
-                self.free |= dict.fromkeys(RESPONSES[each.demand].words for each in free)
-                for verdict in own:
-                    for name in verdict.omits:
-                        self.omitted.setdefault(name, {})[verdict.check] = None
+                self._note(own, worst.get(key, []), suites.get(key, []))
+
+    def _note(self, verdicts: Sequence[Verdict], worst: Sequence[Worst], suites: Sequence[CaseRuns]) -> None:
+        """Note what a trial that passes leaves out, by its verdicts, worst responses and runs."""
+        self.free |= dict.fromkeys(RESPONSES[each.demand].words for each in unlimited(worst, verdicts))
+        self.beyond |= dict.fromkeys(verdict.check for verdict in verdicts if is_passed_by_statistic(verdict))
+        self.cut_short += any(runs.ended for runs in suites)
+        for verdict in verdicts:
+            for name in verdict.omits:
+                self.omitted.setdefault(name, {})[verdict.check] = None
 
     def _beside(self, name: str, numbers: Iterable[str]) -> "pd.DataFrame | None":
         """Return a table beside the runs, its ``numbers`` with the digits that they have in its file; None without it."""
@@ -212,7 +224,8 @@ def _judged(verdicts: Sequence[Verdict]) -> Judged:
         return Judged(NOT_DECIDED, None, "no check applies")
     worst = max((verdict.verdict for verdict in applying), key=WORSE.index)
     of_worst = [verdict for verdict in applying if verdict.verdict == worst]
-    return Judged(worst, max(of_worst, key=lambda verdict: -1.0 if verdict.ratio != verdict.ratio else verdict.ratio))
+    governing = max(of_worst, key=lambda verdict: -1.0 if verdict.ratio != verdict.ratio else verdict.ratio)
+    return Judged(worst, governing, governing.why_open)
 
 
 def worse(first: Judged, second: Judged) -> Judged:

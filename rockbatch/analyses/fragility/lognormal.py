@@ -368,6 +368,9 @@ class _Likelihood:
         """Return the score of one record in each interval, shape (n, 2 + k), and the Hessian, shape (2 + k, 2 + k), of ℓ."""
         z1, z2 = (z[0] for z in self._z(point[None]))
         log_d = _log_difference(z1, z2)
+        log_d[np.isneginf(log_d)] = (
+            np.inf
+        )  # a point without probability, which the search tries and leaves: no derivatives
         g1, g2 = (np.exp(-0.5 * z**2 - 0.5 * math.log(2.0 * math.pi) - log_d) for z in (z1, z2))
         z1, x1 = np.where(np.isinf(z1), 0.0, z1), np.where(np.isinf(self.low), 0.0, self.low)
         z2, x2 = np.where(np.isinf(z2), 0.0, z2), np.where(np.isinf(self.high), 0.0, self.high)

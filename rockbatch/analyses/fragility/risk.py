@@ -27,6 +27,15 @@ NOTABLE = 0.05
 MIDDLE = (0.05, 0.95)
 """Shares of a rate between which the intensities lie that are named as those that contribute."""
 
+BY_SHARES = (
+    "a bound by the shares of these records at the levels, as if all motions had them: without a curve or an interval"
+)
+BEYOND_HAZARD = (
+    "what the points of the hazard contribute: with its first slope below them the rate would be more than that of its weakest "
+    "motions, so that it has to begin at weaker ones"
+)
+"""Notes on bounds of a rate."""
+
 BINS_PER_DECADE, POINTS_PER_BIN = 10, 50
 
 
@@ -71,13 +80,15 @@ class Risk:
 
 @dataclass(frozen=True)
 class RiskBound:
-    """Bounds of the rate of a case whose median has bounds only.
+    """Bounds of the rate of a case whose median has bounds only, or that would be more than the hazard has.
 
-    ``bounds`` are those of :func:`rate_bounds`, by the shares of the records at the levels; the greater may be infinite.
+    ``bounds`` are those of :func:`rate_bounds`, by the shares of the records at the levels, or begin with what the points of the
+    hazard contribute; the greater may be infinite. ``note`` says which.
     """
 
     curve: Curve
     bounds: Interval
+    note: str
 
     @property
     def kind(self) -> str:
@@ -87,9 +98,9 @@ class RiskBound:
 
 
 def rate_bounds_of(curves: Sequence[Curve], spec: FragilitySpec) -> list[RiskBound]:
-    """Return bounds of the annual rate of every curve with a bound instead of a median, not of clouds; [] without a hazard.
+    """Return bounds of the annual rate of every curve with a bound instead of a median, or a rate beyond the hazard.
 
-    Each intensity of a cloud has a single record, whose share, 0 or 1, bounds no rate.
+    Empty without a hazard. Each intensity of a cloud has a single record, whose share, 0 or 1, bounds no rate.
     """
     if spec.hazard is None:
         return []
@@ -98,15 +109,24 @@ def rate_bounds_of(curves: Sequence[Curve], spec: FragilitySpec) -> list[RiskBou
     for curve in curves:
         if isinstance(curve.fitted, NoCurve) and curve.fitted.is_bound and not curve.cloud:
             levels, least, most = curve.shares
-            bounds.append(RiskBound(curve, rate_bounds(levels, least, most, hazard.rate(levels))))
-    return bounds
+            bounds.append(RiskBound(curve, rate_bounds(levels, least, most, hazard.rate(levels)), BY_SHARES))
+    beyond = (risk for risk in _of_fitted(curves, spec) if risk.rate > _meaningful(hazard))
+    return [
+        *bounds,
+        *(RiskBound(risk.curve, (risk.bounds[0] - risk.below, math.inf), BEYOND_HAZARD) for risk in beyond),
+    ]
 
 
 def risks(curves: Sequence[Curve], spec: FragilitySpec) -> list[Risk]:
-    """Return the annual rate of every fitted curve, with its interval; [] without a hazard."""
-    hazard = spec.hazard
-    if hazard is None:
+    """Return the annual rate of every fitted curve, with its interval, unless it is beyond the hazard; [] without one."""
+    if spec.hazard is None:
         return []
+    return [risk for risk in _of_fitted(curves, spec) if risk.rate <= _meaningful(spec.hazard.curve)]
+
+
+def _of_fitted(curves: Sequence[Curve], spec: FragilitySpec) -> list[Risk]:
+    hazard = spec.hazard
+    assert hazard is not None
     x, rates = hazard.curve.quadrature()
     return [
         _risk(curve, curve.fitted, spec, hazard, x, rates) for curve in curves if not isinstance(curve.fitted, NoCurve)
@@ -197,7 +217,7 @@ def risk_table(
 ) -> "pd.DataFrame":
     """Return fragility_risk.csv: a row for each curve, with the fields of :class:`Risk`; an open bound is empty.
 
-    ``bound`` is "at least", "at most" or "between" of a curve of whose median a bound alone is known, and else empty. There
+    ``bound`` is "at least", "at most" or "between" of a curve whose median or rate has a bound alone, and else empty. There
     ``rate_per_year`` is empty, and ``rate_least`` and ``rate_most`` are the bounds. Without both there is the reason, as
     its ``note``.
     """
@@ -240,8 +260,7 @@ def _row_of_bound(risk: RiskBound, spec: FragilitySpec, varied: Sequence[str]) -
             f"p_in_{years:g}_years_low": _probability(least, years),
             f"p_in_{years:g}_years_high": _probability(most, years),
         }
-    words = "a bound by the shares of these records at the levels, as if all motions had them: without a curve or an interval"
-    return row | {"note": words}
+    return row | {"note": risk.note}
 
 
 def _probability(rate: float, years: float) -> float:

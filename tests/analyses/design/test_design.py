@@ -305,6 +305,31 @@ def test_what_is_not_decided_is_no_pass():
     found = rb.design(study(check=[few]))
     assert rows(found, "verdict") == [["not decided"], ["fail"]]
     assert found.answer[0].startswith("No value of pier.p that was run")
+    assert found.answer[0].endswith(
+        ", in one-sine: 1 station counts, the check asks for 7."
+    )  # a share alone looks like a pass
+    pair = {"vary": ["pier.p", "pier.alpha"], "between": [[1.0, 2.2], [0.2, 0.25]], "points": [2, 2], "width": 1.0}
+    found = rb.design(study(pair, check=[few]))
+    told = "No pair of values that was run passes every check; nearest is 1, 0."
+    assert found.answer[0].startswith(told)
+    assert "1 station counts, the check asks for 7" in found.answer[0]
+
+
+def test_a_value_that_passes_with_runs_that_fall_says_so():
+    """By a median, and a check that lets one of three fall: both were said of a run of this value, and not here."""
+    median, may_fall = (
+        ROTATION | {"statistic": "median"},
+        STANDS | {"statistic": "count", "at_most": 1, "confirm": ["at_most"]},
+    )
+    strong = PULSE | {"name": "strong", "amplitude_g": 2.0, "period_s": 1.5}
+    pulses = [PULSE | {"name": name, "amplitude_g": 0.3} for name in "ab"] + [strong]
+    text = study_text(
+        pier=PIER, pulses=pulses, cases=[RIGID], check=[median, may_fall], design=SIZE | {"points": 2, "width": 1.0}
+    )
+    found = rb.design(rb.Study.from_toml(text))
+    assert "Single records are beyond the limit, with values that pass: rotation." in found.answer
+    assert "Not every run ends standing, with 2 of 2 values that pass." in found.answer
+    assert not any("Single records" in words or "ends standing" in words for words in rb.design(study()).answer)
 
 
 def test_under_a_suite_that_fails_its_target_nothing_passes():
@@ -336,6 +361,8 @@ def said_of(verdicts, **more):
         "bounds": [],
         "without_limit": [],
         "omitted": [],
+        "beyond": [],
+        "cut_short": 0,
     }
     info |= {"unusable": 0, "refused": [], "tried": len(verdicts), "under": []} | more
     return [

@@ -20,7 +20,7 @@ import rockbatch as rb
 from rockbatch.analyses.fragility.curves import Curve, Readings, Undecided
 from rockbatch.analyses.fragility.hazard import Dispersion, Hazard
 from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, NoCurve, fit
-from rockbatch.analyses.fragility.risk import Risk, described, note, risk_table, risks
+from rockbatch.analyses.fragility.risk import Risk, described, described_bound, note, rate_bounds_of, risk_table, risks
 from rockbatch.analyses.fragility.study import OVERTURNING, FragilitySpec, read_fragility
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
@@ -195,6 +195,21 @@ def test_an_upper_bound_above_the_rate_of_the_lowest_point_says_nothing(levels, 
     assert (never.rate, np.isfinite(never.contributing).all()) == (0.0, True)
     (row,) = risk_table([never.curve], [never], spec, ()).to_dict("records")
     assert (row["p_in_50_years"], "density" in described(never, spec)) == (0.0, False)
+
+
+def test_a_rate_above_that_of_the_weakest_motions_is_a_bound_by_what_the_hazard_has():
+    """ν ∝ x⁻⁴ between 2 and 3 g, and a median of 0.5 g: 0.05 a year by the slope below 2 g, where 2 g come every 1,000 years."""
+    hazard = HazardCurve([2.0, 3.0], [1e-3, 1e-3 * (2 / 3) ** 4])
+    spec = FragilitySpec("ida", "PGA", (0.2, 0.6), (), hazard=Hazard(hazard))
+    curves = [curve_of(exactly(0.5, 0.05)), curve_of(exactly(4.0, 0.05))]
+    assert [risk.curve for risk in risks(curves, spec)] == curves[1:]
+    row, other = risk_table(curves, risks(curves, spec), spec, ()).to_dict("records")
+    assert (row["bound"], row["rate_least"]) == ("at least", pytest.approx(1e-3, rel=1e-3))
+    assert np.isnan([row["rate_per_year"], row["p_in_50_years"]]).all()
+    assert "it has to begin at weaker ones" in row["note"]
+    assert other["rate_per_year"] == pytest.approx(1e-3 / 16, rel=0.05)
+    (bound,) = rate_bounds_of(curves, spec)
+    assert described_bound(bound, spec)["rate_most"] is None
 
 
 def test_the_row_of_a_rate_is_what_sums_over_fine_steps_of_intensity_say():
