@@ -66,7 +66,8 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     """
     components, below = without_boreholes(components)
     pairs, scaled, denied = pairs_of_one_recording(components)
-    factors = {(i, j): factor_between(components[i], components[j]) for i, copies in pairs.items() for j in copies}
+    upright = [replace(c, acceleration=c.upward) if c.orientation.vertical else c for c in components]
+    factors = {(i, j): factor_between(upright[i], upright[j]) for i, copies in pairs.items() for j in copies}
     rank = _ranks(components, pairs, factors)
     used: set[int] = set()
     stands_for: dict[int, int] = {}
@@ -96,7 +97,9 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     for i, j in (pair for pair in stretched if not stands_for.keys() & pair):
         for k, other in ((i, components[j]), (j, components[i])):
             text = f"{other.source} has the same samples with a step of {other.dt:g} s: one of their steps is wrong; check both"
-            findings.setdefault(k, []).append(Finding("step", text, gross=True))
+            findings.setdefault(k, []).append(
+                Finding("step", text, gross=not _of_two_stations(components[i], components[j]))
+            )
     for i, j in (pair for pair in denied if not stands_for.keys() & pair and pair not in stretched):
         for k, other in ((i, components[j]), (j, components[i])):
             text = f"{other.source} is the same sensor, event and direction by its header, and has other samples: check both"
@@ -110,19 +113,20 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
 
 
 def _at_other_steps(components: Sequence[Component]) -> Iterator[tuple[int, int]]:
-    """Yield places i < j of two components of two files with the same samples, perhaps times a factor, at different steps.
-
-    Those of two stations by their headers are not compared.
-    """
+    """Yield places i < j of two components of two files with the same samples, perhaps times a factor, at different steps."""
     moving = [(i, c) for i, c in enumerate(components) if c.pga > 0.0]
     for alike in grouped(
         moving, lambda pair: (len(pair[1].acceleration), int(np.abs(pair[1].acceleration).argmax()))
     ).values():
         for (i, a), (j, b) in combinations(alike, 2):
             one_file = file_of(a.source) == file_of(b.source)
-            apart = len({a.sensor.number, b.sensor.number} - {""}) > 1
-            if not (one_file or apart or same_step(a.dt, b.dt)) and common_factor(a.acceleration, b.acceleration):
+            if not (one_file or same_step(a.dt, b.dt)) and common_factor(a.acceleration, b.acceleration):
                 yield i, j
+
+
+def _of_two_stations(a: Component, b: Component) -> bool:
+    """Return whether two components are of two stations by their headers."""
+    return len({a.sensor.number, b.sensor.number} - {""}) > 1
 
 
 def _factor_finding(component: Component, other: Component) -> Finding:

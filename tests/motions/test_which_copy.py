@@ -260,3 +260,11 @@ def test_copies_with_another_step_are_held_back_and_each_step_is_named(tmp_path,
     steps = [reason.partition("with a step of ")[2][:5].strip() for reason in (one.reason for one in found.unusable)]
     assert steps == ["0.005", "0.01"]
     assert not any("other samples" in one.reason for one in found.unusable)
+
+
+def test_copies_at_another_step_of_another_station_are_used_and_say_so(tmp_path):
+    for folder, step in (("a", ".0100"), ("b", ".0050")):
+        write_at2(tmp_path / folder, "x000.AT2", wiggle(400), dt=step, title=f"Made-up, 1/17/1994, Station {folder}, 0")
+    found = read_motions(tmp_path)
+    assert [[finding.what for finding in motion.findings] for motion in found.motions] == [["step"], ["step"]]
+    assert "has the same samples with a step of 0.005 s" in found.motions[0].findings[0].text
