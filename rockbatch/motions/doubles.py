@@ -18,7 +18,6 @@ from rockbatch.motions.likeness import (
     pairs_of_one_recording,
     same_step,
     sets_of,
-    suffix_of,
 )
 from rockbatch.motions.motion import Finding, LeftOut
 from rockbatch.motions.motion_set import MotionSet
@@ -187,7 +186,7 @@ def _ranks(
             not first.unit,
             float(f"{first.dt:.3g}"),
             -round(math.log2(sum(energy[i] for i in members) or 1e-300)),
-            not is_usual(suffix_of(first)),
+            not is_usual(first.suffix),
             min(len(c.source) for c in of_set),
             members[0],
         )
