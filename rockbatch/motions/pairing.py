@@ -24,7 +24,7 @@ from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import with_direction
 from rockbatch.motions.plausible import ANY, Candidate, confirmation_request, findings, matches_any
-from rockbatch.motions.stations import by_station, station_names, station_of
+from rockbatch.motions.stations import by_station, is_numbered, station_names, station_of
 
 _NO_VERTICAL = (
     "has no vertical component, and the study requires it; put it beside the record, or write vertical = true under "
@@ -90,7 +90,8 @@ def to_motions(
         reason = "a vertical component without a usable horizontal one of its station in its folder"
         for v in (v for group in verticals for v in group if id(v) not in used):
             station_name = known_as[number[id(v)]]
-            unusable.append(Unusable(v.name, v.source, f"{reason} ({v.station or v.site})", station=station_name))
+            of_set = v.site if is_numbered(v.site) else v.station or v.site
+            unusable.append(Unusable(v.name, v.source, f"{reason} ({of_set})", station=station_name))
     peaks = [[(c, c.pga) for c in station if not c.orientation.vertical] for station in stations]
     named = _with_unique_names(motions, [c.folder for _, c in horizontals])
     pairs = zip(named, horizontals, strict=True)

@@ -59,7 +59,7 @@ def test_a_third_horizontal_has_to_be_a_combination_of_two(tmp_path, third):
     assert len(read_motions(tmp_path / "plane").motions) == 3
     found = read_motions(tmp_path / "apart")
     assert not found.motions
-    assert all("is one vertical?" in file.reason for file in found.unusable)
+    assert all("one may be vertical" in file.reason for file in found.unusable)
 
 
 def test_a_vertical_with_another_number_of_peer_is_of_another_record(tmp_path):
