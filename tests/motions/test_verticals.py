@@ -60,6 +60,8 @@ def test_a_third_horizontal_has_to_be_a_combination_of_two(tmp_path, third):
     found = read_motions(tmp_path / "apart")
     assert not found.motions
     assert all("one may be vertical" in file.reason for file in found.unusable)
+    (tmp_path / "apart" / "motions.toml").write_text(f'[[record]]\nfile = "x_{third}.AT2"\nrole = "vertical"\n')
+    assert [motion.vertical_source for motion in read_motions(tmp_path / "apart").motions] == [f"x_{third}.AT2"] * 2
 
 
 def test_a_vertical_with_another_number_of_peer_is_of_another_record(tmp_path):
