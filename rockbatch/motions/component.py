@@ -2,9 +2,11 @@
 
 import re
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
+from rockbatch.motions.archives import bare
 from rockbatch.motions.evidence import Statement
 from rockbatch.motions.listed import NOT_LISTED, Listed
 from rockbatch.motions.motion import Finding, Initial, Samples
@@ -97,6 +99,16 @@ class Component:
     statements: tuple[Statement, ...] = ()  # of its direction, from all sources
     contradiction: str = ""  # between statements in its set, for which it is held back
     listed: Listed = NOT_LISTED  # PEER's search results
+
+    @property
+    def path(self) -> str:
+        """Return the path of its file, by folder and source."""
+        return f"{self.folder}/{file_of(self.source)}"
+
+    @property
+    def suffix(self) -> str:
+        """Return the suffix of its file, without .gz, in lower case."""
+        return bare(Path(file_of(self.source))).suffix.lower()
 
     @property
     def dated(self) -> bool:

@@ -264,7 +264,7 @@ def _independent_triple(components: Sequence[Component]) -> str:
     if np.linalg.norm(turned.sum(axis=0)) <= _IN_A_PLANE * np.linalg.norm(turned):
         return ""
     said = _components_and_statements(*components)
-    return f"{said}: no combination of two is the third, as of horizontal components: is one vertical?"
+    return f"{said}: no two of them combine to the third, as horizontal components do: one may be vertical"
 
 
 def _components_and_statements(*components: Component) -> str:

@@ -18,7 +18,6 @@ from rockbatch.motions.likeness import (
     pairs_of_one_recording,
     same_step,
     sets_of,
-    suffix_of,
 )
 from rockbatch.motions.motion import Finding, LeftOut
 from rockbatch.motions.motion_set import MotionSet
@@ -31,6 +30,7 @@ _UNITS, _SAME_UNIT = (3.2808, 9.81, 10.0, 32.185, 39.37, 98.1, 100.0, 386.22, 98
 """Factors between units of acceleration (10 is g/10), and how far off they may be, relative: g is 9.80665 to 9.81 m/s²."""
 _UNEQUAL = 1.5  # ratio of the peaks of two copies that is reported
 _SCALED = re.compile(r"(?<!un)(?<!not_)scaled", re.IGNORECASE)
+_RAW = re.compile(r"(?<![a-z])(?:raw|uncorr(?:ected)?)(?![a-z])", re.IGNORECASE)
 
 
 def without_boreholes(components: Sequence[Component]) -> tuple[list[Component], list[LeftOut]]:
@@ -66,7 +66,8 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     """
     components, below = without_boreholes(components)
     pairs, scaled, denied = pairs_of_one_recording(components)
-    factors = {(i, j): factor_between(components[i], components[j]) for i, copies in pairs.items() for j in copies}
+    upright = [replace(c, acceleration=c.upward) if c.orientation.vertical else c for c in components]
+    factors = {(i, j): factor_between(upright[i], upright[j]) for i, copies in pairs.items() for j in copies}
     rank = _ranks(components, pairs, factors)
     used: set[int] = set()
     stands_for: dict[int, int] = {}
@@ -96,7 +97,9 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     for i, j in (pair for pair in stretched if not stands_for.keys() & pair):
         for k, other in ((i, components[j]), (j, components[i])):
             text = f"{other.source} has the same samples with a step of {other.dt:g} s: one of their steps is wrong; check both"
-            findings.setdefault(k, []).append(Finding("step", text, gross=True))
+            findings.setdefault(k, []).append(
+                Finding("step", text, gross=not _of_two_stations(components[i], components[j]))
+            )
     for i, j in (pair for pair in denied if not stands_for.keys() & pair and pair not in stretched):
         for k, other in ((i, components[j]), (j, components[i])):
             text = f"{other.source} is the same sensor, event and direction by its header, and has other samples: check both"
@@ -110,19 +113,20 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
 
 
 def _at_other_steps(components: Sequence[Component]) -> Iterator[tuple[int, int]]:
-    """Yield places i < j of two components of two files with the same samples, perhaps times a factor, at different steps.
-
-    Those of two stations by their headers are not compared.
-    """
+    """Yield places i < j of two components of two files with the same samples, perhaps times a factor, at different steps."""
     moving = [(i, c) for i, c in enumerate(components) if c.pga > 0.0]
     for alike in grouped(
         moving, lambda pair: (len(pair[1].acceleration), int(np.abs(pair[1].acceleration).argmax()))
     ).values():
         for (i, a), (j, b) in combinations(alike, 2):
             one_file = file_of(a.source) == file_of(b.source)
-            apart = len({a.sensor.number, b.sensor.number} - {""}) > 1
-            if not (one_file or apart or same_step(a.dt, b.dt)) and common_factor(a.acceleration, b.acceleration):
+            if not (one_file or same_step(a.dt, b.dt)) and common_factor(a.acceleration, b.acceleration):
                 yield i, j
+
+
+def _of_two_stations(a: Component, b: Component) -> bool:
+    """Return whether two components are of two stations by their headers."""
+    return len({a.sensor.number, b.sensor.number} - {""}) > 1
 
 
 def _factor_finding(component: Component, other: Component) -> Finding:
@@ -159,8 +163,8 @@ def _ranks(
     """Return sort keys of components with copies, the least for the one to use: the key of its set, then its index.
 
     In this order: chosen by a manifest; sound before grossly odd; corrected before unknown before uncorrected; not called
-    scaled; two horizontals and a vertical before fewer; a unit of acceleration before counts; the finer time step; the
-    stronger shaking, by powers of two; the suffix of a format; the shorter name; the first.
+    scaled; not called raw, if no header says; two horizontals and a vertical before fewer; a unit of acceleration before counts;
+    the finer time step; the stronger shaking, by powers of two; the suffix of a format; the shorter name; the first.
     """
     sets: dict[int, list[int]] = {}
     for members in sets_of(components):
@@ -179,11 +183,12 @@ def _ranks(
             any(c.contradiction or gross_findings(c) for c in of_set),
             _CORRECTED[first.processed],
             any(_SCALED.search(c.source) for c in of_set),
+            first.processed is None and any(_RAW.search(c.name) for c in of_set),
             -min(2, across) - (across < len(of_set)),
             not first.unit,
             float(f"{first.dt:.3g}"),
             -round(math.log2(sum(energy[i] for i in members) or 1e-300)),
-            not is_usual(suffix_of(first)),
+            not is_usual(first.suffix),
             min(len(c.source) for c in of_set),
             members[0],
         )

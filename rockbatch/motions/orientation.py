@@ -149,7 +149,9 @@ _STATION = re.compile(  # codes of TSMIP, K-NET and KiK-net end in a number, as 
     r"NAR|NGN|NGS|NIG|NMR|OIT|OKN|OKY|OSK|OSM|RMI|SAG|SBS|SIG|SIT|SMN|SRC|SZO|TCG|TKC|TKS|TKY|TTR|TYM|WKY|YMG|YMN|YMT|"
     r"AIC|AKT|AOM|CHB|EHM|FKI|FKO|FKS|GIF|GNM|HKD|HRS|HYG|IBU)H?\d{3}$"
 )
-_CHANNELS = re.compile(r"(?:^|[-_. ])(?:ch|chan|channel|sensor|run|rec|record|no|nr)[-_. ]*\d+$", re.IGNORECASE)
+_CHANNELS = re.compile(
+    r"(?:^|[-_. ])(?:ch|chan|channel|sensor|run|rec|record|no|nr|(?:gm)?rot[di])[-_. ]*\d+$", re.IGNORECASE
+)
 _MOMENT = (  # in UTC, not vertical, and with ESM's stage: .20090406.013239.U is uncorrected, not up
     r"(?:\d{8}|\d{4}-\d\d-\d\d)(?:T\d\d[-:_.]?\d\d(?:[-:_.]?\d\d(?:\.\d+)?)?Z?|\.\d{6}\.[A-Z]{1,2})"
 )

@@ -102,7 +102,9 @@ def _event(text: str, date: str) -> str:
     name = _CLOCK.sub("", _QUAKE.sub("", _RECORD_OF.sub("", " ".join(text.split())))).strip(" ,-")
     if day := _DAY.fullmatch(name):
         return f"{day[3]}-{_MONTHS.index(day[1].capitalize()) + 1:02d}-{int(day[2]):02d}"
-    name = _DATED.sub("", name).strip(" ,-") or name
+    if _DATED.fullmatch(name):
+        return name
+    name = _DATED.sub("", name).strip(" ,-")
     name = _without_capitals(_DISTANCE.sub("", _STATE.sub("", name)))
     if stamp := _STAMP.fullmatch(name):
         return f"{stamp[1]}-{stamp[2]}-{stamp[3]}" + (f" {stamp[4]}:{stamp[5]}" if stamp[4] else "")

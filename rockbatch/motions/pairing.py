@@ -4,6 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from itertools import permutations
 from pathlib import PurePosixPath
 from typing import Literal
 
@@ -16,13 +17,14 @@ from rockbatch.common.units import GRAVITY
 from rockbatch.motions.azimuths import components_along
 from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
+from rockbatch.motions.likeness import same_step
 from rockbatch.motions.measures import state_at
 from rockbatch.motions.motion import Finding, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import with_direction
 from rockbatch.motions.plausible import ANY, Candidate, confirmation_request, findings, matches_any
-from rockbatch.motions.stations import by_station, station_names, station_of
+from rockbatch.motions.stations import by_station, is_numbered, station_names, station_of
 
 _NO_VERTICAL = (
     "has no vertical component, and the study requires it; put it beside the record, or write vertical = true under "
@@ -58,7 +60,7 @@ def to_motions(
         else:
             question, label = _direction_question(c), c.orientation.label
             unusable.append(Unusable(c.name, c.source, question, label, station=station_of(c), kind=kind))
-    components = _with_packaged(sound, packaged)
+    components = _with_steps_compared(_with_packaged(sound, packaged))
     stations = by_station(components)
     number = {id(c): i for i, station in enumerate(stations) for c in station}
     known_as = station_names(stations)
@@ -88,7 +90,8 @@ def to_motions(
         reason = "a vertical component without a usable horizontal one of its station in its folder"
         for v in (v for group in verticals for v in group if id(v) not in used):
             station_name = known_as[number[id(v)]]
-            unusable.append(Unusable(v.name, v.source, f"{reason} ({v.station or v.site})", station=station_name))
+            of_set = v.site if is_numbered(v.site) else v.station or v.site
+            unusable.append(Unusable(v.name, v.source, f"{reason} ({of_set})", station=station_name))
     peaks = [[(c, c.pga) for c in station if not c.orientation.vertical] for station in stations]
     named = _with_unique_names(motions, [c.folder for _, c in horizontals])
     pairs = zip(named, horizontals, strict=True)
@@ -160,6 +163,22 @@ def _with_packaged(files: Sequence[Component], packaged: Sequence[Component]) ->
         if not found:
             added.append(component)
     return components + added
+
+
+def _with_steps_compared(components: Sequence[Component]) -> list[Component]:
+    """Return the components, with a finding on those with as many samples as another one of their set at another step.
+
+    Copies whose steps differ have one already.
+    """
+    findings: dict[int, Finding] = {}
+    for a, b in ((a, b) for station in by_station(components) for a, b in permutations(station, 2)):
+        doubted = any(finding.what == "step" for finding in a.findings)
+        if len(a.acceleration) == len(b.acceleration) and not (doubted or same_step(a.dt, b.dt)):
+            text = (
+                f"{b.source} has as many samples with a step of {b.dt:g} s, not {a.dt:g} s: check which step is right"
+            )
+            findings[id(a)] = Finding("step", text)
+    return [replace(c, findings=(*c.findings, findings[id(c)])) if id(c) in findings else c for c in components]
 
 
 def _rotate_horizontals(

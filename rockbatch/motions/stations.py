@@ -69,11 +69,20 @@ def by_station(components: Iterable[Component]) -> list[list[Component]]:
 
 
 def _by_header(components: Iterable[Component]) -> Iterator[list[Component]]:
-    """Yield components of one folder and one station by their headers, split by time, file and name."""
+    """Yield components of one folder and one station by their headers, split by number, time, file and name."""
     for station in grouped(components, lambda c: (c.folder, c.station or id(c))).values():
-        for record in _by_time(station):
-            for of_file in _by_file(record):
-                yield from _by_name(of_file)
+        for of_number in _by_number(station):
+            for record in _by_time(of_number):
+                for of_file in _by_file(record):
+                    yield from _by_name(of_file)
+
+
+def _by_number(station: list[Component]) -> list[list[Component]]:
+    """Return the components of a station by PEER's number, those without one apart; all if there is one at most."""
+    numbers = {c.site for c in station if is_numbered(c.site)}
+    if len(numbers) < 2:
+        return [station]
+    return list(grouped(station, lambda c: c.site if c.site in numbers else "").values())
 
 
 def _by_time(group: list[Component]) -> list[list[Component]]:

@@ -143,9 +143,9 @@ def test_records_of_one_event_say_so_and_are_as_many_as_the_check_allows():
 
     assert of(statistic="mean").note == "no error estimate"  # no code's
     assert (of(statistic="en1998-2").verdict, told in of(statistic="en1998-2").note) == ("pass", True)
-    assert "events" in of(statistic="en1998-2").omitted
+    assert "events" in of(statistic="en1998-2").omits
     assert of(statistic="en1998-2", per_event=6).verdict == "pass"
-    assert "events" not in of(statistic="en1998-2", per_event=6).omitted  # the check says how many may be
+    assert "events" not in of(statistic="en1998-2", per_event=6).omits  # the check says how many may be
     few = of(statistic="en1998-2", per_event=5)  # those of no known event may be of the same one
     assert few.verdict == "not decided"
     assert few.note.startswith("the check allows 5 of one event, and of 3 it is not known")
@@ -225,9 +225,9 @@ def test_a_station_of_which_one_component_could_not_be_read_is_reported():
     found = judged(pairs((0.1, 0.2), (0.3,), (0.2, 0.1)), statistic="en1998-2")
     assert (found.verdict, found.records) == ("pass", 3)
     assert "the worst may be another: B (1 of 2)" in found.note
-    assert "directions" in found.omitted
+    assert "directions" in found.omits
     by_component = judged(pairs((0.1, 0.2), (0.3,), (0.2, 0.1)), statistic="mean", count="component")
-    assert "directions" not in by_component.omitted
+    assert "directions" not in by_component.omits
 
 
 def test_where_every_station_has_one_component_none_is_missing():

@@ -638,6 +638,18 @@ def test_columns_of_one_sensor_twice_contradict_each_other(tmp_path, one, other)
     assert not found.motions
 
 
+@pytest.mark.parametrize(
+    ("sites", "used"),
+    [(("COL", "KEM"), 2), (("KEM", "PIER"), 2), (("KEM", "DECK"), 1), (("PIER", "DECK"), 0), (("FF", "COL"), 1)],
+)
+def test_words_for_structures_are_codes_of_stations_beside_other_codes(tmp_path, sites, used):
+    heads = ",".join(f"{site}_{way} (g)" for site in sites for way in "NE")
+    values = [np.round(wiggle(N, seed, 0.3), 6) for seed in range(31, 35)]
+    found = read(tmp_path, f"time (s),{heads}\n{in_columns(T, *values)}")
+    assert len({motion.of_station for motion in found.motions}) == used
+    assert all("is in a structure" in file.reason for file in found.unusable)
+
+
 def test_the_roof_beside_the_base_in_one_file_is_held_back(tmp_path):
     heads = ",".join(f"{name}_{way} (g)" for name in ("base", "roof") for way in "NE")
     values = [np.round(wiggle(N, seed, 0.3), 6) for seed in range(21, 25)]

@@ -44,6 +44,7 @@ ROOT = Path(__file__).parents[2]
         ("", "", ""),
         ("   ,", "", ""),
         ("10/15/1979", "", "10/15/1979"),
+        ("10/15/79 1817", "10/15/79 1817", "10/15/79 1817"),
     ],
 )
 def test_an_event_is_called_by_its_name_and_year(event, date, called):

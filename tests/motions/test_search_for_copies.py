@@ -9,7 +9,7 @@ import pytest
 from copies import title
 from motion_files import wiggle, write_at2
 
-from rockbatch.motions import likeness, read_motions, stations
+from rockbatch.motions import candidates, likeness, read_motions, stations
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation
 
@@ -77,7 +77,7 @@ def test_full_spectra_rule_out_no_pair_that_a_comparison_of_all_pairs_finds(monk
     rng = np.random.default_rng(seed)
     suite = with_copies(rng, simulated(rng, 16))
     found = likeness.pairs_of_one_recording(suite)
-    monkeypatch.setattr(likeness._Table, "_similar_in_full", lambda self, i, j: np.ones(len(j), dtype=bool))
+    monkeypatch.setattr(candidates.Candidates, "_similar_in_full", lambda self, i, j: np.ones(len(j), dtype=bool))
     assert found.pairs
     assert found == likeness.pairs_of_one_recording(suite)
 
@@ -89,7 +89,7 @@ def test_no_correlation_is_above_the_product_of_spectra():
             pair = rng.normal(size=(2, samples)) * np.exp(
                 -rng.uniform(0.0, 9.0, size=(2, 1)) * np.arange(samples) / samples
             )
-            product = likeness._spectrum(pair[0]) @ likeness._spectrum(pair[1])
+            product = candidates._spectrum(pair[0]) @ candidates._spectrum(pair[1])
             assert np.isnan(product) if samples == 1 else likeness.correlation(*pair) <= product * (1.0 + 1e-12)
 
 
@@ -106,7 +106,7 @@ def test_spectra_rule_out_no_copy_that_the_samples_tell(change):
     }[change]
     north = Orientation("000", azimuth=0.0)
     one, two = Component("a", 0.01, a, north, source="a"), Component("b", dt, b, north, source="b")
-    assert list(likeness._Table([one, two]).similar_pairs()) == [(0, 1)]
+    assert list(candidates.Candidates([one, two]).similar_pairs()) == [(0, 1)]
 
 
 def test_steps_that_differ_by_half_a_per_cent_are_not_one_step():

@@ -34,6 +34,7 @@ def reason(folder, **options) -> str:
             "t(s) SA(g)",
             "Period (sec), PSA (g)",
             "# Period(s) acc(g)",
+            "Periodo (s), Aceleracion (g)",
             "T Sa",
             "period,psa",
         ),

@@ -6,6 +6,7 @@ from motion_files import wiggle, write_at2
 from waveform_files import channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.motions import read_motions
+from rockbatch.motions.orientation import split_stem
 
 COMPONENTS = [wiggle(seed=seed) for seed in (1, 2, 3)]
 
@@ -58,4 +59,66 @@ def test_a_third_horizontal_has_to_be_a_combination_of_two(tmp_path, third):
     assert len(read_motions(tmp_path / "plane").motions) == 3
     found = read_motions(tmp_path / "apart")
     assert not found.motions
-    assert all("is one vertical?" in file.reason for file in found.unusable)
+    assert all("one may be vertical" in file.reason for file in found.unusable)
+    (tmp_path / "apart" / "motions.toml").write_text(f'[[record]]\nfile = "x_{third}.AT2"\nrole = "vertical"\n')
+    assert [motion.vertical_source for motion in read_motions(tmp_path / "apart").motions] == [f"x_{third}.AT2"] * 2
+
+
+def test_a_vertical_with_another_number_of_peer_is_of_another_record(tmp_path):
+    for name, label, values in zip(
+        ("RSN1_X000", "RSN1_X090", "RSN2_X-UP"), ("000", "090", "UP"), COMPONENTS, strict=True
+    ):
+        write_at2(tmp_path, f"{name}.AT2", values, title=f"Made-up, 1/17/1994, Test Station, {label}")
+    found = read_motions(tmp_path)
+    assert [motion.vertical_source for motion in found.motions] == ["", ""]
+    assert [file.source for file in found.unusable] == ["RSN2_X-UP.AT2"]
+
+
+@pytest.mark.parametrize(("sign", "said"), [(-1.0, False), (1.0, True)])
+def test_copies_of_a_vertical_upwards_and_downwards_differ_in_sign(tmp_path, sign, said):
+    for name, values in zip(("000", "UP", "DWN"), (*COMPONENTS[:2], sign * COMPONENTS[1]), strict=True):
+        write_at2(tmp_path, f"x_{name}.AT2", values)
+    (motion,) = read_motions(tmp_path).motions
+    assert any("the same samples times -1" in note for note in motion.notes) is said
+
+
+@pytest.mark.parametrize(
+    ("line", "label", "sign"),
+    [
+        ("vertical component positive downwards", "V", -1.0),
+        ("Vertical: positive is down", "Z", -1.0),
+        ("vertical component positive downwards", "UP", 1.0),
+        ("vertical component positive up", "V", 1.0),
+    ],
+)
+def test_a_line_of_a_table_s_header_says_that_its_vertical_is_down(tmp_path, line, label, sign):
+    rows = [f"{0.01 * i:.2f} {a:.6f} {2.0 * a:.6f}" for i, a in enumerate(COMPONENTS[0])]
+    (tmp_path / "x.txt").write_text("\n".join([f"# {line}", f"# t(s) N(g) {label}(g)", *rows, ""]))
+    (motion,) = read_motions(tmp_path).motions
+    assert motion.vertical is not None
+    assert np.allclose(motion.vertical, 2.0 * sign * motion.horizontal, atol=2e-4)
+
+
+@pytest.mark.parametrize("of_vertical", [True, False])
+def test_as_many_samples_at_another_step_are_remarked(tmp_path, of_vertical):
+    for i, (label, values) in enumerate(zip(("000", "090", "UP"), COMPONENTS, strict=True)):
+        write_at2(tmp_path, f"x_{label}.AT2", values, dt=".0200" if i == (2 if of_vertical else 1) else ".0100")
+    motion = read_motions(tmp_path).motions[0]
+    other = "x_UP.AT2" if of_vertical else "x_090.AT2"
+    assert [finding.text for finding in motion.findings if "as many samples" in finding.text] == [
+        f"{other} has as many samples with a step of 0.02 s, not 0.01 s: check which step is right"
+    ]
+
+
+@pytest.mark.parametrize(("station", "used"), [("IBRH11", 0), ("IBR011", 1)])
+def test_kik_net_s_first_sensor_is_in_a_borehole_in_any_format(tmp_path, station, used):
+    rows = "\n".join(f"{a:.6f}" for a in COMPONENTS[0])
+    (tmp_path / f"{station}1801241951.EW1.txt").write_text(f"# acceleration in g\n# dt = 0.01 s\n{rows}\n")
+    found = read_motions(tmp_path)
+    assert len(found.motions) == used
+    assert all("is in a borehole" in file.reason for file in found.unusable)
+
+
+def test_numbers_of_rotated_measures_are_no_azimuths():
+    assert split_stem("x_RotD100") == ("x_RotD100", None)
+    assert split_stem("x_GMRotI050") == ("x_GMRotI050", None)

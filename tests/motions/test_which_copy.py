@@ -260,3 +260,24 @@ def test_copies_with_another_step_are_held_back_and_each_step_is_named(tmp_path,
     steps = [reason.partition("with a step of ")[2][:5].strip() for reason in (one.reason for one in found.unusable)]
     assert steps == ["0.005", "0.01"]
     assert not any("other samples" in one.reason for one in found.unusable)
+
+
+def test_copies_at_another_step_of_another_station_are_used_and_say_so(tmp_path):
+    for folder, step in (("a", ".0100"), ("b", ".0050")):
+        write_at2(tmp_path / folder, "x000.AT2", wiggle(400), dt=step, title=f"Made-up, 1/17/1994, Station {folder}, 0")
+    found = read_motions(tmp_path)
+    assert [[finding.what for finding in motion.findings] for motion in found.motions] == [["step"], ["step"]]
+    assert "has the same samples with a step of 0.005 s" in found.motions[0].findings[0].text
+
+
+@pytest.mark.parametrize("word", ["raw", "uncorrected"])
+def test_of_two_sets_the_one_that_is_called_raw_is_left_out(tmp_path, word):
+    for seed, way in enumerate("NEZ", 1):
+        for stage, noise in ((word, 0.004), ("corrected as published", 0.0)):
+            rows = wiggle(400, seed) + noise * wiggle(400, 7)
+            (tmp_path / f"STA_{way}_{stage}.txt").write_text(
+                "time(s) a(g)\n" + "".join(f"{0.01 * i:.2f} {a:.6f}\n" for i, a in enumerate(rows))
+            )
+    found = read_motions(tmp_path)
+    assert len(found.motions) == 2
+    assert all("published" in motion.source and "published" in motion.vertical_source for motion in found.motions)

@@ -103,6 +103,7 @@ _POSITIVE_DOWN = re.compile(  # behind a label, and perhaps its unit: Up-down (c
 _POSITIVE = re.compile(
     r"\s*[(\[]\s*(?:\+|positive|pos\.?)\s*(?:is|:|=)?\s*(?:up|north|east)(?:wards?)?\s*[)\]]", re.IGNORECASE
 )
+_VERTICAL_DOWN = re.compile(r"\bvertical\b.{0,40}\b(?:positive|pos\.) (?:is )?down", re.IGNORECASE)
 _SHORT = {"NORTHSOUTH": "NS", "EASTWEST": "EW", "UPDOWN": "UD"}
 _TIME = {"time", "times", "elapsed", "elapsedtime", "zeit", "tiempo", "temps", "tempo", "zaman", "時間", "时间"}
 _SECONDS = [prefix + word for word in _SECOND.split() if len(word) > 2 for prefix in ("", "in", "en")]
@@ -118,7 +119,7 @@ _MIDAS_UNITS = {"GRAV": "g"} | {unit.upper(): f"{unit}/s2" for unit in ("m", "cm
 _SUFFIXED = re.compile(
     r"(?P<label>a[gxyz]?|acc(?:el|eleration)?|.*[_ -]acc(?:el|eleration)?)_(?P<unit>g|gal|[cm]?m_?s2)", re.IGNORECASE
 )
-_PERIODS = {"PERIOD", "PERIODS", "TN"}
+_PERIODS = {"PERIOD", "PERIODS", "PERIODO", "PERIODOS", "PERIODE", "PERIODEN", "PERIYOT", "TN"}
 _FREQUENCIES = {"FREQ", "FREQS", "FREQUENCY", "FREQUENCIES", "HZ", "OMEGA"}
 _PER_SECOND = {"hz", "1/s", "rad/s", "rad/sec"}
 _ORDINATE = re.compile(r"P?S[AVD]E?|PSEUDO|SPECTR(?:AL|UM|A)|ROTD\d+|GMROT[DI]\d+|FAS|FOURIER", re.IGNORECASE)
@@ -338,6 +339,11 @@ def stated_direction(header: Sequence[str]) -> str:
         if orientation_in(label).known:
             return label
     return ""
+
+
+def is_down(header: Sequence[str]) -> bool:
+    """Return whether a line says that vertical components are positive downwards, as ``vertical component positive down``."""
+    return any(_VERTICAL_DOWN.search(line) for line in header)
 
 
 def stated_unit(header: Sequence[str]) -> str | None:

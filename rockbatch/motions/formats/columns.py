@@ -22,6 +22,7 @@ from rockbatch.motions.formats.column_header import (
     columns_with_units,
     columns_without_units,
     is_acceleration,
+    is_down,
     is_of_another_quantity,
     line_about_spectra,
     other_series,
@@ -42,7 +43,8 @@ from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.limits import SAME_STEP, is_step
 from rockbatch.motions.motion import Samples, Unusable
-from rockbatch.motions.orientation import orientation_in, same_azimuth, split_stem
+from rockbatch.motions.orientation import Orientation, is_upward, orientation_in, same_azimuth, split_stem
+from rockbatch.motions.places import Stand, stand, tells_place
 from rockbatch.motions.record_file import ReadOptions, RecordFile, no_acceleration, text_of
 
 _COMPONENTS = ("000", "090", "up")
@@ -100,8 +102,13 @@ def _by_station(recordings: Sequence[Recording], stem: str) -> list[Recording]:
     several = len({site for site, *_ in ways}) > 1 and len({way[1:] for way in ways}) < len(ways) == len(set(ways))
     if not several or len(ways) < len(recordings) or not all(site for site, _ in sites) or _repeats(recordings, ways):
         return [replace(recording, station=stem) for recording in recordings]
-    named = zip(recordings, sites, strict=True)
-    return [replace(r, station=f"{stem}, {site}", sensor=Sensor(site.upper(), place=site)) for r, (site, _) in named]
+    are_places = all(tells_place(site) for site, _ in sites)  # else codes of stations, such as COL beside KEM
+
+    def of_site(recording: Recording, site: str) -> Recording:
+        place = site if are_places or stand("", site)[0] is not Stand.GROUND else None
+        return replace(recording, station=f"{stem}, {site}", sensor=Sensor(site.upper(), place=place))
+
+    return [of_site(recording, site) for recording, (site, _) in zip(recordings, sites, strict=True)]
 
 
 def _repeats(recordings: Sequence[Recording], ways: Sequence[tuple[object, ...]]) -> bool:
@@ -154,7 +161,7 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
     for i in used:
         recording = Recording(
             label=columns[i].label,
-            orientation=orientation_in(columns[i].label),
+            orientation=_oriented(columns[i].label, header),
             stated_by=Kind.USER if columns[i].stated else Kind.HEADER,
             dt=dt,
             values=values[:, i],
@@ -165,6 +172,13 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
         )
         recordings.append(recording)
     return recordings
+
+
+def _oriented(label: str, header: Sequence[str]) -> Orientation:
+    """Return the orientation of a column's label; a vertical one is down if the header says so, and its label is not "UP"."""
+    orientation = orientation_in(label)
+    down = orientation.down or (orientation.vertical and is_down(header) and not is_upward(label))
+    return replace(orientation, down=down)
 
 
 def _refuse_factor(header: Sequence[str], options: ReadOptions) -> None:
