@@ -488,6 +488,32 @@ def test_to_a_stream_that_has_failed_nothing_more_is_written(monkeypatch, capsys
     assert [is_lost(sys.stdout), is_lost(sys.stdout)] == [True, False]
 
 
+@pytest.mark.parametrize(
+    ("error", "code", "begins"),
+    [
+        (
+            PermissionError(errno.EACCES, "Permission denied", "out/peaks.csv"),
+            2,
+            "rockbatch: out/peaks.csv: Permission denied; ",
+        ),
+        (OSError(errno.ENOSPC, "No space left on device"), 2, "rockbatch: No space left on device; "),
+        (OSError("the disk is gone"), 2, "rockbatch: the disk is gone; "),
+        (rb.InputError("first", "second"), 2, "rockbatch: first\nrockbatch: second\n"),
+        (MemoryError("for 7 runs"), 2, "rockbatch: for 7 runs\n"),
+        (MemoryError(), 2, "rockbatch: out of memory: "),
+        (ImportError("x.so: failed to map segment from shared object"), 2, "rockbatch: x.so: failed to map segment "),
+        (KeyboardInterrupt(), 130, "rockbatch: interrupted\n"),
+    ],
+)
+def test_an_error_of_a_command_is_a_line_with_the_file_and_the_reason(monkeypatch, capsys, error, code, begins):
+    def failing(command, arguments):
+        raise error
+
+    monkeypatch.setattr(type(COMMANDS["examples"]), "run_command", failing)
+    assert main(["examples"]) == code
+    assert capsys.readouterr().err.startswith(begins)
+
+
 @pytest.mark.sweep(fast=1)
 @pytest.mark.skipif(sys.platform == "win32", reason="shells of Unix")
 @pytest.mark.parametrize(("redirected", "told"), [("| true", ""), ("> /dev/full", "cannot be printed (No space left")])

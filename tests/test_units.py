@@ -5,13 +5,15 @@ import importlib
 import math
 import pkgutil
 import re
-from itertools import chain
+from itertools import chain, product
 from pathlib import Path
 
+import pint
 import pytest
 
 import rockbatch
 from rockbatch.common.units import (
+    _SIZES,
     LEAST,
     Bounds,
     Usual,
@@ -56,6 +58,30 @@ def test_every_spelling_of_a_unit_has_its_factor(spellings, factor):
 )  # fmt: skip
 def test_a_number_in_another_unit_of_the_same_measure_has_its_factor(unit, own, factor):
     assert factor_between(unit, own) == (None if factor is None else pytest.approx(factor, rel=1e-12))
+
+
+OF_PINT = {
+    "tf": "force_metric_ton", "t": "metric_ton", "deg": "degree", "g": "gravity", "gal": "cm / s ** 2", "percent": "0.01",
+    "pct": "0.01",
+}  # fmt: skip
+"""Units by pint's names, where they differ."""
+
+
+def test_units_of_one_measure_have_the_sizes_of_another_library():
+    known = pint.UnitRegistry()
+    known.define("gravity = 9.81 m / s ** 2")
+    sizes = {unit: 1.0 * known(OF_PINT.get(unit, unit)) for unit in _SIZES}
+    related = 0
+    for unit, own in product(sizes, sizes):
+        if sizes[unit].check(sizes[own].dimensionality) and is_angle(unit) == is_angle(own):
+            assert factor_between(unit, own) == pytest.approx((sizes[unit] / sizes[own]).to("").magnitude, rel=1e-12)
+            related += 1
+    assert related == sum(n * n for n in (5, 5, 2, 2, 3, 4, 2, 2))
+
+
+def is_angle(unit):
+    """Return whether a unit is one of angles, which pint does not tell from shares."""
+    return unit in ("rad", "mrad", "deg")
 
 
 @pytest.mark.parametrize(

@@ -57,6 +57,17 @@ def test_a_ban_that_fails_is_worse_than_any_share_of_a_limit_and_another_is_bett
     assert without.columns[-1].check == "none" or without.columns[-2].check == "none"
 
 
+def test_a_check_stands_where_its_worst_verdict_is_whatever_its_best_one():
+    shares = {"wide": (0.1, 0.9), "narrow": (0.5, 0.6), "low": (0.3, 0.2)}
+    given = [
+        verdict(name, "pass", check=check, ratio=share)
+        for check, own in shares.items()
+        for name, share in zip("ab", own, strict=True)
+    ]
+    for one in (given, given[::-1]):
+        assert [column.check for column in scorecard(one, name_of).columns] == ["wide", "narrow", "low"]
+
+
 def test_columns_that_fail_or_are_open_always_stand_and_others_up_to_a_number():
     failing = [verdict("a", "fail", check=f"f{i}", ratio=2.0) for i in range(5)]
     passing = [verdict("a", "pass", check=f"p{i}", ratio=0.1 * i) for i in range(5)]

@@ -16,7 +16,7 @@ import rockbatch as rb
 from rockbatch.checks import read_verdicts, wording
 from rockbatch.checks.answer import answer
 from rockbatch.checks.scorecard import scorecard
-from rockbatch.checks.suite_target import suite_verdicts
+from rockbatch.checks.suite_target import Condition, _verdict, suite_verdicts
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
 from rockbatch.commands.cli import main
 from rockbatch.motions.design_spectra import TableSpectrum
@@ -175,6 +175,21 @@ def test_a_study_that_asks_for_less_than_its_code_does_not_lower_the_code(code, 
         (scaled,) = (row for row in suite_verdicts(info, [0.5]) if row.words == words)
         assert scaled.verdict == FAIL
     assert words not in conditions(**asked, at_least=share)
+
+
+@pytest.mark.parametrize("value", [0.8, 1.0, 1.3])
+@pytest.mark.parametrize("scale", [1.0, 1.5])
+def test_the_verdict_on_a_condition_has_its_share_and_margin_on_the_side_of_its_limit(value, scale):
+    about = {"range_s": (0.3, 2.5), "spectrum": "of a code", "code": "EN 1998-1"}
+    for sense in ("at least", "at most"):
+        condition = Condition("suite_stations", "stations", value, sense, 1.0, remarks=("few",), scaled=True)
+        found = _verdict("suite", condition, scale, about)
+        spare = value - 1.0 if sense == "at least" else 1.0 - value
+        assert found.verdict == (PASS if spare >= 0.0 else FAIL)
+        assert found.margin == pytest.approx(spare, abs=1e-12)
+        assert found.ratio == pytest.approx(1.0 / value if sense == "at least" else value)
+        assert (found.low, found.value, found.high, found.scale) == (value, value, value, scale)
+        assert found.remarks == (("few",) if scale == 1.0 else ("few", "at scale 1.5"))
 
 
 def test_conditions_on_what_is_scaled_are_at_the_scale():

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from agency_files import dyna_text, geonet_text
 from fixed_column_files import cosmos_text
+from messages import assert_states
 from motion_files import wiggle, write_at2
 from obspy import Trace
 from studies import FOLDER_STUDY, write_study
@@ -14,8 +15,10 @@ from studies import FOLDER_STUDY, write_study
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions.component import Component, Sensor
+from rockbatch.motions.directions import _skew_pair
 from rockbatch.motions.manifest_draft import write_manifest
-from rockbatch.motions.orientation import counted, orientation_in, orientation_of, split_stem
+from rockbatch.motions.orientation import Orientation, counted, orientation_in, orientation_of, split_stem
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
@@ -409,3 +412,35 @@ def test_agencies_numbers_of_one_digit_are_azimuths():
     found = orientation_of("5")
     assert found is not None
     assert found.azimuth == 5.0
+
+
+NORTH, EAST = Sensor("S1"), Sensor("S2")
+
+
+@pytest.mark.parametrize(
+    ("sensors", "azimuths", "skew"),
+    [
+        ((NORTH, NORTH), (10.0, 100.0), False),
+        ((NORTH, NORTH), (10.0, 69.5), True),
+        ((NORTH, NORTH), (10.0, 70.5), False),
+        ((NORTH, NORTH), (10.0, 129.5), False),
+        ((NORTH, NORTH), (10.0, 130.5), True),
+        ((NORTH, NORTH), (350.0, 80.0), False),
+        ((NORTH, NORTH), (350.0, 40.0), True),
+        ((NORTH, NORTH), (200.0, 245.0), True),
+        ((NORTH, EAST), (10.0, 55.0), False),
+        ((NORTH, NORTH), (10.0, 10.0), False),
+        ((NORTH, NORTH), (10.0, 190.0), True),
+        ((NORTH, NORTH), (None, 55.0), False),
+        ((NORTH, NORTH), (10.0, None), False),
+    ],
+)
+def test_two_horizontals_of_one_sensor_are_skew_beyond_30_degrees_off_a_right_angle(sensors, azimuths, skew):
+    pair = [
+        Component(name, 0.01, wiggle(100), Orientation(name, azimuth=azimuth), source=name, sensor=sensor)
+        for name, sensor, azimuth in zip("ab", sensors, azimuths, strict=True)
+    ]
+    said = _skew_pair(*pair)
+    assert bool(said) == skew
+    if said:
+        assert_states(said, "a", "b", abs(azimuths[0] - azimuths[1]))

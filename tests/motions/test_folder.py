@@ -12,6 +12,7 @@ from rockbatch.motions import ReadOptions, common_span, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.pairing import to_motions
+from rockbatch.motions.stations import _may_join
 
 
 def title(component: str, station: str = "Test Station") -> str:
@@ -387,3 +388,26 @@ def test_a_pattern_that_nothing_fits_is_answered_with_its_folder(tmp_path):
     with pytest.raises(InputError) as error:
         read_motions(tmp_path / "nowhere" / "*.AT2")
     assert "fits this pattern" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "expected"),
+    [
+        ("HV", "HV", False),
+        ("HV", "HHV", False),
+        ("HV", "H", True),
+        ("H", "HV", True),
+        ("HV", "V", True),
+        ("V", "HV", True),
+        ("H", "V", True),
+        ("HH", "H", True),
+    ],
+)
+@pytest.mark.parametrize("late", [0.0, 0.85, 0.95])
+def test_groups_of_one_name_join_if_they_overlap_and_not_both_are_complete(first, second, expected, late):
+    """Ten samples last 0.9 s."""
+    groups = (
+        [component(range(10), 0.1, kind == "V", 100.0 + own) for kind in of]
+        for of, own in ((first, 0.0), (second, late))
+    )
+    assert _may_join(*groups) is (expected and late < 0.9)

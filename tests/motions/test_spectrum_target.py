@@ -390,6 +390,23 @@ def test_a_linear_table_is_straight_in_its_numbers_from_zero_on(tmp_path):
         TableSpectrum((0.0, 0.2), (0.4, 0.0), linear=True)
 
 
+@pytest.mark.parametrize("of", [tuple, list])
+@pytest.mark.parametrize("linear", [True, False])
+@pytest.mark.parametrize("first", [0, 1])
+def test_a_table_begins_at_0_only_if_it_is_straight_in_its_numbers(of, linear, first):
+    """In a tuple or a list alike."""
+    if first == 0 and not linear:
+        with pytest.raises(InputError) as refused:
+            TableSpectrum(of([first, 4]), of([0.9, 0.4]))
+        assert len(refused.value.messages) == 1
+        return
+    middle = 0.65 if linear else math.sqrt(0.9 * 0.4)
+    half_way = (first + 4) / 2 if linear else math.sqrt(first * 4)
+    assert TableSpectrum(of([first, 4]), of([0.9, 0.4]), linear=linear).at(np.array([half_way])) == pytest.approx(
+        [middle]
+    )
+
+
 GROUNDS = {
     1: {"A": (1.0, 0.15, 0.4, 2.0), "B": (1.2, 0.15, 0.5, 2.0), "C": (1.15, 0.2, 0.6, 2.0), "D": (1.35, 0.2, 0.8, 2.0),
         "E": (1.4, 0.15, 0.5, 2.0)},

@@ -61,6 +61,21 @@ def test_cases_that_pass_fail_and_are_not_decided_are_named(tmp_path):
     ]  # fmt: skip
 
 
+def test_a_cell_of_a_check_that_does_not_apply_is_as_empty_as_one_without_a_verdict(tmp_path):
+    nothing = {"check": "tilt", "value": math.nan, "ratio": math.nan}
+    write_results(tmp_path)
+    drift = [verdict(name, "pass") for name in "123"]
+    write_verdicts(tmp_path, [*drift, verdict("3", "pass", check="tilt"), verdict("1", "does not apply", **nothing)])
+    text = write_report(tmp_path, []).read_text(encoding="utf-8")
+    own = text[text.index('<table class="card">') :].split("</table>")[0]
+    empty = [
+        cell for cell in re.findall(r"<td.*?</td>", own, re.DOTALL) if 'data-check="tilt' in cell and ">–<" in cell
+    ]
+    assert len(empty) == 4  # two cases without any verdict, too
+    assert len(set(empty)) == 1
+    assert "does not apply" in empty[0]
+
+
 FELL = {"status": "overturned", "theta_max_over_alpha": 9.0}
 
 

@@ -16,7 +16,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.motions import measures
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.observers.intensity.order import order_of
-from rockbatch.observers.intensity.section import section
+from rockbatch.observers.intensity.section import _symbol, _tables, section
 from rockbatch.reporting.finished import read
 from rockbatch.results import suite_statistics
 from rockbatch.results.suite_statistics import distribution
@@ -235,6 +235,27 @@ def test_the_worst_records_and_the_most_frequent_reasons_come_first():
         {"status": ["failed"] * 6, "failure": kinds, "reason": ["c", "at 1: a", "z", "at 2: b", "y", "at 3"]}
     )
     assert suite_statistics.reasons_of_failure(failed) == {"at 1: a": 3, "z": 2}
+
+
+@pytest.mark.parametrize("blank", [(), (1,), (0, 2), slice(None)])
+def test_the_best_measure_is_the_extreme_of_those_that_have_a_number(results, blank):
+    """Largest rank correlation, least dispersion; a dash without any, as in the first row if all are blank there."""
+    finished, order = read(results.directory, ()), results.intensity_order.copy()
+    first = (order["scale"] == 1.0) & (order["alpha"] == order["alpha"].min())
+    for column in ("rank_correlation", "dispersion"):
+        names = order["measure"].unique()
+        order.loc[order["measure"].isin(names[blank if isinstance(blank, slice) else list(blank)]) & first, column] = (
+            np.nan
+        )
+    tables = [Page(str(drawn)).tables[""] for drawn in _tables(finished, order)]
+    for (head, *rows), column, best in zip(
+        tables, ("rank_correlation", "dispersion"), ("idxmax", "idxmin"), strict=True
+    ):
+        place = head.index("largest" if best == "idxmax" else "least")
+        groups = order.groupby(["case", *finished.info["varied"], "scale"], sort=False)
+        for row, (_, group) in zip(rows, groups, strict=True):
+            numbers = group.set_index("measure")[column].dropna()
+            assert row[place] == (_symbol(getattr(numbers, best)()) if len(numbers) else "—")
 
 
 def test_the_page_has_a_row_for_each_case_and_scale_and_names_both(results):

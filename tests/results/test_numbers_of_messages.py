@@ -15,6 +15,7 @@ import rockbatch as rb
 from rockbatch.outcome.figures import History
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.results.columns import given_table
+from rockbatch.results.histories_file import HISTORIES
 from rockbatch.results.opened import _candidates
 from rockbatch.results.reading import EditedTable, read_saved
 
@@ -135,6 +136,21 @@ def test_a_response_shows_its_results_and_the_length_of_its_history():
     assert_states(facts["events"], 1.0, "separation")
     assert_states(facts["θ_max/α"], 0.34567, 3e-5, 4.25, "s")
     assert_states(facts["settlement"], 45.6, "mm")
+
+
+@pytest.mark.parametrize("unusable", [0, 1, 3])
+@pytest.mark.parametrize("kept", [True, False])
+def test_results_show_their_runs_the_files_not_used_and_the_histories(tmp_path, unusable, kept):
+    lost = [{"name": f"x{n}", "source": f"x{n}.AT2", "reason": "empty"} for n in range(unusable)]
+    folder = write_results(
+        tmp_path, unusable=lost, changes={("RRS228", "1"): {"status": "overturned", "theta_max_over_alpha": ""}}
+    )
+    if kept:
+        (folder / HISTORIES).touch()
+    _, facts = rb.open_results(folder)._facts()
+    assert_states(facts["runs"], 30.0, 29.0, "ok", 1.0, "overturned")
+    assert_states(facts["not used"], *[float(unusable)] * (unusable > 0))
+    assert facts["histories"] == (HISTORIES if kept else "")
 
 
 @pytest.mark.parametrize(("status", "expected"), [("ok", [0.1234, 7.5]), ("overturned", ["overturned", 9.5])])

@@ -6,7 +6,7 @@ import pytest
 
 import rockbatch as rb
 from rockbatch.common.errors import InputError
-from rockbatch.study.bound_keys import PRESETS
+from rockbatch.study.bound_keys import PRESETS, _factor
 from rockbatch.study.design_bounds import DesignBound
 
 PRESET = "NTC 2018 viscous"
@@ -188,6 +188,18 @@ def test_a_bound_that_cannot_be_is_refused_at_its_place_with_the_remedy(bound, w
         study({"name": "b"} | bound)
     assert words in str(raised.value)
     assert str(raised.value).startswith('study.toml: [[bound]] "')
+
+
+@pytest.mark.parametrize(
+    ("written", "factor"),
+    [
+        ({"times": 1.01e-6}, 1.01e-6), ({"times": 1e-6}, None), ({"times": 0.0}, None), ({"times": -1.0}, None),
+        ({"times": 0.99e6}, 0.99e6), ({"times": 1e6}, None), ({"times": 3}, 3.0), ({"times": True}, None), ({"times": "2"}, None),
+        ({}, None), ({"times": 2.0, "plus": 1.0}, None), ({"plus": 1.0}, None),
+    ],
+)  # fmt: skip
+def test_a_factor_of_a_bound_is_a_number_between_a_millionth_and_a_million(written, factor):
+    assert _factor(written) == factor
 
 
 def test_two_bounds_of_one_name_are_refused():

@@ -143,6 +143,32 @@ def test_a_mass_is_said_once_and_where_it_is(tmp_path, keys, said):
     assert problem.startswith(said)
 
 
+SIZES = {"p": 0.4, "size_m": 20.0, "width_m": 4.0, "height_m": 30.0, "alpha": 0.13, "mu": 1.3}
+
+
+@pytest.mark.parametrize(
+    ("keys", "wrong"),
+    [
+        ("p alpha", []), ("size_m alpha", []), ("p alpha mu", []), ("width_m height_m", []), ("p", ["alpha"]),
+        ("size_m mu", ["alpha"]), ("alpha", ["its size"]), ("", ["its size", "alpha"]), ("width_m", ["height_m"]),
+        ("height_m", ["width_m"]), ("width_m alpha", ["height_m", "alpha"]), ("width_m height_m mu", ["mu"]),
+        ("width_m height_m alpha", ["alpha"]), ("p size_m alpha", ["p and size_m"]),
+        ("width_m height_m p", ["width_m, height_m and p"]), ("height_m size_m", ["height_m and size_m"]), ("p size_m", ["p and size_m", "alpha"]),
+    ],
+)  # fmt: skip
+def test_a_pier_is_given_by_one_size_and_an_angle_or_by_its_sides(keys, wrong):
+    """Every message begins with what is missing, follows from others, or is given twice."""
+    pier = {name: SIZES[name] for name in keys.split()}
+    tables = {"pier": pier, "motions": {"still_s": 5.0}, "case": [{"name": "rock", "base": "rigid"}]}
+    said = []
+    try:
+        rb.Study.from_dict(tables)
+    except rb.InputError as error:
+        said = [message.partition("[pier]: ")[2] for message in error.messages]
+    assert len(said) == len(wrong)
+    assert all(any(message.startswith(f"{name} ") for message in said) for name in wrong), said
+
+
 def test_the_mass_of_the_pier_serves_its_cases_and_is_said_once(tmp_path):
     pier = Pier.with_deck(4.0, 30.0, 2000.0, 1000.0)
     deck = SHAFT + "deck_mass_t = 1000\n"

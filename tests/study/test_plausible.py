@@ -219,6 +219,24 @@ def test_what_is_wrong_about_a_stop_or_a_deck_spring_is_said(tmp_path, device, k
     assert any(said in problem for problem in problems), problems
 
 
+@pytest.mark.parametrize("width", [0.3, 8.0])
+def test_without_a_gap_the_rest_of_a_device_is_judged_and_a_deck_spring_is_in_contact(width):
+    def study(**device):
+        case = {"name": "rock", "base": "rigid"} | {what: [keys] for what, keys in device.items()}
+        return rb.Study.from_dict(
+            {"pier": {"width_m": width, "height_m": 4.0 * width}, "motions": {"still_s": 5.0}, "case": [case]}
+        )
+
+    with pytest.raises(InputError) as refused:
+        study(stop={"lambda": 1e9})
+    assert [problem.key for problem in refused.value.problems] == ["case.0.stop.0", "case.0.stop.0.lambda"]
+    with pytest.raises(InputError) as refused:
+        study(deck_spring={"lambda": 1e9})
+    assert [problem.key for problem in refused.value.problems] == ["case.0.deck_spring.0.lambda"]
+    (spring,) = study(deck_spring={"lambda": 5.0}).cases[0].base.restraints
+    assert spring.gap_m == 0.0
+
+
 B, R0, P, A = 4.0, np.hypot(4.0, 15.0), TALL.p, TALL.alpha
 friction, hysteretic, viscous = (
     partial(rb.Damper, "friction", f=0.1),

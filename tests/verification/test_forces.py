@@ -584,6 +584,13 @@ def test_forces_that_halving_the_step_still_changes_have_an_error_and_a_note():
     assert note.startswith("forces not settled: halving the step still changed the heel speed by ")
 
 
+@pytest.mark.parametrize(("change", "noted"), [(0.0099, False), (0.0101, True)])
+def test_a_change_of_forces_is_noted_from_1_percent_on(change, noted):
+    fine = replace(forces_of(outcome_of(PIER, BASES["elastic"], shaken())), error=None)
+    _, note = with_error(fine, replace(fine, base_shear=fine.base_shear * (1.0 - change)), PIER, CHANCE)
+    assert note.endswith("base shear by 1.0%") == noted
+
+
 @pytest.mark.parametrize("share", [0.05, 0.5])
 def test_friction_counts_from_a_normal_force_that_the_study_chooses(share):
     """The less has to press, the more is asked, and |V| there is the demand times that share of the weight at most."""

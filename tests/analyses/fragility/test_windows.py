@@ -14,7 +14,7 @@ from rockbatch.analyses.fragility.curves import assess
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD
 from rockbatch.analyses.fragility.runs import LevelPlan
 from rockbatch.analyses.fragility.study import read_fragility
-from rockbatch.analyses.fragility.tables import capacities, points
+from rockbatch.analyses.fragility.tables import _described, capacities, points
 from rockbatch.analyses.fragility.windows import SAMPLES, samples, windows
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
@@ -131,6 +131,11 @@ def test_the_table_has_the_shares_of_every_level(tmp_path):
     assert tuple(rows["window_share"]) == curve.windows.shares
     assert list(rows["window_n"]) == [30] * 5
     assert rows["window_p"].to_numpy() == pytest.approx(curve.windows.fitted.probability(np.array(LEVELS)))
+    content = _described(curve, spec)
+    assert "open" not in content  # no run is undecided
+    assert content["windows"]["shares"] == list(curve.windows.shares)
+    assert content["windows"]["width"] == curve.windows.width
+    assert content["windows"]["median"] == curve.windows.fitted.median
 
 
 def test_windows_keep_to_the_limits_on_factors_and_to_the_levels_of_each_record(tmp_path):

@@ -195,6 +195,24 @@ def test_the_tables_of_exact_values_are_the_closed_form(clock):
     np.testing.assert_allclose(np.interp(highest[ahead], t, theta), (signs * exact.amplitude)[ahead], atol=1e-4)
 
 
+@pytest.mark.parametrize("clock", ["release", "first impact"])
+@pytest.mark.parametrize("e", [0.9, 0.01])
+def test_computed_times_count_from_where_the_measured_ones_do(clock, e):
+    """With e = 0.01 the block is at rest before the last of the impacts that were measured: its history is all that was run."""
+    study, exact = study_of(lists(passages([0.9] * FEW)) | {"clock": clock}), passages([e] * FEW)
+    spec = ReleaseSpec(clock=clock)
+    test = _Test(study.cases[0], "restitution", passages([0.9] * FEW), spec)
+    table, history = test.laid_over(e)
+    first = exact.t[0] if clock == "first impact" else 0.0
+    highest = exact.t - first + np.array(list(map(quarter, exact.amplitude)))
+    ahead = np.isfinite(table["t_amplitude_computed_s"])
+    assert ahead.sum() >= 2
+    np.testing.assert_allclose(table["t_amplitude_computed_s"][ahead], highest[ahead], atol=1e-4)
+    end = 1.1 * (exact.t[-1] - first) if e == 0.9 else test.still.duration - first
+    assert history["t_s"].iloc[0] == pytest.approx(-first, abs=1e-4)
+    assert history["t_s"].iloc[-1] == pytest.approx(end, abs=0.011)
+
+
 def test_times_and_amplitudes_are_also_fitted_apart():
     each = Passages(passages([0.9] * FEW).t, passages([0.85] * FEW).amplitude)
     (row,) = rb.release(study_of(lists(each))).release.to_dict("records")
