@@ -47,13 +47,21 @@ class Written(NamedTuple):
 class _Rows:
     """Index of the rows in an open journal: the position of each, by the number of its run.
 
-    ``path`` names the file in messages; ``remedy`` ends the message about rows of another digest. See :class:`Journal`.
+    ``path`` names the file in messages; ``remedy`` ends the message about rows of another digest; those of the digest
+    ``outdated`` are forgotten without it. See :class:`Journal`.
     """
 
     def __init__(
-        self, path: Path, columns: Sequence[str], digest: Mapping[str, str], runs: int = MOST_RUNS, remedy: str = ""
+        self,
+        path: Path,
+        columns: Sequence[str],
+        digest: Mapping[str, str],
+        runs: int = MOST_RUNS,
+        remedy: str = "",
+        outdated: Mapping[str, str] | None = None,
     ) -> None:
         self.path, self.columns, self.digest, self.runs, self.remedy = path, list(columns), dict(digest), runs, remedy
+        self.outdated = outdated
         digests = " ".join(f"{name}:{value}" for name, value in digest.items())
         self.first = _encoded(csv_line([digests, *self.columns]))[:-1]
         self.seed = zlib.crc32(self.first)
@@ -128,14 +136,14 @@ class _Rows:
         return int(match[1]) if len(cells) == len(self.columns) + 1 else None
 
     def _refuse_rows_of(self, first: bytes, lines: Iterator[tuple[int, bytes]]) -> None:
-        """Raise ``InputError`` with the changes since a journal with another first line; forget it if it has no rows."""
+        """Raise ``InputError`` with the changes since a journal with another first line; forget it if it has no rows to lose."""
         seed = zlib.crc32(first)
         rows = sum(_unsealed(line, seed) is not None for _, line in lines)
         self.forget()
-        if not rows:
-            return
         head = first.decode(errors="replace").partition(",")[0]
         digests = dict(part.partition(":")[::2] for part in head.split())
+        if not rows or digests == self.outdated:
+            return
         changed = [name for name, digest in self.digest.items() if digests.get(name) != digest] or ["columns"]
         raise InputError(
             f"{self.path}: holds {rows} finished runs, but something has changed since ({', '.join(changed)}); "
@@ -153,7 +161,7 @@ class Journal:
     are carried out again. Memory holds only the position of each row.
 
     Use it as a context; meanwhile no other process can write into its folder. At the end of the context the file is removed
-    if the table was written or no run is finished.
+    if the table was written or no run is finished; one that ``stays`` only if no run is.
 
     Parameters
     ----------
@@ -171,6 +179,10 @@ class Journal:
         Number of runs, if known: rows with higher numbers are invalid.
     tell : function, optional
         Called with a sentence about damaged lines.
+    stays : bool
+        Whether the file outlives its table, with its rows for a later command that asks for others, too.
+    outdated : mapping of str to str, optional
+        Digest of a table that was finished, whose rows may be dropped: no error is raised for them.
 
     Raises
     ------
@@ -189,13 +201,15 @@ class Journal:
         runs: int = MOST_RUNS,
         tell: Callable[[str], object] | None = None,
         beside: Sequence[str] = (),
+        stays: bool = False,
+        outdated: Mapping[str, str] | None = None,
     ) -> None:
-        self.path = path
+        self.path, self._stays = path, stays
         self.columns, self.beside = [*columns, *beside], list(beside)
         self._fresh = fresh
         self._tell = tell or (lambda _: None)
         remedy = "undo that to continue, choose another folder with --out, or start over with --fresh"
-        self._rows = _Rows(path, self.columns, digest, runs, remedy)
+        self._rows = _Rows(path, self.columns, digest, runs, remedy, outdated)
         self._written = False
 
     def __enter__(self) -> Self:
@@ -224,7 +238,7 @@ class Journal:
         with self._opened:
             empty = os.fstat(self._rows.file.fileno()).st_size <= self._rows.head
             self._rows.file.close()
-            if os.getpid() == self._process and (empty or (self._written and kind is None)):
+            if os.getpid() == self._process and (empty or (self._written and kind is None and not self._stays)):
                 remove(self.path)
 
     def __len__(self) -> int:

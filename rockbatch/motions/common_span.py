@@ -67,10 +67,10 @@ def on_common_samples(first: Component, second: Component, names: tuple[str, str
         slack = _SAME_SAMPLE * dt
         earliest = max(0, math.ceil((offset - slack) / dt))
         latest = min((len(a) - 1) * parts, math.floor((offset + second.duration + slack) / dt))
-        times = np.arange(earliest, latest + 1) * dt
+        times: Samples = np.arange(float(earliest), latest + 1.0) * dt
         begin = float(times[0]) if len(times) else 0.0
-        a = np.interp(times / first.dt, np.arange(len(a)), a)
-        b = np.interp((times - offset) / second.dt, np.arange(len(b)), b)
+        a = _interpolated(a, times / first.dt)
+        b = _interpolated(b, (times - offset) / second.dt)
         moved = [names[0]] * (parts > 1) + [names[1]] * (abs(dt - second.dt) > _SAME_STEP * dt or offset != 0)
         notes.append(
             f"{' and '.join(moved)} interpolated linearly to dt = {dt:g} s, from {first.dt:g} s {names[0]} and "
@@ -81,6 +81,12 @@ def on_common_samples(first: Component, second: Component, names: tuple[str, str
         whole = f"{first.duration:g} s {names[0]} and {second.duration:g} s {names[1]}"
         notes.append(f"common span: {span:g} s of {whole}")
     return Common(dt, a, b, (begin, max(0.0, begin - offset)), notes)
+
+
+def _interpolated(samples: Samples, places: Samples) -> Samples:
+    """Return ``samples`` interpolated linearly at rising ``places`` [steps], shape of ``places``; beyond its ends as at them."""
+    begin, end = (max(0, int(place)) for place in places[[0, -1]]) if len(places) else (0, 0)
+    return np.interp(places, np.arange(begin, min(end + 2, len(samples))), samples[begin : end + 2])
 
 
 def _offset(first: Component, second: Component, name: str) -> tuple[float, list[str]]:

@@ -9,7 +9,7 @@ import numpy as np
 from rockbatch.motions.archives import bare
 from rockbatch.motions.evidence import Statement
 from rockbatch.motions.listed import NOT_LISTED, Listed
-from rockbatch.motions.motion import Finding, Initial, Samples
+from rockbatch.motions.motion import Finding, Initial, Samples, frozen
 from rockbatch.motions.orientation import UNKNOWN, Orientation
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
 
@@ -71,7 +71,7 @@ UNKNOWN_SENSOR = Sensor()
 
 @dataclass(frozen=True)
 class Component:
-    """One component of a record in m/s²."""
+    """One component of a record in m/s²; its samples cannot be changed, so that its motion shares them."""
 
     name: str  # of the motion that a horizontal component becomes
     dt: float  # sampling interval [s]
@@ -99,6 +99,9 @@ class Component:
     statements: tuple[Statement, ...] = ()  # of its direction, from all sources
     contradiction: str = ""  # between statements in its set, for which it is held back
     listed: Listed = NOT_LISTED  # PEER's search results
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "acceleration", frozen(self.acceleration))
 
     @property
     def path(self) -> str:

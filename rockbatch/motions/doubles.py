@@ -104,11 +104,9 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
         for k, other in ((i, components[j]), (j, components[i])):
             text = f"{other.source} is the same sensor, event and direction by its header, and has other samples: check both"
             findings.setdefault(k, []).append(Finding("header", text))
-    remaining = []
-    for i, component in enumerate(components):
-        if i not in stands_for:
-            own = (*component.findings, *findings.get(i, ()))
-            remaining.append(replace(component, findings=own))
+    for i, own in findings.items():
+        components[i] = replace(components[i], findings=(*components[i].findings, *own))
+    remaining = [component for i, component in enumerate(components) if i not in stands_for]
     return remaining, [*below, *left_out]
 
 

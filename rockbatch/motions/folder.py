@@ -220,7 +220,7 @@ def read_files(
     stated = Inventories([(file.path, file.source, file.refusal) for file in inventories])
     beside, statements = statements_beside(files)
     statements |= companions_by_quantity(files)
-    files = [replace(file, companion=statements.get(file.path, file.companion)) for file in files]
+    files = [replace(file, companion=statements[file.path]) if file.path in statements else file for file in files]
     settings = _ReadSettings(
         manifest, options or ReadOptions(), gravity, offset or Offset(), _names(files), stated, beside, listed_in(files)
     )
@@ -398,7 +398,7 @@ def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Se
     """
     path = archives.bare(file.path)
     data = archives.content(file.path, HEAD)
-    if format_of(path.suffix, data) is not None:  # else its first bytes suffice for the refusal
+    if len(data) == HEAD and format_of(path.suffix, data) is not None:  # else these are all, or suffice for the refusal
         data = archives.content(file.path)
     beside = settings.beside.get(file.path, ())
     return read_record(RecordFile(path, file.source, data, options, settings.gravity, settings.inventories, beside))

@@ -190,6 +190,8 @@ class Manifest:
 
     def entries_for(self, path: Path) -> list[Entry]:
         """Return the entries of a file, those of the whole file first; those of its archive if it has none."""
+        if not self.entries:
+            return []
         real = Path(os.path.realpath(path))
         archive = archive_of(real)
         entries = self.entries.get(real) or (self.entries.get(archive, []) if archive else [])

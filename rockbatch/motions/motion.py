@@ -81,22 +81,22 @@ def _check_still(duration: float, dt: float) -> None:
         raise InputError(*wrong)
 
 
-def _frozen(samples: object) -> Samples:
+def frozen(samples: object) -> Samples:
     """Return samples as an array of ``float64`` over bytes, itself if it is one; raise ``TypeError`` unless real numbers.
 
     Nobody can write into bytes, while whoever made an array read-only may make it writeable again.
     """
+    if type(samples) is np.ndarray and isinstance(samples.base, bytes) and samples.dtype == float:
+        return samples
     if np.ma.is_masked(samples):
         raise TypeError("has masked samples: fill them or leave the record out")
-    if isinstance(samples, np.ndarray) and isinstance(samples.base, bytes) and samples.dtype == float:
-        return samples
     try:
         values = np.asarray(samples)
     except ValueError as error:
         raise TypeError(f"cannot be made an array of: {error}") from error
     if values.dtype.kind not in "iuf":
         raise TypeError(f"has samples of type {values.dtype}: must be real numbers")
-    return np.frombuffer(np.ascontiguousarray(values, np.float64).tobytes(), np.float64).reshape(values.shape)
+    return np.ndarray(values.shape, np.float64, np.asarray(values, np.float64).tobytes())
 
 
 @checked
@@ -208,7 +208,7 @@ class Motion(Shown):
             if samples is None and component != "horizontal":
                 continue
             try:
-                samples = _frozen(samples)
+                samples = frozen(samples)
             except TypeError as error:
                 wrong.append(f'motion "{self.name}": {component} acceleration {error}')
                 continue
@@ -328,7 +328,7 @@ class Motion(Shown):
         vars(self).update(state)
         for component in COMPONENTS:
             if (samples := state.get(component)) is not None:
-                vars(self)[component] = _frozen(samples)
+                vars(self)[component] = frozen(samples)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Motion):
@@ -457,7 +457,7 @@ class Motion(Shown):
         for name, by in (("horizontal", along), ("vertical", factor), ("across", factor)):
             if (samples := getattr(self, name)) is not None:
                 with np.errstate(over="ignore", invalid="ignore"):  # __post_init__ refuses it below
-                    vars(times)[name] = _frozen(samples * by)
+                    vars(times)[name] = frozen(samples * by)
         if self.initial is not None:
             vars(times)["initial"] = self.initial.times(along)
         across = 0.0 if times.across is None else float(np.abs(times.across).max())

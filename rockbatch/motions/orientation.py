@@ -7,10 +7,14 @@ import re
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import combinations
 
 from rockbatch.common.grouping import grouped
 from rockbatch.motions.direction_words import WORDS, folded, pairs, words
+
+MOST_KEPT = 8192
+"""Labels and stems of which the result is kept: those of a large folder, which several readers ask for."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +67,7 @@ _NOISE = re.compile(
 )
 
 
+@lru_cache(maxsize=MOST_KEPT)
 def orientation_of(label: str) -> Orientation | None:
     """Return the orientation of a label such as "UP", "DWN", "S62W", "21", "N-S", "HNZ"; ``None`` for other texts.
 
@@ -164,6 +169,7 @@ _PROCESSING = re.compile(
 )
 
 
+@lru_cache(maxsize=MOST_KEPT)
 def split_stem(stem: str) -> tuple[str, Orientation | None]:
     """Return the station's part of a file's stem and the orientation at its end, before times and words such as "corrected".
 

@@ -83,9 +83,7 @@ def to_motions(
                 if id(v) not in used:  # else it was listed with its station's other horizontal
                     unusable.append(Unusable(v.name, v.source, obstacle, station=known_as[number[id(v)]]))
             used.update(id(v) for v in together)
-        motion = _motion(component, partner, notes)
-        lacking = bool(vertical) and motion.vertical is None
-        motions.append(replace(motion, station=known_as[station], lacks_vertical=lacking))
+        motions.append(_motion(component, partner, notes, known_as[station], requested=bool(vertical)))
     if vertical:
         reason = "a vertical component without a usable horizontal one of its station in its folder"
         for v in (v for group in verticals for v in group if id(v) not in used):
@@ -122,7 +120,8 @@ def _confirmed_motions(
             unusable.append(Unusable(motion.name, motion.files, refusal, station=motion.of_station, motion=held))
         else:
             remarks = [f"confirmed: {finding.text}" if finding.gross else finding.text for finding in motion_findings]
-            motions.append(replace(motion, findings=motion_findings, notes=(*motion.notes, *remarks)))
+            notes = (*motion.notes, *remarks)
+            motions.append(replace(motion, findings=motion_findings, notes=notes) if remarks else motion)
     return MotionSet(motions, unusable)
 
 
@@ -226,10 +225,11 @@ def _why_dead(h: Component, v: Component) -> str:
     return "it never moves: a dead channel" if still and h.pga > 0.0 else ""
 
 
-def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
+def _motion(h: Component, v: Component | None, notes: Iterable[str], station: str, requested: bool) -> Motion:
     """Return the motion of a horizontal and its vertical component over their common time; of ``h`` alone if that lacks its peak.
 
-    It lacks the peak if less than 95 % of it remains. ``notes`` come before those on this.
+    It lacks the peak if less than 95 % of it remains. ``notes`` come before those on this; ``requested`` is whether a vertical
+    component is asked for.
     """
     remarks = list(notes)
     dt, horizontal, vertical, initial, start = h.dt, h.acceleration, None, h.initial, h.start
@@ -266,6 +266,8 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
         processed=h.processed,
         findings=gross,
         origin=with_direction(h.origin, h.orientation),
+        lacks_vertical=requested and vertical is None,
+        station=station,
         start=start,
         confirm=("dt",),  # a file's step was checked against the limits of recorders (limits.py)
         listed=h.listed,

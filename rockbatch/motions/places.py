@@ -193,6 +193,7 @@ def _stand(text: str, is_name: bool) -> Stand:
     return Stand.STRUCTURE if _is_on_structure(folded, is_name) else Stand.GROUND
 
 
+@lru_cache(maxsize=1024)
 def _folded(text: str) -> str:
     """Return a text in lower case without accents, with single blanks for runs of blanks, "_", ":", "/" and quotation marks."""
     text = text.casefold().replace("ı", "i").replace("ß", "ss").replace("ø", "o")

@@ -3,14 +3,20 @@
 from dataclasses import is_dataclass, replace
 from typing import TypeVar
 
+import numpy as np
+
 from rockbatch.common.files import legible
 
 T = TypeVar("T")
 
+_WITHOUT_TEXT = {float, int, bool, type(None), np.ndarray}
+"""Types that are passed over first, since every component has a dozen such values."""
+
 
 def with_legible_texts(record: T) -> T:
     """Return a dataclass with every text in it ``legible``, also in tuples and dataclasses within; itself if none changes."""
-    changed = {name: new for name, value in vars(record).items() if (new := _legible(value)) is not value}
+    values = ((name, value) for name, value in vars(record).items() if type(value) not in _WITHOUT_TEXT)
+    changed = {name: new for name, value in values if (new := _legible(value)) is not value}
     return replace(record, **changed) if changed else record  # type: ignore[type-var]
 
 

@@ -171,8 +171,8 @@ class AnalysisFolder:
 
     def has(self, file: str, digest: Mapping[str, str]) -> bool:
         """Return whether ``file`` has the runs with ``digest``; False with ``fresh``. ``InputError`` if it has and was edited."""
-        path, earlier = self.directory / file, self._earlier.get(file)
-        if not (isinstance(earlier, dict) and earlier.get("runs") == digest and is_plain(path)):
+        path, earlier = self.directory / file, self._earlier.get(file, {})
+        if not (earlier.get("runs") == digest and is_plain(path)):
             return False
         if earlier.get("sha256") != sha256_of(path):
             raise InputError(
@@ -182,14 +182,22 @@ class AnalysisFolder:
 
     @contextmanager
     def journal(
-        self, file: str, columns: Sequence[str], digest: Mapping[str, str], beside: Sequence[str] = ()
+        self,
+        file: str,
+        columns: Sequence[str],
+        digest: Mapping[str, str],
+        beside: Sequence[str] = (),
+        stays: bool = False,
     ) -> Iterator[Journal]:
         """Context manager: yield the journal of the runs in ``file``; announce its finished runs, at the start and after Ctrl-C.
 
-        ``beside`` are names of further cells of its rows, as :class:`Journal` takes them.
+        ``beside`` and ``stays`` as for :class:`Journal`. Rows of the digest with which ``file`` was finished may be dropped.
         """
         path, say = self.directory / f"{file}.part", self.listener.say
-        with Journal(path, columns, digest, self.fresh, tell=say, beside=beside) as journal:
+        outdated = self._earlier.get(file, {}).get("runs")
+        with Journal(
+            path, columns, digest, self.fresh, tell=say, beside=beside, stays=stays, outdated=outdated
+        ) as journal:
             if len(journal):
                 self.listener.say(f"{count(len(journal), 'run')} are finished already (--fresh starts over)")
             try:
@@ -279,9 +287,10 @@ def run_analysis(
         return kind(study=results.study, info=results.info, unusable=unusable, files=files, **content)
 
 
-def _earlier_digests(path: Path) -> dict[str, Any]:
+def _earlier_digests(path: Path) -> dict[str, dict[str, Any]]:
     """Return the digests in an earlier NAME.json, of each file and its runs; empty if it cannot be read."""
     try:
-        return dict(json.loads(read_text(path))["digests"])
+        digests = dict(json.loads(read_text(path))["digests"])
+        return {file: noted for file, noted in digests.items() if isinstance(noted, dict)}
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return {}

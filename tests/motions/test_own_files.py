@@ -1,6 +1,7 @@
 """A folder of records that holds results of a study, too."""
 
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,10 @@ import rockbatch as rb
 from rockbatch.batch.journal import Journal
 from rockbatch.commands.cli import main
 from rockbatch.motions import read_motions
+from rockbatch.motions.component import Component
+from rockbatch.motions.folder import read_files
 from rockbatch.motions.own_files import is_own
+from rockbatch.motions.pairing import to_motions
 
 OUTPUT = {"histories": "all", "forces": True, "half_cycles": True, "intensity": True, "sections": 3}
 CHECK = {"name": "upright", "reason": "test", "demand": "theta_max_over_alpha", "at_most": 0.9}
@@ -82,3 +86,12 @@ def test_samples_of_all_components_are_checked_copied_and_frozen():
             rb.Motion("m", 0.01, samples, across=odd)
     with pytest.raises(rb.InputError, match="dt"):
         rb.Motion("m", np.timedelta64(10, "ms"), samples)
+
+
+def test_a_motion_shares_its_components_samples_and_copies_share_them_too(folder):
+    components = [reading for reading in read_files([folder])[0] if isinstance(reading, Component)]
+    motions = to_motions(components).motions
+    for component, motion in zip(components, motions, strict=True):
+        assert motion.horizontal is component.acceleration is replace(motion, notes=("read",)).horizontal
+        with pytest.raises(ValueError, match="WRITEABLE"):
+            component.acceleration.flags.writeable = True

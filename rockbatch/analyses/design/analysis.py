@@ -4,15 +4,11 @@ One key is scanned, and every change of verdict between two neighbouring values 
 its scan.
 """
 
-import csv
-import itertools
 import math
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from itertools import product
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rockbatch.analyses.design.search import middles
@@ -28,26 +24,22 @@ from rockbatch.analyses.design.tables import (
     values_table,
 )
 from rockbatch.analyses.design.trials import Trial, Trials, Written
-from rockbatch.batch.beside import packed_rows
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.observers import observers_beside
 from rockbatch.batch.threads import Engine
-from rockbatch.batch.waves import Identity, Waves, identity
+from rockbatch.batch.waves import Waves, identity
 from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.suite_target import suite_of, suite_verdicts
 from rockbatch.checks.verdicts import PASS, Verdict, as_table
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import csv_plain, opened_text, read_table
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.motions.spectrum_target import SpectrumTarget
-from rockbatch.results.beside_peaks import NAMING
 from rockbatch.results.columns import columns, read_cells
-from rockbatch.results.labelled import Row, as_dicts
 from rockbatch.results.run_json import describe, rocking_periods
 from rockbatch.simulation.observing import Observer
 from rockbatch.study import Case, Motions, Study
@@ -179,15 +171,18 @@ def _write_tables(results: AnalysisFolder, spec: DesignSpec) -> dict[str, object
         raise InputError(f"{study.path}: [design]: the study is refused with every value; {first_refused}")
     of_runs = replace(study, varied=(*written.varied, *spec.paths))
     observers = _observers_beside(study, motions)
+    names = [observer.table for observer in observers]
     digest = digests(
         motions.motions,
         studies={name: table for name, table in written.tables.items() if name not in OF_NO_RUN},
         cases=study.cases,
         scales=(study.motions.vertical, study.motions.polarity, study.motions.scale),
         numerics=(study.numerics, study.output),
-        columns=(columns(of_runs), [observer.table for observer in observers]),
+        columns=(columns(of_runs), names),
     )
-    with _waves(results, of_runs, observers, digest) as waves:
+    with results.journal(RUNS, columns(of_runs), digest, names, stays=True) as journal:
+        known = {identity(read_cells(cells), of_runs.varied): number for number, cells in journal.rows()}
+        waves = Waves(of_runs, journal, results.engine, results.listener, observers, known)
         info = describe(study, motions)
         trials = Trials(written, motions, waves, suite_of(info), _on_suite(study, info))
         first = tuple(case for trial in scan for case in written.cases(trial))
@@ -204,6 +199,7 @@ def _write_tables(results: AnalysisFolder, spec: DesignSpec) -> dict[str, object
         results.keep_table(CHECKS, as_table(trials.verdicts))
         for name, rows in waves.tables.items():
             results.keep_table(BESIDE[name], pd.DataFrame(rows))
+        journal.write_in_order(results.directory / RUNS, numbers=waves.numbers)
     results.keep(RUNS, digest)
     results.info["runs"] = waves.finished
     return {"spec": spec}
@@ -219,47 +215,6 @@ def _observers_beside(study: Study, motions: MotionSet) -> list[Observer]:
     of_one_moment = any(rule.at_m is not None or rule.curve is not None for rule in study.checks)
     requested = observers_beside(study.output, motions.motions) if of_one_moment else ()
     return [observer for observer in requested if observer.table in BESIDE]
-
-
-@contextmanager
-def _waves(
-    results: AnalysisFolder, study: Study, observers: Sequence[Observer], digest: dict[str, str]
-) -> "Iterator[Waves]":
-    """Open the waves of runs in a journal, with those that are finished in the folder; write it as a table at the end.
-
-    The table has the runs that the search asked for, in its order, whichever of them were there.
-    """
-    names = [observer.table for observer in observers]
-    with results.journal(RUNS, columns(study), digest, names) as journal:
-        known = {identity(read_cells(cells), study.varied): number for number, cells in journal.rows()}
-        if results.has(RUNS, digest):
-            rows = {identity(row, study.varied): row for row in _finished(results.directory, study, names)}
-            results.listener.say(
-                f"{count(len(rows), 'run')} are finished in {results.directory} (--fresh runs them again)"
-            )
-            lacking = [name for name in rows if name not in known]
-            new = dict(zip(lacking, itertools.count(max(known.values(), default=-1) + 1), strict=False))
-            journal.add_all({number: rows[name] for name, number in new.items()})
-            known |= new
-        waves = Waves(study, journal, results.engine, results.listener, observers, known)
-        yield waves
-        journal.write_in_order(results.directory / RUNS, numbers=waves.numbers)
-
-
-def _finished(directory: Path, study: Study, names: Sequence[str]) -> Iterator[dict[str, float | str | None]]:
-    """Yield the cells of each finished run in ``directory``, and those of its rows in the tables of ``names`` beside them."""
-    naming, beside = {*NAMING, *study.varied}, dict[str, dict[Identity, list[Row]]]()
-    for name in names:
-        rows = as_dicts(read_table(directory / BESIDE[name]))
-        beside[name] = grouped(rows, lambda row: identity(row, study.varied))
-    with opened_text(directory / RUNS) as file:
-        for row in csv.DictReader(file):
-            cells = read_cells({name: csv_plain(cell) for name, cell in row.items()})
-            own = {name: of_runs.get(identity(cells, study.varied), ()) for name, of_runs in beside.items()}
-            yield cells | {
-                name: packed_rows([{n: cell for n, cell in each.items() if n not in naming} for each in of_run])
-                for name, of_run in own.items()
-            }
 
 
 def _announce(

@@ -537,24 +537,31 @@ def csv_files(folder):
 
 
 def test_another_limit_or_another_scan_runs_only_values_that_were_not_run(tmp_path, simulated):
-    """Its files are those of a search of its own, also back at the first limit, of which only the runs in the table are left."""
+    """Its files are those of a search of its own, also when a scan shrinks and grows again; the journal only ever grows."""
     first, changed = study(), study({"points": 7}, check=[ROTATION | {"at_most": 0.4}])
-    for of_study in (first, changed, first):
-        before = {row["pier.p"] for row in read_finished(tmp_path / "out")}
+    run, lines = set(), 1
+    for of_study in (first, changed, first, changed):
         simulated.clear()
         found = rb.design(of_study, tmp_path / "out", jobs=1)
         made = sum(simulated)
         rb.design(of_study, tmp_path / "alone", jobs=1, fresh=True)
         assert csv_files(tmp_path / "out") == csv_files(tmp_path / "alone")
         values = set(found.design_runs["pier.p"])
-        assert made == len(values - before)
-        assert not before or values & before
+        assert made == len(values - run)
+        assert not run or values & run
+        run |= values
+        lines += made
+        assert len((tmp_path / "out/design_runs.csv.part").read_bytes().splitlines()) == lines
 
 
-def read_finished(folder):
-    """The rows of the runs that are finished in a folder; [] without any."""
-    path = folder / "design_runs.csv"
-    return read_table(path).to_dict("records") if path.exists() else []
+def test_runs_of_a_finished_search_are_replaced_when_the_pier_changes(tmp_path, simulated):
+    rb.design(study(), tmp_path / "out", jobs=1)
+    other = study(pier=PIER | {"alpha": 0.19})
+    for folder in ("out", "alone"):
+        simulated.clear()
+        found = rb.design(other, tmp_path / folder, jobs=1)
+        assert sum(simulated) == len(found.design_runs)
+    assert csv_files(tmp_path / "out") == csv_files(tmp_path / "alone")
 
 
 def test_another_limit_keeps_the_forces_in_sections_of_finished_runs(tmp_path, simulated):
