@@ -153,7 +153,8 @@ SIZES = {"p": 0.4, "size_m": 20.0, "width_m": 4.0, "height_m": 30.0, "alpha": 0.
         ("size_m mu", ["alpha"]), ("alpha", ["its size"]), ("", ["its size", "alpha"]), ("width_m", ["height_m"]),
         ("height_m", ["width_m"]), ("width_m alpha", ["height_m", "alpha"]), ("width_m height_m mu", ["mu"]),
         ("width_m height_m alpha", ["alpha"]), ("p size_m alpha", ["p and size_m"]),
-        ("width_m height_m p", ["width_m, height_m and p"]), ("height_m size_m", ["height_m and size_m"]), ("p size_m", ["p and size_m", "alpha"]),
+        ("width_m height_m p", ["width_m, height_m and p"]), ("height_m size_m", ["height_m and size_m"]),
+        ("p size_m", ["p and size_m", "alpha"]),
     ],
 )  # fmt: skip
 def test_a_pier_is_given_by_one_size_and_an_angle_or_by_its_sides(keys, wrong):

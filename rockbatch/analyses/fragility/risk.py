@@ -17,7 +17,7 @@ from rockbatch.analyses.fragility.lognormal import Interval, NoCurve, Values
 from rockbatch.analyses.fragility.statistics import rate_bounds
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.common.lazy import pd
-from rockbatch.motions.hazard import MOST_RATE
+from rockbatch.motions.hazard import MOST_RATE, HazardCurve
 
 RISK, DEAGGREGATION = "fragility_risk.csv", "fragility_deaggregation.csv"
 
@@ -136,7 +136,7 @@ def _of_fitted(curves: Sequence[Curve], spec: FragilitySpec) -> list[Risk]:
 def _risk(curve: Curve, fitted: Fitted, spec: FragilitySpec, hazard: Hazard, x: Values, rates: Values) -> Risk:
     total = fitted.widened(spec.added)
     rate, least, most = total.rate(x, rates)
-    if most > (hazard.curve.rates[0] if len(hazard.curve.rates) > 1 else MOST_RATE):
+    if most > _meaningful(hazard.curve):
         most = math.inf
     yearly = total.probability(x) * rates
     first, last = hazard.curve.ends
@@ -157,6 +157,11 @@ def _risk(curve: Curve, fitted: Fitted, spec: FragilitySpec, hazard: Hazard, x: 
         (float(yearly[x < spec.levels[0]].sum()), float(yearly[x > spec.levels[-1]].sum())),
         (low, high),
     )
+
+
+def _meaningful(hazard: HazardCurve) -> float:
+    """Return the greatest meaningful rate: that of the lowest point, or 100 per year for a single point."""
+    return hazard.rates[0] if len(hazard.rates) > 1 else MOST_RATE
 
 
 def _undecided(curve: Curve, added: float, x: Values, rates: Values) -> tuple[float, float] | None:
