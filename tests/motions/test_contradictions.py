@@ -62,13 +62,16 @@ def test_what_is_off_by_little_is_a_note_by_more_a_warning_and_by_much_waits(qua
     values = np.zeros(1000)
     values[[400, 700]] = 2.0, -1.0
     has, sampled = LIMITS[quantity][0], Sampled(values, 0.001, "m/s2", 1.0, values)
-    findings = contradictions([Stated(quantity, f"{off * has:.9f}")], sampled, GRAVITY)
-    assert [("waits" if f.gross else "warning") if f.what else "note" for f in findings] == ([what] if what else [])
-    assert all(f"states {QUANTITIES[quantity].words} {off * has:.9f}" in finding.text for finding in findings)
+    findings, notes = contradictions([Stated(quantity, f"{off * has:.9f}")], sampled, GRAVITY)
+    assert [*("waits" if f.gross else "warning" for f in findings), *("note" for _ in notes)] == (
+        [what] if what else []
+    )
+    texts = (*(finding.text for finding in findings), *notes)
+    assert all(f"states {QUANTITIES[quantity].words} {off * has:.9f}" in text for text in texts)
     for nothing in ("", "?", "0.000", "1e", "inf", "9e999"):
         if nothing != "0.000" or QUANTITIES[quantity].unit:  # a peak of 0 is one
-            assert not contradictions([Stated(quantity, nothing)], sampled, GRAVITY)
-    (absurd,) = contradictions([Stated(quantity, "9e200")], sampled, GRAVITY)
+            assert contradictions([Stated(quantity, nothing)], sampled, GRAVITY) == ((), ())
+    ((absurd,), _) = contradictions([Stated(quantity, "9e200")], sampled, GRAVITY)
     assert absurd.gross
 
 
@@ -77,9 +80,9 @@ def test_a_time_of_a_nearly_equal_peak_and_one_that_counts_from_elsewhere_are_ri
     values[[200, 800]] = 2.0, -1.92
     sampled = Sampled(values, 0.01, "m/s2", 1.0, values)
     for printed, begins in (("8.00", 0.0), ("-3.0", -5.0), ("3.0", -5.0), ("2.0", 0.0)):
-        assert not contradictions([Stated("time of the peak", printed, begins=begins)], sampled, GRAVITY)
+        assert contradictions([Stated("time of the peak", printed, begins=begins)], sampled, GRAVITY) == ((), ())
     for printed, begins in (("5.0", 0.0), ("2.0", -5.0), ("-2.0", 0.0)):
-        assert contradictions([Stated("time of the peak", printed, begins=begins)], sampled, GRAVITY)
+        assert any(contradictions([Stated("time of the peak", printed, begins=begins)], sampled, GRAVITY))
 
 
 @pytest.mark.parametrize("rate", [20.0, 100.0, 220.0, 400.0])

@@ -79,8 +79,9 @@ def _warn_of_contradictions(place: str, recordings: Sequence[Recording]) -> None
             factor = acceleration_factor(recording.unit)
         except ValueError:
             continue
-        for finding in contradictions_of(recording, factor, GRAVITY):
-            warnings.warn(f"{place} ({recording.label}): {finding.text}", stacklevel=4)
+        findings, differences = contradictions_of(recording, factor, GRAVITY)
+        for text in (*(finding.text for finding in findings), *differences):
+            warnings.warn(f"{place} ({recording.label}): {text}", stacklevel=4)
 
 
 def _trace(name: str, recording: Recording, headonly: bool) -> "obspy.Trace":

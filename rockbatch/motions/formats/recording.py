@@ -91,7 +91,7 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
     words = "it is stated to be" if recording.stated_by is Kind.USER else "its header says"
     acceleration = recording.values * factor
     series = [_in_metres(samples) for samples in (recording.velocities, recording.displacements)]
-    findings = contradictions_of(recording, factor, file.gravity)
+    findings, differences = contradictions_of(recording, factor, file.gravity)
     return Component(
         name=name,
         dt=recording.dt,
@@ -110,13 +110,15 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         processed=recording.processed,
         origin=recording.origin,
         initial=initial_of(acceleration, recording.dt, *series) or recording.initial,
-        notes=(*recording.notes, *(finding.text for finding in findings if not finding.what)),
-        findings=tuple(finding for finding in findings if finding.what),
+        notes=(*recording.notes, *differences),
+        findings=findings,
     )
 
 
-def contradictions_of(recording: Recording, factor: float, gravity: float) -> list[Finding]:
-    """Return findings on samples, times ``factor`` in m/s², that differ from their header's statements."""
+def contradictions_of(
+    recording: Recording, factor: float, gravity: float
+) -> tuple[tuple[Finding, ...], tuple[str, ...]]:
+    """Return findings and notes on samples, times ``factor`` in m/s², that differ from their header's statements."""
     as_read = recording.values if recording.as_read is None else recording.as_read
     sampled = Sampled(recording.values, recording.dt, recording.unit, factor, as_read)
     return contradictions(recording.stated, sampled, gravity)

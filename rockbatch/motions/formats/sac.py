@@ -91,7 +91,7 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
     factor = acceleration_factor(unit, file.gravity) / (options.sensitivity or 1.0)
     dt = float(str(np.float32(numbers["DELTA"])))  # the shortest decimal with this float of four bytes: 0.01
     sampled = Sampled(samples, dt, unit if options.sensitivity is None else "counts", factor, samples)
-    findings = contradictions(_statements(numbers), sampled, file.gravity)
+    findings, differences = contradictions(_statements(numbers), sampled, file.gravity)
     return [
         Component(
             name=file.stem,
@@ -108,8 +108,8 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
             unit=unit,
             raw=True,
             origin=origin_of(names["KEVNM"], f"{network}.{station}".strip("."), day),
-            notes=(f"unit {unit} as stated", *(finding.text for finding in findings if not finding.what)),
-            findings=tuple(finding for finding in findings if finding.what),
+            notes=(f"unit {unit} as stated", *differences),
+            findings=findings,
         )
     ]
 

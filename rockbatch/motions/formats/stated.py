@@ -107,17 +107,19 @@ QUANTITIES = {  # peaks in five digits, of 1.0000; times to a sample, durations 
 }
 
 
-def contradictions(statements: Sequence[Stated], sampled: Sampled, gravity: float) -> list[Finding]:
-    """Return findings on statements that the samples contradict; notes on small differences have an empty ``what``.
+def contradictions(
+    statements: Sequence[Stated], sampled: Sampled, gravity: float
+) -> tuple[tuple[Finding, ...], tuple[str, ...]]:
+    """Return findings on statements that the samples contradict, and notes on small differences.
 
     Raises ``Truncated`` for another count of samples.
     """
-    findings = [_contradiction(stated, sampled, gravity) for stated in statements]
-    return [finding for finding in findings if finding is not None]
+    found = [_contradiction(stated, sampled, gravity) for stated in statements]
+    return tuple(one for one in found if isinstance(one, Finding)), tuple(one for one in found if isinstance(one, str))
 
 
-def _contradiction(stated: Stated, sampled: Sampled, gravity: float) -> Finding | None:
-    """Return the finding on a statement that the samples contradict; None within its tolerances.
+def _contradiction(stated: Stated, sampled: Sampled, gravity: float) -> Finding | str | None:
+    """Return the finding on a statement that the samples contradict, a note on a small difference; None within its tolerances.
 
     None also for a text that is no number, a peak in an unknown unit, and a time, step or rate of 0, which programs write for
     unknown ones.
@@ -155,6 +157,6 @@ def _contradiction(stated: Stated, sampled: Sampled, gravity: float) -> Finding 
     noted, gross = stated.limits or quantity.limits
     relative = difference / max(min(abs(nearest), abs(value)), sys.float_info.min)
     if relative <= noted:
-        return Finding("", text)
+        return text
     cut = stated.quantity == "duration" and gross < math.inf and difference > _CUT
     return Finding(stated.quantity, f"{text}: {quantity.advice}", gross=relative > gross or cut)
