@@ -10,6 +10,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.files import csv_text, write_output
 from rockbatch.common.grouping import distinct, grouped
 from rockbatch.motions import MotionSet, ReadOptions, read_motions
+from rockbatch.motions.component import listed_files
 from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.motion_set import COLUMNS, TEXTS, row
 from rockbatch.motions.ranking import ADDED, RankedRecord, Use, ranked_records
@@ -104,7 +105,7 @@ def counts(suite: MotionSet) -> str:
     sources = {source for motion in suite for source in (motion.source, motion.vertical_source) if source}
     for not_used in (suite.unusable, suite.left_out):
         sources |= {file.source for file in not_used}
-    files = {source.split(" (")[0] for source in sources}
+    files = {file for source in sources for file in listed_files(source)}
     recordings = f"{count(len(suite), 'usable recording')} of {count(len(suite.stations()), 'station')}"
     return f"{count(len(files), 'file')}: {recordings}, {len(suite.unusable)} not used, {len(suite.left_out)} left out"
 

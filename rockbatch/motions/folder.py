@@ -19,7 +19,7 @@ from rockbatch.common.units import GRAVITY
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, remove_offset
 from rockbatch.motions.colocated import with_gains_compared
-from rockbatch.motions.component import Component, file_of
+from rockbatch.motions.component import Component, file_of, listed_files
 from rockbatch.motions.directions import judge_directions
 from rockbatch.motions.doubles import tell_use_of_originals, without_doubles
 from rockbatch.motions.evidence import Kind, Statement
@@ -161,9 +161,8 @@ def _with_stations(readings: Sequence[Reading], paired: MotionSet) -> list[Unusa
 
     It is in their folder; without either they keep their station.
     """
-    sources = [(source, m.of_station) for m in paired.motions for source in m.files.split(", ")]
-    sources += [(source, file.station) for file in paired.unusable for source in file.source.split(", ")]
-    station_of_file = {file_of(source): station for source, station in sources}
+    sources = [(m.files, m.of_station) for m in paired.motions] + [(u.source, u.station) for u in paired.unusable]
+    station_of_file = {file: station for listed, station in sources for file in listed_files(listed)}
     station_of_site = {}
     for reading in readings:
         if isinstance(reading, Component) and (file := file_of(reading.source)) in station_of_file:

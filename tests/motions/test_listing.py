@@ -30,6 +30,19 @@ def test_of_many_files_counts_come_first_and_reasons_once(tmp_path, capsys):
     assert sum("cut" in line for line in lines) == 1
 
 
+def test_files_are_counted_whose_names_differ_in_brackets(tmp_path, capsys):
+    """As browsers name what is fetched twice."""
+    for number in (1, 2):
+        write_at2(
+            tmp_path,
+            f"RSN1_A_S000 ({number}).AT2",
+            wiggle(150, number, scale=0.3),
+            title=f"M, 1/17/1994, S{number}, 000",
+        )
+    main(["motions", str(tmp_path)])
+    assert capsys.readouterr().out.startswith("2 files: ")
+
+
 def test_all_lists_every_recording_and_every_file(tmp_path, capsys):
     many_files(tmp_path / "records", 20, 30)
     main(["motions", "--all", str(tmp_path / "records")])
