@@ -33,8 +33,7 @@ PAIRS = {"apart": 0.9, "srss": 1.3, "geomean": 1.0, "rotd50": 1.0, "rotd100": 0.
 _A_DECADE = 100  # periods, 2.3 % apart: a peak at 5 % damping is four of them wide
 
 _APART = (
-    'pairs = "apart": each of two components of a station counts by itself, though codes judge the pair; if that is '
-    "not intended, "
+    'pairs = "apart": each of two components of a station counts by itself, though codes judge the pair; if unintended, '
     'write pairs = "srss" (EN 1998-2) or "rotd100" (ASCE 7)'
 )
 

@@ -154,9 +154,8 @@ BASE_KEYS = {
             "write a [[case]] for each backbone",
         ),
         "[[10.0, 2.0e4], [30.0, 3.5e4], [60.0, 4.0e4]]",
-        "Backbone of one support in compression: deflections and forces at its corners, from the first one on, and at "
-        "one further point, beyond which its slope continues. It is concave and replaces stiffness and strength; the "
-        "mass must be known.",
+        "Backbone of one support in compression: deflections and forces at its corners, from the first one on, and at one point "
+        "beyond, after which its slope continues. It is concave and replaces stiffness and strength; the mass must be known.",
         required=True,
         only=_YIELDS | {"spring": WITH_POINTS},
     ),

@@ -116,9 +116,7 @@ _OF_TABLES = "|".join(rf"^{what}_[1-9][0-9]*_({'|'.join(keys)})$" for what, keys
 
 REFERENCE = Section(
     ("reference",),
-    (
-        "A published value to print beside the results. Keys that the study varies select the case among those of its name."
-    ),
+    "A published value to print beside the results. Keys that the study varies select the case.",
     {
         "record": Key(text, '"*LGP*"', "Names of the records, as a pattern with * and ?.", required=True),
         "case": Key(text, '"rigid"', "Name of the case.", required=True),

@@ -122,8 +122,7 @@ PIER = Section(
         "initial_rotation_rad": Key(
             within(BOUNDS["initial_rotation_rad"]),
             "0.05",
-            "Rotation at which the pier is held and from which it is released at the first sample of the motion; "
-            "positive to the right, below α. A "
+            "Rotation from which the pier is released at the first sample of the motion; positive to the right, below α. A "
             "still ground, `still_s` of [motions], makes it a release test.",
             many=True,
             usual=USUAL["initial_rotation_rad"],

@@ -92,7 +92,6 @@ def note_on_cloud(curve: Curve, spec: FragilitySpec) -> list[str]:
     below = sum(counts(run, curve, spec) == "below" for run in curve.cloud)
     if below:
         notes.append(
-            f"{count(below, 'record')} below {100 * spec.censored_below:g} % of the limit are censored: they count as "
-            f"small, without their value"
+            f"{count(below, 'record')} below {100 * spec.censored_below:g} % of the limit are censored: they count as small"
         )
     return notes

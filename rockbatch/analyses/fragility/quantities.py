@@ -114,12 +114,7 @@ def of_rates(info: Entry, written: Callable[[float], str]) -> list[Head]:
     """
     level = level_of(info)
     return [
-        Head(
-            "dispersion",
-            ".2f",
-            "β with the dispersion that the study adds",
-            value=lambda curve: curve["risk"]["dispersion_total"],
-        ),
+        Head("dispersion", ".2f", "β with the added dispersion", value=lambda curve: curve["risk"]["dispersion_total"]),
         Head("rate [1/year]", note="mean annual rate of exceedance", value=_rate(written)),
         Head(level, note="interval of the rate by the fit", value=_rates("rate_low", "rate_high", written)),
         Head(

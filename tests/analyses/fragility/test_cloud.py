@@ -385,7 +385,7 @@ def test_what_a_curve_rests_on_is_said(tmp_path, beyond, words):
     runs += 2 * [CloudPoint(8, 0.3, 0.004, "ok", WITHSTOOD)]
     for curve in (exactly(), exactly(share=None)):
         said = note_on_cloud(SimpleNamespace(limit=spec.limits[1], cloud=runs, fitted=curve), spec)
-        assert said.pop() == "2 records below 1 % of the limit are censored: they count as small, without their value"
+        assert said.pop() == "2 records below 1 % of the limit are censored: they count as small"
         assert (curve.overturning is None) == (
             "no record overturns: their share counts as 0 at every intensity" in said
         )
