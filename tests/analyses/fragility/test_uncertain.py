@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,9 +12,9 @@ from studies import PADS, RIGID, seven_pulses, study_text, write_study
 import rockbatch as rb
 from rockbatch.analyses.fragility.command import added
 from rockbatch.analyses.fragility.curves import assess
-from rockbatch.analyses.fragility.lognormal import Capacities, contribution, fit
+from rockbatch.analyses.fragility.lognormal import Capacities, NoCurve, contribution, fit
 from rockbatch.analyses.fragility.study import read_fragility
-from rockbatch.analyses.fragility.tables import points
+from rockbatch.analyses.fragility.tables import _about_drawn, points
 from rockbatch.analyses.fragility.uncertain import Correlation, Draws, Input, Uncertain
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.threads import Threads
@@ -194,6 +195,12 @@ def test_inputs_without_chance_have_no_error_if_enough_capacities_are_known(know
     assert found.errors == (0.0, 0.0)
     whole = math.sqrt(found.effects @ correlation @ found.effects)
     assert (found.dispersion, *found.interval) == pytest.approx(3 * (whole,), rel=1e-12)
+
+
+def test_a_reason_for_no_curve_is_given_once():
+    few, flat = NoCurve("no record counts"), NoCurve("too few runs")
+    assert _about_drawn(SimpleNamespace(drawn_share=few, fitted=few)) == ""
+    assert _about_drawn(SimpleNamespace(drawn_share=flat, fitted=few)).endswith("is not known: too few runs")
 
 
 def test_few_runs_do_not_tell_what_inputs_contribute():
