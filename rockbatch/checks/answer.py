@@ -10,7 +10,7 @@ from rockbatch.checks import wording
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, File, Stations, joined
 from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
-from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
 from rockbatch.common.showing import capital, shown
 from rockbatch.quantities.cases import name_along
@@ -223,6 +223,7 @@ class _Cases:
             *self._beyond(names),
             *self._cut_short(names),
             *self._omitted(names),
+            *self._without_a_case(),
             *self._left_out(),
         )
         verdict = NOT_DECIDED if self.unchecked or self.stations.unusable else PASS
@@ -306,6 +307,12 @@ class _Cases:
             listed = ", ".join(dict.fromkeys(check for _, check in checks[name]))
             sentences.append(f"{listed}: {OMISSIONS[name].remark}.")
         return tuple(sentences)
+
+    def _without_a_case(self) -> tuple[str, ...]:
+        """Return "Applies to no case: bearing, tilt." for checks of which every verdict says so; () for none."""
+        by_check = grouped(self._of(self.every), lambda verdict: verdict.check)
+        idle = [name for name, same in by_check.items() if {verdict.verdict for verdict in same} == {DOES_NOT_APPLY}]
+        return (f"{'Apply' if len(idle) > 1 else 'Applies'} to no case: {_listed(idle, ', ')}.",) if idle else ()
 
     def _left_out(self) -> tuple[str, ...]:
         """Return "Left out by name: A, 2 files of B." for stations, and files of used stations, left out so; () for none."""
