@@ -103,7 +103,7 @@ def _half_weight(pier: Pier) -> float | None:
 
 
 _PIVOT = "greatest force of {} support over half the weight"
-_PIVOT_MORE = ", including its dashpot; of a rigid base, when it carries all of N"
+_PIVOT_MORE = ", including its dashpot; of a rigid base, when it carries all of N; for a frame the sum over the columns"
 _GAP, _GAP_MORE = (
     "heel gap: greatest height of {} pivot above its support",
     ", the stroke of a key or damper",
