@@ -299,14 +299,16 @@ class _Cases:
         return (f"Single records are beyond the limit: {_listed(words, most=MOST_CHECKS)}.",) if words else ()
 
     def _omitted(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence, "drift, uplift: REMARK.", for each omission in demands of checks that these cases pass; or ()."""
+        """Return a sentence, "drift, uplift: REMARK; REMARK.", on omissions of the same checks that these cases pass."""
         passed = [(name, verdict.check) for verdict in self._of(names, PASS) for name in verdict.omitted]
         checks = grouped(passed, lambda pair: pair[0])
-        sentences = []
-        for name in (name for name in OMISSIONS if name in checks):
-            listed = ", ".join(dict.fromkeys(check for _, check in checks[name]))
-            sentences.append(f"{listed}: {OMISSIONS[name].remark}.")
-        return tuple(sentences)
+        listed = {
+            name: ", ".join(dict.fromkeys(check for _, check in checks[name])) for name in OMISSIONS if name in checks
+        }
+        return tuple(
+            f"{of_checks}: {'; '.join(OMISSIONS[name].remark for name in names)}."
+            for of_checks, names in grouped(listed, listed.__getitem__).items()
+        )
 
     def _without_a_case(self) -> tuple[str, ...]:
         """Return "Applies to no case: bearing, tilt." for checks of which every verdict says so; () for none."""
