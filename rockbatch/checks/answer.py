@@ -10,7 +10,7 @@ from rockbatch.checks import wording
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, File, Stations, joined
 from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
-from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
 from rockbatch.common.showing import capital, shown
 from rockbatch.quantities.cases import name_along
@@ -223,6 +223,7 @@ class _Cases:
             *self._beyond(names),
             *self._cut_short(names),
             *self._omitted(names),
+            *self._without_a_case(),
             *self._left_out(),
         )
         verdict = NOT_DECIDED if self.unchecked or self.stations.unusable else PASS
@@ -298,14 +299,22 @@ class _Cases:
         return (f"Single records are beyond the limit: {_listed(words, most=MOST_CHECKS)}.",) if words else ()
 
     def _omitted(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence, "drift, uplift: REMARK.", for each omission in demands of checks that these cases pass; or ()."""
+        """Return a sentence, "drift, uplift: REMARK; REMARK.", on omissions of the same checks that these cases pass."""
         passed = [(name, verdict.check) for verdict in self._of(names, PASS) for name in verdict.omits]
         checks = grouped(passed, lambda pair: pair[0])
-        sentences = []
-        for name in (name for name in OMISSIONS if name in checks):
-            listed = ", ".join(dict.fromkeys(check for _, check in checks[name]))
-            sentences.append(f"{listed}: {OMISSIONS[name].remark}.")
-        return tuple(sentences)
+        listed = {
+            name: ", ".join(dict.fromkeys(check for _, check in checks[name])) for name in OMISSIONS if name in checks
+        }
+        return tuple(
+            f"{of_checks}: {'; '.join(OMISSIONS[name].remark for name in names)}."
+            for of_checks, names in grouped(listed, listed.__getitem__).items()
+        )
+
+    def _without_a_case(self) -> tuple[str, ...]:
+        """Return "Applies to no case: bearing, tilt." for checks of which every verdict says so; () for none."""
+        by_check = grouped(self._of(self.every), lambda verdict: verdict.check)
+        idle = [name for name, same in by_check.items() if {verdict.verdict for verdict in same} == {DOES_NOT_APPLY}]
+        return (f"{'Apply' if len(idle) > 1 else 'Applies'} to no case: {_listed(idle, ', ')}.",) if idle else ()
 
     def _left_out(self) -> tuple[str, ...]:
         """Return "Left out by name: A, 2 files of B." for stations, and files of used stations, left out so; () for none."""

@@ -409,7 +409,7 @@ def _between(low: float, high: float) -> str:
     return f"between {low:.4g} and {'any value' if math.isinf(high) else f'{high:.4g}'}"
 
 
-def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None, *, known: bool) -> str:
+def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None, *, known: bool = True) -> str:
     """Return the first unmet condition on the records: "5 stations count, EN 1998-1 asks for 7"; "" if all are met.
 
     These are the least number, which the rule's ``least`` replaces, stations for a code, ``per_event``, and a limit of "count"

@@ -11,7 +11,7 @@ from rockbatch.checks import wording
 from rockbatch.checks.answer import MOST_FILES, MOST_NAMES, _listed, answer, without_limits
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, Stations, runs_of_cases, stations_of
 from rockbatch.checks.responses import in_words, worst_of_all, worst_of_cases
-from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.pier import Damper, RigidBase
 
 SETTLED = {"settlement_m": [0.1, 0.381, 0.0, 0.2], "base_tilt_rad": [1e-3, -4e-3, 0.0, 0.0]}
@@ -78,13 +78,26 @@ def test_a_pass_under_one_record_says_so():
     assert not any("only" in words for words in line.details)
 
 
+def test_a_pass_names_the_checks_that_apply_to_no_case():
+    """Of rules for another kind of pier one applied, and "every check passes" was all that was said."""
+    idle = [verdict(case, DOES_NOT_APPLY, check=check) for case in ("rock", "pads") for check in ("pressure", "tilt")]
+    own = [verdict("rock", PASS), verdict("pads", PASS), verdict("rock", DOES_NOT_APPLY, check="drift")]
+    (line,) = lines([*own, verdict("pads", PASS, check="drift"), *idle])
+    assert line.details[-1] == "Apply to no case: pressure, tilt."
+    (line,) = lines([*own, verdict("pads", PASS, check="drift")])
+    assert not any("no case" in words for words in line.details)
+
+
 def test_a_pass_says_that_directions_are_missing_and_that_stations_are_of_one_event():
     """Both stood in the notes of the whole list alone, and the answer was green without them."""
     (line,) = lines([verdict("pads", PASS, omits="directions, events"), verdict("rock", PASS, omits="events")])
-    assert [words.split(" the limit: ")[-1] for words in line.details[1:]] == [
-        "margin: not every direction counts, and the worst may be another.",
-        "margin: stations of one earthquake count as independent motions, unless per_event limits their number.",
-    ]
+    directions = "not every direction counts, and the worst may be another"
+    events = "stations of one earthquake count as independent motions, unless per_event limits their number"
+    assert line.details[1:] == (f"margin: {directions}; {events}.",)
+    (line,) = lines(
+        [verdict("pads", PASS, omits="directions, events"), verdict("pads", PASS, check="fall", omits="events")]
+    )
+    assert line.details[1:] == (f"margin: {directions}.", f"margin, fall: {events}.")
 
 
 def test_the_worst_at_each_scale_is_that_of_its_runs_alone():
@@ -194,7 +207,8 @@ def test_a_limit_that_is_lacking_is_found_case_by_case():
 def test_of_cases_that_pass_the_closest_to_its_limit_is_named():
     none = [verdict("rock", "does not apply", check=name) for name in ("settlement", "ductility")]
     (line,) = lines([verdict("rock", "pass"), *none, verdict("pads", "pass", value=0.45, ratio=0.9)])
-    assert line.details == ("Closest to its limit: pads, margin at 90\u00a0%.",)
+    told = "Closest to its limit: pads, margin at 90\u00a0%.", "Apply to no case: settlement, ductility."
+    assert line.details == told
 
 
 def test_a_residual_rotation_that_dampers_hold_on_rigid_ground_needs_a_limit():
