@@ -143,6 +143,9 @@ def test_units_go_by_their_codes(unit, code, factor):
         ({"direction": "Other", "azimuth_code": 340}, (False, False, 340.0)),
         ({"direction": "Other", "azimuth_code": 401, "scnl": ""}, (True, True, None)),
         ({"direction": "Other", "azimuth_code": 402}, (True, False, None)),
+        ({"direction": "Down", "azimuth_code": 401}, (True, True, None)),  # beside BNZ, which says no sign
+        ({"direction": "Vert", "azimuth_code": 401}, (True, True, None)),
+        ({"direction": "Up", "azimuth_code": 402}, (True, False, None)),
         ({"direction": "Other", "azimuth_code": 0, "scnl": "BMR.BNZ.AK.--"}, (True, False, None)),
         ({"direction": "Other", "azimuth_code": 700}, (False, False, None)),
     ],
@@ -194,6 +197,11 @@ def test_the_mark_of_missing_values_is_no_acceleration_unless_the_peak_reaches_i
         (cosmos_text().replace("2 Comment", "1 Comment"), 'line 45: found .*expected ".*acceleration pts'),
         (cosmos_text() + "1.0\n", "line 54: found "),
         (cosmos_text(direction="Up", scnl="8040.HNE.NP.D0"), "directions contradict each other: Up and HNE"),
+        (
+            cosmos_text(direction="Up", azimuth_code=401, scnl="8040.HNZ.NP.D0"),
+            "contradict each other: Up and Down and HNZ",
+        ),
+        (cosmos_text(direction="90 Deg", azimuth_code=340), "contradict each other: 90 and 340 and HNE"),
         ("\n".join(cosmos_header("Response spectra", A, "Up")), "line 1: spectra; expected accelerations"),
         (
             "\n".join(

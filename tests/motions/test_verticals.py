@@ -71,7 +71,8 @@ def test_a_vertical_with_another_number_of_peer_is_of_another_record(tmp_path):
         write_at2(tmp_path, f"{name}.AT2", values, title=f"Made-up, 1/17/1994, Test Station, {label}")
     found = read_motions(tmp_path)
     assert [motion.vertical_source for motion in found.motions] == ["", ""]
-    assert [file.source for file in found.unusable] == ["RSN2_X-UP.AT2"]
+    (unused,) = found.unusable
+    assert (unused.source, "(RSN2)" in unused.reason) == ("RSN2_X-UP.AT2", True)
 
 
 @pytest.mark.parametrize(("sign", "said"), [(-1.0, False), (1.0, True)])
