@@ -122,7 +122,10 @@ def test_the_records_that_govern_a_check_are_counted_over_its_cases():
 
 def test_a_long_table_of_cases_says_how_many_of_them_it_has():
     rows = [[f"case {chr(97 + i % 26)}{i // 26}"] for i in range(scorecard.MOST_CASES + 3)]
-    last = scorecard._table([["drift"]], [[*row, "1"] for row in rows]).splitlines()[-1]
+    head, *shown, last = scorecard._table([["drift"]], [[*row, "1"] for row in rows]).splitlines()
+    assert head.split() == ["drift"]
+    names = [line.split()[1] for line in shown if line.startswith("case")]
+    assert names == [row[0].split()[1] for row in rows[: scorecard.OPEN_CASES]]
     assert_states(last, scorecard.OPEN_CASES, scorecard.MOST_CASES + 3)
 
 

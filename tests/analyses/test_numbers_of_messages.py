@@ -9,7 +9,9 @@ import pandas as pd
 import pytest
 from messages import assert_states, said_by
 
+import rockbatch as rb
 from rockbatch.analyses.accuracy import section as accuracy
+from rockbatch.analyses.accuracy.error_and_time import SUBSTEPS, Clock, _of_steps
 from rockbatch.analyses.design import answer as design
 from rockbatch.analyses.fragility import answer as fragility
 from rockbatch.analyses.fragility.curves import Undecided
@@ -22,7 +24,10 @@ from rockbatch.analyses.fragility.tables import _about_drawn, _about_undecided
 from rockbatch.analyses.release.analysis import _Test
 from rockbatch.analyses.sensitivity import answer as sensitivity
 from rockbatch.analyses.spectrum import answer as spectrum
+from rockbatch.batch.listening import Listener
+from rockbatch.common.errors import InputError
 from rockbatch.pier import Pier
+from rockbatch.study import Numerics, Study
 
 VARIED = [
     {"path": "case.damper.f", "low": 0.02, "high": 0.2, "step": 0.0175},
@@ -375,6 +380,50 @@ SPECTRUM |= {
 OWN = SimpleNamespace(error_max=3e-4, status_differs=2, tolerance=1e-4)
 ACCURACY = {
     "an error above its tolerance": (lambda: accuracy._remarks(OWN, 5e-4), ["tolerance", 2.0, "of these runs", 5e-4]),
+}
+
+
+class First(Listener):
+    """Stops what speaks to it at its first sentence, which becomes an error."""
+
+    def say(self, text):
+        raise InputError(text)
+
+
+RANGES = {"frequency": [1.0, 8.0], "amplitude": [1.0, 12.0]}
+
+
+def first_of_maps(cases):
+    """Return a function that begins the overturning maps of so many cases."""
+    study = Study.from_dict(
+        {
+            "pier": {"alpha": 0.2, "p": 1.0},
+            "motions": {"still_s": 5.0},
+            "case": [{"name": f"rock {chr(97 + i)}", "base": "rigid"} for i in range(cases)],
+            "spectrum": {"map": [{"name": "halves", "shape": "sine", "frequencies": 5, "amplitudes": 8} | RANGES]},
+        }
+    )
+    return lambda: rb.spectrum(study, progress=First(), jobs=1)
+
+
+SPECTRUM |= {
+    "the map of a case": (first_of_maps(1), ["map halves", 5.0, "frequencies", 8.0, "amplitudes", 1.0, "thread"]),
+    "the map of three cases": (
+        first_of_maps(3),
+        ["map halves", 5.0, "frequencies", 8.0, "amplitudes", 3.0, "cases", 1.0, "thread"],
+    ),
+}
+ACCURACY |= {
+    "settings and runs": (
+        lambda: _of_steps(SimpleNamespace(numerics=Numerics()), [None] * 7, First(), Clock()),
+        [1.0 + 2.0 * len(SUBSTEPS), "settings", 7.0, "runs"],
+    ),
+}
+FRAGILITY |= {
+    "drawn inputs of unknown share": (
+        lambda: _about_drawn(SimpleNamespace(drawn_share="3 draws are too few", fitted=None, drawn=["alpha"])),
+        ["not known", 3.0, "draws are too few"],
+    ),
 }
 MESSAGES = DESIGNS | FRAGILITY | SENSITIVITY | SPECTRUM | RELEASE | ACCURACY
 

@@ -7,9 +7,10 @@ from messages import assert_states, said_by
 
 import rockbatch as rb
 from rockbatch.batch.journal import Journal
-from rockbatch.batch.listening import listener_of
+from rockbatch.batch.listening import Listener, listener_of
 from rockbatch.batch.preparing import check_records, run_count
 from rockbatch.batch.threads import Threads, engine_of
+from rockbatch.workflow.running import run_into
 
 COLUMNS = ("record", "theta")
 PIER = rb.Pier(0.2, 1.0)
@@ -70,6 +71,22 @@ MESSAGES = {
 def test_what_a_message_names_is_what_it_speaks_of(name):
     call, expected = MESSAGES[name]
     assert_states(said_by(call), *expected)
+
+
+def test_a_share_is_said_to_be_part_of_the_runs_of_the_study_on_its_engine(tmp_path):
+    cases = [{"name": f"rock {chr(97 + i)}", "base": "rigid", "restitution": 0.9 - 0.01 * i} for i in range(3)]
+    motions = [{"name": "sine", "shape": "sine", "amplitude_g": 0.1, "period_s": 0.8, "dt_s": 0.02, "duration_s": 1.0}]
+    study = rb.Study.from_dict(
+        {"pier": {"alpha": 0.2, "p": 1.0}, "motions": {"pulse": motions, "scale": [0.5, 0.6, 0.7]}, "case": cases}
+    )
+    told = []
+    listener = Listener()
+    listener.say = told.append
+    run_into(tmp_path, study, Threads(1), listener, command=(), share=(2, 4))
+    begun, finished = (text.replace(str(tmp_path / "peaks.csv.part"), "FILE") for text in told)
+    product = [1.0, "record", 3.0, "scales", 3.0, "cases", 9.0, "runs"]
+    assert_states(begun, *product, 1.0, "thread", "share", 2.0, 4.0, 2.0, "runs")
+    assert_states(finished, "FILE", "share", 2.0, 4.0, "finished")
 
 
 def test_a_journal_of_other_motions_is_refused_with_its_rows_and_what_has_changed(tmp_path):

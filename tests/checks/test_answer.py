@@ -118,6 +118,11 @@ def test_the_worst_at_each_scale_is_that_of_its_runs_alone():
 
     alone = [one for scale in (0.5, 1.0, 2.0, 3.0) for one in found(shuffled[shuffled["scale"] == scale])]
     assert found(shuffled, at_each_scale=True) == alone
+    of_all = found(shuffled)
+    assert len(of_all) == len({demand for demand, *_ in alone})
+    assert {demand: value for demand, value, *_ in of_all} == {
+        demand: max(value for name, value, *_ in alone if name == demand) for demand, *_ in alone
+    }
     scales = [one.scale for one in worst_of_cases(shuffled, [case()], at_each_scale=True)]
     assert scales == [0.5] * 5 + [1.0] * 6 + [2.0] * 6 + [3.0] * 3
     assert {("settlement_m", 0.0, "r1", 0.5), ("base_tilt_rad", 0.0, "r0", 0.5)} < {*alone}

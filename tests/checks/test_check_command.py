@@ -5,6 +5,7 @@ import math
 import pandas as pd
 import pytest
 from check_samples import RECORD, RIGID, case, folder, runs
+from messages import assert_states
 from rules_of_checks import FLIGHT, MARGIN, STUDY, rules_file
 
 import rockbatch as rb
@@ -12,6 +13,7 @@ from rockbatch.checks import read_verdicts
 from rockbatch.commands.check import answered
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
+from rockbatch.results.reading import read_saved
 
 
 def test_all_passing_exits_with_0_and_writes_the_table(passing, capsys):
@@ -28,6 +30,13 @@ def test_all_passing_exits_with_0_and_writes_the_table(passing, capsys):
     table = pd.read_csv(passing / "checks.csv")
     assert list(table["verdict"]) == ["pass", "pass"]
     assert list(table["reason"]) == ["clause 7", "no keys"]
+
+
+def test_without_limits_the_largest_values_are_said_to_be_of_the_runs_that_stand(tmp_path):
+    table = runs([0.1, 0.2, 0.3, 0.4, 0.5], status=["ok", "overturned", "ok", "flight", "ok"])
+    said = answered([], read_saved(folder(tmp_path / "out", table, [case()])))
+    (line,) = (line for line in said.splitlines() if line.startswith("Largest values"))
+    assert_states(line, 3.0, 5.0, "runs")
 
 
 @pytest.mark.parametrize(

@@ -179,7 +179,7 @@ def test_a_study_that_asks_for_less_than_its_code_does_not_lower_the_code(code, 
 
 @pytest.mark.parametrize("value", [0.8, 1.0, 1.3])
 @pytest.mark.parametrize("scale", [1.0, 1.5])
-def test_the_verdict_on_a_condition_has_its_share_and_margin_on_the_side_of_its_limit(value, scale):
+def test_the_verdict_on_a_condition_has_its_margin_on_the_side_of_its_limit(value, scale):
     about = {"range_s": (0.3, 2.5), "spectrum": "of a code", "code": "EN 1998-1"}
     for sense in ("at least", "at most"):
         condition = Condition("suite_stations", "stations", value, sense, 1.0, remarks=("few",), scaled=True)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from messages import assert_states
 
 from rockbatch.checks.rule_files import load_rules
 from rockbatch.commands.cli import main
@@ -105,6 +106,16 @@ def test_what_is_no_example_is_answered_with_those_that_are():
         InputError, match=r"there is no example 'fig8'; did you mean fig\d\? `rockbatch examples` lists them"
     ):
         copy("fig8", Path("mine"), "pier.toml")
+
+
+@pytest.mark.parametrize(("example", "study"), [((), "pier"), (("--example", "fig7"), "fig7")])
+def test_init_names_the_study_its_report_and_the_file_of_limits(tmp_path, monkeypatch, capsys, example, study):
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "mine", *example]) == 0
+    written = capsys.readouterr().out.split("\nNext:")
+    assert f"mine/{study}.toml" in written[0].replace(os.sep, "/").splitlines()
+    report = str(Path("reports", study, "report.html"))
+    assert_states(written[1], "mine", f"run {study}.toml", report, f"{study}.toml", "checks.toml")
 
 
 @pytest.mark.slow

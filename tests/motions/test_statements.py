@@ -125,7 +125,7 @@ def test_a_step_in_the_header_beside_a_time_column_that_contradicts_it_is_refuse
         (0.015, False), (0.01979, False), (0.01981, True), (0.02, True), (0.02019, True), (0.02021, False),
     ],
 )  # fmt: skip
-def test_a_headers_step_is_that_of_the_samples_or_the_usual_one_of_uneven_times_to_1_percent(tmp_path, stated, right):
+def test_a_headers_step_is_that_of_the_samples_or_the_usual_one_of_uneven_times(tmp_path, stated, right):
     """Times of every second sample, and of one between: samples are 0.01 s apart, those of the file as a rule 0.02 s."""
     t = 0.01 * np.sort([*range(0, 238, 2), 61])
     write(tmp_path, f"# dt = {stated} s\n# time(s) N(g)", t, A)

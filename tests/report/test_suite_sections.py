@@ -149,14 +149,18 @@ def test_the_page_of_it_all_is_whole_and_spectra_are_drawn_once(asked):
     assert math.isfinite(rb.open_results(asked).intensity["cav_m_s"].sum())
 
 
-def test_measures_of_scaled_motions_are_not_called_as_recorded(tmp_path):
+@pytest.mark.parametrize(
+    ("last", "said"), [(1.274, "by 1.274;"), (2.5, "by 1.274 to 2.5;"), (0.75, "by 0.75 to 1.274;")]
+)
+def test_measures_of_scaled_motions_are_not_called_as_recorded(tmp_path, last, said):
     """Scale to a target: PGA and other measures are those of the motions as they were run."""
     write_results(tmp_path)
     saved = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
     saved["records"] = [record | {"factor": 1.274} for record in saved["records"]]
+    saved["records"][-1]["factor"] = last
     (tmp_path / "run.json").write_text(json.dumps(saved), encoding="utf-8")
     text = page_of(tmp_path, studied).text
-    assert "scaled to the target by 1.274;" in text
+    assert f"scaled to the target {said}" in text
     assert "as recorded" not in text
 
 

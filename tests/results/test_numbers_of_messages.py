@@ -5,6 +5,7 @@ import json
 from dataclasses import replace
 from types import SimpleNamespace
 
+import h5py
 import numpy as np
 import pandas as pd
 import pytest
@@ -15,7 +16,7 @@ import rockbatch as rb
 from rockbatch.outcome.figures import History
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.results.columns import given_table
-from rockbatch.results.histories_file import HISTORIES
+from rockbatch.results.histories_file import HISTORIES, _run
 from rockbatch.results.opened import _candidates
 from rockbatch.results.reading import EditedTable, read_saved
 
@@ -75,6 +76,28 @@ def test_a_file_that_is_no_text_or_no_json_is_named_with_a_line_if_it_is_known(f
     assert refusal(folder).startswith("run.json:3: not JSON (Expecting")
     (folder / "run.json").write_bytes(b"\n\n\n" + text.encode().replace(b"RRS228", b"RRS\xff28", 1))
     assert refusal(folder).startswith("run.json: not JSON ('utf-8' codec")
+
+
+def test_a_table_whose_cells_are_right_one_by_one_is_named_with_what_is_wrong(folder, monkeypatch):
+    """A count beyond 2⁵³ is a number, and none that a table of counts can hold."""
+    monkeypatch.setattr("rockbatch.results.reading._bad_cells", lambda path, head, numbers: [])
+    with_cells(folder, (5, "impacts", "1e300"))
+    assert refusal(folder).startswith("peaks.csv: not a table (a count is out of range)")
+
+
+def test_an_attribute_of_a_kept_run_that_is_missing_or_of_another_kind_is_named():
+    whole = {"record": "LGP000", "case": "pads", "polarity": "+", "scale": 1.5, "status": "ok"}
+    with h5py.File("x.h5", "w", driver="core", backing_store=False) as file:
+        file.attrs.update(whole)
+        assert _run(file) == whole
+        for name, value in whole.items():
+            for wrong in (None, 7 if isinstance(value, str) else "1.5"):
+                del file.attrs[name]
+                if wrong is not None:
+                    file.attrs[name] = wrong
+                with pytest.raises(ValueError, match=rf"the attribute {name} is"):
+                    _run(file)
+                file.attrs[name] = value
 
 
 def test_an_edited_table_is_named_with_the_rows_that_it_had(folder):

@@ -220,7 +220,7 @@ def test_what_is_wrong_about_a_stop_or_a_deck_spring_is_said(tmp_path, device, k
 
 
 @pytest.mark.parametrize("width", [0.3, 8.0])
-def test_without_a_gap_the_rest_of_a_device_is_judged_and_a_deck_spring_is_in_contact(width):
+def test_without_a_gap_the_rest_is_judged_and_a_deck_spring_is_in_contact(width):
     def study(**device):
         case = {"name": "rock", "base": "rigid"} | {what: [keys] for what, keys in device.items()}
         return rb.Study.from_dict(

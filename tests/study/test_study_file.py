@@ -394,6 +394,25 @@ def test_a_case_has_what_its_base_takes_and_what_can_be(tmp_path, written, line,
     assert rest.removeprefix("[[case]] no. 1: ").removeprefix('[[case]] ["a"]: ').startswith(said)
 
 
+@pytest.mark.parametrize(
+    ("base", "given", "ratio", "absolute"),
+    [("elastic", {}, "beta", "stiffness_kN_m"), ("yielding", {"beta": 40.0}, "eta", "yield_kN")],
+)
+def test_each_of_the_values_that_are_advised_for_a_missing_one_makes_a_study(base, given, ratio, absolute):
+    def study(mass, **keys):
+        pier = {"width_m": 8.0, "height_m": 30.0} | mass
+        tables = {"pier": pier, "motions": {"still_s": 5.0}, "case": [{"base": base} | given | keys]}
+        return Study.from_dict(tables)
+
+    with pytest.raises(InputError) as refused:
+        study({})
+    advised = re.findall(rf"\b({ratio}|{absolute}) = ([\d.e]+)", refused.value.messages[0])
+    assert [name for name, _ in advised] == [ratio, absolute]
+    values = [float(value) for _, value in advised]
+    assert getattr(study({}, **{ratio: values[0]}).cases[0].base, ratio) == values[0]
+    assert study({"mass_t": 3000.0}, **{absolute: values[1]}).cases[0].base.on_springs
+
+
 def test_the_least_stiffness_and_yield_force_that_are_named_suffice(tmp_path):
     """The limits of β and η (model: β² > (1+μ) cos α/(μ sin²α), η > 1), in the units of the file.
 

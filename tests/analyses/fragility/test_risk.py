@@ -22,7 +22,7 @@ from rockbatch.analyses.fragility.curves import Curve, Readings, Undecided
 from rockbatch.analyses.fragility.hazard import Dispersion, Hazard
 from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, NoCurve, fit
 from rockbatch.analyses.fragility.risk import Risk, described, described_bound, note, rate_bounds_of, risk_table, risks
-from rockbatch.analyses.fragility.section import _notes_on_rates
+from rockbatch.analyses.fragility.section import _notes, _notes_on_rates
 from rockbatch.analyses.fragility.study import OVERTURNING, FragilitySpec, read_fragility
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
@@ -266,14 +266,21 @@ def test_a_part_of_a_rate_is_worth_a_word_from_a_twentieth_on(share, said):
     assert often.startswith("several exceedances in the longest") == said
 
 
-def test_every_remark_on_a_rate_stands_behind_the_limit_and_the_case_of_its_curve():
+def test_every_remark_on_a_curve_or_a_rate_stands_behind_its_limit_and_case():
     spec = FragilitySpec("stripes", "PGA", (0.2, 0.6), (), hazard=Hazard(TABLE, (10.0, 50.0)))
     curve = Curve(Case("a", Pier(0.2, 1.0), RigidBase(), {}), OVERTURNING, (), exactly(0.5, 0.4), Undecided(9, 0, 0, 0))
     found = Risk(curve, curve.fitted, 0.05, (0.04, 0.06), None, 0.0, 0.0, (0.03, 0.07), (0.0, 0.0), (0.2, 0.6))
     entries = {"turns": described(replace(found, below=0.02), spec), "quiet": described(found, spec),
                "falls": described(replace(found, above=0.03), spec)}  # fmt: skip
     curves = [
-        {"limit_state": limit, "case": f"on {limit}", "columns": {}, "risk": risk} for limit, risk in entries.items()
+        {
+            "limit_state": limit,
+            "case": f"on {limit}",
+            "columns": {},
+            "risk": risk,
+            "note": "" if limit == "falls" else f"its {limit}",
+        }
+        for limit, risk in entries.items()
     ]
     info = {
         "curves": curves,
@@ -287,6 +294,9 @@ def test_every_remark_on_a_rate_stands_behind_the_limit_and_the_case_of_its_curv
     assert [note[:5] for note in notes] == ["turns", "falls"]
     assert risk_lines(info).splitlines()[-2:] == notes
     assert Page(str(_notes_on_rates(info, curves))).text == "".join(f"{note}." for note in notes)
+    listed = Page(str(_notes(info, curves))).text.removeprefix("Notes on the curves")
+    assert listed == "turns, on turns: its turns.quiet, on quiet: its quiet."
+    assert _notes(info, curves[2:]) == ""
 
 
 # The study
