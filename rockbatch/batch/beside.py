@@ -57,6 +57,9 @@ def rows_beside(
     the table was requested, are repeated.
     """
     tables: dict[str, Rows] = {observer.table: [] for observer in observers}
+    if not tables:
+        return tables
+    naming = {name: peaks[name].to_numpy() for name in (*NAMING, *study.varied)}
     in_journal = range(len(runs)) if in_journal is None else in_journal
     numbers = [number for number, run in enumerate(runs) if not run.mirror_of]
     kept = (journal.cells_beside(in_journal[number]) for number in numbers)
@@ -76,7 +79,7 @@ def rows_beside(
                 if missing:
                     of_tables |= next(of_again)
                     progress(1)
-                names = {name: peaks[name].iloc[number] for name in (*NAMING, *study.varied)}
+                names = {name: values[number] for name, values in naming.items()}
                 for table, rows in tables.items():
                     rows += [names | row for row in of_tables.get(table, ())]
     finally:

@@ -96,10 +96,9 @@ class Waves:
         texts = (self.journal[number].items() for number in numbers)
         rows = (read_cells({name: str(text) for name, text in cells}) for cells in texts)
         table = as_table(rows, self.study)
-        if self.observers:
-            beside = rows_beside(
-                self.observers, self.study, runs, table, self.journal, self.engine.jobs, self.listener, numbers
-            )
-            for name, more in beside.items():
-                self.tables[name] += more
+        beside = rows_beside(
+            self.observers, self.study, runs, table, self.journal, self.engine.jobs, self.listener, numbers
+        )
+        for name, more in beside.items():
+            self.tables[name] += more
         return table

@@ -155,6 +155,7 @@ _LEVEL = re.compile(r"(?:(?:^|[ (=,;]|gl ?|g\.l\. ?|z ?= ?)[-−–]|\b(?:gl|at|
 _HIGH = re.compile(r"\b(?:elev|el|elevation|alt|altitude|height|h|within|about|~|span|cota|quota)[. =:]*$")
 
 
+@lru_cache(maxsize=1024)
 def stand(place: str, name: str) -> tuple[Stand, str]:
     """Return the location of a sensor and the text that states it, ``place`` or the station's ``name``; "" for the ground.
 

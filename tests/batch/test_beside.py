@@ -6,7 +6,7 @@ from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 import rockbatch.batch.beside
 import rockbatch.batch.threads
-from rockbatch.batch.beside import MOST_OF_A_CELL, packed, unpacked
+from rockbatch.batch.beside import MOST_OF_A_CELL, packed, rows_beside, unpacked
 from rockbatch.batch.groups import outcomes_of
 from rockbatch.commands.cli import main
 from rockbatch.outcome.outcome import Outcome
@@ -55,6 +55,11 @@ def test_no_run_is_recorded_again_for_its_tables(tmp_path, expected, again):
     rb.run(study_of(tmp_path, ALL), tmp_path / "out", jobs=2)
     assert tables(tmp_path / "out") == expected
     assert again == []
+
+
+def test_a_batch_without_tables_beside_looks_at_no_run():
+    """A million of them would take a minute."""
+    assert rows_beside([], None, None, None, None, 1, None) == {}
 
 
 def test_an_interrupted_batch_keeps_the_rows_of_its_tables(tmp_path, expected, again, monkeypatch):
