@@ -15,7 +15,7 @@ from rockbatch.analyses.accuracy.error_and_time import SUBSTEPS, Clock, _of_step
 from rockbatch.analyses.design import answer as design
 from rockbatch.analyses.fragility import answer as fragility
 from rockbatch.analyses.fragility.curves import Undecided
-from rockbatch.analyses.fragility.lognormal import Capacities, _degenerate, _outside
+from rockbatch.analyses.fragility.lognormal import Capacities, NoCurve, _degenerate, _outside
 from rockbatch.analyses.fragility.measures import own_measure
 from rockbatch.analyses.fragility.risk import note
 from rockbatch.analyses.fragility.scale_factors import in_words
@@ -68,15 +68,15 @@ def line(rows, find="least", tried=None):
     return lambda: [text for _, text in design._of_line(about, rows, tried or best)]
 
 
-def plane(rows, find="least"):
+def plane(rows, find="least", tried=()):
     about = {"vary": VARIED, "find": find, "bounds": []}
-    return lambda: [text for _, text in design._of_map(about, rows)]
+    return lambda: [text for _, text in design._of_map(about, rows, tried)]
 
 
 def left_open(**info):
     about = {
         "vary": VARIED[:1], "width": 0.04, "without_limit": [], "omitted": [], "unusable": 0, "refused": [], "lacking": [],
-        "tried": 11,
+        "tried": 11, "beyond": [], "cut_short": 0, "passing": 7,
     }  # fmt: skip
     return lambda: [text for _, text in design._remarks(about | info, [interval(0.06, 0.11)])]
 
@@ -88,6 +88,7 @@ UNDECIDED = 0.05, "not decided", "tilt", 0.97
 WIDTH, FORCE = "pier.width_m", "case.damper.f"
 REFUSED = [{"values": [0.15, 7.25], "reason": "too wide"}, {"values": [0.17, 7.7], "reason": "too wide"}]
 FAILED = [TRIED | {"verdict": "fail", "ratio": 1.3}, TRIED | {"verdict": "fail", "ratio": 1.2, FORCE: 0.11}]
+NO_PAIR = (1.3, 0.06, 5.45), (1.2, 0.11, 6.35), (1.4, 0.13, 7.25)
 POINTS = [0.06, 0.07, 0.08, 0.09, 0.11, 0.12, 0.13]
 DESIGNS = {
     "the least value": (
@@ -137,6 +138,18 @@ DESIGNS = {
         plane([interval(0.06, 0.1, **{WIDTH: 5.45}), interval(0.04, 0.2, above=None, **{WIDTH: 7.25})], "greatest"),
         ["greatest", FORCE, 0.2, "its scan ends", WIDTH, 7.25],
     ),
+    "no pair of values": (
+        plane(
+            [interval(0.02, 0.2, "fail", **{WIDTH: 5.45})],
+            tried=[TRIED | {"verdict": "fail", "ratio": ratio, FORCE: f, WIDTH: w} for ratio, f, w in NO_PAIR],
+        ),
+        [0.11, 6.35, "fails", "drift", 120.0, 1.5, "LGP000"],
+    ),
+    "records beyond a limit": (
+        left_open(beyond=["uplift in 3 of 9", "tilt in 2 of 8"]),
+        ["uplift", 3.0, 9.0, "tilt", 2.0, 8.0],
+    ),
+    "runs that do not end standing": (left_open(cut_short=3, passing=5), [3.0, 5.0, "values"]),
     "steps without a run": (left_open(width=0.01), [0.031]),
     "steps of a map": (left_open(vary=VARIED), [WIDTH, 0.45]),
     "files and limits": (left_open(unusable=4, without_limit=["uplift", "tilt"]), ["uplift, tilt", 4.0]),
@@ -421,7 +434,7 @@ ACCURACY |= {
 }
 FRAGILITY |= {
     "drawn inputs of unknown share": (
-        lambda: _about_drawn(SimpleNamespace(drawn_share="3 draws are too few", fitted=None, drawn=["alpha"])),
+        lambda: _about_drawn(SimpleNamespace(drawn_share=NoCurve("3 draws are too few"), fitted=None, drawn=["alpha"])),
         ["not known", 3.0, "draws are too few"],
     ),
 }
