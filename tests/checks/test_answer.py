@@ -90,12 +90,12 @@ def test_a_pass_names_the_checks_that_apply_to_no_case():
 
 def test_a_pass_says_that_directions_are_missing_and_that_stations_are_of_one_event():
     """Both stood in the notes of the whole list alone, and the answer was green without them."""
-    (line,) = lines([verdict("pads", PASS, omits="directions, events"), verdict("rock", PASS, omits="events")])
+    (line,) = lines([verdict("pads", PASS, omits=("directions", "events")), verdict("rock", PASS, omits=("events",))])
     directions = "not every direction counts, and the worst may be another"
     events = "stations of one earthquake count as independent motions, unless per_event limits their number"
     assert line.details[1:] == (f"margin: {directions}; {events}.",)
     (line,) = lines(
-        [verdict("pads", PASS, omits="directions, events"), verdict("pads", PASS, check="fall", omits="events")]
+        [verdict("pads", PASS, omits=("directions", "events")), verdict("pads", PASS, check="fall", omits=("events",))]
     )
     assert line.details[1:] == (f"margin: {directions}.", f"margin, fall: {events}.")
 
