@@ -5,7 +5,7 @@ import time
 import warnings
 from collections.abc import Callable
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
-from threading import Event, Thread, Timer
+from threading import Event, RLock, Thread, Timer
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.common.errors import InputError
@@ -56,6 +56,7 @@ class Bars(Listener):
     def __init__(self, delay: float = 0.0) -> None:
         self.delay = delay
         self._bar: Any = None
+        self._drawing = RLock()  # tqdm keeps its own for ever if a write fails
 
     @contextmanager
     def progress(self, total: int) -> "Iterator[Advance]":
@@ -68,8 +69,12 @@ class Bars(Listener):
 
         def keep_moving() -> None:
             while not ended.wait(max(self.delay - time.monotonic() + started, MOVES_S)):
-                with suppress(OSError):  # the caller of update gets the error, too
-                    bar.refresh()
+                with self._drawing, suppress(OSError):  # the caller of advance gets the error, too
+                    bar.refresh(nolock=True)
+
+        def advance(done: int) -> None:
+            with self._drawing:
+                bar.update(done)
 
         started = time.monotonic()
         with tqdm(total=total, unit="run", leave=False, delay=self.delay, dynamic_ncols=True) as bar:
@@ -78,16 +83,18 @@ class Bars(Listener):
                 mover.start()
             self._bar = bar
             try:
-                yield bar.update
+                yield advance
             finally:
                 self._bar = None
                 ended.set()
                 if mover.is_alive():
                     mover.join()
 
-    def making_room(self) -> AbstractContextManager[None]:
+    @contextmanager
+    def making_room(self) -> "Iterator[None]":
         """Return a context in which the bar is cleared, so that lines can be printed on stderr."""
-        return nullcontext() if self._bar is None else self._bar.external_write_mode(sys.stderr)
+        with self._drawing, nullcontext() if self._bar is None else self._bar.external_write_mode(sys.stderr):
+            yield
 
 
 class Calls(Listener):

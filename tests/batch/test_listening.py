@@ -2,8 +2,11 @@
 
 import io
 import re
+import subprocess
 import sys
 import time
+
+import pytest
 
 from rockbatch.batch import listening
 from rockbatch.batch.listening import Bars, Calls, Listener, listener_of
@@ -49,6 +52,38 @@ def test_a_bar_is_redrawn_while_nothing_is_finished(monkeypatch):
     ended = len(terminal.drawn)
     time.sleep(0.02)
     assert len(terminal.drawn) == ended
+
+
+@pytest.mark.parametrize("written", range(1, 9))
+def test_a_failed_write_ends_a_batch_and_never_stops_it(written):
+    """Whichever write fails, of the one who draws the bar or of the one who advances it."""
+    code = f"""
+import io, sys, time
+from rockbatch.batch import listening
+
+class Full(io.StringIO):
+    writes = 0
+
+    def write(self, text):
+        self.writes += 1
+        if self.writes > {written}:
+            raise OSError(28, "No space left on device")
+        return super().write(text)
+
+listening.MOVES_S = 0.002
+stream, sys.stderr = sys.stderr, Full()
+try:
+    with listening.Bars().progress(7) as advance:
+        while sys.stderr.writes <= {written}:
+            time.sleep(0.001)
+        for _ in range(7):
+            time.sleep(0.15)  # tqdm draws no more often
+            advance(1)
+except OSError as error:
+    print("ended by", error.errno)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout == "ended by 28\n"
 
 
 def test_a_bar_waits_for_its_delay(monkeypatch):
