@@ -39,6 +39,7 @@ from rockbatch.simulation.elements import IDLE
 
 INF = math.inf
 DAMPER = IDLE._replace(kind=VISCOUS, coefficient=3.0, exponent=0.5, linear_below=0.01, slope=3.0 * 0.01**-0.5)
+LINEAR = IDLE._replace(kind=VISCOUS, coefficient=3.0, linear_below=INF, slope=3.0)
 STEEL = IDLE._replace(kind=HYSTERETIC, strength=2.0, stiffness=50.0)
 TIE = IDLE._replace(kind=TENDON, strength=4.0, stiffness=30.0, prestress=1.0)
 HUNG = IDLE._replace(kind=MAXWELL, stiffness=40.0, coefficient=3.0, exponent=0.5)
@@ -51,6 +52,7 @@ RUBS = IDLE._replace(kind=FRICTION, strength=2.0)
     ("of", "elongation", "speed", "state", "mode", "goes"),
     [
         (DAMPER, 0.1, 0.3, 0.0, TAUT, OPENS), (DAMPER, 0.1, -0.3, 0.0, TAUT, CLOSES), (DAMPER, 0.1, 0.004, 0.0, TAUT, OPENS),
+        (LINEAR, 0.1, 0.3, 0.0, TAUT, OPENS), (LINEAR, 0.1, -0.3, 0.0, TAUT, CLOSES),
         (RUBS, 0.1, 0.3, 0.0, TAUT, OPENS), (RUBS, 0.1, -0.3, 0.0, TAUT, CLOSES), (BAND, -0.2, 0.3, 0.0, TAUT, OPENS),
         (TIE, 0.05, 0.3, 0.0, TAUT, OPENS), (TIE, 0.05, -0.3, 0.01, TAUT, CLOSES), (TIE, -0.2, 0.3, 0.0, SLACK, OPENS),
         (TIE, 0.12, 0.3, 0.02, YIELDING, OPENS), (HUNG, 0.1, 0.3, 1.2, TAUT, OPENS), (HUNG, 0.1, 0.3, -1.2, TAUT, OPENS),
@@ -77,6 +79,7 @@ def test_forces_of_dampers_are_those_of_their_laws():
     assert force(DAMPER, 0.0, -0.25, 0.0, TAUT, CLOSES) == pytest.approx(-3.0 * 0.25**0.5)
     assert force(DAMPER, 0.0, 0.005, 0.0, TAUT, OPENS) == pytest.approx(0.5 * 3.0 * 0.01**0.5)  # linear below 0.01 m/s
     assert force(DAMPER._replace(linear_below=0.0), 0.0, 0.0, 0.0, TAUT, OPENS) == 0.0
+    assert [force(LINEAR, 0.1, speed, 0.0, TAUT, OPENS) for speed in (0.25, -0.25, 0.0)] == [0.75, -0.75, 0.0]
     assert [force(RUBS, 0.3, 0.0, 0.0, TAUT, goes) for goes in (OPENS, CLOSES, STICKS)] == [2.0, -2.0, 0.0]
     assert slip_rate(HUNG, 1.5) == pytest.approx(0.25)
     assert slip_rate(HUNG, -1.5) == pytest.approx(-0.25)

@@ -179,6 +179,8 @@ def response(of, elongation, speed, state, mode, goes):
     ``state``: z of a hysteretic damper, permanent elongation [m] of a tendon, force [m/s²] of a braced viscous damper,
     greatest compression [m] of a stop.
     """
+    if of.kind == VISCOUS and of.linear_below == math.inf:
+        return linear(of, elongation, speed, state, mode, goes)  # a selection would compute the power, too
     if of.kind == VISCOUS:
         return viscous(of, elongation, speed, state, mode, goes)
     if of.kind == MAXWELL:
