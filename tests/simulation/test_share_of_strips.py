@@ -33,11 +33,10 @@ def trial(theta_max, *windows, steps=4, work=1.0, pressure=2.0, status="ok", **m
 def test_the_share_is_four_times_the_change_by_half_as_many_strips():
     """An error of order 1 is all of the change by half as many, one of order 2 a third of it."""
     own = trial(0.02, 0.01, theta_res=0.001, settlement=0.05)
-    share = share_of_strips(own, trial(0.0206, 0.012, theta_res=0.0018, settlement=0.053, pressure=1.8), 5.0)
+    share = share_of_strips(own, trial(0.0206, 0.012, theta_res=0.0018, settlement=0.053), 5.0)
     assert share.peak == pytest.approx(4.0 * 0.0006)
     assert share.residual == pytest.approx(4.0 * 0.0008)
     assert share.settlement == pytest.approx(4.0 * 0.003)
-    assert share.pressure == pytest.approx(4.0 * 0.2)
     np.testing.assert_allclose(share.extremes[:3], [1.5 * 0.0006, 1.5 * 0.002, 0.0], atol=1e-15)
 
 
@@ -84,8 +83,17 @@ def test_errors_of_results_are_those_of_steps_and_strips_together():
     assert found.theta_res_error == pytest.approx(4.0 * (2e-5 + 0.0008))
     assert found.settlement_error == pytest.approx(4.0 * (3e-4 + 0.003))
     assert found.bed.strips_error == pytest.approx(4.0 * 0.0006)
-    assert found.bed.pressure_error == pytest.approx(4.0 * 0.2)
     assert with_strips_error(replace(kept, theta_max_error=None), own, fewer, 5.0).theta_max_error is None
+
+
+def test_errors_of_the_greatest_push_and_pressure_have_what_steps_may_miss():
+    """Beside four times the changes by twice the step and by half as many strips, (ω h)²/8 of themselves, ω h = 0.1."""
+    own, fewer = trial(0.02), trial(0.02, work=1.3, pressure=1.8)
+    kept = own.outcome.changed(bed=replace(own.outcome.bed, force=21.0, pressure=2.1, work=1.02))
+    bed = with_strips_error(kept, own, fewer, 5.0).bed
+    assert bed.force_error == pytest.approx(4.0 * 1.0 + 0.00125 * 21.0)
+    assert bed.pressure_error == pytest.approx(4.0 * (0.1 + 0.2) + 0.00125 * 2.1)
+    assert bed.work_error == pytest.approx(4.0 * (0.02 + 0.3))
 
 
 def test_a_peak_within_the_motion_has_the_strips_share_however_the_run_ended():
