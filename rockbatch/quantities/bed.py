@@ -95,7 +95,7 @@ OF_FOOTING = (
     _quantity("edge_settlement_error_m", "estimated error of the settlements of both edges; empty with a fixed step",
         _edge_error, "m", stood=True, sometimes=True),
     _quantity("strips_error", "share of the error of the greatest rotation over α that the number of strips has: 4 times the "
-        "change by half as many, or 1.5 times that of any extreme before; empty with a fixed step", _strips_error, "1",
-        stood=True, sometimes=True),
+        "change by half as many, 1.5 times that of any extreme before, or what a later one may exceed the peak by; empty with a "
+        "fixed step", _strips_error, "1", stood=True, sometimes=True),
 )  # fmt: skip
 """Quantities of a footing's bed, at the end of a table."""

@@ -97,17 +97,19 @@ class StripsShare(NamedTuple):
 def share_of_strips(own: Trial, fewer: Trial, half_width: float) -> StripsShare | None:
     """Return the StripsShare by a trial and one on half as many strips at the same step; None unless both end standing.
 
+    After the peak, an extreme that its error may raise above the peak counts with what it then exceeds it by.
     The settlement, and the residual rotation of a foot that is ``half_width`` [m] wide to each side, come of the same sets.
     """
     ends = own.outcome, fewer.outcome
     if not ends[0].status == ends[1].status == "ok":
         return None
-    change = windows(own, fewer)[1]
+    greatest, change = windows(own, fewer)
     until = 1 + max(int(np.nanargmax(trial.extremes)) for trial in (own, fewer))
     before = max(float(change[:until].max()), LEAST * ends[0].theta_max)
+    may_rise = np.where(np.isfinite(change), greatest + UNEVEN * change, 0.0)[until:].max(initial=0.0)
     sinks = _change(*ends, "settlement")
     return StripsShare(
-        peak=max(UNEVEN * _change(*ends, "theta_max"), EXTREMES * before),
+        peak=max(UNEVEN * _change(*ends, "theta_max"), EXTREMES * before, float(may_rise) - ends[0].theta_max),
         residual=max(UNEVEN * _change(*ends, "theta_res"), EXTREMES * sinks / half_width),
         settlement=UNEVEN * sinks,
         extremes=EXTREMES * change,

@@ -19,12 +19,13 @@ PIER, BASE, SINE = Pier(0.2, 2.0), FootingBase(30.0, 3.0), pulse("sine", 0.5, dt
 
 
 def trial(theta_max, *windows, steps=4, work=1.0, pressure=2.0, status="ok", **more):
-    """A run on a bed; the greatest rotations in the parts of the run are the peak and then ``windows``."""
+    """A run on a bed; the greatest rotations in the parts of the run are the first argument and then ``windows``."""
+    peak = max(theta_max, *windows, 0.0)
     bed = BedDemands(0.2, 20.0, 1.0, pressure, 1.0, 4.0, 0, work)
     extremes = np.full(WINDOWS, np.nan)
     extremes[: 1 + len(windows)] = [theta_max, *windows]
     outcome = Outcome(
-        status, "", theta_max=theta_max, theta_max_in_motion=theta_max, impacts=0, separations=1, t_max=1.0, t_flight=None,
+        status, "", theta_max=peak, theta_max_in_motion=peak, impacts=0, separations=1, t_max=1.0, t_flight=None,
         t_end=9.0, substeps=steps, bed=bed, **more,
     )  # fmt: skip
     return Trial(outcome, extremes)
@@ -41,15 +42,22 @@ def test_the_share_is_four_times_the_change_by_half_as_many_strips():
 
 
 def test_the_peaks_share_has_the_change_of_any_extreme_until_the_later_peak():
-    """Two peaks may agree by chance. Later extremes change nothing; the last run has its peak one window later."""
+    """Two peaks may agree by chance. Later extremes far below change nothing; the last run has its peak one window later."""
     own = trial(0.01, 0.02, 0.0195, 0.012)
     shares = [
         share_of_strips(own, trial(*extremes), 5.0).peak
-        for extremes in ((0.013, 0.02, 0.0195, 0.012), (0.01001, 0.02, 0.0195, 0.002), (0.01, 0.0199, 0.02, 0.002))
+        for extremes in ((0.013, 0.02, 0.0195, 0.012), (0.01001, 0.02, 0.0195, 0.0105), (0.01, 0.0199, 0.02, 0.0105))
     ]
-    assert shares[0] == pytest.approx(4.0 * 0.003)
-    assert shares[1] == pytest.approx(4.0 * 0.00001)
+    assert shares[0] == pytest.approx(1.5 * 0.003)
+    assert shares[1] == pytest.approx(1.5 * 0.00001)
     assert shares[2] == pytest.approx(1.5 * 0.0005)
+
+
+def test_the_peaks_share_has_what_strips_may_raise_a_later_extreme_above_it():
+    """Four times its change, as of the peak: with more strips the later one may be the peak. One alone that got there is none."""
+    own = trial(0.02, 0.01, 0.019)
+    assert share_of_strips(own, trial(0.02, 0.01, 0.018), 5.0).peak == pytest.approx(0.019 + 4.0 * 0.001 - 0.02)
+    assert share_of_strips(own, trial(0.02, 0.01), 5.0).peak == pytest.approx(3e-5 * 0.02)
 
 
 def test_strips_that_agree_by_chance_claim_a_share_all_the_same():
@@ -108,10 +116,10 @@ def test_a_peak_within_the_motion_has_the_strips_share_however_the_run_ended():
 
 
 def test_steps_may_add_a_tenth_of_what_strips_leave_and_no_less_than_the_tolerance():
-    share = share_of_strips(trial(0.02, 0.01, theta_res=0.0), trial(0.022, 0.014, theta_res=0.008), 5.0)
+    share = share_of_strips(trial(0.02, 0.01, theta_res=0.0), trial(0.022, 0.012, theta_res=0.008), 5.0)
     wide, own = tolerances_beside(1e-5, share), tolerances_beside(1e-5, None)
     assert (wide.peak, wide.residual) == (pytest.approx(0.4 * 0.002), pytest.approx(0.4 * 0.008))
-    np.testing.assert_allclose(wide.extremes[:3], [0.15 * 0.002, 0.15 * 0.004, 1e-5])
+    np.testing.assert_allclose(wide.extremes[:3], [0.15 * 0.002, 0.15 * 0.002, 1e-5])
     assert (own.peak, own.residual, *own.extremes) == (1e-5,) * (WINDOWS + 2)
     assert tolerances_beside(1e-3, share)[:2] == (1e-3, pytest.approx(0.4 * 0.008))
 
