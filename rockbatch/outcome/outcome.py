@@ -67,8 +67,8 @@ class BedDemands:
         Settlements of both edges of the foot at rest [m].
     strips_error : float or None
         Share of the error of ``theta_max`` that the number of strips has [rad].
-    pressure_error : float or None
-        Estimated error of ``pressure`` by the number of strips [MPa].
+    force_error, pressure_error, work_error : float or None
+        Estimated errors of ``force`` [m/s²], ``pressure`` [MPa] and ``work`` [J/kg] by step and strips.
     """
 
     contact_least: float
@@ -82,7 +82,9 @@ class BedDemands:
     settlement_left: float | None = None
     settlement_right: float | None = None
     strips_error: float | None = None
+    force_error: float | None = None
     pressure_error: float | None = None
+    work_error: float | None = None
 
     def mirrored(self) -> "BedDemands":
         """Return the demands of the mirror image: edges exchanged, and ``pressure_at`` with the other sign."""

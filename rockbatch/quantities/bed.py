@@ -24,6 +24,11 @@ def _push(run: Run) -> float | None:
     return None if run.outcome.bed is None else run.outcome.bed.force / run.pier.gravity
 
 
+def _push_error(run: Run) -> float | None:
+    error = _of_bed("force_error")(run)
+    return None if error is None else error / run.pier.gravity
+
+
 def _alpha(run: Run) -> float | None:
     return None if run.outcome.bed is None else run.pier.alpha
 
@@ -51,6 +56,8 @@ def _quantity(
 
 _WIDER = Ceiling(width, "is more than the pier is wide")
 _IN_MM = Limit(unit="mm", times=THOUSAND, ceiling=Ceiling(lambda case: 1000.0 * width(case), _WIDER.beyond))
+_CHANGES = "4 times its change by twice the step, and by half as many strips{}; empty with a fixed step"
+_READ = _CHANGES.format(", and 0.125 % of it, for what steps may miss of a peak")
 _EDGE = "settlement of the {} edge of the foot, at rest on its bed"
 
 OF_FOOTING = (
@@ -59,19 +66,23 @@ OF_FOOTING = (
         ReportFormat("least contact", ".3f", behind="settlement_m")),
     _quantity("bed_force_over_weight", "greatest push of the bed over the pier's weight, dashpots included", _push, "1",
         ReportFormat("push/(M\u00a0g)", ".3f", behind="contact_least"),
-        limits=(Limit(ceiling=Ceiling(always(MOST_PUSH), "is more than a landing presses")),)),
+        error="bed_force_error", limits=(Limit(ceiling=Ceiling(always(MOST_PUSH), "is more than a landing presses")),)),
     _quantity("bed_force_s", "time of it", _of_bed("t_force"), "s"),
+    _quantity("bed_force_error", f"estimated error of the greatest push over the weight: {_READ}", _push_error, "1", stood=True,
+        sometimes=True),
     _quantity("bed_pressure_MPa", "greatest pressure at an edge", _of_bed("pressure"), "MPa",
         ReportFormat("pressure [MPa]", ".3g", behind="bed_force_over_weight"), ", if mass_t and length_m are given",
         sometimes=True, weighed=True, error="bed_pressure_error_MPa", limits=(Limit(),)),
     _quantity("bed_pressure_s", "time of it", _of_bed("t_pressure"), "s"),
     _quantity("bed_pressure_at_m", "place of it to the right of the middle", _of_bed("pressure_at"), "m"),
-    _quantity("bed_pressure_error_MPa", "estimated error of the greatest pressure by the number of strips: 4 times its change by "
-        "half as many; empty with a fixed step", _of_bed("pressure_error"), "MPa", sometimes=True, weighed=True, stood=True),
+    _quantity("bed_pressure_error_MPa", f"estimated error of the greatest pressure: {_READ}", _of_bed("pressure_error"), "MPa",
+        sometimes=True, weighed=True, stood=True),
     _quantity("yielding_half_cycles", "number of rocks to one side in which the ground yielded", _of_bed("yielding_rocks"), "1",
         kind="count", limits=(Limit(),)),
     _quantity("bed_work_J_kg", "plastic work of the ground, per unit mass of the pier", _of_bed("work"), "J/kg",
-        limits=(Limit(),)),
+        error="bed_work_error_J_kg", limits=(Limit(),)),
+    _quantity("bed_work_error_J_kg", f"estimated error of it: {_CHANGES.format('')}", _of_bed("work_error"), "J/kg", stood=True,
+        sometimes=True),
     _quantity("settlement_left_m", _EDGE.format("left"), _of_bed("settlement_left"), "m",
         more="; above a safety factor of 2 a lower bound", stood=True),
     _quantity("settlement_right_m", _EDGE.format("right"), _of_bed("settlement_right"), "m",
@@ -84,7 +95,7 @@ OF_FOOTING = (
     _quantity("edge_settlement_error_m", "estimated error of the settlements of both edges; empty with a fixed step",
         _edge_error, "m", stood=True, sometimes=True),
     _quantity("strips_error", "share of the error of the greatest rotation over α that the number of strips has: 4 times the "
-        "change by half as many, or 1.5 times that of any extreme before; empty with a fixed step", _strips_error, "1",
-        stood=True, sometimes=True),
+        "change by half as many, 1.5 times that of any extreme before, or what a later one may exceed the peak by; empty with a "
+        "fixed step", _strips_error, "1", stood=True, sometimes=True),
 )  # fmt: skip
 """Quantities of a footing's bed, at the end of a table."""

@@ -8,10 +8,11 @@ import numpy as np
 
 from rockbatch.core.clock import WINDOWS
 from rockbatch.motions.motion import Samples
-from rockbatch.outcome.outcome import Outcome
+from rockbatch.outcome.outcome import BedDemands, Outcome
 from rockbatch.pier import FootingBase
 from rockbatch.simulation.agreement import Tolerances, windows
 from rockbatch.simulation.runs import Run, Trial
+from rockbatch.simulation.steps import FREQUENCY_STEP
 
 FEWER_MODES = "with one mode of the shaft fewer it ends as {status}: no error of it is claimed"
 _OF_SHAFT = ("theta_max", "deflection_max", "top_drift_max", "theta_res", "settlement")
@@ -59,6 +60,13 @@ which a whole trajectory does not."""
 LEAST = 2e-5
 """Least change of extremes over the peak: two runs may agree better than either is right."""
 
+MISSED = (0.5 * FREQUENCY_STEP) ** 2 / 8.0
+"""Share of a peak that readings at the ends of steps may miss: (ω h)²/8 of an oscillation, and ω h of the finer run is half of
+:data:`FREQUENCY_STEP` at most."""
+
+_OF_BED = {"force": MISSED, "pressure": MISSED, "work": 0.0}
+"""Demands on a bed that have an error, with the part of them that is missed between steps."""
+
 STEPS = 0.1
 """Share of what the strips leave of an error that the steps may add: smaller ones buy nothing."""
 
@@ -82,7 +90,6 @@ class StripsShare(NamedTuple):
     residual: float  # [rad]
     settlement: float  # [m]
     extremes: Samples  # of each window [rad]
-    pressure: float | None  # [MPa]
     deflection: float  # of the top of a shaft that bends [m]
     drift: float  # [m]
 
@@ -90,29 +97,29 @@ class StripsShare(NamedTuple):
 def share_of_strips(own: Trial, fewer: Trial, half_width: float) -> StripsShare | None:
     """Return the StripsShare by a trial and one on half as many strips at the same step; None unless both end standing.
 
+    After the peak, an extreme that its error may raise above the peak counts with what it then exceeds it by.
     The settlement, and the residual rotation of a foot that is ``half_width`` [m] wide to each side, come of the same sets.
     """
     ends = own.outcome, fewer.outcome
     if not ends[0].status == ends[1].status == "ok":
         return None
-    change = windows(own, fewer)[1]
+    greatest, change = windows(own, fewer)
     until = 1 + max(int(np.nanargmax(trial.extremes)) for trial in (own, fewer))
     before = max(float(change[:until].max()), LEAST * ends[0].theta_max)
+    may_rise = np.where(np.isfinite(change), greatest + UNEVEN * change, 0.0)[until:].max(initial=0.0)
     sinks = _change(*ends, "settlement")
-    pressures = [end.bed.pressure for end in ends if end.bed is not None and end.bed.pressure is not None]
     return StripsShare(
-        peak=max(UNEVEN * _change(*ends, "theta_max"), EXTREMES * before),
+        peak=max(UNEVEN * _change(*ends, "theta_max"), EXTREMES * before, float(may_rise) - ends[0].theta_max),
         residual=max(UNEVEN * _change(*ends, "theta_res"), EXTREMES * sinks / half_width),
         settlement=UNEVEN * sinks,
         extremes=EXTREMES * change,
-        pressure=UNEVEN * abs(pressures[0] - pressures[1]) if pressures else None,
         deflection=UNEVEN * _change(*ends, "deflection_max"),
         drift=UNEVEN * _change(*ends, "top_drift_max"),
     )
 
 
-def _change(one: Outcome, other: Outcome, name: str) -> float:
-    """Return the change of a result that both or none of two outcomes have; 0 for none."""
+def _change(one: Outcome | BedDemands, other: Outcome | BedDemands, name: str) -> float:
+    """Return the change of a result that both or none of two outcomes, or demands on a bed, have; 0 for none."""
     return abs((getattr(one, name) or 0.0) - (getattr(other, name) or 0.0))
 
 
@@ -140,7 +147,7 @@ def with_strips_error(outcome: Outcome, own: Trial, fewer: Trial, half_width: fl
     if share is None:
         unknown = {f"{name}_error": None for name in _OF_SHAFT}
         return outcome.noted(FEWER_STRIPS.format(status=fewer.outcome.status), **unknown)
-    more: dict[str, Any] = {"bed": replace(outcome.bed, strips_error=share.peak, pressure_error=share.pressure)}
+    more: dict[str, Any] = {"bed": _with_errors(outcome.bed, own.outcome.bed, fewer.outcome.bed, share.peak)}
     for name, of_strips in (
         ("theta_max_error", share.peak),
         ("theta_res_error", share.residual),
@@ -151,6 +158,21 @@ def with_strips_error(outcome: Outcome, own: Trial, fewer: Trial, half_width: fl
         error = getattr(outcome, name)
         more[name] = None if error is None else UNEVEN * error + of_strips
     return outcome.changed(**more)
+
+
+def _with_errors(bed: BedDemands, own: BedDemands | None, fewer: BedDemands | None, of_peak: float) -> BedDemands:
+    """Return the demands on a ``bed`` with errors, by those of twice the step on its ``own`` strips and on ``fewer``.
+
+    ``of_peak`` is the share of the strips in the error of the greatest rotation [rad].
+    """
+    assert own is not None
+    assert fewer is not None
+    errors = {
+        f"{name}_error": UNEVEN * (_change(bed, own, name) + _change(own, fewer, name)) + missed * getattr(bed, name)
+        for name, missed in _OF_BED.items()
+        if getattr(bed, name) is not None
+    }
+    return replace(bed, strips_error=of_peak, **errors)
 
 
 def _with_strips_in_motion(outcome: Outcome, own: Outcome, fewer: Outcome) -> Outcome:

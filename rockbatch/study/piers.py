@@ -259,7 +259,7 @@ PART = Section(
         "length_m": Key(
             not_negative,
             "20.0",
-            "Length along the axis over which its mass is spread evenly, 0 of a mass at one height; `sections` of "
+            "Length along the axis over which its mass is spread evenly; default 0, a mass at one height. `sections` of "
             "[output] need it.",
             many=True,
             usual=USUAL["height_m"]._replace(least=0.0),

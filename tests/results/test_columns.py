@@ -240,8 +240,8 @@ UNSHOWN = {
     "settlement_drift_m_s", "settlement_error_m", "top_drift_error_m", "dissipated_left_J_kg", "dissipated_right_J_kg", "failure",
     *FACTS,
     "foot_alpha_rad", "bed_force_s", "bed_pressure_s", "bed_pressure_at_m", "yielding_half_cycles", "bed_work_J_kg",
-    "bed_pressure_error_MPa", "settlement_left_m", "settlement_right_m", "edge_settlement_error_m",
-    "strips_error",
+    "bed_force_error", "bed_pressure_error_MPa", "bed_work_error_J_kg", "settlement_left_m", "settlement_right_m",
+    "edge_settlement_error_m", "strips_error",
 }  # fmt: skip
 """Columns that stand in peaks.csv alone: counts, times, details of the method, and what the remarks say in words."""
 

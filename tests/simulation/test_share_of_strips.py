@@ -19,12 +19,13 @@ PIER, BASE, SINE = Pier(0.2, 2.0), FootingBase(30.0, 3.0), pulse("sine", 0.5, dt
 
 
 def trial(theta_max, *windows, steps=4, work=1.0, pressure=2.0, status="ok", **more):
-    """A run on a bed; the greatest rotations in the parts of the run are the peak and then ``windows``."""
+    """A run on a bed; the greatest rotations in the parts of the run are the first argument and then ``windows``."""
+    peak = max(theta_max, *windows, 0.0)
     bed = BedDemands(0.2, 20.0, 1.0, pressure, 1.0, 4.0, 0, work)
     extremes = np.full(WINDOWS, np.nan)
     extremes[: 1 + len(windows)] = [theta_max, *windows]
     outcome = Outcome(
-        status, "", theta_max=theta_max, theta_max_in_motion=theta_max, impacts=0, separations=1, t_max=1.0, t_flight=None,
+        status, "", theta_max=peak, theta_max_in_motion=peak, impacts=0, separations=1, t_max=1.0, t_flight=None,
         t_end=9.0, substeps=steps, bed=bed, **more,
     )  # fmt: skip
     return Trial(outcome, extremes)
@@ -33,24 +34,30 @@ def trial(theta_max, *windows, steps=4, work=1.0, pressure=2.0, status="ok", **m
 def test_the_share_is_four_times_the_change_by_half_as_many_strips():
     """An error of order 1 is all of the change by half as many, one of order 2 a third of it."""
     own = trial(0.02, 0.01, theta_res=0.001, settlement=0.05)
-    share = share_of_strips(own, trial(0.0206, 0.012, theta_res=0.0018, settlement=0.053, pressure=1.8), 5.0)
+    share = share_of_strips(own, trial(0.0206, 0.012, theta_res=0.0018, settlement=0.053), 5.0)
     assert share.peak == pytest.approx(4.0 * 0.0006)
     assert share.residual == pytest.approx(4.0 * 0.0008)
     assert share.settlement == pytest.approx(4.0 * 0.003)
-    assert share.pressure == pytest.approx(4.0 * 0.2)
     np.testing.assert_allclose(share.extremes[:3], [1.5 * 0.0006, 1.5 * 0.002, 0.0], atol=1e-15)
 
 
 def test_the_peaks_share_has_the_change_of_any_extreme_until_the_later_peak():
-    """Two peaks may agree by chance. Later extremes change nothing; the last run has its peak one window later."""
+    """Two peaks may agree by chance. Later extremes far below change nothing; the last run has its peak one window later."""
     own = trial(0.01, 0.02, 0.0195, 0.012)
     shares = [
         share_of_strips(own, trial(*extremes), 5.0).peak
-        for extremes in ((0.013, 0.02, 0.0195, 0.012), (0.01001, 0.02, 0.0195, 0.002), (0.01, 0.0199, 0.02, 0.002))
+        for extremes in ((0.013, 0.02, 0.0195, 0.012), (0.01001, 0.02, 0.0195, 0.0105), (0.01, 0.0199, 0.02, 0.0105))
     ]
-    assert shares[0] == pytest.approx(4.0 * 0.003)
-    assert shares[1] == pytest.approx(4.0 * 0.00001)
+    assert shares[0] == pytest.approx(1.5 * 0.003)
+    assert shares[1] == pytest.approx(1.5 * 0.00001)
     assert shares[2] == pytest.approx(1.5 * 0.0005)
+
+
+def test_the_peaks_share_has_what_strips_may_raise_a_later_extreme_above_it():
+    """Four times its change, as of the peak: with more strips the later one may be the peak. One alone that got there is none."""
+    own = trial(0.02, 0.01, 0.019)
+    assert share_of_strips(own, trial(0.02, 0.01, 0.018), 5.0).peak == pytest.approx(0.019 + 4.0 * 0.001 - 0.02)
+    assert share_of_strips(own, trial(0.02, 0.01), 5.0).peak == pytest.approx(3e-5 * 0.02)
 
 
 def test_strips_that_agree_by_chance_claim_a_share_all_the_same():
@@ -84,8 +91,17 @@ def test_errors_of_results_are_those_of_steps_and_strips_together():
     assert found.theta_res_error == pytest.approx(4.0 * (2e-5 + 0.0008))
     assert found.settlement_error == pytest.approx(4.0 * (3e-4 + 0.003))
     assert found.bed.strips_error == pytest.approx(4.0 * 0.0006)
-    assert found.bed.pressure_error == pytest.approx(4.0 * 0.2)
     assert with_strips_error(replace(kept, theta_max_error=None), own, fewer, 5.0).theta_max_error is None
+
+
+def test_errors_of_the_greatest_push_and_pressure_have_what_steps_may_miss():
+    """Beside four times the changes by twice the step and by half as many strips, (ω h)²/8 of themselves, ω h = 0.1."""
+    own, fewer = trial(0.02), trial(0.02, work=1.3, pressure=1.8)
+    kept = own.outcome.changed(bed=replace(own.outcome.bed, force=21.0, pressure=2.1, work=1.02))
+    bed = with_strips_error(kept, own, fewer, 5.0).bed
+    assert bed.force_error == pytest.approx(4.0 * 1.0 + 0.00125 * 21.0)
+    assert bed.pressure_error == pytest.approx(4.0 * (0.1 + 0.2) + 0.00125 * 2.1)
+    assert bed.work_error == pytest.approx(4.0 * (0.02 + 0.3))
 
 
 def test_a_peak_within_the_motion_has_the_strips_share_however_the_run_ended():
@@ -100,10 +116,10 @@ def test_a_peak_within_the_motion_has_the_strips_share_however_the_run_ended():
 
 
 def test_steps_may_add_a_tenth_of_what_strips_leave_and_no_less_than_the_tolerance():
-    share = share_of_strips(trial(0.02, 0.01, theta_res=0.0), trial(0.022, 0.014, theta_res=0.008), 5.0)
+    share = share_of_strips(trial(0.02, 0.01, theta_res=0.0), trial(0.022, 0.012, theta_res=0.008), 5.0)
     wide, own = tolerances_beside(1e-5, share), tolerances_beside(1e-5, None)
     assert (wide.peak, wide.residual) == (pytest.approx(0.4 * 0.002), pytest.approx(0.4 * 0.008))
-    np.testing.assert_allclose(wide.extremes[:3], [0.15 * 0.002, 0.15 * 0.004, 1e-5])
+    np.testing.assert_allclose(wide.extremes[:3], [0.15 * 0.002, 0.15 * 0.002, 1e-5])
     assert (own.peak, own.residual, *own.extremes) == (1e-5,) * (WINDOWS + 2)
     assert tolerances_beside(1e-3, share)[:2] == (1e-3, pytest.approx(0.4 * 0.008))
 
