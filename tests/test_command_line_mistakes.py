@@ -149,7 +149,7 @@ def answer(words, capsys):
 def mended(words, said):
     """Return the words of a line with what is named in the place of the mistake, or the line that is named as a whole."""
     named = shlex.split(re.search(r"did you mean (.*?)\?", said)[1])
-    if re.search(r"stand behind the command|left out", said):
+    if re.search(r"stand behind the command|before the command", said):
         return named
     places = (r"no command", r"unrecognized arguments:", r"argument --\w+:", r"pier.toml: --motions", r"rockbatch:")
     found = next(filter(None, (re.search(rf"{each} (\S+?)[:;]?(?: |$)", said) for each in places)))

@@ -320,7 +320,7 @@ def test_errors_of_a_row_are_its_changes_when_the_step_is_halved():
 
 
 @pytest.mark.slow
-def test_errors_on_a_bed_have_four_times_the_changes_by_twice_the_step_and_half_its_strips(on_bed):
+def test_errors_on_a_bed_are_four_times_the_changes_by_step_and_strips(on_bed):
     """Those of the greatest push and pressure have (0.1)²/8 of them, too, which readings at the ends of steps may miss."""
     fine = rb.simulate(PIER, on_bed.base, shaking(0.2), tolerance=TOLERANCE)
     steps = {"substeps": int(fine.row["substeps"]) // 2}
