@@ -65,6 +65,7 @@ class _Rows:
         digests = " ".join(f"{name}:{value}" for name, value in digest.items())
         self.first = _encoded(csv_line([digests, *self.columns]))[:-1]
         self.seed = zlib.crc32(self.first)
+        self.is_outdated = False  # whether the file has rows of ``outdated``, which stay until there are others
         self.file: io.FileIO
         self.forget()
 
@@ -142,7 +143,8 @@ class _Rows:
         self.forget()
         head = first.decode(errors="replace").partition(",")[0]
         digests = dict(part.partition(":")[::2] for part in head.split())
-        if not rows or digests == self.outdated:
+        self.is_outdated = rows > 0 and digests == self.outdated
+        if not rows or self.is_outdated:
             return
         changed = [name for name, digest in self.digest.items() if digests.get(name) != digest] or ["columns"]
         raise InputError(
@@ -182,7 +184,7 @@ class Journal:
     stays : bool
         Whether the file outlives its table, with its rows for a later command that asks for others, too.
     outdated : mapping of str to str, optional
-        Digest of a table that was finished, whose rows may be dropped: no error is raised for them.
+        Digest of a table that was finished, whose rows the first new one replaces: no error is raised for them.
 
     Raises
     ------
@@ -224,13 +226,18 @@ class Journal:
                 remark = f"the {self._rows.count} undamaged runs are kept, the others are carried out again"
                 self._tell(f"{self.path}: {_damaged(damaged)}; {remark}")
                 self._write_whole_rows_only()
-            self._rows.file.truncate(self._rows.end)
-            if self._rows.end == 0:
-                self._append(_sealed(self._rows.first))
-                self._rows.head = self._rows.end
+            if not self._rows.is_outdated:
+                self._begin()
             self._opened = entered.pop_all()
         self._process = os.getpid()
         return self
+
+    def _begin(self) -> None:
+        """Cut the file behind its last whole row, and give an empty one its first line."""
+        self._rows.file.truncate(self._rows.end)
+        if self._rows.end == 0:
+            self._append(_sealed(self._rows.first))
+            self._rows.head = self._rows.end
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
@@ -337,7 +344,9 @@ class Journal:
         return (_encoded(f"{line}\n") for line in csv_lines([columns.get(name, empty) for name in self.columns]))
 
     def _add(self, rows: Iterable[tuple[int, bytes]]) -> None:
-        """Append rows as one block, and index them."""
+        """Append rows as one block, and index them; the first replace those of an outdated table."""
+        if self._rows.end == 0:
+            self._begin()
         block = bytearray()
         places = []
         for number, row in rows:

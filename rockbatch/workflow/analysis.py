@@ -191,7 +191,8 @@ class AnalysisFolder:
     ) -> Iterator[Journal]:
         """Context manager: yield the journal of the runs in ``file``; announce its finished runs, at the start and after Ctrl-C.
 
-        ``beside`` and ``stays`` as for :class:`Journal`. Rows of the digest with which ``file`` was finished may be dropped.
+        ``beside`` and ``stays`` as for :class:`Journal`. The first new row replaces those of another digest with which ``file``
+        was finished.
         """
         path, say = self.directory / f"{file}.part", self.listener.say
         outdated = self._earlier.get(file, {}).get("runs")

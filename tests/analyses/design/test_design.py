@@ -564,6 +564,34 @@ def test_runs_of_a_finished_search_are_replaced_when_the_pier_changes(tmp_path, 
     assert csv_files(tmp_path / "out") == csv_files(tmp_path / "alone")
 
 
+def test_finished_runs_stay_until_the_first_run_of_a_changed_pier_ends(tmp_path, simulated, monkeypatch):
+    rb.design(study(), tmp_path / "out", jobs=1)
+    before = csv_files(tmp_path / "out")
+    with monkeypatch.context() as patched:
+        patched.setattr("rockbatch.analyses.design.analysis.make_ready", lambda *_: interrupt())
+        with pytest.raises(KeyboardInterrupt):
+            rb.design(study(pier=PIER | {"alpha": 0.19}), tmp_path / "out", jobs=1)
+    simulated.clear()
+    rb.design(study(), tmp_path / "out", jobs=1)
+    assert sum(simulated) == 0
+    assert csv_files(tmp_path / "out") == before
+
+
+def interrupt():
+    """Stop as Ctrl-C does."""
+    raise KeyboardInterrupt
+
+
+def test_edited_runs_of_a_search_are_refused_and_stay(tmp_path, simulated):
+    rb.design(study(), tmp_path / "out", jobs=1)
+    path = tmp_path / "out/design_runs.csv"
+    edited = path.read_text().replace("ok", "failed", 1)
+    path.write_text(edited)
+    with pytest.raises(InputError, match="edited or damaged"):
+        rb.design(study(), tmp_path / "out", jobs=1)
+    assert path.read_text() == edited
+
+
 def test_another_limit_keeps_the_forces_in_sections_of_finished_runs(tmp_path, simulated):
     stiffer = STIFF | {"at_least": 1.6e6}
     for check in ([MOMENT, STIFF], [MOMENT, stiffer]):
