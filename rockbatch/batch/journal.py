@@ -225,7 +225,7 @@ class Journal:
             if damaged := self._rows.recover():
                 remark = f"the {self._rows.count} undamaged runs are kept, the others are carried out again"
                 self._tell(f"{self.path}: {_damaged(damaged)}; {remark}")
-                self._write_whole_rows_only()
+                self._rewrite(self)  # so that they are reported only once
             if not self._rows.is_outdated:
                 self._begin()
             self._opened = entered.pop_all()
@@ -326,6 +326,16 @@ class Journal:
         self._written = True
         return Written(rows, digest.hexdigest())
 
+    def renumber(self, first: Iterable[int]) -> None:
+        """Number the runs anew, the ``first`` in their order and then all others, and put the file into that order.
+
+        The file of a search is then the same in whatever order its runs were finished.
+        """
+        order = [*dict.fromkeys(first), *sorted({*self}.difference(first))]
+        starts = [self._rows.starts[number] for number in order]
+        if order != list(range(len(order))) or starts != sorted(starts):
+            self._rewrite(order, range(len(order)))
+
     def _lines_in_order(self, extra_rows: Iterable[Mapping[str, object]], numbers: Iterable[int]) -> Iterator[bytes]:
         """Yield the lines of the table: head, finished runs, extra rows."""
         yield _encoded(csv_line(self.columns[: len(self.columns) - len(self.beside)]))
@@ -368,11 +378,13 @@ class Journal:
             os.fsync(self._rows.file.fileno())
         self._rows.end += len(block)
 
-    def _write_whole_rows_only(self) -> None:
-        """Rewrite the file without damaged lines, so that they are reported only once."""
+    def _rewrite(self, order: Iterable[int], numbers: Iterable[int] | None = None) -> None:
+        """Rewrite the file with the rows in ``order``, under new ``numbers`` if these are given."""
+        order = list(order)
         with replacing(self.path) as temporary, temporary.open("wb") as file:
             file.write(_sealed(self._rows.first))
-            file.writelines(_sealed(b"%d," % number + self._rows.row(number)[:-1], self._rows.seed) for number in self)
+            for number, old in zip(order if numbers is None else numbers, order, strict=True):
+                file.write(_sealed(b"%d," % number + self._rows.row(old)[:-1], self._rows.seed))
         self._rows.file.close()
         self._rows.file = opened(self.path, "r+b")
         self._rows.recover()

@@ -50,6 +50,27 @@ def ended(path):
     return path.with_name("peaks.csv").read_bytes(), there
 
 
+def test_a_journal_that_stays_has_the_same_bytes_however_its_runs_finish(path):
+    """Those asked for come first, in their order and as often as asked, then all others; numbers begin at 0."""
+    asked, texts = [11, 2, 0, 2], set()
+    for seed in range(5):
+        numbers = np.random.default_rng(seed).permutation(list(ROWS)).tolist()
+        with Journal(path, COLUMNS, DIGEST, stays=True) as journal:
+            for number in numbers:
+                journal.add_all({number: ROWS[number]})
+            journal.renumber(asked)
+            records = [ROWS[number]["record"].replace("\udcff", "\\xff") for number in (11, 2, 0, 1, 3)]
+            assert [(number, row["record"]) for number, row in journal.rows()] == list(enumerate(records))
+        texts.add(path.read_bytes())
+        inode = path.stat().st_ino
+        with Journal(path, COLUMNS, DIGEST, stays=True) as journal:
+            journal.renumber(range(len(ROWS)))
+            assert [row["record"] for _, row in journal.rows()] == records
+        assert path.stat().st_ino == inode  # in order already: not written anew
+        path.unlink()
+    assert len(texts) == 1
+
+
 def test_the_table_is_in_the_order_of_the_numbers_however_the_runs_finish(path):
     for seed in range(5):
         numbers = np.random.default_rng(seed).permutation(list(ROWS)).tolist()

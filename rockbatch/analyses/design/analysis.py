@@ -203,6 +203,7 @@ def _write_tables(results: AnalysisFolder, spec: DesignSpec) -> dict[str, object
         for name, rows in waves.tables.items():
             results.keep_table(BESIDE[name], pd.DataFrame(rows))
         journal.write_in_order(results.directory / RUNS, numbers=waves.numbers)
+        journal.renumber(waves.numbers)
     results.keep(RUNS, digest)
     results.info["runs"] = waves.finished
     return {"spec": spec}
