@@ -90,6 +90,10 @@ def test_copies_of_a_vertical_upwards_and_downwards_differ_in_sign(tmp_path, sig
         ("Vertical: positive is down", "Z", -1.0),
         ("vertical component positive downwards", "UP", 1.0),
         ("vertical component positive up", "V", 1.0),
+        ("vertical axis converted from positive down to positive up", "V", 1.0),
+        ("vertical (Z) not positive down but positive up", "Z", 1.0),
+        ("vertical component positive up; depth positive down", "V", 1.0),
+        ("vertical exaggeration of plots 2x, depth axis positive downwards", "V", 1.0),
     ],
 )
 def test_a_line_of_a_table_s_header_says_that_its_vertical_is_down(tmp_path, line, label, sign):
@@ -98,6 +102,20 @@ def test_a_line_of_a_table_s_header_says_that_its_vertical_is_down(tmp_path, lin
     (motion,) = read_motions(tmp_path).motions
     assert motion.vertical is not None
     assert np.allclose(motion.vertical, 2.0 * sign * motion.horizontal, atol=2e-4)
+    assert any("positive up, though" in note for note in motion.notes) is (sign > 0.0 and "down" in line)
+
+
+@pytest.mark.parametrize(("name", "used"), [("S_V", True), ("S_UP", False)])
+def test_a_line_on_the_sign_is_compared_with_the_file_s_name(tmp_path, name, used):
+    for stem, values in zip(("S_000", "S_090", name), COMPONENTS, strict=True):
+        rows = "\n".join(f"{a:.6f}" for a in values)
+        (tmp_path / f"{stem}.txt").write_text(f"# vertical component positive down\n# unit: g\n# dt = 0.01 s\n{rows}\n")
+    found = read_motions(tmp_path)
+    assert len(found.motions) == (2 if used else 0)
+    for motion in found.motions:
+        assert motion.vertical is not None
+        assert motion.vertical @ COMPONENTS[2] < 0.0
+    assert any('says "vertical down", but its file is called "S_UP.txt"' in file.reason for file in found.unusable) is not used
 
 
 @pytest.mark.parametrize("of_vertical", [True, False])

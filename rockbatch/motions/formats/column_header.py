@@ -103,7 +103,11 @@ _POSITIVE_DOWN = re.compile(  # behind a label, and perhaps its unit: Up-down (c
 _POSITIVE = re.compile(
     r"\s*[(\[]\s*(?:\+|positive|pos\.?)\s*(?:is|:|=)?\s*(?:up|north|east)(?:wards?)?\s*[)\]]", re.IGNORECASE
 )
-_VERTICAL_DOWN = re.compile(r"\bvertical\b.{0,40}\b(?:positive|pos\.) (?:is )?down", re.IGNORECASE)
+_VERTICAL_DOWN = re.compile(  # a whole line: others may speak of depth, or of the signs before a conversion
+    r"vertical(?: (?:component|axis|acceleration|channel))?\s*(?:[:=]|\bis\b)?\s*(?:positive|pos\.?)(?: is)? ?down(?:wards?)?\.?",
+    re.IGNORECASE,
+)
+_OF_SIGN = re.compile(r"(?=.*\bvertical\b)(?=.*\b(?:positive|pos)\b).*\bdown", re.IGNORECASE)
 _SHORT = {"NORTHSOUTH": "NS", "EASTWEST": "EW", "UPDOWN": "UD"}
 _TIME = {"time", "times", "elapsed", "elapsedtime", "zeit", "tiempo", "temps", "tempo", "zaman", "時間", "时间"}
 _SECONDS = [prefix + word for word in _SECOND.split() if len(word) > 2 for prefix in ("", "in", "en")]
@@ -287,7 +291,7 @@ def columns_without_units(header: Sequence[str], width: int) -> list[Column] | N
         if len(labels) == width and all(orientation_in(column.label).known for column in labels):
             return labels
     for line in reversed(header):
-        if _VALUE.search(line) or _STEP.search(line):
+        if _VALUE.search(line) or _STEP.search(line) or is_down([line]):
             continue
         for columns in _labels_of(line.replace('"', "").strip(" ,;")):
             if len(columns) == width and (
@@ -342,8 +346,13 @@ def stated_direction(header: Sequence[str]) -> str:
 
 
 def is_down(header: Sequence[str]) -> bool:
-    """Return whether a line says that vertical components are positive downwards, as ``vertical component positive down``."""
-    return any(_VERTICAL_DOWN.search(line) for line in header)
+    """Return whether a line says only that vertical components are positive down, as ``vertical component positive down``."""
+    return any(_VERTICAL_DOWN.fullmatch(line.strip(' #\t",;')) for line in header)
+
+
+def line_about_sign(header: Sequence[str]) -> str:
+    """Return the first line with the words vertical, positive and down, in whatever sense; empty without one."""
+    return next((line for line in header if _OF_SIGN.match(line)), "")
 
 
 def stated_unit(header: Sequence[str]) -> str | None:

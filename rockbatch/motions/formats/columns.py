@@ -24,6 +24,7 @@ from rockbatch.motions.formats.column_header import (
     is_acceleration,
     is_down,
     is_of_another_quantity,
+    line_about_sign,
     line_about_spectra,
     other_series,
     seconds_in,
@@ -82,7 +83,7 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
     without labels, a first one that grows evenly is time, unless the header mentions spectra. Uneven times are
     interpolated, with a note.
     """
-    recordings = _parse(file.text, file.options, file.beside)
+    recordings = _parse(file.text, file.options, file.beside, file.stem)
     for i, recording in enumerate(recordings):
         if is_acceleration(recording.unit):
             overruled = file.options.overruled(recording.unit, recording.dt, file.gravity)
@@ -121,8 +122,8 @@ def _repeats(recordings: Sequence[Recording], ways: Sequence[tuple[object, ...]]
     return False
 
 
-def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[Recording]:
-    """Return the columns of acceleration; one in an unknown unit, beside others in known ones, is returned with it.
+def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: str = "") -> list[Recording]:
+    """Return the columns of acceleration of a file called ``stem``; one in an unknown unit, beside others in known ones, is returned with it.
 
     Raises ``InputError`` for a single row, unknown columns or step, a column without a unit, no unit that is one of
     acceleration, and a header that states another count or step.
@@ -139,7 +140,7 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
     unit = believed_unit(stated_unit(header), options)
     not_acceleration = [i for i, column in enumerate(columns) if column.other]
     used = [i for i, column in enumerate(columns) if not (column.is_time or column.other or column.label == "-")]
-    columns = _with_direction(columns, used, header)
+    columns = _with_direction(columns, used, header, stem)
     units = {i: _unit_of(columns[i], unit, options) for i in used}
     known = any(map(is_acceleration, units.values()))  # then another unit makes only its own column unusable
     lacking = [
@@ -159,16 +160,17 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
     dt, values, moved = _on_one_step(columns, table, header, options)
     recordings = []
     for i in used:
+        orientation = _oriented(columns[i].label, header)
         recording = Recording(
             label=columns[i].label,
-            orientation=_oriented(columns[i].label, header),
+            orientation=orientation,
             stated_by=Kind.USER if columns[i].stated else Kind.HEADER,
             dt=dt,
             values=values[:, i],
             unit=units[i],
             start=start,
             stated=stated_of_samples(header) if len(used) == 1 else (),
-            notes=(*notes, *omitted, *moved),
+            notes=(*notes, *omitted, *moved, *_remarks_on_sign(orientation, header, stem)),
         )
         recordings.append(recording)
     return recordings
@@ -181,6 +183,15 @@ def _oriented(label: str, header: Sequence[str]) -> Orientation:
     return replace(orientation, down=down)
 
 
+def _remarks_on_sign(orientation: Orientation, header: Sequence[str], stem: str) -> tuple[str, ...]:
+    """Return a remark on a line that speaks of a sign, if a component that may be vertical is not taken as positive down."""
+    way = orientation if orientation.known else split_stem(stem)[1]
+    line = line_about_sign(header)
+    if not line or (way and (way.down or not way.vertical)):
+        return ()
+    return (f'positive up, though its header says "{line[:60]}": if it is positive down, write polarity = "-" in motions.toml',)
+
+
 def _refuse_factor(header: Sequence[str], options: ReadOptions) -> None:
     """Raise ``Contradiction`` for a header that states a factor, applied or not, unless a manifest states ``scale``."""
     factor = stated_factor(header)
@@ -191,9 +202,17 @@ def _refuse_factor(header: Sequence[str], options: ReadOptions) -> None:
         )
 
 
-def _with_direction(columns: list[Column], used: Sequence[int], header: Sequence[str]) -> list[Column]:
-    """Return the columns, the only one that is ``used`` with the direction in a line of the header if its label tells none."""
-    if len(used) != 1 or orientation_in(columns[used[0]].label).known or not (direction := stated_direction(header)):
+def _with_direction(columns: list[Column], used: Sequence[int], header: Sequence[str], stem: str) -> list[Column]:
+    """Return the columns, the only one that is ``used`` with the direction in a line of the header if its label tells none.
+
+    A line on the sign of verticals is one, unless the file's name ``stem`` says that it is horizontal.
+    """
+    if len(used) != 1 or orientation_in(columns[used[0]].label).known:
+        return columns
+    named = split_stem(stem)[1]
+    down = is_down(header) and (named is None or named.vertical)
+    direction = stated_direction(header) or ("vertical down" if down else "")
+    if not direction:
         return columns
     return [replace(column, label=direction) if i in used else column for i, column in enumerate(columns)]
 
