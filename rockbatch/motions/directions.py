@@ -18,7 +18,7 @@ from rockbatch.motions.evidence import Kind, Statement, decided_orientation, sam
 from rockbatch.motions.leaving_out import Reading
 from rockbatch.motions.likeness import pairs_of_one_recording
 from rockbatch.motions.motion import Finding
-from rockbatch.motions.orientation import unknown
+from rockbatch.motions.orientation import one_of_three, unknown
 from rockbatch.motions.stations import by_station
 
 _COPIED = (Kind.CODE, Kind.HEADER)  # statements that programs copy from the first file to the others
@@ -50,7 +50,8 @@ def _judge_set(station: Sequence[Component]) -> list[Component]:
         contradictions.setdefault(j, text)
     if contradictions:
         return [_held_back(c, contradictions.get(i, ""), components, contradictions) for i, c in enumerate(components)]
-    return [_with_remark(component) for component in components]
+    remarked = [_with_remark(component) for component in components]
+    return list(map(_with_doubt, remarked)) if _is_independent_triple(components) else remarked
 
 
 def _held_back(
@@ -134,17 +135,19 @@ def _copied_headers(components: Sequence[Component]) -> Iterator[tuple[int, Stat
 
 
 def _numbered_channels(components: Sequence[Component]) -> Iterator[tuple[int, Statement, str]]:
-    """Yield place, statement and reason of codes and headers that number three components of a sensor: HN1 and HN2 beside HN3.
+    """Yield place, statement and reason of codes and headers without azimuth that number three components of a sensor.
 
-    The vertical one may be any of these.
+    Of HN1, HN2 and HN3 the vertical one may be any, unless another component of the sensor is vertical.
     """
-    labels = {(c.sensor, c.orientation.label.upper()) for c in components}
     for i, component in enumerate(components):
-        for statement in () if _by_user(component) else component.statements:
+        others = [c for c in components if c is not component and c.sensor == component.sensor]
+        if _by_user(component) or any(c.orientation.vertical for c in others):
+            continue
+        labels = {c.orientation.label.upper() for c in others}
+        for statement in component.statements:
             label = statement.orientation.label.upper()
-            third = f"{label[:-1]}3"
-            if statement.kind in _COPIED and label[-1:] in ("1", "2") and (component.sensor, third) in labels:
-                yield i, statement, f"beside {third}, which may be horizontal, it may be vertical"
+            if statement.kind in _COPIED and statement.orientation.without_azimuth and one_of_three(label, labels):
+                yield i, statement, f"beside {label[:-1]}3, which may be horizontal, it may be vertical"
 
 
 def _void_defaults(components: Sequence[Component]) -> Iterator[tuple[int, Statement, str]]:
@@ -214,8 +217,6 @@ def _impossible_pairs(
         if _of_one_sensor(components[i], components[j]) and not _same_samples(components[i], components[j]):
             yield i, j, f"{_components_and_statements(components[i], components[j])}: one direction, but other samples"
     horizontals = [i for i, c in enumerate(components) if not c.orientation.vertical]
-    if len(horizontals) == 3 and horizontals == places and not alike and (why := _independent_triple(components)):
-        yield from ((i, j, why) for i, j in sorted(pairs))
     if len(horizontals) == 2 and tuple(horizontals) in pairs:
         i, j = horizontals
         if why := _skew_pair(components[i], components[j]):
@@ -248,23 +249,28 @@ def _skew_pair(a: Component, b: Component) -> str:
     return f"{_components_and_statements(a, b)} are {abs(first - second):g}° apart, and no sensor's horizontal components are"
 
 
-def _independent_triple(components: Sequence[Component]) -> str:
-    """Return a message on three horizontals of one sensor that are no motion in a plane: one may be vertical; "" for others.
+def _is_independent_triple(components: Sequence[Component]) -> bool:
+    """Return whether a set is three horizontals of one sensor, not all stated by the user, that are no motion in a plane.
 
-    For those in a plane sin(φ₂ − φ₃) a₁ + sin(φ₃ − φ₁) a₂ + sin(φ₁ − φ₂) a₃ = 0. Others are those of several sensors, files of
+    For those in a plane sin(φ₂ − φ₃) a₁ + sin(φ₃ − φ₁) a₂ + sin(φ₁ − φ₂) a₃ = 0. False for several sensors, files of
     different steps or starts, and unknown azimuths.
     """
     azimuths = [c.orientation.azimuth for c in components if c.orientation.azimuth is not None]
-    if len(azimuths) < 3 or len({(c.sensor, c.start, c.dt) for c in components}) > 1:
-        return ""
+    if not len(components) == len(azimuths) == 3 or all(map(_by_user, components)):
+        return False
+    if len({(c.sensor, c.start, c.dt) for c in components}) > 1:
+        return False
     phi = np.radians(azimuths)
     shortest = min(len(c.acceleration) for c in components)
     across = np.sin(np.roll(phi, -1) - np.roll(phi, -2))[:, None]
     turned = across * np.array([c.acceleration[:shortest] for c in components])
-    if np.linalg.norm(turned.sum(axis=0)) <= _IN_A_PLANE * np.linalg.norm(turned):
-        return ""
-    said = _components_and_statements(*components)
-    return f"{said}: no two of them combine to the third, as horizontal components do: one may be vertical"
+    return bool(np.linalg.norm(turned.sum(axis=0)) > _IN_A_PLANE * np.linalg.norm(turned))
+
+
+def _with_doubt(component: Component) -> Component:
+    """Return a component with a finding that it is one of three horizontals that are no motion in a plane."""
+    text = "one of three horizontal directions of one sensor that are no motion in a plane: is one vertical?"
+    return replace(component, findings=(*component.findings, Finding("direction", text)))
 
 
 def _components_and_statements(*components: Component) -> str:

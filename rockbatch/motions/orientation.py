@@ -5,7 +5,7 @@ A direction that no label states stays unknown: a vertical component would other
 
 import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
@@ -26,6 +26,11 @@ class Orientation:
     azimuth: float | None = None  # of a horizontal component [degrees clockwise from north, 0 ≤ azimuth < 360]
     down: bool = False  # whether a vertical component is positive down
     known: bool = True  # whether it is known to be horizontal or vertical
+
+    @property
+    def without_azimuth(self) -> bool:
+        """Return whether it is known to be horizontal, of an unknown azimuth."""
+        return self.known and not self.vertical and self.azimuth is None
 
 
 def unknown(label: str = "") -> Orientation:
@@ -264,9 +269,22 @@ def counted(stems: Iterable[str]) -> set[str]:
 
 
 def numbered(stems: Iterable[str]) -> set[str]:
-    """Return the stems that end in 1 or 2 beside one that ends in 3: of HN1, HN2 and HN3 any may be vertical."""
-    names = set(stems)
-    return {stem for stem in names if stem[-1:] in ("1", "2") and not stem[-2:].isdigit() and f"{stem[:-1]}3" in names}
+    """Return the horizontal stems without azimuth that are :func:`one_of_three`, unless another of their site is vertical."""
+    split = {stem: split_stem(stem) for stem in stems}
+    upright = {site for site, orientation in split.values() if orientation and orientation.vertical}
+    return {
+        stem
+        for stem, (site, orientation) in split.items()
+        if orientation and orientation.without_azimuth and site not in upright and one_of_three(stem, split)
+    }
+
+
+def one_of_three(label: str, labels: Collection[str]) -> bool:
+    """Return whether a label ends in 1 or 2, and of ``labels`` one like it in 3, but none in 4 to 9: any may be vertical."""
+    beginning = label[:-1]
+    if label[-1:] not in ("1", "2") or beginning[-1:].isdigit() or f"{beginning}3" not in labels:
+        return False
+    return not any(f"{beginning}{digit}" in labels for digit in range(4, 10))
 
 
 def accidental(stems: Iterable[str]) -> set[str]:

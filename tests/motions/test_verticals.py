@@ -30,6 +30,31 @@ def test_two_numbered_names_beside_a_vertical_are_horizontal(tmp_path):
     assert [motion.vertical_source for motion in read_motions(tmp_path).motions] == ["x.HNZ.AT2"] * 2
 
 
+@pytest.mark.parametrize(
+    ("names", "used"),
+    [
+        (("x_NS1", "x_NS2", "x_NS3"), 2),  # letters give the azimuth, and of NS3 nothing is known
+        (("x_EW1", "x_EW2", "x_UD3"), 2),
+        (("GM_H1", "GM_H2", "GM_H3", "GM_H4"), 2),  # the digits count
+        (("x.HN1", "x.HN2", "x.HN3", "x.HNZ"), 2),  # of HN3 nothing is known
+    ],
+)
+def test_a_digit_tells_nothing_where_letters_or_other_files_do(tmp_path, names, used):
+    for i, name in enumerate(names):
+        write_at2(tmp_path, f"{name}.AT2", wiggle(seed=i + 1), title=f"Made-up, 1/17/1994, Test Station {i}")
+    assert len(read_motions(tmp_path).motions) == used
+
+
+def test_channels_1_and_2_beside_a_vertical_are_horizontal_though_there_is_a_third(tmp_path):
+    channels = ("HN1", "HN2", "HN3", "HNZ")
+    write_mseed(
+        tmp_path / "x.mseed", *(trace(c, np.round(1e6 * wiggle(seed=i)).astype("i4")) for i, c in enumerate(channels, 1))
+    )
+    station_xml(tmp_path, *(channel_xml(c, None, None) for c in channels))
+    used = [(motion.name, motion.vertical_source) for motion in read_motions(tmp_path).motions]
+    assert used == [(f"CI.LRL..HN{i}", "x.mseed (CI.LRL..HNZ)") for i in (1, 2)]
+
+
 @pytest.mark.parametrize("known", [True, False])
 def test_angles_tell_which_of_channels_1_to_3_is_vertical(tmp_path, known):
     channels = ("HN1", "HN2", "HN3")
@@ -49,17 +74,18 @@ def test_angles_tell_which_of_channels_1_to_3_is_vertical(tmp_path, known):
 
 
 @pytest.mark.parametrize("third", ["045", "180"])
-def test_a_third_horizontal_has_to_be_a_combination_of_two(tmp_path, third):
+def test_a_third_horizontal_that_is_no_combination_of_two_is_remarked(tmp_path, third):
     for folder, values in (("apart", COMPONENTS[2]), ("plane", None)):
         a, b = COMPONENTS[:2]
         angle = np.radians(float(third))
         values = a * np.cos(angle) + b * np.sin(angle) if values is None else values
         for name, samples in (("000", a), ("090", b), (third, values)):
             write_at2(tmp_path / folder, f"x_{name}.AT2", samples)
-    assert len(read_motions(tmp_path / "plane").motions) == 3
-    found = read_motions(tmp_path / "apart")
-    assert not found.motions
-    assert all("one may be vertical" in file.reason for file in found.unusable)
+    doubted = {
+        folder: [any("no motion in a plane" in note for note in motion.notes) for motion in read_motions(tmp_path / folder)]
+        for folder in ("plane", "apart")
+    }
+    assert doubted == {"plane": [False] * 3, "apart": [True] * 3}
     (tmp_path / "apart" / "motions.toml").write_text(f'[[record]]\nfile = "x_{third}.AT2"\nrole = "vertical"\n')
     assert [motion.vertical_source for motion in read_motions(tmp_path / "apart").motions] == [f"x_{third}.AT2"] * 2
 
