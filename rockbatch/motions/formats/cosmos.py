@@ -10,12 +10,10 @@ COSMOS (2001), "COSMOS strong motion data format", version 1.20; for 68 and 69 t
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import Sensor
-from rockbatch.motions.evidence import Kind, Statement
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in
 from rockbatch.motions.formats.header_lines import layout, line_at, match_line, moment, read_header, search_lines
 from rockbatch.motions.formats.obspy_plugin import plugin
@@ -263,15 +261,13 @@ def _label(header: _Header, channel: str) -> str:
     """Return the direction by the header's text, else by its code (integer 54), else by the SEED channel.
 
     It is the one that says up or down, if the others say vertical; the text, perhaps "", if none of them is known. Raises
-    ``InputError`` if they differ in vertical or horizontal, up or down, and if text and code differ in azimuth.
+    ``InputError`` if they differ in vertical or horizontal, up or down.
     """
     code, stated = header.integers[53], header.fields["label"]
     by_code = _DIRECTIONS.get(code, str(code) if 1 <= code <= 360 else "")
     directions = {label: way for label in (stated, by_code, channel) if (way := orientation_of(label))}
     signed = {label: way.down for label, way in directions.items() if way.down or is_upward(label)}
-    of_header = [Statement(Kind.HEADER, label, directions[label]) for label in (stated, by_code) if label in directions]
-    differ = any(a.differs_from(b) for a, b in combinations(of_header, 2))
-    if differ or len({way.vertical for way in directions.values()}) > 1 or len(set(signed.values())) > 1:
+    if len({way.vertical for way in directions.values()}) > 1 or len(set(signed.values())) > 1:
         raise InputError(f"directions contradict each other: {' and '.join(directions)}; repair the header")
     return next(iter((*signed, *directions)), stated)
 
