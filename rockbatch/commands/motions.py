@@ -10,7 +10,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.files import csv_text, write_output
 from rockbatch.common.grouping import distinct, grouped
 from rockbatch.motions import MotionSet, ReadOptions, read_motions
-from rockbatch.motions.component import listed_files
+from rockbatch.motions.component import file_of
 from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.motion_set import COLUMNS, TEXTS, row
 from rockbatch.motions.ranking import ADDED, RankedRecord, Use, ranked_records
@@ -102,10 +102,12 @@ def main(arguments: argparse.Namespace) -> int:
 
 def counts(suite: MotionSet) -> str:
     """Return "3 files: 2 usable recordings of 1 station, 0 not used, 1 left out" with the numbers of the set."""
-    sources = {source for motion in suite for source in (motion.source, motion.vertical_source) if source}
-    for not_used in (suite.unusable, suite.left_out):
-        sources |= {file.source for file in not_used}
-    files = {file for source in sources for file in listed_files(source)}
+    of_records = [
+        motion.sources for motion in suite if not motion.shocks
+    ]  # those of a sequence are records or left out
+    of_records += [file.sources for file in suite.unusable]
+    of_records += [file.sources or (file.source,) for file in suite.left_out]
+    files = {file_of(source) for sources in of_records for source in sources}
     recordings = f"{count(len(suite), 'usable recording')} of {count(len(suite.stations()), 'station')}"
     return f"{count(len(files), 'file')}: {recordings}, {len(suite.unusable)} not used, {len(suite.left_out)} left out"
 

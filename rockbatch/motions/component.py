@@ -65,11 +65,6 @@ def file_of(source: str) -> str:
     return re.sub(r" \([^()]*\)$", "", source)
 
 
-def listed_files(sources: str) -> list[str]:
-    """Return the file of each of the sources that a motion lists: "x.V1 (NS), x-UP.V1" gives "x.V1" and "x-UP.V1"."""
-    return [file_of(source) for source in sources.split(", ")]
-
-
 UNKNOWN_SENSOR = Sensor()
 """For a file that does not state its sensor."""
 

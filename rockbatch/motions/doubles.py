@@ -181,7 +181,7 @@ def _ranks(
             any(c.contradiction or gross_findings(c) for c in of_set),
             _CORRECTED[first.processed],
             any(_SCALED.search(c.source) for c in of_set),
-            first.processed is None and any(_RAW.search(c.name) for c in of_set),
+            first.processed is None and any(_RAW.search(c.source) for c in of_set),
             -min(2, across) - (across < len(of_set)),
             not first.unit,
             float(f"{first.dt:.3g}"),
@@ -213,7 +213,7 @@ def _reason(copy: Component, used: Component, factor: float | None) -> str:
 def tell_use_of_originals(left_out: Iterable[LeftOut], motions: MotionSet) -> list[LeftOut]:
     """Return left-out files; to the reason of a copy is added whether ``motions`` uses its original, or refuses it."""
     used = {source for motion in motions for source in (*motion.source.split(" + "), motion.vertical_source)}
-    refused = {source for file in motions.unusable for source in file.source.split(", ")}
+    refused = {source for file in motions.unusable for source in file.sources}
 
     def fate(file: LeftOut) -> str:
         if file.of in used:

@@ -19,7 +19,7 @@ from rockbatch.common.units import GRAVITY
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, remove_offset
 from rockbatch.motions.colocated import with_gains_compared
-from rockbatch.motions.component import Component, file_of, listed_files
+from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.directions import judge_directions
 from rockbatch.motions.doubles import tell_use_of_originals, without_doubles
 from rockbatch.motions.evidence import Kind, Statement
@@ -161,8 +161,8 @@ def _with_stations(readings: Sequence[Reading], paired: MotionSet) -> list[Unusa
 
     It is in their folder; without either they keep their station.
     """
-    sources = [(m.files, m.of_station) for m in paired.motions] + [(u.source, u.station) for u in paired.unusable]
-    station_of_file = {file: station for listed, station in sources for file in listed_files(listed)}
+    sources = [(m.sources, m.of_station) for m in paired.motions] + [(u.sources, u.station) for u in paired.unusable]
+    station_of_file = {file_of(source): station for of_one, station in sources for source in of_one}
     station_of_site = {}
     for reading in readings:
         if isinstance(reading, Component) and (file := file_of(reading.source)) in station_of_file:

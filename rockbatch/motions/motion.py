@@ -355,9 +355,14 @@ class Motion(Shown):
         return self.label if self.label == self.name else f"{self.label} ({self.name})"
 
     @property
+    def sources(self) -> tuple[str, ...]:
+        """Return the sources of its components."""
+        return tuple(source for source in (self.source, self.vertical_source) if source)
+
+    @property
     def files(self) -> str:
-        """Return the sources of its components, "a.AT2, a-UP.AT2"."""
-        return ", ".join(source for source in (self.source, self.vertical_source) if source)
+        """Return the sources of its components in words, "a.AT2, a-UP.AT2"."""
+        return ", ".join(self.sources)
 
     @property
     def of_station(self) -> str:
@@ -488,6 +493,11 @@ class Unusable:
     kind: type[InputError] = UnusableRecord
     motion: Motion | None = field(default=None, repr=False)
 
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Return the sources of the motion's components, else its own."""
+        return (self.motion.sources if self.motion else ()) or (self.source,)
+
     def __str__(self) -> str:
         return f"{self.source}: {self.reason}"
 
@@ -497,7 +507,7 @@ class LeftOut:
     """A file or record that is left out on purpose, with the reason: not selected, excluded, a copy, or no record.
 
     It is ``named`` if a manifest or the study names it; ``station`` is the name under which it would count, if known. ``of``
-    is the source of the original of a copy.
+    is the source of the original of a copy. ``sources`` are those of the components of a record.
     """
 
     name: str
@@ -506,6 +516,7 @@ class LeftOut:
     station: str = ""
     named: bool = False
     of: str = ""
+    sources: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         return f"{self.source}: {self.reason}"

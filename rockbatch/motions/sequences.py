@@ -374,7 +374,7 @@ def add_sequences(
     for name, whole in parts.items():
         if name not in alone:
             reason = f"a shock of the sequence {shown(whole)}; alone = true there also runs it on its own"
-            refused.append(LeftOut(name, by_name[name].files, reason))
+            refused.append(LeftOut(name, by_name[name].files, reason, sources=by_name[name].sources))
     parts_only = parts.keys() - alone
     pulse_names = {pulse.name for pulse in pulses}
     as_pulses = [motion for motion in joined_motions if is_pulse(motion, pulse_names)]

@@ -1,6 +1,7 @@
 """What `rockbatch motions` prints first: counts, what is missing by its reason, and stations, however many files there are."""
 
 import numpy as np
+import pytest
 from archive_files import tarred, write_zip
 from damaged_files import SAMPLES
 from motion_files import at2_text, wiggle, write_at2
@@ -41,6 +42,14 @@ def test_files_are_counted_whose_names_differ_in_brackets(tmp_path, capsys):
         )
     main(["motions", str(tmp_path)])
     assert capsys.readouterr().out.startswith("2 files: ")
+
+
+@pytest.mark.parametrize("folder", ["Imperial Valley, 1979", "a"])
+def test_files_are_counted_whose_names_have_commas(tmp_path, capsys, folder):
+    for i, label in enumerate(("000", "090", "UP"), 1):
+        write_at2(tmp_path / folder, f"Kobe, Japan_{label}.AT2", wiggle(150, i, scale=0.3))
+    main(["motions", str(tmp_path)])
+    assert capsys.readouterr().out.startswith("3 files: ")
 
 
 def test_all_lists_every_recording_and_every_file(tmp_path, capsys):

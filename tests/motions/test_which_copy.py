@@ -270,12 +270,16 @@ def test_copies_at_another_step_of_another_station_are_used_and_say_so(tmp_path)
     assert "has the same samples with a step of 0.005 s" in found.motions[0].findings[0].text
 
 
-@pytest.mark.parametrize("word", ["raw", "uncorrected"])
-def test_of_two_sets_the_one_that_is_called_raw_is_left_out(tmp_path, word):
+@pytest.mark.parametrize("place", ["STA_{}_raw.txt", "STA_{}_uncorrected.txt", "raw/STA_{}.txt"])
+def test_of_two_sets_the_one_that_is_called_raw_is_left_out(tmp_path, place):
     for seed, way in enumerate("NEZ", 1):
-        for stage, noise in ((word, 0.004), ("corrected as published", 0.0)):
+        for called, noise in (
+            (place, 0.004),
+            ("published/STA_{}_2.txt" if "/" in place else "STA_{}_corrected as published.txt", 0.0),
+        ):
             rows = wiggle(400, seed) + noise * wiggle(400, 7)
-            (tmp_path / f"STA_{way}_{stage}.txt").write_text(
+            (tmp_path / called.format(way)).parent.mkdir(exist_ok=True)
+            (tmp_path / called.format(way)).write_text(
                 "time(s) a(g)\n" + "".join(f"{0.01 * i:.2f} {a:.6f}\n" for i, a in enumerate(rows))
             )
     found = read_motions(tmp_path)
