@@ -412,7 +412,7 @@ def test_numbers_that_programs_leave_in_a_file_of_records_are_read_as_text_colum
 def test_columns_under_another_suffix_are_asked_to_be_called_text(tmp_path, suffix):
     rows = "".join(f"{0.01 * i:.2f} {a}\n" for i, a in enumerate(SHAKEN))
     (tmp_path / f"x_000.{suffix}").write_text(rows)
-    assert "but a table: read it as text columns: call it .txt, and state unit" in reason(tmp_path)
+    assert "but it is a table: read it as text columns: call it .txt, and state unit" in reason(tmp_path)
     (tmp_path / f"x_000.{suffix}").rename(tmp_path / "x_000.txt")
     assert one(tmp_path, unit="g").npts == len(SHAKEN)
 

@@ -161,7 +161,7 @@ def test_the_header_decides_between_agencies_that_share_a_suffix(suffix):
         texts += [cosmos_text(stage="Uncorrected"), cosmos_text(stage="Corrected")]
     for text in texts:
         assert all(not isinstance(reading, Unusable) for reading in read(text, f"x{suffix}"))
-    with pytest.raises(InputError, match=r"no .*CSMIP.* file, as its suffix"):
+    with pytest.raises(InputError, match=r"its suffix .* says .*CSMIP"):
         read("hello\nworld\n", f"x{suffix}")
 
 

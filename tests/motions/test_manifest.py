@@ -237,7 +237,7 @@ def test_the_draft_changes_nothing_until_it_is_edited(tmp_path):
     ]
     assert after.unusable == before.unusable
     text = draft.read_text(encoding="utf-8")
-    assert "# Not used: no PEER AT2 or text columns file" in text
+    assert "# Not used: its suffix .AT2 says PEER AT2 or text columns" in text
     assert text.count("[[record]]\nfile") == 5
     assert "1/17/1994, ZÜRICH" in text
 

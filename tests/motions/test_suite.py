@@ -270,7 +270,7 @@ def test_the_table_is_a_csv_too_with_a_row_for_every_file(tmp_path, capsys):
     assert float(good["arias_m_s"]) == pytest.approx(measures.arias_intensity(found.horizontal, 0.01), rel=1e-9)
     assert float(good["d5_95_s"]) == pytest.approx(measures.significant_duration(found.horizontal, 0.01), rel=1e-9)
     assert (bad["record"], bad["npts"]) == ("bad", "")
-    assert "no PEER AT2 or text columns file" in bad["reason"]
+    assert "says PEER AT2 or text columns, but its header is another one" in bad["reason"]
     assert companion["reason"] == "no record: text about the records"
     shown = capsys.readouterr()
     assert "1 record, 1 file not used, 1 left out" in shown.err

@@ -197,8 +197,8 @@ def _not_recognised(file: RecordFile) -> str:
     if names and file.data.startswith(b"PK\x03\x04"):
         return f"no {names} file but a zip archive, such as an Excel workbook: export it as CSV (UTF-8)"
     if names and b"\x00" in file.data[:HEAD]:
-        return f"no {names} file, as its suffix {suffix} says: binary data, or text to be saved as UTF-8"
-    kind = f"no {names} file, as its suffix {suffix} says" if names else "not a format that rockbatch reads"
+        return f"its suffix {suffix} says {names}, but it holds binary data, or text to be saved as UTF-8"
+    kind = f"its suffix {suffix} says {names}" if names else "not a format that rockbatch reads"
     if columns.holds_table(file.data[:HEAD]):
-        return f"{kind}, but a table: read it as text columns: call it .txt, and state unit and columns as of any table"
-    return f"{kind}: its header is another one" if names else f"{kind}; {_INSTEAD}"
+        return f"{kind}, but it is a table: read it as text columns: call it .txt, and state unit and columns as of any table"
+    return f"{kind}, but its header is another one" if names else f"{kind}; {_INSTEAD}"

@@ -123,7 +123,7 @@ def _repeats(recordings: Sequence[Recording], ways: Sequence[tuple[object, ...]]
 
 
 def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: str = "") -> list[Recording]:
-    """Return the columns of acceleration of a file called ``stem``; one in an unknown unit, beside others in known ones, is returned with it.
+    """Return the columns of acceleration of a file called ``stem``; one in an unknown unit keeps it beside others in known ones.
 
     Raises ``InputError`` for a single row, unknown columns or step, a column without a unit, no unit that is one of
     acceleration, and a header that states another count or step.
@@ -189,7 +189,9 @@ def _remarks_on_sign(orientation: Orientation, header: Sequence[str], stem: str)
     line = line_about_sign(header)
     if not line or (way and (way.down or not way.vertical)):
         return ()
-    return (f'positive up, though its header says "{line[:60]}": if it is positive down, write polarity = "-" in motions.toml',)
+    return (
+        f'positive up, though its header says "{line[:60]}": if it is positive down, write polarity = "-" in motions.toml',
+    )
 
 
 def _refuse_factor(header: Sequence[str], options: ReadOptions) -> None:
