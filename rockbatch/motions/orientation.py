@@ -154,10 +154,15 @@ _SITES_AND_LABELS = (
     (r"(?P<site>.*\d\d)", r"(?i:[VZUNEW])"),  # chy080v
 )
 _ENDS = tuple(re.compile(rf"{site}(?P<label>{label})") for site, label in _SITES_AND_LABELS)
+_PREFECTURES = (  # and parts of Hokkaido
+    "ABS|HDK|HYM|IBR|IKR|ISK|IWT|KKW|KMM|KNG|KOC|KSR|KYT|KGS|KGW|MIE|MYG|MYZ|NAR|NGN|NGS|NIG|NMR|OIT|OKN|OKY|OSK|OSM|RMI|"
+    "SAG|SBS|SIG|SIT|SMN|SOY|SRC|SZO|TCG|TKC|TKS|TKY|TTR|TYM|WKY|YMG|YMN|YMT|AIC|AKT|AOM|CHB|EHM|FKI|FKO|FKS|GIF|GNM|HKD|HRS|"
+    "HYG|IBU"
+)
+KIK_NET = re.compile(rf"(?:{_PREFECTURES})H\d\d", re.IGNORECASE)
+"""Code of a station of KiK-net."""
 _STATION = re.compile(  # codes of TSMIP, K-NET and KiK-net end in a number, as PEER's file names do in an azimuth
-    r"(?:^|[^A-Z])(?:TCU|CHY|HWA|ILA|KAU|TAP|TTN|ABS|HDK|HYM|IBR|IKR|ISK|IWT|KKW|KMM|KNG|KOC|KSR|KYT|KGS|KGW|MIE|MYG|MYZ|"
-    r"NAR|NGN|NGS|NIG|NMR|OIT|OKN|OKY|OSK|OSM|RMI|SAG|SBS|SIG|SIT|SMN|SRC|SZO|TCG|TKC|TKS|TKY|TTR|TYM|WKY|YMG|YMN|YMT|"
-    r"AIC|AKT|AOM|CHB|EHM|FKI|FKO|FKS|GIF|GNM|HKD|HRS|HYG|IBU)H?\d{3}$"
+    rf"(?:^|[^A-Z])(?:TCU|CHY|HWA|ILA|KAU|TAP|TTN|{_PREFECTURES})H?\d{{3}}$"
 )
 _CHANNELS = re.compile(
     r"(?:^|[-_. ])(?:ch|chan|channel|sensor|run|rec|record|no|nr|(?:gm)?rot[di])[-_. ]*\d+$", re.IGNORECASE
@@ -269,13 +274,12 @@ def counted(stems: Iterable[str]) -> set[str]:
 
 
 def numbered(stems: Iterable[str]) -> set[str]:
-    """Return the horizontal stems without azimuth that are :func:`one_of_three`, unless another of their site is vertical."""
-    split = {stem: split_stem(stem) for stem in stems}
-    upright = {site for site, orientation in split.values() if orientation and orientation.vertical}
+    """Return the horizontal stems without azimuth that are :func:`one_of_three`."""
+    directions = {stem: split_stem(stem)[1] for stem in stems}
     return {
         stem
-        for stem, (site, orientation) in split.items()
-        if orientation and orientation.without_azimuth and site not in upright and one_of_three(stem, split)
+        for stem, orientation in directions.items()
+        if orientation and orientation.without_azimuth and one_of_three(stem, directions)
     }
 
 

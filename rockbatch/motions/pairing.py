@@ -4,7 +4,6 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from itertools import permutations
 from pathlib import PurePosixPath
 from typing import Literal
 
@@ -23,7 +22,7 @@ from rockbatch.motions.motion import Finding, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import with_direction
-from rockbatch.motions.plausible import ANY, Candidate, confirmation_request, findings, matches_any
+from rockbatch.motions.plausible import ANY, Candidate, confirmation_request, findings, in_a_borehole, matches_any
 from rockbatch.motions.stations import by_station, is_numbered, station_names, station_of
 
 _NO_VERTICAL = (
@@ -76,7 +75,9 @@ def to_motions(
         notes = [*component.notes]
         partner = None
         if vertical:
-            together = [v for v in _candidates(component, station, verticals) if overlap(component, v)]
+            below = in_a_borehole(component)  # whose vertical is there, too
+            at_place = [v for v in _candidates(component, station, verticals) if in_a_borehole(v) is below]
+            together = [v for v in at_place if overlap(component, v)]
             partner, refused = _partner(component, together)
             for v, obstacle in refused:
                 notes.append(f"no vertical: {v.source}: {obstacle}")
@@ -85,11 +86,8 @@ def to_motions(
             used.update(id(v) for v in together)
         motions.append(_motion(component, partner, notes, known_as[station], requested=bool(vertical)))
     if vertical:
-        reason = "a vertical component without a usable horizontal one of its station in its folder"
         for v in (v for group in verticals for v in group if id(v) not in used):
-            station_name = known_as[number[id(v)]]
-            of_set = v.site if is_numbered(v.site) else v.station or v.site
-            unusable.append(Unusable(v.name, v.source, f"{reason} ({of_set})", station=station_name))
+            unusable.append(Unusable(v.name, v.source, _why_alone(v, components), station=known_as[number[id(v)]]))
     peaks = [[(c, c.pga) for c in station if not c.orientation.vertical] for station in stations]
     named = _with_unique_names(motions, [c.folder for _, c in horizontals])
     pairs = zip(named, horizontals, strict=True)
@@ -149,6 +147,16 @@ def _direction_question(component: Component) -> str:
     )
 
 
+def _why_alone(v: Component, components: Sequence[Component]) -> str:
+    """Return why a vertical has no horizontal: its station has none, or several of PEER's records, of which it names none."""
+    of_station = [c for c in components if v.station and (c.folder, c.station) == (v.folder, v.station)]
+    records = sorted({c.site for c in of_station if is_numbered(c.site) and not c.orientation.vertical})
+    if len(records) > 1 and not is_numbered(v.site):
+        return f"a vertical component of {' or '.join(records)}: begin its name with the number"
+    of_set = v.site if is_numbered(v.site) else v.station or v.site
+    return f"a vertical component without a usable horizontal one of its station in its folder ({of_set})"
+
+
 def _with_packaged(files: Sequence[Component], packaged: Sequence[Component]) -> list[Component]:
     """Return the components of files, with a note if used for a package's of this site and azimuth, then the package's others."""
     components, added = list(files), []
@@ -165,18 +173,19 @@ def _with_packaged(files: Sequence[Component], packaged: Sequence[Component]) ->
 
 
 def _with_steps_compared(components: Sequence[Component]) -> list[Component]:
-    """Return the components, with a finding on those with as many samples as another one of their set at another step.
+    """Return the components, with a finding on those with as many samples as most of their set at another step.
 
     Copies whose steps differ have one already.
     """
     findings: dict[int, Finding] = {}
-    for a, b in ((a, b) for station in by_station(components) for a, b in permutations(station, 2)):
-        doubted = any(finding.what == "step" for finding in a.findings)
-        if len(a.acceleration) == len(b.acceleration) and not (doubted or same_step(a.dt, b.dt)):
-            text = (
-                f"{b.source} has as many samples with a step of {b.dt:g} s, not {a.dt:g} s: check which step is right"
-            )
-            findings[id(a)] = Finding("step", text)
+    for station in by_station(components):
+        for alike in grouped(station, lambda c: len(c.acceleration)).values():
+            usual = Counter(c.dt for c in alike).most_common(1)[0][0]
+            first = next(c for c in alike if c.dt == usual)
+            for c in alike:
+                if not (same_step(c.dt, usual) or any(finding.what == "step" for finding in c.findings)):
+                    said = f"{first.source} has as many samples with a step of {usual:g} s, not {c.dt:g} s"
+                    findings[id(c)] = Finding("step", f"{said}: check which step is right")
     return [replace(c, findings=(*c.findings, findings[id(c)])) if id(c) in findings else c for c in components]
 
 

@@ -17,7 +17,7 @@ from rockbatch.motions.component import Component
 from rockbatch.motions.faults import at_rest, filled_gap, is_spike
 from rockbatch.motions.likeness import Copy, copy_between, same_step
 from rockbatch.motions.motion import Finding, Motion, Samples
-from rockbatch.motions.orientation import same_azimuth
+from rockbatch.motions.orientation import KIK_NET, same_azimuth
 from rockbatch.motions.places import Stand, stand
 
 LOWEST, HIGHEST = 0.001, 5.0
@@ -62,7 +62,6 @@ ANY = ("*",)
 _SWINGS = 7
 _SAME_SHAPE = 1e-3  # of a factor: rounding of a printed copy
 _SAME_SIZE = 0.02  # of a factor: copies that were not scaled on purpose
-_KIK_NET = re.compile(r"[A-Z]{3}H\d\d", re.IGNORECASE)  # codes of its stations begin the names of files
 _FIRST_SENSOR = re.compile(r"(?:NS|EW|UD)1")
 _LONG_TOP = 4  # samples: least length of one flat top; several together must have one more
 _ENOUGH = 8  # samples: the mean of fewer says nothing
@@ -353,7 +352,7 @@ def in_a_borehole(component: Component) -> bool:
 
 def _stand(component: Component) -> tuple[Stand, str]:
     """Return the location of a component's sensor, and the words that state it; KiK-net's first sensor is in a borehole."""
-    if _KIK_NET.match(component.name) and _FIRST_SENSOR.fullmatch(component.orientation.label.upper()):
+    if KIK_NET.match(component.name) and _FIRST_SENSOR.fullmatch(component.orientation.label.upper()):
         return Stand.BOREHOLE, component.name
     return stand(component.sensor.place or "", component.origin.station)
 

@@ -48,7 +48,8 @@ def test_a_digit_tells_nothing_where_letters_or_other_files_do(tmp_path, names, 
 def test_channels_1_and_2_beside_a_vertical_are_horizontal_though_there_is_a_third(tmp_path):
     channels = ("HN1", "HN2", "HN3", "HNZ")
     write_mseed(
-        tmp_path / "x.mseed", *(trace(c, np.round(1e6 * wiggle(seed=i)).astype("i4")) for i, c in enumerate(channels, 1))
+        tmp_path / "x.mseed",
+        *(trace(c, np.round(1e6 * wiggle(seed=i)).astype("i4")) for i, c in enumerate(channels, 1)),
     )
     station_xml(tmp_path, *(channel_xml(c, None, None) for c in channels))
     used = [(motion.name, motion.vertical_source) for motion in read_motions(tmp_path).motions]
@@ -82,7 +83,9 @@ def test_a_third_horizontal_that_is_no_combination_of_two_is_remarked(tmp_path, 
         for name, samples in (("000", a), ("090", b), (third, values)):
             write_at2(tmp_path / folder, f"x_{name}.AT2", samples)
     doubted = {
-        folder: [any("no motion in a plane" in note for note in motion.notes) for motion in read_motions(tmp_path / folder)]
+        folder: [
+            any("no motion in a plane" in note for note in motion.notes) for motion in read_motions(tmp_path / folder)
+        ]
         for folder in ("plane", "apart")
     }
     assert doubted == {"plane": [False] * 3, "apart": [True] * 3}
@@ -141,27 +144,47 @@ def test_a_line_on_the_sign_is_compared_with_the_file_s_name(tmp_path, name, use
     for motion in found.motions:
         assert motion.vertical is not None
         assert motion.vertical @ COMPONENTS[2] < 0.0
-    assert any('says "vertical down", but its file is called "S_UP.txt"' in file.reason for file in found.unusable) is not used
+    assert (
+        any('says "vertical down", but its file is called "S_UP.txt"' in file.reason for file in found.unusable)
+        is not used
+    )
 
 
 @pytest.mark.parametrize("of_vertical", [True, False])
 def test_as_many_samples_at_another_step_are_remarked(tmp_path, of_vertical):
     for i, (label, values) in enumerate(zip(("000", "090", "UP"), COMPONENTS, strict=True)):
         write_at2(tmp_path, f"x_{label}.AT2", values, dt=".0200" if i == (2 if of_vertical else 1) else ".0100")
-    motion = read_motions(tmp_path).motions[0]
-    other = "x_UP.AT2" if of_vertical else "x_090.AT2"
-    assert [finding.text for finding in motion.findings if "as many samples" in finding.text] == [
-        f"{other} has as many samples with a step of 0.02 s, not 0.01 s: check which step is right"
+    said = "x_000.AT2 has as many samples with a step of 0.01 s, not 0.02 s: check which step is right"
+    remarks = [
+        [note for note in motion.notes if "as many samples" in note] for motion in read_motions(tmp_path).motions
     ]
+    assert remarks == ([[f"vertical: {said}"]] * 2 if of_vertical else [[], [said]])
 
 
-@pytest.mark.parametrize(("station", "used"), [("IBRH11", 0), ("IBR011", 1)])
+@pytest.mark.parametrize(("station", "used"), [("IBRH11", 0), ("IBR011", 1), ("EQKH10", 1)])
 def test_kik_net_s_first_sensor_is_in_a_borehole_in_any_format(tmp_path, station, used):
     rows = "\n".join(f"{a:.6f}" for a in COMPONENTS[0])
     (tmp_path / f"{station}1801241951.EW1.txt").write_text(f"# acceleration in g\n# dt = 0.01 s\n{rows}\n")
     found = read_motions(tmp_path)
     assert len(found.motions) == used
     assert all("is in a borehole" in file.reason for file in found.unusable)
+
+
+def test_a_vertical_in_a_borehole_is_not_of_the_surface(tmp_path):
+    for i, label in enumerate(("NS1", "EW1", "UD1", "NS2", "EW2", "UD2"), 1):
+        rows = "\n".join(f"{a:.6f}" for a in wiggle(seed=i))
+        (tmp_path / f"IBRH11_{label}.txt").write_text(f"# acceleration in g\n# dt = 0.01 s\n{rows}\n")
+    found = read_motions(tmp_path)
+    assert [motion.vertical_source for motion in found.motions] == ["IBRH11_UD2.txt"] * 2
+    assert [file.name for file in found.unusable] == ["IBRH11_EW1", "IBRH11_NS1"]
+
+
+def test_a_vertical_of_one_of_two_numbered_records_is_asked_for(tmp_path):
+    names = {"RSN1_X000": "000", "RSN2_X090": "090", "X-UP": "UP"}
+    for (name, label), values in zip(names.items(), COMPONENTS, strict=True):
+        write_at2(tmp_path, f"{name}.AT2", values, title=f"Made-up, 1/17/1994, Test Station, {label}")
+    (unused,) = read_motions(tmp_path).unusable
+    assert unused.reason == "a vertical component of RSN1 or RSN2: begin its name with the number"
 
 
 def test_numbers_of_rotated_measures_are_no_azimuths():
