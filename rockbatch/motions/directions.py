@@ -120,7 +120,8 @@ def _contradiction(component: Component) -> str:
 def _copied_headers(components: Sequence[Component]) -> Iterator[tuple[int, Statement, str]]:
     """Yield place, statement and reason of codes or headers that give one direction for two or more components of a set.
 
-    Their file names must all give directions, each another one; none is yielded if two components have the same samples.
+    Their file names must all give directions, each another one; none is yielded if two components have the same samples. That
+    verticals are positive down remains stated for one that is vertical by its name.
     """
     for kind in _COPIED:
         of_kind = [(i, s) for i, c in enumerate(components) if (s := _strong_statement(c, kind)) and not _by_user(c)]
@@ -131,7 +132,9 @@ def _copied_headers(components: Sequence[Component]) -> Iterator[tuple[int, Stat
         apart = not any(same_direction(a, b) for a, b in combinations(names, 2))
         copies = any(_same_samples(*pair) for pair in combinations([components[i] for i, _ in of_kind], 2))
         if alike and apart and not copies:
-            yield from ((i, statement, "all files of its set have it") for i, statement in of_kind)
+            for (i, statement), named in zip(of_kind, names, strict=True):
+                if not (statement.orientation.down and named.vertical):  # whose sign may be stated by it alone
+                    yield i, statement, "all files of its set have it"
 
 
 def _numbered_channels(components: Sequence[Component]) -> Iterator[tuple[int, Statement, str]]:
