@@ -11,7 +11,15 @@ from rockbatch.analyses.fragility.cloud_tables import CLOUD, cloud_table
 from rockbatch.analyses.fragility.clusters import clusters
 from rockbatch.analyses.fragility.curves import Curve, assess
 from rockbatch.analyses.fragility.hazard import YEARS, Dispersion, Hazard
-from rockbatch.analyses.fragility.risk import DEAGGREGATION, RISK, Risk, deaggregation_table, risk_table, risks
+from rockbatch.analyses.fragility.risk import (
+    DEAGGREGATION,
+    RISK,
+    Risk,
+    RiskBound,
+    deaggregation_table,
+    risk_table,
+    risks,
+)
 from rockbatch.analyses.fragility.runs import first_intensities, level_plans, output
 from rockbatch.analyses.fragility.scale_factors import SCALES, described_scales, scales
 from rockbatch.analyses.fragility.study import FragilitySpec, read_fragility
@@ -136,7 +144,7 @@ class Fragility(Analysis):
         spec = replace(self.spec, hazard=Hazard(curve, periods)) if curve else self.spec
         if added is not None:
             spec = replace(spec, dispersions=(Dispersion("added", added),) if added else ())
-        return risk_table(self.curves, risks(self.curves, spec), spec, self.study.varied)
+        return risk_table(self.curves, *risks(self.curves, spec), spec, self.study.varied)
 
 
 @checked
@@ -236,8 +244,8 @@ def _write_tables(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, obj
         make_ready(study, listener)
         waves = Waves(of_runs, journal, results.engine, listener)
         curves = assess(study, spec, records, waves, plans)
-        rates = risks(curves, spec)
-        results.info |= described(curves, spec, study, len(records), rates)
+        known, bounds = risks(curves, spec)
+        results.info |= described(curves, spec, study, len(records), known, bounds)
         shared = clusters(records)
         results.info |= {"stations": shared.stations, "events": shared.events, "by": shared.kind}
         names = [motion.name for motion in records]
@@ -252,18 +260,20 @@ def _write_tables(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, obj
             results.keep_table(CAPACITIES, capacities(curves, spec, study.varied, names, plans, study.cases))
         else:
             results.drop(CAPACITIES)
-        _keep_risk(results, spec, curves, rates)
+        _keep_risk(results, spec, curves, known, bounds)
         journal.write_in_order(results.directory / RUNS)
         results.keep(RUNS, digest)
         results.info["runs"] = waves.finished
     return {"curves": tuple(curves), "spec": spec}
 
 
-def _keep_risk(results: AnalysisFolder, spec: FragilitySpec, curves: list[Curve], rates: list[Risk]) -> None:
+def _keep_risk(
+    results: AnalysisFolder, spec: FragilitySpec, curves: list[Curve], known: list[Risk], bounds: list[RiskBound]
+) -> None:
     """Write the tables of annual rates, and remove those of earlier results; without a hazard there are none."""
     for file in (RISK, DEAGGREGATION):
         results.drop(file)
     if spec.hazard is not None:
-        results.keep_table(RISK, risk_table(curves, rates, spec, results.study.varied))
-    if rates:
-        results.keep_table(DEAGGREGATION, deaggregation_table(rates, spec, results.study.varied))
+        results.keep_table(RISK, risk_table(curves, known, bounds, spec, results.study.varied))
+    if known:
+        results.keep_table(DEAGGREGATION, deaggregation_table(known, spec, results.study.varied))

@@ -1,5 +1,6 @@
 """The answer of a fragility in sentences: the weakest case, for overturning and for the limit that is exceeded first."""
 
+import math
 from collections.abc import Iterator, Sequence
 
 from rockbatch.analyses.fragility.figures import label
@@ -43,11 +44,14 @@ def of_curves(info: Info) -> Markup:
 
 
 def of_rates(info: Info) -> Markup:
-    """Return sentences on the highest annual rates of overturning and, if greater, of another limit, and remarks on them."""
+    """Return sentences on the highest annual rates of overturning and of another limit if it is, or may be, exceeded more often.
+
+    Remarks say what they rest on.
+    """
     by_limit = grouped(info["curves"], lambda curve: curve["limit_state"])
     known = {name: [curve for curve in curves if curve["risk"]] for name, curves in by_limit.items()}
     overturning, *_ = known
-    often = max(known, key=lambda name: max(map(_rate, known[name]), default=0.0))
+    often = max(known, key=lambda name: max((_rates(curve)[::-1] for curve in known[name]), default=(0.0, 0.0)))
     subjects = {name: capital(name) for name in (overturning, often)}
     if info["hazard"]["source"]:
         subjects[overturning] = f"With the hazard “{info['hazard']['source']}” {overturning}"
@@ -141,8 +145,8 @@ def _of_all(info: Info) -> Iterator[str]:
         if little := sum(curve["says_little"] for curve in curves):
             yield f"{little} of {len(curves)} curves {'says' if little == 1 else 'say'} little: too many runs are undecided."
     yield from _shared(info)
-    if gaps := list(dict.fromkeys(label(info, curve) for curve in curves if len(curve.get("looked", ())) > 1)):
-        cases = ", ".join(gaps) if len(gaps) <= MOST_NAMES else f"{len(gaps)} cases"
+    if gaps := [curve for curve in curves if len(curve.get("looked", ())) > 1]:
+        cases = _cases(info, gaps)
         yield f"Between the levels nothing was run in {cases}: a first exceedance there is missed, and medians may be too high."
 
 
@@ -160,25 +164,34 @@ def _shared(info: Info) -> Iterator[str]:
 
 
 def _of_rate(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
-    """Return the sentence about a limit: the case that exceeds it most often, by the shortest period; or that it has no rate."""
+    """Return the sentence about a limit: the case with the greatest known rate, by the shortest period, and what leaves it open.
+
+    It is called the greatest if no bound of it or of another case leaves that open. Without any rate the sentence says so.
+    """
     if not curves:
         return sentence(f"{subject} has no rate, as no curve could be fitted")
-    curve = max(curves, key=_rate)
+    curve = max(curves, key=_rates)
     risk, years = curve["risk"], min(info["hazard"]["years"])
-    case = f" for {label(info, curve)}, the greatest of {len(curves)} cases" if len(curves) > 1 else ""
+    least, most = _rates(curve)
+    greater = [other for other in curves if other is not curve and _rates(other)[1] > least]
+    rank = "one" if greater or math.isinf(most) else "the greatest"
+    case = f" for {label(info, curve)}, {rank} of {len(curves)} cases" if len(curves) > 1 else ""
+    doubts = (
+        [f"{_cases(info, greater)} may exceed it more often, as only bounds of the rate are known"] if greater else []
+    )
     p, low, high = (risk[f"p_in_{years:g}_years{end}"] for end in ("", "_low", "_high"))
     if bound := risk["bound"]:
         chances = [f"{percent(p)}\u00a0%" for p, end in ((low, "rate_least"), (high, "rate_most")) if risk[end]]
         yearly = [power(risk[end]) for end in ("rate_least", "rate_most") if risk[end]]
         said = f"{subject} has a probability of {bound} {' and '.join(chances)} in {years:g} years{case}"
-        return sentence(f"{said}, a mean rate of {bound} {' and '.join(yearly)} a year")
+        return sentence(f"{said}, a mean rate of {bound} {' and '.join(yearly)} a year", doubts)
     interval = "" if low is None else f" ({level_of(info)}: {percent(low)} to {percent(high)}\u00a0%)"
     said = f"{subject} has a probability of {percent(p)}\u00a0% in {years:g} years{interval}{case}"
-    return sentence(f"{said}, a mean rate of {power(_rate(curve))} a year", _rate_left_open(info, curve))
+    return sentence(f"{said}, a mean rate of {power(least)} a year", [*_rate_left_open(curve), *doubts])
 
 
-def _rate_left_open(info: Info, curve: Curve) -> Iterator[str]:
-    risk, rate = curve["risk"], _rate(curve)
+def _rate_left_open(curve: Curve) -> Iterator[str]:
+    risk, rate = curve["risk"], curve["risk"]["rate_per_year"]
     if risk["rate_high"] is None and risk["rate_low"] is not None:
         yield "the records leave its upper bound open"
     if curve["says_little"]:
@@ -266,8 +279,15 @@ def _intensity(info: Info, value: float) -> str:
     return f"{info['measure']} {plain(value, 3)} {info['unit']}".strip().replace(" ", "\u00a0")
 
 
-def _rate(curve: Curve) -> float:
-    """Return the annual rate of a curve; of bounds the lower one, or the upper if that is 0; 0 without any that is finite."""
+def _rates(curve: Curve) -> tuple[float, float]:
+    """Return the bounds of a curve's annual rate, the upper one infinite if it is open; twice the rate if it is known."""
     risk = curve["risk"]
-    rate = (risk["rate_least"] or risk["rate_most"]) if risk["bound"] else risk["rate_per_year"]
-    return float(rate or 0.0)
+    if not risk["bound"]:
+        return risk["rate_per_year"], risk["rate_per_year"]
+    return risk["rate_least"], math.inf if risk["rate_most"] is None else risk["rate_most"]
+
+
+def _cases(info: Info, curves: Sequence[Curve]) -> str:
+    """Return the names of the cases, each once, or their number if they are more than MOST_NAMES."""
+    names = dict.fromkeys(label(info, curve) for curve in curves)
+    return ", ".join(names) if len(names) <= MOST_NAMES else f"{len(names)} cases"

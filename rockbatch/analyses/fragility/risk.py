@@ -12,7 +12,6 @@ from itertools import pairwise
 import numpy as np
 
 from rockbatch.analyses.fragility.curves import Curve, Fitted
-from rockbatch.analyses.fragility.hazard import Hazard
 from rockbatch.analyses.fragility.lognormal import Interval, NoCurve, Values
 from rockbatch.analyses.fragility.statistics import rate_bounds
 from rockbatch.analyses.fragility.study import FragilitySpec
@@ -97,52 +96,37 @@ class RiskBound:
         return "at least" if math.isinf(most) else "between" if least > 0 else "at most"
 
 
-def rate_bounds_of(curves: Sequence[Curve], spec: FragilitySpec) -> list[RiskBound]:
-    """Return bounds of the annual rate of every curve with a bound instead of a median, or a rate beyond the hazard.
+def risks(curves: Sequence[Curve], spec: FragilitySpec) -> tuple[list[Risk], list[RiskBound]]:
+    """Return the annual rate of every fitted curve, and bounds where the median has a bound or the rate is beyond the hazard.
 
-    Empty without a hazard. Each intensity of a cloud has a single record, whose share, 0 or 1, bounds no rate.
+    Both are empty without a hazard. Each intensity of a cloud has a single record, whose share, 0 or 1, bounds no rate.
     """
+    known: list[Risk] = []
+    bounds: list[RiskBound] = []
     if spec.hazard is None:
-        return []
+        return known, bounds
     hazard = spec.hazard.curve
-    bounds = []
+    x, rates = hazard.quadrature()
     for curve in curves:
-        if isinstance(curve.fitted, NoCurve) and curve.fitted.is_bound and not curve.cloud:
+        if not isinstance(curve.fitted, NoCurve):
+            total = curve.fitted.widened(spec.added)
+            if float(total.probability(x) @ rates) > _meaningful(hazard):
+                bounds.append(RiskBound(curve, (_of_points(total, hazard, x, rates), math.inf), BEYOND_HAZARD))
+            else:
+                known.append(_risk(curve, total, spec, hazard, x, rates))
+        elif curve.fitted.is_bound and not curve.cloud:
             levels, least, most = curve.shares
             bounds.append(RiskBound(curve, rate_bounds(levels, least, most, hazard.rate(levels)), BY_SHARES))
-    beyond = (risk for risk in _of_fitted(curves, spec) if risk.rate > _meaningful(hazard))
-    return [
-        *bounds,
-        *(RiskBound(risk.curve, (risk.bounds[0] - risk.below, math.inf), BEYOND_HAZARD) for risk in beyond),
-    ]
+    return known, bounds
 
 
-def risks(curves: Sequence[Curve], spec: FragilitySpec) -> list[Risk]:
-    """Return the annual rate of every fitted curve, with its interval, unless it is beyond the hazard; [] without one."""
-    if spec.hazard is None:
-        return []
-    return [risk for risk in _of_fitted(curves, spec) if risk.rate <= _meaningful(spec.hazard.curve)]
-
-
-def _of_fitted(curves: Sequence[Curve], spec: FragilitySpec) -> list[Risk]:
-    hazard = spec.hazard
-    assert hazard is not None
-    x, rates = hazard.curve.quadrature()
-    return [
-        _risk(curve, curve.fitted, spec, hazard, x, rates) for curve in curves if not isinstance(curve.fitted, NoCurve)
-    ]
-
-
-def _risk(curve: Curve, fitted: Fitted, spec: FragilitySpec, hazard: Hazard, x: Values, rates: Values) -> Risk:
-    total = fitted.widened(spec.added)
+def _risk(curve: Curve, total: Fitted, spec: FragilitySpec, hazard: HazardCurve, x: Values, rates: Values) -> Risk:
     rate, least, most = total.rate(x, rates)
-    if most > _meaningful(hazard.curve):
+    if most > _meaningful(hazard):
         most = math.inf
     yearly = total.probability(x) * rates
-    first, last = hazard.curve.ends
-    above = float(yearly[x > last].sum())
-    beyond = float(hazard.curve.rate([last])[0])
-    at_least = rate - above + beyond * float(total.probability(np.array([last]))[0])
+    first, last = hazard.ends
+    below, above = float(yearly[x < first].sum()), float(yearly[x > last].sum())
     passed = np.cumsum(yearly) / rate if rate > 0 else np.linspace(0.0, 1.0, len(x))
     low, high = (float(np.exp(np.interp(share, passed, np.log(x)))) for share in MIDDLE)
     return Risk(
@@ -151,11 +135,23 @@ def _risk(curve: Curve, fitted: Fitted, spec: FragilitySpec, hazard: Hazard, x: 
         rate,
         None if math.isnan(least) else (least, most),
         _undecided(curve, spec.added, x, rates),
-        float(yearly[x < first].sum()),
+        below,
         above,
-        (at_least, rate - above + beyond),
+        (below + _of_points(total, hazard, x, rates), rate - above + float(hazard.rate([last])[0])),
         (float(yearly[x < spec.levels[0]].sum()), float(yearly[x > spec.levels[-1]].sum())),
         (low, high),
+    )
+
+
+def _of_points(total: Fitted, hazard: HazardCurve, x: Values, rates: Values) -> float:
+    """Return the rate from the lowest point of the hazard on, with the fragility above the highest as it is there.
+
+    It is a sum, as what is below the lowest point may be greater by many orders.
+    """
+    first, last = hazard.ends
+    within = (first <= x) & (x <= last)
+    return float(
+        total.probability(x[within]) @ rates[within] + total.probability(np.array([last]))[0] * hazard.rate([last])[0]
     )
 
 
@@ -218,7 +214,11 @@ def _share(part: float, risk: Risk) -> str:
 
 
 def risk_table(
-    curves: Sequence[Curve], risks: Sequence[Risk], spec: FragilitySpec, varied: Sequence[str]
+    curves: Sequence[Curve],
+    known: Sequence[Risk],
+    bounds: Sequence[RiskBound],
+    spec: FragilitySpec,
+    varied: Sequence[str],
 ) -> "pd.DataFrame":
     """Return fragility_risk.csv: a row for each curve, with the fields of :class:`Risk`; an open bound is empty.
 
@@ -226,9 +226,9 @@ def risk_table(
     ``rate_per_year`` is empty, and ``rate_least`` and ``rate_most`` are the bounds. Without both there is the reason, as
     its ``note``.
     """
-    known = {id(risk.curve): _row(risk, spec, varied) for risk in risks}
-    known |= {id(risk.curve): _row_of_bound(risk, spec, varied) for risk in rate_bounds_of(curves, spec)}
-    rows = [known.get(id(curve)) or curve.identity(varied) | {"note": _reason(curve)} for curve in curves]
+    of_curves = {id(risk.curve): _row(risk, spec, varied) for risk in known}
+    of_curves |= {id(risk.curve): _row_of_bound(risk, spec, varied) for risk in bounds}
+    rows = [of_curves.get(id(curve)) or curve.identity(varied) | {"note": _reason(curve)} for curve in curves]
     names = [name for name in _names(spec) if any(name in row for row in rows)]
     return pd.DataFrame(rows, columns=[*(curves[0].identity(varied) if curves else ()), *names])
 

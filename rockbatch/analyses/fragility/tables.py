@@ -17,10 +17,10 @@ from rockbatch.analyses.fragility.lognormal import STATIONS_OF_INTERVAL, Contrib
 from rockbatch.analyses.fragility.quantities import bound_in_words
 from rockbatch.analyses.fragility.risk import (
     Risk,
+    RiskBound,
     described_bound,
     described_hazard,
     finite_or_nan,
-    rate_bounds_of,
 )
 from rockbatch.analyses.fragility.risk import described as described_risk
 from rockbatch.analyses.fragility.runs import LevelPlan
@@ -126,11 +126,16 @@ def _state(cap: Capacity) -> str:
 
 
 def described(
-    curves: Sequence[Curve], spec: FragilitySpec, study: Study, records: int, risks: Sequence[Risk] = ()
+    curves: Sequence[Curve],
+    spec: FragilitySpec,
+    study: Study,
+    records: int,
+    known: Sequence[Risk] = (),
+    bounds: Sequence[RiskBound] = (),
 ) -> dict[str, object]:
     """Return the content of fragility.json: the settings and every curve; an infinite bound of an interval is null."""
-    of_curves = {id(risk.curve): described_risk(risk, spec) for risk in risks}
-    of_curves |= {id(risk.curve): described_bound(risk, spec) for risk in rate_bounds_of(curves, spec)}
+    of_curves = {id(risk.curve): described_risk(risk, spec) for risk in known}
+    of_curves |= {id(risk.curve): described_bound(risk, spec) for risk in bounds}
     return {
         "method": spec.method,
         "measure": spec.label,

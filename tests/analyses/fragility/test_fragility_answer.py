@@ -353,3 +353,39 @@ def test_a_rate_that_is_a_bound_is_said_so(bound, ends, words):
     risk |= {"p_in_50_years_low": 0.01, "p_in_50_years_high": 0.02}
     (line,), _ = said(curve(risk=risk), by=of_rates, hazard=HAZARD)
     assert line == f"Overturning has a probability of {words}."
+
+
+def bound(least, most):
+    kind = "at least" if most is None else "between" if least else "at most"
+    low, high = 50 * least, most and 50 * most
+    ends = {"rate_least": least, "rate_most": most, "p_in_50_years_low": low, "p_in_50_years_high": high}
+    return rate(0.0) | {"rate_per_year": None, "bound": kind, "p_in_50_years": None} | ends
+
+
+@pytest.mark.parametrize(
+    ("rock", "pads", "rank", "open_"),
+    [
+        (rate(2e-4), bound(1e-4, None), "for rock, one", "; pads may exceed it more often"),
+        (rate(2e-4), bound(1e-4, 3e-4), "for rock, one", "; pads may exceed it more often"),
+        (rate(2e-4), bound(1e-4, 2e-4), "for rock, the greatest", ""),
+        (rate(2e-4), bound(0.0, 1e-4), "for rock, the greatest", ""),
+        (rate(0.0), bound(0.0, 1e-4), "for pads, the greatest", ""),
+        (rate(2e-4), bound(3e-4, 4e-4), "for pads, the greatest", ""),
+        (rate(2e-4), bound(3e-4, None), "for pads, one", ""),
+        (bound(2e-4, None), bound(3e-4, None), "for pads, one", "; rock may exceed it more often"),
+    ],
+)
+def test_the_greatest_rate_is_called_so_only_if_no_bound_leaves_it_open(rock, pads, rank, open_):
+    (line,), marked = said(curve("rock", risk=rock), curve("pads", risk=pads), by=of_rates, hazard=HAZARD)
+    assert f" {rank} of 2 cases, a mean rate of" in line
+    assert open_ in line
+    assert len(marked) == bool(open_)
+
+
+@pytest.mark.parametrize(
+    ("uplift", "named"),
+    [(bound(1e-4, None), True), (bound(1e-4, 3e-4), True), (bound(1e-4, 2e-4), False), (rate(1e-4), False)],
+)
+def test_a_limit_that_may_be_exceeded_more_often_than_overturning_is_named(uplift, named):
+    (line,), _ = said(curve(risk=rate(2e-4)), curve(limit="uplift", risk=uplift), by=of_rates, hazard=HAZARD)
+    assert ("Uplift has a probability of" in line) == named

@@ -21,7 +21,7 @@ from rockbatch.analyses.fragility.command import risk_lines
 from rockbatch.analyses.fragility.curves import Curve, Readings, Undecided
 from rockbatch.analyses.fragility.hazard import Dispersion, Hazard
 from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, NoCurve, fit
-from rockbatch.analyses.fragility.risk import Risk, described, described_bound, note, rate_bounds_of, risk_table, risks
+from rockbatch.analyses.fragility.risk import Risk, described, described_bound, note, risk_table, risks
 from rockbatch.analyses.fragility.section import _notes, _notes_on_rates
 from rockbatch.analyses.fragility.study import OVERTURNING, FragilitySpec, read_fragility
 from rockbatch.commands.cli import main
@@ -192,10 +192,11 @@ def test_an_upper_bound_above_the_rate_of_the_lowest_point_says_nothing(levels, 
     hazard = HazardCurve(levels, rates, slope=None if len(levels) > 1 else 2.0)
     region = np.array([[-math.log(0.5), 1.0], [-math.log(0.05), 1.0]]) / 0.3
     spec = FragilitySpec("ida", "PGA", (0.2, 0.6), (), hazard=Hazard(hazard))
-    found, never = risks([curve_of(replace(exactly(0.5, 0.3), region=region)), curve_of(exactly(1e30, 0.3))], spec)
+    curves = [curve_of(replace(exactly(0.5, 0.3), region=region)), curve_of(exactly(1e30, 0.3))]
+    (found, never), _ = risks(curves, spec)
     assert found.interval == pytest.approx((found.rate, math.inf if is_open else 25 / 475 * math.exp(0.18)), rel=1e-6)
     assert (never.rate, np.isfinite(never.contributing).all()) == (0.0, True)
-    (row,) = risk_table([never.curve], [never], spec, ()).to_dict("records")
+    (row,) = risk_table([never.curve], [never], [], spec, ()).to_dict("records")
     assert (row["p_in_50_years"], "density" in described(never, spec)) == (0.0, False)
 
 
@@ -204,14 +205,31 @@ def test_a_rate_above_that_of_the_weakest_motions_is_a_bound_by_what_the_hazard_
     hazard = HazardCurve([2.0, 3.0], [1e-3, 1e-3 * (2 / 3) ** 4])
     spec = FragilitySpec("ida", "PGA", (0.2, 0.6), (), hazard=Hazard(hazard))
     curves = [curve_of(exactly(0.5, 0.05)), curve_of(exactly(4.0, 0.05))]
-    assert [risk.curve for risk in risks(curves, spec)] == curves[1:]
-    row, other = risk_table(curves, risks(curves, spec), spec, ()).to_dict("records")
+    known, (bound,) = risks(curves, spec)
+    assert [risk.curve for risk in known] == curves[1:]
+    row, other = risk_table(curves, known, [bound], spec, ()).to_dict("records")
     assert (row["bound"], row["rate_least"]) == ("at least", pytest.approx(1e-3, rel=1e-3))
     assert np.isnan([row["rate_per_year"], row["p_in_50_years"]]).all()
     assert "it has to begin at weaker ones" in row["note"]
     assert other["rate_per_year"] == pytest.approx(1e-3 / 16, rel=0.05)
-    (bound,) = rate_bounds_of(curves, spec)
     assert described_bound(bound, spec)["rate_most"] is None
+
+
+def test_a_bound_by_the_points_of_a_hazard_keeps_its_digits_beside_its_first_slope():
+    """ν ∝ x⁻⁶⁰ between 2 and 2.1 g, so that the slope below 2 g gives 1e33 a year at a median of 0.5 g."""
+    hazard = HazardCurve([2.0, 2.1], [1e-3, 1e-3 * (2.0 / 2.1) ** 60])
+    spec = FragilitySpec("ida", "PGA", (0.2, 0.6), (), hazard=Hazard(hazard))
+    _, (bound,) = risks([curve_of(exactly(0.5, 0.05))], spec)
+    assert bound.bounds == pytest.approx((1e-3, math.inf), rel=1e-6)
+
+
+def test_rates_are_integrated_once_for_each_curve(tmp_path, monkeypatch):
+    """For a cloud that takes seconds."""
+    integrated = []
+    rate = Lognormal.rate
+    monkeypatch.setattr(Lognormal, "rate", lambda self, *at: integrated.append(self) or rate(self, *at))
+    found = rb.fragility(study(tmp_path, HAZARD))
+    assert len(integrated) == len(found.curves) == 1
 
 
 def test_the_row_of_a_rate_is_what_sums_over_fine_steps_of_intensity_say():
@@ -234,8 +252,8 @@ def test_the_row_of_a_rate_is_what_sums_over_fine_steps_of_intensity_say():
     of_steps = {"rate_below_levels": parts[x < 0.2].sum(), "rate_above_levels": parts[x > 0.6].sum()}
     for time in years:
         expected |= {f"p_in_{time:g}_years{end}": 1.0 - math.exp(-time * rate) for end in ("", "_low", "_high")}
-    (found,) = risks([curve], spec)
-    (row,) = risk_table([curve], [found], spec, ()).to_dict("records")
+    (found,), _ = risks([curve], spec)
+    (row,) = risk_table([curve], [found], [], spec, ()).to_dict("records")
     assert {name: row[name] for name in expected} == pytest.approx(expected, rel=3e-4)
     shares = np.cumsum(parts) / rate
     for end, share in (("from", 0.05), ("to", 0.95)):

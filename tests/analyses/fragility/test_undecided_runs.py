@@ -86,7 +86,7 @@ def test_both_rates_that_undecided_runs_allow_are_in_the_table(tmp_path):
     hazard = Hazard(HazardCurve([0.25], [1 / 475], slope=2.0), (50.0,), "made up")
     (curve,), spec, _ = made_up(tmp_path, STRIPES, status, hazard=hazard)
     (decided,), *_ = made_up(tmp_path, STRIPES, stands_or_falls, hazard=hazard)
-    table = risk_table([curve, decided], risks([curve, decided], spec), spec, ())
+    table = risk_table([curve, decided], *risks([curve, decided], spec), spec, ())
     row, without = table.to_dict("records")
     for name, reading in (
         ("rate_if_withstood", curve.readings.withstood),
