@@ -227,8 +227,7 @@ def _of_motions(a: Finished, b: Finished) -> list[Difference]:
     """
     only = [[name for name in x.records if name not in y.records] for x, y in ((a, b), (b, a))]
     rows = [Difference("motions in one study only", *(_listed(names, "motion") for names in only))] if any(only) else []
-    other = [name for name in a.records if name in b.records and _differ(a.records[name], b.records[name])]
-    if other:
+    if other := _unlike(a, b):
         sides = ([f"{name} ({x.records[name]['pga_g']:.4g} g)" for name in other] for x in (a, b))
         rows.append(Difference("different motions under the same name", *(_listed(names, "motion") for names in sides)))
     for key, words in (("unusable", "files that could not be used"), ("left_out", "files left out")):
@@ -241,7 +240,12 @@ def _of_motions(a: Finished, b: Finished) -> list[Difference]:
 def other_motions(a: Finished, b: Finished) -> bool:
     """Return whether two studies ran other motions, or the same at other scales or polarities."""
     requested = [{*zip(x.runs["record"], x.runs["scale"], x.runs["polarity"], strict=True)} for x in (a, b)]
-    return requested[0] != requested[1] or any(_differ(a.records[name], b.records[name]) for name in a.records)
+    return requested[0] != requested[1] or bool(_unlike(a, b))
+
+
+def _unlike(a: Finished, b: Finished) -> list[str]:
+    """Return the names of records that are different motions in two studies that have both."""
+    return [name for name in a.records if name in b.records and _differ(a.records[name], b.records[name])]
 
 
 def _differ(first: Mapping[str, Any], second: Mapping[str, Any]) -> bool:

@@ -42,8 +42,8 @@ def _unlike(a: Finished, b: Finished) -> str:
 
 
 def _requirement(verdict: Verdict) -> tuple[object, ...]:
-    """Return what a check asks: its name, demand, statistic, way of counting, sense and limit."""
-    return verdict.check, verdict.demand, verdict.statistic, verdict.count, verdict.sense, verdict.limit
+    """Return what a check asks: its name, demand in words with height and axes, way of counting, sense, limit and capacity."""
+    return verdict.check, verdict.demand, verdict.words, verdict.count, verdict.sense, verdict.limit, verdict.capacity
 
 
 def _state(side: str, study: Finished) -> str:

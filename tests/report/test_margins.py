@@ -22,7 +22,7 @@ from rockbatch.quantities.catalogue import FIXED, TRAILING, names
 from rockbatch.reporting import write_comparison
 from rockbatch.reporting.differing import Written, _contents, differences
 from rockbatch.reporting.finished import read
-from rockbatch.reporting.margins import headline
+from rockbatch.reporting.margins import _requirement, headline
 from rockbatch.reporting.pair import pair
 from rockbatch.results.run_json import describe
 from rockbatch.study.suite import ground_motions
@@ -181,6 +181,25 @@ def test_the_first_line_says_if_shares_are_of_other_motions_or_limits(tmp_path, 
     """Half the motion, or a limit twice as high, looked like a better pier."""
     text = said(two(tmp_path, tables(), tables(**other)))
     assert text.endswith(f". Their {kinds} are not the same." if kinds else "closest 40 % (rotation, Lyttelton).")
+
+
+def test_a_capacity_or_a_height_is_part_of_what_a_check_asks(tmp_path):
+    """Of two checks with the same name, demand and limit."""
+    asked = verdict("springs", "pass"), *(
+        verdict("springs", "pass", **other)
+        for other in ({"capacity": "[[0, 1]]"}, {"words": "largest of section_shear_kN at 10 m"}, {"words": "SRSS"})
+    )
+    assert len(set(map(_requirement, asked))) == len(asked)
+
+
+def test_a_record_without_a_run_in_one_study_ends_no_comparison(tmp_path):
+    """It ended in a KeyError where the other study does not have the record."""
+    folders = two(tmp_path, tables(), tables())
+    info = json.loads((folders[0] / "run.json").read_text(encoding="utf-8"))
+    info["records"].append(info["records"][0] | {"record": "Kaikoura"})
+    (folders[0] / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    assert said(folders).startswith("A passes all")
+    assert inputs(folders) == {"motions in one study only": ("Kaikoura", "–")}
 
 
 def test_a_suite_that_fails_its_own_checks_is_said_beside_what_passes(tmp_path):
