@@ -185,9 +185,12 @@ def test_the_first_line_says_if_shares_are_of_other_motions_or_limits(tmp_path, 
 
 def test_a_capacity_or_a_height_is_part_of_what_a_check_asks(tmp_path):
     """Of two checks with the same name, demand and limit."""
-    asked = verdict("springs", "pass"), *(
-        verdict("springs", "pass", **other)
-        for other in ({"capacity": "[[0, 1]]"}, {"words": "largest of section_shear_kN at 10 m"}, {"words": "SRSS"})
+    asked = (
+        verdict("springs", "pass"),
+        *(
+            verdict("springs", "pass", **other)
+            for other in ({"capacity": "[[0, 1]]"}, {"words": "largest of section_shear_kN at 10 m"}, {"words": "SRSS"})
+        ),
     )
     assert len(set(map(_requirement, asked))) == len(asked)
 
