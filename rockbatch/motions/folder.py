@@ -323,10 +323,16 @@ def _names(files: Sequence[SourceFile]) -> dict[Path, tuple[str, Orientation | N
         stems = {path: archives.bare(path).stem for path in paths}
         by_chance = set.union(*(rule(stems.values()) for rule in (counted, numbered, accidental)))
         apart = told_apart(stems.values())
+        alone = {stem: (stem, None) if stem in by_chance else split_stem(stem) for stem in stems.values()}
+        sites = grouped(apart, lambda stem: apart[stem][0])
+        shared = {site for site, of_site in sites.items() if len({alone[stem][1] for stem in of_site}) == 1}
         for path, stem in stems.items():
-            alone = (stem, None) if stem in by_chance else split_stem(stem)
-            site, direction = alone if alone[1] else apart.get(stem, alone)
-            names[path] = site, direction or direction_of_suffix(archives.bare(path).suffix)
+            found, found_apart = alone[stem], apart.get(stem)
+            if found_apart and (
+                found[1] is None or found_apart[0] in shared
+            ):  # all of a site end in x: x is no direction
+                found = found_apart
+            names[path] = found[0], found[1] or direction_of_suffix(archives.bare(path).suffix)
     return names
 
 

@@ -25,6 +25,17 @@ def test_of_names_numbered_to_three_any_may_be_vertical(tmp_path, label):
     assert all("direction not known" in file.reason for file in found.unusable)
 
 
+@pytest.mark.parametrize("end", ["x", "y", "V", "N", "rec", "H1"])
+@pytest.mark.parametrize("directions", [("000", "090", "UP"), ("N", "E", "Z")])
+def test_an_end_that_all_names_of_a_set_share_is_no_direction(tmp_path, directions, end):
+    write_three(tmp_path, [f"a_{way}_{end}" for way in directions])
+    found = read_motions(tmp_path)
+    assert [motion.source for motion in found.motions] == sorted(f"a_{way}_{end}.AT2" for way in directions[:2])
+    assert {motion.vertical_source for motion in found.motions} == {f"a_{directions[2]}_{end}.AT2"}
+    azimuths = {f"a_{way}_{end}.AT2": azimuth for way, azimuth in zip(directions, (0.0, 90.0), strict=False)}
+    assert {motion.source: motion.azimuth for motion in found.motions} == azimuths
+
+
 def test_two_numbered_names_beside_a_vertical_are_horizontal(tmp_path):
     write_three(tmp_path, ["x.HN1", "x.HN2", "x.HNZ"])
     assert [motion.vertical_source for motion in read_motions(tmp_path).motions] == ["x.HNZ.AT2"] * 2
