@@ -265,10 +265,10 @@ class _Cases:
         return (f"Not every run ends standing: {self._with_ends(ended)}.",) if ended else ()
 
     def _alone(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return "Under one station only." if no check that these cases pass counts more than one record; () otherwise."""
+        """Return "Under one motion only." if no check that these cases pass counts more than one record; () otherwise."""
         passed = [verdict for verdict in self._of(names, PASS) if verdict.statistic]
         alone = passed and max(verdict.records for verdict in passed) == 1
-        return (f"Under one {passed[0].count} only.",) if alone else ()
+        return ("Under one motion only.",) if alone else ()
 
     def _coverage(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return the sentences of statistics on how many further records may exceed them, each after the checks that these cases

@@ -307,7 +307,8 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, motions: Suite) -
         left_out.add(TARGET)
     if of_event and of_event.records > 1 and rule.per_event is None:
         left_out.add(EVENTS)
-    lacks = {} if none.count == "component" else lacking(counting, counted_as)
+    recorded = ~np.isin(suite.texts("record"), [*motions.unrecorded])  # a pulse has one direction, and lacks none
+    lacks = {} if none.count == "component" else lacking(counting[recorded], counted_as[recorded])
     if lacks:
         left_out.add(DIRECTIONS)
     omitted = [name for name in OMISSIONS if name in left_out]

@@ -2,6 +2,7 @@
 
 import csv
 import functools
+import hashlib
 import json
 import math
 from collections.abc import Collection, Iterable, Mapping
@@ -13,7 +14,7 @@ from rockbatch.checks.capacity import Curve, problems
 from rockbatch.checks.omissions import MODES, OMISSIONS
 from rockbatch.checks.rules import COUNTS, is_ban
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import csv_plain, csv_text, is_plain, legible, opened_text, sha256_of, write_whole
+from rockbatch.common.files import csv_plain, csv_text, is_plain, legible, opened, opened_text, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.design import BOUND
@@ -197,16 +198,18 @@ def write_verdicts(directory: Path, verdicts: Iterable[Verdict]) -> Path:
 
 
 def _digest_of_peaks(path: Path) -> str:
-    """Return the digest of the peaks.csv beside checks.csv at ``path``; "" without one."""
+    """Return the digest of the peaks.csv beside checks.csv at ``path``, the same with any line endings; "" without one."""
     peaks = path.with_name(PEAKS)
-    return sha256_of(peaks) if is_plain(peaks) else ""
+    if not is_plain(peaks):
+        return ""
+    with opened(peaks) as file:
+        return hashlib.sha256(b"".join(line.rstrip(b"\r\n") + b"\n" for line in file)).hexdigest()
 
 
-def read_verdicts(directory: Path) -> list[Verdict]:
-    """Read checks.csv in ``directory``; empty without one.
+def read_verdicts(directory: Path) -> list[Verdict] | None:
+    """Read checks.csv in ``directory``; empty without one, None if it judges another peaks.csv than the one beside it.
 
-    Raises ``InputError`` if it is damaged, or judges another peaks.csv than the one beside it; an earlier version did not write
-    which it judged.
+    Raises ``InputError`` if it is damaged; an earlier version did not write which it judged.
     """
     path = Path(directory) / CHECKS
     plain = functools.cache(lambda cell: legible(csv_plain(cell), keep="\t\r\n"))  # most cells occur many times
@@ -220,11 +223,7 @@ def read_verdicts(directory: Path) -> list[Verdict]:
         raise
     except (AttributeError, KeyError, TypeError, ValueError, csv.Error) as error:
         raise InputError(f"{path}: damaged ({error}); start `rockbatch check` again") from None
-    if {row.get(JUDGED, "") for row in rows} - {"", _digest_of_peaks(path)}:
-        raise InputError(
-            f"{path}: its verdicts are on another {PEAKS} than is there now; start `rockbatch check` again"
-        )
-    return verdicts
+    return None if {row.get(JUDGED, "") for row in rows} - {"", _digest_of_peaks(path)} else verdicts
 
 
 def _from_row(row: Mapping[str, str]) -> Verdict:

@@ -18,8 +18,8 @@ class Failure(StrEnum):
 
     CONTACTS = "contacts"  # too many contact events within one sample
     BLEW_UP = "blew up"  # the integration diverged
-    UNDECIDED = "undecided"  # the pier may still overturn in the rest after the record
-    RATCHETS = "ratchets"  # its springs ratchet in the rest after the record
+    UNDECIDED = "undecided"  # the pier may still overturn in free vibration after the record
+    RATCHETS = "ratchets"  # its springs ratchet in free vibration after the record
     NOT_SETTLED = "not settled"  # the results did not converge when the step was halved
     LARGE_STEP = "large step"  # refused: a fixed step too large for the springs
     MANY_STEPS = "many steps"  # refused: it would take too many steps

@@ -46,12 +46,15 @@ class Finished(Contents, Labelled):
     responses : sequence of Response
         Runs whose histories are shown.
     verdicts : sequence of Verdict
-        Results of ``rockbatch check``.
+        Results of ``rockbatch check``; empty if they are ``outdated``.
+    outdated : bool
+        Whether checks.csv has verdicts on another peaks.csv than is there now.
     """
 
     saved: Saved
     responses: Sequence[Response] = ()
     verdicts: Sequence[Verdict] = ()
+    outdated: bool = False
 
     @property
     def info(self) -> Row:
@@ -203,13 +206,15 @@ def read(directory: Path, responses: Sequence[Response] | None = None, saved: Re
     ``InputError`` if the results are missing, damaged or do not belong together.
     """
     saved = saved or open_results(directory)
+    verdicts = read_verdicts(saved.directory)
     return Finished(
         **vars(labelled(saved.peaks, saved.info, saved.directory)),
         directory=saved.directory,
         study=saved.info["study"],
         saved=saved,
         responses=saved.responses if responses is None else responses,
-        verdicts=read_verdicts(saved.directory),
+        verdicts=verdicts or (),
+        outdated=verdicts is None,
     )
 
 

@@ -27,7 +27,7 @@ def headline(pair: Pair) -> str:
     If no verdict of either is on a case, it says that neither study has limits; of two with limits, which of motions and checks
     are other ones, so that the shares do not compare the piers alone.
     """
-    if not any(verdict.case for study in pair.studies for verdict in study.verdicts):
+    if not any(study.outdated or any(verdict.case for verdict in study.verdicts) for study in pair.studies):
         return "Neither study has limits, so that neither passes or fails."
     states = "; ".join(_state(side, study) for side, study in zip(SIDES, pair.studies, strict=True))
     return f"{states}.{_unlike(*pair.studies)}"
@@ -53,7 +53,7 @@ def _state(side: str, study: Finished) -> str:
     a pass the number of files that could not be used.
     """
     if not any(verdict.case for verdict in study.verdicts):
-        return f"{side} has no limits"
+        return f"{side} has {'verdicts on another peaks.csv than its own' if study.outdated else 'no limits'}"
     rows = scorecard(study.verdicts, named_designs(study), study.suites, study.worst_at_scales).rows
     kinds = grouped(rows, lambda row: row.verdict)
     parts = []

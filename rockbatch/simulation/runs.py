@@ -59,9 +59,9 @@ _FAILURES = {
 _REASONS = {
     Failure.CONTACTS: "more than 20,000 contact events within one sample; use more substeps",
     Failure.BLEW_UP: "the integration blew up; use more substeps, or look for a spike in the record",
-    Failure.UNDECIDED: "in the rest after the record the pier stays where it may still overturn",
+    Failure.UNDECIDED: "in free vibration after the record the pier stays where it may still overturn",
     Failure.RATCHETS: (
-        "in the rest after the record the pier leans further and further: yielding springs ratchet in free vibration; "
+        "in free vibration after the record the pier leans further and further: yielding springs ratchet; "
         f"spring = {without_ratcheting('and')} ratchet least"
     ),
 }
@@ -72,7 +72,7 @@ LEFT_ALONE = (Failure.UNDECIDED, Failure.RATCHETS)
 NOTED_TILT = 1e-4
 """Change of the residual rotation by dampers and tendons, in units of α, above which a note reports it."""
 
-_RESTLESS = "after {seconds:.0f} s of rest behind the record the pier still has the energy for a greater rotation"
+_RESTLESS = "after {seconds:.0f} s of free vibration behind the record the pier still has the energy for a greater rotation"
 _HIGH = "flew up to {height:.2g} mm, more than flight_limit_mm = {limit:g}"
 _LARGE = (
     "a peak of {theta:.2g} rad by linearised kinematics, which neglect {share:.0%} of inertia and righting moment there; "

@@ -71,7 +71,7 @@ def test_a_pass_under_one_record_says_so():
         verdict("pads", PASS, check="bearing", demand="eta", statistic="", records=0),
     ]
     (line,) = lines([replace(row, count="station" if row.statistic else "") for row in rows])
-    assert "Under one station only." in line.details
+    assert "Under one motion only." in line.details
     (line,) = lines([*rows, verdict("pads", PASS, check="drift", records=2)])
     assert not any("only" in words for words in line.details)
     (line,) = lines([verdict("pads", PASS, check="bearing", demand="eta", statistic="", records=0)])

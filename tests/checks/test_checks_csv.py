@@ -5,6 +5,7 @@ import math
 import pandas as pd
 import pytest
 from check_samples import RIGID, case, folder, runs, verdict
+from report_page import Page
 from rules_of_checks import MARGIN, STUDY, rules_file
 
 import rockbatch as rb
@@ -79,12 +80,28 @@ def test_verdicts_on_another_table_than_is_there_now_are_shown_by_no_page(tmp_pa
     rb.report(out, out)
     lines = (out / "peaks.csv").read_text(encoding="utf-8").splitlines(keepends=True)
     (out / "peaks.csv").write_text("".join(lines[:-1]), encoding="utf-8")
-    advice = r"on another peaks\.csv than is there now; start `rockbatch check` again"
-    for shows in (rb.report, rb.statement, lambda folder: rb.report(folder, folder)):
-        with pytest.warns(EditedTable), pytest.raises(InputError, match=advice):
-            shows(out)
+    assert read_verdicts(out) is None
+    for shows in (rb.report, lambda folder: rb.report(folder, sheet=True), lambda folder: rb.report(folder, folder)):
+        with pytest.warns(EditedTable):
+            written = shows(out)
+        page = Page(written.path.with_suffix(".html").read_text(encoding="utf-8")).text
+        assert "The verdicts of checks.csv are on another peaks.csv than is there now, and are not shown." in page
+        assert written.checks.empty
+    assert written.answer.startswith("A has verdicts on another peaks.csv than its own; B has verdicts on another")
+    with pytest.warns(EditedTable):
+        assert "not checked: the verdicts are on another peaks.csv than is there now." in rb.statement(out)
     with pytest.warns(EditedTable):
         write_verdicts(out, verdicts(out, [rb.Rule("margin", "theta_max_over_alpha", 0.5)]))
     with pytest.warns(EditedTable):
         written = rb.report(out)
     assert "not decided" in set(written.checks["verdict"])
+
+
+@pytest.mark.parametrize("ending", ["\n", "\r\n"])
+def test_verdicts_stay_with_their_table_with_any_line_endings(tmp_path, ending):
+    (tmp_path / "peaks.csv").write_bytes(b"record,case\nr0,pads\n")
+    write_verdicts(tmp_path, [verdict("pads", "pass")])
+    (tmp_path / "peaks.csv").write_text(f"record,case{ending}r0,pads{ending}", encoding="utf-8", newline="")
+    assert [one.case for one in read_verdicts(tmp_path)] == ["pads"]
+    (tmp_path / "peaks.csv").write_text(f"record,case{ending}r1,pads{ending}", encoding="utf-8", newline="")
+    assert read_verdicts(tmp_path) is None

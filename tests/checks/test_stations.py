@@ -108,6 +108,13 @@ def test_pulses_are_no_records_that_a_code_takes():
         assert plain.verdict == "pass"
 
 
+@pytest.mark.parametrize(("pulses", "blamed"), [((), True), (("P",), False)])
+def test_a_pulse_beside_records_of_two_directions_lacks_none(pulses, blamed):
+    table = runs([0.1, 0.2, 0.1, 0.2, 0.1], station=["A", "A", "B", "B", "P"], record=["A1", "A2", "B1", "B2", "P"])
+    (found,) = judge([Rule("c", "theta_max_over_alpha", 1.0)], table, [case()], Suite(unrecorded=pulses))
+    assert ("P (1 of 2)" in found.note) is blamed
+
+
 def test_a_study_of_pulses_meets_no_code_in_its_folder_and_as_a_table(tmp_path):
     pulses = [SINE | {"name": f"p{i}", "amplitude_g": 0.1 + 0.01 * i, "duration_s": 1.0} for i in range(7)]
     check = {"name": "c", "demand": "theta_max_over_alpha", "statistic": "en1998-1", "at_most": 0.9, "reason": "r"}

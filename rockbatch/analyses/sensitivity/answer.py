@@ -82,7 +82,7 @@ def _doubt(first: Entry, shown: Rows) -> Iterator[str]:
     least = first["total"] - first["total_error"]
     alike = [symbol(row["parameter"]) for row in shown if row["total"] + row["total_error"] >= least]
     if alike:
-        yield f"more samples would distinguish {symbol(first['parameter'])} and {', '.join(alike)} apart"
+        yield f"more samples would tell {symbol(first['parameter'])} and {', '.join(alike)} apart"
     elif first["total_error"] > 0.5 * first["total"]:
         yield "more samples would narrow that interval"
 

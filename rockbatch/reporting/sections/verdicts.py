@@ -15,6 +15,7 @@ from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED,
 from rockbatch.common.grouping import grouped
 from rockbatch.common.showing import capital
 from rockbatch.quantities.design import under
+from rockbatch.quantities.rows import PEAKS
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, join, number, tag
@@ -50,7 +51,10 @@ def mark(verdict: str, words: str) -> Markup:
 
 
 def answer(finished: Finished) -> Markup:
-    """Return lines on cases that pass, fail, are not decided or not checked, and on stations; without checks, how to add some."""
+    """Return lines on cases that pass, fail, are not decided or not checked, and on stations; without checks, how to add some.
+
+    Of outdated verdicts it says that they are on another peaks.csv, and how to check again.
+    """
     lines = answered(
         finished.verdicts,
         finished.worst_at_scales,
@@ -63,6 +67,10 @@ def answer(finished: Finished) -> Markup:
     if any(verdict.case for verdict in finished.verdicts):
         return join(listed)
     command = tag("code", "rockbatch check DIR --rules FILE")
+    if finished.outdated:
+        words = f"The verdicts of {CHECKS} are on another {PEAKS} than is there now, and are not shown. Check it again: "
+        again = tag("code", "rockbatch check DIR"), ", or if the study has no checks ", command, "."
+        return join(listed, words, *again)
     return join(listed, "No limits were set, so nothing was checked. Add some: ", command, ".")
 
 

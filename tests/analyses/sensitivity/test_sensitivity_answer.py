@@ -56,7 +56,7 @@ def test_an_input_whose_interval_reaches_far_is_not_said_to_hardly_matter():
 
 
 @pytest.mark.parametrize(("inputs", "words"), [
-    ([("p", 0.5, 0.2, 0.1, 0.3), ("beta", 0.4, 0.2, 0.1, 0.3)], "more samples would distinguish p and β apart"),
+    ([("p", 0.5, 0.2, 0.1, 0.3), ("beta", 0.4, 0.2, 0.1, 0.3)], "more samples would tell p and β apart"),
     ([("p", 0.5, 0.4, 0.1, 0.3), ("beta", 0.02, 0.01, 0.1, 0.3)], "more samples would narrow that interval"),
 ])  # fmt: skip
 def test_indices_that_do_not_tell_the_order_are_marked_so(inputs, words):
@@ -114,7 +114,7 @@ def test_up_to_four_inputs_that_matter_are_named():
 
 def test_intervals_that_touch_do_not_tell_inputs_apart():
     apart = [("p", 0.5, 0.125, 0.1, 0.3), ("beta", 0.25, 0.125, 0.1, 0.3)]
-    assert said({"rock": apart})[1] == ["more samples would distinguish p and β apart"]
+    assert said({"rock": apart})[1] == ["more samples would tell p and β apart"]
     assert said({"rock": [apart[0], ("beta", 0.25, 0.0625, 0.1, 0.3)]})[1] == []
     assert said({"rock": [("p", 0.5, 0.25, 0.1, 0.3)]})[1] == []
 

@@ -103,7 +103,7 @@ def statements(finished: Finished) -> Iterator[Statement]:
 
 def _sentences(finished: Finished, design: _Design, stations: Stations) -> Iterator[str]:
     """Yield the sentences of a statement: result, suite, bounds, checks, remarks, assumptions, what is not covered, identity."""
-    yield _result(design, stations)
+    yield _result(design, stations, outdated=finished.outdated)
     yield _suite(finished, design)
     yield _conforming(finished.info, design.of_suite)
     yield from _bounds(finished.info, design)
@@ -160,7 +160,7 @@ def _names(finished: Finished, designs: Mapping[str, Sequence[CaseRuns]]) -> lis
     return distinct(labels, told_apart)
 
 
-def _result(design: _Design, stations: Stations) -> str:
+def _result(design: _Design, stations: Stations, *, outdated: bool) -> str:
     """Return the first sentence: that the design passes, fails which checks, is not decided and why, or is not checked.
 
     'Case "pads" fails 1 of 3 checks: "drift"; "uplift" is not decided.'
@@ -169,7 +169,8 @@ def _result(design: _Design, stations: Stations) -> str:
     failing, open_, met = (design.having(kind) for kind in (FAIL, NOT_DECIDED, PASS))
     total = len(design.checks) - len(design.having(DOES_NOT_APPLY))
     if design.verdict == DOES_NOT_APPLY:
-        reason = "no check applies to it" if design.checks else "no limit was set"
+        none = "the verdicts are on another peaks.csv than is there now" if outdated else "no limit was set"
+        reason = "no check applies to it" if design.checks else none
         return f"{subject} is not checked: {'no run ends standing' if met else reason}."
     if failing:
         also = f"; {listed(open_)} {'is' if len(open_) == 1 else 'are'} not decided" if open_ else ""
