@@ -72,7 +72,9 @@ LEFT_ALONE = (Failure.UNDECIDED, Failure.RATCHETS)
 NOTED_TILT = 1e-4
 """Change of the residual rotation by dampers and tendons, in units of α, above which a note reports it."""
 
-_RESTLESS = "after {seconds:.0f} s of free vibration behind the record the pier still has the energy for a greater rotation"
+_RESTLESS = (
+    "after {seconds:.0f} s of free vibration behind the record the pier still has the energy for a greater rotation"
+)
 _HIGH = "flew up to {height:.2g} mm, more than flight_limit_mm = {limit:g}"
 _LARGE = (
     "a peak of {theta:.2g} rad by linearised kinematics, which neglect {share:.0%} of inertia and righting moment there; "

@@ -68,7 +68,9 @@ def answer(finished: Finished) -> Markup:
         return join(listed)
     command = tag("code", "rockbatch check DIR --rules FILE")
     if finished.outdated:
-        words = f"The verdicts of {CHECKS} are on another {PEAKS} than is there now, and are not shown. Check it again: "
+        words = (
+            f"The verdicts of {CHECKS} are on another {PEAKS} than is there now, and are not shown. Check it again: "
+        )
         again = tag("code", "rockbatch check DIR"), ", or if the study has no checks ", command, "."
         return join(listed, words, *again)
     return join(listed, "No limits were set, so nothing was checked. Add some: ", command, ".")
