@@ -127,7 +127,7 @@ def test_the_most_frequent_reasons_of_failed_runs_are_named(study, tmp_path, cap
     monkeypatch.setattr("rockbatch.simulation.runs.MOST_STEPS", 10)
     assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 1
     printed = capsys.readouterr().err
-    assert "2 runs failed: see the column reason of peaks.csv\n  2 ×: would take " in printed
+    assert "2 runs failed: see the column reason of peaks.csv\n  2 ×, for example: would take " in printed
 
 
 @pytest.mark.usefixtures("pages")

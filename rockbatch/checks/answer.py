@@ -266,9 +266,7 @@ class _Cases:
 
     def _alone(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return "Under one motion only." if no check that these cases pass counts more than one record; () otherwise."""
-        passed = [verdict for verdict in self._of(names, PASS) if verdict.statistic]
-        alone = passed and max(verdict.records for verdict in passed) == 1
-        return ("Under one motion only.",) if alone else ()
+        return ("Under one motion only.",) if wording.are_of_one_motion(self._of(names, PASS)) else ()
 
     def _coverage(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return the sentences of statistics on how many further records may exceed them, each after the checks that these cases

@@ -244,6 +244,11 @@ def is_passed_by_statistic(verdict: Verdict) -> bool:
     return quantity and verdict.verdict == PASS and verdict.governing > verdict.limit
 
 
+def are_of_one_motion(verdicts: Iterable[Verdict]) -> bool:
+    """Return whether there are verdicts by a statistic, and none of them counts more than one record."""
+    return max((verdict.records for verdict in verdicts if verdict.statistic), default=0) == 1
+
+
 def _unit_of_demand(verdict: Verdict) -> str:
     """Return the unit of one record's demand, also if the verdict counts records."""
     return DEMANDS[verdict.demand].unit if verdict.demand in DEMANDS else verdict.unit

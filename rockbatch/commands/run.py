@@ -98,8 +98,8 @@ def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> i
     lost = ((failed, "run", "failed"), (len(saved.info["unusable"]), "file", "not used"))
     if words := " and ".join(f"{count(n, noun)} {state}" for n, noun, state in lost if n):
         say(f"{words}: see the column reason of peaks.csv")
-        for reason, times in reasons_of_failure(runs).items():
-            say(f"  {times} ×: {reason}")
+        for reason in reasons_of_failure(runs):
+            say(f"  {reason}")
         if later := failed_later(runs):
             say(later)
         code = 1

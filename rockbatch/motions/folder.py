@@ -324,8 +324,8 @@ def _names(files: Sequence[SourceFile]) -> dict[Path, tuple[str, Orientation | N
         by_chance = set.union(*(rule(stems.values()) for rule in (counted, numbered, accidental)))
         apart = told_apart(stems.values())
         alone = {stem: (stem, None) if stem in by_chance else split_stem(stem) for stem in stems.values()}
-        sites = grouped(apart, lambda stem: apart[stem][0])
-        shared = {site for site, of_site in sites.items() if len({alone[stem][1] for stem in of_site}) == 1}
+        ends = grouped(apart.items(), lambda told: told[1][0])
+        shared = {site for site, of_site in ends.items() if len({alone[stem][1] for stem, _ in of_site}) == 1}
         for path, stem in stems.items():
             found, found_apart = alone[stem], apart.get(stem)
             if found_apart and (

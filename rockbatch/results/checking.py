@@ -71,7 +71,8 @@ def check(
     ------
     InputError
         For mistakes in the rules, with line numbers, for rules that do not apply to the results, for missing columns, without any
-        rule, for a table without its ``study``, and for ``motions`` that lack one of its records.
+        rule, for a table without its ``study``, for ``motions`` that lack one of its records, and for
+        ``motions`` of a folder, which has its own.
 
     Examples
     --------
@@ -97,6 +98,8 @@ def verdicts(
     of_suite: list[Verdict] = []
     in_sections: dict[str, pd.DataFrame] = {}
     if isinstance(results, Saved | str | os.PathLike):
+        if motions is not None:
+            raise InputError("motions: are for a table; a folder has its own")
         saved = results if isinstance(results, Saved) else read_saved(Path(results))
         own_rules, count, _ = _own_checks(saved.info["study"], judged=given is None)
         table, cases = saved.peaks, saved.info["cases"]

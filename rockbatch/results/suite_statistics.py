@@ -22,10 +22,11 @@ def worst_records(runs: "pd.DataFrame", most: int) -> list[str]:
     return list(worst.index[:most])
 
 
-def reasons_of_failure(runs: "pd.DataFrame") -> dict[str, int]:
-    """Return the two most frequent kinds of failure, each by the reason of its first run, with their numbers."""
+def reasons_of_failure(runs: "pd.DataFrame") -> list[str]:
+    """Return the two most frequent kinds of failure, by number and the reason of the first run: "3 ×, for example: REASON"."""
     kinds = runs[runs["status"] == "failed"].groupby("failure", sort=False)["reason"].agg(["first", "size"])
-    return {str(reason): int(times) for _, reason, times in kinds.nlargest(2, "size").itertuples()}
+    most = kinds.nlargest(2, "size").itertuples()
+    return [f"{times} ×{', for example' if times > 1 else ''}: {reason}" for _, reason, times in most]
 
 
 @dataclass(frozen=True)

@@ -76,7 +76,7 @@ def plane(rows, find="least", tried=()):
 def left_open(**info):
     about = {
         "vary": VARIED[:1], "width": 0.04, "without_limit": [], "omitted": [], "unusable": 0, "refused": [], "lacking": [],
-        "tried": 11, "beyond": [], "cut_short": 0, "passing": 7,
+        "tried": 11, "beyond": [], "cut_short": 0, "of_one_motion": False, "passing": 7,
     }  # fmt: skip
     return lambda: [text for _, text in design._remarks(about | info, [interval(0.06, 0.11)])]
 

@@ -97,6 +97,14 @@ def test_a_table_is_not_judged_by_a_study_of_another_pier(folder):
     assert len(rb.check(read(results).drop(columns=lengths), RULES, study=study))
 
 
+def test_motions_beside_a_folder_are_refused(folder):
+    """The folder has those that it was run with."""
+    _, out = folder
+    for results in (out, rb.open_results(out)):
+        with pytest.raises(InputError, match="a folder has its own"):
+            rb.check(results, RULES, motions=out)
+
+
 def test_a_table_that_was_given_is_left_as_it_is(folder):
     study, results = folder
     table = read(results, keep_default_na=False)

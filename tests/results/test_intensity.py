@@ -231,10 +231,10 @@ def test_the_worst_records_and_the_most_frequent_reasons_come_first():
     })  # fmt: skip
     assert suite_statistics.worst_records(table, 3) == ["c", "b", "d"]
     kinds = ["contacts", "not settled", "ratchets", "not settled", "ratchets", "not settled"]
-    failed = pd.DataFrame(
-        {"status": ["failed"] * 6, "failure": kinds, "reason": ["c", "at 1: a", "z", "at 2: b", "y", "at 3"]}
-    )
-    assert suite_statistics.reasons_of_failure(failed) == {"at 1: a": 3, "z": 2}
+    reasons = ["c", "at 1: a", "z", "at 2: b", "y", "at 3"]
+    failed = pd.DataFrame({"status": ["failed"] * 6, "failure": kinds, "reason": reasons})
+    assert suite_statistics.reasons_of_failure(failed) == ["3 ×, for example: at 1: a", "2 ×, for example: z"]
+    assert suite_statistics.reasons_of_failure(failed[:1]) == ["1 ×: c"]
 
 
 @pytest.mark.parametrize("blank", [(), (1,), (0, 2), slice(None)])

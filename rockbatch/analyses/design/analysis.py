@@ -279,6 +279,7 @@ def _described(trials: Trials, spec: DesignSpec, written: Written, study: Study)
         ],
         "beyond": list(trials.beyond),
         "cut_short": trials.cut_short,
+        "of_one_motion": trials.of_one_motion,
         "tried": len(trials.judged),
         "passing": len(passing),
         "refused": refused,

@@ -221,6 +221,8 @@ def _remarks(info: Entry, rows: Sequence[Entry]) -> Iterator[Said]:
             NOT_DECIDED,
             f"Not every run ends standing, with {info['cut_short']} of {info['passing']} values that pass.",
         )
+    if info["of_one_motion"]:
+        yield NOT_DECIDED, "Under one motion only."
     for omitted in info["omitted"]:
         yield NOT_DECIDED, f"{', '.join(omitted['checks'])}: {omitted['remark']}."
     if info["unusable"]:

@@ -16,7 +16,7 @@ from rockbatch.checks.judging import judge
 from rockbatch.checks.responses import RESPONSES, Worst, unlimited, worst_of_cases
 from rockbatch.checks.suite import Suite
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, NOT_DECIDED, PASS, Verdict
-from rockbatch.checks.wording import is_passed_by_statistic
+from rockbatch.checks.wording import are_of_one_motion, is_passed_by_statistic
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
@@ -125,7 +125,8 @@ class Trials:
 
     Of those that pass ``free`` has the responses without a limit, ``omitted`` the checks whose demands leave something out, by
     its name in :data:`rockbatch.checks.omissions.OMISSIONS`, ``beyond`` the checks that a single record exceeds, and
-    ``cut_short`` is the number of those with runs that do not end standing. ``of_motions`` is what is known of the motions;
+    ``cut_short`` is the number of those with runs that do not end standing; ``of_one_motion`` says whether any counts one record
+    only. ``of_motions`` is what is known of the motions;
     ``suite`` returns the verdicts on the suite with the cases of a trial: under one that fails nothing is decided.
     """
 
@@ -138,6 +139,7 @@ class Trials:
         self.omitted: dict[str, dict[str, None]] = {}
         self.beyond: dict[str, None] = {}
         self.cut_short = 0
+        self.of_one_motion = False
 
     def execute(self, requested: Iterable[Trial]) -> None:
         """Run and judge those trials that are not judged yet; one with which the study is refused is REFUSED without a run."""
@@ -194,6 +196,7 @@ class Trials:
         self.free |= dict.fromkeys(RESPONSES[each.demand].words for each in unlimited(worst, verdicts))
         self.beyond |= dict.fromkeys(verdict.check for verdict in verdicts if is_passed_by_statistic(verdict))
         self.cut_short += any(runs.ended for runs in suites)
+        self.of_one_motion |= are_of_one_motion(verdicts)
         for verdict in verdicts:
             for name in verdict.omits:
                 self.omitted.setdefault(name, {})[verdict.check] = None

@@ -167,7 +167,7 @@ def _without_a_result(finished: Finished) -> Iterator[Markup]:
     counts = (unread, "file", "could not be used"), (failed, "run", "failed"), (finished.not_run, "run", NOT_RUN)
     lost = [f"{counted(n, noun)} {state}" for n, noun, state in counts if n]
     if lost:
-        reasons = "; ".join(f"{count} ×: {reason}" for reason, count in reasons_of_failure(runs).items())
+        reasons = "; ".join(reasons_of_failure(runs))
         words = " and ".join(lost)
         yield join(
             alarm(capital(words)),

@@ -53,6 +53,15 @@ def test_both_axes_of_a_pier_are_one_design():
     assert designs == [Design("pads", (("eta", eta),)) for eta in (2.0, 2.5)]
 
 
+@pytest.mark.parametrize("pulses", [1, 2])
+def test_a_value_that_passes_under_one_motion_only_is_said_to(pulses):
+    named = [PULSE | {"name": f"P{i}", "amplitude_g": 1.2 - 0.1 * i} for i in range(pulses)]
+    found = rb.design(
+        rb.Study.from_toml(study_text(pier=PIER, pulses=named, cases=[RIGID], check=[ROTATION], design=SIZE))
+    )
+    assert any("Under one motion only." in line for line in found.answer) is (pulses == 1)
+
+
 # The search along a key
 
 
@@ -363,6 +372,7 @@ def said_of(verdicts, **more):
         "omitted": [],
         "beyond": [],
         "cut_short": 0,
+        "of_one_motion": False,
     }
     info |= {"unusable": 0, "refused": [], "tried": len(verdicts), "under": []} | more
     return [
