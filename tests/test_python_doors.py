@@ -147,7 +147,8 @@ def untimed(path):
 
 
 def assert_same_folder(one, other, csvs):
-    assert files(one) == files(other)
+    kept, expected = ([name for name in files(folder) if not name.endswith(".part")] for folder in (one, other))
+    assert kept == expected  # but for the runs of all searches, which a saved analysis has no use for
     for name in csvs:
         assert (one / name).read_bytes() == (other / name).read_bytes(), name
     for path in one.glob("*.json"):

@@ -143,15 +143,17 @@ SAID = {
         lambda s: ["at most", s.limit, "m is allowed", 100.0 * s.ratio, "%", s.margin, "m beyond it"],
     ),
     "a share of checks that fail": (
-        lambda s: _result(design(s, {s.check: "fail", s.other: "not decided", "third": "pass"}, "fail"), stations(s)),
+        lambda s: _result(
+            design(s, {s.check: "fail", s.other: "not decided", "third": "pass"}, "fail"), stations(s), outdated=False
+        ),
         lambda s: [f'"{s.name}" fails', 1.0, 3.0, f'checks: "{s.check}"', f'"{s.other}" is not decided'],
     ),
     "why a design is not decided": (
-        lambda s: _result(design(s, {s.check: "pass"}, "not decided"), stations(s)),
+        lambda s: _result(design(s, {s.check: "pass"}, "not decided"), stations(s), outdated=False),
         lambda s: [f'"{s.name}" meets its only check', len(s.lost), len(s.used) + len(s.lost), "stations"],
     ),
     "all checks": (
-        lambda s: _result(design(s, dict.fromkeys((*s.events, "x", "y"), "pass")), stations(s)),
+        lambda s: _result(design(s, dict.fromkeys((*s.events, "x", "y"), "pass")), stations(s), outdated=False),
         lambda s: [f'"{s.name}" passes', len(s.events) + 2.0, "checks"],
     ),
     "a condition that is not met": (
