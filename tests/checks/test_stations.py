@@ -136,6 +136,16 @@ def test_a_code_whose_target_judges_no_motion_says_so(code, omits):
     assert (plain.omits, plain.note) == ((), "")
 
 
+@pytest.mark.parametrize("of_one_event", [1, 2, 7])
+def test_two_stations_of_one_event_are_not_independent(of_one_event):
+    """Neither are more; every station of an event of its own is."""
+    named = ["x"] * of_one_event + [*"abcdefg"[of_one_event:]]
+    events = {f"{station}{i}": event for station, event in zip("ABCDEFG", named, strict=True) for i in (1, 2)}
+    rule = Rule("c", "theta_max_over_alpha", 1.0, statistic="en1998-2")
+    (found,) = judge([rule], pairs(*SEVEN), [case()], Suite(events=events))
+    assert ("events" in found.omits) is (of_one_event > 1)
+
+
 def test_records_of_one_event_say_so_and_are_as_many_as_the_check_allows():
     """Stations A, B and C of one event, D of another, and of the others it is not known."""
     table = pairs(*SEVEN)

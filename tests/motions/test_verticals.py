@@ -133,6 +133,7 @@ def test_copies_of_a_vertical_upwards_and_downwards_differ_in_sign(tmp_path, sig
         ("vertical axis converted from positive down to positive up", "V", 1.0),
         ("vertical (Z) not positive down but positive up", "Z", 1.0),
         ("vertical component positive up; depth positive down", "V", 1.0),
+        ("vertical component positive down until 1990, positive up since", "V", 1.0),
         ("vertical exaggeration of plots 2x, depth axis positive downwards", "V", 1.0),
     ],
 )
