@@ -3,6 +3,7 @@
 import csv
 import functools
 import hashlib
+import io
 import json
 import math
 from collections.abc import Collection, Iterable, Mapping
@@ -202,8 +203,11 @@ def _digest_of_peaks(path: Path) -> str:
     peaks = path.with_name(PEAKS)
     if not is_plain(peaks):
         return ""
-    with opened(peaks) as file:
-        return hashlib.sha256(b"".join(line.rstrip(b"\r\n") + b"\n" for line in file)).hexdigest()
+    digest = hashlib.sha256()
+    with io.BufferedReader(opened(peaks)) as file:
+        for line in file:
+            digest.update(line.rstrip(b"\r\n") + b"\n")
+    return digest.hexdigest()
 
 
 def read_verdicts(directory: Path) -> list[Verdict] | None:

@@ -112,12 +112,9 @@ def _last_point(case: Case) -> str:
     """Return the number of points of a backbone, and the last: " of 3 points to 40,000 kN at 200 mm"; without a mass in M g/2."""
     points, parameters = backbone(case), case["parameters"]
     deflection, force = points[-1]
-    if "yield_kN" in parameters:
-        reached = f"{plain(force * parameters['yield_kN'], 4)} kN"
-    else:
-        reached = f"{plain(force * parameters['eta'], 4)} M g/2"
-    text = f"{len(points)} points to {reached} at {plain(1000.0 * deflection * parameters['delta_y_m'], 4)} mm"
-    return f" of {text}".replace(" kN", "\u00a0kN").replace(" mm", "\u00a0mm")
+    at_yield, unit = (parameters["yield_kN"], "kN") if "yield_kN" in parameters else (parameters["eta"], "M g/2")
+    reached = f"{plain(force * at_yield, 4)}\u00a0{unit}"
+    return f" of {len(points)} points to {reached} at {plain(1000.0 * deflection * parameters['delta_y_m'], 4)}\u00a0mm"
 
 
 def symbol_of(key: str, case: Case | None = None) -> tuple[str, str]:

@@ -75,7 +75,7 @@ def test_a_label_says_how_many_points_a_backbone_has_and_which_is_the_last():
     share = 38e3 / (0.5 * 3000.0 * 9.81)
     del unweighed["parameters"]["yield_kN"]
     words = quantity("spring", "backbone", case=unweighed)
-    assert words == f"spring backbone of 3 points to {share:.4g} M g/2 at 40\u00a0mm"
+    assert words == f"spring backbone of 3 points to {share:.4g}\u00a0M g/2 at 40\u00a0mm"
 
 
 def test_a_comparison_shows_the_points_of_a_backbone_as_pairs():

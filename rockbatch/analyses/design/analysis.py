@@ -180,9 +180,7 @@ def _write_tables(results: AnalysisFolder, spec: DesignSpec) -> dict[str, object
         numerics=(study.numerics, study.output),
         columns=(columns(of_runs), names),
     )
-    results.has(
-        RUNS, digest
-    )  # refuses an edited table; the runs themselves are in the journal, with those of earlier scans
+    results.has(RUNS, digest)  # refuses an edited table; the journal has its runs, and those of earlier scans
     with results.journal(RUNS, columns(of_runs), digest, names, stays=True) as journal:
         known = {identity(read_cells(cells), of_runs.varied): number for number, cells in journal.rows()}
         waves = Waves(of_runs, journal, results.engine, results.listener, observers, known)
