@@ -6,12 +6,14 @@ samples differ that headers call one recording, the whole set is held back until
 motions.toml; those are not judged.
 """
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 
+from rockbatch.common.grouping import grouped
 from rockbatch.motions.common_span import overlap
 from rockbatch.motions.component import UNKNOWN_SENSOR, Component, file_of
 from rockbatch.motions.evidence import Kind, Statement, decided_orientation, same_direction
@@ -142,11 +144,13 @@ def _numbered_channels(components: Sequence[Component]) -> Iterator[tuple[int, S
 
     Of HN1, HN2 and HN3 the vertical one may be any, unless another component of the sensor is vertical.
     """
+    of_sensors = grouped(components, lambda c: c.sensor)
+    labels_of = {sensor: {c.orientation.label.upper() for c in alike} for sensor, alike in of_sensors.items()}
+    verticals = Counter(c.sensor for c in components if c.orientation.vertical)
     for i, component in enumerate(components):
-        others = [c for c in components if c is not component and c.sensor == component.sensor]
-        if _by_user(component) or any(c.orientation.vertical for c in others):
+        if _by_user(component) or verticals[component.sensor] > component.orientation.vertical:
             continue
-        labels = {c.orientation.label.upper() for c in others}
+        labels = labels_of[component.sensor]
         for statement in component.statements:
             label = statement.orientation.label.upper()
             if statement.kind in _COPIED and statement.orientation.without_azimuth and one_of_three(label, labels):

@@ -328,9 +328,8 @@ def _names(files: Sequence[SourceFile]) -> dict[Path, tuple[str, Orientation | N
         shared = {site for site, of_site in ends.items() if len({alone[stem][1] for stem, _ in of_site}) == 1}
         for path, stem in stems.items():
             found, found_apart = alone[stem], apart.get(stem)
-            if found_apart and (
-                found[1] is None or found_apart[0] in shared
-            ):  # all of a site end in x: x is no direction
+            # where all names of a site end in x, x is no direction
+            if found_apart and (found[1] is None or found_apart[0] in shared):
                 found = found_apart
             names[path] = found[0], found[1] or direction_of_suffix(archives.bare(path).suffix)
     return names
