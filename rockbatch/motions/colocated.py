@@ -6,9 +6,9 @@ from dataclasses import replace
 from itertools import combinations
 
 from rockbatch.common.grouping import grouped
+from rockbatch.motions.alignment import alignment
 from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
-from rockbatch.motions.likeness import alignment
 from rockbatch.motions.motion import Finding
 from rockbatch.motions.orientation import same_azimuth
 

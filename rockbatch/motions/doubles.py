@@ -9,16 +9,10 @@ from itertools import combinations
 import numpy as np
 
 from rockbatch.common.grouping import grouped
+from rockbatch.motions.alignment import common_factor, same_step
 from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.formats import is_usual
-from rockbatch.motions.likeness import (
-    Pairs,
-    common_factor,
-    factor_between,
-    pairs_of_one_recording,
-    same_step,
-    sets_of,
-)
+from rockbatch.motions.likeness import Pairs, factor_between, pairs_of_one_recording, sets_of
 from rockbatch.motions.motion import Finding, LeftOut
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.plausible import gross_findings, in_a_borehole

@@ -13,19 +13,14 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.grouping import grouped
+from rockbatch.motions.alignment import common_factor, correlation, is_significant, same_step
 from rockbatch.motions.candidates import Candidates
 from rockbatch.motions.component import Component
 from rockbatch.motions.motion import Samples
 
 _ALIKE = 0.7  # correlation: real files of one recording have 0.98 and more, other records 0.63 at most, halves 0.46
 _CERTAIN = 0.95  # correlation that decides without headers
-_COPIED = 0.98  # correlation of a component with a copy of it in another direction; real ones have 0.54 at most
 _IN_COMMON = 0.8  # least share of the energy of one of two sets that lies in their common time
-_SIGNIFICANT = (
-    4.0  # standard deviations of Fisher's transform: random walks have 3 at most, real files of one recording 27
-)
-_SAME_STEP = 1e-3  # relative
-_SAME_SHAPE = 1e-3  # of the peak: rounding of a sample in a printed, scaled copy
 _NO_FACTOR = 0.005  # relative: values of g, and rounding
 _COHERENT = 0.995  # median over bands: copies filtered to 1–5 Hz have more, neighbours in an array 0.992 at most
 _BAND, _FEWEST_BANDS = 0.5, 6  # width of a band [Hz], and least number of bands for a median
@@ -263,41 +258,7 @@ def _are_one_recording(a: Component, b: Component) -> bool:
     coarse, fine = sorted((a, b), key=lambda c: -c.dt)
     first, second = coarse.acceleration, _at_step(fine, coarse.dt)
     r = correlation(first, second)
-    return r >= _CERTAIN and _is_significant(r, first, second)
-
-
-def _is_significant(r: float, first: Samples, second: Samples) -> bool:
-    """Return whether an absolute correlation of two series of one step is four standard deviations or more above chance.
-
-    A few waves of one period look alike in any two records: the inverse hyperbolic tangent of a correlation by chance, of n
-    independent values, has a standard deviation of 1/√(n − 3) (Fisher).
-    """
-    n = _independent_values(first, second)
-    return n > 3.0 and math.atanh(min(r, 1.0 - 1e-12)) * math.sqrt(n - 3.0) >= _SIGNIFICANT
-
-
-def _independent_values(a: Samples, b: Samples) -> float:
-    """Return the number of independent values, 2BT, common to two series of one step.
-
-    B is the bandwidth of their power spectra S₁ and S₂, ∫S₁df ∫S₂df / ∫S₁S₂df; T is the shorter of the times in which 5 to
-    95% of ∫a² dt grow, over 0.9.
-    """
-    n = 1 << (len(a) + len(b)).bit_length()
-    first, second = (np.square(np.abs(np.fft.rfft(x - x.mean(), n))) for x in (a, b))
-    bandwidth = float(first.sum() * second.sum()) / (float(first @ second) or 1.0) / n
-    return 2.0 * bandwidth * min(map(_strong_samples, (a, b))) / 0.9
-
-
-def _strong_samples(values: Samples) -> int:
-    """Return the number of samples in which 5 to 95% of the sum of their squares grow."""
-    energy = np.cumsum(np.square(values))
-    first, last = np.searchsorted(energy, [0.05 * energy[-1], 0.95 * energy[-1]])
-    return int(last - first)
-
-
-def same_step(a: float, b: float) -> bool:
-    """Return whether two sampling intervals [s] are equal to 0.1 %, since they may be rounded in print."""
-    return abs(a - b) <= _SAME_STEP * b
+    return r >= _CERTAIN and is_significant(r, first, second)
 
 
 def _at_step(component: Component, dt: float) -> Samples:
@@ -309,63 +270,6 @@ def _at_step(component: Component, dt: float) -> Samples:
     spectrum[np.fft.rfftfreq(len(a), component.dt) > 0.5 / dt] = 0.0
     times = np.arange(0.0, component.duration + 0.5 * component.dt, dt)
     return np.interp(times, np.arange(len(a)) * component.dt, np.fft.irfft(spectrum, len(a)))
-
-
-class Alignment(NamedTuple):
-    """Two series at the shift of their largest absolute correlation."""
-
-    correlation: float  # with its sign
-    delay: float  # of the first, in steps
-
-
-def alignment(first: Samples, second: Samples, parts: int = 4) -> Alignment:
-    """Return the correlation of largest absolute value, with sign and delay, over all shifts by 1/``parts`` of a step.
-
-    Correlation 1 and delay 0 if either series is constant.
-    """
-    first, second = ((x - x.mean()) / (np.abs(x).max() or 1.0) for x in (first, second))
-    n = 1 << (len(first) + len(second) - 1).bit_length()
-    shifted = parts * np.fft.irfft(np.fft.rfft(first, n) * np.conj(np.fft.rfft(second, n)), parts * n)
-    norm = float(np.linalg.norm(first) * np.linalg.norm(second))
-    if norm <= 0:
-        return Alignment(1.0, 0.0)
-    best = int(np.abs(shifted).argmax())
-    return Alignment(float(shifted[best]) / norm, best / parts - (n if best >= parts * len(first) else 0))
-
-
-def correlation(first: Samples, second: Samples) -> float:
-    """Return the largest absolute correlation of two series over all shifts by quarters of their step; 1 if one is constant."""
-    return abs(alignment(first, second).correlation)
-
-
-class Copy(NamedTuple):
-    """Factor and delay by which a series is a copy of another."""
-
-    factor: float
-    delay: float  # in steps
-
-
-def copy_between(first: Samples, second: Samples) -> Copy | None:
-    """Return factor and delay in whole steps by which ``first`` is a copy of ``second``, perhaps filtered; else ``None``.
-
-    ``None`` also if one is constant.
-    """
-    if not (np.ptp(first) and np.ptp(second)):
-        return None
-    if factor := common_factor(first, second):
-        return Copy(factor, 0.0)
-    r, delay = alignment(first, second, parts=1)
-    if abs(r) < _COPIED or not _is_significant(abs(r), first, second):
-        return None
-    return Copy(r * float(np.linalg.norm(first - first.mean()) / np.linalg.norm(second - second.mean())), delay)
-
-
-def common_factor(first: Samples, second: Samples) -> float:
-    """Return the factor that makes the ``second`` series the ``first``, to 0.1 % of its peak; 0 if there is none."""
-    if len(first) != len(second) or not second.any():
-        return 0.0
-    factor = float(first @ second) / float(second @ second)
-    return factor if np.abs(first - factor * second).max() <= _SAME_SHAPE * np.abs(first).max() else 0.0
 
 
 def factor_between(a: Component, b: Component) -> float | None:

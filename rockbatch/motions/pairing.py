@@ -13,10 +13,10 @@ from rockbatch.common.errors import Contradiction, InputError, NoDirection
 from rockbatch.common.grouping import distinct, grouped
 from rockbatch.common.showing import shown
 from rockbatch.common.units import GRAVITY
+from rockbatch.motions.alignment import same_step
 from rockbatch.motions.azimuths import components_along
 from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
-from rockbatch.motions.likeness import same_step
 from rockbatch.motions.measures import state_at
 from rockbatch.motions.motion import Finding, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet

@@ -13,9 +13,9 @@ import numpy as np
 from rockbatch.common.naming import fits
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
+from rockbatch.motions.alignment import Copy, copy_between, same_step
 from rockbatch.motions.component import Component
 from rockbatch.motions.faults import at_rest, filled_gap, is_spike
-from rockbatch.motions.likeness import Copy, copy_between, same_step
 from rockbatch.motions.motion import Finding, Motion, Samples
 from rockbatch.motions.orientation import KIK_NET, same_azimuth
 from rockbatch.motions.places import Stand, stand

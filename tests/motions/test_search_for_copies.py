@@ -9,7 +9,7 @@ import pytest
 from copies import title
 from motion_files import wiggle, write_at2
 
-from rockbatch.motions import candidates, likeness, read_motions, stations
+from rockbatch.motions import alignment, candidates, likeness, read_motions, stations
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation
 
@@ -90,7 +90,7 @@ def test_no_correlation_is_above_the_product_of_spectra():
                 -rng.uniform(0.0, 9.0, size=(2, 1)) * np.arange(samples) / samples
             )
             product = candidates._spectrum(pair[0]) @ candidates._spectrum(pair[1])
-            assert np.isnan(product) if samples == 1 else likeness.correlation(*pair) <= product * (1.0 + 1e-12)
+            assert np.isnan(product) if samples == 1 else alignment.correlation(*pair) <= product * (1.0 + 1e-12)
 
 
 @pytest.mark.parametrize("change", ["half the step", "reversed", "noise", "cut", "another scale"])
@@ -125,9 +125,9 @@ def test_steps_that_differ_by_half_a_per_cent_are_not_one_step():
 
 
 def test_series_that_never_move_have_no_independent_values():
-    assert likeness._independent_values(np.ones(100), np.ones(100)) == 0.0
+    assert alignment._independent_values(np.ones(100), np.ones(100)) == 0.0
     moving = np.random.default_rng(0).normal(size=(2, 4096))  # of white noise each sample is one, to its scatter
-    assert likeness._independent_values(*moving) == pytest.approx(4096.0, rel=0.1)
+    assert alignment._independent_values(*moving) == pytest.approx(4096.0, rel=0.1)
 
 
 def test_turned_triples_are_all_rows_in_one_plane_and_take_little_memory():

@@ -11,7 +11,7 @@ from motion_files import wiggle, write_at2
 from national_files import unam_text
 from waveform_files import trace
 
-from rockbatch.motions import ReadOptions, likeness, read_motions
+from rockbatch.motions import ReadOptions, alignment, likeness, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation
 
@@ -191,7 +191,7 @@ def test_a_few_waves_are_no_copies_of_each_other_however_they_correlate(cycles, 
     t, north = np.linspace(0.0, 1.0, 400), Orientation("NS", azimuth=0.0)
     waves = (np.hanning(400) * sum(np.sin(2 * np.pi * c * k * t) for c in cycles) for k in (1.0, stretched))
     first, second = (Component("r", 0.01, wave, north) for wave in waves)
-    assert likeness.correlation(first.acceleration, second.acceleration) > 0.95
+    assert alignment.correlation(first.acceleration, second.acceleration) > 0.95
     assert likeness._are_one_recording(first, second) is one
 
 
