@@ -15,6 +15,11 @@ def fits(name: str, pattern: str) -> bool:
     return name == pattern or fnmatchcase(name, pattern)
 
 
+def fits_any(name: str, patterns: Iterable[str]) -> bool:
+    """Return whether a name is one of ``patterns``, or matches one as a glob; False without any."""
+    return any(fits(name, pattern) for pattern in patterns)
+
+
 def chosen(pattern: str, names: Iterable[str]) -> list[str]:
     """Return the names that ``pattern`` chooses: the one that equals it, else those that it matches as a glob, or []."""
     names = list(names)

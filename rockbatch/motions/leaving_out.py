@@ -5,11 +5,11 @@ from pathlib import PurePosixPath
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
+from rockbatch.common.naming import fits
 from rockbatch.common.showing import shown
 from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
-from rockbatch.motions.plausible import matches_any
 from rockbatch.motions.stations import station_of
 
 Reading = Component | Unusable | LeftOut
@@ -76,7 +76,7 @@ class LeaveOut:
     def _fitting(self, *names: str) -> str:
         """Return the first pattern that fits one of these names, and remember all that do; "" if none does."""
         self._names.update(dict.fromkeys(filter(None, names)))
-        fitting = [pattern for pattern in self._patterns if any(matches_any(name, [pattern]) for name in names)]
+        fitting = [pattern for pattern in self._patterns if any(fits(name, pattern) for name in names)]
         self._matched.update(fitting)
         return fitting[0] if fitting else ""
 

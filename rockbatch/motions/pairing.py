@@ -11,6 +11,7 @@ import numpy as np
 
 from rockbatch.common.errors import Contradiction, InputError, NoDirection
 from rockbatch.common.grouping import distinct, grouped
+from rockbatch.common.naming import fits_any
 from rockbatch.common.showing import shown
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.alignment import same_step
@@ -22,7 +23,7 @@ from rockbatch.motions.motion import Finding, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import with_direction
-from rockbatch.motions.plausible import ANY, Candidate, confirmation_request, findings, in_a_borehole, matches_any
+from rockbatch.motions.plausible import ANY, Candidate, confirmation_request, findings, in_a_borehole
 from rockbatch.motions.stations import by_station, is_numbered, station_names, station_of
 
 _NO_VERTICAL = (
@@ -108,7 +109,7 @@ def _confirmed_motions(
     unusable: list[Unusable] = []
     for candidate in candidates:
         motion, motion_findings = candidate.motion, findings(candidate)
-        by_study = {key for key, names in patterns.items() if matches_any(motion.name, names)}
+        by_study = {key for key, names in patterns.items() if fits_any(motion.name, names)}
         keys = by_study.union(candidate.component.confirmed)
         if motion.lacks_vertical and required:
             reason = f"{motion.label} {_NO_VERTICAL}"

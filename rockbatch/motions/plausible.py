@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockbatch.common.naming import fits
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
 from rockbatch.motions.alignment import Copy, copy_between, same_step
@@ -423,8 +422,3 @@ def confirmation_request(name: str, findings: Sequence[Finding], confirmed: Coll
         f'{"; ".join(finding.text for finding in unconfirmed)}; if it is right, write {key} = ["{name}"] under [motions] '
         f"in the study, or {key} = true in motions.toml"
     )
-
-
-def matches_any(name: str, patterns: Sequence[str]) -> bool:
-    """Return whether a record's name is one of ``patterns``, or matches one as a glob; False without any."""
-    return any(fits(name, pattern) for pattern in patterns)

@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
+from rockbatch.common.naming import fits_any
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
 from rockbatch.motions.motion import Motion, Samples, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.pairs import RULE_NAMES, TWO_COMPONENT_RULES, pairing_obstacle, station_spectra
-from rockbatch.motions.plausible import matches_any
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
 
@@ -101,7 +101,7 @@ def at_target(
     for motion, factor in zip(paired, target.factors_of(paired, gravity), strict=True):
         if math.isinf(factor):
             unusable.append(Unusable(motion.name, motion.files, f"has no motion that can be scaled to {target}"))
-        elif isinstance(target, SpectrumTarget) and factor > MOST_FACTOR and not matches_any(motion.name, confirmed):
+        elif isinstance(target, SpectrumTarget) and factor > MOST_FACTOR and not fits_any(motion.name, confirmed):
             unusable.append(Unusable(motion.name, motion.files, _too_weak(motion, factor, target, gravity)))
         elif factor == 1.0:
             motions.append(motion)
@@ -185,7 +185,7 @@ def scale_verticals(
     reasons: dict[str, str] = {}
     if target is not None:
         as_recorded = [replace(m, vertical=recorded[m.name]) for m in motion_set.motions if m.vertical is not None]
-        named = [motion.of_station for motion in motion_set.motions if matches_any(motion.name, confirmed)]
+        named = [motion.of_station for motion in motion_set.motions if fits_any(motion.name, confirmed)]
         scaled = at_target(MotionSet(verticals(as_recorded)), target, gravity, named)
         factors = {motion.name: motion.factor for motion in scaled}
         reasons = {file.name: file.reason for file in scaled.unusable}
