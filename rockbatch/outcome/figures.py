@@ -25,6 +25,7 @@ from rockbatch.common.figures.description import (
     thin,
     without_repeats,
 )
+from rockbatch.common.statuses import Status
 from rockbatch.pier import device_names, yield_deflection
 
 Response = Any
@@ -78,7 +79,7 @@ class History:
         Force against deflection of each spring, or loops of a footing's bed; force against elongation of the first devices.
     """
 
-    status: str
+    status: Status
     curves: list[tuple[Array, Array]]
     impacts: Array
     separations: Array

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any, NamedTuple
 
+from rockbatch.common.statuses import Status
+
 RELEASED = "theta_max is the rotation from which the pier was let go, which it did not exceed"
 """Note on a run whose greatest rotation is its initial one."""
 
@@ -102,7 +104,7 @@ class Outcome:
 
     Attributes
     ----------
-    status : str
+    status : Status
         "ok", "overturned", "flight" (the run was stopped by it) or "failed".
     reason : str
         Reason that it failed or left the ground, for people; empty otherwise.
@@ -176,7 +178,7 @@ class Outcome:
         Rows of tables beside peaks.csv by file, if requested; empty for a mirror image.
     """
 
-    status: str
+    status: Status
     reason: str
     theta_max: float
     t_max: float

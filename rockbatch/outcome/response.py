@@ -12,6 +12,7 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
+from rockbatch.common.statuses import Status
 from rockbatch.common.units import ColumnUnits
 from rockbatch.pier import Base, Pier, place_names
 
@@ -82,7 +83,7 @@ class Response(Shown):
         The block.
     base : RigidBase, ElasticBase or YieldingBase
         The base under it.
-    status : str
+    status : Status
         "ok", "overturned", "flight" (the run was stopped by it) or "failed".
     history : DataFrame, one row per instant
         ``t`` [s]; ``theta`` [rad], positive tilts right; ``omega`` = dθ/dt [rad/s]; ``v`` [m], the centre of
@@ -146,7 +147,7 @@ class Response(Shown):
     columns: dict[str, float | str]
     pier: Pier
     base: Base
-    status: str
+    status: Status
     history: "pd.DataFrame" = field(repr=False)
     events: "pd.DataFrame" = field(repr=False)
     ledger: "pd.DataFrame | None" = field(default=None, repr=False)

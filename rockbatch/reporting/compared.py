@@ -5,6 +5,7 @@ import math
 from dataclasses import replace
 
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, standing, worst_of_all
+from rockbatch.common.statuses import NOT_STANDING
 from rockbatch.quantities.catalogue import COLUMNS
 from rockbatch.quantities.labels import plain
 from rockbatch.reporting.differing import differences
@@ -20,7 +21,6 @@ from rockbatch.reporting.sections.answer import responses
 from rockbatch.reporting.sections.peaks import on_scale, outcome
 from rockbatch.reporting.table import MOST_ROWS, THETA, THETA_FORMAT, Head, table
 from rockbatch.results.labelled import as_dicts
-from rockbatch.results.suite_statistics import NO_PEAK
 
 INDEPENDENT = ("theta_max_over_alpha", "settlement_m", "base_tilt_rad", "ductility")
 """Responses that are compared in a sentence; drift and uplift go with the rotation."""
@@ -54,7 +54,7 @@ def _responses(studies: list[Finished], responses: list[dict[str, Worst]], stood
 
     One before it has the numbers of runs that do not end standing, if any; if none stands in both, it says so instead.
     """
-    lost = [int(study.runs["status"].isin((*NO_PEAK, "failed")).sum()) for study in studies]
+    lost = [int(study.runs["status"].isin(NOT_STANDING).sum()) for study in studies]
     total = counted(len(studies[0].runs), "run")
     ended = f"Of {total} in common {lost[0]} of A and {lost[1]} of B do not end standing. " if any(lost) else ""
     in_both = {name: [w[name] for w in responses] for name in INDEPENDENT if all(name in w for w in responses)}

@@ -6,6 +6,7 @@ from typing import Any, TypeVar
 from rockbatch.checks import wording
 from rockbatch.checks.responses import PEAKS
 from rockbatch.common.lazy import pd
+from rockbatch.common.statuses import NOT_STANDING
 from rockbatch.outcome.outcome import LEANS
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
@@ -156,7 +157,7 @@ def _end_of_caption(finished: Finished) -> str:
 def groups_worst_first(runs: "pd.DataFrame", by: str) -> list[Any]:
     """Return the distinct values of column ``by``, worst first: by overturned runs, then flights, failed runs, rotation."""
     groups = runs[by]
-    ended = [(runs["status"] == status).groupby(groups).sum() for status in ("overturned", "flight", "failed")]
+    ended = [(runs["status"] == status).groupby(groups).sum() for status in NOT_STANDING]
     stood = runs["theta_max_over_alpha"].where(runs["status"] == "ok").groupby(groups).max().fillna(0.0)
     return sorted(stood.index, key=lambda row: (*(-int(count[row]) for count in ended), -float(stood[row]), row))
 

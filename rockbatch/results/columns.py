@@ -13,6 +13,7 @@ import numpy as np
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
+from rockbatch.common.statuses import STATUSES
 from rockbatch.common.units import ColumnUnits
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.outcome.outcome import Failure, Outcome
@@ -24,8 +25,6 @@ from rockbatch.study import Case, Study
 
 JOURNAL = f"{PEAKS}.part"
 """Finished runs of an unfinished table."""
-
-STATUSES = ("ok", "overturned", "flight", "failed")
 
 
 class StudyRun(NamedTuple):

@@ -27,13 +27,14 @@ from rockbatch.common.figures.description import (
 )
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
+from rockbatch.common.statuses import NO_PEAK
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import is_across
 from rockbatch.quantities.labels import record_labels
 from rockbatch.quantities.rows import counts_as
 from rockbatch.results.labelled import Item, Labelled, Row, as_dicts, by_pga, ceiling, groups_of
 from rockbatch.results.labels import Series
-from rockbatch.results.suite_statistics import NO_PEAK, distribution, worst_records
+from rockbatch.results.suite_statistics import distribution, worst_records
 
 THETA = "θ_max/α"
 VISIBLE = 0.015

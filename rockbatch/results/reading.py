@@ -17,10 +17,11 @@ from rockbatch.common.errors import EditedTable, InputError, MissingColumns, Not
 from rockbatch.common.files import CHANGED, csv_plain, legible, opened, opened_text, read_text, sha256_of
 from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
+from rockbatch.common.statuses import STATUSES
 from rockbatch.common.version import __version__
 from rockbatch.quantities.catalogue import COUNTS, FACTS, FIXED, TEXTS, TRAILING, UNBOUNDED, names
 from rockbatch.quantities.rows import PEAKS
-from rockbatch.results.columns import STATUSES, numbers_or_words
+from rockbatch.results.columns import numbers_or_words
 from rockbatch.results.labelled import Item
 from rockbatch.results.run_json import INFO, SHAPE
 from rockbatch.results.shape import unfit

@@ -9,10 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.lazy import pd
+from rockbatch.common.statuses import NO_PEAK
 from rockbatch.quantities.statistics import Values, quantiles
-
-NO_PEAK = ("overturned", "flight")
-"""Statuses without a largest rotation: they count as infinite."""
 
 
 def worst_records(runs: "pd.DataFrame", most: int) -> list[str]:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from rockbatch.common.lazy import pd
+from rockbatch.common.statuses import Status
 from rockbatch.core import types
 from rockbatch.core.flexure.model import Flexing
 from rockbatch.core.flexure.modes import MOST_MODES
@@ -49,7 +50,7 @@ def cycles_of(base: Base, rows: np.recarray) -> HalfCycles:
 
 def histories(
     recording: Recording,
-    status: str,
+    status: Status,
     case: str,
     columns: dict[str, float | str],
     observers: Sequence[Observer] = (),

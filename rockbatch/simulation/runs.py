@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rockbatch.common.statuses import Status
 from rockbatch.core import types
 from rockbatch.core.clock import ON_ITS_SIDE
 from rockbatch.core.devices.lanes import Equipment, equipment_of, signature
@@ -40,7 +41,7 @@ from rockbatch.simulation.steps import first_substeps, least_substeps, patience,
 MOST_STEPS = 1e8
 """Greatest number of steps of a run, about 15 s of computing."""
 
-_STATUS = {
+_STATUS: dict[int, Status] = {
     types.SURVIVED: "ok",
     types.RESTLESS: "ok",
     types.LATE_FLIGHT: "ok",

@@ -28,6 +28,7 @@ from rockbatch.analyses.fragility.windows import Windows, windows
 from rockbatch.batch.listening import count
 from rockbatch.checks.rules import Rule
 from rockbatch.common.grouping import grouped
+from rockbatch.common.statuses import NOT_STANDING
 from rockbatch.motions import Motion
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.results.run_json import describe_case
@@ -389,7 +390,7 @@ def _is_doubtful(run: CloudPoint) -> bool:
 
 
 def _stripe_of_one(run: CloudPoint, plan: LevelPlan) -> Stripe:
-    ends = (int(run.status == status) for status in ("overturned", "flight", "failed"))
+    ends = (int(run.status == status) for status in NOT_STANDING)
     counts = (int(run.state != LEFT_OUT), int(run.state == EXCEEDED), int(run.state == UNDECIDED))
     factor = plan.factor(run.motion, run.intensity)
     return Stripe(run.intensity, *counts, *ends)._replace(scale_least=factor, scale_median=factor, scale_most=factor)
@@ -426,7 +427,7 @@ def _stripes(
         used = [(c, m) for c, m in members if x in plans[c].used[m]]
         ended = Counter(runs.status_at(m, x, c) for c, m in used)
         counts = [int(np.count_nonzero(chosen)) for chosen in (row != LEFT_OUT, row == EXCEEDED, row == UNDECIDED)]
-        ends = [ended[status] for status in ("overturned", "flight", "failed")]
+        ends = [ended[status] for status in NOT_STANDING]
         factors = [plans[c].factor(m, x) for c, m in used]
         least, middle, most = np.quantile(factors, [0.0, 0.5, 1.0]).tolist() if factors else 3 * [math.nan]
         not_used = sum(x in plans[c].not_used[m] for c, m in members)

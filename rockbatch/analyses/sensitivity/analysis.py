@@ -24,6 +24,7 @@ from rockbatch.batch.threads import Engine
 from rockbatch.common.arguments import checked
 from rockbatch.common.files import opened_text
 from rockbatch.common.lazy import pd
+from rockbatch.common.statuses import NO_PEAK
 from rockbatch.quantities.statistics import STATISTICS, Values
 from rockbatch.study import Motions, Study
 from rockbatch.workflow.analysis import Analysis, AnalysisFolder, run_analysis
@@ -148,7 +149,7 @@ def counted_as(status: str, theta_max_over_alpha: float, overturned: float) -> f
 
     A failed run counts with its best value, or as overturned if it has none.
     """
-    if status in ("overturned", "flight") or np.isnan(theta_max_over_alpha):
+    if status in NO_PEAK or np.isnan(theta_max_over_alpha):
         return overturned
     return min(theta_max_over_alpha, overturned)
 

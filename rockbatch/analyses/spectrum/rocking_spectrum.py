@@ -18,6 +18,7 @@ from rockbatch.batch.plan import Made, Plan, Runs
 from rockbatch.common.analyses import Entry
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
+from rockbatch.common.statuses import NOT_STANDING
 from rockbatch.motions import Motion, MotionSet, measures
 from rockbatch.results.columns import StudyRun, row
 from rockbatch.results.suite_statistics import suite
@@ -115,7 +116,7 @@ def of_suite(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
         statistics = asdict(suite(runs["theta_max_over_alpha"].to_numpy(float), runs["status"].tolist()))
         statistics["p16"], statistics["p84"] = statistics.pop("low"), statistics.pop("high")
         rows.append(dict(zip(keys, names, strict=True)) | _sizes(runs, varied) | statistics)
-    shown = ("count", "p16", "median", "p84", "largest", "overturned", "flight", "failed")
+    shown = ("count", "p16", "median", "p84", "largest", *NOT_STANDING)
     return pd.DataFrame(rows, columns=[*dict.fromkeys((*keys, *_sizes(table, varied), *shown))])
 
 

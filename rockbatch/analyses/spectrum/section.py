@@ -3,13 +3,12 @@
 from rockbatch.analyses.spectrum.answer import answer, of_maps, of_spectra
 from rockbatch.analyses.spectrum.figures import QUANTILES, maps, spectra
 from rockbatch.common.lazy import pd
+from rockbatch.common.statuses import NOT_STANDING
 from rockbatch.quantities.labels import plain
 from rockbatch.reporting.finished_analysis import FinishedAnalysis, of_analysis
 from rockbatch.reporting.labels import heading
 from rockbatch.reporting.markup import Markup, figure, join, paragraphs, tag
 from rockbatch.reporting.svg import drawn
-
-COUNTS = ("overturned", "flight", "failed")
 
 
 @of_analysis("spectrum")
@@ -18,7 +17,7 @@ def section(analysis: FinishedAnalysis) -> Markup:
     answers: list[tuple[list[str], list[str]]] = []
     figures: list[Markup] = []
     methods: list[str] = []
-    suite = analysis.table("spectrum_suite.csv", ("case", "alpha", "count", *QUANTILES, *COUNTS))
+    suite = analysis.table("spectrum_suite.csv", ("case", "alpha", "count", *QUANTILES, *NOT_STANDING))
     if suite is not None:
         answers.append(of_spectra(analysis.info, suite))
         figures.append(_spectra(analysis, suite))

@@ -5,13 +5,14 @@ from typing import Any
 import numpy as np
 
 from rockbatch.checks.omissions import FACTORS
+from rockbatch.common.statuses import CUT_SHORT
 from rockbatch.quantities.cases import bends, has_light_shaft, is_frame, lands_by_impulse
 from rockbatch.quantities.catalogue import report_columns
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import head
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.sections.peaks import every_run, on_scale
-from rockbatch.reporting.sections.worst import CUT_SHORT, of_cases
+from rockbatch.reporting.sections.worst import of_cases
 from rockbatch.reporting.table import Head
 from rockbatch.reporting.templates import render
 

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.lazy import pd
+from rockbatch.common.statuses import NO_PEAK
 from rockbatch.observers.intensity.table import MEANING
-from rockbatch.results.suite_statistics import NO_PEAK
 
 LEAST_RUNS = 3
 """Fewest runs with values for a rank correlation or a regression line."""

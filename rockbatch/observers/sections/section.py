@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from itertools import islice
 
 from rockbatch.common.lazy import pd
+from rockbatch.common.statuses import CUT_SHORT
 from rockbatch.observers.sections.figure import over_height
 from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup
-from rockbatch.reporting.sections.worst import CUT_SHORT
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import Head, alarm, table
 from rockbatch.reporting.templates import render

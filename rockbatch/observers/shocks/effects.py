@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rockbatch.common.statuses import NO_PEAK
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.observers.shocks.outcome import ShockOutcome
 from rockbatch.outcome.outcome import Outcome
@@ -66,7 +67,7 @@ def _effects(run: Run, outcome: Outcome, rows: np.recarray, peaks: list[tuple[fl
     shocks = run.motion.shocks
     of_run = max(i for i, shock in enumerate(shocks) if shock.start <= outcome.t_max + _AT_ONCE)
     peaks[of_run] = outcome.theta_max, outcome.t_max  # the run's peak over all steps, not only rows
-    ended = outcome.t_end if outcome.status in ("overturned", "flight") else math.inf
+    ended = outcome.t_end if outcome.status in NO_PEAK else math.inf
     lean, settlement = _rest_state(run, rows)
     outcomes = []
     for shock, (theta, t) in zip(shocks, peaks, strict=True):

@@ -13,6 +13,7 @@ from rockbatch.checks.responses import LOST, RESPONSES, Worst, heights_of, in_wo
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import capital
+from rockbatch.common.statuses import NO_PEAK
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.quantity import FOOTING, SETTLING
 from rockbatch.quantities.rows import NOT_RUN
@@ -153,7 +154,7 @@ def _without_a_result(finished: Finished) -> Iterator[Markup]:
     runs = finished.runs
     if runs.empty:
         yield alarm("No ground motion could be used: there are no results.")
-    overturned, flown = (runs[runs["status"] == status] for status in ("overturned", "flight"))
+    overturned, flown = (runs[runs["status"] == status] for status in NO_PEAK)
     share = f"{len(overturned):,} of {counted(len(runs), 'run')}"
     stops = f"In {counted(len(flown), 'run')} both pivots leave the ground, and the analysis stops there"
     for ended, words, time in (

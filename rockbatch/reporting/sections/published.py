@@ -3,13 +3,13 @@
 import math
 
 from rockbatch.common.naming import fits
+from rockbatch.common.statuses import NOT_STANDING
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import symbol
 from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.reporting.sections.peaks import outcome
 from rockbatch.reporting.table import THETA, THETA_FORMAT, Head, table
 from rockbatch.results.labelled import Row, as_dicts
-from rockbatch.results.suite_statistics import NO_PEAK
 
 
 def section(finished: Finished) -> Markup:
@@ -29,7 +29,7 @@ def section(finished: Finished) -> Markup:
         case, theirs, source = reference["case"], reference["theta_max_over_alpha"], reference["source"]
         fits = [run for run in as_dicts(runs[runs["case"] == case]) if _fits(run, reference)]
         for run in fits:
-            ours = run["theta_max_over_alpha"] if run["status"] not in (*NO_PEAK, "failed") else None
+            ours = run["theta_max_over_alpha"] if run["status"] not in NOT_STANDING else None
             difference = 100 * (ours / theirs - 1) if ours is not None and theirs else None
             values = [run[key] for key in keys]
             rows.append([finished.shown(run["record"]), case, *values, outcome(run), theirs, difference, source])

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from rockbatch.common.lazy import pd
+from rockbatch.common.statuses import NOT_STANDING
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import COLUMNS
 from rockbatch.quantities.rows import counts_as
@@ -129,7 +130,7 @@ def _cell(s: Statistics | None, name: str, form: str) -> object:
     if s is None:
         return None
     value = getattr(s, name)
-    if name in ("overturned", "flight", "failed"):
+    if name in NOT_STANDING:
         return alarm(str(value)) if value else value
     if isinstance(value, int):
         return value

@@ -1,15 +1,13 @@
 """Tables of the worst runs of every case."""
 
 from rockbatch.common.lazy import pd
+from rockbatch.common.statuses import CUT_SHORT
 from rockbatch.quantities.quantity import Quantity
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import head
 from rockbatch.reporting.markup import Markup, join, number
 from rockbatch.reporting.sections.peaks import on_scale
 from rockbatch.reporting.table import Head, alarm, table
-
-CUT_SHORT = ("flight", "failed")
-"""Statuses of runs that ended early: their values are only bounds."""
 
 
 def of_cases(finished: Finished, shown: list[Quantity], name: str) -> Markup:
