@@ -31,9 +31,10 @@ IDLE = Element(
 """A forceless element in the middle of the base, from which others are made."""
 
 
-def elements(pier: Pier, base: Base) -> list[Element]:
+@lru_cache(maxsize=4096)
+def elements(pier: Pier, base: Base) -> tuple[Element, ...]:
     """Return the core's numbers for the devices of ``base``, one Element for each place, per unit mass."""
-    return [_element(pier, base, device, place) for device in base.restraints for place in places(pier, device)]
+    return tuple(_element(pier, base, device, place) for device in base.restraints for place in places(pier, device))
 
 
 def _element(pier: Pier, base: Base, device: Restraint, place: Place) -> Element:
@@ -121,7 +122,6 @@ def accelerance(pier: Pier, base: Base, element: Element) -> float:
     return 1.0 + element.offset**2 / (pier.inertia + pier.height**2)
 
 
-@lru_cache(maxsize=4096)
 def prestress(pier: Pier, base: Base) -> float:
     """Return Σ P0/M of all tendons [m/s²], counted at every place; 0 without any."""
     return sum(law.prestress for law in elements(pier, base))
