@@ -11,6 +11,7 @@ from rockbatch.common.showing import shown
 from rockbatch.common.units import POSITIVE
 from rockbatch.pier.block import Pier
 from rockbatch.pier.devices import (
+    DAMPERS,
     FIRMEST,
     LEAST_FORCE,
     SOFTEST,
@@ -23,9 +24,6 @@ from rockbatch.pier.devices import (
 )
 
 DamperKind = Literal["friction", "viscous", "hysteretic"]
-
-DAMPERS = {"friction": ("f",), "hysteretic": ("f", "yield_m"), "viscous": ("nu", "exponent")}
-"""Names of the fields that each kind of damper uses."""
 
 SPEED = 0.1
 """Speed [m/s] at which a viscous damper should have less than the pier's weight; heels of rocking piers reach 0.1 to 1 m/s."""
@@ -131,8 +129,13 @@ class Damper(Device):
         values = {"coefficient_kN_s_m": coefficient_kN_s_m, "exponent": exponent} | if_finite(brace_kN_m=brace_kN_m)
         return cls("viscous", **over_weight(pier, **values), **rest)._usual_under(pier)
 
-    def _measured(self) -> Sequence[str]:
-        return DAMPERS.get(self.kind, ())
+    @property
+    def law(self) -> str:
+        return self.kind
+
+    @property
+    def words(self) -> str:
+        return f"{self.kind} damper"
 
     def _wrong(self) -> list[Problem]:
         wrong = _wrong_place(self)

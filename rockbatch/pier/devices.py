@@ -24,6 +24,13 @@ BOUNDS = {
 """Possible values of devices. Forces above ten times the weight suggest a wrong unit; fluid dampers have exponents of
 0.15 to 1, and an exponent of 0 is friction."""
 
+DAMPERS = {"friction": ("f",), "hysteretic": ("f", "yield_m"), "viscous": ("nu", "exponent")}
+"""Names of the fields that each kind of damper uses."""
+
+FIELDS = DAMPERS | {"tendon": ("psi", "lam"), "stop": ("gap_m", "lam", "restitution")}
+FIELDS["deck_spring"] = FIELDS["stop"]
+"""Names of the bounded fields by law of device; a tendon's yield force is checked apart."""
+
 FIRMEST = {"stop": 1e-4, "deck_spring": 1e-3, "damper": 1e-3}
 """Least deflection under the weight of the whole pier [m] of a stop, deck spring or damper's brace: a steel block of a
 metre gives way by a tenth of a millimetre, abutments and braces by 5 to 500 mm."""
@@ -62,17 +69,23 @@ class Device(InNotebook, ABC):
         """Names by which the catalogue selects quantities: that of the device's table, and of a yielding tendon a second one."""
         return (self.what,)
 
+    @property
+    def law(self) -> str:
+        """Name of its law, by which :data:`FIELDS` has the fields that it uses: that of its table, or the kind of a damper."""
+        return self.what
+
+    @property
+    def words(self) -> str:
+        """Its kind in words: "friction damper", "deck spring"."""
+        return self.what.replace("_", " ")
+
     def __post_init__(self) -> None:
         refuse(placed(self._wrong(), self.what))
-
-    @abstractmethod
-    def _measured(self) -> Sequence[str]:
-        """Return the names of the fields that are used and have :data:`BOUNDS`."""
 
     def _wrong(self) -> list[Problem]:
         """Return a problem for each field that is impossible under any pier."""
         wrong = []
-        for name in self._measured():
+        for name in FIELDS.get(self.law, ()):
             wrong += BOUNDS[name].problems(name.replace("lam", "lambda"), getattr(self, name))
         return wrong
 

@@ -26,7 +26,7 @@ from rockbatch.pier.block import Pier
 from rockbatch.pier.equilibrium import Equilibria
 from rockbatch.pier.free_rocking import Swings
 from rockbatch.pier.places import Place, places
-from rockbatch.pier.restraints import Damper, Restraint
+from rockbatch.pier.restraints import Restraint
 
 MOST_SHEETS = COLOURS * DASHES
 """Most cases that are drawn: colours times dashes."""
@@ -111,11 +111,7 @@ def _over(across: str, up: str, lines: Sequence[Polyline], caption: str, fixed: 
 
 def devices(pier: Pier, restraints: Sequence[Restraint]) -> tuple[tuple[str, Place], ...]:
     """Return the kind and place of every device, such as ("friction damper", Place(…))."""
-    placed = []
-    for restraint in restraints:
-        kind = f"{restraint.kind} damper" if isinstance(restraint, Damper) else restraint.what.replace("_", " ")
-        placed += [(kind, place) for place in places(pier, restraint)]
-    return tuple(placed)
+    return tuple((restraint.words, place) for restraint in restraints for place in places(pier, restraint))
 
 
 class _Shape(NamedTuple):

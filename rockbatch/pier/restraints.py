@@ -9,7 +9,7 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import OutOfRange, Problem, WrongType
 from rockbatch.common.showing import shown
 from rockbatch.pier.block import Pier
-from rockbatch.pier.dampers import DAMPERS, Damper
+from rockbatch.pier.dampers import Damper
 from rockbatch.pier.devices import (
     FIRMEST,
     LEAST_FORCE,
@@ -29,10 +29,6 @@ Side = Literal["both", "left", "right"]
 
 HEIGHT = OF_PIER["deck_height_m"]
 """Heights at which a spring may act on the deck [m]."""
-
-FIELDS = DAMPERS | {"tendon": ("psi", "lam"), "stop": ("gap_m", "lam", "restitution")}
-FIELDS["deck_spring"] = FIELDS["stop"]
-"""Names of the bounded fields by kind of device; a tendon's yield force is checked apart."""
 
 YIELDING_TENDON = "yielding tendon"
 
@@ -114,9 +110,6 @@ class Tendon(Device):
     def kinds(self) -> tuple[str, ...]:
         return (self.what, YIELDING_TENDON) if self.strength < math.inf else (self.what,)
 
-    def _measured(self) -> Sequence[str]:
-        return FIELDS[self.what]
-
     def _wrong(self) -> list[Problem]:
         wrong = wrong_words(self.at, "left", "right") + super()._wrong()
         if self.strength <= self.psi:
@@ -195,9 +188,6 @@ class Stop(Device):
         values = {"gap_mm": gap_mm, "stiffness_kN_m": stiffness_kN_m, "restitution": restitution}
         return cls(**over_weight(pier, **values), **rest)._usual_under(pier)
 
-    def _measured(self) -> Sequence[str]:
-        return FIELDS[self.what]
-
     def _wrong(self) -> list[Problem]:
         return wrong_words(self.at, "left", "right") + super()._wrong()
 
@@ -265,9 +255,6 @@ class DeckSpring(Device):
     def linear(self) -> bool:
         """True if the spring acts in tension and compression alike, without gap and loss."""
         return self.side == "both" and self.gap_m == 0.0 and self.restitution == 1.0
-
-    def _measured(self) -> Sequence[str]:
-        return FIELDS[self.what]
 
     def _wrong(self) -> list[Problem]:
         wrong = HEIGHT.problems("height_m", self.height_m)

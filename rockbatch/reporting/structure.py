@@ -8,7 +8,6 @@ from typing import Any
 from rockbatch.common.errors import InputError
 from rockbatch.pier import (
     Base,
-    Damper,
     DeckSpring,
     Pier,
     Restraint,
@@ -107,18 +106,17 @@ def device_in_words(pier: Pier, restraint: Restraint, digits: int = 4) -> str:
 
     Infinite values are left out. A hysteretic damper ends with the exponent n of its law.
     """
-    kind = restraint.kind if isinstance(restraint, Damper) else restraint.what
     fields = fields_of(pier)
     values = {}
-    for key in KEYS_OF[kind]:
+    for key in KEYS_OF[restraint.law]:
         if key in fields and _PREFERRED.get(key) not in fields:
             field, divisor = fields[key]
             values[key] = getattr(restraint, field) * divisor
     power = values.pop("exponent", 1.0) if "coefficient_kN_s_m" in values else 1.0
-    words = f"{kind} damper" if isinstance(restraint, Damper) else _NAMED.get(kind, kind)
+    words = _NAMED.get(restraint.what, restraint.words)
     names = DEVICE_SYMBOLS | _OF_STOP if restraint.what in _NAMED else DEVICE_SYMBOLS
     numbers = [_parameter(*names[key], value, power, digits) for key, value in values.items() if value < float("inf")]
-    numbers += [f"n\u00a0=\u00a0{STEEL_EXPONENT:g}"] if kind == "hysteretic" else []
+    numbers += [f"n\u00a0=\u00a0{STEEL_EXPONENT:g}"] if restraint.law == "hysteretic" else []
     return ", ".join([f"{words} {_place(restraint)}", *numbers])
 
 

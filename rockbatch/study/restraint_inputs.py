@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from rockbatch.common.errors import Problem
 from rockbatch.common.showing import shown
-from rockbatch.pier import Damper, Pier, Restraint, fields_of
+from rockbatch.pier import Pier, Restraint, fields_of
 from rockbatch.study.restraint_keys import FIELD_OF, IN_KN, KEYS_OF, RESTRAINTS
 from rockbatch.study.spec import Case
 
@@ -42,9 +42,9 @@ def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter
     counts: Counter[str] = Counter()
     given_by = fields_of(pier)
     for place, device in enumerate(restraints):
-        table, kind = device.what, device.kind if isinstance(device, Damper) else device.what
+        table = device.what
         counts[table] += 1
-        for key in KEYS_OF[kind]:
+        for key in KEYS_OF[device.law]:
             if key in given_by and getattr(device, given_by[key][0]) != math.inf:
                 parameters_by_name[f"{table}_{counts[table]}.{key}"] = Parameter(place, *given_by[key])
     return parameters_by_name
@@ -104,7 +104,7 @@ def why_none(name: str, cases: Iterable[Case]) -> str:
     for case in cases:
         devices = [device for device in case.base.restraints if device.what == what]
         most, heavy = max(most, len(devices)), heavy or case.pier.mass_t is not None
-        kinds |= {device.kind for device in devices if isinstance(device, Damper)}
+        kinds |= {device.law for device in devices}
     if not most:
         return f"no case of the study has a {what}"
     if number and int(number) > most:

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from rockbatch.common.errors import InputError, Problem, Unusual
 from rockbatch.common.units import in_other_units
 from rockbatch.pier import DeckSpring, Pier, Restraint, Stop, doubt, fields_of
-from rockbatch.pier.dampers import DAMPERS
-from rockbatch.pier.devices import BOUNDS
+from rockbatch.pier.devices import BOUNDS, DAMPERS
 from rockbatch.pier.plausibility import wrong_device
 from rockbatch.pier.restraints import KINDS
 from rockbatch.study.lists import Chosen, Grid

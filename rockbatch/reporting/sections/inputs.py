@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from rockbatch.pier import Damper, Pier, Restraint
-from rockbatch.pier.restraints import FIELDS
+from rockbatch.pier import Pier, Restraint
+from rockbatch.pier.devices import FIELDS
 from rockbatch.quantities.cases import Case
 from rockbatch.quantities.quantity import ENDINGS, in_print
 from rockbatch.reporting.drawings import drawings
@@ -165,7 +165,7 @@ def _in_words(pier: Pier | None, device: Restraint) -> str:
 
 def _numbers(device: Restraint) -> dict[str, Any]:
     """Return the fields that a device uses; those that are infinite or not given are left out."""
-    used = {*FIELDS[device.kind if isinstance(device, Damper) else device.what], "strength", "brace", "height_m"}
+    used = {*FIELDS[device.law], "strength", "brace", "height_m"}
     values = {name: getattr(device, name, None) for name in OF_DEVICE if name in used}
     return {name: value for name, value in values.items() if value is not None and value < float("inf")}
 
