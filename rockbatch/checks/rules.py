@@ -175,7 +175,12 @@ class Rule:
     @property
     def limit_key(self) -> str:
         """The key of the limit: "at_most" or "at_least", or "capacity" where the limit is a share of one."""
-        return self.sense.replace(" ", "_") if self.number_of_capacity is None else "capacity"
+        return self.bound_key if self.number_of_capacity is None else "capacity"
+
+    @property
+    def bound_key(self) -> str:
+        """The key of the bound that is given: "at_most", or else "at_least"."""
+        return "at_most" if self.at_most is not None else "at_least"
 
     @cached_property
     def ways(self) -> dict[str, str]:
@@ -451,7 +456,6 @@ def _misfits(rule: Rule) -> list[Problem]:
 
 def _wrong_limit(rule: Rule) -> Iterator[tuple[str, str]]:
     """Yield problems of the limit, each with its attribute: none, two, on the wrong side, or not finite."""
-    key = rule.sense.replace(" ", "_")
     if rule.at_most is not None and rule.at_least is not None:
         yield "at_least", "at_least: given beside at_most; keep one, and write the other as a check of its own"
     if rule.at_most is None and rule.at_least is None:
@@ -462,7 +466,7 @@ def _wrong_limit(rule: Rule) -> Iterator[tuple[str, str]]:
         limit = rule.limit
         yield "at_least", f"at_least = {limit:g}: more of {rule.demand} is worse; write at_most = {limit:g}"
     elif not math.isfinite(rule.limit):
-        yield key, f"{key} = {rule.limit:g}: must be a finite number"
+        yield rule.bound_key, f"{rule.bound_key} = {rule.limit:g}: must be a finite number"
 
 
 def _wrong_threshold(rule: Rule) -> Iterator[tuple[str, str]]:

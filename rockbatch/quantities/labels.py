@@ -124,8 +124,7 @@ def symbol_of(key: str, case: Case | None = None) -> tuple[str, str]:
     """
     if key in SYMBOLS or not (device := of_device(key)):
         return SYMBOLS.get(key, (key, ""))
-    symbol, unit = DEVICE_SYMBOLS.get(device.key, (device.key, ""))
-    unit = unit_with_exponent(unit, _exponent(case, device)) if case is not None else unit
+    symbol, unit = device.symbol(case)
     return (symbol if device.number == 1 else f"{device.words}: {symbol}"), unit
 
 
@@ -141,6 +140,11 @@ class OfDevice(NamedTuple):
         """Kind and number in words: "damper", "deck spring 2"."""
         kind = self.kind.replace("_", " ")
         return kind if self.number == 1 else f"{kind} {self.number}"
+
+    def symbol(self, case: Case | None) -> tuple[str, str]:
+        """Return symbol and unit of the key in its table, the key itself and "" without one; ``case`` as in :func:`symbol_of`."""
+        symbol, unit = DEVICE_SYMBOLS.get(self.key, (self.key, ""))
+        return symbol, unit if case is None else unit_with_exponent(unit, _exponent(case, self))
 
 
 def of_device(key: str) -> OfDevice | None:

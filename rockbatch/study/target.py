@@ -32,6 +32,7 @@ from rockbatch.study.target_keys import (
     PAIRS_OF_SA,
     SPECTRUM,
     TARGET,
+    VERTICAL,
 )
 from rockbatch.toml.kinds import KeyValues
 from rockbatch.toml.reader import Table
@@ -100,7 +101,7 @@ def _read_spectrum(table: Table, vertical: bool) -> SpectrumTarget | None:
     keys = SPECTRUM | of_code | CONFIRM
     if vertical:
         keys, unfit = {name: key for name, key in keys.items() if name != "pairs"}, unfit | _NO_PAIR
-    elif code.endswith("vertical"):
+    elif code == VERTICAL:
         table.complain(f"spectrum = {shown(code)}: is for [motions.vertical_target]", "spectrum")
     read = table.read(keys, unfit=unfit | _UNFIT_FOR_SPECTRUM)
     spectrum = _spectrum(table, code, read) if "spectrum" in read else None
@@ -128,7 +129,7 @@ def _spectrum(table: Table, code: str, read: KeyValues) -> Spectrum | None:
         table.complain(f"interpolation: is for tables, and {code} is none; leave it out", "interpolation")
     if code == "EN 1998-1":
         return _eurocode_spectrum(table, read, damping)
-    if code == "EN 1998-1 vertical":
+    if code == VERTICAL:
         return _vertical_spectrum(table, read, damping)
     if code:
         if damping != 0.05:
@@ -226,4 +227,4 @@ def _vertical_spectrum(table: Table, read: KeyValues, damping: float) -> Eurocod
     if "ag_g" not in read or not {"type", "avg_over_ag"} & read.keys():
         return None
     ratio = read.get("avg_over_ag") or VERTICAL_RATIO[read["type"]]
-    return EurocodeSpectrum(ratio * read["ag_g"], VERTICAL_SHAPE, damping, "EN 1998-1 vertical", amplification=3.0)
+    return EurocodeSpectrum(ratio * read["ag_g"], VERTICAL_SHAPE, damping, VERTICAL, amplification=3.0)

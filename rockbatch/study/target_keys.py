@@ -11,7 +11,9 @@ from rockbatch.toml.kinds import Choice, KindError, Number, Other, choice, not_n
 from rockbatch.toml.meant import names
 from rockbatch.toml.section import CONFIRM, Key, Section
 
-CODES = ("EN 1998-1", "ASCE 7", "AASHTO", "NZS 1170.5", "EN 1998-1 vertical")
+VERTICAL = "EN 1998-1 vertical"
+"""The only code here with a spectrum of vertical components."""
+CODES = ("EN 1998-1", "ASCE 7", "AASHTO", "NZS 1170.5", VERTICAL)
 
 
 def _spectrum_entry(value: object) -> str | tuple[float, float]:
@@ -188,7 +190,7 @@ KEYS_OF_CODE = {
     "ASCE 7": ASCE_KEYS,
     "AASHTO": AASHTO_KEYS,
     "NZS 1170.5": NZS_KEYS,
-    "EN 1998-1 vertical": _VERTICAL_KEYS,
+    VERTICAL: _VERTICAL_KEYS,
 }
 KEYS_OF_ANY_CODE = _VERTICAL_KEYS | NZS_KEYS | AASHTO_KEYS | ASCE_KEYS | EUROCODE_KEYS
 KEYS_OF_ANY_SPECTRUM = {name: replace(key, required=False) for name, key in (SPECTRUM | KEYS_OF_ANY_CODE).items()}

@@ -27,8 +27,8 @@ from rockbatch.common.figures.description import (
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import Case
+from rockbatch.quantities.labels import OfDevice, symbol_of
 from rockbatch.reporting.finished_analysis import case_of
-from rockbatch.reporting.labels import symbol
 from rockbatch.results.labelled import as_dicts
 from rockbatch.study.design_bounds import parted
 
@@ -57,9 +57,9 @@ def axis_label(path: str, case: Case | None = None) -> str:
     """
     _, *tables, name = path.split(".")
     kind, number = parted(tables[0]) if tables else ("", "")
-    label = symbol(f"{kind}_{number or 1}_{name}" if kind else name, case)
+    letter, unit = OfDevice(kind, int(number or 1), name).symbol(case) if kind else symbol_of(name, case)
     words = f"{' '.join(filter(None, (kind.replace('_', ' '), number)))}: " if kind else ""
-    return words + (label.replace("_", " ") if label == name else label.rpartition(": ")[2])
+    return words + (f"{letter} [{unit}]" if unit else letter.replace("_", " ") if letter == name else letter)
 
 
 def axis_of(varied: Entry, case: Case | None) -> Axis:
