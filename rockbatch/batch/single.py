@@ -16,6 +16,7 @@ from rockbatch.outcome.outcome import LEAST_NORMAL_SHARE, Outcome
 from rockbatch.outcome.response import Response
 from rockbatch.pier import Base, Pier, problems, unlikely_devices
 from rockbatch.pier.sections import section_heights
+from rockbatch.quantities.demands import SECTIONS
 from rockbatch.results import sections as of_sections
 from rockbatch.results.columns import StudyRun, as_series, row
 from rockbatch.simulation.error_control import run_to_tolerance
@@ -126,7 +127,7 @@ def simulate(
     finished = StudyRun(motion, "+", 1.0, Case(name, pier, foundation, {}), outcome=outcome)
     beside = {
         "row": as_series(row(finished)),
-        "sections": of_sections.as_table(outcome.tables[of_sections.SECTIONS]) if sections else None,
+        "sections": of_sections.as_table(outcome.tables[SECTIONS]) if sections else None,
         **{name: table(motion, outcome) for name, table in parts("table.OF_RESPONSE")},
     }
     if observers:

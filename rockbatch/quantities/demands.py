@@ -201,6 +201,9 @@ def largest_force(columns: tuple[str, ...], times: Lever, share: str) -> Evaluat
     return evaluate
 
 
+SECTIONS, INTERACTION = "sections.csv", "interaction.csv"
+"""Tables of forces in sections beside peaks.csv."""
+
 OF_SECTIONS = {
     "height_m": "height of the section above the pivots [m]",
     "section_shear_m_s2": "greatest shear across the axis, over the mass of the pier [m/s²]",

@@ -20,7 +20,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.outcome.response import Response
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case
-from rockbatch.quantities.demands import OF_SECTIONS
+from rockbatch.quantities.demands import OF_SECTIONS, SECTIONS
 from rockbatch.quantities.labels import record_labels
 from rockbatch.quantities.rows import NOT_RUN, counts_as, simulated
 from rockbatch.reporting.finished_analysis import Contents
@@ -29,7 +29,7 @@ from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.results.labelled import Labelled, Row, by_pga, foundation_key, groups_of, labelled, pier_key
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.reading import Saved
-from rockbatch.results.sections import SECTIONS, read_forces
+from rockbatch.results.sections import read_forces
 
 if TYPE_CHECKING:
     from pandas.core.groupby import DataFrameGroupBy

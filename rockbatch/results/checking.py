@@ -18,13 +18,13 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, alpha, top, width
-from rockbatch.quantities.demands import OF_INTERACTION, OF_SECTIONS
+from rockbatch.quantities.demands import INTERACTION, OF_INTERACTION, OF_SECTIONS, SECTIONS
 from rockbatch.quantities.rows import rows_of_cases, with_case
 from rockbatch.results.columns import given_table
 from rockbatch.results.labelled import Item
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.run_json import INFO, describe, describe_case
-from rockbatch.results.sections import INTERACTION, SECTIONS, read_forces
+from rockbatch.results.sections import read_forces
 from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
 from rockbatch.toml.reader import TomlFile

@@ -15,14 +15,14 @@ from rockbatch.common.observers import from_observer
 from rockbatch.common.showing import Shown, several, shown
 from rockbatch.outcome.response import Response
 from rockbatch.quantities.catalogue import in_words
-from rockbatch.quantities.demands import OF_SECTIONS
+from rockbatch.quantities.demands import OF_SECTIONS, SECTIONS
 from rockbatch.quantities.rows import simulated, with_case
 from rockbatch.results.beside_peaks import present
 from rockbatch.results.columns import with_units
 from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.labelled import Labelled, labelled
 from rockbatch.results.reading import Saved, read_saved
-from rockbatch.results.sections import SECTIONS, read_forces
+from rockbatch.results.sections import read_forces
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

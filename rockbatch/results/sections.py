@@ -10,8 +10,6 @@ from rockbatch.pier import Pier
 from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.results.beside_peaks import read_beside
 
-SECTIONS, INTERACTION = "sections.csv", "interaction.csv"
-
 
 def section_rows(pier: Pier, sections: Sequence[Section]) -> list[dict[str, Any]]:
     """Return a row for each section of a run of ``pier``; None for its forces in kN if the mass is not known."""

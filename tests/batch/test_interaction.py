@@ -9,8 +9,8 @@ from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.checks.judging import judge
 from rockbatch.checks.rules import Rule
-from rockbatch.quantities.demands import OF_INTERACTION
-from rockbatch.results.sections import INTERACTION, read_forces
+from rockbatch.quantities.demands import INTERACTION, OF_INTERACTION
+from rockbatch.results.sections import read_forces
 
 PIER = {"width_m": 3.0, "height_m": 14.0, "mass_t": 400.0, "deck_mass_t": 200.0}
 PULSES = [SINE | {"duration_s": 2.0}, COSINE | {"duration_s": 2.0}]

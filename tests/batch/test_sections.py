@@ -8,8 +8,7 @@ from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.commands.cli import main
-from rockbatch.quantities.demands import OF_SECTIONS
-from rockbatch.results.sections import SECTIONS
+from rockbatch.quantities.demands import OF_SECTIONS, SECTIONS
 
 PIER = {"width_m": 3.0, "height_m": 14.0, "mass_t": 400.0, "deck_mass_t": 200.0}
 CHECKS = [

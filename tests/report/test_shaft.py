@@ -12,10 +12,10 @@ import rockbatch as rb
 from rockbatch.common.errors import InputError
 from rockbatch.observers.sections import section as shaft
 from rockbatch.observers.sections.figure import over_height
+from rockbatch.quantities.demands import SECTIONS
 from rockbatch.reporting.finished import read
 from rockbatch.results.labelled import groups_of
 from rockbatch.results.reading import EditedTable
-from rockbatch.results.sections import SECTIONS
 
 PIER = {"width_m": 3.0, "height_m": 14.0, "mass_t": 400.0, "deck_mass_t": 200.0}
 

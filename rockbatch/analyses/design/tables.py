@@ -9,8 +9,8 @@ from rockbatch.analyses.design.study import DesignSpec
 from rockbatch.analyses.design.trials import Design, Judged, Trial, worse
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.demands import INTERACTION, SECTIONS
 from rockbatch.quantities.design import BOUND
-from rockbatch.results.sections import INTERACTION, SECTIONS
 
 RUNS, CHECKS = "design_runs.csv", "design_checks.csv"
 VALUES, INTERVALS = "design_values.csv", "design.csv"

@@ -22,10 +22,9 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.common.naming import chosen_by
 from rockbatch.motions import MotionSet
-from rockbatch.quantities.demands import OF_INTERACTION, OF_SECTIONS
+from rockbatch.quantities.demands import INTERACTION, OF_INTERACTION, OF_SECTIONS, SECTIONS
 from rockbatch.quantities.design import of_design
 from rockbatch.results.run_json import describe_case
-from rockbatch.results.sections import INTERACTION, SECTIONS
 from rockbatch.study import Case, Study
 from rockbatch.study.bound_keys import key_at
 from rockbatch.study.design_bounds import Change

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from rockbatch.motions.motion import Samples
+from rockbatch.observers.interaction import TABLE
 from rockbatch.observers.interaction.envelopes import Envelope, envelope, thinned, with_errors
 from rockbatch.observers.interaction.study import Interaction
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier.sections import section_heights
 from rockbatch.quantities.demands import OF_INTERACTION
-from rockbatch.results.sections import INTERACTION
 from rockbatch.simulation.base_forces import at_rows
 from rockbatch.simulation.coarser import of_model
 from rockbatch.simulation.error_control import CHANCE
@@ -55,7 +55,7 @@ class InteractionInSections(Observer):
     heights: tuple[float, ...]
     base: bool = False
 
-    table = INTERACTION
+    table = TABLE
 
     def reads(self, run: Run, outcome: Outcome) -> bool:
         """Return True unless the run failed."""

@@ -2,13 +2,14 @@
 
 from rockbatch.checks.rule_choices import is_height
 from rockbatch.common.grouping import grouped
+from rockbatch.observers.interaction import TABLE
 from rockbatch.observers.interaction.figure import over_axial_force
 from rockbatch.quantities.demands import OF_INTERACTION
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.templates import render
-from rockbatch.results.sections import INTERACTION, read_forces
+from rockbatch.results.sections import read_forces
 
 MOST_CHECKS = 8
 """Most checks that are drawn."""
@@ -19,7 +20,7 @@ def section(finished: Finished) -> Markup:
 
     Empty without such a check, or interaction.csv.
     """
-    path = finished.directory / INTERACTION
+    path = finished.directory / TABLE
     of_checks = grouped((verdict for verdict in finished.verdicts if verdict.capacity), lambda verdict: verdict.check)
     if not (path.exists() and of_checks):
         return Markup("")
@@ -33,7 +34,7 @@ def section(finished: Finished) -> Markup:
             checks.append((verdict, runs[here]))
     return render(
         "observers/interaction/section.html",
-        file=INTERACTION,
+        file=TABLE,
         picture=drawn(over_axial_force(checks, finished.series)),
         shown=len(checks),
         checks=len(of_checks),

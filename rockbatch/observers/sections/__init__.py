@@ -1,6 +1,7 @@
 """Forces in sections of the shaft: sections.csv."""
 
 from rockbatch.common.observers import ReportPart
+from rockbatch.quantities.demands import SECTIONS
 
-TABLE = "sections.csv"
+TABLE = SECTIONS
 REPORT = ReportPart("Forces over the height of the shaft", "shaft", behind="devices")

@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass
 
+from rockbatch.observers.sections import TABLE
 from rockbatch.observers.sections.study import Sections
 from rockbatch.outcome.outcome import Outcome, Section
 from rockbatch.pier.sections import section_heights
-from rockbatch.results.sections import SECTIONS, section_rows
+from rockbatch.results.sections import section_rows
 from rockbatch.simulation.coarser import of_model
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.observing import Observer
@@ -21,7 +22,7 @@ class ForcesInSections(Observer):
 
     sections: int | tuple[float, ...]
 
-    table = SECTIONS
+    table = TABLE
 
     def reads(self, run: Run, outcome: Outcome) -> bool:
         """Return True unless the run failed."""

@@ -5,6 +5,7 @@ from itertools import islice
 
 from rockbatch.common.lazy import pd
 from rockbatch.common.statuses import CUT_SHORT
+from rockbatch.observers.sections import TABLE
 from rockbatch.observers.sections.figure import over_height
 from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.reporting.finished import Finished
@@ -13,7 +14,7 @@ from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import Head, alarm, table
 from rockbatch.reporting.templates import render
 from rockbatch.results.labelled import groups_of
-from rockbatch.results.sections import SECTIONS, columns_in
+from rockbatch.results.sections import columns_in
 
 MOST_GROUPS = 4
 """Most piers and scales whose envelopes are drawn."""
@@ -30,7 +31,7 @@ def section(finished: Finished) -> Markup:
     groups = list(groups_of(runs, finished.piers))
     return render(
         "observers/sections/section.html",
-        file=SECTIONS,
+        file=TABLE,
         shown=min(len(groups), MOST_GROUPS),
         groups=len(groups),
         picture=drawn(over_height(islice(groups, MOST_GROUPS), finished.series)),
