@@ -1,5 +1,7 @@
 """The keys of the tables [[case]] of a study file."""
 
+from collections.abc import Mapping
+
 from rockbatch.pier import (
     MOST_POINTS,
     WITH_EPSILON,
@@ -63,14 +65,18 @@ def _impact_rule(value: object) -> str:
     return str(value)
 
 
+def _listed(name: str, example: str, words: str, only: Mapping[str, tuple[str, ...]] | None = None) -> Key:
+    """Return the key of a field of a base that may be a list: a number within its bounds, or one of its words."""
+    kind = within(BOUNDS[name]) if name in BOUNDS else choice(*WORDS[name], called=_CALLED.get(name))
+    return Key(kind, example, words, many=True, only=only or {}, usual=USUAL.get(name))
+
+
 BASE_KEYS = {
-    "restitution": Key(
-        within(BOUNDS["restitution"]),
+    "restitution": _listed(
+        "restitution",
         "0.9",
         "Factor on the angular velocity at an impact; default: Housner's, from the geometry.",
-        many=True,
         only=_ON_ROCK,
-        usual=USUAL["restitution"],
     ),
     "beta": Key(
         positive,
@@ -95,19 +101,17 @@ BASE_KEYS = {
         only=_ON_GROUND_THAT_GIVES,
         usual=PIER["mass_t"].usual,
     ),
-    "epsilon": Key(
-        within(BOUNDS["epsilon"]),
+    "epsilon": _listed(
+        "epsilon",
         "0.05",
         "Restitution ε of the landing pivot, from 0 (no rebound) to 1 (no loss).",
-        many=True,
         only=_ON_SPRINGS | {"impact": WITH_EPSILON},
     ),
-    "impact": Key(
-        choice(*WORDS["impact"], called=_CALLED["impact"]),
+    "impact": _listed(
+        "impact",
         '"landing"',
         'What a landing does: "landing", an impulse at that pivot, by `epsilon`; or "housner", Housner\'s e on the '
         "angular velocity while the other pivot keeps its velocity, for which the supports would have to pull.",
-        many=True,
         only=_ON_SPRINGS,
     ),
     "zeta": Key(
@@ -117,11 +121,10 @@ BASE_KEYS = {
         many=True,
         only=_ON_SPRINGS,
     ),
-    "kinematics": Key(
-        choice(*WORDS["kinematics"], called=_CALLED["kinematics"]),
+    "kinematics": _listed(
+        "kinematics",
         '"first-order"',
         'The paper\'s equations, "first-order", or equations for rotations of any size.',
-        many=True,
         only=_ON_GROUND_THAT_GIVES,
     ),
     "eta": Key(
@@ -139,11 +142,10 @@ BASE_KEYS = {
         many=True,
         only=_YIELDS,
     ),
-    "spring": Key(
-        choice(*WORDS["spring"], called=_CALLED["spring"]),
+    "spring": _listed(
+        "spring",
         '"bouc-wen"',
         f"Law of the supports: {meanings()}.",
-        many=True,
         only=_YIELDS,
     ),
     "backbone_mm_kN": Key(
@@ -159,63 +161,53 @@ BASE_KEYS = {
         required=True,
         only=_YIELDS | {"spring": WITH_POINTS},
     ),
-    "n": Key(
-        within(BOUNDS["n"]),
+    "n": _listed(
+        "n",
         "5",
         "Bouc–Wen exponent, of hardening springs too: the larger, the sharper the corner between elastic and plastic.",
-        many=True,
         only=_YIELDS | {"spring": WITH_EXPONENT},
     ),
-    "flight": Key(
-        choice(*WORDS["flight"]),
+    "flight": _listed(
+        "flight",
         '"stop"',
         'What happens when both pivots are off the ground: "guided" follows the pier, which shear keys hold sideways, until '
         'it lands, and the run goes on; "stop" ends the run there, as in the paper.',
-        many=True,
         only=_NOT_ON_A_BED,
     ),
-    "flight_limit_mm": Key(
-        within(BOUNDS["flight_limit_mm"]),
+    "flight_limit_mm": _listed(
+        "flight_limit_mm",
         "20.0",
         "Height of the lower pivot in flight beyond which a run carries a note: as far as shear keys reach, say.",
-        many=True,
-        usual=USUAL["flight_limit_mm"],
     ),
-    "friction": Key(
-        within(BOUNDS["friction"]),
+    "friction": _listed(
+        "friction",
         "0.5",
         "Coefficient of friction of the interface, for runs with `forces = true` under `[output]`: those that would slide "
         "say so.",
-        many=True,
-        usual=USUAL["friction"],
     ),
-    "contact_stiffness_kN_m": Key(
-        within(BOUNDS["contact_stiffness_kN_m"]),
+    "contact_stiffness_kN_m": _listed(
+        "contact_stiffness_kN_m",
         "5.0e6",
         "Stiffness of the ground under one foot, by which runs with `forces = true` estimate the force of their hardest landing: "
         "the column `landing_force_kN`, an orientation that no check takes; it does not affect any run.",
-        many=True,
         only=_ON_ROCK,
     ),
-    "shaft": Key(
-        choice(*WORDS["shaft"]),
+    "shaft": _listed(
+        "shaft",
         '"rigid"',
         'Whether the shaft bends: "elastic" follows its modes besides, the first of the period `flexural_period_s` of '
         '`[pier]`; on springs with `zeta` and `kinematics = "finite"`, on a footing with the latter.',
-        many=True,
     ),
-    "flexural_damping": Key(
-        within(BOUNDS["flexural_damping"]),
+    "flexural_damping": _listed(
+        "flexural_damping",
         "0.05",
         "Damping ratio of the first mode, of the pier fixed at its base.",
-        many=True,
         only={"shaft": ("elastic",)},
     ),
-    "flexural_damping_kind": Key(
-        choice(*WORDS["flexural_damping_kind"]),
+    "flexural_damping_kind": _listed(
+        "flexural_damping_kind",
         '"modal"',
         'Damping of the higher modes: "modal", the same ratio as of the first, or "stiffness", in proportion to their frequency.',
-        many=True,
         only={"shaft": ("elastic",)},
     ),
     "flexural_modes": Key(
@@ -232,11 +224,10 @@ BASE_KEYS = {
         many=True,
         only=_ON_ROCK | {"shaft": ("elastic",)},
     ),
-    "area_m2": Key(
-        within(BOUNDS["area_m2"]),
+    "area_m2": _listed(
+        "area_m2",
         "6.0",
         "Area of one support, for the bearing stresses of the statics sheet; it does not affect any run.",
-        many=True,
         only=_NOT_ON_A_BED,
     ),
     **FOOTING_KEYS,

@@ -14,6 +14,12 @@ from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
+
+def _listed(name: str, example: str, words: str) -> Key:
+    """Return the key of a field of the pier that may be a list, with the field's possible and usual values."""
+    return Key(within(BOUNDS[name]), example, words, many=True, usual=USUAL.get(name))
+
+
 PIER = Section(
     ("pier",),
     (
@@ -21,19 +27,17 @@ PIER = Section(
         "`width_m` with `height_m`, `size_m`, or `p`. Every key but `gravity` may be a list: each value is a separate pier."
     ),
     {
-        "alpha": Key(
-            within(BOUNDS["alpha"]),
+        "alpha": _listed(
+            "alpha",
             "0.13",
             "Slenderness α: the angle at a lower corner between the vertical and the line to the centre of mass, in radians. It "
             "follows from `width_m` and `height_m`, and is then left out.",
-            many=True,
         ),
-        "mu": Key(
-            within(BOUNDS["mu"]),
+        "mu": _listed(
+            "mu",
             "3.0",
             "Shape factor μ = M R0²/I0, with the moment of inertia I0 about the centre of mass. It follows from `width_m` and "
             "`height_m`, and is then left out.",
-            many=True,
         ),
         "gravity": Key(
             within(BOUNDS["gravity"]),
@@ -41,54 +45,22 @@ PIER = Section(
             "Acceleration of gravity [m/s²], for the pier and for motions that are given in g.",
             usual=USUAL["gravity"],
         ),
-        "p": Key(
-            within(BOUNDS["p"]),
-            "0.38",
-            "Frequency parameter [rad/s], p² = μ/(1+μ) · gravity/R0.",
-            many=True,
-            usual=USUAL["p"],
+        "p": _listed("p", "0.38", "Frequency parameter [rad/s], p² = μ/(1+μ) · gravity/R0."),
+        "size_m": _listed("size_m", "60.1", "R0, from a lower corner to the centre of mass."),
+        "width_m": _listed(
+            "width_m", "4.0", "Width of a solid rectangle; of a pier with parts, the distance between its pivots."
         ),
-        "size_m": Key(
-            within(BOUNDS["size_m"]),
-            "60.1",
-            "R0, from a lower corner to the centre of mass.",
-            many=True,
-            usual=USUAL["size_m"],
+        "height_m": _listed("height_m", "30.0", "Height of a solid rectangle. Parts have heights of their own."),
+        "mass_t": _listed(
+            "mass_t", "3000.0", "Mass of the pier without its deck; of one column of a frame. Forces in kN need a mass."
         ),
-        "width_m": Key(
-            within(BOUNDS["width_m"]),
-            "4.0",
-            "Width of a solid rectangle; of a pier with parts, the distance between its pivots.",
-            many=True,
-            usual=USUAL["width_m"],
+        "deck_mass_t": _listed(
+            "deck_mass_t", "1000.0", "Mass of the deck that it carries; of a frame, of the whole deck."
         ),
-        "height_m": Key(
-            within(BOUNDS["height_m"]),
-            "30.0",
-            "Height of a solid rectangle. Parts have heights of their own.",
-            many=True,
-            usual=USUAL["height_m"],
-        ),
-        "mass_t": Key(
-            within(BOUNDS["mass_t"]),
-            "3000.0",
-            "Mass of the pier without its deck; of one column of a frame. Forces in kN need a mass.",
-            many=True,
-            usual=USUAL["mass_t"],
-        ),
-        "deck_mass_t": Key(
-            within(BOUNDS["deck_mass_t"]),
-            "1000.0",
-            "Mass of the deck that it carries; of a frame, of the whole deck.",
-            many=True,
-            usual=USUAL["mass_t"],
-        ),
-        "deck_height_m": Key(
-            within(BOUNDS["deck_height_m"]),
+        "deck_height_m": _listed(
+            "deck_height_m",
             "31.0",
             "Height of the deck's centre above the pivots; default: `height_m`; of a pier with parts it has to be given.",
-            many=True,
-            usual=USUAL["height_m"],
         ),
         "deck_inertia_t_m2": Key(
             not_negative,
@@ -96,21 +68,17 @@ PIER = Section(
             "Moment of inertia of the deck about its own centre. 0 for a deck on bearings, which does not rotate.",
             many=True,
         ),
-        "top_m": Key(
-            within(BOUNDS["top_m"]),
+        "top_m": _listed(
+            "top_m",
             "31.5",
             "Height above the pivots at which drift is read; default: the highest point of the pier, its parts and its deck.",
-            many=True,
-            usual=USUAL["height_m"],
         ),
-        "flexural_period_s": Key(
-            within(BOUNDS["flexural_period_s"]),
+        "flexural_period_s": _listed(
+            "flexural_period_s",
             "0.6",
             "First period of the pier with its deck, fixed at its base. The statics sheet compares it with the period "
             "of rocking, to show whether the pier is rigid; runs take it as rigid unless a case has `shaft = "
             '"elastic"`.',
-            many=True,
-            usual=USUAL["flexural_period_s"],
         ),
         "columns": Key(
             Whole(2, "a whole number, 2 or above (a single column is a pier with a deck)"),
@@ -119,13 +87,11 @@ PIER = Section(
             "A bent whose columns are fixed to its cap beam is one pier: leave this out and write [[pier.part]].",
             many=True,
         ),
-        "initial_rotation_rad": Key(
-            within(BOUNDS["initial_rotation_rad"]),
+        "initial_rotation_rad": _listed(
+            "initial_rotation_rad",
             "0.05",
             "Rotation from which the pier is released at the first sample of the motion; positive to the right, below α. A "
             "still ground, `still_s` of [motions], makes it a release test.",
-            many=True,
-            usual=USUAL["initial_rotation_rad"],
         ),
         **CONFIRM,
     },
