@@ -36,7 +36,6 @@ from rockbatch.pier.places import device_names as device_names
 from rockbatch.pier.places import offsets as offsets
 from rockbatch.pier.places import place_names as place_names
 from rockbatch.pier.places import places as places
-from rockbatch.pier.places import recentres as recentres
 from rockbatch.pier.places import symmetric as symmetric
 from rockbatch.pier.possible import least_beta as least_beta
 from rockbatch.pier.possible import problems as problems

@@ -1,6 +1,5 @@
-"""Places of devices under a pier and beside its deck; symmetry and re-centring."""
+"""Places of devices under a pier and beside its deck, and their symmetry."""
 
-import math
 from collections import Counter
 from dataclasses import replace
 from typing import NamedTuple
@@ -74,22 +73,6 @@ def prestress_over_weight(pier: Pier, restraints: tuple[Restraint, ...]) -> floa
 def holds_a_tilt(restraints: tuple[Restraint, ...]) -> bool:
     """Return True if a friction or hysteretic damper of f > 0 is among them, which keeps a force at rest and may hold a tilt."""
     return any(isinstance(device, Damper) and device.f > 0 for device in restraints)
-
-
-def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
-    """Return True if weight and prestress overcome the dampers' forces at small rotations, about both corners.
-
-    With dampers at both corners that is 2 f < 1 + ψ. Friction and hysteretic dampers count alike.
-    """
-    for corner in (-pier.half_width, pier.half_width):
-        holding, righting = 0.0, pier.size * math.sin(pier.alpha) / pier.half_width  # 1, except for a frame
-        for device in restraints:
-            arms = sum(place.height or abs(place.offset - corner) for place in places(pier, device)) / pier.half_width
-            holding += device.f * arms if isinstance(device, Damper) else 0.0
-            righting += device.psi * arms if isinstance(device, Tendon) else 0.0
-        if holding >= righting:
-            return False
-    return True
 
 
 def symmetric(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:

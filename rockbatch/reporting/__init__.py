@@ -32,43 +32,23 @@ from rockbatch.study import Study
 
 REPORT, SHEET, SHEET_PDF = "report.html", "sheet.html", "sheet.pdf"
 
-__all__ = ["REPORT", "Report", "report", "statement", "write_analyses", "write_comparison", "write_report"]
+__all__ = ["REPORT", "Report", "report", "statement", "write_analyses", "write_report"]
 
 
 def write_report(
     directory: Path,
     responses: Sequence[Response] | None = None,
-    *,
-    out: Path | None = None,
     saved: Results | None = None,
-    whole: bool = False,
 ) -> Path:
-    """Write the report of the results in ``directory`` to ``out``, by default ``report.html`` beside them; return its path.
+    """Write the report of the results in ``directory`` into ``report.html`` beside them; return its path.
 
     ``directory`` holds ``peaks.csv`` and ``run.json`` as written by ``rockbatch run``; pass ``saved`` if they were read already.
     Histories (``responses`` instead of ``histories.h5``, if given), verdicts and the measurement of ``rockbatch accuracy`` are
-    shown if they exist. With ``whole`` folded sections are printed, too. An earlier report is replaced completely or not at all.
+    shown if they exist. An earlier report is replaced completely or not at all.
 
     Raises ``InputError`` if the results are missing, damaged or do not belong together.
     """
-    return _write(read(Path(directory), responses, saved), out, whole)
-
-
-def write_comparison(
-    first: Path,
-    second: Path,
-    *,
-    out: Path | None = None,
-    whole: bool = False,
-    pairs: Mapping[str, str] | None = None,
-) -> Path:
-    """Write one page that compares two studies run by run; return its path.
-
-    ``out`` defaults to ``compare-NAME.html`` in the first folder, NAME being the second folder's. ``pairs`` are
-    cases of the second by those of the first with which they are compared. With ``whole`` folded sections are printed, too.
-    Raises ``InputError`` if results are missing or damaged, or ``pairs`` do not fit their cases.
-    """
-    return _write(_contents((first, second), pairs), out, whole)
+    return _write(read(Path(directory), responses, saved))
 
 
 def write_analyses(directory: Path, study: Study) -> Path:
@@ -258,7 +238,7 @@ def _contents(folders: Sequence[Path], pairs: Mapping[str, str] | None) -> Finis
     return pair(first, second, pairs)
 
 
-def _write(contents: Finished | Pair, out: Path | None, whole: bool = False) -> Path:
+def _write(contents: Finished | Pair, out: Path | None = None, whole: bool = False) -> Path:
     """Write the report of one folder or the comparison of two, to ``out`` or into the first folder; return its path."""
     if isinstance(contents, Pair):
         first, second = (study.directory for study in contents.studies)

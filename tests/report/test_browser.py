@@ -13,9 +13,10 @@ from browser import HOSTILE, browse, needs_chromium, printed, tab
 from check_samples import verdict
 from report_samples import FIG7, FOUNDATIONS, case_entry, response, write_results
 
+import rockbatch as rb
 from rockbatch.checks import write_verdicts
 from rockbatch.pier import Pier
-from rockbatch.reporting import write_comparison, write_report
+from rockbatch.reporting import write_report
 
 pytestmark = needs_chromium
 
@@ -329,7 +330,7 @@ def test_a_comparison_works_in_the_browser_too(tmp_path):
     for name in ("a", "b"):
         (tmp_path / name).mkdir()
         write_results(tmp_path / name)
-    found = browse(write_comparison(tmp_path / "a", tmp_path / "b"))
+    found = browse(rb.report(tmp_path / "a", tmp_path / "b").path)
     assert found == {"wrong": [], "requests": [], "wide": True}
 
 

@@ -9,11 +9,11 @@ from check_samples import verdict
 from report_page import Page, dot_rows
 from report_samples import FIG7, FOUNDATIONS, case_entry, three_piers, write_results
 
+import rockbatch as rb
 from rockbatch.checks import write_verdicts
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Pier, RigidBase, YieldingBase
-from rockbatch.reporting import write_comparison
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.pair import pair, paired_cases
 
@@ -32,7 +32,7 @@ def two(tmp_path, first=None, second=None):
 def changed(tmp_path_factory):
     """Write the page of two studies of which one peak differs; return the first study's folder and the text."""
     a, b = two(tmp_path_factory.mktemp("two"), second={"changes": {("SYL360", "2"): {"theta_max_over_alpha": 0.5}}})
-    return a, write_comparison(a, b).read_text(encoding="utf-8")
+    return a, rb.report(a, b).path.read_text(encoding="utf-8")
 
 
 def test_runs_of_one_record_and_case_stand_side_by_side_with_their_ratio(changed):
@@ -60,7 +60,7 @@ def test_each_study_names_its_case_without_a_check_and_its_missing_station(tmp_p
             folder,
             [verdict("2", "pass", check=d, demand=d) for d in ("theta_max_rad", "toe_settlement_m", "ductility")],
         )
-    text = Page(write_comparison(a, b).read_text(encoding="utf-8")).text
+    text = Page(rb.report(a, b).path.read_text(encoding="utf-8")).text
     of_both = text[text.index("Does it pass") :]
     assert of_both.count("? 1 of 5 cases passes; 4 are not checked.") == 2
     assert "Not checked: rigid, 1 of 6 runs overturned;" in of_both
@@ -70,7 +70,7 @@ def test_each_study_names_its_case_without_a_check_and_its_missing_station(tmp_p
 def test_failures_of_both_studies_stand_beside_the_rotations_of_the_others(tmp_path):
     fell = {("SYL360", "rigid"): {"status": "overturned"}}
     a, b = two(tmp_path, {"changes": fell}, {"changes": fell})
-    text = Page(write_comparison(a, b).read_text(encoding="utf-8")).text
+    text = Page(rb.report(a, b).path.read_text(encoding="utf-8")).text
     assert (
         "Of 30 runs in common 1 of A and 1 of B do not end standing. From A to B, over 29 of 30 runs that end" in text
     )
@@ -83,7 +83,7 @@ def test_responses_of_two_studies_are_compared_over_the_runs_that_stand_in_both(
     a, b = two(
         tmp_path, {"changes": {worst: {"theta_max_over_alpha": 0.9}}}, {"changes": {worst: {"status": "overturned"}}}
     )
-    _, head, rotation, *_ = Page(write_comparison(a, b).read_text(encoding="utf-8")).tables["answer"]
+    _, head, rotation, *_ = Page(rb.report(a, b).path.read_text(encoding="utf-8")).tables["answer"]
     assert head[0] == "worst of the 29 of 30 runs that end standing in both"
     assert (rotation[1], rotation[-1]) == (rotation[3], "1.000")
     assert rotation[1].startswith("0.1338 α")
@@ -95,7 +95,7 @@ def test_studies_of_which_no_run_stands_in_both_have_no_worst_response_to_compar
         for names in (("rigid", "1", "2"), ("3", "4"))
     ]
     a, b = two(tmp_path, {"changes": fell[0]}, {"changes": fell[1]})
-    page = Page(write_comparison(a, b).read_text(encoding="utf-8"))
+    page = Page(rb.report(a, b).path.read_text(encoding="utf-8"))
     assert "answer" not in page.tables
     assert "Of 30 runs in common 18 of A and 12 of B do not end standing. No run ends standing in both." in page.text
 
@@ -116,7 +116,7 @@ def test_what_is_only_in_one_is_listed_and_not_compared(tmp_path):
     other = [case_entry("5", {}, PIER, FOUNDATIONS[1][1])]
     base = [case_entry(name, {}, PIER, foundation) for name, foundation in FOUNDATIONS]
     a, b = two(tmp_path, {"records": FIG7[:5]}, {"cases": base + other})
-    page = Page(write_comparison(a, b).read_text(encoding="utf-8"))
+    page = Page(rb.report(a, b).path.read_text(encoding="utf-8"))
     rows = page.tables["only"][1:]
     assert [row[0] for row in rows] == ["B"] * 6
     assert sum(int(row[2]) for row in rows) == 5 + 6  # the sixth record in five cases, case 5 in six records
@@ -134,7 +134,7 @@ def test_values_that_both_vary_are_matched_and_those_that_one_varies_are_not_gue
     matched = pair(read(a), read(b))
     assert matched.runs[0].empty  # two runs of A would fit every run of B
     assert (len(matched.only[0]), len(matched.only[1])) == (12, 6)
-    assert "Every pair" not in Page(write_comparison(a, b).read_text(encoding="utf-8")).headings
+    assert "Every pair" not in Page(rb.report(a, b).path.read_text(encoding="utf-8")).headings
 
 
 def test_a_case_is_named_after_the_matched_values_that_it_has(tmp_path):
@@ -164,7 +164,7 @@ def test_statistics_are_over_the_pairs_and_separate_by_the_vertical_component(tm
     info = json.loads((b / "run.json").read_text(encoding="utf-8"))
     others = {"rockbatch": "0.2.0", "study": info["study"] | {"text": info["study"]["text"].replace("0.13", "0.14")}}
     (b / "run.json").write_text(json.dumps(info | {"records": horizontal} | others), encoding="utf-8")
-    page = Page(write_comparison(a, b).read_text(encoding="utf-8"))
+    page = Page(rb.report(a, b).path.read_text(encoding="utf-8"))
     assert page.tables["suite"][1][1:3] == ["A, with vertical", "B, without vertical"]
     assert page.tables["inputs"][2][0] == "different motions under the same name"
     assert page.tables["inputs"][2][1].startswith("ERZ-NS (0.515 g), ")
@@ -180,7 +180,7 @@ def test_a_folder_without_results_is_refused_in_words(tmp_path, capsys):
 
 def test_records_of_one_study_only_are_named_in_the_inputs(tmp_path):
     a, b = two(tmp_path, second={"records": FIG7[:5]})
-    _, *rows = Page(write_comparison(a, b).read_text(encoding="utf-8")).tables["inputs"]
+    _, *rows = Page(rb.report(a, b).path.read_text(encoding="utf-8")).tables["inputs"]
     assert rows == [["motions in one study only", "CPM000", "–"]]
 
 
@@ -192,7 +192,7 @@ def test_inputs_that_are_the_same_are_said_to_be(changed):
 
 
 def answered(folders):
-    text = write_comparison(*folders).read_text(encoding="utf-8")
+    text = rb.report(*folders).path.read_text(encoding="utf-8")
     page = Page(text)
     assert page.headings[:3] == ["The answer", "Does it pass", "What differs in the inputs"]
     return Page(text.split('<section id="answer">')[1].split("</section>")[0]).text.removeprefix("The answer")
@@ -224,7 +224,7 @@ def test_a_study_in_which_the_pier_overturns_is_said_to_be_first_or_second(tmp_p
     assert "Of 30 runs in common 1 of A and 0 of B do not end standing." in answered((a, b))
     assert "Of 30 runs in common 0 of A and 1 of B do not end standing." in answered((b, a))
     for folders, cells in (((a, b), ["overturned", 0]), ((b, a), [0, "overturned"])):
-        _, head, worst, *_ = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["peaks"]
+        _, head, worst, *_ = Page(rb.report(*folders).path.read_text(encoding="utf-8")).tables["peaks"]
         assert head[:5] == ["record", "case", "A", "B", "B / A"]
         assert worst[:2] == ["SYL360", "2"]
         assert [cell == "overturned" for cell in worst[2:4]] == [cell == "overturned" for cell in cells]
@@ -244,7 +244,7 @@ def test_the_worst_of_both_stands_with_its_value_its_record_and_its_case(tmp_pat
     changes = {(record, case): {"settlement_m": ""} for record, _ in FIG7 for case in "1234"}
     changes["SYL360", "2"] |= {"theta_max_over_alpha": 0.9}
     a, b = two(tmp_path, second={"changes": changes})
-    _, head, rotation, *others = Page(write_comparison(a, b).read_text(encoding="utf-8")).tables["answer"]
+    _, head, rotation, *others = Page(rb.report(a, b).path.read_text(encoding="utf-8")).tables["answer"]
     assert head == ["worst of the runs in common", "value", "record and case", "value", "record and case", "B / A"]
     with (a / "peaks.csv").open(encoding="utf-8", newline="") as file:
         worst = max(

@@ -19,7 +19,6 @@ from rockbatch.checks import judge, read_verdicts, write_verdicts
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.quantities.catalogue import FIXED, TRAILING, names
-from rockbatch.reporting import write_comparison
 from rockbatch.reporting.differing import Written, _contents, differences
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.margins import _requirement, headline
@@ -116,7 +115,7 @@ def test_a_study_that_fails_is_not_better_for_a_smaller_rotation(tmp_path):
     """B rotates less, and its limit is lower: the verdict comes first, the rotation after it."""
     strict = tables(check=[ROTATION | {"at_most": 0.1}])
     folders = two(tmp_path, tables(), strict, (0.2, 0.185))
-    text = Page(write_comparison(*folders).read_text(encoding="utf-8")).text.replace("\u00a0", " ")
+    text = Page(rb.report(*folders).path.read_text(encoding="utf-8")).text.replace("\u00a0", " ")
     assert "A passes all, closest 40 % (rotation, Lyttelton); B fails rotation at 185 % (Lyttelton)." in text
     assert "is better" not in text
     assert "worst rotation −7.5 %" in text
@@ -243,7 +242,7 @@ def test_a_check_that_is_not_decided_is_named(tmp_path):
 def test_margins_stand_side_by_side_check_by_check(tmp_path):
     """0.2/0.5 = 40 % and 0.3/0.4 = 75 %: 35 points more."""
     folders = two(tmp_path, tables(), tables(check=[ROTATION | {"at_most": 0.4}]), (0.2, 0.3))
-    page = Page(write_comparison(*folders).read_text(encoding="utf-8"))
+    page = Page(rb.report(*folders).path.read_text(encoding="utf-8"))
     row = [cell.replace("\u00a0", " ") for cell in page.tables["answer"][2]]
     assert row[:2] == ["springs", "rotation ≤ 0.5, in B ≤ 0.4"]
     assert (row[2], row[5]) == ("0.2", "0.3")
@@ -260,7 +259,7 @@ def test_margins_stand_side_by_side_check_by_check(tmp_path):
 def test_checks_of_one_name_that_compare_other_things_have_no_difference(tmp_path, other, words):
     """Means and maxima of the same runs differ without any change of the pier."""
     folders = two(tmp_path, tables(), tables(check=[ROTATION | other]), ({"Te Mara": 0.1, "*": 0.3},) * 2)
-    row = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["answer"][2]
+    row = Page(rb.report(*folders).path.read_text(encoding="utf-8")).tables["answer"][2]
     assert row[1] == f"rotation: in A maximum of theta_max_over_alpha at most 0.5 over stations, {words}"
     assert row[-1] == "Lyttelton"  # what governs B: the difference behind it is empty
 
@@ -269,7 +268,7 @@ def test_long_names_of_stations_break_into_lines(tmp_path):
     """A name of one line would push what stands behind it off the page."""
     name = "recorded at the north abutment of the old railway bridge over the river"
     one = tables(motions={"pulse": [PULSES[0] | {"name": name}]})
-    text = write_comparison(*two(tmp_path, one, one)).read_text(encoding="utf-8").replace("\u00a0", " ")
+    text = rb.report(*two(tmp_path, one, one)).path.read_text(encoding="utf-8").replace("\u00a0", " ")
     drawn = re.findall(r'<div class="wide([^"]*)"[^>]*aria-label="([^"]*)"[^>]*><table>(.*?)</table>', text)
     named = {title: kind for kind, title, body in drawn if re.search(rf"<td[^>]*>(<span[^>]*>)?{name}", body)}
     assert "Margins" in named
@@ -291,13 +290,13 @@ def test_margins_at_each_scale_stand_in_rows_of_their_own(tmp_path):
         saved = rb.open_results(path)
         rules = rb.Study.from_dict(scaled).checks
         write_verdicts(path, judge(rules, saved.peaks, saved.info["cases"], count="station"))
-    rows = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["answer"]
+    rows = Page(rb.report(*folders).path.read_text(encoding="utf-8")).tables["answer"]
     assert [row[-1] for row in rows if row[-1].endswith("%")] == ["+20 %", "+50 %"]
 
 
 def test_a_check_of_one_study_only_is_not_checked_in_the_other(tmp_path):
     folders = two(tmp_path, tables(), tables(check=[ROTATION, ROTATION | {"name": "more", "at_most": 0.9}]))
-    rows = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["answer"]
+    rows = Page(rb.report(*folders).path.read_text(encoding="utf-8")).tables["answer"]
     (only,) = (row for row in rows if len(row) > 3 and row[1].startswith("more"))
     assert "not checked" in only[3]
 
@@ -557,7 +556,7 @@ def test_a_ban_is_its_name_and_what_does_not_apply_is_one_dash(tmp_path):
     never = {"name": "stands", "demand": "overturned", "at_most": 0.9, "reason": "agreed"}
     ductile = {"name": "ductile", "demand": "ductility", "at_most": 3.0, "reason": "agreed"}
     folders = two(tmp_path, tables(), tables(check=[never, ductile], case=[{"name": "springs", "base": "rigid"}]))
-    rows = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["answer"]
+    rows = Page(rb.report(*folders).path.read_text(encoding="utf-8")).tables["answer"]
     cells = {row[1].replace("\u00a0", " "): row for row in rows if len(row) > 5}
     assert cells["stands"][-3:-1] == ["none", "✓"]
     assert cells["ductile ≤ 3"][-2] == "–"

@@ -35,7 +35,7 @@ from rockbatch.quantities.catalogue import (
     report_columns,
 )
 from rockbatch.quantities.quantity import BENDING, FOOTING, Limit, Quantity
-from rockbatch.reporting import write_comparison, write_report
+from rockbatch.reporting import write_report
 from rockbatch.results.columns import columns, units
 from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe
@@ -276,7 +276,7 @@ def test_the_page_shows_columns_with_their_names_and_meanings(tmp_path):
 
 def test_what_has_statistics_is_compared(tmp_path):
     a, b = write_results_in(tmp_path / "a"), write_results_in(tmp_path / "b")
-    page = Page(write_comparison(a, b).read_text(encoding="utf-8"))
+    page = Page(rb.report(a, b).path.read_text(encoding="utf-8"))
     over = [text for text in page.tables["peaks"][0] if text]
     assert over == ["θmax/α", "θres/α", "settlement [mm]"]
     assert sum(column.suite is not None for column in (*FIXED, *TRAILING)) == len(over)
@@ -318,7 +318,7 @@ def test_a_report_of_all_columns_speaks_of_no_earlier_version(tmp_path):
 def test_a_folder_without_newer_columns_is_compared_with_one_that_has_them(tmp_path):
     (tmp_path / "old").mkdir()
     old, new = without(tmp_path / "old", *names(TRAILING)), write_results_in(tmp_path / "new")
-    assert "30 pairs of runs" in write_comparison(old, new).read_text(encoding="utf-8")
+    assert "30 pairs of runs" in rb.report(old, new).path.read_text(encoding="utf-8")
 
 
 def test_commands_say_once_and_plainly_which_columns_are_missing(tmp_path, capsys):
