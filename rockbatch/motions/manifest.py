@@ -26,9 +26,10 @@ from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.record_file import LAYOUTS, ReadOptions
 from rockbatch.motions.sequences import SEQUENCE, ShockSequence, read_sequences
+from rockbatch.toml.files_meant import nearby
 from rockbatch.toml.kinds import boolean, choice, nonzero, not_negative, number, positive, text
 from rockbatch.toml.meant import names
-from rockbatch.toml.reader import Table, TomlFile, nearby
+from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Key, Section
 
 RECORD = Section(

@@ -19,6 +19,7 @@ from rockbatch.motions.selection import Selection
 from rockbatch.motions.sequences import read_sequences
 from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec
 from rockbatch.study.target import read_target
+from rockbatch.toml.files_meant import nearby
 from rockbatch.toml.kinds import (
     KeyValues,
     KindError,
@@ -35,7 +36,7 @@ from rockbatch.toml.kinds import (
     within,
 )
 from rockbatch.toml.meant import names
-from rockbatch.toml.reader import Table, TomlFile, in_table, nearby
+from rockbatch.toml.reader import Table, TomlFile, in_table
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
 
