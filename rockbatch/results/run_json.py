@@ -31,8 +31,8 @@ from rockbatch.results.shape import Maybe
 from rockbatch.study import Case, Study
 
 INFO = "run.json"
-FROM_PYTHON = "from Python)"
-"""End of a placeholder in the command for an argument without a file: "(study from Python)"."""
+STUDY_FROM_PYTHON, MOTIONS_FROM_PYTHON = "(study from Python)", "(motions from Python)"
+"""Placeholders in the command of :func:`rockbatch.run` for what no file holds: it cannot be repeated."""
 
 _NUMBER = (float, None)
 _VALUES = {str: (float, str)}

@@ -26,7 +26,7 @@ from rockbatch.reporting import REPORT, write_report
 from rockbatch.results.checking import verdicts
 from rockbatch.results.columns import JOURNAL, as_table, columns, units, unusable_rows, with_units
 from rockbatch.results.reading import Saved
-from rockbatch.results.run_json import FROM_PYTHON
+from rockbatch.results.run_json import MOTIONS_FROM_PYTHON, STUDY_FROM_PYTHON
 from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
 
@@ -115,9 +115,9 @@ def run(
     loaded, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
     if out is None:
         return with_units(_in_memory(loaded, engine, listener), units(loaded))
-    command = ["run", str(loaded.path) if loaded.in_file else f"(study {FROM_PYTHON}", "--out", os.fspath(out)]
+    command = ["run", str(loaded.path) if loaded.in_file else STUDY_FROM_PYTHON, "--out", os.fspath(out)]
     if motions is not None:
-        path = os.fspath(motions) if isinstance(motions, str | os.PathLike) else f"(motions {FROM_PYTHON}"
+        path = os.fspath(motions) if isinstance(motions, str | os.PathLike) else MOTIONS_FROM_PYTHON
         command += ["--motions", path]
     finished = run_into(Path(out), loaded, engine, listener, command=command, fresh=fresh)
     assert finished is not None  # None only for a share

@@ -20,7 +20,7 @@ from rockbatch.reporting.templates import render
 from rockbatch.results.histories_file import Responses
 from rockbatch.results.labelled import Row, as_dicts
 from rockbatch.results.labels import Series
-from rockbatch.results.run_json import FROM_PYTHON
+from rockbatch.results.run_json import MOTIONS_FROM_PYTHON, STUDY_FROM_PYTHON
 
 MOST_HISTORIES = 40
 """Number of histories at which no further picture is begun."""
@@ -54,8 +54,8 @@ def section(finished: Finished) -> Markup:
     if not len(finished.responses):
         return Markup("")
     words = list(map(str, finished.info["command"]))
-    from_command = not any(word.endswith(FROM_PYTHON) for word in words)
-    command = shlex.join([*words, "--history", "RECORD"]) if from_command else ""
+    from_python = {STUDY_FROM_PYTHON, MOTIONS_FROM_PYTHON} & {*words}
+    command = "" if from_python else shlex.join([*words, "--history", "RECORD"])
     pictures, played = _pictures(finished)
     return render("reporting/sections/histories.html", pictures=pictures, player=player(played), command=command)
 
