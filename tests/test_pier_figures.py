@@ -9,7 +9,7 @@ import pytest
 import rockbatch as rb
 from rockbatch.common.figures.description import Area, Points, Polyline, Rule, Words
 from rockbatch.pier import Place
-from rockbatch.pier.figures import APART, ASIDE, MOST_PIERS, SPRING, STRIPS, Sheet, sketches, statics
+from rockbatch.pier.figures import APART, ASIDE, MOST_PIERS, SPRING, STRIPS, PlacedDevice, Sheet, sketches, statics
 
 PIER = {"alpha": math.atan(0.2), "half_width_m": 4.0, "height_m": 20.0}
 
@@ -36,7 +36,11 @@ def test_piers_are_to_one_scale():
 
 
 def test_the_deck_and_the_devices_are_to_scale():
-    devices = (("tendon", Place(-2.0)), ("viscous damper", Place(4.0)), ("stop", Place(-4.0)))
+    devices = (
+        PlacedDevice("tendon", "tendon", Place(-2.0)),
+        PlacedDevice("damper", "viscous damper", Place(4.0)),
+        PlacedDevice("stop", "stop", Place(-4.0)),
+    )
     (figure,) = sketches([PIER | {"highest_m": 33.0, "deck_m": 33.0, "devices": devices}], {"rigid"})
     scale = outline(figure)[1] / 33.0
     (deck,) = marks(figure, "deck", Area)
@@ -58,10 +62,10 @@ def at(mark):
 @pytest.mark.parametrize("base", ["rigid", "elastic"])
 def test_lines_of_a_sketch_end_where_what_they_show_does(base):
     devices = [
-        ("tendon", Place(2.0)),
-        ("stop", Place(-4.0)),
-        ("viscous damper", Place(4.0)),
-        ("deck spring", Place(0.0, 38.0, -1.0)),
+        PlacedDevice("tendon", "tendon", Place(2.0)),
+        PlacedDevice("stop", "stop", Place(-4.0)),
+        PlacedDevice("damper", "viscous damper", Place(4.0)),
+        PlacedDevice("deck_spring", "deck spring", Place(0.0, 38.0, -1.0)),
     ]
     (figure,) = sketches([PIER | {"deck_m": 41.0, "devices": devices}], {base})
     (panel,) = figure.panels
@@ -162,7 +166,10 @@ def test_labels_of_heights_do_not_overlap_and_point_at_their_heights():
 
 
 def test_a_pier_without_labels_shows_its_devices_alone():
-    devices = (("tendon", Place(0.0)), ("deck spring", Place(0.0, 38.0, 1.0)))
+    devices = (
+        PlacedDevice("tendon", "tendon", Place(0.0)),
+        PlacedDevice("deck_spring", "deck spring", Place(0.0, 38.0, 1.0)),
+    )
     plain = {"labels": False, "deck_m": 38.0, "devices": devices, "sections_m": (3.0,)}
     labelled, bare = sketches([PIER | plain | {"labels": True}, PIER | plain], {"rigid"})
     assert marks(bare, "", Words) == []

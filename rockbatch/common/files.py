@@ -144,6 +144,11 @@ def _kind(status: os.stat_result) -> str:
     return next((words for is_kind, words in _KINDS if is_kind(status.st_mode)), "")
 
 
+def _is_stream(mode: int) -> bool:
+    """Return whether a file of this mode is a pipe or a character device, which take output as it comes."""
+    return stat.S_ISFIFO(mode) or stat.S_ISCHR(mode)
+
+
 def is_plain(path: Path) -> bool:
     """Return whether ``path`` is a regular file itself; False for a link, a folder, or if it does not exist."""
     try:
@@ -238,7 +243,7 @@ def write_output(path: Path, content: str | bytes) -> None:
         with naming_full_disk(path):
             if is_stdout(path):
                 handle = os.dup(1)
-            elif path.exists() and _kind(path.stat()) in ("a pipe", "a device"):
+            elif path.exists() and _is_stream(path.stat().st_mode):
                 handle = _open_at_once(path, os.O_WRONLY)
             else:
                 write_whole(path, content)

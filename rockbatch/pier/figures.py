@@ -109,9 +109,17 @@ def _over(across: str, up: str, lines: Sequence[Polyline], caption: str, fixed: 
     return Panel(*axes, [*lines, *fixed], caption, width=300.0, height=150.0)
 
 
-def devices(pier: Pier, restraints: Sequence[Restraint]) -> tuple[tuple[str, Place], ...]:
-    """Return the kind and place of every device, such as ("friction damper", Place(…))."""
-    return tuple((restraint.words, place) for restraint in restraints for place in places(pier, restraint))
+class PlacedDevice(NamedTuple):
+    """A device as it is drawn: the name of its table in a study, which decides its symbol, its words, and its place."""
+
+    what: str
+    words: str
+    place: Place
+
+
+def devices(pier: Pier, restraints: Sequence[Restraint]) -> tuple[PlacedDevice, ...]:
+    """Return every device at each of its places."""
+    return tuple(PlacedDevice(own.what, own.words, place) for own in restraints for place in places(pier, own))
 
 
 class _Shape(NamedTuple):
@@ -128,7 +136,7 @@ class _Shape(NamedTuple):
     deck: float
     drift: float
     sections: Sequence[float]
-    devices: Sequence[tuple[str, Place]]
+    devices: Sequence[PlacedDevice]
     labels: bool
 
     @classmethod
@@ -184,7 +192,7 @@ def _sketch(pier: _Shape, scale: float, springs: int) -> Figure:
         Points(np.zeros(1), np.array([h]), look=Look("peak", shape="dot")),
         *(mark for x in np.linspace(-b, b, max(springs, 2)).tolist() for mark in _support(x, springs > 0)),
         *_deck(pier, b, scale),
-        *(mark for kind, place in pier.devices for mark in _device(kind, place, scale, top)),
+        *(mark for device in pier.devices for mark in _device(device, scale, top)),
     ]
     if pier.labels:
         marks += [*_dimensions(pier, b, h), *_heights(pier, b, scale)]
@@ -195,7 +203,7 @@ def _sketch(pier: _Shape, scale: float, springs: int) -> Figure:
     )
     if pier.sections:
         words += f", sections at {', '.join(f'{height:.3g}' for height in pier.sections)} m"
-    if kinds := dict.fromkeys(kind for kind, _ in pier.devices):
+    if kinds := dict.fromkeys(device.words for device in pier.devices):
         words += f", with {' and '.join(kinds)}"
     ends = [mark.x + mark.side * (7.0 + LETTER * len(mark.text)) for mark in marks if isinstance(mark, Words)]
     least = max(side + SIDE, 0.5 * CAPTION * bool(pier.caption))
@@ -251,24 +259,25 @@ def _box(x: float, y: float, half_width: float, half_height: float, look: Look) 
     return Area(x + half_width * across, y + half_height * up, look=look)
 
 
-def _device(kind: str, place: Place, scale: float, top: float) -> Iterator[Mark]:
+def _device(device: PlacedDevice, scale: float, top: float) -> Iterator[Mark]:
     """Yield the marks of a device: a tendon up to the top, a stop above the base, a damper below it outside the support.
 
     At the deck it is a link to a wall on its side.
     """
+    what, words, place = device
     offset = scale * place.offset
     x = offset + math.copysign(ASIDE, offset)
     if place.height:
         y, side = scale * place.height, place.way or 1.0
         near, far = side * 30.0, side * (30.0 + SPRING)
-        yield _stroke("tendon", (near, y), (far, y), title=kind, colour=3)
+        yield _stroke("tendon", (near, y), (far, y), title=words, colour=3)
         yield _stroke("rigid", (far, y - ASIDE), (far, y + ASIDE))
-    elif kind == "tendon":
-        yield _stroke("tendon", (offset, -SPRING), (offset, top), title=kind, colour=2)
-    elif kind == "stop":
-        yield _stroke("rigid", (x, -SPRING), (x, ASIDE), (offset, ASIDE), title=kind)
+    elif what == "tendon":
+        yield _stroke("tendon", (offset, -SPRING), (offset, top), title=words, colour=2)
+    elif what == "stop":
+        yield _stroke("rigid", (x, -SPRING), (x, ASIDE), (offset, ASIDE), title=words)
     else:
-        yield _stroke("tendon", (offset, 0.0), (x, 0.0), (x, -SPRING), title=kind, colour=3)
+        yield _stroke("tendon", (offset, 0.0), (x, 0.0), (x, -SPRING), title=words, colour=3)
         yield _box(x, -9.5, 3.0, 4.5, Look("damper", 3))
 
 
