@@ -23,7 +23,7 @@ from rockbatch.study.footing_keys import FOOTING_KEYS
 from rockbatch.study.piers import PIER
 from rockbatch.toml.kinds import KindError, Other, Points, Whole, choice, positive, text, within
 from rockbatch.toml.meant import names
-from rockbatch.toml.section import CONFIRM, Clash, Key, Section
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section, either
 
 _CALLED = {
     "base": names(
@@ -288,12 +288,8 @@ CASE = Section(
         }
     ),
     clashes=(
-        Clash(
-            ("beta", "stiffness_kN_m"),
-            "beta and stiffness_kN_m are given, which fix the same; keep one",
-            at="stiffness_kN_m",
-        ),
-        Clash(("eta", "yield_kN"), "eta and yield_kN are given, which fix the same; keep one", at="yield_kN"),
+        either("beta", "stiffness_kN_m"),
+        either("eta", "yield_kN"),
         *(
             Clash((key, "backbone_mm_kN"), "the first point of backbone_mm_kN fixes the same; leave it out", shown=True)
             for key in FIXED_BY_POINTS

@@ -11,7 +11,7 @@ from rockbatch.pier.footing_base import POISSON, STRIPS
 from rockbatch.pier.restraints import DeckSpring, Restraint
 from rockbatch.pier.soil import Formula
 from rockbatch.toml.kinds import Kind, Whole, boolean, choice, not_negative, positive, within
-from rockbatch.toml.section import Key
+from rockbatch.toml.section import Key, fix_the_same
 
 ON_FOOTING = {"base": ("footing",)}
 _FIELDS = (
@@ -121,7 +121,7 @@ def footing_of(
             "the stiffness of the bed is missing; write shear_modulus_MPa and poisson of the soil, or stiffness_MN_m3"
         )
         if ways:
-            text = f"{' and '.join(ways)} are given, which fix the same; keep one"
+            text = fix_the_same(*ways)
         return fallback, [Problem("base", None, text, kind=Contradiction if ways else MissingKey)]
     if wrong := _ill_combined(values):
         return fallback, wrong

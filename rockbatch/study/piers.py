@@ -12,7 +12,7 @@ from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.toml.kinds import KeyValues, Whole, not_negative, positive, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
-from rockbatch.toml.section import CONFIRM, Clash, Key, Section
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section, beside, fix_the_same
 
 
 def _listed(name: str, example: str, words: str) -> Key:
@@ -172,15 +172,9 @@ PIER = Section(
             "deck_height_m is missing beside deck_mass_t; write for example deck_height_m = 31.0",
             lacking=("deck_height_m",),
         ),
-        Clash(
-            ("deck_height_m",),
-            "deck_height_m: there is no deck; write deck_mass_t too, or leave it out",
-            lacking=("deck_mass_t",),
-        ),
-        Clash(
-            ("deck_inertia_t_m2",),
-            "deck_inertia_t_m2: there is no deck; write deck_mass_t too, or leave it out",
-            lacking=("deck_mass_t",),
+        *(
+            Clash((key,), f"{key}: there is no deck; write deck_mass_t too, or leave it out", lacking=("deck_mass_t",))
+            for key in ("deck_height_m", "deck_inertia_t_m2")
         ),
         Clash(
             ("columns",),
@@ -261,25 +255,11 @@ PART = Section(
     },
     many=True,
     clashes=(
-        Clash(("inertia_t_m2", "width_m"), "inertia_t_m2 and width_m are given, which fix the same; keep one"),
-        Clash(
-            ("width_m",), "length_m is missing beside width_m; write for example length_m = 20.0", lacking=("length_m",)
-        ),
-        Clash(
-            ("flexural_rigidity_kNm2",),
-            "length_m is missing beside flexural_rigidity_kNm2, over which it extends; write for example length_m = 20.0",
-            lacking=("length_m",),
-        ),
-        Clash(
-            ("shear_rigidity_kN",),
-            "flexural_rigidity_kNm2 is missing beside shear_rigidity_kN; write for example flexural_rigidity_kNm2 = 3.0e7",
-            lacking=("flexural_rigidity_kNm2",),
-        ),
-        Clash(
-            ("apart_m",),
-            "width_m is missing beside apart_m, of each leg; write for example width_m = 2.4",
-            lacking=("width_m",),
-        ),
+        Clash(("inertia_t_m2", "width_m"), fix_the_same("inertia_t_m2", "width_m")),
+        beside("width_m", "length_m", "20.0"),
+        beside("flexural_rigidity_kNm2", "length_m", "20.0", ", over which it extends"),
+        beside("shear_rigidity_kN", "flexural_rigidity_kNm2", "3.0e7"),
+        beside("apart_m", "width_m", "2.4", ", of each leg"),
     ),
 )
 PIER_KEYS = tuple(name for name in PIER if name not in ("mass_t", "confirm"))

@@ -12,6 +12,7 @@ from rockbatch.common.showing import shown
 from rockbatch.pier import Pier, Restraint, fields_of
 from rockbatch.study.restraint_keys import FIELD_OF, IN_KN, KEYS_OF, RESTRAINTS
 from rockbatch.study.spec import Case
+from rockbatch.toml.section import fix_the_same
 
 IN_KILONEWTONS = {"stiffness_kN_m": "beta", "yield_kN": "eta"}
 """Inputs in kN, of a pier of known mass, and the ratio of the base that each becomes."""
@@ -92,7 +93,7 @@ def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
         if len(fitting) > 1:
             problems[name] = f"{name}: case {shown(case.name)} has {len(fitting)} of them; write {' or '.join(fitting)}"
         elif fitting and (first := fixed.setdefault(numbers[fitting[0]][:2], name)) != name:
-            problems[name] = f"{first} and {name} are given, which fix the same; keep one"
+            problems[name] = fix_the_same(first, name)
     return problems
 
 

@@ -15,7 +15,7 @@ from rockbatch.study.piers import has_mass
 from rockbatch.toml.kinds import Choice, KeyValues, choice, not_negative, number, positive, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, in_table
-from rockbatch.toml.section import CONFIRM, Clash, Key, Section
+from rockbatch.toml.section import CONFIRM, Key, Section, either
 
 _MIDDLE = names({0.0: "centre center middle axis central"})
 _PLACE = Choice(("left", "right"), '"left", "right" or an offset from the middle of the base in m', number, _MIDDLE)
@@ -43,12 +43,7 @@ _FORCE, _VISCOUS = {"kind": ("friction", "hysteretic")}, {"kind": ("viscous",)}
 _ON_BRACE = {"kind": ("viscous", "hysteretic")}
 
 
-def _either(key: str, ratio: str) -> Clash:
-    """Return the contradiction between a key in kN and the ratio that fixes the same parameter, noted at the ratio."""
-    return Clash((key, ratio), f"{key} and {ratio} are given, which fix the same; keep one", at=ratio)
-
-
-_OR_LAMBDA = _either("stiffness_kN_m", "lambda")
+_OR_LAMBDA = either("stiffness_kN_m", "lambda")
 _RESTITUTION = Key(
     within(BOUNDS["restitution"]),
     "0.6",
@@ -135,9 +130,9 @@ DAMPER = Section(
         }
     ),
     clashes=(
-        _either("force_kN", "f"),
-        _either("coefficient_kN_s_m", "nu"),
-        _either("brace_kN_m", "brace"),
+        either("force_kN", "f"),
+        either("coefficient_kN_s_m", "nu"),
+        either("brace_kN_m", "brace"),
     ),
 )
 TENDON = Section(
@@ -178,7 +173,7 @@ TENDON = Section(
         }
     ),
     clashes=(
-        _either("prestress_kN", "psi"),
+        either("prestress_kN", "psi"),
         _OR_LAMBDA,
     ),
 )

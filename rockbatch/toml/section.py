@@ -79,6 +79,22 @@ class Clash(NamedTuple):
     shown: bool = False
 
 
+def fix_the_same(*names: str) -> str:
+    """Return the message on keys that fix the same."""
+    return f"{' and '.join(names)} are given, which fix the same; keep one"
+
+
+def either(first: str, second: str) -> Clash:
+    """Return the contradiction between two keys that fix the same, noted at the second."""
+    return Clash((first, second), fix_the_same(first, second), at=second)
+
+
+def beside(key: str, missing: str, example: str, words: str = "") -> Clash:
+    """Return the mistake of a ``key`` without another beside it, of which ``words`` and an ``example`` follow."""
+    message = f"{missing} is missing beside {key}{words}; write for example {missing} = {example}"
+    return Clash((key,), message, lacking=(missing,))
+
+
 CONFIRM = {"confirm": Key(text, '["height_m"]', "Keys of this table with unusual values that are correct.", many=True)}
 """The key by which a table confirms its values."""
 

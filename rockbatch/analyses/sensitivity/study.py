@@ -16,7 +16,7 @@ from rockbatch.study.restraint_keys import RESTRAINTS
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import Choice, boolean, choice, count, positive, share
 from rockbatch.toml.reader import Table, TomlFile
-from rockbatch.toml.section import Key, Section
+from rockbatch.toml.section import Key, Section, fix_the_same
 
 OF_MOTION = ("vertical", "polarity")
 """Factors of the whole suite."""
@@ -154,7 +154,7 @@ def read_sensitivity(study: Study) -> SensitivitySpec:
             spreads.setdefault(parameter.name, []).append(parameter.spread)
         for name, ratio in IN_KILONEWTONS.items():
             if name in spreads and ratio in spreads:
-                table.complain(f"{ratio} and {name} are given, which fix the same; keep one", spreads[name][-1], name)
+                table.complain(fix_the_same(ratio, name), spreads[name][-1], name)
         for name, places in spreads.items():
             if len(places) > 1:
                 table.complain(f"{name} is given under {' and '.join(places)}; keep one", places[1], *name.split("."))

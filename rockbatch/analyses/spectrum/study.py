@@ -16,7 +16,7 @@ from rockbatch.study.piers import PierRead, has_mass
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import Number, Whole, choice, number, positive, text
 from rockbatch.toml.reader import Table, TomlFile
-from rockbatch.toml.section import Clash, Key, Section
+from rockbatch.toml.section import Clash, Key, Section, beside
 
 Range = tuple[float, float]
 
@@ -110,11 +110,7 @@ SPECTRUM = Section(
         "spacing": Key(choice("linear", "log"), '"log"', "How the values are spaced.", default="linear"),
     },
     clashes=(
-        Clash(
-            (SELF_SIMILAR,),
-            f"{INTENSITY} is missing beside {SELF_SIMILAR}; write for example {INTENSITY} = [2, 4]",
-            lacking=(INTENSITY,),
-        ),
+        beside(SELF_SIMILAR, INTENSITY, "[2, 4]"),
         Clash(
             (INTENSITY,),
             f"goes with {SELF_SIMILAR} = [1, 8]; write that as the range, or leave it out",
