@@ -112,7 +112,7 @@ def _of_records(rule: Rule, records: Bounds) -> tuple[float, float, float]:
     value, low, high = (_statistic(rule, values) for values in records[:3])
     if interval is not None and len(records.value):
         low, high = interval(*records[:3])
-    if rule.statistic == "asce7-16" and np.isinf(records.high).sum() > np.isinf(records.low).sum():
+    if rule.counts_unacceptable and np.isinf(records.high).sum() > np.isinf(records.low).sum():
         high = math.inf  # an unknown response does not count as an unacceptable one
     return value, low, high
 

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, NOT_DECIDED, PASS, Verdict
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.rows import counts_as
+from rockbatch.quantities.statistics import STATISTICS
 
 
 class Ending(NamedTuple):
@@ -32,8 +33,6 @@ ENDINGS = {
     "failed": Ending("has a run that failed or is missing", "have runs that failed or are missing", "failed"),
 }
 """Statuses of runs that do not end standing, and :data:`MAY_OVERTURN` for runs that overturn if the motion is a hair stronger."""
-_SAYS_ALL = "asce7-16"
-"""Statistic whose code says how many records may have each ending."""
 
 
 def left_open(verdicts: Sequence[Verdict], suites: Sequence[Rows]) -> list[Verdict]:
@@ -65,8 +64,11 @@ def _ended(suite: Rows, ending: str) -> npt.NDArray[np.bool_]:
 
 
 def _allowed(event: str, verdicts: Sequence[Verdict]) -> bool:
-    """Return whether a verdict is on the number of records with this event: its demand is the event, or its code ASCE 7-16."""
-    return any(verdict.demand == event or verdict.statistic == _SAYS_ALL for verdict in verdicts)
+    """Return whether a verdict is on the number of records with this event: by its demand, or by the code of its statistic."""
+    return any(
+        verdict.demand == event or (verdict.statistic and STATISTICS[verdict.statistic].counts_unacceptable)
+        for verdict in verdicts
+    )
 
 
 def _reason(verdict: Verdict, suites: Sequence[Rows], ended: Mapping[str, Sequence[npt.NDArray[np.bool_]]]) -> str:

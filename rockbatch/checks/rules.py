@@ -182,11 +182,16 @@ class Rule:
         """The key of the bound that is given: "at_most", or else "at_least"."""
         return "at_most" if self.at_most is not None else "at_least"
 
+    @property
+    def counts_unacceptable(self) -> bool:
+        """Whether the code of its statistic says how many records may respond unacceptably."""
+        return self.statistic in STATISTICS and STATISTICS[self.statistic].counts_unacceptable
+
     @cached_property
     def ways(self) -> dict[str, str]:
         """Way of counting, one of :data:`COUNTING`, by status: {"overturned": "infinite", …}; all infinite by ASCE 7-16."""
         given = {"overturned": self.overturned, "flight": self.flight, "failed": self.failed}
-        usual = dict.fromkeys(USUAL, "infinite") if self.statistic == "asce7-16" else USUAL
+        usual = dict.fromkeys(USUAL, "infinite") if self.counts_unacceptable else USUAL
         return {status: way or usual[status] for status, way in given.items()}
 
     @property
@@ -442,7 +447,7 @@ def _misfits(rule: Rule) -> list[Problem]:
     """Return a problem for each contradiction between the attributes of a rule, with one of these as its key; [] for none."""
     wrong = (*_wrong_limit(rule), *_wrong_threshold(rule), *_wrong_for_code(rule), *_wrong_for_demand(rule))
     problems = [Problem(key, None, text, kind=Contradiction, named=False) for key, text in wrong]
-    demand, code = DEMANDS[rule.demand], rule.statistic == "asce7-16"
+    demand, code = DEMANDS[rule.demand], rule.counts_unacceptable
     without_effect: list[tuple[bool, Iterable[str], str]] = [
         (demand.per_case, ("statistic", "least", "count"), f"{rule.demand} is the same for all records"),
         (not demand.per_run, USUAL, f"says nothing about {rule.demand}"),

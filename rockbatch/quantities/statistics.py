@@ -198,6 +198,8 @@ class Statistic:
     coverage : function or None
         Of the number of records: what share of further ones exceeds the value, in words, without which a check that passes by
         it would promise more than it holds.
+    counts_unacceptable : bool
+        Whether its code says how many records may respond unacceptably, by overturning, flight or failure: these are infinite.
     """
 
     words: str
@@ -208,6 +210,7 @@ class Statistic:
     remark: Callable[[Values], str] | None = None
     interval: Callable[[Values, Values, Values], tuple[float, float]] | None = None
     coverage: Callable[[int], str] | None = None
+    counts_unacceptable: bool = False
 
 
 STATISTICS = {
@@ -238,6 +241,7 @@ STATISTICS = {
         "eleven motions, their mean, and one unacceptable response at most, as Hamburger (2014) presented the proposed chapter "
         "16; neither the 120 % of the median nor the clauses' own text (look into 16.2.2 and 16.4.1.1) could be checked",
         _asce7_16_remark,
+        counts_unacceptable=True,
     ),
     "en1998-1": Statistic(
         "design value by EN 1998-1",

@@ -371,7 +371,7 @@ def _of_one_record(rule: Rule) -> Rule:
     A run that flew or failed is left out if the check says so, and else undecided: a check is on the safe side where such a run
     counts as infinite, a fragility is not.
     """
-    statistic = "max" if rule.statistic == "asce7-16" else rule.statistic
+    statistic = "max" if rule.counts_unacceptable else rule.statistic
     limit = replace(rule, scale=(), statistic=statistic)
     if not DEMANDS[rule.demand].per_run:
         return limit
