@@ -1,6 +1,6 @@
 """The pages of the report: a line for each section, in order."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import NamedTuple
 
@@ -44,13 +44,17 @@ class Part(NamedTuple):
     kind: type = Finished
     """Type of the argument of ``content``: results of a run, or contents of any folder."""
 
+    def drawn(self, contents: Contents | Pair) -> Section:
+        """Return the section of one folder, or of two."""
+        return Section(self.heading, self.anchor, self.content(contents), self.folded)
+
 
 def _template(name: str) -> Callable[[Contents], Markup]:
     """Return a function that renders a section made of a template alone."""
     return lambda contents: render(f"reporting/sections/{name}.html", contents=contents)
 
 
-def _of_analyses() -> Iterator[Part]:
+def of_analyses() -> Iterator[Part]:
     """Yield the sections of all analyses; their modules load when a section is drawn."""
     for name, door in doors().items():
         for part in door.parts:
@@ -65,13 +69,11 @@ def _of_analysis(name: str, function: str, contents: Contents) -> Markup:
     return content
 
 
-def _with_observers(own: Iterable[Part]) -> Iterator[Part]:
-    """Yield the sections of the page, each followed by those of observers that stand behind it; modules load when drawn."""
-    for part in own:
-        yield part
-        for name, more in report_parts():
-            if more.behind == part.anchor:
-                yield Part(more.heading, more.anchor, partial(_of_observer, name), more.folded)
+def of_observers(behind: str | None = None) -> Iterator[Part]:
+    """Yield the sections of observers, all or those that stand behind an anchor; their modules load when a section is drawn."""
+    for name, part in report_parts():
+        if behind in (None, part.behind):
+            yield Part(part.heading, part.anchor, partial(_of_observer, name), part.folded)
 
 
 def _of_observer(name: str, finished: Finished) -> Markup:
@@ -85,7 +87,7 @@ _OWN = (
     Part("Under each bound", "bounds", verdicts.under_each_bound),
     Part("Greatest responses", "responses", answer.responses_beside_checks, folded=True),
     Part("Peaks by foundation", "figure", by_foundation),
-    *_of_analyses(),
+    *of_analyses(),
     Part("Every run", "peaks", peaks.section),
     Part("Checks", "checks", verdicts.section),
     Part("Statement for the calculation file", "statement", statement.section, folded=True),
@@ -104,10 +106,10 @@ _OWN = (
     Part("How to reproduce", "reproduce", reproduce.section, folded=True),
 )
 
-PARTS = tuple(_with_observers(_OWN))
+PARTS = tuple(part for own in _OWN for part in (own, *of_observers(own.anchor)))
 """Sections of one folder, from ``sections/``, in the order of the page: the answer first, then results, then inputs."""
 
-ALONE = Part("The study file", "study", _template("study"), kind=Contents)
+STUDY_FILE = Part("The study file", "study", _template("study"), kind=Contents)
 """Last section of a folder that has analyses only."""
 
 PARTS_OF_TWO = (
@@ -126,15 +128,9 @@ PARTS_OF_TWO = (
 
 def sections(contents: Contents) -> list[Section]:
     """Draw the sections of one folder, without empty ones: without results those of analyses, notes and the study file."""
-    parts = PARTS if isinstance(contents, Finished) else (*PARTS, ALONE)
-    fitting = [part for part in parts if isinstance(contents, part.kind)]
-    drawn = (Section(part.heading, part.anchor, part.content(contents), part.folded) for part in fitting)
+    parts = PARTS if isinstance(contents, Finished) else (*PARTS, STUDY_FILE)
+    drawn = (part.drawn(contents) for part in parts if isinstance(contents, part.kind))
     return [section for section in drawn if section.content]
-
-
-def analyses(contents: Contents) -> list[Section]:
-    """Draw the sections of all analyses; those of which a folder has no results have no content."""
-    return [Section(part.heading, part.anchor, part.content(contents)) for part in _of_analyses()]
 
 
 def page(contents: Contents, whole: bool = False) -> str:
@@ -149,6 +145,6 @@ def comparison(pair: Pair, whole: bool = False) -> str:
     """Return the page that compares two studies as HTML; with ``whole`` folded sections are unfolded and printed."""
     a, b = (study.study["title"] or study.directory.name for study in pair.studies)
     versions = " and ".join(dict.fromkeys(study.info["rockbatch"] for study in pair.studies))
-    shown = [Section(part.heading, part.anchor, part.content(pair), part.folded) for part in PARTS_OF_TWO]
+    shown = [part.drawn(pair) for part in PARTS_OF_TWO]
     title = f"{a} against {b}" if a != b else f"{a}: two studies"
     return document(title, f"A: {pair.studies[0].directory}; B: {pair.studies[1].directory}", shown, versions, whole)

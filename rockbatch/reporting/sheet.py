@@ -1,14 +1,11 @@
 """The calculation sheet: the values of the report in a layout for paper, of A4 or Letter, with nothing folded or cut off."""
 
 import re
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
 
-from rockbatch.common.observers import from_observer, report_parts
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup
-from rockbatch.reporting.page import analyses
+from rockbatch.reporting.page import STUDY_FILE, Part, of_analyses, of_observers
 from rockbatch.reporting.pdf import compiled, frame
 from rockbatch.reporting.sections import (
     answer,
@@ -30,23 +27,6 @@ from rockbatch.reporting.table import on_paper
 from rockbatch.reporting.templates import Section, render, styles
 from rockbatch.reporting.typeset import Setting, blocks, parsed, words
 
-Draw = Callable[[Finished], Markup]
-
-
-class Part(NamedTuple):
-    """A section of the sheet: its heading, and the function of a section that draws it for paper."""
-
-    heading: str
-    anchor: str
-    content: Draw
-
-
-def _of_observers(finished: Finished) -> Iterator[Section]:
-    """Yield a section for each observer that has one in reports, without content if the folder has no results of it."""
-    for name, part in report_parts():
-        yield Section(part.heading, part.anchor, from_observer(name, "section.section")(finished))
-
-
 BEFORE = (
     Part("Result", "answer", answer.section),
     Part("Inputs", "inputs", inputs.section),
@@ -64,7 +44,7 @@ AFTER = (
     Part("Statics", "statics", statics.section),
     Part("Left out, and not used", "unusable", motions.unusable),
     Part("Digests", "digests", identity.section),
-    Part("The study file", "study", lambda finished: render("reporting/sections/study.html", contents=finished)),
+    STUDY_FILE,
 )
 
 
@@ -116,12 +96,7 @@ _STYLE = """
 def sheet_of(finished: Finished) -> Sheet:
     """Return the calculation sheet of one folder: its sections with content, drawn for paper, with their folds open."""
     with on_paper():
-        sections = [
-            *(Section(part.heading, part.anchor, part.content(finished)) for part in BEFORE),
-            *_of_observers(finished),
-            *(Section(part.heading, part.anchor, part.content(finished)) for part in AFTER),
-            *analyses(finished),
-        ]
+        sections = [part.drawn(finished) for part in (*BEFORE, *of_observers(), *AFTER, *of_analyses())]
     info = finished.info
     commit = info["versions"].get("commit", "")
     version = f"rockbatch {info['rockbatch']}" + (f" ({commit})" if commit else "")

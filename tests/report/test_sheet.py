@@ -21,10 +21,10 @@ from rockbatch.pier import Damper, Pier, RigidBase, Stop, Tendon, YieldingBase
 from rockbatch.reporting import write_report
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.markup import Markup
+from rockbatch.reporting.page import Part
 from rockbatch.reporting.sections import assumptions, studied
 from rockbatch.reporting.sheet import sheet_of as made
 from rockbatch.reporting.table import PAPER, Head, on_paper, table
-from rockbatch.reporting.templates import Section
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 
@@ -358,8 +358,8 @@ def test_devices_observers_and_analyses_of_a_folder_have_their_sections_on_the_s
     pier = {"width_m": 4.0, "height_m": 20.0, "mass_t": 900.0}
     tables = {"pier": pier, "motions": {"pulse": [pulse]}, "case": [case], "output": {"forces": True}}
     rb.run(rb.Study.from_dict(tables), out=tmp_path, jobs=1, progress=False)
-    drawn = [Section("Free rocking", "release", Markup("<p>θ</p>"))]
-    monkeypatch.setattr("rockbatch.reporting.sheet.analyses", lambda contents: drawn)
+    drawn = [Part("Free rocking", "release", lambda contents: Markup("<p>θ</p>"))]
+    monkeypatch.setattr("rockbatch.reporting.sheet.of_analyses", lambda: drawn)
     headings = {re.sub(r"^\d+ ", "", heading) for heading in Page(made(read(tmp_path)).html()).headings}
     assert {"Devices", "Forces", "Free rocking"} <= headings
 
