@@ -56,8 +56,8 @@ def by_cloud(rng: np.random.Generator, scatter: Values, station: Sequence[int]) 
 
 def by_overturning(rng: np.random.Generator, scatter: Values, station: Sequence[int]) -> Cloud:
     """Fit the share that overturns, which is logistic: β and λ are those of a lognormal one only nearly."""
+    from rockbatch.analyses.fragility.bounds import NoCurve
     from rockbatch.analyses.fragility.cloud import fit_event
-    from rockbatch.analyses.fragility.lognormal import NoCurve
 
     x = _intensities(rng, station)
     curve = fit_event(x, x > THETA * np.exp(BETA * scatter), station=np.array(station))

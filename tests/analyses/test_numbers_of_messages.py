@@ -14,8 +14,9 @@ from rockbatch.analyses.accuracy import section as accuracy
 from rockbatch.analyses.accuracy.error_and_time import SUBSTEPS, Clock, _of_steps
 from rockbatch.analyses.design import answer as design
 from rockbatch.analyses.fragility import answer as fragility
+from rockbatch.analyses.fragility.bounds import NoCurve, outside, separated
 from rockbatch.analyses.fragility.curves import Undecided
-from rockbatch.analyses.fragility.lognormal import Capacities, NoCurve, _degenerate, _outside
+from rockbatch.analyses.fragility.lognormal import Capacities, _degenerate
 from rockbatch.analyses.fragility.measures import own_measure
 from rockbatch.analyses.fragility.risk import note
 from rockbatch.analyses.fragility.scale_factors import in_words
@@ -160,8 +161,8 @@ DESIGNS = {
 }
 
 
-def capacities(low, high):
-    return Capacities(np.array(low), np.array(high), np.arange(len(low)))
+def brackets(low, high):
+    return np.array(low), np.array(high), 0.95
 
 
 def factors(scales, reached=(), lost=()):
@@ -185,12 +186,15 @@ def rate():
 
 
 FRAGILITY = {
-    "a median below": (lambda: _outside(0.05, capacities([0.0, 0.2], [0.1, 0.4])).reason, [0.1]),
-    "a median above": (lambda: _outside(0.95, capacities([0.0, 0.2], [0.1, 0.4])).reason, [0.4]),
-    "no record": (lambda: _degenerate(capacities([0.3, 0.7], [math.inf, math.inf])).reason, [0.7]),
-    "every record": (lambda: _degenerate(capacities([0.0, 0.0], [0.3, 0.2])).reason, [0.2]),
-    "a median between": (lambda: _degenerate(capacities([0.2, 0.3], [0.5, 0.45])).reason, [0.3, 0.45]),
-    "one level": (lambda: _degenerate(capacities([0.2, 0.4], [0.4, 0.6])).reason, [0.4]),
+    "a median below": (lambda: outside(SimpleNamespace(median=0.05, median_interval=None), 0.1, 0.4).reason, [0.1]),
+    "a median above": (lambda: outside(SimpleNamespace(median=0.95, median_interval=None), 0.1, 0.4).reason, [0.4]),
+    "no record": (lambda: separated(*brackets([0.3, 0.7], [math.inf, math.inf])).reason, [0.7, 6]),
+    "every record": (lambda: separated(*brackets([0.0, 0.0], [0.3, 0.2])).reason, [0.2, 6]),
+    "a median between": (lambda: separated(*brackets([0.2, 0.3], [0.5, 0.45])).reason, [0.3, 0.45, 6]),
+    "one level": (
+        lambda: _degenerate(Capacities(*brackets([0.2, 0.4], [0.4, 0.6])[:2], np.ones(2)), 0.95).reason,
+        [0.4],
+    ),
     "a value of a measure": (
         lambda: own_measure("AvgSa [g]", [("a", 0.2), ("b", -0.3), ("c", 0.1), ("c", 0.2)], 1.0),
         ["b", "AvgSa", -0.3, 0.0, "c", "AvgSa"],

@@ -58,8 +58,7 @@ def of_rates(info: Info) -> Markup:
     sentences = [_of_rate(info, known[name], subject) for name, subject in subjects.items()]
     curves, remarks = info["curves"], list(_shared(info))
     if lost := sum(not curve["risk"] for curve in curves):
-        words = f"{lost} of {len(curves)} curves could not be fitted"
-        remarks.insert(0, f"{words}: what has no rate here may be exceeded more often.")
+        remarks.insert(0, f"{lost} of {len(curves)} curves without a rate: their limits may be exceeded more often.")
     return answered(join(*sentences, between=" "), remarks=remarks)
 
 
@@ -84,7 +83,8 @@ def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
         said += f", in any of {len(curves)} cases" if case else ""
     elif curve.get("median_bound"):
         said = f"has a median {bound_in_words(curve['median_bound'], info['measure'], info['unit'])}"
-        said += f" ({lowest})" if lowest else ""
+        said += f", for {lowest}" if lowest else ""
+        said += f": {curve['no_curve']}"
     else:
         said = f"has no median{case}: {curve.get('no_curve') or 'no curve could be fitted'}"
     return sentence(f"{subject} {said}", _left_open(info, curve, curves))
@@ -169,7 +169,7 @@ def _of_rate(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
     It is called the greatest if no bound of it or of another case leaves that open. Without any rate the sentence says so.
     """
     if not curves:
-        return sentence(f"{subject} has no rate, as no curve could be fitted")
+        return sentence(f"{subject} has no rate: it needs a curve, or an upper bound of the median")
     curve = max(curves, key=_rates)
     risk, years = curve["risk"], min(info["hazard"]["years"])
     least, most = _rates(curve)
@@ -181,10 +181,10 @@ def _of_rate(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
     )
     p, low, high = (risk[f"p_in_{years:g}_years{end}"] for end in ("", "_low", "_high"))
     if bound := risk["bound"]:
-        chances = [f"{percent(p)}\u00a0%" for p, end in ((low, "rate_least"), (high, "rate_most")) if risk[end]]
-        yearly = [power(risk[end]) for end in ("rate_least", "rate_most") if risk[end]]
-        said = f"{subject} has a probability of {bound} {' and '.join(chances)} in {years:g} years{case}"
-        return sentence(f"{said}, a mean rate of {bound} {' and '.join(yearly)} a year", doubts)
+        said = (
+            f"{subject} has a probability of {bound} {percent(low)}\u00a0% in {years:g} years ({level_of(info)}){case}"
+        )
+        return sentence(f"{said}, a mean rate of {bound} {power(least)} a year", doubts)
     interval = "" if low is None else f" ({level_of(info)}: {percent(low)} to {percent(high)}\u00a0%)"
     said = f"{subject} has a probability of {percent(p)}\u00a0% in {years:g} years{interval}{case}"
     return sentence(f"{said}, a mean rate of {power(least)} a year", [*_rate_left_open(curve), *doubts])
@@ -280,11 +280,9 @@ def _intensity(info: Info, value: float) -> str:
 
 
 def _rates(curve: Curve) -> tuple[float, float]:
-    """Return the bounds of a curve's annual rate, the upper one infinite if it is open; twice the rate if it is known."""
+    """Return the bounds of a curve's annual rate, the upper one infinite if only the lower one is known; twice a known rate."""
     risk = curve["risk"]
-    if not risk["bound"]:
-        return risk["rate_per_year"], risk["rate_per_year"]
-    return risk["rate_least"], math.inf if risk["rate_most"] is None else risk["rate_most"]
+    return (risk["rate_least"], math.inf) if risk["bound"] else (risk["rate_per_year"], risk["rate_per_year"])
 
 
 def _cases(info: Info, curves: Sequence[Curve]) -> str:

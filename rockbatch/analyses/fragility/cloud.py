@@ -20,16 +20,18 @@ import numpy.typing as npt
 from scipy.special import expit, log_expit, log_ndtr, ndtr, ndtri
 from scipy.stats import t as student
 
-from rockbatch.analyses.fragility.lognormal import (
-    STATIONS_OF_CURVE,
+from rockbatch.analyses.fragility.bounds import (
     STATIONS_OF_INTERVAL,
     Interval,
     NoCurve,
     Numbers,
     Values,
-    sums_by,
+    by_station,
+    outside,
+    separated,
     too_few,
 )
+from rockbatch.analyses.fragility.lognormal import sums_by
 
 DRAWS = 1000
 """Sets of parameters from their joint distribution, from which all intervals come."""
@@ -48,11 +50,6 @@ WIDER = 1.5
 
 LEAST_RECORDS = 4
 """Demands above the floor that a line needs."""
-
-ROUNDING = 1e-9
-"""Share of an intensity by which a median may be beyond it."""
-
-_OPEN = "its interval has no end among them, and nothing bounds it"
 
 _WIDEST = 12.0
 """Greatest distance of ln x from the mean of the data at which medians are sought; beyond it a median is 0 or infinite."""
@@ -248,16 +245,18 @@ def fit(runs: Demands, limit: float, floor: float, confidence: float = 0.95) -> 
 
     There is none with fewer than STATIONS_OF_CURVE, 3, stations or LEAST_RECORDS, 4, demands above the floor, if all are of one
     intensity or on one line, if demand or overturning does not grow with the intensity, or if all runs or none exceed the limit
-    and the median lies outside them: of that it has the bound of :func:`_outside`.
+    and the median lies outside them: of that it has a bound, by :func:`outside` or :func:`separated`.
 
     σ has n − 2 in its denominator, and its draws are those of a χ² variable, so that without censored demands the intervals of
     the line are Student's. The logistic part is penalised as Firth (1993, Biometrika 80(1):27–38) proposes, which
     keeps it finite where intensities part the records that overturned from the others.
     """
     log_x, stands, station = np.log(runs.x), ~runs.overturned, runs.of_station
-    if refusal := _refused(station):
+    if refusal := too_few(len(np.unique(station))):
         return refusal
-    share = _share(log_x, runs.overturned, station, confidence)
+    if runs.overturned.all():
+        return _on_one_side(runs.x, runs.overturned, station, confidence)
+    share = _share(log_x, runs.overturned, station)
     if isinstance(share, NoCurve):
         return share
     exact = stands & ~runs.within & (runs.demand > floor)
@@ -278,34 +277,9 @@ def fit(runs: Demands, limit: float, floor: float, confidence: float = 0.95) -> 
         return NoCurve("the demand does not grow with the intensity")
     curve = Cloud(limit, line, share, confidence, float(log_x.mean()), len(np.unique(station)))
     beyond = runs.overturned | (exact & (runs.demand > limit))
-    return curve if beyond.any() and not beyond.all() else _outside(curve, runs.x) or curve
-
-
-def _refused(station: Numbers) -> NoCurve | None:
-    stations = len(np.unique(station))
-    return NoCurve(too_few(stations)) if 0 < stations < STATIONS_OF_CURVE else None
-
-
-def _without_both(x: Values, happened: npt.NDArray[np.bool_], station: Numbers, confidence: float) -> NoCurve:
-    """Return the bound of the median if all records exceed the limit, or none does; no curve can be fitted then.
-
-    As many stations as :func:`_sign_test` asks for have a record beyond the bound; with fewer there is none.
-    """
-    log_x, least = np.log(x), _sign_test(confidence)
-    sign, reason = -1.0, f"no record exceeds the limit up to {x.max():.4g}: stronger ones are needed"
-    if happened.all():
-        sign, reason = 1.0, f"every record exceeds the limit from {x.min():.4g} on: weaker ones are needed"
-    farthest = sorted(float((sign * log_x[station == number]).min()) for number in np.unique(station))
-    if len(farthest) < least:
-        return NoCurve(f"{reason}, and a bound of the median needs {least} stations")
-    bound = math.exp(sign * farthest[least - 1])
-    return NoCurve(reason, below=bound) if happened.all() else NoCurve(reason, above=bound)
-
-
-def _sign_test(confidence: float) -> int:
-    """Return the least number of stations of which chance, at the median, brings all to one side as seldom as beyond an end of
-    an interval: 6 for 95 %."""
-    return math.ceil(-math.log2(0.5 - 0.5 * confidence))
+    if beyond.any() and not beyond.all():
+        return curve
+    return outside(curve, float(runs.x.min()), float(runs.x.max())) or curve
 
 
 def fit_event(
@@ -317,46 +291,30 @@ def fit_event(
     if the share does not grow with it, and if the median lies outside the intensities: no line of demands leads there.
     """
     log_x, station = np.log(x), _alone(x) if station is None else station
-    if not len(x):
-        return NoCurve("no record counts")
-    if refusal := _refused(station):
+    if refusal := too_few(len(np.unique(station))):
         return refusal
-    if not happened.any():
-        return _without_both(x, happened, station, confidence)
-    share = _share(log_x, happened, station, confidence)
-    if share is None or isinstance(share, NoCurve):
-        return share or NoCurve("no record has the event")
+    share = None if happened.all() else _share(log_x, happened, station)
+    if share is None:
+        return _on_one_side(x, happened, station, confidence)
+    if isinstance(share, NoCurve):
+        return share
     curve = Cloud(1.0, None, share, confidence, float(log_x.mean()), len(np.unique(station)))
-    return _outside(curve, x) or curve
+    return outside(curve, float(x.min()), float(x.max())) or curve
 
 
-def _outside(curve: Cloud, x: Values) -> NoCurve | None:
-    """Return ``NoCurve`` for a median below or above all intensities, shape (n,); None for one among them.
-
-    Its bound is the end of its interval, or the nearest intensity if that is beyond it; without an end among the intensities it
-    has none.
-    """
-    least, most = float(x.min()), float(x.max())
-    low, high = curve.median_interval or (0.0, math.inf)
-    if curve.median < least * (1.0 - ROUNDING):
-        reason = f"the median by the fit is below all intensities, which begin at {least:.4g}"
-        return NoCurve(reason, below=max(high, least)) if high <= most else NoCurve(f"{reason}: {_OPEN}")
-    if curve.median > most * (1.0 + ROUNDING):
-        reason = f"the median by the fit is above all intensities, which end at {most:.4g}"
-        return NoCurve(reason, above=min(low, most)) if low >= least else NoCurve(f"{reason}: {_OPEN}")
-    return None
+def _on_one_side(x: Values, happened: npt.NDArray[np.bool_], station: Numbers, confidence: float) -> NoCurve:
+    """Return the bound of the median if all records exceed the limit, or none does; no curve can be fitted then."""
+    refusal = separated(*by_station(np.where(happened, 0.0, x), np.where(happened, x, np.inf), station), confidence)
+    assert refusal is not None
+    return refusal
 
 
-def _share(
-    log_x: Values, happened: npt.NDArray[np.bool_], station: Numbers, confidence: float
-) -> Logistic | NoCurve | None:
-    """Return the logistic share that overturns; None if no record did, ``NoCurve`` if all did, their intensities
-    are the same, or the share does not grow.
+def _share(log_x: Values, happened: npt.NDArray[np.bool_], station: Numbers) -> Logistic | NoCurve | None:
+    """Return the logistic share that overturns, of records of which some did not; None if no record did, ``NoCurve`` if their
+    intensities are the same, or the share does not grow.
     """
     if not happened.any():
         return None
-    if happened.all():
-        return _without_both(np.exp(log_x), happened, station, confidence)
     if np.ptp(log_x) < 1e-6:
         return NoCurve("all records have the same intensity: a share over it needs a cloud of them")
     share = _logistic(log_x, happened, station)

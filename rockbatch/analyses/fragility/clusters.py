@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockbatch.analyses.fragility.lognormal import STATIONS_OF_INTERVAL, Numbers
+from rockbatch.analyses.fragility.bounds import STATIONS_OF_INTERVAL, Numbers
 from rockbatch.motions import Motion
 
 

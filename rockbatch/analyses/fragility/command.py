@@ -73,7 +73,7 @@ def risk_lines(info: Entry) -> str:
     """
     curves = [curve for curve in info["curves"] if curve["risk"]]
     if not curves:
-        return "No annual rates: no curve could be fitted"
+        return "No annual rates: they need a curve, or an upper bound of the median"
     about = "Mean annual rates of exceedance; intervals are those of the fit, with the hazard taken as known"
     notes = [f"{_name(info, curve)}: {curve['risk']['note']}" for curve in curves if curve["risk"]["note"]]
     return "\n".join([about, in_lines([*names_of_curves(info), *of_rates(info, "{:.2e}".format)], curves, 2), *notes])

@@ -10,18 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.analyses.fragility import cloud
+from rockbatch.analyses.fragility.bounds import NoCurve, Numbers, Values
 from rockbatch.analyses.fragility.ida import Bracket, Capacity, Looks, bisect, capacity, hunt
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, applies, threshold
-from rockbatch.analyses.fragility.lognormal import (
-    Capacities,
-    Contribution,
-    Lognormal,
-    NoCurve,
-    Numbers,
-    Values,
-    contribution,
-    fit,
-)
+from rockbatch.analyses.fragility.lognormal import Capacities, Contribution, Lognormal, contribution, fit
 from rockbatch.analyses.fragility.runs import LevelPlan, Point, RecordRuns, Simulate, first_intensities, level_plans
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.windows import Windows, windows
@@ -172,22 +164,6 @@ class Curve:
             return False
         ratio, interval = _ratio(self.readings.medians), self.fitted.median_interval
         return math.isinf(ratio) if interval is None else ratio > _ratio(interval)
-
-    @property
-    def shares(self) -> tuple[Values, Values, Values]:
-        """Return the levels at which runs count, and the least and greatest shares of records beyond the limit, shape (n,) each.
-
-        Undecided ones are within it for the least, beyond it for the greatest. With capacities a record is beyond it from the
-        upper end of its bracket on for the least, above the lower end for the greatest. Not for clouds.
-        """
-        counting = [stripe for stripe in self.stripes if stripe.records]
-        levels = np.array([stripe.level for stripe in counting])
-        if self.capacities:
-            ends = np.array([(cap.if_withstood.high, cap.if_exceeded.low) for _, cap in self.capacities]).T
-            least, most = ((ends[0] <= levels[:, None]).mean(axis=1), (ends[1] < levels[:, None]).mean(axis=1))
-            return levels, least, most
-        n, beyond, open_ = np.array([(each.records, each.exceeded, each.undecided) for each in counting], dtype=float).T
-        return levels, beyond / n, (beyond + open_) / n
 
     def identity(self, varied: Sequence[str]) -> dict[str, object]:
         """Return the columns that identify it in tables: ``case``, the ``varied`` values or None, and ``limit_state``."""

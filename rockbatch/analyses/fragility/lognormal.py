@@ -24,11 +24,17 @@ from scipy.optimize import minimize
 from scipy.special import log_ndtr, ndtr, ndtri
 from scipy.stats import t as student
 
-from rockbatch.batch.listening import count as counted
-
-Values = npt.NDArray[np.float64]
-Numbers = npt.NDArray[np.int64]
-Interval = tuple[float, float]
+from rockbatch.analyses.fragility.bounds import (
+    STATIONS_OF_INTERVAL,
+    Interval,
+    NoCurve,
+    Numbers,
+    Values,
+    by_station,
+    outside,
+    separated,
+    too_few,
+)
 
 RAYS = 360
 """Directions in which the edge of the confidence region is sought; between two it is off by 4e-5 of its width."""
@@ -43,9 +49,6 @@ LEAST_PER_PARAMETER = 5
 
 SEPARATED = 1e-3
 """ℓ of an interval, below which (in magnitude) the inputs leave nothing open: a probability of 0.999."""
-
-STATIONS_OF_CURVE, STATIONS_OF_INTERVAL = 3, 5
-"""Stations whose records a curve, and its intervals, take at least: of fewer, chance says more than they do."""
 
 LEAST_SLOPE = 1e-3
 """Least slope of z over standardised ln x; below, the capacity would spread over more than a thousand times what was sampled."""
@@ -111,19 +114,16 @@ class Capacities:
         """Return the number of stations."""
         return int(self.records) if self.station is None else len(np.unique(self.station))
 
-
-@dataclass(frozen=True)
-class NoCurve:
-    """The reason why data have no curve, with bounds of the median: above ``above``, below ``below``."""
-
-    reason: str
-    above: float = 0.0
-    below: float = math.inf
-
-    @property
-    def is_bound(self) -> bool:
-        """Return whether the data bound the median."""
-        return self.above > 0 or math.isfinite(self.below)
+    def of_stations(self) -> tuple[Values, Values, Values]:
+        """Return the ends of stations by :func:`by_station`, and how many stations have each, shape (k,) each."""
+        if self.station is None:
+            return self.low, self.high, self.count
+        low, high = self.low, self.high
+        if self.of_record is not None:
+            low = np.where(self.of_record > 0, low, 0.0).max(axis=1, initial=0.0)
+            high = np.where(self.of_record > 0, high, np.inf).min(axis=1, initial=np.inf)
+        low, high = by_station(low, high, self.station)
+        return low, high, np.ones(len(low))
 
 
 @dataclass(frozen=True)
@@ -205,9 +205,7 @@ def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | NoCurve
     (Chandler & Bate 2007, Biometrika 94(1):167–183), and reaches to Student's quantile of their number.
     """
     stations = capacities.stations
-    if 0 < stations < STATIONS_OF_CURVE:
-        return NoCurve(too_few(stations))
-    if refusal := _degenerate(capacities):
+    if refusal := too_few(stations) or _degenerate(capacities, confidence):
         return refusal
     likelihood = _Likelihood(capacities)
     best = likelihood.maximum()
@@ -215,19 +213,16 @@ def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | NoCurve
         return NoCurve(NOT_RISING)
     a, b = likelihood.plain(best)
     median, most_likely = math.exp(min(max(-a / b, -700.0), 700.0)), float(1.0 / b)
-    if outside := _outside(median, capacities):
-        return outside
     scatter = _Scatter(likelihood, best)
     dispersion = math.hypot(most_likely, scatter.of_median)
-    if stations < STATIONS_OF_INTERVAL:
-        return Lognormal(median, dispersion, None, None, None, most_likely, stations)
-    edge = likelihood.region(best, scatter, confidence) * (most_likely / dispersion)
-    return Lognormal(median, dispersion, *_intervals(edge), edge, most_likely, stations)
-
-
-def too_few(stations: int) -> str:
-    """Return why so few ``stations`` give no curve: "records of 2 stations: a curve takes 3, and an interval 5"."""
-    return f"records of {counted(stations, 'station')}: a curve takes {STATIONS_OF_CURVE}, and an interval {STATIONS_OF_INTERVAL}"
+    curve = Lognormal(median, dispersion, None, None, None, most_likely, stations)
+    if stations >= STATIONS_OF_INTERVAL:
+        edge = likelihood.region(best, scatter, confidence) * (most_likely / dispersion)
+        median_interval, dispersion_interval = _intervals(edge)
+        curve = replace(curve, median_interval=median_interval, dispersion_interval=dispersion_interval, region=edge)
+    ends = np.concatenate((capacities.low, capacities.high))
+    ends = ends[(ends > 0) & np.isfinite(ends)]
+    return outside(curve, float(ends.min()), float(ends.max())) or curve
 
 
 @dataclass(frozen=True)
@@ -265,7 +260,7 @@ def contribution(
     """
     assert capacities.station is not None
     n, k = scores.shape
-    if refusal := _degenerate(capacities):
+    if refusal := _degenerate(capacities, confidence):
         return refusal
     if n < LEAST_PER_PARAMETER * (k + 2):
         return NoCurve(f"{n} runs or capacities are too few to fit {k + 2} parameters")
@@ -296,41 +291,16 @@ def contribution(
     return Contribution(middle, (least, most), tuple(effects.tolist()), tuple(errors.tolist()))
 
 
-def _degenerate(capacities: Capacities) -> NoCurve | None:
+def _degenerate(capacities: Capacities, confidence: float) -> NoCurve | None:
     """Return ``NoCurve``, with any bounds of the median, if the data determine no median or no dispersion; None if they do."""
-    low, high = capacities.low, capacities.high
-    if len(low) == 0:
-        return NoCurve("no record counts")
-    highest, lowest = float(low.max()), float(high.min())
-    if np.isinf(high).all():
-        return NoCurve(f"no record exceeds the limit up to {highest:.4g}: the median is above", above=highest)
-    if (low == 0).all():
-        return NoCurve(f"every record exceeds the limit from {lowest:.4g} on: the median is below", below=lowest)
-    if highest < lowest:
-        reason = (
-            f"no record exceeds the limit at {highest:.4g}, every one at {lowest:.4g}: the median is between, and levels "
-            "between them would show the dispersion"
-        )
-        return NoCurve(reason, above=highest, below=lowest)
-    if highest == lowest:
+    low, high, stations = capacities.of_stations()
+    if refusal := separated(low, high, confidence, stations):
+        return refusal
+    highest = float(capacities.low.max())
+    if highest == float(capacities.high.min()):
         return NoCurve(
             f"{highest:.4g} is the only level at which some records exceed the limit and others do not: levels nearer to it "
             "would show the dispersion"
-        )
-    return None
-
-
-def _outside(median: float, capacities: Capacities) -> NoCurve | None:
-    """Return ``NoCurve`` with a bound for a median below or above all intensities that were run; None for one among them."""
-    ends = np.concatenate((capacities.low, capacities.high))
-    ends = ends[(ends > 0) & np.isfinite(ends)]
-    if median < ends.min():
-        return NoCurve(
-            f"most records exceed the limit at {ends.min():.4g}: the median is below", below=float(ends.min())
-        )
-    if median > ends.max():
-        return NoCurve(
-            f"few records exceed the limit up to {ends.max():.4g}: the median is above", above=float(ends.max())
         )
     return None
 

@@ -33,7 +33,7 @@ def of_curves(info: Entry) -> list[Head]:
         Head(
             f"median {in_brackets(info['unit'])}".strip(),
             ".3g",
-            f"θ: the {info['measure']} that half of the motions need; < and > are bounds, where all runs are on one side",
+            f"θ: the {info['measure']} that half of the motions need; < and > are bounds ({level})",
             value=_median,
         ),
         Head(level, note="interval of the median, by stations", value=_interval("median_interval")),
@@ -72,23 +72,10 @@ def of_curves(info: Entry) -> list[Head]:
 
 
 def bound_in_words(bound: Entry, measure: str, unit: str) -> str:
-    """Return the bound of a median: "below PGV 1.5 m/s: every record exceeds it there", or "3 of 20 records exceed it there".
-
-    Likewise "above …: no record exceeds it there", and "between … and …: …". That of a cloud, "above PGV 0.8 m/s (95 %): 3 of 20
-    records exceed it", counts the records of all intensities.
-    """
-
-    def intensity(end: str) -> str:
-        return f"{measure} {plain(bound[end], 3)} {unit}".strip()
-
-    if bound["is"] == "between":
-        ends = f"{intensity('above')} and {intensity('below')}"
-        return f"between {ends}: no record exceeds it at the first, every one at the second"
-    exceeded, records, confidence = bound["exceeded"], bound["records"], bound.get("confidence")
-    some = f"{exceeded} of {records} records exceed" if exceeded else "no record exceeds"
-    level, place = (f" ({100 * confidence:g} %)", "") if confidence else ("", " there")
-    words = "every record exceeds" if exceeded == records else some
-    return f"{bound['is']} {intensity(bound['is'])}{level}: {words} it{place}"
+    """Return the bound of a median: "below PGV 1.5 m/s (95 %)", "above …", or "between … and … (95 %)"."""
+    ends = [bound[end] for end in ("above", "below") if bound[end] is not None]
+    intensities = " and ".join(f"{measure} {plain(end, 3)} {unit}".strip() for end in ends)
+    return f"{bound['is']} {intensities} ({100 * bound['confidence']:g} %)"
 
 
 def _median(curve: Curve) -> object:
@@ -115,7 +102,7 @@ def of_rates(info: Entry, written: Callable[[float], str]) -> list[Head]:
     level = level_of(info)
     return [
         Head("dispersion", ".2f", "β with the added dispersion", value=lambda curve: curve["risk"]["dispersion_total"]),
-        Head("rate [1/year]", note="mean annual rate of exceedance", value=_rate(written)),
+        Head("rate [1/year]", note="mean annual rate of exceedance", value=_rate(written, level)),
         Head(level, note="interval of the rate by the fit", value=_rates("rate_low", "rate_high", written)),
         Head(
             "undecided",
@@ -152,17 +139,14 @@ def _interval(name: str) -> Callable[[Curve], Markup]:
     return written
 
 
-def _rate(written: Callable[[float], str]) -> Callable[[Curve], str]:
-    """Return a function from a curve to its rate as ``written``, or its bounds: "at least 2.1e-04", "between … and …"."""
+def _rate(written: Callable[[float], str], level: str) -> Callable[[Curve], str]:
+    """Return a function from a curve to its rate as ``written``, or its bound: "at least 2.1e-04 (95 %)"."""
 
     def rate(curve: Curve) -> str:
         risk = curve["risk"]
-        if not risk["bound"]:
-            return written(risk["rate_per_year"])
-        ends = {"at least": ("rate_least",), "at most": ("rate_most",), "between": ("rate_least", "rate_most")}[
-            risk["bound"]
-        ]
-        return f"{risk['bound']} {' and '.join(written(risk[end]) for end in ends)}"
+        if risk["bound"]:
+            return f"{risk['bound']} {written(risk['rate_least'])} ({level})"
+        return written(risk["rate_per_year"])
 
     return rate
 
@@ -181,8 +165,7 @@ def _probability(name: str) -> Callable[[Curve], Markup]:
     def written(curve: Curve) -> Markup:
         value, low, high = (curve["risk"][key] for key in (name, f"{name}_low", f"{name}_high"))
         if bound := curve["risk"]["bound"]:
-            ends = {"at least": (low,), "at most": (high,), "between": (low, high)}[bound]
-            return Markup(f"{bound} {' and '.join(map(percent, ends))}\u00a0%")
+            return Markup(f"{bound} {percent(low)}\u00a0%")
         between = "" if low is None else f" ({interval(percent(low), percent(high))})"
         return Markup(f"{percent(value)}\u00a0%{between}")
 

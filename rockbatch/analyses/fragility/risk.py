@@ -11,9 +11,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from rockbatch.analyses.fragility.bounds import Interval, NoCurve, Values
 from rockbatch.analyses.fragility.curves import Curve, Fitted
-from rockbatch.analyses.fragility.lognormal import Interval, NoCurve, Values
-from rockbatch.analyses.fragility.statistics import rate_bounds
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.common.lazy import pd
 from rockbatch.motions.hazard import MOST_RATE, HazardCurve
@@ -26,8 +25,8 @@ NOTABLE = 0.05
 MIDDLE = (0.05, 0.95)
 """Shares of a rate between which the intensities lie that are named as those that contribute."""
 
-BY_SHARES = (
-    "a bound by the shares of these records at the levels, as if all motions had them: without a curve or an interval"
+BY_MEDIAN = (
+    "half of the rate of motions at the bound of the median: of these and stronger ones half or more exceed the limit"
 )
 BEYOND_HAZARD = (
     "what the points of the hazard contribute: with its first slope below them the rate would be more than that of its weakest "
@@ -79,27 +78,21 @@ class Risk:
 
 @dataclass(frozen=True)
 class RiskBound:
-    """Bounds of the rate of a case whose median has bounds only, or that would be more than the hazard has.
+    """The lower bound, ``least``, of the rate of a case whose median has a bound only, or whose rate is beyond the hazard.
 
-    ``bounds`` are those of :func:`rate_bounds`, by the shares of the records at the levels, or begin with what the points of the
-    hazard contribute; the greater may be infinite. ``note`` says which.
+    It has the confidence of the intervals. ``note`` says what it is.
     """
 
     curve: Curve
-    bounds: Interval
+    least: float
     note: str
-
-    @property
-    def kind(self) -> str:
-        """Return "at least" if the greater bound is infinite, else "between", or "at most" if the lesser is 0."""
-        least, most = self.bounds
-        return "at least" if math.isinf(most) else "between" if least > 0 else "at most"
 
 
 def risks(curves: Sequence[Curve], spec: FragilitySpec) -> tuple[list[Risk], list[RiskBound]]:
-    """Return the annual rate of every fitted curve, and bounds where the median has a bound or the rate is beyond the hazard.
+    """Return the annual rate of every fitted curve, and bounds if a median has an upper one or a rate is beyond the hazard.
 
-    Both are empty without a hazard. Each intensity of a cloud has a single record, whose share, 0 or 1, bounds no rate.
+    Both are empty without a hazard. A lower bound of a median bounds no rate: of weaker and more frequent motions, up to half
+    may exceed the limit.
     """
     known: list[Risk] = []
     bounds: list[RiskBound] = []
@@ -108,16 +101,22 @@ def risks(curves: Sequence[Curve], spec: FragilitySpec) -> tuple[list[Risk], lis
     hazard = spec.hazard.curve
     x, rates = hazard.quadrature()
     for curve in curves:
-        if not isinstance(curve.fitted, NoCurve):
-            total = curve.fitted.widened(spec.added)
-            if float(total.probability(x) @ rates) > _meaningful(hazard):
-                bounds.append(RiskBound(curve, (_of_points(total, hazard, x, rates), math.inf), BEYOND_HAZARD))
-            else:
-                known.append(_risk(curve, total, spec, hazard, x, rates))
-        elif curve.fitted.is_bound and not curve.cloud:
-            levels, least, most = curve.shares
-            bounds.append(RiskBound(curve, rate_bounds(levels, least, most, hazard.rate(levels)), BY_SHARES))
+        if isinstance(curve.fitted, NoCurve):
+            if math.isfinite(below := _below(curve)):
+                bounds.append(RiskBound(curve, 0.5 * float(hazard.rate([below])[0]), BY_MEDIAN))
+            continue
+        total = curve.fitted.widened(spec.added)
+        if float(total.probability(x) @ rates) <= _meaningful(hazard):
+            known.append(_risk(curve, total, spec, hazard, x, rates))
+        elif (least := total.rate(*_of_points(hazard, x, rates))[1]) > 0:
+            bounds.append(RiskBound(curve, least, BEYOND_HAZARD))
     return known, bounds
+
+
+def _below(curve: Curve) -> float:
+    """Return the bound of a median from above, also if undecided runs are within the limit; infinite if there is none."""
+    readings = [curve.fitted, curve.readings.withstood] if curve.readings else [curve.fitted]
+    return max(reading.below if isinstance(reading, NoCurve) else math.inf for reading in readings)
 
 
 def _risk(curve: Curve, total: Fitted, spec: FragilitySpec, hazard: HazardCurve, x: Values, rates: Values) -> Risk:
@@ -127,6 +126,8 @@ def _risk(curve: Curve, total: Fitted, spec: FragilitySpec, hazard: HazardCurve,
     yearly = total.probability(x) * rates
     first, last = hazard.ends
     below, above = float(yearly[x < first].sum()), float(yearly[x > last].sum())
+    points, weights = _of_points(hazard, x, rates)
+    least_of_points = float(total.probability(points) @ weights)
     passed = np.cumsum(yearly) / rate if rate > 0 else np.linspace(0.0, 1.0, len(x))
     low, high = (float(np.exp(np.interp(share, passed, np.log(x)))) for share in MIDDLE)
     return Risk(
@@ -137,22 +138,20 @@ def _risk(curve: Curve, total: Fitted, spec: FragilitySpec, hazard: HazardCurve,
         _undecided(curve, spec.added, x, rates),
         below,
         above,
-        (below + _of_points(total, hazard, x, rates), rate - above + float(hazard.rate([last])[0])),
+        (below + least_of_points, rate - above + float(hazard.rate([last])[0])),
         (float(yearly[x < spec.levels[0]].sum()), float(yearly[x > spec.levels[-1]].sum())),
         (low, high),
     )
 
 
-def _of_points(total: Fitted, hazard: HazardCurve, x: Values, rates: Values) -> float:
-    """Return the rate from the lowest point of the hazard on, with the fragility above the highest as it is there.
+def _of_points(hazard: HazardCurve, x: Values, rates: Values) -> tuple[Values, Values]:
+    """Return intensities from the lowest point of the hazard on and the rates about them; stronger motions count at the highest.
 
-    It is a sum, as what is below the lowest point may be greater by many orders.
+    The rate is then a sum, as what is below the lowest point may be greater by many orders.
     """
     first, last = hazard.ends
     within = (first <= x) & (x <= last)
-    return float(
-        total.probability(x[within]) @ rates[within] + total.probability(np.array([last]))[0] * hazard.rate([last])[0]
-    )
+    return np.append(x[within], last), np.append(rates[within], hazard.rate([last]))
 
 
 def _meaningful(hazard: HazardCurve) -> float:
@@ -222,9 +221,8 @@ def risk_table(
 ) -> "pd.DataFrame":
     """Return fragility_risk.csv: a row for each curve, with the fields of :class:`Risk`; an open bound is empty.
 
-    ``bound`` is "at least", "at most" or "between" of a curve whose median or rate has a bound alone, and else empty. There
-    ``rate_per_year`` is empty, and ``rate_least`` and ``rate_most`` are the bounds. Without both there is the reason, as
-    its ``note``.
+    ``bound`` is "at least" of a curve whose median or rate has a bound alone, with the confidence of the intervals, and else
+    empty. There ``rate_per_year`` is empty, and ``rate_least`` is the bound. Without both there is the reason, as its ``note``.
     """
     of_curves = {id(risk.curve): _row(risk, spec, varied) for risk in known}
     of_curves |= {id(risk.curve): _row_of_bound(risk, spec, varied) for risk in bounds}
@@ -234,8 +232,11 @@ def risk_table(
 
 
 def _reason(curve: Curve) -> str:
-    assert isinstance(curve.fitted, NoCurve)
-    return curve.fitted.reason
+    return (
+        curve.fitted.reason
+        if isinstance(curve.fitted, NoCurve)
+        else f"no bound of the rate: it would be {BEYOND_HAZARD}"
+    )
 
 
 def _names(spec: FragilitySpec) -> list[str]:
@@ -257,14 +258,10 @@ def _names(spec: FragilitySpec) -> list[str]:
 
 def _row_of_bound(risk: RiskBound, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, object]:
     assert spec.hazard is not None
-    least, most = risk.bounds
     row: dict[str, object] = risk.curve.identity(varied) | {"measure": spec.label, "unit": spec.unit}
-    row |= {"bound": risk.kind, "rate_least": least, "rate_most": finite_or_nan(most)}
+    row |= {"bound": "at least", "rate_least": risk.least, "rate_most": math.nan}
     for years in spec.hazard.years:
-        row |= {
-            f"p_in_{years:g}_years_low": _probability(least, years),
-            f"p_in_{years:g}_years_high": _probability(most, years),
-        }
+        row |= {f"p_in_{years:g}_years_low": _probability(risk.least, years), f"p_in_{years:g}_years_high": 1.0}
     return row | {"note": risk.note}
 
 

@@ -129,7 +129,7 @@ def rates(analysis: FinishedAnalysis) -> Markup:
     info = analysis.info
     curves = [entry for entry in info["curves"] if entry["risk"]]
     if not curves:
-        return tag("p", "No curve could be fitted, so that there are no rates.")
+        return tag("p", "No annual rates: they need a curve, or an upper bound of the median.")
     heads = [
         *names_of_curves(info),
         *of_rates(info, power),

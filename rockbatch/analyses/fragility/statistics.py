@@ -1,6 +1,5 @@
 """Fragility curves of arrays, without a study: counts and records at levels, capacities, clouds of demands; bounds of rates."""
 
-import math
 from collections.abc import Hashable, Sequence
 from typing import Any, TypeVar
 
@@ -9,8 +8,9 @@ import numpy.typing as npt
 
 from rockbatch.analyses.fragility import cloud as clouds
 from rockbatch.analyses.fragility import lognormal
+from rockbatch.analyses.fragility.bounds import NoCurve, Numbers
 from rockbatch.analyses.fragility.cloud import Cloud
-from rockbatch.analyses.fragility.lognormal import Capacities, Interval, Lognormal, NoCurve, Numbers
+from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal
 from rockbatch.common.errors import InputError
 
 Curve = TypeVar("Curve", Lognormal, Cloud)
@@ -138,37 +138,6 @@ def capacities(
     _refuse(below >= 0, "low", "0 or above")
     _refuse(above > below, "high", "above low")
     return _curve(lognormal.fit(Capacities.of_brackets(below, above, _numbers(stations, len(below))), confidence))
-
-
-def rate_bounds(levels: npt.ArrayLike, least: npt.ArrayLike, most: npt.ArrayLike, rates: npt.ArrayLike) -> Interval:
-    """Return the least and the greatest annual rate of exceedance that shares at levels allow, whatever the curve between them.
-
-    Parameters
-    ----------
-    levels : array_like, shape (k,)
-        Intensities, rising.
-    least, most : array_like, shape (k,)
-        Share of the records that exceed the limit there, if undecided ones are within it, and if they are beyond it. A share
-        below that of a lower level counts as that one.
-    rates : array_like, shape (k,)
-        Annual rates at which the levels are exceeded.
-
-    The least takes 0 below the lowest level, and between two levels the share at the lower; the greatest that at the upper,
-    and 1 above the highest. It is infinite if ``most`` is above 0 at the lowest level: weaker motions are not bounded. Raises
-    ``InputError`` for arrays of different lengths, or empty ones.
-
-    Examples
-    --------
-    >>> from rockbatch.analyses.fragility.statistics import rate_bounds
-    >>> rate_bounds([0.5, 1.0], [0.0, 0.0], [0.0, 0.0], [1e-2, 1e-3])
-    (0.0, 0.001)
-    """
-    passed = -np.diff(np.append(np.asarray(rates, dtype=np.float64), 0.0))  # motions from each level up to the next
-    low, high = (np.maximum.accumulate(np.asarray(shares, dtype=np.float64)) for shares in (least, most))
-    if not len(low) == len(high) == len(passed) == len(np.asarray(levels)) > 0:
-        raise InputError("levels, least, most and rates: must be of one length, with one level at least")
-    greatest = math.inf if high[0] > 0 else float(np.append(high[1:], 1.0) @ passed)
-    return float(low @ passed), greatest
 
 
 def cloud(

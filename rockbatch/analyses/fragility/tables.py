@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.analyses.fragility.bounds import STATIONS_OF_INTERVAL, NoCurve, Values
 from rockbatch.analyses.fragility.cloud_tables import described_cloud, note_on_cloud
-from rockbatch.analyses.fragility.curves import Curve
+from rockbatch.analyses.fragility.curves import Curve, Fitted
 from rockbatch.analyses.fragility.ida import Capacity
 from rockbatch.analyses.fragility.limit_states import words
-from rockbatch.analyses.fragility.lognormal import STATIONS_OF_INTERVAL, Contribution, Lognormal, NoCurve, Values
+from rockbatch.analyses.fragility.lognormal import Contribution, Lognormal
 from rockbatch.analyses.fragility.quantities import bound_in_words
 from rockbatch.analyses.fragility.risk import (
     Risk,
@@ -208,7 +209,7 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
         "reason": curve.limit.reason,
         "counting": curve.limit.counting,
         "median": None,
-        "median_bound": _bound(curve, spec.confidence),
+        "median_bound": _bound(fitted, spec.confidence),
         "median_interval": None,
         "dispersion": None,
         "dispersion_interval": None,
@@ -294,24 +295,13 @@ def _or_none(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _bound(curve: Curve, confidence: float) -> dict[str, object] | None:
-    """Return the bound of an unknown median, "below", "above" or "between", with its intensities; None if it has no bound.
-
-    ``exceeded`` of ``records`` with a decided run are beyond the limit at the bound, the upper one of two; of a cloud, of all,
-    whose bound holds with the ``confidence``.
-    """
-    fitted = curve.fitted
+def _bound(fitted: Fitted | NoCurve, confidence: float) -> dict[str, object] | None:
+    """Return the bound of an unknown median, "below", "above" or "between", with its intensities and confidence; None without."""
     if not isinstance(fitted, NoCurve) or not fitted.is_bound:
         return None
     low, high = fitted.above or None, _or_none(fitted.below)
     kind = "above" if high is None else "below" if low is None else "between"
-    level = fitted.above if high is None else fitted.below
-    at = [s for s in curve.stripes if curve.cloud or math.isclose(s.level, level)]
-    exceeded, records = (
-        sum(numbers) for numbers in zip(*((s.exceeded, s.records - s.undecided) for s in at), strict=True)
-    )
-    bound = {"is": kind, "above": low, "below": high, "exceeded": exceeded, "records": records}
-    return bound | {"confidence": confidence} if curve.cloud else bound
+    return {"is": kind, "above": low, "below": high, "confidence": confidence}
 
 
 def _finite_or_none(bounds: tuple[float, float] | None) -> list[float | None] | None:
@@ -328,8 +318,9 @@ def note(curve: Curve, spec: FragilitySpec) -> str:
     fitted = curve.fitted
     notes = [_about_undecided(curve)]
     if isinstance(fitted, NoCurve):
-        bound = _bound(curve, spec.confidence)
-        notes.append(f"the median is {bound_in_words(bound, spec.label, spec.unit)}" if bound else fitted.reason)
+        bound = _bound(fitted, spec.confidence)
+        median = f"the median is {bound_in_words(bound, spec.label, spec.unit)}: " if bound else ""
+        notes.append(median + fitted.reason)
     else:
         if not spec.levels[0] <= fitted.median <= spec.levels[-1]:  # of a cloud, whose line goes on
             notes.append("the median is extrapolated beyond the intensities that were run")

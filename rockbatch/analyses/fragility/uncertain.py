@@ -16,7 +16,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 from scipy.stats.qmc import LatinHypercube
 
-from rockbatch.analyses.fragility.lognormal import Values
+from rockbatch.analyses.fragility.bounds import Values
 from rockbatch.common.analyses import Entry
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case, Study

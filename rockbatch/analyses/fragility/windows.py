@@ -9,9 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rockbatch.analyses.fragility.bounds import NoCurve, Numbers
 from rockbatch.analyses.fragility.ida import Looks
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD
-from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, NoCurve, Numbers, fit
+from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, fit
 
 SAMPLES = 20
 """Runs of a record in a window, one in the middle of each of as many equal parts."""

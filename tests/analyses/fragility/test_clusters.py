@@ -9,7 +9,7 @@ import scipy.stats
 
 from rockbatch.analyses.fragility.cloud import _design_effect
 from rockbatch.analyses.fragility.clusters import clusters
-from rockbatch.analyses.fragility.statistics import capacities, cloud, rate_bounds, stripes
+from rockbatch.analyses.fragility.statistics import capacities, cloud, stripes
 from rockbatch.common.errors import InputError
 
 STATIONS = np.repeat(np.arange(7), 2)
@@ -145,25 +145,3 @@ def test_records_count_by_earthquake_where_five_are_known_and_else_by_station(ev
     found = clusters(motions(events, "abcdefghij"))
     assert (found.kind, len(np.unique(found.of_motion)), found.stations) == (kind, groups, 10)
     assert found.events == (0 if "" in list(events) else len(set(events)))
-
-
-@pytest.mark.parametrize(
-    ("least", "most", "bounds"),
-    [
-        ([1.0, 1.0], [1.0, 1.0], (1e-2, math.inf)),
-        ([0.0, 0.0], [0.0, 0.0], (0.0, 1e-3)),
-        ([0.0, 0.25], [0.0, 0.5], (0.25e-3, 0.5 * 9e-3 + 1e-3)),
-        ([0.5, 0.25], [0.5, 0.25], (0.5e-2, math.inf)),
-    ],
-)
-def test_shares_at_levels_bound_a_rate(least, most, bounds):
-    """By hand: 9e-3 a year between the levels, 1e-3 beyond; shares that fall again bound no less."""
-    assert rate_bounds([0.5, 1.0], least, most, [1e-2, 1e-3]) == pytest.approx(bounds)
-
-
-@pytest.mark.parametrize(
-    "arrays", [([0.5], [0.0, 0.0], [0.0], [1e-2]), ([0.5, 1.0], [0.0] * 2, [0.0] * 2, [1e-2]), ([],) * 4]
-)
-def test_bounds_of_a_rate_are_of_arrays_of_one_length(arrays):
-    with pytest.raises(InputError, match="must be of one length, with one level at least"):
-        rate_bounds(*arrays)

@@ -12,9 +12,10 @@ import pytest
 from fragility_samples import IDA, STRIPES, journal_of, read, written
 from report_page import Page
 
+from rockbatch.analyses.fragility.bounds import NoCurve
 from rockbatch.analyses.fragility.curves import Curve, Member, Undecided, assess
 from rockbatch.analyses.fragility.ida import Bracket, Capacity
-from rockbatch.analyses.fragility.lognormal import Lognormal, NoCurve
+from rockbatch.analyses.fragility.lognormal import Lognormal
 from rockbatch.analyses.fragility.runs import LevelPlan
 from rockbatch.analyses.fragility.section import section
 from rockbatch.analyses.fragility.study import OVERTURNING, FragilitySpec, read_fragility

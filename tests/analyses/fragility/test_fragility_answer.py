@@ -13,7 +13,8 @@ INFO = {
 }  # fmt: skip
 
 
-BELOW = {"is": "below", "above": None, "below": 0.2, "exceeded": 10, "records": 10}
+BELOW = {"is": "below", "above": None, "below": 0.2, "confidence": 0.95}
+EVERY = "every record exceeds the limit from 0.2 on"
 
 
 def curve(case="rigid", limit="overturning", median=None, exceeded=(0, 2, 6, 9), interval=None, **more):
@@ -26,7 +27,7 @@ def curve(case="rigid", limit="overturning", median=None, exceeded=(0, 2, 6, 9),
     return {
         "case": case, "columns": {}, "limit_state": limit, "words": "" if limit == "overturning" else "theta > 1",
         "median": median, "median_interval": interval or (median and [0.8 * median, 1.3 * median]), "points": points,
-        "dispersion": median and 0.4, "median_undecided": None, "says_little": False, "risk": None,
+        "dispersion": median and 0.4, "no_curve": None, "median_undecided": None, "says_little": False, "risk": None,
         "capacities": [], "undecided": {"runs": 40, "flight": 0, "failed": sum(undecided), "other": 0},
     } | more  # fmt: skip
 
@@ -89,14 +90,16 @@ def test_a_limit_is_exceeded_first_if_its_median_is_lower_or_below_all_levels(ov
 
 def test_a_curve_without_a_fit_that_is_weaker_than_all_others_comes_first():
     """Every record exceeds the limit at the lowest level on pads: their median is not known, but below that of rock."""
-    (line,), marked = said(curve("rock", median=0.6), curve("pads", exceeded=(10, 10, 10, 10), median_bound=BELOW))
-    assert line == (
-        "Overturning has a median below PGV 0.2 m/s: every record exceeds it there (pads, the lowest of 2 cases)."
+    (line,), marked = said(
+        curve("rock", median=0.6), curve("pads", exceeded=(10, 10, 10, 10), median_bound=BELOW, no_curve=EVERY)
     )
+    assert line == (f"Overturning has a median below PGV 0.2 m/s (95 %), for pads, the lowest of 2 cases: {EVERY}.")
     assert not marked
-    (line,), _ = said(curve("rock", median=0.6), curve("rock", "tilt", exceeded=(10, 10, 10, 10), median_bound=BELOW))
+    (line,), _ = said(
+        curve("rock", median=0.6), curve("rock", "tilt", exceeded=(10, 10, 10, 10), median_bound=BELOW, no_curve=EVERY)
+    )
     assert line.endswith(
-        "The limit exceeded first, tilt (theta > 1), has a median below PGV 0.2 m/s: every record exceeds it there."
+        "The limit exceeded first, tilt (theta > 1), has a median below PGV 0.2 m/s (95 %): " + f"{EVERY}."
     )
 
 
@@ -213,8 +216,10 @@ def test_a_curve_without_a_rate_may_be_the_worst_and_is_counted():
     (line, lost), marked = said(
         curve("rock", exceeded=(10, 10, 10, 10)), curve("rock", "uplift", risk=rate(1e-3)), by=of_rates, hazard=HAZARD
     )
-    assert line.startswith("Overturning has no rate, as no curve could be fitted. Uplift has a probability of 5 %")
-    assert lost == "1 of 2 curves could not be fitted: what has no rate here may be exceeded more often."
+    assert line.startswith(
+        "Overturning has no rate: it needs a curve, or an upper bound of the median. Uplift has a probability of 5 %"
+    )
+    assert lost == "1 of 2 curves without a rate: their limits may be exceeded more often."
     assert marked == [lost]
 
 
@@ -323,56 +328,29 @@ def test_without_intervals_the_stations_stand_in_their_place():
     ],
 )
 def test_only_a_limit_that_no_record_exceeds_is_said_not_to_be_exceeded(exceeded, words):
-    above = {"is": "above", "above": 2.0, "below": None, "exceeded": exceeded[-1], "records": 10}
+    above = {"is": "above", "above": 2.0, "below": None, "confidence": 0.95}
     (line,), _ = said(curve(median=0.6), curve(limit="tilt", exceeded=exceeded, median_bound=above))
     assert line.endswith(words)
 
 
-@pytest.mark.parametrize(
-    ("bound", "ends", "words"),
-    [
-        (
-            "at least",
-            {"rate_least": 2e-4, "rate_most": None},
-            "at least 1 % in 50 years, a mean rate of at least 2.0·10⁻⁴ a year",
-        ),
-        (
-            "at most",
-            {"rate_least": 0.0, "rate_most": 4e-4},
-            "at most 2 % in 50 years, a mean rate of at most 4.0·10⁻⁴ a year",
-        ),
-        (
-            "between",
-            {"rate_least": 2e-4, "rate_most": 4e-4},
-            "between 1 % and 2 % in 50 years, a mean rate of between 2.0·10⁻⁴ and 4.0·10⁻⁴ a year",
-        ),
-    ],
-)
-def test_a_rate_that_is_a_bound_is_said_so(bound, ends, words):
-    risk = rate(0.0) | {"rate_per_year": None, "bound": bound, "p_in_50_years": None} | ends
-    risk |= {"p_in_50_years_low": 0.01, "p_in_50_years_high": 0.02}
-    (line,), _ = said(curve(risk=risk), by=of_rates, hazard=HAZARD)
-    assert line == f"Overturning has a probability of {words}."
+def bound(least):
+    ends = {"rate_least": least, "rate_most": None, "p_in_50_years_low": 50 * least, "p_in_50_years_high": 1.0}
+    return rate(0.0) | {"rate_per_year": None, "bound": "at least", "p_in_50_years": None} | ends
 
 
-def bound(least, most):
-    kind = "at least" if most is None else "between" if least else "at most"
-    low, high = 50 * least, most and 50 * most
-    ends = {"rate_least": least, "rate_most": most, "p_in_50_years_low": low, "p_in_50_years_high": high}
-    return rate(0.0) | {"rate_per_year": None, "bound": kind, "p_in_50_years": None} | ends
+def test_a_rate_that_is_a_bound_is_said_so_with_its_confidence():
+    (line,), _ = said(curve(risk=bound(2e-4)), by=of_rates, hazard=HAZARD)
+    chance = "at least 1 % in 50 years (95 %), a mean rate of at least 2.0·10⁻⁴ a year"
+    assert line == f"Overturning has a probability of {chance}."
 
 
 @pytest.mark.parametrize(
     ("rock", "pads", "rank", "open_"),
     [
-        (rate(2e-4), bound(1e-4, None), "for rock, one", "; pads may exceed it more often"),
-        (rate(2e-4), bound(1e-4, 3e-4), "for rock, one", "; pads may exceed it more often"),
-        (rate(2e-4), bound(1e-4, 2e-4), "for rock, the greatest", ""),
-        (rate(2e-4), bound(0.0, 1e-4), "for rock, the greatest", ""),
-        (rate(0.0), bound(0.0, 1e-4), "for pads, the greatest", ""),
-        (rate(2e-4), bound(3e-4, 4e-4), "for pads, the greatest", ""),
-        (rate(2e-4), bound(3e-4, None), "for pads, one", ""),
-        (bound(2e-4, None), bound(3e-4, None), "for pads, one", "; rock may exceed it more often"),
+        (rate(2e-4), bound(1e-4), "for rock, one", "; pads may exceed it more often"),
+        (rate(2e-4), rate(1e-4), "for rock, the greatest", ""),
+        (rate(2e-4), bound(3e-4), "for pads, one", ""),
+        (bound(2e-4), bound(3e-4), "for pads, one", "; rock may exceed it more often"),
     ],
 )
 def test_the_greatest_rate_is_called_so_only_if_no_bound_leaves_it_open(rock, pads, rank, open_):
@@ -384,7 +362,7 @@ def test_the_greatest_rate_is_called_so_only_if_no_bound_leaves_it_open(rock, pa
 
 @pytest.mark.parametrize(
     ("uplift", "named"),
-    [(bound(1e-4, None), True), (bound(1e-4, 3e-4), True), (bound(1e-4, 2e-4), False), (rate(1e-4), False)],
+    [(bound(1e-4), True), (rate(1e-4), False)],
 )
 def test_a_limit_that_may_be_exceeded_more_often_than_overturning_is_named(uplift, named):
     (line,), _ = said(curve(risk=rate(2e-4)), curve(limit="uplift", risk=uplift), by=of_rates, hazard=HAZARD)

@@ -11,7 +11,8 @@ import pytest
 from scipy.optimize import brentq, minimize, minimize_scalar
 from scipy.stats import binom, norm, t
 
-from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, NoCurve, _intervals, fit
+from rockbatch.analyses.fragility.bounds import NoCurve
+from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, _intervals, fit
 
 LEVELS = np.array([0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9, 1.0])
 RECORDS = np.full(8, 40.0)
@@ -161,9 +162,9 @@ def test_records_that_are_all_the_same_leave_no_less_open_than_fresh_ones():
 
 
 @pytest.mark.parametrize(("exceeded", "words"), [
-    ([0, 0, 0], "no record exceeds the limit up to 0.3: the median is above"),
-    ([5, 5, 5], "every record exceeds the limit from 0.1 on: the median is below"),
-    ([0, 0, 5], "no record exceeds the limit at 0.2, every one at 0.3: the median is between"),
+    ([0, 0, 0], "no record exceeds the limit up to 0.3, and stronger motions"),
+    ([5, 5, 5], "every record exceeds the limit from 0.1 on, and weaker motions"),
+    ([0, 0, 5], "no record exceeds the limit at 0.2, every one at 0.3, and motions between"),
     ([0, 2, 5], "0.2 is the only level at which some records exceed the limit and others do not"),
     ([3, 2, 1], "does not grow with the intensity"),
     ([2, 2, 2], "does not grow with the intensity"),
@@ -173,6 +174,42 @@ def test_data_without_a_maximum_give_the_reason(exceeded, words):
     found = fit(fresh_records(np.array([0.1, 0.2, 0.3]), np.full(3, 5), np.array(exceeded)))
     assert isinstance(found, NoCurve)
     assert words in found.reason
+
+
+@pytest.mark.parametrize("confidence", [0.8, 0.9, 0.95, 0.99])
+@pytest.mark.parametrize("stations", range(3, 10))
+def test_all_on_one_side_of_the_median_bound_it_no_more_often_than_an_end_of_an_interval_is_wrong(stations, confidence):
+    """At the median all 2ⁿ outcomes are as likely; the one with all on a side is either rarer than that, or bounds nothing."""
+    x, run = np.array([1.0]), np.ones((stations, 1))
+    none = fit(Capacities.of_same_records(x, run, 0 * run), confidence)
+    every = fit(Capacities.of_same_records(x, 0 * run, run), confidence)
+    rare = 0.5**stations <= 0.5 - 0.5 * confidence
+    assert (none.above, every.below) == ((1.0, 1.0) if rare else (0.0, math.inf))
+    assert (none.is_bound, "a bound of the median takes" in none.reason) == (rare, not rare)
+    fresh = fit(fresh_records(x, np.array([stations]), np.array([0])), confidence)
+    brackets = fit(Capacities.of_brackets(np.ones(stations), np.full(stations, np.inf)), confidence)
+    assert fresh == brackets == none
+
+
+def test_a_bound_is_where_six_stations_are_though_fewer_records_were_run_beyond():
+    """Nine records at 0.5 g, four of them at 1 g; two of the others are of one station."""
+    low, high = np.r_[np.ones(4), np.full(5, 0.5)], np.full(9, np.inf)
+    assert fit(Capacities.of_brackets(low, high)).above == 0.5
+    assert not fit(Capacities.of_brackets(low, high, np.array([0, 0, 1, 1, 2, 2, 3, 3, 4]))).is_bound
+    assert fit(Capacities.of_brackets(0.0 * low, 1.0 / low)).below == 2.0
+    between = fit(Capacities.of_brackets(low, 4.0 - low))
+    assert (between.above, between.below) == (0.5, 3.5)
+
+
+def test_a_median_beyond_the_levels_is_bounded_by_its_interval():
+    """Few exceed the limit at the highest level: the median by the fit is above, and its interval begins below it."""
+    levels, records = np.array([0.2, 0.4, 0.8]), np.full(3, 20)
+    found = fit(fresh_records(levels, records, np.array([0, 1, 8])))
+    more = fitted(fresh_records(np.r_[levels, 8.0], np.r_[records, 1], np.array([0, 1, 8, 1])))
+    assert found.reason.startswith("the median by the fit is above all intensities, which end at 0.8")
+    assert more.median > 0.8
+    assert found.above == pytest.approx(more.median_interval[0], rel=0.05)
+    assert fit(fresh_records(levels, np.full(3, 1), np.array([0, 0, 1]))).above == 0.0
 
 
 def test_capacities_in_one_bracket_give_the_reason():

@@ -17,10 +17,11 @@ from scipy.stats import t as student
 from studies import SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.analyses.fragility.bounds import NoCurve
 from rockbatch.analyses.fragility.command import risk_lines
 from rockbatch.analyses.fragility.curves import Curve, Readings, Undecided
 from rockbatch.analyses.fragility.hazard import Dispersion, Hazard
-from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, NoCurve, fit
+from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, fit
 from rockbatch.analyses.fragility.risk import Risk, described, described_bound, note, risk_table, risks
 from rockbatch.analyses.fragility.section import _notes, _notes_on_rates
 from rockbatch.analyses.fragility.study import OVERTURNING, FragilitySpec, read_fragility
@@ -220,7 +221,33 @@ def test_a_bound_by_the_points_of_a_hazard_keeps_its_digits_beside_its_first_slo
     hazard = HazardCurve([2.0, 2.1], [1e-3, 1e-3 * (2.0 / 2.1) ** 12])
     spec = FragilitySpec("ida", "PGA", (0.2, 0.6), (), hazard=Hazard(hazard))
     _, (bound,) = risks([curve_of(exactly(0.05, 0.05))], spec)
-    assert bound.bounds == pytest.approx((1e-3, math.inf), rel=1e-6)
+    assert bound.least == pytest.approx(1e-3, rel=1e-6)
+
+
+def test_a_bound_by_the_points_of_a_hazard_is_the_end_of_the_interval_and_none_without_one():
+    """Medians of 0.5 and 2.5 g leave the rate of 2 g open down to that of motions of 2.5 g: 1e-3 · 0.8⁴ a year."""
+    hazard = HazardCurve([2.0, 3.0], [1e-3, 1e-3 * (2 / 3) ** 4])
+    spec = FragilitySpec("ida", "PGA", (0.2, 0.6), (), hazard=Hazard(hazard))
+    fitted = exactly(0.5, 1e-3)
+    wide = replace(fitted, region=np.vstack((fitted.region, exactly(2.5, 1e-3).region)))
+    _, (bound,) = risks([curve_of(wide)], spec)
+    assert bound.least == pytest.approx(1e-3 * 0.8**4, rel=1e-2)
+    alone = [curve_of(replace(fitted, region=None))]
+    assert risks(alone, spec) == ([], [])
+    (row,) = risk_table(alone, [], [], spec, ()).to_dict("records")
+    assert row["note"].startswith("no bound of the rate")
+
+
+@pytest.mark.parametrize(("withstood", "least"), [
+    (None, 0.5e-3), (NoCurve("", below=2.0), 0.5e-3 / 16), (NoCurve(""), None), (exactly(3.0, 0.3), None),
+])  # fmt: skip
+def test_an_upper_bound_of_a_median_bounds_its_rate_by_half_of_that_of_motions_there(withstood, least):
+    """ν ∝ x⁻⁴ with 1e-3 a year at 1 g; undecided runs count as within the limit."""
+    hazard = HazardCurve([1.0, 2.0], [1e-3, 1e-3 / 16])
+    spec = FragilitySpec("stripes", "PGA", (1.0, 2.0), (), hazard=Hazard(hazard))
+    curve = curve_of(NoCurve("every record", below=1.0), withstood and Readings(NoCurve(""), withstood))
+    known, bounds = risks([curve], spec)
+    assert (known, [bound.least for bound in bounds]) == ([], [] if least is None else [pytest.approx(least)])
 
 
 def test_rates_are_integrated_once_for_each_curve(tmp_path, monkeypatch):
@@ -382,15 +409,14 @@ def test_without_a_hazard_there_are_no_rates_and_the_points_are_as_they_were(tmp
         found.risk()
 
 
-def test_a_limit_that_no_record_exceeds_has_the_rate_of_the_highest_level_as_bound(tmp_path):
+def test_a_limit_that_no_record_exceeds_has_no_rate(tmp_path):
+    """None of six records exceeds it; of all motions of 0.01 g, one of a hundred may, ten times as often as one of 0.02 g."""
     levels = {"measure": "PGA", "levels_g": [0.01, 0.02]}
     found = rb.fragility(study(tmp_path, HAZARD, fragility=levels))
     (row,) = found.fragility_risk.to_dict("records")
-    at_most = 1 / 475 * (0.02 / 0.2) ** (math.log(50 / 475) / math.log(0.2 / 0.05))
-    assert (row["bound"], row["rate_most"], row["rate_least"]) == ("at most", pytest.approx(at_most), 0.0)
-    assert row["note"].endswith("as if all motions had them: without a curve or an interval")  # none of few is not none
-    assert "rate_per_year" not in row
-    assert found.info["curves"][0]["risk"]["rate_per_year"] is None
+    assert row["note"].startswith("no record exceeds the limit up to 0.02")
+    assert not {"bound", "rate_per_year", "rate_most"} & row.keys()
+    assert found.info["curves"][0]["risk"] is None
     assert found.fragility_deaggregation is None
 
 
@@ -401,7 +427,7 @@ def test_one_point_and_a_slope_are_said_to_be_that_and_no_curve_no_table(tmp_pat
     assert "est point" not in found.fragility_risk["note"].iloc[0]  # neither the highest nor the lowest
     weak = study(tmp_path, one, fragility={"measure": "PGA", "levels_g": [0.01, 0.02]}, name="weak.toml")
     assert main(["fragility", str(weak), "--out", str(tmp_path / "weak")]) == 0
-    assert "at most" in capsys.readouterr().out
+    assert "No annual rates: they need a curve" in capsys.readouterr().out
 
 
 def test_rates_under_another_hazard_need_no_run(tmp_path):

@@ -10,7 +10,7 @@ from scipy.stats import binom, norm
 from studies import seven_pulses, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.analyses.fragility.lognormal import NoCurve
+from rockbatch.analyses.fragility.bounds import NoCurve
 from rockbatch.analyses.fragility.runs import level_plans
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.common.errors import InputError

@@ -10,9 +10,10 @@ from scipy.special import ndtr
 from studies import PADS, RIGID, seven_pulses, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.analyses.fragility.bounds import NoCurve
 from rockbatch.analyses.fragility.command import added
 from rockbatch.analyses.fragility.curves import assess
-from rockbatch.analyses.fragility.lognormal import Capacities, NoCurve, contribution, fit
+from rockbatch.analyses.fragility.lognormal import Capacities, contribution, fit
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.analyses.fragility.tables import _about_drawn, points
 from rockbatch.analyses.fragility.uncertain import Correlation, Draws, Input, Uncertain
