@@ -43,6 +43,9 @@ def quantiles(ordered: Values, first: npt.NDArray[np.int64], n: npt.NDArray[np.i
 P84, CONFIDENCE = 0.84, 0.95
 """The high quantile of checks, and the confidence of its bound by few records."""
 
+FRACTILES_FROM = 6
+"""Number of records from which the 16 and 84 % quantiles are stated: of fewer, more than a quarter of further ones are beyond."""
+
 
 def exceedance(q: float, n: int) -> float:
     """Return the expected share of further records that exceed the quantile ``q``, interpolated between the ranks of ``n``.
@@ -220,7 +223,7 @@ STATISTICS = {
     "p84": Statistic(
         "84 % quantile",
         lambda values: quantile(values, P84),
-        6,
+        FRACTILES_FROM,
         remark=lambda values: _between_ranks(len(values)),
         coverage=_between_ranks,
     ),
@@ -284,7 +287,7 @@ STATISTICS = {
 """Statistics by the name that a rule gives them.
 
 p84
-    Between ranks; nothing passes by fewer than 6, as more than a quarter of further records exceed it.
+    Between ranks; nothing passes by fewer than 6, FRACTILES_FROM, as more than a quarter of further records exceed it.
 p84_95
     The rank that is no less than the 84 % quantile with 95 % confidence; the greatest of 18, and of fewer none is.
 p84_lognormal

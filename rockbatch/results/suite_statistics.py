@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from rockbatch.common.lazy import pd
 from rockbatch.common.statuses import NO_PEAK
-from rockbatch.quantities.statistics import Values, quantiles
+from rockbatch.quantities.statistics import FRACTILES_FROM, P84, Values, quantiles
 
 
 def worst_records(runs: "pd.DataFrame", most: int) -> list[str]:
@@ -33,7 +33,8 @@ class Statistics:
 
     ``count`` records have an outcome, ``standing`` of them a finite value, whose ``mean`` is NaN without any. ``low``,
     ``median`` and ``high`` are the 16, 50 and 84 % quantiles over all ``count``, ``largest`` the maximum; infinite where
-    they fall on a record under which the pier overturned or a run stopped in flight.
+    they fall on a record under which the pier overturned or a run stopped in flight. ``low`` and ``high`` of fewer than
+    FRACTILES_FROM, 6, are NaN.
     """
 
     count: int
@@ -115,9 +116,10 @@ def suites(
     standing = np.bincount(group_of[stood], minlength=groups)
     total = np.bincount(group_of[stood], worst[stood], groups)
     mean = np.where(standing > 0, total / np.maximum(standing, 1), math.nan)
-    fractiles = [quantiles(ordered, first, n, q) for q in (0.16, 0.5, 0.84, 1.0)]
+    median, largest = (quantiles(ordered, first, n, q) for q in (0.5, 1.0))
+    low, high = (np.where(n < FRACTILES_FROM, math.nan, quantiles(ordered, first, n, q)) for q in (0.16, P84))
     counts = [np.bincount(data.group[ended], minlength=groups) for ended in (data.overturned, data.flight, data.failed)]
-    columns = [column.tolist() for column in (n, standing, mean, *fractiles, *counts)]
+    columns = [column.tolist() for column in (n, standing, mean, low, median, high, largest, *counts)]
     return [Statistics(*row) for row in zip(*columns, strict=True)]
 
 

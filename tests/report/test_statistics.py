@@ -20,19 +20,19 @@ def page_of(folder):
 
 
 def test_mean_median_and_percentiles_are_those_of_the_magnitudes():
-    result = suite(np.array([0.1, -0.2, 0.3, 0.4, -0.5]), ["ok"] * 5)
-    assert (result.count, result.standing) == (5, 5)
-    # 16 % of four intervals is 0.64 of the first, 84 % is 0.36 of the last
-    expected = 0.3, 0.1 + 0.64 * 0.1, 0.3, 0.4 + 0.36 * 0.1, 0.5
+    result = suite(np.array([0.1, -0.2, 0.3, 0.4, -0.5, 0.6]), ["ok"] * 6)
+    assert (result.count, result.standing) == (6, 6)
+    # 16 % of five intervals is 0.8 of the first, 84 % is 0.2 of the last
+    expected = 0.35, 0.1 + 0.8 * 0.1, 0.35, 0.5 + 0.2 * 0.1, 0.6
     assert (result.mean, result.low, result.median, result.high, result.largest) == pytest.approx(expected, rel=1e-14)
 
 
 def test_overturned_and_flying_runs_count_as_larger_and_are_in_no_mean():
-    result = suite(np.array([0.1, 0.2, 0.3, 7.0, 0.05]), ["ok", "ok", "ok", "overturned", "flight"])
-    assert (result.count, result.standing, result.overturned, result.flight, result.failed) == (5, 3, 1, 1, 0)
-    assert result.mean == pytest.approx(0.2, rel=1e-14)
-    assert result.median == 0.3  # third of five, whatever the two came to
-    assert result.low == pytest.approx(0.164, rel=1e-14)
+    result = suite(np.array([0.1, 0.2, 0.3, 0.4, 7.0, 0.05, 9.0]), ["ok"] * 4 + ["overturned", "flight", "overturned"])
+    assert (result.count, result.standing, result.overturned, result.flight, result.failed) == (7, 4, 2, 1, 0)
+    assert result.mean == pytest.approx(0.25, rel=1e-14)
+    assert result.median == 0.4  # fourth of seven, whatever the three came to
+    assert result.low == pytest.approx(0.196, rel=1e-14)
     assert (result.high, result.largest) == (math.inf, math.inf)
 
 

@@ -101,7 +101,10 @@ def _in_most(cases: Sequence[Rows]) -> Markup:
 
 
 def _of_runs(info: Info) -> Iterator[str]:
-    """Yield a remark on the number of runs that overturned or flew, with their value, and one on failed runs, each if any."""
+    """Yield remarks on the coverage of a quantile, on runs that overturned or flew, with their value, and on failed ones, if any."""
+    statistic = STATISTICS[info["statistic"]]
+    if statistic.coverage is not None:
+        yield f"The {statistic.words} is {statistic.coverage(info['motions'])}."
     number, runs = info["statuses"], counted(sum(info["statuses"].values()), "run")
     if ended := number.get("overturned", 0) + number.get("flight", 0):
         yield f"{ended} of {runs} overturned or were ended by flight, and count as {info['overturned']:g} here."

@@ -4,8 +4,10 @@ import argparse
 
 from rockbatch.analyses.sensitivity.analysis import sensitivity
 from rockbatch.analyses.sensitivity.quantities import QUANTITIES
+from rockbatch.batch.listening import count
 from rockbatch.common.analyses import Entry
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting.finished_analysis import named
 from rockbatch.reporting.table import Head
 from rockbatch.results.labelled import as_dicts
@@ -29,8 +31,10 @@ def shown(info: Entry, swings: "pd.DataFrame", shares: "pd.DataFrame") -> str:
     """Return both tables for a terminal, a block for each case: the answer at both ends, and the indices with their errors."""
     keys = ["case", *info["varied"]]
     heads, blocks = [Head("input", value="parameter"), *QUANTITIES], []
+    statistic = STATISTICS[info["statistic"]].words
     for names, of_case in swings.groupby(keys, sort=False, dropna=False):
         rows = as_dicts(of_case.merge(shares, on=[*keys, "parameter"]))
         title = named(info, dict(zip(keys, names, strict=True)), keys)
-        blocks.append(f"{title}: theta_max/alpha one at a time, and Sobol indices\n{in_lines(heads, rows)}")
+        suite = f"{statistic} of theta_max/alpha over {count(info['motions'], 'motion')}"
+        blocks.append(f"{title}: {suite}, one at a time, and Sobol indices\n{in_lines(heads, rows)}")
     return "\n\n".join(blocks)

@@ -10,7 +10,6 @@ from rockbatch.analyses.spectrum.map_regions import FLIGHT, OVERTURNED, UNDECIDE
 from rockbatch.common.analyses import Entry
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.labels import plain, quantity, symbol_of
-from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting.finished_analysis import answered, named
 from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, escape
@@ -74,8 +73,7 @@ def _overturning(info: Info, suite: "pd.DataFrame", fallen: "pd.DataFrame") -> I
 def _greatest(info: Info, suite: "pd.DataFrame") -> Iterator[str]:
     """Yield "The greatest median rotation is θ_max/α = 0.5 (16 to 84 %: …), at 2π/p = 4 s, α = 0.15 rad.".
 
-    It is over the piers with a finite median; nothing if there are none. The quantiles are of as many motions as a check by one
-    takes at least, 6: of fewer they would be near to the least and the greatest.
+    It is over the piers with a finite median; nothing if there are none. Of fewer than 6 motions there are no quantiles.
     """
     standing = as_dicts(suite[np.isfinite(suite["median"])])
     if not standing:
@@ -86,8 +84,7 @@ def _greatest(info: Info, suite: "pd.DataFrame") -> Iterator[str]:
     apart = _apart(info, suite)
     places += [named(info, row, apart)] if suite.groupby(apart, dropna=False).ngroups > 1 else []
     of = " of those that stand" if len(standing) < len(suite) else ""
-    enough = row["count"] >= STATISTICS["p84"].least
-    interval = f" (16 to 84 %: {_peak(row['p16'])} to {_peak(row['p84'])})" if enough else ""
+    interval = "" if np.isnan(row["p16"]) else f" (16 to 84 %: {_peak(row['p16'])} to {_peak(row['p84'])})"
     statistic = "median rotation" if info["motions"] > 1 else "rotation"
     yield f"The greatest {statistic}{of} is θ_max/α = {plain(row['median'], 3)}{interval}, at {', '.join(places)}."
 

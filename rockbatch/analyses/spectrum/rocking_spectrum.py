@@ -106,9 +106,9 @@ def of_suite(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
     """Return the statistics of the suite at every point of the spectrum from the rows of spectrum.csv.
 
     A row for each case, scale and pier has the 16, 50 and 84 % quantiles of θ_max/α over the motions (``p16``, ``median``,
-    ``p84``), and the greatest (``largest``). A run that overturned, or was ended by flight, counts as infinite; a failed one is
-    unknown and only counted. At a point of a self-similar spectrum every record has its own pier and scale: of these it has the
-    least and the greatest.
+    ``p84``), and the greatest (``largest``); of fewer than 6 motions ``p16`` and ``p84`` are empty. A run that overturned, or was
+    ended by flight, counts as infinite; a failed one is unknown and only counted. At a point of a self-similar spectrum every
+    record has its own pier and scale: of these it has the least and the greatest.
     """
     keys = groups(varied)
     rows: list[Entry] = []

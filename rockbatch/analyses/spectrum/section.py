@@ -5,6 +5,7 @@ from rockbatch.analyses.spectrum.figures import QUANTILES, maps, spectra
 from rockbatch.common.lazy import pd
 from rockbatch.common.statuses import NOT_STANDING
 from rockbatch.quantities.labels import plain
+from rockbatch.quantities.statistics import FRACTILES_FROM
 from rockbatch.reporting.finished_analysis import FinishedAnalysis, of_analysis
 from rockbatch.reporting.labels import heading
 from rockbatch.reporting.markup import Markup, figure, join, paragraphs, tag
@@ -39,7 +40,8 @@ MAPS = "Amplitudes of a pulse over its frequency: ω_p = 2π over its period, a_
 def _spectra(analysis: FinishedAnalysis, suite: "pd.DataFrame") -> Markup:
     caption = "Largest rotation over slenderness, a curve for each slenderness. "
     if (suite["count"] > 1).any():
-        caption += "Solid: median of the motions; dashed and dotted: 84 % and 16 % quantiles. "
+        quantiles = f"84 % and 16 % quantiles, where {FRACTILES_FROM} motions or more have an outcome"
+        caption += f"Solid: median of the motions; dashed and dotted: {quantiles}. "
     caption += "Above the frame: overturned, or ended by flight."
     records = analysis.table("spectrum.csv", ("case", "alpha", "record", "polarity", "status", "theta_max_over_alpha"))
     return figure(drawn(spectra(suite, records, analysis.info)), heading(caption))

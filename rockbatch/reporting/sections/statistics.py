@@ -12,6 +12,7 @@ from rockbatch.common.statuses import NOT_STANDING
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import COLUMNS
 from rockbatch.quantities.rows import counts_as
+from rockbatch.quantities.statistics import FRACTILES_FROM, P84, exceedance
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import heading
 from rockbatch.reporting.markup import Markup, join, tag
@@ -28,7 +29,8 @@ RECORDS = {
 WORDS = (
     " A record under which the pier overturned or a run stopped in flight counts as infinite (∞) in the median, percentiles and "
     "maximum; the mean is over the standing records (n given). A record with a failed run is unknown and counts in its own "
-    "column only. Percentiles are interpolated linearly between the ordered records."
+    "column only. Percentiles are interpolated linearly between the ordered records, and not stated for fewer than "
+    f"{FRACTILES_FROM}, of which more than {100 * exceedance(P84, FRACTILES_FROM):.0f} % of further records are expected beyond."
 )
 
 
@@ -104,8 +106,8 @@ _COLUMNS = {
     "count": ("n", "records with an outcome"),
     "mean": ("mean", "of the records that stood"),
     "median": ("median", None),
-    "low": ("16 %", "16th percentile over the records"),
-    "high": ("84 %", "84th percentile over the records"),
+    "low": ("16 %", f"16th percentile over the records, of {FRACTILES_FROM} or more"),
+    "high": ("84 %", f"84th percentile over the records, of {FRACTILES_FROM} or more"),
     "largest": ("maximum", None),
     "overturned": ("overturned", "records under which the pier overturned"),
     "flight": ("flight", "records with a run that ended when both pivots left the ground"),
@@ -124,8 +126,8 @@ def _heads(sides: Sequence[str], form: str) -> list[Head]:
 def _cell(s: Statistics | None, name: str, form: str) -> object:
     """Return the cell of statistic ``name``; None without statistics, "∞" in bold if infinite.
 
-    A mean of fewer records than have an outcome has their number behind it, or is "—" without any; counts above 0 of records
-    without a peak are in bold.
+    A mean of fewer records than have an outcome has their number behind it; "—" is a mean without any, or a percentile of too
+    few. Counts above 0 of records without a peak are in bold.
     """
     if s is None:
         return None
@@ -136,6 +138,8 @@ def _cell(s: Statistics | None, name: str, form: str) -> object:
         return value
     if math.isinf(value):
         return alarm("∞")
+    if math.isnan(value):
+        return "—"
     if name == "mean" and s.standing < s.count:
-        return "—" if math.isnan(value) else join(f"{value:{form}} ", tag("span", f"of {s.standing}", class_="muted"))
+        return join(f"{value:{form}} ", tag("span", f"of {s.standing}", class_="muted"))
     return value

@@ -139,3 +139,11 @@ def test_runs_that_only_flew_or_only_overturned_count():
         lines, _ = said({"rock": [("p", 0.9, 0.1, 0.1, 0.3)]}, statuses={"ok": 59, status: 1}, overturned=0.5)
         assert lines[1:] == ["1 of 60 runs overturned or were ended by flight, and count as 0.5 here."]
     assert len(said({"rock": [("p", 0.9, 0.1, 0.1, 0.3)]})[0]) == 1
+
+
+def test_a_quantile_of_few_motions_is_said_to_cover_less_than_its_name():
+    """Rank 0.84 · 2 + 1 of three, below which 2.68/4 of all values are expected."""
+    (_, remark), _ = said({"rock": [("p", 0.9, 0.1, 0.1, 0.3)]}, statistic="p84")
+    assert remark == (
+        "The 84 % quantile is by interpolation between the ranks of 3, which 33 % of further records exceed."
+    )
