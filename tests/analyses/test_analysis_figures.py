@@ -378,7 +378,7 @@ def test_an_accuracy_has_its_errors_over_times_and_steps_beside_the_marks():
         "seconds_per_run": [1e-3, 2e-3, 0.1, 5e-3, np.nan], "error_max": [2e-5, 0.0, 2e-7, 3e-6, 1.0],
         "error_95": [1e-5, np.nan, 1e-7, 2e-6, 1.0], "error_median": [3e-6, 3e-7, 3e-8, 1e-6, 1.0],
     })  # fmt: skip
-    for name in ("runs", "status_differs", "reference_change"):
+    for name in ("runs", "compared", "status_differs", "reference_change"):
         table[name] = 1.0
     (panel,) = error_and_time(of_table(table)).panels
     assert [(axis.low, axis.high) for axis in (panel.x, panel.y)] == [

@@ -243,7 +243,9 @@ SENSITIVITY = {
         [4.0, "cases", "β", 2.0, 0.55, 0.55, "η", 1.0, 0.32, 0.32, 1.0],
     ),
     "runs of a sample": (
-        lambda: sensitivity._of_runs({"statistic": "median", "statuses": {"ok": 80, "overturned": 7, "flight": 4, "failed": 3}, "overturned": 2.5}),
+        lambda: sensitivity._of_runs(
+            {"statistic": "median", "statuses": {"ok": 80, "overturned": 7, "flight": 4, "failed": 3}, "overturned": 2.5}
+        ),
         [11.0, 94.0, "runs", 2.5, 3.0, 94.0, "runs"],
     ),
 }  # fmt: skip

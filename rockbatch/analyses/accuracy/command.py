@@ -3,7 +3,7 @@
 import argparse
 
 from rockbatch.analyses.accuracy.analysis import accuracy
-from rockbatch.analyses.accuracy.levels import of_table
+from rockbatch.analyses.accuracy.levels import NO_ERROR, chosen, of_table
 from rockbatch.analyses.accuracy.quantities import QUANTITIES, rows
 from rockbatch.common.lazy import pd
 from rockbatch.study import Study
@@ -22,6 +22,7 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
 
 
 def shown(table: "pd.DataFrame") -> str:
-    """Return the table for the terminal: errors of θ_max/α, and times per run."""
-    change = table["reference_change"].max()
-    return f"Error of theta_max/alpha (references to {change:.0e})\n{in_lines(QUANTITIES, rows(of_table(table)))}"
+    """Return the table for the terminal: errors of θ_max/α, and times per run; with a line if there is no error."""
+    change, levels = table["reference_change"].max(), of_table(table)
+    lines = [f"Error of theta_max/alpha (references known to {change:.0e})", in_lines(QUANTITIES, rows(levels))]
+    return "\n".join(lines if chosen(levels) else [*lines, NO_ERROR])

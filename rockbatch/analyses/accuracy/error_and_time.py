@@ -57,7 +57,7 @@ class Clock:
 
 @dataclass(frozen=True)
 class Reference:
-    """A run, its converged outcome, and what the last halving changed [θ_max/α]."""
+    """A run, its converged outcome, and to what it is known [θ_max/α]: the last change by halving, CONVERGED, 1e-12, at least."""
 
     run: StudyRun
     outcome: Outcome
@@ -88,7 +88,7 @@ def reference(run: StudyRun, quiet_s: float, seconds: float = math.inf) -> Refer
         outcome = fine
         if change <= CONVERGED:
             break
-    return Reference(run, outcome, change) if change <= ACCEPTED else None
+    return Reference(run, outcome, max(change, CONVERGED)) if change <= ACCEPTED else None
 
 
 def references(
@@ -193,8 +193,8 @@ def _ends(outcomes: Sequence[Outcome | None]) -> list[tuple[str, float]]:
 def _measured(references: Sequence[Reference], simulate: Simulate, seconds: float) -> dict[str, object]:
     """Return errors of θ_max/α and the time per run of ``simulate``, run up to REPEATS, 5, times while ``seconds`` last, or once.
 
-    Errors are of runs that end as their references do and do not overturn, None without any; the time is that of runs that
-    were not broken off as unstable, None without any.
+    Errors are of runs that end as their references do and do not overturn, None without any, and are no less than what the
+    reference is known to; the time is that of runs that were not broken off as unstable, None without any.
     """
     runs = [ref.run for ref in references]
     times: list[float] = []
@@ -208,9 +208,10 @@ def _measured(references: Sequence[Reference], simulate: Simulate, seconds: floa
     errors = []
     for ref, alike, (status, theta_max) in zip(references, same_status, ends, strict=True):
         if alike and status != "overturned":
-            errors.append(abs(theta_max - ref.outcome.theta_max) / ref.run.case.pier.alpha)
+            errors.append(max(abs(theta_max - ref.outcome.theta_max) / ref.run.case.pier.alpha, ref.change))
     return {
         "runs": len(references),
+        "compared": len(errors),
         "error_median": float(np.median(errors)) if errors else None,
         "error_95": float(np.quantile(errors, 0.95)) if errors else None,
         "error_max": max(errors, default=None),

@@ -24,14 +24,16 @@ class Level:
         Steps per sample, and tolerance on θ_max/α, if given.
     runs : float
         Number of runs.
+    compared : float
+        Number of runs with an error: those that end as the reference does and do not overturn.
     error_median, error_95, error_max : float or None
-        Errors of θ_max/α, over the runs that end as the reference does and do not overturn.
+        Their errors of θ_max/α, each no less than what its reference is known to.
     seconds_per_run : float or None
         Time per run [s].
     status_differs : float
         Number of runs that end otherwise than the reference.
     reference_change : float
-        Change of θ_max/α by the last halving of the step, in the least converged reference.
+        Change of θ_max/α by the last halving of the step, in the least converged reference: to that the references are known.
     """
 
     method: str
@@ -39,6 +41,7 @@ class Level:
     substeps: float | None
     tolerance: float | None
     runs: float | None
+    compared: float | None
     error_median: float | None
     error_95: float | None
     error_max: float | None
@@ -86,6 +89,11 @@ def of_table(table: "pd.DataFrame") -> list[Level]:
     numbers = table[NUMBERS].astype(float)
     rows = zip(table["method"], table["machine"], numbers.to_numpy().tolist(), strict=True)
     return [Level(method, machine, *(None if x != x else x for x in row)) for method, machine, row in rows]
+
+
+NO_ERROR = (
+    "No error is known for the setting of this study: no measured run with it ends standing as its reference does."
+)
 
 
 def chosen(levels: Sequence[Level]) -> Level | None:

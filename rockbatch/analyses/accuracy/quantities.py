@@ -11,6 +11,7 @@ QUANTITIES = (
     Head("k", ".0f", "substeps: steps per sample", value="substeps"),
     Head("tolerance", ".0e", "on θ_max/α", value="tolerance"),
     Head("runs", ".0f", value="runs"),
+    Head("with error", ".0f", "runs that end as the reference does and do not overturn", value="compared"),
     Head("median error", ".1e", value="error_median"),
     Head("95 %", ".1e", "error that 95 % of the runs keep", value="error_95"),
     Head("largest", ".1e", value="error_max"),

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from rockbatch.analyses.accuracy.figures import error_and_time
-from rockbatch.analyses.accuracy.levels import Level, chosen, read
+from rockbatch.analyses.accuracy.levels import NO_ERROR, Level, chosen, read
 from rockbatch.analyses.accuracy.quantities import QUANTITIES, rows
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.markup import Markup
@@ -22,6 +22,7 @@ def section(contents: Contents) -> Markup:
         "analyses/accuracy/section.html",
         levels=levels,
         own=own,
+        no_error=NO_ERROR,
         picture=drawn(error_and_time(levels)),
         last_change=last_change,
         remarks=list(_remarks(own, last_change)) if own else [],
@@ -32,7 +33,7 @@ def section(contents: Contents) -> Markup:
 def _remarks(own: Level, last_change: float) -> Iterator[str]:
     """Yield remarks on the error of the study's own setting: that it is above the tolerance, or lacks runs that end otherwise.
 
-    The last is that it is below ``last_change``, to which the references are known.
+    The last is that it is no more than ``last_change``, to which the references are known.
     """
     error, differing = own.error_max or 0.0, int(own.status_differs or 0)
     if own.tolerance and error > own.tolerance:
@@ -40,5 +41,5 @@ def _remarks(own: Level, last_change: float) -> Iterator[str]:
     if differing:
         end, have = ("ends", "has") if differing == 1 else ("end", "have")
         yield f"{differing} of these runs {end} otherwise than the reference, and {have} no error"
-    if last_change > error:
+    if last_change >= error:
         yield f"the references themselves are known to {last_change:.0e} only"

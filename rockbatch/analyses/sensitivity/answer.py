@@ -101,7 +101,7 @@ def _in_most(cases: Sequence[Rows]) -> Markup:
 
 
 def _of_runs(info: Info) -> Iterator[str]:
-    """Yield remarks on the coverage of a quantile, on runs that overturned or flew, with their value, and on failed ones, if any."""
+    """Yield remarks on the coverage of a quantile, on runs that overturned or flew, with their value, and on failed runs."""
     statistic = STATISTICS[info["statistic"]]
     if statistic.coverage is not None:
         yield f"The {statistic.words} is {statistic.coverage(info['motions'])}."
