@@ -20,6 +20,9 @@ REACH = 10.0
 STEP = 0.05
 """Widest piece of the quadrature in ln x; with three Gauss points each, rates are exact to 1e-7 for dispersions from 0.05."""
 
+STEEPEST = 30.0
+"""Greatest k of a rate that falls as 1/x^k: sites have 1 to 10, and of steeper curves the rates far below the points overflow."""
+
 MOST_RATE = 100.0
 """Greatest rate per year; larger numbers are probably return periods."""
 
@@ -151,9 +154,14 @@ def problems(
             yield place, f"level {high:g} after {low:g}: write them in rising order"
         elif less >= more:
             yield place, f"rate {less:g} per year at {high:g} after {more:g} at {low:g}: a stronger motion is rarer"
+        elif math.log(more / less) > STEEPEST * math.log(high / low):
+            yield place, f"the rate falls from {more:g} to {less:g} per year between {low:g} and {high:g}, {_TOO_STEEP}"
     if max(rates) > MOST_RATE:
         yield None, f"a rate of {max(rates):g} per year: is it a return period in years? Its rate is one over it"
     yield from _about_shape(levels, rates, slope, shape)
+
+
+_TOO_STEEP = f"steeper than 1/x^{STEEPEST:g}: sites have powers of 1 to 10"
 
 
 def _about_shape(
@@ -162,6 +170,8 @@ def _about_shape(
     """Yield the mistakes of ``slope`` and ``shape`` for the number of points."""
     if slope is not None and not slope > 0:
         yield None, f"slope = {slope:g}: it is k of a rate that falls as 1/x^k, above 0"
+    elif slope is not None and slope > STEEPEST:
+        yield None, f"slope = {slope:g}: {_TOO_STEEP}"
     if slope is not None and len(levels) > 1:
         yield None, f"slope and {len(levels)} points: the points say the slope; keep one point, or leave slope out"
     if slope is None and len(levels) == 1 and shape == "points":
@@ -170,5 +180,8 @@ def _about_shape(
         yield None, f"a parabola needs three points, and there {'are' if len(levels) == 2 else 'is'} {len(levels)}"
     elif shape == "quadratic" and all(b > a > 0 for a, b in pairwise(levels)):
         a, b, _ = np.polyfit(np.log(levels), np.log(rates), 2)
+        advice = 'write shape = "points", or other points'
         if not max(2.0 * a * math.log(x) + b for x in (levels[0], levels[-1])) < 0:
-            yield None, 'the parabola does not fall all over its points: write shape = "points", or other points'
+            yield None, f"the parabola does not fall all over its points: {advice}"
+        elif 2.0 * a * (math.log(levels[-1]) + REACH) + b >= 0:
+            yield None, f"the parabola rises again, from {math.exp(-b / (2.0 * a)):.3g} on: {advice}"

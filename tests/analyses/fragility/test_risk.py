@@ -250,6 +250,17 @@ def test_an_upper_bound_of_a_median_bounds_its_rate_by_half_of_that_of_motions_t
     assert (known, [bound.least for bound in bounds]) == ([], [] if least is None else [pytest.approx(least)])
 
 
+@pytest.mark.parametrize("median", [0.5, 2.0])
+def test_the_steepest_hazard_that_is_taken_has_the_closed_form_without_an_overflow(median):
+    """Curves above some 1/x^70 overflowed far below their points, and a convex parabola counted the rates of its rising side."""
+    steep, beta = HazardCurve([0.2], [1e-3], slope=30.0), 0.1
+    assert rate_of(exactly(median, beta), steep) == pytest.approx(1e-3 * (0.2 / median) ** 30 * math.exp(4.5), rel=1e-6)
+    levels, rates = [0.1, 0.2, 0.4], [1e-2, 1.2e-3, 1.6e-4]  # convex, with its bottom beyond all motions
+    convex, straight = HazardCurve(levels, rates, shape="quadratic"), HazardCurve(levels, rates)
+    assert rate_of(exactly(0.2, beta), convex) == pytest.approx(rate_of(exactly(0.2, beta), straight), rel=0.05)
+    assert (np.diff(convex.rate(np.geomspace(0.1, 0.4 * math.exp(10.0), 100))) < 0).all()
+
+
 def test_rates_are_integrated_once_for_each_curve(tmp_path, monkeypatch):
     """For a cloud that takes seconds."""
     integrated = []
@@ -468,6 +479,9 @@ def test_a_hazard_in_a_file_is_that_of_its_points(tmp_path):
         ({"file": "not_there.csv"}, "not_there.csv: no such file"),
         ({"file": "hazard.csv", "levels_g": [0.1]}, "file and levels_g are given; keep one"),
         ({"levels_g": [0.1, 0.2, 0.4], "rate_per_year": [0.1, 0.09, 0.0001], "shape": "quadratic"}, "does not fall all over"),
+        ({"levels_g": [0.1, 0.2, 0.4], "rate_per_year": [1e-2, 1e-3, 1.6e-4], "shape": "quadratic"}, "rises again, from 4.22 on"),
+        ({"levels_g": [0.2], "rate_per_year": [0.02], "slope": 30.1}, "slope = 30.1: steeper than 1/x^30"),
+        ({"levels_g": [0.2, 0.202], "rate_per_year": [0.02, 0.0148]}, "between 0.2 and 0.202, steeper than 1/x^30"),
     ],
 )  # fmt: skip
 def test_mistakes_of_a_hazard_are_named_with_their_line(tmp_path, hazard, message):
