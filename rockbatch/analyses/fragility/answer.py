@@ -1,7 +1,7 @@
 """The answer of a fragility in sentences: the weakest case, for overturning and for the limit that is exceeded first."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from rockbatch.analyses.fragility.figures import label
 from rockbatch.analyses.fragility.quantities import FEW, Curve, bound_in_words, level_of, percent, power
@@ -22,6 +22,8 @@ MOST_NAMES = 3
 
 Info = Entry
 """Content of fragility.json."""
+Interval = Sequence[float | None] | None
+"""Two ends, the upper None if it is infinite; None without an interval."""
 
 
 def of_curves(info: Info) -> Markup:
@@ -74,8 +76,7 @@ def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
     case = f" for {lowest}" if lowest else ""
     if curve["median"] is not None:
         said = f"has a median of {_median(info, curve)}{case}"
-        overlaps = any(_overlap(curve, each) for each in curves if each is not curve)
-        said += " (difference not significant)" if overlaps else ""
+        said += _among(curve["median_interval"], [each["median_interval"] for each in curves if each is not curve])
     elif not total:
         said = "is decided by no run" + (f" in any of {len(curves)} cases" if case else "")
     elif _withstood(decided, curve):
@@ -173,9 +174,11 @@ def _of_rate(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
     curve = max(curves, key=_rates)
     risk, years = curve["risk"], min(info["hazard"]["years"])
     least, most = _rates(curve)
-    greater = [other for other in curves if other is not curve and _rates(other)[1] > least]
+    others = [other for other in curves if other is not curve]
+    greater = [other for other in others if _rates(other)[1] > least]
     rank = "one" if greater or math.isinf(most) else "the greatest"
-    case = f" for {label(info, curve)}, {rank} of {len(curves)} cases" if len(curves) > 1 else ""
+    case = f" for {label(info, curve)}, {rank} of {len(curves)} cases" if others else ""
+    case += _among(_interval_of_rate(curve), map(_interval_of_rate, others))
     doubts = (
         [f"{_cases(info, greater)} may exceed it more often, as only bounds of the rate are known"] if greater else []
     )
@@ -249,12 +252,23 @@ def _has_no_median(curve: Curve) -> bool:
     )
 
 
-def _overlap(curve: Curve, other: Curve) -> bool:
-    """Return whether another curve's median interval begins within that of ``curve`` or below; False if one has none."""
-    if other["median_interval"] is None or curve["median_interval"] is None:
+def _among(interval: Interval, others: Iterable[Interval]) -> str:
+    """Return " (difference not significant)" if one of the ``others`` overlaps an interval, "" if none does, or it is None."""
+    return " (difference not significant)" if any(_overlap(interval, other) for other in others) else ""
+
+
+def _overlap(first: Interval, second: Interval) -> bool:
+    """Return whether two intervals share a value; False if one is None."""
+    if first is None or second is None:
         return False
-    low, high = (other["median_interval"][0] or 0.0), curve["median_interval"][1]
-    return high is None or low <= high
+    (low, high), (least, most) = first, second
+    return (high is None or (least or 0.0) <= high) and (most is None or (low or 0.0) <= most)
+
+
+def _interval_of_rate(curve: Curve) -> Interval:
+    """Return the interval of an annual rate; None without one."""
+    low, high = (curve["risk"][name] for name in ("rate_low", "rate_high"))
+    return None if low is None else (low, high)
 
 
 def _records(curve: Curve) -> str:

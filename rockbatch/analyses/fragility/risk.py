@@ -186,7 +186,7 @@ def note(risk: Risk, spec: FragilitySpec) -> str:
         low, high = risk.bounds
         notes.append(
             f"{_share(risk.above, risk)} of the rate comes from above the hazard's highest point, where its last slope goes on: "
-            f"whatever the hazard is there, the rate is between {low:.3g} and {high:.3g}"
+            f"whatever the hazard is there, the fit has a rate between {low:.3g} and {high:.3g}"
         )
     if len(points) > 1 and risk.below > NOTABLE * risk.rate:
         notes.append(
