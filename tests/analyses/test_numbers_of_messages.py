@@ -235,7 +235,7 @@ INPUTS = [
 ]  # fmt: skip
 SENSITIVITY = {
     "the inputs of a case": (
-        lambda: plain_text(sensitivity._of_case(INPUTS)),
+        lambda: plain_text(sensitivity._of_case(INPUTS, 1.0)),
         ["β", 0.55, 0.04, "η", 0.32, 0.03, "μ", 0.21, 0.02, 2.0, 0.01, "η", 0.29, 2.1, 0.58, 3.7, 0.412],
     ),
     "inputs of many cases": (

@@ -40,19 +40,24 @@ def answer(info: Info, swings: "pd.DataFrame", sobol: "pd.DataFrame") -> Markup:
         lines = [join("The ", subject, _in_most(list(cases.values())))]
     else:
         lines = [
-            join(f"{case}: the " if len(cases) > 1 else "The ", subject, _of_case(rows)) for case, rows in cases.items()
+            join(f"{case}: the " if len(cases) > 1 else "The ", subject, _of_case(rows, info["overturned"]))
+            for case, rows in cases.items()
         ]
     return answered(*lines, remarks=_of_runs(info))
 
 
-def _of_case(rows: Rows) -> Markup:
+def _of_case(rows: Rows, overturned: float) -> Markup:
     """Return the rest of the sentence about a case, and one about the input that moves the answer most by itself, if one does.
 
-    If all answers are the same (NaN indices), the sentence says so.
+    If all answers are the same (NaN indices), the sentence says so. An answer of ``overturned`` is that "or more".
     """
+
+    def written_answer(value: float) -> str:
+        return plain(value, 3) + (" or more" if value >= overturned else "")
+
     if rows[0]["total"] != rows[0]["total"]:
         nothing = tag("span", "there is nothing to attribute to any of them", class_="undecided")
-        return join(f" is {plain(rows[0]['answer_base'], 3)} whatever the inputs are: ", nothing, ".")
+        return join(f" is {written_answer(rows[0]['answer_base'])} whatever the inputs are: ", nothing, ".")
     first, *others = rows
     shown = [row for row in others if row["total"] >= HARDLY][: MOST_INPUTS - 1]
     said = f" depends most on {symbol(first['parameter'])} (total Sobol index {_index(first)})"
@@ -64,8 +69,8 @@ def _of_case(rows: Rows) -> Markup:
         matter = "may matter, too" if most >= HARDLY else "hardly matters" if len(remaining) == 1 else "hardly matter"
         said += f"; {names} {matter} ({most:.2f} at most)"
     greatest = max(rows, key=lambda row: row["swing"])
-    ends = [f"{plain(greatest[f'answer_{end}'], 3)} at {written(greatest[end])}" for end in ("low", "high")]
-    study = f"{plain(greatest['answer_base'], 3)} in the study"
+    ends = [f"{written_answer(greatest[f'answer_{end}'])} at {written(greatest[end])}" for end in ("low", "high")]
+    study = f"{written_answer(greatest['answer_base'])} in the study"
     moved = f" Alone {symbol(greatest['parameter'])} moves it from {ends[0]} to {ends[1]} ({study})."
     return join(sentence(said, _doubt(first, shown)), moved if greatest["swing"] > 0 else "")
 

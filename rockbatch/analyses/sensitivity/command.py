@@ -3,7 +3,7 @@
 import argparse
 
 from rockbatch.analyses.sensitivity.analysis import sensitivity
-from rockbatch.analyses.sensitivity.quantities import QUANTITIES
+from rockbatch.analyses.sensitivity.quantities import of_inputs
 from rockbatch.batch.listening import count
 from rockbatch.common.analyses import Entry
 from rockbatch.common.lazy import pd
@@ -30,7 +30,7 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
 def shown(info: Entry, swings: "pd.DataFrame", shares: "pd.DataFrame") -> str:
     """Return both tables for a terminal, a block for each case: the answer at both ends, and the indices with their errors."""
     keys = ["case", *info["varied"]]
-    heads, blocks = [Head("input", value="parameter"), *QUANTITIES], []
+    heads, blocks = [Head("input", value="parameter"), *of_inputs(info)], []
     statistic = STATISTICS[info["statistic"]].words
     for names, of_case in swings.groupby(keys, sort=False, dropna=False):
         rows = as_dicts(of_case.merge(shares, on=[*keys, "parameter"]))

@@ -3,7 +3,7 @@
 from rockbatch.analyses.sensitivity.answer import answer
 from rockbatch.analyses.sensitivity.columns import SOBOL, TORNADO
 from rockbatch.analyses.sensitivity.figures import bars, symbol
-from rockbatch.analyses.sensitivity.quantities import QUANTITIES
+from rockbatch.analyses.sensitivity.quantities import of_inputs
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting.finished_analysis import FinishedAnalysis, named, of_analysis
@@ -19,7 +19,7 @@ def section(analysis: FinishedAnalysis, swings: "pd.DataFrame", shares: "pd.Data
     """Return the report's section of sensitivity: inputs one at a time, and Sobol's indices."""
     info = analysis.info
     keys, cases = ["case", *info["varied"]], swings.groupby(["case", *info["varied"]], dropna=False).ngroups
-    heads = [Head("input", value=lambda row: symbol(row["parameter"])), *QUANTITIES]
+    heads = [Head("input", value=lambda row: symbol(row["parameter"])), *of_inputs(info)]
     heads = [Head("case", value=lambda row: named(info, row, keys)), *heads] if cases > 1 else heads
     rows, inputs = as_dicts(swings.merge(shares, on=[*keys, "parameter"])), [entry["name"] for entry in info["inputs"]]
     return render(

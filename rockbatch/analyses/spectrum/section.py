@@ -40,8 +40,9 @@ MAPS = "Amplitudes of a pulse over its frequency: ω_p = 2π over its period, a_
 def _spectra(analysis: FinishedAnalysis, suite: "pd.DataFrame") -> Markup:
     caption = "Largest rotation over slenderness, a curve for each slenderness. "
     if (suite["count"] > 1).any():
-        quantiles = f"84 % and 16 % quantiles, where {FRACTILES_FROM} motions or more have an outcome"
-        caption += f"Solid: median of the motions; dashed and dotted: {quantiles}. "
+        caption += "Solid: median of the motions. "
+        few = f"where {FRACTILES_FROM} motions or more have an outcome"
+        caption += f"Dashed and dotted: 84 % and 16 % quantiles, {few}. " if suite["p84"].notna().any() else ""
     caption += "Above the frame: overturned, or ended by flight."
     records = analysis.table("spectrum.csv", ("case", "alpha", "record", "polarity", "status", "theta_max_over_alpha"))
     return figure(drawn(spectra(suite, records, analysis.info)), heading(caption))

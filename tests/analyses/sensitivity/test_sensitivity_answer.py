@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from rockbatch.analyses.sensitivity.answer import answer
+from rockbatch.analyses.sensitivity.quantities import of_inputs
 
 INFO = {"varied": [], "statistic": "median", "motions": 3, "overturned": 1.0, "statuses": {"ok": 60}}
 
@@ -72,6 +73,15 @@ def test_an_answer_that_nothing_changes_is_attributed_to_nothing():
     assert line.endswith("is 0.2 whatever the inputs are: there is nothing to attribute to any of them.")
     assert ended == "60 of 60 runs overturned or were ended by flight, and count as 1 here."
     assert len(marked) == 2
+
+
+def test_an_answer_at_which_runs_are_cut_is_that_or_more():
+    """Half of the runs overturn at 0.5, and at 0.3 the median is known: a swing of 0.8 is the least there is."""
+    (line,), _ = said({"rock": [("p", 0.9, 0.1, 0.2, 1.0)]})
+    assert line.endswith("Alone p moves it from 0.2 at 0.3 to 1 or more at 0.5 (0.2 in the study).")
+    answers = [head.value for head in of_inputs(INFO) if head.group == "answer at"]
+    row = {"answer_low": 0.2, "answer_base": 0.9999, "answer_high": 1.0}
+    assert [answer(row) for answer in answers] == [0.2, 0.9999, "≥ 1.0000"]
 
 
 def test_runs_without_a_peak_are_counted():

@@ -75,6 +75,10 @@ def test_overturned_points_stay_in_the_spectrum_as_infinite(folder, capsys):
     assert np.isfinite(at.drop(fallen.index)["largest"]).all()
     report = (folder / "analyses.html").read_text(encoding="utf-8")
     assert "Rocking spectra and overturning" in report
+    assert ("Solid: median of the motions." in report, "quantiles, where 6 motions" in report) == (
+        True,
+        False,
+    )  # of two
     assert "∞" in report
 
 
