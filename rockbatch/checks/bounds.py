@@ -184,7 +184,8 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
         if rule.demand != "failed":  # the event might have followed in a run that was cut short
             open_ |= (status == "failed") | (status == "flight")
         bounds = Bounds(value, value, np.where(open_, 1.0, value), False)
-        return Demanded(bounds, counting, own, None, np.zeros(len(runs), dtype=bool), [])
+        none = np.zeros(len(runs), dtype=bool)
+        return Demanded(bounds, counting, own, None, none, omissions(demand, runs, error, case))
 
     at_least = np.isinf(error)  # the value is a lower bound, and nothing bounds it from above
     margin, wild = np.where(at_least, 0.0, np.nan_to_num(error)), _chaotic(demand, runs, error)

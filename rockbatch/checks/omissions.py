@@ -1,6 +1,8 @@
-"""Omissions of a verdict: landings, modes and bending in forces (THEORY.md, Forces), directions of a record, the error estimate,
-and what a code asks of motions: independence, and a target spectrum."""
+"""Omissions of a verdict: landings, modes, bending and tendons in forces (THEORY.md, Forces), what the model does not follow in
+the runs, directions and verticals of records, the error estimate, and what a code asks of motions: independence, and a target
+spectrum."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +12,7 @@ from rockbatch.quantities.arrays import Rows, Values
 from rockbatch.quantities.cases import (
     Case,
     bends,
+    has_device,
     has_light_shaft,
     is_frame,
     lands_by_impulse,
@@ -21,10 +24,18 @@ from rockbatch.quantities.demands import Demand
 MODES, POINTS = "modes", "modes at a point"
 LANDINGS, LANDINGS_OF_FRAME = "landings", "landings of a frame"
 LANDINGS_OF_BENDING = "landings under a bending shaft"
-IMPULSES, BENDING = "impulses", "bending"
+IMPULSES, BENDING, TENDONS = "impulses", "bending", "tendons"
+KEYS, SHAKEDOWN = "keys", "shakedown"
+SLIDES, LINEARISED, FLIGHTS = "slides", "beyond_linearised", "flights"
 ERRORS, TARGET = "errors", "target"
-NAMED = DIRECTIONS, EVENTS = ("directions", "events")
+NAMED = DIRECTIONS, VERTICALS, EVENTS = ("directions", "verticals", "events")
 """Omissions about records, which a verdict's own remark names."""
+
+FOLLOWED = (SLIDES, LINEARISED)
+"""Omissions of every demand of runs for which the column of the same name is 1: they moved as the model does not follow."""
+
+SHAKES_DOWN = 2.0
+"""Safety factor of a footing above which its bed shakes down under cycles of constant rotation (THEORY.md, A footing)."""
 
 FACTORS = "1.6 to 2.9"
 """Base shear by twenty finite elements over that of a rigid shaft, of twice the mass on its top (THEORY.md, Forces)."""
@@ -69,7 +80,20 @@ OMISSIONS = {
     BENDING: Omission(
         f"bending of the shaft is left out, with which a heavy one had {FACTORS} times its rigid base shear by finite elements"
     ),
+    TENDONS: Omission("the force of a tendon that is anchored above the section is left out"),
+    KEYS: Omission(
+        "moments with a normal force below [output] least_normal_share of the weight are left out, in which keys carry the "
+        "shear: check key_shear_kN, too"
+    ),
+    SHAKEDOWN: Omission(
+        "a lower bound: above a safety factor of 2 the bed settles no further in cycles of constant rotation, in which ground "
+        "does"
+    ),
+    SLIDES: Omission("runs would slide by the friction of the case, which is not followed"),
+    FLIGHTS: Omission("runs fly higher than flight_limit_mm of the case, to which keys are taken to guide the pier"),
+    LINEARISED: Omission('runs rotate too far for linearised kinematics: run kinematics = "finite"'),
     DIRECTIONS: Omission("not every direction counts, and the worst may be another"),
+    VERTICALS: Omission("not every motion has a vertical component"),
     EVENTS: Omission("stations of one earthquake count as independent motions, unless per_event limits their number"),
     TARGET: Omission("the motions are not judged by a target spectrum of its code"),
     ERRORS: Omission("no error estimate"),
@@ -112,7 +136,23 @@ def _follows_modes(demand: Demand, case: Case) -> bool:
 
 
 def omissions(demand: Demand, runs: Rows, error: Values, case: Case) -> list[str]:
-    """Return the names in :data:`OMISSIONS` of what the demand, of this ``error``, omits in runs of a case; [] for none.
+    """Return the names in :data:`OMISSIONS` of what the demand, of this ``error``, omits in runs of a case; [] for none."""
+    omitted = [name for name in FOLLOWED if runs.facts(name).any()]
+    if (1000.0 * runs.numbers("flight_height_m") > case["parameters"].get("flight_limit_mm", math.inf)).any():
+        omitted.append(FLIGHTS)
+    if demand.event:
+        return omitted
+    if demand.in_section and has_device(case, "tendon"):
+        omitted.append(TENDONS)
+    if demand.while_pressed and (runs.numbers("key_shear_m_s2") > 0.0).any():
+        omitted.append(KEYS)
+    if demand.residual and (case["parameters"].get("safety_factor") or 0.0) > SHAKES_DOWN:
+        omitted.append(SHAKEDOWN)
+    return [*_of_blows(demand, runs, error, case), *omitted]
+
+
+def _of_blows(demand: Demand, runs: Rows, error: Values, case: Case) -> list[str]:
+    """Return the names of what a force omits of landings, modes and bending.
 
     A demand that follows the modes of a bending shaft omits no more than the further modes, or those at a point.
     """

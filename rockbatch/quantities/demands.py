@@ -100,6 +100,8 @@ class Demand:
         True if the blow of a landing, or the bending of the shaft, enters it (THEORY.md, Forces).
     pointwise : bool
         True if it is an acceleration of one point of the shaft.
+    while_pressed : bool
+        True if it leaves out moments with a normal force below [output] least_normal_share of the weight.
     directed : bool
         True if each axis of the pier has one by itself, so that those of two axes add up. Of others, such as settlements,
         axial forces and counts, which have the weight or the whole pier in them on either axis, the greater counts.
@@ -126,6 +128,7 @@ class Demand:
     landing: bool = False
     bending: bool = False
     pointwise: bool = False
+    while_pressed: bool = False
     directed: bool = False
     over_capacity: bool = False
 

@@ -159,6 +159,8 @@ class Quantity:
         True if the bending of the shaft enters it, which a rigid shaft leaves out.
     pointwise : bool
         True if it is an acceleration of one point of the shaft.
+    while_pressed : bool
+        True if it leaves out moments with a normal force below [output] least_normal_share of the weight.
     directed : bool
         True if each axis of the pier has one by itself, so that those of two axes add up.
     least_is_worst : bool
@@ -187,6 +189,7 @@ class Quantity:
     landing: bool = False
     bending: bool = False
     pointwise: bool = False
+    while_pressed: bool = False
     directed: bool = False
     least_is_worst: bool = False
 
@@ -249,6 +252,7 @@ class Quantity:
             landing=self.landing,
             bending=self.bending,
             pointwise=self.pointwise,
+            while_pressed=self.while_pressed,
             directed=self.directed,
         )
 

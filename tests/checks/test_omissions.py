@@ -14,19 +14,25 @@ from rockbatch.checks import Rule, as_table, judge
 from rockbatch.checks.answer import answer
 from rockbatch.checks.omissions import (
     BENDING,
+    FLIGHTS,
     IMPULSES,
+    KEYS,
     LANDINGS,
     LANDINGS_OF_BENDING,
     LANDINGS_OF_FRAME,
+    LINEARISED,
     MODES,
     OMISSIONS,
     POINTS,
+    SHAKEDOWN,
+    SLIDES,
+    TENDONS,
 )
 from rockbatch.checks.scorecard import scorecard
 from rockbatch.checks.verdicts import read_verdicts, write_verdicts
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
-from rockbatch.pier import Damper, ElasticBase, Part, Pier, RigidBase, Stop, YieldingBase
+from rockbatch.pier import Damper, ElasticBase, FootingBase, Part, Pier, RigidBase, Stop, Tendon, YieldingBase
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.results.checking import verdicts
 from rockbatch.results.run_json import describe_case
@@ -364,3 +370,49 @@ def test_random_checks_are_decided_only_if_a_separate_judge_omits_no_force(seed)
     assert (found.verdict, found.low, found.high) == (expected, pytest.approx(low), pytest.approx(high))
     if expected == "not decided" and math.isinf(high):
         assert found.left_open in (LANDINGS, MODES)
+
+
+@pytest.mark.parametrize(
+    ("name", "cells"),
+    [(SLIDES, {"slides": 1}), (LINEARISED, {"beyond_linearised": 1}), (FLIGHTS, {"flight_height_m": 6e-3})],
+)
+@pytest.mark.parametrize("demand", ["theta_max_over_alpha", "overturned"])
+def test_a_pass_says_if_a_run_moves_as_the_model_does_not_follow(demand, name, cells):
+    """By default the keys guide a pier that flies up to 5 mm."""
+    table = runs([0.1, 0.2], name="damped", theta_max_error=1e-5)
+    for moved, omits in ((table.assign(**cells), (name,)), (table.assign(**dict.fromkeys(cells, 0)), ()), (table, ())):
+        found = judged(moved, one=DAMPED, demand=demand, at_most=0.5)
+        assert (found.verdict, found.omits, bool(found.note)) == ("pass", omits, bool(omits))
+    left_out = table.assign(**{column: [0, value] for column, value in cells.items()}, status=["ok", "overturned"])
+    assert name not in judged(left_out, one=DAMPED, overturned="left out").omits
+
+
+def test_a_friction_demand_says_that_keys_carry_the_shear_where_little_presses_the_pier():
+    table = runs([0.1, 0.2], name="damped", friction_demand=0.3, key_shear_m_s2=[math.nan, 2.0], **SHEAR)
+    asked = {"one": DAMPED, "demand": "friction_demand", "at_most": 0.5}
+    assert judged(table, **asked).omits == (BENDING, KEYS)
+    assert judged(table.assign(key_shear_m_s2=math.nan), **asked).omits == (BENDING,)
+    assert judged(table, **asked | {"demand": "base_shear_kN", "at_most": 9000.0}).omits == (BENDING,)
+
+
+@pytest.mark.parametrize(
+    ("demand", "below", "above"), [("settlement_m", (), (SHAKEDOWN,)), ("theta_max_over_alpha", (), ())]
+)
+def test_a_settlement_above_a_safety_factor_of_two_is_said_to_be_a_lower_bound(demand, below, above):
+    table = runs([0.1], name="foot", theta_max_error=1e-5, settlement_m=0.05, settlement_error_m=1e-4)
+    for factor, omits in ((2.0, below), (2.1, above), (None, below)):
+        foot = case("foot", FootingBase(beta=60.0, safety_factor=factor))
+        found = judged(table, one=foot, demand=demand, at_most=0.5)
+        assert (found.verdict, found.omits) == ("pass", omits)
+    on_pads = judged(table, one=case("foot"), demand=demand, at_most=0.5)
+    assert SHAKEDOWN not in on_pads.omits
+
+
+def test_forces_in_a_section_say_that_they_have_no_tendon_in_them():
+    held = case("damped", ElasticBase(beta=50.0, zeta=0.05, restraints=(Tendon(0.2, 10.0),)))
+    table = runs([0.3], name="damped", **SHEAR)
+    limits = {"section_axial_kN": 5e4, "section_moment_kNm": 5e4, "section_moment_over_capacity": 1.0}
+    for demand, most in limits.items():
+        omits = [judged(table, one=one, demand=demand, at_most=most).omits for one in (held, DAMPED)]
+        assert [TENDONS in its for its in omits] == [True, False]
+    assert TENDONS not in judged(table, one=held, demand="base_shear_kN", at_most=9000.0).omits

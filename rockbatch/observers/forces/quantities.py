@@ -122,7 +122,7 @@ QUANTITIES = (
     _force(
         "friction_demand", "greatest V over N at the same time", "friction_demand", "1", "V/N", ".4f", unbounded=True,
         limits=_SLIDES, more=", while N is above [output] least_normal_share of the weight, 0.1 unless given", landing=True,
-        bending=True, directed=True,
+        bending=True, while_pressed=True, directed=True,
     ),
     _force(
         "pivot_force_left", _PIVOT.format("each"), "pivot_left", "1", "support L/(Mg/2)", ".3f", more=_PIVOT_MORE, landing=True,
