@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -156,13 +156,16 @@ def _governing(runs: Bounds, counting: npt.NDArray[np.bool_], *, by_bound: bool)
     return int(order[0]) if order and first[order[0]] > 0 else None
 
 
-def lacking(counting: npt.NDArray[np.bool_], counted_as: Texts) -> dict[str, tuple[int, int]]:
+def lacking(
+    counting: npt.NDArray[np.bool_], counted_as: Texts, not_selected: Mapping[str, int]
+) -> dict[str, tuple[int, int]]:
     """Return (runs that count, runs expected) of each record of which some runs count, but fewer than expected; {} if none.
 
-    Expected are all runs of the record, counting or not, or the commonest number of runs of a record if that is more. The
-    missing direction may be the worst.
+    Expected are all runs of the record, counting or not, with its components that are ``not_selected``, or the commonest number
+    of a record if that is more. The missing direction may be the worst.
     """
     planned, remaining = Counter(counted_as), Counter(counted_as[counting])
+    planned.update({name: not_selected.get(name, 0) for name in planned})
     usual = max(Counter(planned.values()).items(), key=lambda item: (item[1], item[0]))[0] if planned else 0
     expected = {name: max(n, usual) for name, n in planned.items()}
     return {name: (remaining[name], n) for name, n in expected.items() if 0 < remaining[name] < n}

@@ -7,13 +7,12 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from rockbatch.checks.bounds import SCATTER, Axis, Demanded, OfSuite, lacking, of_suite
 from rockbatch.checks.capacity import used
 from rockbatch.checks.endings import left_open
 from rockbatch.checks.events import OfEvent, largest_event
-from rockbatch.checks.omissions import DIRECTIONS, ERRORS, EVENTS, NAMED, OMISSIONS, TARGET
+from rockbatch.checks.omissions import DIRECTIONS, ERRORS, EVENTS, NAMED, OMISSIONS, TARGET, VERTICALS
 from rockbatch.checks.rule_choices import FAR, Available, Fitted, fitted
 from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.checks.suite import Suite
@@ -297,7 +296,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, motions: Suite) -
     records = suite.texts("record")[counting]
     of_event = largest_event(records, counted_as[counting], motions.events) if statistic.code else None
     unmet = _unmet(rule, count, n, of_event, known=bool(motions.events)) or _unmet_by_stations(
-        rule, counted_as[counting], suite.texts("station")[counting], np.isin(records, [*motions.unrecorded])
+        rule, counted_as[counting], suite.texts("station")[counting], records, motions
     )
     verdict, few = _decide(rule, demand.low, demand.high, unmet)
     left_out = {name for its in demand.axes for name in its.omitted if verdict != PASS or OMISSIONS[name].decides}
@@ -308,9 +307,12 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, motions: Suite) -
     if of_event and of_event.records > 1 and rule.per_event is None:
         left_out.add(EVENTS)
     recorded = ~np.isin(suite.texts("record"), [*motions.unrecorded])  # a pulse has one direction, and lacks none
-    lacks = {} if none.count == "component" else lacking(counting[recorded], counted_as[recorded])
+    lacks = {} if none.count == "component" else lacking(counting[recorded], counted_as[recorded], motions.not_selected)
     if lacks:
         left_out.add(DIRECTIONS)
+    flat = {*counted_as[counting][np.isin(records, [*motions.without_vertical])]}
+    if flat:
+        left_out.add(VERTICALS)
     omitted = [name for name in OMISSIONS if name in left_out]
     open_by = math.isinf(demand.high) and not all(OMISSIONS[name].decides for name in omitted)
     ends = [
@@ -325,6 +327,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, motions: Suite) -
         unknown,
         *(of_event.remarks if of_event else ()),
         _remark_on_directions(lacks),
+        f"{len(flat)} of {n} {count}s lack the vertical component" if flat else "",
         *dict.fromkeys(remark for of_axis in ends for remark in of_axis),
         *dict.fromkeys(_remark_on_chaos(int(its.chaotic.sum())) for its in demand.axes),
     ]
@@ -434,19 +437,26 @@ def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None, *, kn
     return ""
 
 
-def _unmet_by_stations(rule: Rule, counted_as: Texts, stations: Texts, unrecorded: npt.NDArray[np.bool_]) -> str:
+def _unmet_by_stations(rule: Rule, counted_as: Texts, stations: Texts, records: Texts, motions: Suite) -> str:
     """Return the first unmet condition on stations: "12 components of 1 station count, …"; "" if all are met.
 
-    Components of one station are not independent, and codes require recorded motions. All arrays describe the runs that count,
-    shape (n,). An unknown station is ""; its record counts as a station.
+    Components of one station are not independent, nor are sequences with shocks of one station, and codes require recorded
+    motions. All arrays describe the runs that count, shape (n,). An unknown station is ""; its record counts as a station.
     """
     statistic = STATISTICS[rule.statistic or "max"]
-    records, known = len({*counted_as}), {*np.where(stations == "", counted_as, stations)}
-    if len(known) < statistic.least <= records:
-        n = "1 station" if len(known) == 1 else f"{len(known)} stations"
-        return f"{records} components of {n} count, the {statistic.words} asks for {statistic.least} stations"
+    own = np.where(stations == "", counted_as, stations)
+    shocks = {name: motions.shocks.get(record, (name,)) for name, record in zip(own, records, strict=True)}
+    motions_of = Counter(station for name in shocks for station in shocks[name])
+    n, known = len({*counted_as}), len(motions_of)
+    if known < statistic.least <= n:
+        words = "1 station" if known == 1 else f"{known} stations"
+        return f"{n} components of {words} count, the {statistic.words} asks for {statistic.least} stations"
+    unrecorded = np.isin(records, [*motions.unrecorded])
     if statistic.code and unrecorded.any():
+        return f"{len({*counted_as[unrecorded]})} of {n} stations are pulses, and {statistic.code} asks for records"
+    (shared, most), *_ = motions_of.most_common(1) or [("", 0)]
+    if statistic.code and most > 1:
         return (
-            f"{len({*counted_as[unrecorded]})} of {records} stations are pulses, and {statistic.code} asks for records"
+            f"{most} of {n} motions have a record of {shared} in them, and {statistic.code} asks for independent ones"
         )
     return ""

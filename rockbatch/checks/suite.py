@@ -1,6 +1,6 @@
 """Properties of a suite of motions that statistics of codes depend on: stations, events, records and target spectrum."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 
@@ -11,13 +11,22 @@ class Suite(NamedTuple):
     ----------
     stations, events : mapping
         Station and earthquake of each component, empty if it is not known.
+    shocks : mapping
+        Stations of the shocks of each component that is a sequence of records of several stations.
     unrecorded : collection of str
         Components that are not records: pulses, and still ground.
+    without_vertical : collection of str
+        Components that lack the vertical component which the study asks for.
+    not_selected : mapping
+        Number of components that the study does not select, by station.
     code : str
         The code by whose conditions the suite is held against its target spectrum; empty if it is not.
     """
 
     stations: Mapping[str, str] = {}
     events: Mapping[str, str] = {}
+    shocks: Mapping[str, Sequence[str]] = {}
     unrecorded: Collection[str] = ()
+    without_vertical: Collection[str] = ()
+    not_selected: Mapping[str, int] = {}
     code: str = ""

@@ -4,6 +4,7 @@ Each condition is a verdict without a case, at each scale at which the suite is 
 """
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
@@ -102,7 +103,14 @@ def suite_of(info: Mapping[str, Any]) -> Suite:
     return Suite(
         stations={record["record"]: record.get("station", "") for record in records},
         events={record["record"]: record.get("event") or "" for record in records},
+        shocks={record["record"]: record["stations_of_shocks"] for record in records if "stations_of_shocks" in record},
         unrecorded={record["record"] for record in records if record["source"] in UNRECORDED},
+        without_vertical=info.get("without_vertical", ()),
+        not_selected=Counter(
+            file["station"]
+            for file in info.get("left_out", ())
+            if file.get("station") and not (file.get("named") or file.get("of"))
+        ),
         code=str(target.get("code") or "") if target and _is_judged(target) else "",
     )
 

@@ -34,6 +34,7 @@ def entry(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[
     return {
         "record": motion.name,
         "station": motion.of_station,
+        **({"stations_of_shocks": list(motion.stations)} if len(motion.stations) > 1 else {}),
         "label": label,
         "event": motion.origin.event,
         "station_name": motion.origin.station,

@@ -45,13 +45,14 @@ class Initial:
 
 @dataclass(frozen=True)
 class Shock:
-    """A record within a sequence of shocks: its name, the times of its first and last sample in the sequence [s], and the time
-    until which it counts, the start of the next record or a pause after the last."""
+    """A record within a sequence of shocks: its name, the times of its first and last sample in the sequence [s], the time until
+    which it counts, the start of the next record or a pause after the last, and the station of the record."""
 
     name: str
     start: float
     end: float
     until: float
+    station: str = ""
 
 
 @dataclass(frozen=True)
@@ -368,6 +369,11 @@ class Motion(Shown):
     def of_station(self) -> str:
         """Return the name under which it counts as one record with others: its station, else its own name."""
         return self.station or self.name
+
+    @property
+    def stations(self) -> tuple[str, ...]:
+        """Return the stations of its records, sorted: of each shock of a sequence, else its own (:attr:`of_station`)."""
+        return tuple(sorted({shock.station for shock in self.shocks if shock.station})) or (self.of_station,)
 
     @property
     def npts(self) -> int:

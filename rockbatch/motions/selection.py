@@ -56,7 +56,9 @@ def selected(motion_set: MotionSet, selection: Selection, gravity: float = GRAVI
             if value is not None and not low <= value <= high:
                 outside.append(f"{key} = {value:.4g} is not within {low:g}..{high:g}")
         if outside:
-            left_out.append(LeftOut(motion.name, motion.files, f"not selected: {', '.join(outside)}"))
+            left_out.append(
+                LeftOut(motion.name, motion.files, f"not selected: {', '.join(outside)}", motion.of_station)
+            )
         else:
             chosen.append(motion)
     return motion_set.reduced_to(chosen, unusable, left_out)

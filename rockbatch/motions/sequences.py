@@ -209,7 +209,7 @@ def sequence(
     shocks = []
     for start, part in zip(map(int, starts), parts, strict=True):
         end = start + part.npts - 1
-        shocks.append(Shock(part.name, start * dt, end * dt, (end + pause_steps) * dt))
+        shocks.append(Shock(part.name, start * dt, end * dt, (end + pause_steps) * dt, part.of_station))
     whole = replace(
         parts[0],
         name=name,

@@ -187,7 +187,7 @@ class SpectrumTarget:
         return {
             "spectrum": str(self.spectrum),
             "code": self.code,
-            "stations": len(stations),
+            "stations": min(len(stations), len({station for motion in motions for station in motion.stations})),
             "events": _events(stations),
             "damping": self.spectrum.damping,
             "range_s": list(self.range_s),

@@ -112,7 +112,7 @@ SHAPE = {
         | dict.fromkeys(("dt_s", "duration_s", "pga_g"), float)
         | dict.fromkeys(("pga_v_g", "pgv_m_s", "pgd_m"), _NUMBER)
         | dict.fromkeys(("arias_m_s", "d5_95_s", "azimuth_deg", "magnitude", "distance_km"), Maybe(_NUMBER))
-        | {"pulse_period_s": Maybe(_NUMBER), "sha256": Maybe(str)}
+        | {"pulse_period_s": Maybe(_NUMBER), "sha256": Maybe(str), "stations_of_shocks": Maybe([str])}
         | {name: Maybe((str, None)) for name in ("label", "event", "station", "station_name", "direction")}
         | {
             "factor": Maybe(float),

@@ -16,10 +16,13 @@ from rockbatch.checks import Rule, judge, read_verdicts
 from rockbatch.checks.events import OfEvent
 from rockbatch.checks.rule_files import load_rules
 from rockbatch.checks.suite import Suite
+from rockbatch.checks.suite_target import suite_of
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError, MissingColumns
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.results.checking import verdicts
+from rockbatch.results.run_json import describe
+from rockbatch.study.suite import ground_motions
 
 INF = math.inf
 
@@ -449,3 +452,81 @@ def test_a_verdict_is_what_plain_python_makes_of_peaks_csv(tmp_path, stations, c
 )  # fmt: skip
 def test_two_records_of_an_event_and_some_of_unknown_ones_are_remarked_on(records, unknown, remarks):
     assert OfEvent("Kaikoura 2016", records, 4, unknown).remarks == remarks
+
+
+CODED = [name for name, kind in STATISTICS.items() if kind.code]
+
+
+@pytest.mark.parametrize("statistic", CODED)
+def test_sequences_that_share_a_station_are_no_independent_motions_of_a_code(statistic):
+    names = [f"S{i} + S{i + 1}" for i in range(0, 24, 2)]
+    table = runs([0.1] * 12, station=names, record=[f"q{i}" for i in range(12)])
+    apart = {f"q{i}": (f"S{2 * i}", f"S{2 * i + 1}") for i in range(12)}
+    shared = apart | {"q3": ("S0", "S7")}
+    rule = Rule("c", "theta_max_over_alpha", 0.5, statistic=statistic)
+    told_of = f"2 of 12 motions have a record of S0 in them, and {STATISTICS[statistic].code}"
+    for shocks, told in ((apart, ""), (shared, told_of)):
+        (found,) = judge([rule], table, [case()], Suite(shocks=shocks))
+        assert (found.verdict, found.why_open.startswith(told)) == ("not decided" if told else "pass", True)
+    beside = pd.concat([table, runs([0.1], station="S0", record="alone")])
+    (found,) = judge([rule], beside, [case()], Suite(shocks=apart))
+    assert found.why_open.startswith("2 of 13 motions have a record of S0")
+    (plain,) = judge([replace(rule, statistic="mean")], table, [case()], Suite(shocks=shared))
+    assert plain.verdict == "pass"
+
+
+def test_sequences_of_few_stations_are_too_few_records_for_a_quantile():
+    shocks = {f"q{i}": (f"S{i % 3}", f"S{(i + 1) % 3}") for i in range(6)}
+    table = runs([0.1] * 6, station=[f"sequence {name}" for name in shocks], record=[*shocks])
+    (found,) = judge([Rule("c", "theta_max_over_alpha", 0.5, statistic="p84")], table, [case()], Suite(shocks=shocks))
+    assert (found.verdict, found.why_open) == (
+        "not decided", "6 components of 3 stations count, the 84 % quantile asks for 6 stations",
+    )  # fmt: skip
+
+
+def test_a_station_of_which_one_component_is_not_selected_lacks_a_direction():
+    alone = runs([0.1], station="A", record="A1", theta_max_error=1e-5)
+    rule = Rule("c", "theta_max_over_alpha", 0.5)
+    for motions, told in ((Suite(not_selected={"A": 1, "C": 2}), "A (1 of 2)"), (Suite(not_selected={"C": 2}), "")):
+        (found,) = judge([rule], alone, [case()], motions)
+        assert (told in found.note, found.omits) == (True, ("directions",) if told else ())
+
+
+def test_motions_without_the_vertical_component_asked_for_are_counted_by_station():
+    table = pairs(*FOUR, theta_max_error=1e-5)
+    rule = Rule("c", "theta_max_over_alpha", 1.0)
+    (found,) = judge([rule], table, [case()], Suite(without_vertical=["A1", "A2", "C2"]))
+    assert (found.verdict, found.omits) == ("pass", ("verticals",))
+    assert found.note == "2 of 4 stations lack the vertical component"
+    (by_component,) = judge([rule], table, [case()], Suite(without_vertical=["A1", "A2", "C2"]), "component")
+    assert by_component.note == "3 of 8 components lack the vertical component"
+    assert not judge([rule], table, [case()], Suite())[0].omits
+
+
+def test_a_suite_knows_shared_stations_and_what_was_not_selected(tmp_path):
+    near_fault = Path(rb.__file__).parents[1] / "motions/near_fault"
+    every = rb.read_motions(near_fault)
+    names = [motion.name for motion in every]
+    first, second = every.motions[0], next(m for m in every if m.of_station != every.motions[0].of_station)
+    weakest = min(every, key=lambda motion: motion.pga)
+    text = f"""
+[pier]
+alpha = 0.2
+p = 1.0
+[motions]
+path = "{near_fault}"
+select = {{ pga_g = [{1.001 * weakest.pga / 9.81}, 9.0] }}
+[[motions.sequence]]
+name = "both"
+records = ["{first.name}", "{second.name}"]
+alone = true
+[[case]]
+base = "rigid"
+"""
+    (tmp_path / "study.toml").write_text(text, encoding="utf-8")
+    study = rb.load_study(tmp_path / "study.toml")
+    suite = suite_of(describe(study, ground_motions(study)))
+    assert len(suite.stations) == len(names)  # one more, and one less
+    assert suite.shocks == {"both": sorted([first.of_station, second.of_station])}
+    assert suite.not_selected == {weakest.of_station: 1}
+    assert not suite.without_vertical
