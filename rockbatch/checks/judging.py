@@ -209,6 +209,8 @@ def _not_applying(rule: Rule, axes: Sequence[Axis], scale: float, count: str, co
         at_m=math.nan if height is None else height,
         axes=combined,
         capacity="" if rule.curve is None else json.dumps(rule.curve),
+        least=rule.least or 0,
+        per_event=rule.per_event or 0,
     )
 
 

@@ -88,6 +88,8 @@ class Verdict:
         How the demands on both axes of a pier combine, in words; empty on one axis.
     capacity : str
         Points of the capacity that depends on the axial force, as JSON; empty of other checks.
+    least, per_event : int
+        Least number of records, and greatest of one event, with which anything passes, as the check asks; 0 if it does not.
     """
 
     check: str
@@ -122,6 +124,8 @@ class Verdict:
     omits: tuple[str, ...] = ()
     axes: str = ""
     capacity: str = ""
+    least: int = 0
+    per_event: int = 0
 
     @property
     def curve(self) -> Curve:

@@ -42,8 +42,11 @@ def _unlike(a: Finished, b: Finished) -> str:
 
 
 def _requirement(verdict: Verdict) -> tuple[object, ...]:
-    """Return what a check asks: its name, demand in words with height and axes, way of counting, sense, limit and capacity."""
-    return verdict.check, verdict.demand, verdict.words, verdict.count, verdict.sense, verdict.limit, verdict.capacity
+    """Return what a check asks: its name, demand in words with height and axes, ways of counting records and runs cut short,
+    numbers of records, sense, limit and capacity.
+    """
+    demand = verdict.check, verdict.demand, verdict.words, verdict.sense, verdict.limit, verdict.capacity
+    return *demand, verdict.count, verdict.counting, verdict.least, verdict.per_event
 
 
 def _state(side: str, study: Finished) -> str:

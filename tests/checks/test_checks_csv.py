@@ -1,6 +1,7 @@
 """The table of verdicts, checks.csv: written, read back and replaced."""
 
 import math
+from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -10,6 +11,7 @@ from rules_of_checks import MARGIN, STUDY, rules_file
 
 import rockbatch as rb
 from rockbatch.checks import read_verdicts, write_verdicts
+from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import EditedTable, InputError
 from rockbatch.results.checking import verdicts
@@ -20,7 +22,7 @@ def test_checks_csv_gives_the_verdicts_back(tmp_path):
     table = pd.concat([runs([0.1, 0.4], "pads", beta=40.0, status=["ok", "overturned"]), runs([0.2], "rigid")])
     out = folder(tmp_path / "out", table, [case(beta=40.0), RIGID])
     rules = [
-        rb.Rule("margin", "theta_max_over_alpha", 0.5, reason='"quoted", and more'),
+        rb.Rule("margin", "theta_max_over_alpha", 0.5, least=1, reason='"quoted", and more'),
         rb.Rule("bearing", "eta", at_least=2.0),
     ]
     written = verdicts(out, rules)
@@ -105,3 +107,16 @@ def test_verdicts_stay_with_their_table_with_any_line_endings(tmp_path, ending):
     assert [one.case for one in read_verdicts(tmp_path)] == ["pads"]
     (tmp_path / "peaks.csv").write_text(f"record,case{ending}r1,pads{ending}", encoding="utf-8", newline="")
     assert read_verdicts(tmp_path) is None
+
+
+def test_every_column_of_checks_csv_and_every_omission_is_on_the_page_of_columns(tmp_path):
+    """To put it right: write what is missing into docs/columns.md."""
+    out = folder(tmp_path / "out", runs([0.1]), [case()])
+    columns = write_verdicts(out, verdicts(out, [rb.Rule("margin", "theta_max_over_alpha", 0.5)])).read_text(
+        encoding="utf-8"
+    )
+    page = (Path(rb.__file__).parents[1] / "docs/columns.md").read_text(encoding="utf-8").split("{ #checks }")[1]
+    rows = [row.strip("| ").split(" | ") for row in page.splitlines() if row.startswith("| ")][2:]
+    assert sorted(name for row in rows for name in row[0].split(", ")) == sorted(columns.splitlines()[0].split(","))
+    (omits,) = (meaning for name, meaning in rows if name == "omits")
+    assert omits.split("Names: ")[1].split(", ") == [*OMISSIONS]

@@ -166,6 +166,8 @@ def test_a_check_that_an_event_never_happens_is_not_the_closest_to_its_limit(tmp
         ({"motions": {"pulse": PULSES[:1]}}, "motions"),
         ({"motions": {"pulse": [PULSES[0], PULSES[1] | {"amplitude_g": 0.5}]}}, "motions"),
         ({"check": [ROTATION | {"at_most": 0.6}]}, "checks"),
+        ({"check": [ROTATION | {"overturned": "left out"}]}, "checks"),
+        ({"check": [ROTATION | {"least": 2}]}, "checks"),
         (
             {"check": [ROTATION | {"statistic": "mean"}], "motions": {"pulse": PULSES[1:]}},
             "motions and checks",
@@ -182,13 +184,16 @@ def test_the_first_line_says_if_shares_are_of_other_motions_or_limits(tmp_path, 
     assert text.endswith(f". Their {kinds} are not the same." if kinds else "closest 40 % (rotation, Lyttelton).")
 
 
-def test_a_capacity_or_a_height_is_part_of_what_a_check_asks(tmp_path):
+def test_a_capacity_a_height_and_what_counts_are_part_of_what_a_check_asks():
     """Of two checks with the same name, demand and limit."""
     asked = (
         verdict("springs", "pass"),
         *(
             verdict("springs", "pass", **other)
-            for other in ({"capacity": "[[0, 1]]"}, {"words": "largest of section_shear_kN at 10 m"}, {"words": "SRSS"})
+            for other in (
+                *({"capacity": "[[0, 1]]"}, {"words": "largest of section_shear_kN at 10 m"}, {"words": "SRSS"}),
+                *({"least": 7}, {"per_event": 2}, {"count": "component"}, {"counting": "overturned: left out"}),
+            )
         ),
     )
     assert len(set(map(_requirement, asked))) == len(asked)
