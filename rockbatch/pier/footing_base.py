@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Literal, Self
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import Contradiction, MissingKey, OutOfRange, Problem, WrongType, refuse
+from rockbatch.common.errors import Contradiction, MissingKey, OutOfRange, Problem, Unusual, WrongType, refuse
 from rockbatch.common.showing import shown
 from rockbatch.common.units import MOST, POSITIVE, Bounds
 from rockbatch.pier.block import Pier
@@ -14,6 +14,7 @@ from rockbatch.pier.frequencies import rocking_frequency, static_deflection, ver
 from rockbatch.pier.restraints import Restraint, described_restraints
 from rockbatch.pier.shafts import WithShaft
 from rockbatch.pier.soil import FORMULAS, Formula, Soil, bed_stiffness, radiated
+from rockbatch.pier.supports import LEAST_DEFLECTION_MM
 from rockbatch.pier.traits import BETA, FLIGHT_LIMIT_MM, Flight, Kinematics, interface
 
 MOST_STRIPS = 160
@@ -142,7 +143,9 @@ class FootingBase(WithShaft):
         assert pier.mass_t is not None
         if bearing_MPa is not None:
             rest["safety_factor"] = 1000.0 * bearing_MPa * area / (pier.mass_t * pier.gravity)
-        return cls(math.sqrt(1000.0 * stiffness_MN_m3 * area / pier.mass_t) / pier.p, length_m=length_m, **rest)
+        base = cls(math.sqrt(1000.0 * stiffness_MN_m3 * area / pier.mass_t) / pier.p, length_m=length_m, **rest)
+        refuse(_too_stiff(pier, base, stiffness_MN_m3=stiffness_MN_m3))
+        return base
 
     @classmethod
     @checked
@@ -170,11 +173,24 @@ class FootingBase(WithShaft):
         stiffness = FORMULAS[formula](width, length_m, soil)
         bed = bed_stiffness(width, length_m, stiffness.rocking)
         rest["vertical_over_formula"] = bed * width * length_m / stiffness.vertical
-        base = cls.from_stiffness(pier, bed, length_m=length_m, **rest)
+        confirm = rest.pop("confirm", ())
+        base = cls.from_stiffness(pier, bed, length_m=length_m, confirm=(*confirm, "stiffness_MN_m3"), **rest)
+        base = replace(base, confirm=confirm)
+        refuse(_too_stiff(pier, base, shear_modulus_MPa=shear_modulus_MPa))
         if density_t_m3 is None or pier.mass_t is None:
             return base
         dashpot = 1000.0 * radiated(width, length_m, soil, density_t_m3)
         return replace(base, zeta=base.zeta + 0.5 * dashpot / (pier.mass_t * vertical_frequency(pier, base)))
+
+
+def _too_stiff(pier: Pier, base: FootingBase, **given: float) -> list[Problem]:
+    """Return a problem for each value ``given`` for a bed into which the weight hardly presses the foot; [] if confirmed."""
+    deflection = 1000.0 * float(static_deflection(pier, base))
+    if deflection >= LEAST_DEFLECTION_MM:
+        return []
+    text = f"the pier's weight presses the foot in by {deflection:.2g} mm only, where sound rock gives some 0.1 mm"
+    values = {name: value for name, value in given.items() if name not in base.confirm}
+    return [Problem(name, value, text, confirm=name, kind=Unusual) for name, value in values.items()]
 
 
 def wrong_soil(soil: Soil, length_m: float, density_t_m3: float | None = None) -> list[Problem]:

@@ -31,7 +31,7 @@ from rockbatch.pier.traits import BETA, BOUNDS, ETA_OF_BACKBONE, USUAL
 from rockbatch.quantities.design import BOUND
 from rockbatch.study.case_keys import BASE_KEYS, CASE
 from rockbatch.study.design_bounds import DesignBound
-from rockbatch.study.footing_keys import at_pivots, footing_of, on_foot
+from rockbatch.study.footing_keys import at_pivots, footing_of, on_foot, unlikely_foot
 from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.study.piers import PierRead, Values, has_mass
 from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices
@@ -140,6 +140,8 @@ def _case_of(case: _WrittenCase, chosen: Chosen, pier: Pier, pier_values: Values
     pivots = pier
     if "width_m" in values:
         pier = on_foot(pier, values["width_m"])
+        for problem in [] if any_pier or "width_m" in case.table.confirmed else unlikely_foot(pivots, pier):
+            case.table.complain_about(chosen["width_m"], in_table(problem))
     made = (written.made(pier, chosen, judged=not any_pier) for written in case.devices)
     devices = tuple(device for device in made if device is not None)
     devices = at_pivots(devices, pivots) if pier is not pivots else devices
@@ -149,7 +151,8 @@ def _case_of(case: _WrittenCase, chosen: Chosen, pier: Pier, pier_values: Values
         for name in ("epsilon", "impact"):  # the clash is noted already
             of_base.pop(name, None)
     on_bed = case.base == FootingBase.name
-    base, wrong = footing_of(values, pier, devices) if on_bed else _base_of(case.base, of_base, pier)
+    confirmed = case.table.confirmed
+    base, wrong = footing_of(values, pier, devices, confirmed) if on_bed else _base_of(case.base, of_base, pier)
     wrong += problems(pier, base)
     of_devices = [problem for device in devices for problem in wrong_device(pier, device)]
     for problem in wrong:

@@ -1,11 +1,11 @@
 """Keys of a footing in a [[case]], as engineers have them: a bed, a toe of some depth, or soil."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any, get_args
 
-from rockbatch.common.errors import Contradiction, InputError, MissingKey, Problem
+from rockbatch.common.errors import Contradiction, InputError, MissingKey, Problem, Unusual
 from rockbatch.pier import OF_SHAFT, FootingBase, Pier
 from rockbatch.pier.footing_base import POISSON, STRIPS
 from rockbatch.pier.restraints import DeckSpring, Restraint
@@ -91,6 +91,15 @@ def on_foot(pier: Pier, width_m: float) -> Pier:
     return replace(pier, alpha=math.atan2(half, height), p=p, mu=mu, confirm=("p", "mass_t", "top_m"))
 
 
+def unlikely_foot(pier: Pier, on_its_foot: Pier) -> list[Problem]:
+    """Return the problem of a foot narrower than the ``pier`` on it; [] for a wider one."""
+    foot, width = 2.0 * on_its_foot.half_width, 2.0 * pier.half_width
+    if foot >= width * (1.0 - 1e-9):
+        return []
+    text = f"the foot is narrower than the pier on it, {width:.4g} m wide"
+    return [Problem("width_m", foot, text, confirm="width_m", kind=Unusual)]
+
+
 def at_pivots(devices: tuple[Restraint, ...], pier: Pier) -> tuple[Restraint, ...]:
     """Return ``devices``, those at pivots of ``pier`` at offsets [m] from the middle, so that a wider foot leaves them in place.
 
@@ -107,13 +116,14 @@ def at_pivots(devices: tuple[Restraint, ...], pier: Pier) -> tuple[Restraint, ..
 
 
 def footing_of(
-    values: Mapping[str, Any], pier: Pier, devices: tuple[Restraint, ...]
+    values: Mapping[str, Any], pier: Pier, devices: tuple[Restraint, ...], confirm: Collection[str]
 ) -> tuple[FootingBase, list[Problem]]:
     """Return the base of a case on a footing, and its problems; with problems, an elastic base lets other keys be checked.
 
-    ``pier`` is that on the foot.
+    ``pier`` is that on the foot; keys in ``confirm`` may be unusual.
     """
-    fields = {name: values[name] for name in _FIELDS if name in values} | {"restraints": devices}
+    fields: dict[str, Any] = {name: values[name] for name in _FIELDS if name in values}
+    fields |= {"restraints": devices, "confirm": tuple(confirm)}
     ways = [way for way, keys in _WAYS.items() if any(key in values for key in keys)]
     fallback = FootingBase(4.0 * pier.least_beta, restraints=devices, confirm=("beta",))
     if len(ways) != 1:
@@ -151,6 +161,8 @@ def _footing_base(values: Mapping[str, Any], pier: Pier, fields: dict[str, Any])
         return FootingBase(**fields)
     fields |= {"bearing_MPa": values.get("bearing_MPa")}
     if "shear_modulus_MPa" not in values:
+        if "young_GPa" in values:  # a toe of concrete or steel gives less than any ground
+            fields["confirm"] += ("stiffness_MN_m3",)
         stiffness = values.get("stiffness_MN_m3") or 1000.0 * values["young_GPa"] / values["depth_m"]
         return FootingBase.from_stiffness(pier, stiffness, **fields)
     density = values["density_t_m3"] if values.get("radiation") else None
