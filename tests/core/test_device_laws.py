@@ -41,6 +41,7 @@ INF = math.inf
 DAMPER = IDLE._replace(kind=VISCOUS, coefficient=3.0, exponent=0.5, linear_below=0.01, slope=3.0 * 0.01**-0.5)
 LINEAR = IDLE._replace(kind=VISCOUS, coefficient=3.0, linear_below=INF, slope=3.0)
 STEEL = IDLE._replace(kind=HYSTERETIC, strength=2.0, stiffness=50.0)
+ON_BRACE = STEEL._replace(give=0.5)
 TIE = IDLE._replace(kind=TENDON, strength=4.0, stiffness=30.0, prestress=1.0)
 HUNG = IDLE._replace(kind=MAXWELL, stiffness=40.0, coefficient=3.0, exponent=0.5)
 STOP = IDLE._replace(kind=CONTACT, stiffness=80.0, start=0.05, returned=0.36)
@@ -56,6 +57,7 @@ RUBS = IDLE._replace(kind=FRICTION, strength=2.0)
         (RUBS, 0.1, 0.3, 0.0, TAUT, OPENS), (RUBS, 0.1, -0.3, 0.0, TAUT, CLOSES), (BAND, -0.2, 0.3, 0.0, TAUT, OPENS),
         (TIE, 0.05, 0.3, 0.0, TAUT, OPENS), (TIE, 0.05, -0.3, 0.01, TAUT, CLOSES), (TIE, -0.2, 0.3, 0.0, SLACK, OPENS),
         (TIE, 0.12, 0.3, 0.02, YIELDING, OPENS), (HUNG, 0.1, 0.3, 1.2, TAUT, OPENS), (HUNG, 0.1, 0.3, -1.2, TAUT, OPENS),
+        (STEEL, 0.1, 0.3, 0.8, TAUT, OPENS), (ON_BRACE, 0.1, 0.3, 0.8, TAUT, OPENS), (ON_BRACE, 0.1, -0.3, -0.8, TAUT, CLOSES),
         (STOP, 0.07, -0.3, 0.03, TAUT, CLOSES), (STOP, 0.02, 0.3, 0.0, SLACK, OPENS),
     ],
 )  # fmt: skip
@@ -101,8 +103,8 @@ def test_a_hysteretic_damper_yields_as_it_goes_on_and_springs_back_at_once(give)
         found = response(steel, 0.0, speed, z, TAUT, goes)
         assert found.force == pytest.approx(2.0 * z)
         assert found.state_rate == pytest.approx(speed * 50.0 * share / (1.0 + give * share), abs=1e-12)
-        assert found.loss_rate == pytest.approx(2.0 * z * speed)
-    assert stored(steel, 0.1, 0.5) == 0.0
+        assert found.loss_rate == pytest.approx(2.0 * z * speed / (1.0 + give * share))  # the brace has the rest
+    assert stored(steel, 0.1, 0.5) == pytest.approx(0.5 * give / 50.0 * 2.0 * 0.5**2)
 
 
 def test_a_tendon_is_taut_between_slack_and_yield():

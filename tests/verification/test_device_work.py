@@ -213,6 +213,18 @@ def test_work_closes_the_energy_balance_of_the_run():
     assert row["damper_work_J_kg"] == pytest.approx(lost, rel=1e-5)
 
 
+def test_the_work_of_a_damper_on_a_brace_leaves_out_what_the_brace_stores():
+    """∫F dw by its loop; what the brace holds at the end, F²/2k, is a fifth of that."""
+    damper = Damper("hysteretic", f=0.1, yield_m=0.005, brace=0.5, at="left")
+    response = rb.simulate(FIG5, RigidBase(restraints=(damper,)), SHAKEN, devices_work=True, quiet_s=0.0)
+    pull, way = (response.restraints[f"damper 1 {what}"].to_numpy() for what in ("force", "elongation"))
+    own = way - pull / (0.5 * PER_LAMBDA)
+    loop = (0.5 * (pull[1:] + pull[:-1]) * np.diff(own)).sum()
+    assert response.row["damper_work_J_kg"] == pytest.approx(loop, rel=1e-3)
+    assert response.row["damper_energy_J_kg"] == pytest.approx(loop, rel=1e-3)
+    assert pull[-1] ** 2 / PER_LAMBDA > 0.1 * loop
+
+
 def test_a_tendon_that_yields_is_strained_beyond_yield_by_what_it_stays_longer():
     base = RigidBase(restraints=(Tendon(psi=0.1, lam=1.0, strength=0.13),))
     row = rb.simulate(FIG5, base, SHAKEN, devices_work=True).row

@@ -143,7 +143,8 @@ def hysteretic(of, elongation, speed, z, mode, goes):
 def _braced_hysteretic(of, speed, z, goes):
     """Return the Response of a hysteretic damper with or without a brace; ``speed`` is that of both together."""
     pull, share = of.strength * z, _unyielded(z, goes)
-    return Response(pull, speed * of.stiffness * share / (1.0 + of.give * share), pull * speed)
+    rate = speed * of.stiffness * share / (1.0 + of.give * share)
+    return Response(pull, rate, pull * (speed - of.give / of.stiffness * rate))
 
 
 @inlined
@@ -213,7 +214,7 @@ def own_speed(of, speed, state):
 
 @kernel
 def stored(of, elongation, state):
-    """Return the elastic energy [J/kg] of a tendon, stop, spring or viscous damper's brace; 0 for other dampers.
+    """Return the elastic energy [J/kg] of a tendon, stop, spring or damper's brace; 0 for dampers without one.
 
     A tendon stores nothing while slack, and without stiffness its prestress times the elongation, with its sign.
     """
@@ -222,6 +223,8 @@ def stored(of, elongation, state):
         return 0.5 * pull * pull * of.returned / of.stiffness
     if of.kind == MAXWELL:
         return 0.5 * state * state / of.stiffness
+    if of.kind == HYSTERETIC:
+        return 0.5 * of.strength * state * state * of.give / of.stiffness
     if of.kind == SPRING:
         return 0.5 * of.stiffness * elongation * elongation
     if of.kind != TENDON:
