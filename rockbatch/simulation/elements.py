@@ -3,6 +3,8 @@
 import math
 from functools import lru_cache
 
+import numpy as np
+
 from rockbatch.core.devices.laws import CONTACT, DAMPERS, HYSTERETIC, MAXWELL, SPRING, TENDON, VISCOUS, Element
 from rockbatch.pier import Base, Damper, DeckSpring, Pier, Place, Restraint, Tendon, places
 from rockbatch.pier.vibration import greatest_rate
@@ -100,8 +102,10 @@ def _linear_part(pier: Pier, base: Base, element: Element, coefficient: float, e
         return 0.0, 0.0
     if exponent == 1.0:
         return math.inf, coefficient
-    speed = (coefficient * accelerance(pier, base, element) / _limit(pier, base)) ** (1.0 / (1.0 - exponent))
-    return speed, coefficient * speed ** (exponent - 1.0)
+    slope = _limit(pier, base) / accelerance(pier, base, element)
+    with np.errstate(over="ignore", under="ignore"):  # an exponent near 1 leaves no such speed, or makes it infinite
+        speed = float(np.float64(coefficient / slope) ** (1.0 / (1.0 - exponent)))
+    return speed, slope
 
 
 def _limit(pier: Pier, base: Base) -> float:

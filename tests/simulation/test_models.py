@@ -1,9 +1,11 @@
 """What the compiled core is given of a pier on springs."""
 
+import math
+
 import pytest
 from core_samples import FIG5
 
-from rockbatch.pier import ElasticBase, Pier, RigidBase, Tendon, YieldingBase
+from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation.elements import elements
 from rockbatch.simulation.models import model
 from rockbatch.simulation.restraints import _at_rest
@@ -40,3 +42,16 @@ def test_a_tendon_at_rest_pulls_between_nothing_and_its_strength():
         (2.0 * longest, law.strength, 0.0), (-2.0 * law.prestress / law.stiffness, 0.0, 0.0),
     ):  # fmt: skip
         assert _at_rest(law, elongation, 0.0, 0.0) == pytest.approx((force, stiffness), abs=0.0)
+
+
+@pytest.mark.parametrize(("exponent", "nu", "speed"), [(0.5, 0.3, None), (0.999, 0.3, 0.0), (0.999, 2000.0, math.inf)])
+def test_a_viscous_damper_is_linear_where_its_power_law_would_be_steeper_than_the_ground_decays(exponent, nu, speed):
+    """At 100 p, about the farther pivot; with an exponent near 1 that is nowhere, or everywhere, beyond what a float holds."""
+    damper = Damper("viscous", nu=nu, exponent=exponent, at="left", confirm=("nu",))
+    (oil,) = elements(FIG5, RigidBase(restraints=(damper,)))
+    steepest = 100.0 * FIG5.p * FIG5.inertia_about_pivot / (2.0 * FIG5.half_width) ** 2
+    assert oil.slope == pytest.approx(steepest, rel=1e-12)
+    if speed is None:
+        assert oil.coefficient * oil.linear_below**exponent == pytest.approx(steepest * oil.linear_below, rel=1e-12)
+    else:
+        assert oil.linear_below == speed
