@@ -117,9 +117,10 @@ BASE_KEYS = {
     "zeta": Key(
         within(BOUNDS["zeta"]),
         "0.05",
-        "Damping ratio ζ of the vertical vibration, by a dashpot parallel to each spring; instead of `epsilon`.",
+        "Damping ratio ζ of the vertical vibration, by a dashpot parallel to each spring; instead of `epsilon`. A footing has "
+        "0.05 without it.",
         many=True,
-        only=_ON_SPRINGS,
+        only=_ON_GROUND_THAT_GIVES,
     ),
     "kinematics": _listed(
         "kinematics",

@@ -10,6 +10,7 @@ import functools
 import json
 import tempfile
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,8 +22,10 @@ import rockbatch as rb
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.checks.judging import judge
 from rockbatch.common.errors import InputError
+from rockbatch.pier.bases import BASES
 from rockbatch.pier.statics import statics
 from rockbatch.results.run_json import describe_case
+from rockbatch.study.case_keys import CASE
 from rockbatch.study.load import OF_REFERENCE, REFERENCE
 from rockbatch.study.schema import STUDY
 from rockbatch.study.suite import ground_motions
@@ -875,6 +878,17 @@ def test_each_value_of_a_list_is_a_case_for_every_key_but_those_that_say_what_it
     cases = rb.Study.from_dict(use._replace(value=values).changed(key)).cases
     shown = [[] if value == "rigid" else [value] for value in values]  # keys of a shaft are columns where it bends
     assert [list(one.columns.values()) for one in cases] == shown
+
+
+@pytest.mark.parametrize("name", BASES)
+def test_a_case_takes_every_key_that_is_a_field_of_its_base(name):
+    of_base = {field.name for field in fields(BASES[name])}
+    assert [key for key in CASE if key in of_base and name not in CASE[key].only.get("base", BASES)] == []
+
+
+def test_a_footing_takes_another_damping_ratio():
+    """It had one from Python alone."""
+    assert outcome(Use(ON_CLAY, ("case", 0), 0.1, based), "zeta")
 
 
 def test_another_value_of_a_key_with_one_is_refused():
