@@ -173,12 +173,13 @@ class Section(Mapping[str, Key]):
         return ("", advice) if isinstance(advice, str) else (advice[0], advice[1])
 
     def default(self, name: str) -> object:
-        """Return the value of a key that is not written; None if there is none, or it follows from others."""
-        for home in self.homes:
-            for attribute in fields(home):
-                if attribute.name == name and attribute.default not in (MISSING, None, (), ""):
-                    return attribute.default
-        return self[name].default
+        """Return the value of a key that is not written; None if there is none, or it follows from others.
+
+        It does where its ``homes`` differ in it; a key that is required where it applies has none.
+        """
+        of_homes = {field.default for home in self.homes for field in fields(home) if field.name == name}
+        default = of_homes.pop() if len(of_homes) == 1 and not self[name].required else None
+        return self[name].default if default in (MISSING, None, (), "") else default
 
 
 def joined(section: Section, *more: Section) -> Section:

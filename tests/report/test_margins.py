@@ -426,6 +426,13 @@ def test_the_same_value_in_other_words_is_no_difference(tmp_path, path, value):
     assert inputs(two(tmp_path, tables(), changed(path, value))) == {}
 
 
+def test_springs_without_a_damping_ratio_differ_from_those_with_that_of_a_footing(tmp_path):
+    """Which value an unwritten key has may depend on the base."""
+    bare = {key: value for key, value in SPRINGS.items() if key != "zeta"}
+    rows = inputs(two(tmp_path, tables(case=[bare]), tables(case=[SPRINGS])))
+    assert rows == {"case springs, zeta": ("–", "0.05")}
+
+
 def test_stronger_motions_under_the_same_names_differ_by_their_digests(tmp_path):
     study = rb.Study.from_dict(tables())
     motions = ground_motions(study)

@@ -19,7 +19,11 @@ from motion_files import wiggle, write_at2
 from waveform_files import trace, write_mseed
 
 import rockbatch as rb
+from rockbatch.analyses.design.study import read_design
 from rockbatch.analyses.fragility.study import read_fragility
+from rockbatch.analyses.release.study import read_release
+from rockbatch.analyses.sensitivity.study import read_sensitivity
+from rockbatch.analyses.spectrum.study import read_spectrum
 from rockbatch.checks.judging import judge
 from rockbatch.common.errors import InputError
 from rockbatch.pier.bases import BASES
@@ -943,6 +947,43 @@ def test_a_key_of_a_reference_is_refused_where_no_case_has_its_value(key):
     published = {"record": "*", "case": "r", "theta_max_over_alpha": 0.1, "source": "a paper", key: value}
     with pytest.raises(InputError, match=f"{key} = .*: no case"):
         rb.Study.from_dict(study("size", reference=[published]))
+
+
+# Defaults of the reference
+
+ANALYSES = {
+    "design": read_design, "fragility": read_fragility, "release": read_release, "sensitivity": read_sensitivity,
+    "spectrum": read_spectrum,
+}  # fmt: skip
+UNWRITTEN = {("[fragility]", "least_scale"), ("[fragility]", "most_scale"), ("[design]", "points")}
+"""Keys that take no value for what holds without them, and one that does not go with the studies of :data:`USES`."""
+DEFAULTS = [
+    pytest.param(section, key, id=f"{section.header} {key}")
+    for section in STUDY
+    for key in section
+    if section.default(key) is not None and (section.header, key) not in UNWRITTEN
+]
+
+
+def settings(tables):
+    """Return what a study and its analyses are read as, but for their text."""
+    of_study = rb.Study.from_dict(tables)
+    values = [getattr(of_study, field.name) for field in fields(of_study) if field.name != "text"]
+    return repr(values + [read(of_study) for name, read in ANALYSES.items() if name in tables])
+
+
+@pytest.mark.parametrize(("section", "key"), DEFAULTS)
+def test_a_key_with_the_default_of_the_reference_is_as_none(section, key):
+    """``zeta`` of springs had the default of a footing, ``period_s`` one though it is required."""
+    use, default = USES[section.header][key], section.default(key)
+    tables = copy.deepcopy(use.tables)
+    table: Any = tables
+    for step in use.path:
+        table = table[step]
+    table.pop(key, None)
+    written = Use(tables, use.path, list(default) if isinstance(default, tuple) else default).changed(key)
+    tells = verdicts if section.header == "[suite]" else settings  # a check knows whether it was given one of its own
+    assert tells(written) == tells(tables)
 
 
 def test_every_key_of_every_table_has_a_use():
