@@ -38,7 +38,7 @@ from rockbatch.motions.formats import (
     volumes,
 )
 from rockbatch.motions.formats.advice import with_advice
-from rockbatch.motions.formats.obspy_plugin import HEAD
+from rockbatch.motions.formats.obspy_plugin import HEAD, begin_of
 from rockbatch.motions.formats.recording import reader
 from rockbatch.motions.limits import HUGE, MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Unusable
@@ -116,9 +116,9 @@ def is_usual(suffix: str) -> bool:
 
 def format_of(suffix: str, head: bytes) -> Format | None:
     """Return the first of ``FORMATS`` for a suffix (with its dot, any case) and the first bytes of a file; ``None`` if none."""
+    begin = begin_of(head)
     return next(
-        (form for form in FORMATS if (form.anywhere or suffix.lower() in form.suffixes) and form.matches(head[:HEAD])),
-        None,
+        (form for form in FORMATS if (form.anywhere or suffix.lower() in form.suffixes) and form.matches(begin)), None
     )
 
 

@@ -27,7 +27,7 @@ _MOMENT = re.compile(
 
 def is_afad(head: bytes) -> bool:
     """Return whether the first bytes are those of a text file of AFAD, by its title."""
-    return head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(_TITLE)
+    return head.lstrip().startswith(_TITLE)
 
 
 def parse(text: str) -> list[Recording]:

@@ -23,7 +23,7 @@ _TAIPEI = 8 * 3600.0  # s ahead of UTC
 
 def is_cwa(head: bytes) -> bool:
     """Return whether the first bytes are the header of a free-field file of CWA, with the keys #StationCode and #DataSequence."""
-    return head.lstrip(b"\xef\xbb\xbf \r\n").startswith(b"#") and b"#StationCode:" in head and b"#DataSequence:" in head
+    return head.lstrip().startswith(b"#") and b"#StationCode:" in head and b"#DataSequence:" in head
 
 
 def parse(text: str) -> list[Recording]:

@@ -26,7 +26,7 @@ _MOMENT = re.compile(
 
 def is_dyna(head: bytes) -> bool:
     """Return whether the first bytes are a DYNA header: they begin with "EVENT_NAME:", and have the key SAMPLING_INTERVAL_S."""
-    return head.removeprefix(b"\xef\xbb\xbf").startswith(b"EVENT_NAME:") and b"SAMPLING_INTERVAL_S:" in head
+    return head.startswith(b"EVENT_NAME:") and b"SAMPLING_INTERVAL_S:" in head
 
 
 def parse(text: str) -> list[Recording]:

@@ -3,6 +3,7 @@
 A format's module makes its two entry points by ``is_x, read_x = plugin("X", …)``; pyproject.toml registers them.
 """
 
+import codecs
 import os
 import warnings
 from collections.abc import Callable, Sequence
@@ -19,6 +20,11 @@ HEAD = 4096
 """Number of first bytes by which formats are recognised."""
 
 FileLike = str | os.PathLike[str] | BinaryIO
+
+
+def begin_of(data: bytes) -> bytes:
+    """Return the first bytes of a file, without the mark of UTF-8 that editors write before a text."""
+    return data[:HEAD].removeprefix(codecs.BOM_UTF8)
 
 
 def first_bytes(filename: FileLike) -> bytes:
@@ -57,7 +63,7 @@ def plugin(
 
     def is_format(filename: FileLike) -> bool:
         """Return whether a path or file-like object is a file of this format; never raises."""
-        return matches(first_bytes(filename))
+        return matches(begin_of(first_bytes(filename)))
 
     def read_format(filename: FileLike, headonly: bool = False, **kwargs: object) -> "obspy.Stream":
         """Return a file of this format as an ObsPy Stream, with a Trace per channel; ObsPy's other arguments are ignored."""

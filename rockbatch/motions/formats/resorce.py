@@ -20,7 +20,8 @@ _NEEDED = ("Number of Data", "Time Increment (s)", "Orientation")
 
 def is_resorce(head: bytes) -> bool:
     """Return whether the first bytes are a RESORCE header: "Event Date & Time", and keys of count, interval and orientation."""
-    return head.startswith(b"Event Date & Time") and all(f"\n{key}".encode() in head for key in _NEEDED)
+    keys = {line.partition(b":")[0].strip() for line in head.splitlines()}
+    return head.startswith(b"Event Date & Time") and keys.issuperset(key.encode() for key in _NEEDED)
 
 
 def parse(text: str) -> list[Recording]:
