@@ -174,7 +174,7 @@ def checked_reading(reading: Component | Unusable) -> Component | Unusable:
         return reading
     if len(reading.acceleration) < 2:
         refusal = "found one sample; expected at least two"
-    elif not (np.abs(reading.acceleration) < HUGE).all():
+    elif not (np.abs(reading.acceleration) <= HUGE).all():
         refusal = f"holds values that are not finite numbers, or beyond {HUGE:g} m/s²"
     elif not is_step(reading.dt):
         refusal = f"found a sampling interval of {reading.dt:g} s; expected {STEPS}"

@@ -62,7 +62,7 @@ def _on_the_outside(axial: Values, effect: Values) -> Iterator[tuple[float, floa
 
 
 def thinned(of: Envelope) -> Envelope:
-    """Return an envelope without corners whose absence costs it less than :data:`FLATNESS`, which is added to its error, if any.
+    """Return an envelope without corners whose absence costs it at most :data:`FLATNESS`, which is added to its error, if any.
 
     Both ends and the greatest effect stay.
     """
