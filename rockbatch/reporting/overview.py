@@ -97,7 +97,7 @@ def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
     cases = [finished.cases[places] for places in set(zip(runs["series"], runs["pier"], strict=True))]
     names = {str(case["case"]) for case in cases}
     scales = set(runs["scale"])
-    cases_of: dict[dots.Limit, set[str]] = {}
+    cases_of: dict[dots.Limit, dict[str, None]] = {}
     for verdict in finished.verdicts:
         most = DEMANDS[verdict.demand].ceiling if verdict.demand in PEAKS else None
         if most is None or verdict.case not in names or verdict.scale not in scales or verdict.statistic == "count":
@@ -106,10 +106,10 @@ def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
         words = f"limit of {verdict.check}, {limit}{wording.at(verdict.at_m)}"
         if verdict.statistic != "max":  # single records may exceed a mean, say
             words += f" ({STATISTICS[verdict.statistic].words})"
-        cases_of.setdefault(dots.Limit(words, verdict.limit / most.value(cases[0])), set()).add(verdict.case)
+        cases_of.setdefault(dots.Limit(words, verdict.limit / most.value(cases[0])), {})[verdict.case] = None
     limits = []
     for drawn, of_limit in sorted(cases_of.items(), key=lambda item: item[0].theta):
-        words = drawn.words if of_limit == names else f"{drawn.words} ({', '.join(sorted(of_limit))})"
+        words = drawn.words if of_limit.keys() == names else f"{drawn.words} ({', '.join(of_limit)})"
         limits.append(drawn._replace(words=words))
     return limits
 
