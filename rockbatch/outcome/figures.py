@@ -265,11 +265,13 @@ def _scale(histories: Sequence[History], row: int) -> Axis:
 
     The rotation's axis of a single history also holds its band without uplift, and has room for strokes of events.
     """
-    stood = [one for one in histories if one.status == "ok"] or histories
-    bands = [np.array([-one.band, one.band]) for one in stood[:1]] if row == 0 and len(histories) == 1 else []
+    stood = [history for history in histories if history.status == "ok"] or histories
+    bands = (
+        [np.array([-history.band, history.band]) for history in stood[:1]] if row == 0 and len(histories) == 1 else []
+    )
     # Strokes of events stand beyond the curves
     margin = 0.06 + 1.3 * len(histories) * _lane(len(histories)) * (row == 0)
-    return spanning(QUANTITIES[row], *(_standing(one, row) for one in stood), *bands, margin=margin)
+    return spanning(QUANTITIES[row], *(_standing(history, row) for history in stood), *bands, margin=margin)
 
 
 def _lane(runs: int) -> float:
@@ -282,11 +284,11 @@ def _entry(run: Drawn) -> str:
     return f"{run.label}: {run.history.outcome}" if run.label else ""
 
 
-def _standing(one: History, row: int) -> Array:
+def _standing(history: History, row: int) -> Array:
     """Return the values of quantity ``row`` up to the first |θ|/α beyond :data:`OVER`, 1.5; all of them if none is beyond."""
-    t, theta = one.curves[0]
+    t, theta = history.curves[0]
     beyond = np.flatnonzero(np.abs(theta) > OVER)
-    times, values = one.curves[row]
+    times, values = history.curves[row]
     return values[times <= t[beyond[0]]] if len(beyond) else values
 
 

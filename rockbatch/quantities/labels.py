@@ -181,7 +181,7 @@ def plain(value: float, digits: int) -> str:
     return f"{float(mantissa):.10g} × 10{str(int(exponent)).translate(_RAISED)}"
 
 
-def digits_that_tell(values: Iterable[object], least: int = 3) -> int:
+def distinguishing_digits(values: Iterable[object], least: int = 3) -> int:
     """Return the fewest significant digits, from ``least`` to 10, that distinguish all numbers among ``values``."""
     numbers = {value for value in values if isinstance(value, float | int)}
     return next((n for n in range(least, 10) if len({f"{value:.{n}g}" for value in numbers}) == len(numbers)), 10)

@@ -221,7 +221,7 @@ def statement(directory: str | os.PathLike[str], case: str | None = None) -> str
     if not wanted:
         nearest = closest(str(case), names)
         raise NotFound(f"case {shown(case)}: there is no such case; did you mean {shown(nearest or names[0])}?")
-    paragraphs = [one.text for one in statements(finished) if one.case in wanted]
+    paragraphs = [said.text for said in statements(finished) if said.case in wanted]
     return "\n\n".join(paragraphs or ["No ground motion could be used: there are no results."])
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from rockbatch.common.showing import shown
-from rockbatch.quantities.labels import digits_that_tell, plain
+from rockbatch.quantities.labels import distinguishing_digits, plain
 from rockbatch.quantities.rows import as_in_peaks
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted
@@ -67,7 +67,7 @@ def differences(a: Finished, b: Finished, names: Mapping[str, str]) -> list[Diff
             continue
         values = [side.value(place) for side in sides]
         if _as_compared(values[0]) != _as_compared(values[1]):
-            digits = digits_that_tell([value for value in values if isinstance(value, float | int)], least=4)
+            digits = distinguishing_digits([value for value in values if isinstance(value, float | int)], least=4)
             rows.append(Difference(_named(place), *(_shown(value, digits) for value in values)))
     return rows + _of_motions(a, b)
 

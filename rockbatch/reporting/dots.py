@@ -227,7 +227,7 @@ def _legend(drawn: "Sequence[pd.DataFrame]", marks: Marks) -> list[Entry]:
         entries = [Entry(f"a {marks.kind}", [_points(DOT)])]
     else:
         series, entries = marks.series, []
-        for place in sorted(present, key=lambda place: (not series[place].rigid, series[place].index)):
+        for place in sorted(present, key=lambda place: series[place].order):
             case = series[place]
             mark = _rule(_rigid(case)) if case.rigid else _points(marks_of(case.index))
             entries.append(Entry(case.keyed, [mark], "case", str(place)))

@@ -18,8 +18,8 @@ MOST_NAMES, MOST_LINES = 4, 6
 """Most names of cases, and lines on devices, of a drawing."""
 
 
-class Alike(NamedTuple):
-    """Cases of one drawing: those of one pier with devices at the same places."""
+class Drawing(NamedTuple):
+    """A drawing, and its cases: those of one pier with devices at the same places."""
 
     row: Row
     """The pier as in run.json, with its deck, heights and devices."""
@@ -37,41 +37,41 @@ def drawings(finished: Finished) -> Markup:
     Of several with the same pier only the first has dimensions and the devices that all of them have. Empty if no pier can be
     drawn.
     """
-    rows = [_alike(finished, case) for case in finished.info["cases"]]
-    alike = [
-        Alike(of_drawing[0].row, [case for one in of_drawing for case in one.cases])
-        for of_drawing in grouped(rows, lambda one: (one.shape, one.row["devices"])).values()
+    rows = [_drawing(finished, case) for case in finished.info["cases"]]
+    distinct = [
+        Drawing(of_drawing[0].row, [case for drawing in of_drawing for case in drawing.cases])
+        for of_drawing in grouped(rows, lambda drawing: (drawing.shape, drawing.row["devices"])).values()
     ]
     piers = []
-    for of_pier in grouped(alike, lambda one: one.shape).values():
-        common = set.intersection(*(set(devices_in_words(case)) for one in of_pier for case in one.cases))
-        for place, one in enumerate(of_pier):
-            title = _title(finished, one, len(of_pier) > 1) if len(alike) > 1 else ""
-            lines = _lines(finished, one.cases, common if place else ())
+    for of_pier in grouped(distinct, lambda drawing: drawing.shape).values():
+        common = set.intersection(*(set(devices_in_words(case)) for drawing in of_pier for case in drawing.cases))
+        for place, drawing in enumerate(of_pier):
+            title = _title(finished, drawing, len(of_pier) > 1) if len(distinct) > 1 else ""
+            lines = _lines(finished, drawing.cases, common if place else ())
             caption = join(tag("strong", title) if title else "", *(tag("small", line) for line in lines))
-            piers.append(one.row | {"labels": place == 0, "caption": caption})
+            piers.append(drawing.row | {"labels": place == 0, "caption": caption})
     drawn = [sketch(figure) for figure in sketches(piers, {case["base"] for case in finished.info["cases"]})]
     return tag("div", *drawn, class_="piers") if drawn else Markup("")
 
 
-def _alike(finished: Finished, case: Case) -> Alike:
-    """Return a case with the pier that is drawn for it."""
+def _drawing(finished: Finished, case: Case) -> Drawing:
+    """Return the drawing of one case."""
     pier = pier_of(case)
     row = case["pier"] | {"top_m": top(case), "sections_m": finished.section_heights(case)}
     if pier and "deck_mass_t" in finished.pier_as_given:
         row["deck_m"] = pier.deck
-    return Alike(row | {"devices": devices(pier, restraints_of(case)) if pier else ()}, [case])
+    return Drawing(row | {"devices": devices(pier, restraints_of(case)) if pier else ()}, [case])
 
 
-def _title(finished: Finished, one: Alike, several: bool) -> str:
+def _title(finished: Finished, drawing: Drawing, several: bool) -> str:
     """Return the varied values of the pier, or the names of the cases; "pier, names" if ``several`` drawings are of it.
 
     A case has the name of its bound if the drawing is not that of its nominal design. At most :data:`MOST_NAMES` are named.
     """
-    case = one.cases[0]
+    case = drawing.cases[0]
     place = finished.pier_places.get(pier_key(case["columns"], finished.info["varied"]))
     pier = "" if place is None else finished.piers[place]
-    names = first_of(names_of(one.cases), MOST_NAMES)
+    names = first_of(names_of(drawing.cases), MOST_NAMES)
     return ", ".join(filter(None, (pier, names))) if several or not pier else pier
 
 

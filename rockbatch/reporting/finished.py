@@ -126,8 +126,9 @@ class Finished(Contents, Labelled):
     @cached_property
     def _checked_heights(self) -> dict[str, frozenset[float]]:
         """Return the heights [m] that the checks of each case name."""
-        of_cases = grouped(self.verdicts, attrgetter("case"))
-        return {case: frozenset(one.at_m for one in own if not math.isnan(one.at_m)) for case, own in of_cases.items()}
+        with_height = (verdict for verdict in self.verdicts if not math.isnan(verdict.at_m))
+        of_cases = grouped(with_height, attrgetter("case"))
+        return {case: frozenset(verdict.at_m for verdict in verdicts) for case, verdicts in of_cases.items()}
 
     @cached_property
     def not_run(self) -> int:

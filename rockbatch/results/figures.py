@@ -52,8 +52,11 @@ def peaks(runs: "pd.DataFrame", series: Sequence[Series], records: Mapping[str, 
     ``runs`` have a column ``side``, which distinguishes the marks of one foundation; ``records`` maps records, each with a
     run, to caption and note. ``top`` is the end of the common axis of θ_max/α, above which is a band for runs without a peak.
     """
-    present = sorted((series[place] for place in runs["series"].unique()), key=lambda one: (not one.rigid, one.index))
-    ticks = {one.index + 1.0: one.tick for one in present if not one.rigid}
+    present = sorted(
+        (series[place] for place in runs["series"].unique()),
+        key=lambda foundation: (not foundation.rigid, foundation.index),
+    )
+    ticks = {foundation.index + 1.0: foundation.tick for foundation in present if not foundation.rigid}
     sides = sorted(runs["side"].unique())
     eventful = bool(runs["status"].isin(NO_PEAK).any())
     last = max(ticks, default=0.0)
@@ -65,32 +68,32 @@ def peaks(runs: "pd.DataFrame", series: Sequence[Series], records: Mapping[str, 
     panels = []
     for name, (caption, note) in records.items():
         by_mark = grouped(by_record[name], lambda run: (run["series"], run["side"]))
-        order = sorted(by_mark, key=lambda key: (not series[key[0]].rigid, series[key[0]].index, key[1]))
+        order = sorted(by_mark, key=lambda key: (series[key[0]].order, key[1]))
         marks = [mark for key in order for mark in _foundation_marks(series[key[0]], key[1], sides, by_mark[key], top)]
         panels.append(Panel(x, y, [*strip, *marks], caption, note, width, 110.0))
     return Figure(panels, "θmax/α of every foundation")
 
 
-def _foundation_marks(one: Series, side: str, sides: list[str], runs: list[Row], top: float) -> Iterator[Mark]:
+def _foundation_marks(foundation: Series, side: str, sides: list[str], runs: list[Row], top: float) -> Iterator[Mark]:
     """Yield the marks of one foundation and side in a panel; of two sides one has open marks, three or more have colours."""
-    place, label = sides.index(side), one.keyed + (f" ({side})" if len(sides) > 1 else "")
-    titles = [tooltip(one, run, side if len(sides) > 1 else "") for run in runs]
-    abscissa = 0.42 if one.rigid else one.index + 1 + SPREAD * ((place + 0.5) / len(sides) - 0.5)
+    place, label = sides.index(side), foundation.keyed + (f" ({side})" if len(sides) > 1 else "")
+    titles = [tooltip(foundation, run, side if len(sides) > 1 else "") for run in runs]
+    abscissa = 0.42 if foundation.rigid else foundation.index + 1 + SPREAD * ((place + 0.5) / len(sides) - 0.5)
     x = np.full(len(runs), abscissa)
     theta = np.array([run["theta_max_over_alpha"] for run in runs], dtype=float)
     error = np.array([run["theta_max_error"] for run in runs], dtype=float)
     error = np.where(error > VISIBLE * top, error, 0.0)
     stood = np.array([run["status"] == "ok" for run in runs]) & ~np.isnan(theta)
-    if one.rigid:
+    if foundation.rigid:
         colour = place + 1 if len(sides) > 2 else 0
-        look = Look("rigid", colour % COLOURS, one.index % DASHES, open=len(sides) == 2 and place == 1)
+        look = Look("rigid", colour % COLOURS, foundation.index % DASHES, open=len(sides) == 2 and place == 1)
         levels = np.where(stood, theta, 1.09 * top)[[run["status"] != "failed" for run in runs]]
         yield Rule("y", levels, look=look, label=label, title="; ".join(titles))
         for low, high in zip(theta - error, theta + error, strict=True):
             if high > low:
                 yield Polyline(np.full(2, abscissa), np.array([low, high]), look=Look("bar"))
     else:
-        look = marks_of(one.index, place == 1) if len(sides) < 3 else marks_of(place)
+        look = marks_of(foundation.index, place == 1) if len(sides) < 3 else marks_of(place)
         titles_of = [title for title, stands in zip(titles, stood, strict=True) if stands]
         yield Points(x[stood], theta[stood], error[stood], titles_of, look=look, label=label)
     for status, words in ENDED.items():
@@ -138,12 +141,12 @@ def peaks_of_cases(results: Labelled) -> Figure:
     Raises ``InputError`` without runs.
     """
     runs = _nonempty(results.runs)
-    ticks = [one.tick for one in results.series]
+    ticks = [foundation.tick for foundation in results.series]
     if len(set(ticks)) < len(ticks):  # rigid foundations, which are lines elsewhere, have letters of their own
         ticks = [str(place) for place in range(1, len(ticks) + 1)]
     series = [
-        replace(one, rigid=False, index=place, tick=tick)
-        for place, (one, tick) in enumerate(zip(results.series, ticks, strict=True))
+        replace(foundation, rigid=False, index=place, tick=tick)
+        for place, (foundation, tick) in enumerate(zip(results.series, ticks, strict=True))
     ]
     sides = [runs.loc[of_group.index, []].assign(side=words) for words, of_group in groups_of(runs, results.piers)]
     together = runs.assign(side=pd.concat(sides)["side"], record="")

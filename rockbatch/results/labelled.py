@@ -14,7 +14,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import Case, is_across, name_along, names_across
 from rockbatch.quantities.design import BOUND, of_design, under
-from rockbatch.quantities.labels import digits_that_tell, quantity, scaled_by, titled, values_in_words
+from rockbatch.quantities.labels import distinguishing_digits, quantity, scaled_by, titled, values_in_words
 from rockbatch.quantities.rows import as_in_peaks, simulated, with_case
 from rockbatch.results.labels import Key, Series, named, under_bounds
 from rockbatch.study import PIER_KEYS
@@ -140,7 +140,7 @@ def names_of(cases: Iterable[Case], varied: Sequence[str], text: str) -> Names:
 def _words_of(piers: Collection[Key], varied: Sequence[str]) -> list[str]:
     """Return the varied values of each pier in words; [""] without piers."""
     keys = [key for key in varied if key in PIER_KEYS]
-    digits = [digits_that_tell(values) for values in zip(*piers, strict=True)]
+    digits = [distinguishing_digits(values) for values in zip(*piers, strict=True)]
     return [", ".join(map(quantity, keys, values, digits)) for values in piers] or [""]
 
 

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from rockbatch.quantities.cases import Case, backbone
-from rockbatch.quantities.labels import digits_that_tell, quantity, titled
+from rockbatch.quantities.labels import distinguishing_digits, quantity, titled
 from rockbatch.quantities.quantity import FOOTING
 from rockbatch.study import PIER_KEYS
 
@@ -48,6 +48,11 @@ class Series:
     has_values: bool = False
     has_tick: bool = False
 
+    @property
+    def order(self) -> tuple[bool, int]:
+        """Return the key by which series are sorted: rigid ground first."""
+        return not self.rigid, self.index
+
     def with_values(self, words: Iterable[str]) -> str:
         """Return the label followed by further values: "pads: β = 40, p = 1 rad/s", or "pads: p = 1 rad/s" of "pads"."""
         return ", ".join((self.label, *words)) if self.has_values else titled(self.label, words)
@@ -81,7 +86,9 @@ def named(
     kinds = {key: (key in rigid, case["base"] == "rigid") for key, case in firsts.items()}
     values = {kind: [constants[key] for key in cases if kinds[key] == kind] for kind in kinds.values()}
     differing = {kind: _differing(shown, of_kind) for kind, of_kind in values.items()}
-    digits = {name: digits_that_tell(constants_of.get(name) for constants_of in constants.values()) for name in shown}
+    digits = {
+        name: distinguishing_digits(constants_of.get(name) for constants_of in constants.values()) for name in shown
+    }
     names = [key[0] for key in cases if key not in rigid]
     short = len(set(names)) == len(names) and all(len(str(name)) <= 3 for name in names)
     alone = len({key[0] for key in cases}) == 1  # a name that all share distinguishes nothing

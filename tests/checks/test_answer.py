@@ -416,7 +416,7 @@ def test_a_share_of_a_limit_that_is_not_known_has_no_words(ratio, words):
         (0.25, {"high": math.inf}, ("≥ 0.25 ≤ 0.5", "≤ 0.5", "≥ 0.50", "≤ 0.25")),
     ],
 )
-def test_a_verdict_has_its_sign_and_digits_that_tell_it_from_its_limit(value, more, words):
+def test_a_verdict_has_its_sign_and_distinguishing_digits_it_from_its_limit(value, more, words):
     at_most = "sense" not in more
     ratio, margin = (value / 0.5, 0.5 - value) if at_most else (0.5 / value, value - 0.5)
     one = verdict("a", "pass", **({"value": value, "high": value, "ratio": ratio, "margin": margin} | more))

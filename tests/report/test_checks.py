@@ -237,7 +237,7 @@ def test_beside_checks_the_greatest_responses_say_of_which_runs_they_are(tmp_pat
     assert "Largest value over 11 of 12 runs that end standing; hover for the record." in shown.text
 
 
-def test_small_limits_stand_in_millimetres_with_the_digits_that_tell(tmp_path):
+def test_small_limits_stand_in_millimetres_with_the_distinguishing_digits(tmp_path):
     """Three digits, and more where they would make a demand look like its limit."""
     more = {"unit": "m", "limit": 0.05, "check": "settlement", "demand": "settlement_m"}
     shown = card(page(tmp_path, verdict("1", "pass", **more, value=0.0123456, ratio=0.246912),

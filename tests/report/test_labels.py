@@ -13,7 +13,7 @@ from rockbatch.analyses.design.figures import axis_label
 from rockbatch.analyses.fragility.figures import label
 from rockbatch.pier import RigidBase, Tendon, YieldingBase
 from rockbatch.quantities.catalogue import COLUMNS
-from rockbatch.quantities.labels import digits_that_tell, in_full, plain, quantity, record_labels
+from rockbatch.quantities.labels import distinguishing_digits, in_full, plain, quantity, record_labels
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.finished_analysis import named as named_by
 from rockbatch.reporting.labels import head
@@ -30,10 +30,10 @@ def labels(folder, *cases, pier=MASS):
 
 
 def test_digits_are_as_many_as_tell_values_apart():
-    assert digits_that_tell([40.0, 50.0, 50.0, "epp", None]) == 3
-    assert digits_that_tell([1001.0, 1002.0]) == 4
-    assert digits_that_tell([0.123456, 0.123457]) == 6
-    assert digits_that_tell([1.0, 1.0 + 1e-15]) == digits_that_tell([1.0, 1.0 + 1e-9]) == 10
+    assert distinguishing_digits([40.0, 50.0, 50.0, "epp", None]) == 3
+    assert distinguishing_digits([1001.0, 1002.0]) == 4
+    assert distinguishing_digits([0.123456, 0.123457]) == 6
+    assert distinguishing_digits([1.0, 1.0 + 1e-15]) == distinguishing_digits([1.0, 1.0 + 1e-9]) == 10
 
 
 PADS = {"name": "pads", "base": "yielding"}

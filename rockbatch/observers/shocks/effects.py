@@ -17,9 +17,6 @@ from rockbatch.simulation.runs import Run
 LAST_PART = 0.25
 """Final share of a pause in which the remaining motion is measured."""
 
-NOT_REACHED = "not reached"
-"""Status of a shock before which the run ended."""
-
 
 _AT_ONCE = 1e-9  # s: times of samples are sums, and rounded
 
@@ -61,8 +58,8 @@ def _peak(rows: np.recarray, start: float, end: float) -> tuple[float, float]:
 def _effects(run: Run, outcome: Outcome, rows: np.recarray, peaks: list[tuple[float, float]]) -> list[ShockOutcome]:
     """Return the effects of each shock, without errors, from the ``rows`` and ``peaks`` of a run with an ``outcome``.
 
-    A shock in which the run ends has its status and peak only, each later one NOT_REACHED alone. ``peaks`` are changed in place:
-    the shock of the run's greatest rotation gets that, found over all steps.
+    A shock in which the run ends has its status and peak only, each later one "not reached" alone. ``peaks`` are changed in
+    place: the shock of the run's greatest rotation gets that, found over all steps.
     """
     shocks = run.motion.shocks
     of_run = max(i for i, shock in enumerate(shocks) if shock.start <= outcome.t_max + _AT_ONCE)
@@ -72,7 +69,7 @@ def _effects(run: Run, outcome: Outcome, rows: np.recarray, peaks: list[tuple[fl
     outcomes = []
     for shock, (theta, t) in zip(shocks, peaks, strict=True):
         if ended < shock.start - _AT_ONCE:
-            outcomes.append(ShockOutcome(NOT_REACHED))
+            outcomes.append(ShockOutcome("not reached"))
         elif ended < shock.until or (ended < math.inf and shock is shocks[-1]):
             outcomes.append(ShockOutcome(outcome.status, theta, t))
         else:

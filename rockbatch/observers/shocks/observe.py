@@ -48,8 +48,7 @@ class EffectsOfShocks(Observer):
 
         "failed", or "not read" for a run too long to be held in memory.
         """
-        not_read = "failed" if outcome.status == "failed" else "not read"  # too long to be held in memory
-        outcomes = [ShockOutcome(not_read)] * len(run.motion.shocks)
+        outcomes = [ShockOutcome("failed" if outcome.status == "failed" else "not read")] * len(run.motion.shocks)
         if fine is not None:
             outcomes = fine.outcomes if coarse is None else with_error(fine, coarse)
         return outcome.with_table(self.table, shock_rows(run.motion, run.pier, outcomes))

@@ -2,6 +2,11 @@
 
 import math
 from dataclasses import dataclass
+from typing import Literal
+
+from rockbatch.common.statuses import Status
+
+ShockStatus = Status | Literal["not reached", "not read"]
 
 
 @dataclass(frozen=True)
@@ -10,8 +15,9 @@ class ShockOutcome:
 
     Attributes
     ----------
-    status : str
-        "ok"; "overturned" or "flight" if the run ended so before the next shock began; "not reached"; or "failed".
+    status : ShockStatus
+        "ok"; "overturned" or "flight" if the run ended so before the next shock began; "not reached"; "failed"; or "not read",
+        of a run too long to be held in memory.
     theta_max, t_max : float
         Greatest rotation |θ| from its first sample until the next shock begins, or the run ends, and its time.
     theta_max_error : float
@@ -25,7 +31,7 @@ class ShockOutcome:
         Half the range of θ in the last quarter of the pause.
     """
 
-    status: str
+    status: ShockStatus
     theta_max: float = math.nan
     t_max: float = math.nan
     theta_max_error: float = math.nan

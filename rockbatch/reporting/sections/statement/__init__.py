@@ -16,7 +16,7 @@ def section(finished: Finished) -> Markup:
     if not any(verdict.case for verdict in finished.verdicts):
         return Markup("")
     first = list(islice(statements(finished), MOST_CASES + 1))
-    shown = (join(tag("h3", mark(one.verdict, one.name)), tag("p", one.text)) for one in first[:MOST_CASES])
+    shown = (join(tag("h3", mark(said.verdict, said.name)), tag("p", said.text)) for said in first[:MOST_CASES])
     more = f"These are the first {MOST_CASES} cases. " if len(first) > MOST_CASES else ""
     command = tag("code", "rockbatch statement DIR")
     return join(*shown, tag("p", more, "As text, also of single cases: ", command, ".", class_="legend"))
