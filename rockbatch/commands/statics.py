@@ -42,7 +42,7 @@ def main(arguments: argparse.Namespace) -> int:
         say(f"{len(sheets)} cases: use --curves FILE for their curves")
     for warning in flexible(study):
         say(warning)
-    if any(getattr(device, "kind", "") == "viscous" for case in study.cases for device in case.base.restraints):
+    if any(device.law == "viscous" for case in study.cases for device in case.base.restraints):
         say("viscous dampers carry no static force and are left out of these numbers")
     if arguments.csv:
         _write(arguments.csv, study, [fact.name for fact in FACTS], [(case, [sheet.row]) for case, sheet in sheets])

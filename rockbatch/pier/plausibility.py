@@ -2,7 +2,6 @@
 
 from rockbatch.common.errors import Contradiction, OutOfRange, Problem
 from rockbatch.pier.block import Pier
-from rockbatch.pier.dampers import Damper
 from rockbatch.pier.places import offsets, symmetric
 from rockbatch.pier.restraints import DeckSpring, Restraint, Tendon
 
@@ -46,8 +45,8 @@ def wrong_device(pier: Pier, device: Restraint) -> list[Problem]:
 
 
 def _wrong_friction(pier: Pier, restraints: tuple[Restraint, ...]) -> list[Problem]:
-    rubbing = [damper for damper in restraints if isinstance(damper, Damper) and damper.kind == "friction"]
-    if sum(len(offsets(pier, damper)) for damper in rubbing) <= 2:
+    rubbing = [device for device in restraints if device.law == "friction"]
+    if sum(len(offsets(pier, device)) for device in rubbing) <= 2:
         return []
     text = (
         "two places of friction at most can be solved, for example one damper at both pivots; join their forces, or "

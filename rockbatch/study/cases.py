@@ -234,6 +234,7 @@ def _read_case(table: Table) -> _WrittenCase:
     if weighed and grid.settings.pop("mass_t", ()):
         value = shown(table.data["mass_t"])
         table.complain(f"mass_t = {value}: [pier] states the pier's mass already; leave it out", "mass_t")
+    without_mass = not (weighed or table.has("mass_t"))
     by_points = table.has("backbone_mm_kN") or table.data.get("spring") in WITH_POINTS
     for ratio, absolute in (("beta", "stiffness_kN_m"), ("eta", "yield_kN")):
         if base not in BASE_KEYS[absolute].only["base"] or table.has(ratio) or by_points:
@@ -243,24 +244,22 @@ def _read_case(table: Table) -> _WrittenCase:
                 f"{ratio} is missing; write for example {ratio} = {BASE_KEYS[ratio].example}, or {absolute} = "
                 f"{BASE_KEYS[absolute].example} with mass_t"
             )
-        elif not (weighed or table.has("mass_t")):
-            example = BASE_KEYS["mass_t"].example
-            table.complain(
-                f"mass_t is missing beside {absolute}; write for example mass_t = {example}, here or in [pier]",
-                absolute,
-            )
-    if table.has("backbone_mm_kN") and not (weighed or table.has("mass_t")):
-        example = BASE_KEYS["mass_t"].example
-        table.complain(
-            f"mass_t is missing beside backbone_mm_kN; write for example mass_t = {example}, here or in [pier]",
-            "backbone_mm_kN",
-        )
-    if table.has("area_m2") and not (weighed or table.has("mass_t")):
+        elif without_mass:
+            _complain_of_mass(table, absolute)
+    if without_mass and table.has("backbone_mm_kN"):
+        _complain_of_mass(table, "backbone_mm_kN")
+    if without_mass and table.has("area_m2"):
         table.complain(
             "area_m2: stresses are of a pier whose mass is known; write mass_t in [pier], or leave it out", "area_m2"
         )
     devices, of_devices = read_devices(table)
     return _WrittenCase(table, name or base, base, devices, grid + of_devices)
+
+
+def _complain_of_mass(table: Table, key: str) -> None:
+    """Add to the table that a key in kN has no mass beside it, here or in [pier]."""
+    example = BASE_KEYS["mass_t"].example
+    table.complain(f"mass_t is missing beside {key}; write for example mass_t = {example}, here or in [pier]", key)
 
 
 def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: Base) -> None:
