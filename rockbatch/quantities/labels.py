@@ -105,6 +105,11 @@ def quantity(key: str, value: object, digits: int = 10, case: Case | None = None
     if not isinstance(value, float | int):
         points = _last_point(case) if key == "spring" and case is not None and backbone(case) else ""
         return f"{symbol} {value}{points}"
+    return assigned(symbol, value, unit, digits)
+
+
+def assigned(symbol: str, value: float, unit: str, digits: int) -> str:
+    """Return a number with its symbol and unit, "Fy = 45,000 kN", with no-break spaces."""
     return f"{symbol} = {plain(value, digits)} {unit}".strip().replace(" ", "\u00a0")
 
 

@@ -1,5 +1,6 @@
 """The pier, base and devices of a case, rebuilt from run.json, and devices in words."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import fields, replace
 from functools import lru_cache
@@ -23,7 +24,7 @@ from rockbatch.pier.sizes import USUAL as OF_PIER
 from rockbatch.pier.traits import USUAL as OF_BASE
 from rockbatch.quantities.cases import Case
 from rockbatch.quantities.design import BOUND
-from rockbatch.quantities.labels import DEVICE_SYMBOLS, plain, titled, unit_with_exponent
+from rockbatch.quantities.labels import DEVICE_SYMBOLS, assigned, titled, unit_with_exponent
 from rockbatch.study.restraint_keys import KEYS_OF
 
 _PIER = (
@@ -115,7 +116,11 @@ def device_in_words(pier: Pier, restraint: Restraint, digits: int = 4) -> str:
     power = values.pop("exponent", 1.0) if "coefficient_kN_s_m" in values else 1.0
     words = _NAMED.get(restraint.what, restraint.words)
     names = DEVICE_SYMBOLS | _OF_STOP if restraint.what in _NAMED else DEVICE_SYMBOLS
-    numbers = [_parameter(*names[key], value, power, digits) for key, value in values.items() if value < float("inf")]
+    numbers = [
+        assigned(names[key][0], value, unit_with_exponent(names[key][1], power), digits)
+        for key, value in values.items()
+        if value < math.inf
+    ]
     numbers += [f"n\u00a0=\u00a0{STEEL_EXPONENT:g}"] if restraint.law == "hysteretic" else []
     return ", ".join([f"{words} {_place(restraint)}", *numbers])
 
@@ -124,11 +129,6 @@ def devices_in_words(case: Case, digits: int = 4) -> list[str]:
     """Return the devices of a case in words, one text each; [] without devices or for impossible values."""
     pier = pier_of(case)
     return [device_in_words(pier, device, digits) for device in restraints_of(case)] if pier else []
-
-
-def _parameter(symbol: str, unit: str, value: float, power: float, digits: int) -> str:
-    """Return "C = 900 kN (s/m)^0.3" without line breaks; ``power`` is the exponent in the unit."""
-    return f"{symbol} = {plain(value, digits)} {unit_with_exponent(unit, power)}".strip().replace(" ", "\u00a0")
 
 
 def _place(restraint: Restraint) -> str:
