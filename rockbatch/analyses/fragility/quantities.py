@@ -91,7 +91,7 @@ def _median(curve: Curve) -> object:
 def _head_of_years(years: float, level: str) -> Head:
     """Return the head of the probability of exceedance in some years, with its interval."""
     note = f"probability of at least one exceedance, and its interval by the fit ({level})"
-    return Head(f"in {years:g} years", note=note, value=_probability(f"p_in_{years:g}_years"))
+    return Head(f"in {years:g} years", note=note, value=_probability(f"p_in_{years:g}_years", level))
 
 
 def of_rates(info: Entry, written: Callable[[float], str]) -> list[Head]:
@@ -161,11 +161,11 @@ def _rates(low: str, high: str, written: Callable[[float], str]) -> Callable[[Cu
     return bounds
 
 
-def _probability(name: str) -> Callable[[Curve], Markup]:
+def _probability(name: str, level: str) -> Callable[[Curve], Markup]:
     def written(curve: Curve) -> Markup:
         value, low, high = (curve["risk"][key] for key in (name, f"{name}_low", f"{name}_high"))
         if bound := curve["risk"]["bound"]:
-            return Markup(f"{bound} {percent(low)}\u00a0%")
+            return Markup(f"{bound} {percent(low)}\u00a0% ({level})")
         between = "" if low is None else f" ({interval(percent(low), percent(high))})"
         return Markup(f"{percent(value)}\u00a0%{between}")
 

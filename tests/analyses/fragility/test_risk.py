@@ -420,6 +420,25 @@ def test_without_a_hazard_there_are_no_rates_and_the_points_are_as_they_were(tmp
         found.risk()
 
 
+def test_a_limit_that_every_record_exceeds_has_a_rate_of_at_least_half_of_that_of_the_lowest_level(tmp_path, capsys):
+    """Six stations bound the median, five do not: at the median all of five are on one side in 3.1 % of suites."""
+    levels = {"measure": "PGA", "levels_g": [20.0, 30.0], "confirm": "levels_g"}
+    path = study(tmp_path, HAZARD, fragility=levels)
+    assert main(["fragility", str(path), "--out", str(tmp_path / "out")]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    row = pd.read_csv(tmp_path / "out" / "fragility_risk.csv").iloc[0]
+    least = 0.5 / 2475 * (0.5 / 20.0) ** (math.log(2475 / 475) / math.log(0.5 / 0.2))
+    assert (row["bound"], row["rate_least"]) == ("at least", pytest.approx(least, rel=1e-6))
+    chance = -math.expm1(-50 * least)
+    assert f"at least {least:.2e} (95 %) at least {100 * chance:.2g} % (95 %)" in printed
+    assert "the median is below PGA 20 g (95 %): every record exceeds the limit from 20 on" in printed
+    five = path.read_text(encoding="utf-8").split("[[motions.pulse]]")
+    path.write_text("[[motions.pulse]]".join([five[0], *five[2:]]), encoding="utf-8")
+    found = rb.fragility(path)
+    assert (found.info["curves"][0]["median_bound"], found.info["curves"][0]["risk"]) == (None, None)
+    assert found.fragility_risk["note"][0].endswith("a bound of the median takes 6 stations")
+
+
 def test_a_limit_that_no_record_exceeds_has_no_rate(tmp_path):
     """None of six records exceeds it; of all motions of 0.01 g, one of a hundred may, ten times as often as one of 0.02 g."""
     levels = {"measure": "PGA", "levels_g": [0.01, 0.02]}
