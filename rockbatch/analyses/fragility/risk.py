@@ -128,7 +128,7 @@ def _risk(curve: Curve, total: Fitted, spec: FragilitySpec, hazard: HazardCurve,
     below, above = float(yearly[x < first].sum()), float(yearly[x > last].sum())
     points, weights = _of_points(hazard, x, rates)
     least_of_points = float(total.probability(points) @ weights)
-    passed = np.cumsum(yearly) / rate if rate > 0 else np.linspace(0.0, 1.0, len(x))
+    passed = (np.cumsum(yearly) - 0.5 * yearly) / rate if rate > 0 else np.linspace(0.0, 1.0, len(x))
     low, high = (float(np.exp(np.interp(share, passed, np.log(x)))) for share in MIDDLE)
     return Risk(
         curve,
