@@ -79,12 +79,19 @@ class Bounds:
         return [replace(problem, text=text, named=False)]
 
 
+_INCH = 0.0254  # m
+_POUND = 4.4482216152605e-3  # kN, of force, as in the weights of drawings
+_PSI = 1e-3 * _POUND / _INCH**2  # MPa
+
 _SIZES = {
-    **dict(m=("length", 1.0), mm=("length", 1e-3), cm=("length", 1e-2), km=("length", 1e3), ft=("length", 0.3048)),
+    **dict(m=("length", 1.0), mm=("length", 1e-3), cm=("length", 1e-2), km=("length", 1e3)),
+    **{"in": ("length", _INCH), "ft": ("length", 12.0 * _INCH)},
     **dict(kN=("force", 1.0), N=("force", 1e-3), MN=("force", 1e3), kgf=("force", 9.80665e-3), tf=("force", 9.80665)),
+    **dict(lb=("force", _POUND), lbf=("force", _POUND), kip=("force", 1e3 * _POUND), kips=("force", 1e3 * _POUND)),
     **dict(t=("mass", 1.0), kg=("mass", 1e-3), s=("time", 1.0), ms=("time", 1e-3)),
     **dict(rad=("angle", 1.0), mrad=("angle", 1e-3), deg=("angle", math.pi / 180.0)),
     **dict(MPa=("stress", 1.0), kPa=("stress", 1e-3), GPa=("stress", 1e3), Pa=("stress", 1e-6)),
+    **dict(psi=("stress", _PSI), ksi=("stress", 1e3 * _PSI), ksf=("stress", _PSI / 0.144)),
     **dict(g=("acceleration", 1.0), gal=("acceleration", 0.01 / GRAVITY), percent=("", 0.01), pct=("", 0.01)),
 }
 """Quantity and size of each unit at the end of a key, such as kN and m of stiffness_kN_m."""
