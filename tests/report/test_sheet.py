@@ -341,12 +341,15 @@ def test_a_sheet_runs_and_fetches_nothing_and_is_as_wide_as_its_paper(tmp_path):
 
 
 @needs_chromium
-def test_no_table_of_a_sheet_is_wider_than_the_sheet(tmp_path):
+@pytest.mark.parametrize("pier", [PIER, Pier.with_deck(7.9, 29.9, 3000.0, 1000.0)])
+def test_no_table_of_a_sheet_is_wider_than_the_sheet(tmp_path, pier):
+    """The heads of a pier with a deck stood in one line each, beyond the edge of the paper."""
+    case = describe_case(Case("rigid", pier, RigidBase(), {}))
     act = """
     const main = document.querySelector("main").getBoundingClientRect().right;
     found.beyond = [...document.querySelectorAll("table")].map((node) => node.getBoundingClientRect().right - main);
     """
-    found = in_browser(tmp_path, sheet_of(tmp_path), act)
+    found = in_browser(tmp_path, sheet_of(tmp_path, cases=[case]), act)
     assert len(found["beyond"]) > 8
     assert max(found["beyond"]) < 2
 
