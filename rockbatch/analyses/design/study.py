@@ -45,6 +45,11 @@ class Varied:
         """Return the distance of two values of the scan."""
         return (self.high - self.low) / (self.points - 1)
 
+    @property
+    def width(self) -> float:
+        """Return the width to which a change of verdict is narrowed by default: an eighth of the step, to two digits."""
+        return float(f"{self.step / 8:.2g}")
+
 
 @dataclass(frozen=True)
 class DesignSpec:
@@ -129,8 +134,8 @@ DESIGN = Section(
         "width": Key(
             positive,
             "0.002",
-            "To which each change of verdict is narrowed by bisection, in the unit of the key, or of the first of two.",
-            required=True,
+            "To which each change of verdict is narrowed by bisection, in the unit of the key, or of the first of two; by "
+            "default an eighth of the distance between values of the scan.",
         ),
     },
     also=names(
@@ -149,7 +154,7 @@ SECTIONS = (DESIGN,)
 def read_design(study: Study) -> DesignSpec:
     """Return what the study file asks for in [design]; ``InputError`` with every mistake, or if there is no such table."""
     file = study.file()
-    example = f'[design] with vary = "{EXAMPLE}", between = [0.02, 0.2], find = "least" and width = 0.002'
+    example = f'[design] with vary = "{EXAMPLE}", between = [0.02, 0.2] and find = "least"'
     table = file.table("design", required=example)
     read = {} if table is None else table.read(DESIGN)
     if table is None or not file.is_sound_since(0):
@@ -159,16 +164,16 @@ def read_design(study: Study) -> DesignSpec:
         table.complain("there is no [[check]], so that every value would pass; write one")
     vary = tuple(_varied(table, read))
     cases, lacking = _having(table, study, [varied.path for varied in vary])
-    if vary and not 0.0 < read["width"] < vary[0].step:
+    width: float = read.get("width", vary[0].width if vary else 0.0)
+    if vary and not 0.0 < width < vary[0].step:
         step = f"the values of the scan are {vary[0].step:.4g} apart"
-        table.complain(f"width = {read['width']:g}: {step}, and a width is less; write for example width = "
-                       f"{rounded(float(f'{vary[0].step / 8:.2g}'))}", "width")  # fmt: skip
-    if vary and read["width"] < (least := LEAST_WIDTH * max(abs(vary[0].low), abs(vary[0].high))):
         table.complain(
-            f"width = {read['width']:g}: must be {least:.4g} or above, a millionth of the greatest value", "width"
+            f"width = {width:g}: {step}, and a width is less; write for example width = {vary[0].width}", "width"
         )
+    if vary and width < (least := LEAST_WIDTH * max(abs(vary[0].low), abs(vary[0].high))):
+        table.complain(f"width = {width:g}: must be {least:.4g} or above, a millionth of the greatest value", "width")
     file.finish()
-    return DesignSpec(vary, read["find"], read["width"], cases, lacking)
+    return DesignSpec(vary, read["find"], width, cases, lacking)
 
 
 def _varied(table: Table, read: Mapping[str, Any]) -> Iterator[Varied]:

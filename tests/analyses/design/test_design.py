@@ -698,6 +698,13 @@ def test_a_mistake_in_what_is_varied_is_refused_with_the_remedy(design, words):
     assert "[design]" in str(raised.value)
 
 
+def test_without_a_width_a_change_of_verdict_is_narrowed_to_an_eighth_of_the_step():
+    read = read_design(rb.Study.from_toml(study_text(
+        pier=PIER, pulses=[PULSE], cases=[RIGID], check=[ROTATION], design={k: SIZE[k] for k in SIZE if k != "width"}
+    )))  # fmt: skip
+    assert (read.vary[0].step, read.width) == (pytest.approx(0.4), 0.05)
+
+
 def test_without_checks_or_table_there_is_nothing_to_find():
     with pytest.raises(InputError, match=r"there is no \[\[check\]\], so that every value would pass; write one"):
         read_design(study(check=()))
