@@ -3,9 +3,9 @@
 import argparse
 
 from rockbatch.analyses.fragility.analysis import fragility
-from rockbatch.analyses.fragility.figures import label
+from rockbatch.analyses.fragility.figures import remarks
 from rockbatch.analyses.fragility.limit_states import words
-from rockbatch.analyses.fragility.quantities import Curve, names_of_curves, of_curves, of_rates
+from rockbatch.analyses.fragility.quantities import names_of_curves, of_curves, of_rates
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.tables import RUNS
 from rockbatch.batch.listening import count
@@ -48,7 +48,7 @@ def table(info: Entry, spec: FragilitySpec) -> str:
         info["looked_at"],
         info["by_shares"],
         info["drawn"],
-        *(f"{_name(info, curve)}: {curve['note']}" for curve in curves if curve["note"]),
+        *remarks(info, curves, lambda curve: curve["note"]),
         added(spec),
     ]
     return "\n".join(line for line in lines if line)
@@ -75,9 +75,5 @@ def risk_lines(info: Entry) -> str:
     if not curves:
         return "No annual rates: they need a curve, or an upper bound of the median"
     about = "Mean annual rates of exceedance; intervals are those of the fit, with the hazard taken as known"
-    notes = [f"{_name(info, curve)}: {curve['risk']['note']}" for curve in curves if curve["risk"]["note"]]
+    notes = remarks(info, curves, lambda curve: curve["risk"]["note"])
     return "\n".join([about, in_lines([*names_of_curves(info), *of_rates(info, "{:.2e}".format)], curves, 2), *notes])
-
-
-def _name(info: Entry, curve: Curve) -> str:
-    return f"{curve['limit_state']}, {label(info, curve)}"

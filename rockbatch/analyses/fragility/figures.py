@@ -1,7 +1,7 @@
 """Figures of fragility, from the content of fragility.json: curves, clouds, and what annual rates come from."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -37,6 +37,16 @@ Curve = Entry
 def label(info: Entry, entry: Curve) -> str:
     """Return the name of a curve's case with its varied values: "pads: β = 40"."""
     return named(info, {"case": entry["case"], **entry["columns"]}, list(entry["columns"]))
+
+
+def remarks(info: Entry, curves: Iterable[Curve], note: Callable[[Curve], str]) -> list[str]:
+    """Return each ``note`` on ``curves`` once, behind the limits and cases that have it: "tilt, rock, pads; heel, pads: …"."""
+    lines = []
+    for words, alike in grouped(curves, note).items():
+        cases = grouped(alike, lambda curve: curve["limit_state"])
+        names = (", ".join([limit, *(label(info, curve) for curve in of_limit)]) for limit, of_limit in cases.items())
+        lines += [f"{'; '.join(names)}: {words}"] if words else []
+    return lines
 
 
 def in_brackets(unit: str) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Sequence
 
 from rockbatch.analyses.fragility import answer
-from rockbatch.analyses.fragility.figures import clouds, curves, in_brackets, label, risk
+from rockbatch.analyses.fragility.figures import clouds, curves, in_brackets, remarks, risk
 from rockbatch.analyses.fragility.quantities import Curve, level_of, names_of_curves, of_curves, of_rates, power
 from rockbatch.common.analyses import Entry
 from rockbatch.reporting.finished_analysis import FinishedAnalysis, named, of_analysis
@@ -53,11 +53,7 @@ def _table(info: Entry) -> Markup:
 
 def _notes(info: Entry, entries: Iterable[Curve]) -> Markup:
     """Return a folded list of notes on single curves; empty without any."""
-    lines = [
-        tag("li", f"{entry['limit_state']}, {label(info, entry)}: {entry['note']}.")
-        for entry in entries
-        if entry["note"]
-    ]
+    lines = [tag("li", f"{remark}.") for remark in remarks(info, entries, lambda entry: entry["note"])]
     return tag("details", tag("summary", "Notes on the curves"), tag("ul", *lines)) if lines else Markup("")
 
 
@@ -147,6 +143,7 @@ def rates(analysis: FinishedAnalysis) -> Markup:
 
 
 def _notes_on_rates(info: Entry, curves: Sequence[Curve]) -> Markup:
-    """Return the remarks on annual rates, a line for each curve with any."""
-    notes = [(f"{entry['limit_state']}, {label(info, entry)}", entry["risk"]["note"]) for entry in curves]
-    return tag("ul", *(tag("li", f"{name}: {note}.") for name, note in notes if note))
+    """Return the remarks on annual rates, a line for each with the curves that have it."""
+    return tag(
+        "ul", *(tag("li", f"{remark}.") for remark in remarks(info, curves, lambda entry: entry["risk"]["note"]))
+    )

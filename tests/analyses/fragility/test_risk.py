@@ -20,6 +20,7 @@ import rockbatch as rb
 from rockbatch.analyses.fragility.bounds import NoCurve
 from rockbatch.analyses.fragility.command import risk_lines
 from rockbatch.analyses.fragility.curves import Curve, Readings, Undecided
+from rockbatch.analyses.fragility.figures import remarks
 from rockbatch.analyses.fragility.hazard import Dispersion, Hazard
 from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, fit
 from rockbatch.analyses.fragility.risk import Risk, described, described_bound, note, risk_table, risks
@@ -352,6 +353,19 @@ def test_every_remark_on_a_curve_or_a_rate_stands_behind_its_limit_and_case():
     listed = Page(str(_notes(info, curves))).text.removeprefix("Notes on the curves")
     assert listed == "turns, on turns: its turns.quiet, on quiet: its quiet."
     assert _notes(info, curves[2:]) == ""
+
+
+def test_a_remark_on_several_curves_stands_once_behind_all_their_names():
+    named = [
+        ("tilt", "rock", "open"),
+        ("tilt", "pads", "open"),
+        ("heel", "rock", ""),
+        ("heel", "pads", "open"),
+        ("heel", "mud", "few"),
+    ]
+    curves = [{"limit_state": limit, "case": case, "columns": {}, "note": note} for limit, case, note in named]
+    said = remarks({"varied": [], "cases": []}, curves, lambda curve: curve["note"])
+    assert said == ["tilt, rock, pads; heel, pads: open", "heel, mud: few"]
 
 
 # The study
