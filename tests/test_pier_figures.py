@@ -9,9 +9,20 @@ import pytest
 import rockbatch as rb
 from rockbatch.common.figures.description import Area, Points, Polyline, Rule, Words
 from rockbatch.pier import Place
-from rockbatch.pier.figures import APART, ASIDE, MOST_PIERS, SPRING, STRIPS, PlacedDevice, Sheet, sketches, statics
+from rockbatch.pier.figures import (
+    APART,
+    ASIDE,
+    MOST_PIERS,
+    SPRING,
+    STRIPS,
+    PlacedDevice,
+    Sheet,
+    sketches,
+    springs_below,
+    statics,
+)
 
-PIER = {"alpha": math.atan(0.2), "half_width_m": 4.0, "height_m": 20.0}
+PIER = {"alpha": math.atan(0.2), "half_width_m": 4.0, "height_m": 20.0, "springs": 0}
 
 
 def marks(figure, kind, type_=Polyline):
@@ -26,9 +37,7 @@ def outline(figure):
 
 
 def test_piers_are_to_one_scale():
-    figures = sketches(
-        [PIER | {"highest_m": 30.0}, PIER | {"half_width_m": 1.0, "height_m": 10.0}], {"rigid", "yielding"}
-    )
+    figures = sketches([PIER | {"highest_m": 30.0}, PIER | {"half_width_m": 1.0, "height_m": 10.0}])
     (wide, tall), (narrow, low) = map(outline, figures)
     assert wide / tall == pytest.approx(8.0 / 30.0)
     assert narrow / low == pytest.approx(2.0 / 20.0)
@@ -41,7 +50,7 @@ def test_the_deck_and_the_devices_are_to_scale():
         PlacedDevice("damper", "viscous damper", Place(4.0)),
         PlacedDevice("stop", "stop", Place(-4.0)),
     )
-    (figure,) = sketches([PIER | {"highest_m": 33.0, "deck_m": 33.0, "devices": devices}], {"rigid"})
+    (figure,) = sketches([PIER | {"highest_m": 33.0, "deck_m": 33.0, "devices": devices}])
     scale = outline(figure)[1] / 33.0
     (deck,) = marks(figure, "deck", Area)
     assert deck.y.mean() == pytest.approx(33.0 * scale)
@@ -67,7 +76,7 @@ def test_lines_of_a_sketch_end_where_what_they_show_does(base):
         PlacedDevice("damper", "viscous damper", Place(4.0)),
         PlacedDevice("deck_spring", "deck spring", Place(0.0, 38.0, -1.0)),
     ]
-    (figure,) = sketches([PIER | {"deck_m": 41.0, "devices": devices}], {base})
+    (figure,) = sketches([PIER | {"deck_m": 41.0, "devices": devices, "springs": springs_below({base})}])
     (panel,) = figure.panels
     (shaft,) = marks(figure, "band", Area)
     b, top = (round(float(each.max()), 9) for each in (shaft.x, shaft.y))
@@ -119,7 +128,7 @@ def test_lines_of_a_sketch_end_where_what_they_show_does(base):
 
 
 def test_the_slenderness_is_an_arc_about_the_toe_from_the_edge_to_the_radius():
-    (figure,) = sketches([PIER], {"rigid"})
+    (figure,) = sketches([PIER])
     (shaft,) = marks(figure, "band", Area)
     (arc,) = (mark for mark in marks(figure, "edge") if len(mark.x) > 2)
     toe = shaft.x.max()
@@ -138,7 +147,7 @@ def test_the_slenderness_is_an_arc_about_the_toe_from_the_edge_to_the_radius():
     ],
 )
 def test_heights_that_are_read_are_marked_at_the_left_and_a_few_of_them_written(heights, written):
-    (figure,) = sketches([PIER | {"highest_m": 40.0, "top_m": 36.0, "sections_m": heights}], {"rigid"})
+    (figure,) = sketches([PIER | {"highest_m": 40.0, "top_m": 36.0, "sections_m": heights}])
     (shaft,) = marks(figure, "band", Area)
     b, scale = shaft.x.max(), shaft.y.max() / 40.0
     across = [mark for mark in marks(figure, "edge") if np.ptp(mark.y) == 0 and mark.x.tolist() == [-b - 8.0, b]]
@@ -152,7 +161,7 @@ def test_heights_that_are_read_are_marked_at_the_left_and_a_few_of_them_written(
 
 
 def test_labels_of_heights_do_not_overlap_and_point_at_their_heights():
-    (figure,) = sketches([PIER | {"sections_m": (10.0, 10.5, 11.0, 39.9)}], {"rigid"})
+    (figure,) = sketches([PIER | {"sections_m": (10.0, 10.5, 11.0, 39.9)}])
     (shaft,) = marks(figure, "band", Area)
     places = sorted(mark.y for mark in marks(figure, "", Words) if mark.side == -1)
     assert len(places) == 5
@@ -171,7 +180,7 @@ def test_a_pier_without_labels_shows_its_devices_alone():
         PlacedDevice("deck_spring", "deck spring", Place(0.0, 38.0, 1.0)),
     )
     plain = {"labels": False, "deck_m": 38.0, "devices": devices, "sections_m": (3.0,)}
-    labelled, bare = sketches([PIER | plain | {"labels": True}, PIER | plain], {"rigid"})
+    labelled, bare = sketches([PIER | plain | {"labels": True}, PIER | plain])
     assert marks(bare, "", Words) == []
     assert marks(bare, "edge", Words) == []
     assert [mark.title for mark in marks(bare, "tendon")] == ["tendon", "deck spring"]
@@ -180,7 +189,7 @@ def test_a_pier_without_labels_shows_its_devices_alone():
 
 
 def test_labels_fit_beside_a_pier():
-    (figure,) = sketches([PIER | {"sections_m": (40.0,), "deck_m": 40.0}], {"rigid"})
+    (figure,) = sketches([PIER | {"sections_m": (40.0,), "deck_m": 40.0}])
     (panel,) = figure.panels
     for mark in (mark for mark in panel.marks if isinstance(mark, Words) and mark.side):
         end = mark.x + mark.side * (7.0 + 6.2 * len(mark.text))
@@ -189,19 +198,19 @@ def test_labels_fit_beside_a_pier():
 
 @pytest.mark.parametrize("wrong", [{"sections_m": (-1.0,)}, {"sections_m": (99.0,)}, {"top_m": -3.0}, {"top_m": 1e5}])
 def test_a_pier_with_heights_that_cannot_be_is_not_drawn(wrong):
-    assert sketches([PIER | wrong], {"rigid"}) == []
+    assert sketches([PIER | wrong]) == []
 
 
 def test_no_more_piers_are_drawn_than_can_be_taken_in():
-    assert len(sketches([PIER] * 20, {"rigid"})) == MOST_PIERS
+    assert len(sketches([PIER] * 20)) == MOST_PIERS
 
 
 @pytest.mark.parametrize(
     "wrong", [{"height_m": 0.0}, {"half_width_m": -1.0}, {"height_m": 1e300}, {"highest_m": -3.0}, {"alpha": 0}]
 )
 def test_a_pier_that_cannot_be_is_not_drawn(wrong):
-    assert sketches([PIER | wrong], {"rigid"}) == []
-    assert len(sketches([PIER | wrong, PIER], {"rigid"})) == 1
+    assert sketches([PIER | wrong]) == []
+    assert len(sketches([PIER | wrong, PIER])) == 1
 
 
 def sheet(name="", **more):
@@ -230,7 +239,7 @@ def test_statics_show_shares_of_one_pier_and_a_curve_each_of_several():
      ({"footing", "elastic"}, 2, "two springs")],
 )  # fmt: skip
 def test_a_footing_stands_on_a_bed_and_other_bases_on_two_springs(bases, springs, words):
-    (figure,) = sketches([PIER], bases)
+    (figure,) = sketches([PIER | {"springs": springs_below(bases)}])
     turns = [mark for mark in marks(figure, "rigid") if len(mark.x) == 7 and np.ptp(mark.y) == SPRING]
     width, _ = outline(figure)
     assert sorted(float(mark.x[0]) for mark in turns) == pytest.approx(np.linspace(-0.5, 0.5, springs) * width)

@@ -126,6 +126,7 @@ class _Shape(NamedTuple):
     """Dimensions [m] of a pier that is drawn: heights of its centre of mass, highest point, and deck (0 for none).
 
     ``drift`` and ``sections`` are the heights at which drift and forces are read; without ``labels`` only devices are shown.
+    ``springs`` is the number of those on which it stands, 0 on rigid ground.
     """
 
     caption: str
@@ -138,6 +139,7 @@ class _Shape(NamedTuple):
     sections: Sequence[float]
     devices: Sequence[PlacedDevice]
     labels: bool
+    springs: int
 
     @classmethod
     def of(cls, pier: Mapping[str, Any]) -> "_Shape":
@@ -146,9 +148,8 @@ class _Shape(NamedTuple):
         top = max(float(pier.get("highest_m") or 2.0 * pier["height_m"]), deck)
         lengths = pier["alpha"], pier["half_width_m"], pier["height_m"]
         read = float(pier.get("top_m") or top), sorted(set(pier.get("sections_m", ())))
-        return cls(
-            pier.get("caption", ""), *lengths, top, deck, *read, pier.get("devices", ()), pier.get("labels", True)
-        )
+        more = pier.get("devices", ()), pier.get("labels", True), pier["springs"]
+        return cls(pier.get("caption", ""), *lengths, top, deck, *read, *more)
 
     @property
     def possible(self) -> bool:
@@ -163,40 +164,44 @@ class _Shape(NamedTuple):
         )
 
 
-def sketches(piers: Sequence[Mapping[str, Any]], bases: Collection[str]) -> list[Figure]:
-    """Return sketches of the first four possible piers, at one scale; ``piers`` as in run.json, ``bases`` the kinds of bases.
+def springs_below(bases: Collection[str]) -> int:
+    """Return the number of springs on which a pier is drawn for its kinds of bases: 0 if all are "rigid", else two.
 
-    All stand on springs if any base is not "rigid", on a bed of them if every base is a footing. A pier with impossible values
-    is left out, since run.json may come from anybody; [] if none is left. One whose ``labels`` are False shows its devices alone,
-    beside a labelled one of its shape.
+    Of footings alone they are the strips of a bed.
+    """
+    if all(base == "rigid" for base in bases):
+        return 0
+    return STRIPS if all(base == "footing" for base in bases) else 2
+
+
+def sketches(piers: Sequence[Mapping[str, Any]]) -> list[Figure]:
+    """Return sketches of the first four possible piers, at one scale; ``piers`` as in run.json, with their ``springs``.
+
+    A pier with impossible values is left out, since run.json may come from anybody; [] if none is left. One whose ``labels``
+    are False shows its devices alone, beside a labelled one of its shape.
     """
     shapes = [shape for shape in map(_Shape.of, piers) if shape.possible][:MOST_PIERS]
     if not shapes:
         return []
     scale = HEIGHT / max(max(shape.top, shape.drift) for shape in shapes)
-    springs = 2 if any(base != "rigid" for base in bases) else 0
-    springs = STRIPS if bases and all(base == "footing" for base in bases) else springs
-    return [_sketch(shape, scale, springs) for shape in shapes]
+    return [_sketch(shape, scale) for shape in shapes]
 
 
-def _sketch(pier: _Shape, scale: float, springs: int) -> Figure:
-    """Return the sketch of a pier on so many ``springs``, 0 on rigid ground, in pixels from the middle of its base.
-
-    ``scale`` is in px/m.
-    """
+def _sketch(pier: _Shape, scale: float) -> Figure:
+    """Return the sketch of a pier on its springs, in pixels from the middle of its base; ``scale`` is in px/m."""
     b, h, top = (scale * length for length in (pier.half_width, pier.height, pier.top))
     side, high = max(b, 30.0), max(top, h, scale * pier.drift * pier.labels) + ABOVE
     marks: list[Mark] = [
         Area(np.array([-b, -b, b, b]), np.array([0.0, top, top, 0.0]), look=Look("band")),
         _stroke("rigid", (-b, 0.0), (-b, top), (b, top), (b, 0.0), (-b, 0.0)),
         Points(np.zeros(1), np.array([h]), look=Look("peak", shape="dot")),
-        *(mark for x in np.linspace(-b, b, max(springs, 2)).tolist() for mark in _support(x, springs > 0)),
+        *(mark for x in np.linspace(-b, b, max(pier.springs, 2)).tolist() for mark in _support(x, pier.springs > 0)),
         *_deck(pier, b, scale),
         *(mark for device in pier.devices for mark in _device(device, scale, top)),
     ]
     if pier.labels:
         marks += [*_dimensions(pier, b, h), *_heights(pier, b, scale)]
-    support = {0: "rigid ground", 2: "two springs"}.get(springs, "a bed of strips")
+    support = {0: "rigid ground", 2: "two springs"}.get(pier.springs, "a bed of strips")
     words = (
         f"The pier to scale on {support}: {2.0 * pier.half_width:.3g} m between its pivots, centre of mass "
         f"{pier.height:.3g} m above them, slenderness {pier.alpha:.3g} rad, drift read at {pier.drift:.3g} m"

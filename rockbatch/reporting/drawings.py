@@ -4,7 +4,7 @@ from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 from rockbatch.common.grouping import grouped
-from rockbatch.pier.figures import devices, sketches
+from rockbatch.pier.figures import devices, sketches, springs_below
 from rockbatch.quantities.cases import Case, top
 from rockbatch.quantities.design import of_design
 from rockbatch.reporting.finished import Finished
@@ -19,11 +19,16 @@ MOST_NAMES, MOST_LINES = 4, 6
 
 
 class Drawing(NamedTuple):
-    """A drawing, and its cases: those of one pier with devices at the same places."""
+    """A drawing, and its cases: those of one pier with devices at the same places, on one support if it is named after them."""
 
     row: Row
     """The pier as in run.json, with its deck, heights and devices."""
     cases: list[Case]
+
+    @property
+    def springs(self) -> int:
+        """Return the number of springs on which it is drawn."""
+        return springs_below({case["base"] for case in self.cases})
 
     @property
     def shape(self) -> tuple[object, ...]:
@@ -34,24 +39,29 @@ class Drawing(NamedTuple):
 def drawings(finished: Finished) -> Markup:
     """Return a sketch of each distinct pier with its devices, up to four, captioned with the constants of the devices.
 
-    Of several with the same pier only the first has dimensions and the devices that all of them have. Empty if no pier can be
-    drawn.
+    Of several with the same pier only the first has dimensions and the devices that all of them have; they are named after
+    their cases, and stand on the support of these. Empty if no pier can be drawn.
     """
     rows = [_drawing(finished, case) for case in finished.info["cases"]]
-    distinct = [
-        Drawing(of_drawing[0].row, [case for drawing in of_drawing for case in drawing.cases])
-        for of_drawing in grouped(rows, lambda drawing: (drawing.shape, drawing.row["devices"])).values()
-    ]
+    by_pier = [_distinct(of_pier) for of_pier in grouped(rows, lambda drawing: drawing.shape).values()]
+    single = sum(map(len, by_pier)) == 1
     piers = []
-    for of_pier in grouped(distinct, lambda drawing: drawing.shape).values():
+    for of_pier in by_pier:
         common = set.intersection(*(set(devices_in_words(case)) for drawing in of_pier for case in drawing.cases))
         for place, drawing in enumerate(of_pier):
-            title = _title(finished, drawing, len(of_pier) > 1) if len(distinct) > 1 else ""
+            title = "" if single else _title(finished, drawing, len(of_pier) > 1)
             lines = _lines(finished, drawing.cases, common if place else ())
             caption = join(tag("strong", title) if title else "", *(tag("small", line) for line in lines))
-            piers.append(drawing.row | {"labels": place == 0, "caption": caption})
-    drawn = [sketch(figure) for figure in sketches(piers, {case["base"] for case in finished.info["cases"]})]
+            piers.append(drawing.row | {"labels": place == 0, "caption": caption, "springs": drawing.springs})
+    drawn = [sketch(figure) for figure in sketches(piers)]
     return tag("div", *drawn, class_="piers") if drawn else Markup("")
+
+
+def _distinct(of_pier: Sequence[Drawing]) -> list[Drawing]:
+    """Return the drawings of one pier that differ: in their devices, and those that do in their supports, too."""
+    several = len({drawing.row["devices"] for drawing in of_pier}) > 1
+    same = grouped(of_pier, lambda drawing: (drawing.row["devices"], drawing.springs if several else 0)).values()
+    return [Drawing(alike[0].row, [case for drawing in alike for case in drawing.cases]) for alike in same]
 
 
 def _drawing(finished: Finished, case: Case) -> Drawing:

@@ -109,6 +109,18 @@ def test_of_one_pier_with_different_devices_only_these_are_labelled_again(tmp_pa
     assert [len(own) > 0 for own in words] == [True, False, False]
 
 
+def test_cases_that_are_named_stand_on_their_own_supports(tmp_path):
+    """On rigid ground a pier stood on the springs of the others."""
+    pads = [
+        describe_case(Case(name, TOWER, rb.ElasticBase(beta=40, restraints=own), {}))
+        for name, own in (("pads", ()), ("oil", (OIL,)))
+    ]
+    write_results(tmp_path, records=FIG7[:2], cases=[case("rock"), *pads])
+    drawn_ = str(drawings(read(tmp_path)))
+    assert re.findall(r"to scale on (.*?):", drawn_) == ["rigid ground", "two springs", "two springs"]
+    assert drawn(tmp_path, case("rock"), pads[0])[0] == [[]]  # one picture of the pier, which names none
+
+
 def test_a_device_that_some_cases_lack_is_labelled_with_the_others_names(tmp_path):
     firm = rb.Damper.viscous(TOWER, coefficient_kN_s_m=3000.0, exponent=0.3)
     captions, _ = drawn(
