@@ -140,6 +140,17 @@ def test_progress_in_lines_states_what_is_done_and_the_time_left(monkeypatch):
     assert_states(line, 10.0, 40.0, "runs", 18.0, "s left")
 
 
+def test_files_that_are_not_used_for_one_reason_have_one_line(monkeypatch):
+    told = []
+    monkeypatch.setattr(terminal, "say", told.append)
+    reasons = [f'column 2 has no unit; write unit = "g" (PGA {peak} g)' for peak in (2.5, 4.7, 1.8)]
+    unusable = tuple(
+        Unusable(f"{place}", f"{place}.acc", reason) for place, reason in enumerate([reasons[0], "empty", *reasons[1:]])
+    )
+    terminal.Terminal().motions(MotionSet((), unusable, ()))
+    assert told == [f"not used: 0.acc and 2 others: {reasons[0]}", "not used: 1.acc: empty"]
+
+
 def test_files_that_are_not_used_repeated_and_left_out_are_named(monkeypatch):
     told = []
     monkeypatch.setattr(terminal, "say", told.append)

@@ -1,20 +1,20 @@
 """``rockbatch motions``: list the records of a folder, and the files that cannot be used, with reasons."""
 
 import argparse
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from rockbatch.batch.listening import count
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import csv_text, write_output
-from rockbatch.common.grouping import distinct, grouped
+from rockbatch.common.grouping import distinct
 from rockbatch.motions import MotionSet, ReadOptions, read_motions
 from rockbatch.motions.component import file_of
 from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.motion_set import COLUMNS, TEXTS, row
 from rockbatch.motions.ranking import ADDED, RankedRecord, Use, ranked_records
 from rockbatch.motions.ranking import rows as csv_rows
+from rockbatch.terminal.messages import by_reason
 from rockbatch.terminal.streams import WIDTH, aligned, filled, in_width, say, shortened, show, width
 
 _SHOWN = {  # heads and number formats of the table in the terminal
@@ -64,8 +64,6 @@ MOST_LINES = 60
 LEAST_LINES = 16
 MOST_GROUPS = 4
 """Most reasons printed under a title, each with an example; rare ones first."""
-_VARIABLE = re.compile(r'"[^"]*"|\([^)]*\)|[^\s;:,]*(?:[\d/]|\.[\w.])[^\s;:,]*')
-"""Names, of files and channels too, and numbers in a reason, which are ignored when reasons are compared."""
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -168,7 +166,7 @@ def _by_reason(title: str, entries: Sequence[tuple[str, str]], most: int) -> lis
 
     A line has the number, the reason and an example. Reasons that differ only in names and numbers are one.
     """
-    reasons = sorted(grouped(entries, lambda entry: _VARIABLE.sub("", entry[1])).values(), key=len)
+    reasons = sorted(by_reason(entries), key=len)
     lines = ["", title] if entries else []
     for same in reasons[:most]:
         name, reason = same[0]

@@ -2,19 +2,29 @@
 
 import io
 import os
+import re
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
 from rockbatch.batch.listening import Advance, Bars, Listener, count
+from rockbatch.common.grouping import grouped
 from rockbatch.motions import MotionSet
 from rockbatch.terminal.streams import give_up, say, tell
 
 SECONDS_BETWEEN_LINES = 2.0
 MOST_NAMES = 20
 """Most records without a vertical component that are named; the report names all."""
+
+_VARIABLE = re.compile(r'"[^"]*"|\([^)]*\)|[^\s;:,]*(?:[\d/]|\.[\w.])[^\s;:,]*')
+"""Names, of files and channels too, and numbers in a reason, which are ignored when reasons are compared."""
+
+
+def by_reason(entries: Iterable[tuple[str, str]]) -> list[list[tuple[str, str]]]:
+    """Return entries of a source and a reason in groups, whose reasons differ only in names and numbers."""
+    return list(grouped(entries, lambda entry: _VARIABLE.sub("", entry[1])).values())
 
 
 class Terminal(Listener):
@@ -24,9 +34,13 @@ class Terminal(Listener):
         self._bars = Bars()
 
     def motions(self, motion_set: MotionSet) -> None:
-        """Print files that are not used, repeated records, missing vertical components, and the number of files left out."""
-        for file in motion_set.unusable:
-            say(f"not used: {file.source}: {file.reason}")
+        """Print files that are not used, repeated records, missing vertical components, and the number of files left out.
+
+        Of files that are not used for one reason the first is named, the others are counted.
+        """
+        for (source, reason), *others in by_reason((file.source, file.reason) for file in motion_set.unusable):
+            beside = f" and {count(len(others), 'other')}" if others else ""
+            say(f"not used: {source}{beside}: {reason}")
         for first, repeat in _repeated(motion_set):
             say(f"{first} and {repeat} have the same samples: checks count them once, curves twice; leave one out")
         if lacking := [motion.named for motion in motion_set.motions if motion.lacks_vertical]:
