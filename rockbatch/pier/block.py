@@ -33,6 +33,8 @@ ROUNDING = 1e-9
 class Pier(InNotebook):
     """A rigid block that can pivot about its two lower corners.
 
+    From sizes in m and masses in t make it by :meth:`rectangle`, :meth:`with_deck`, :meth:`of_parts` or :meth:`frame`.
+
     Attributes
     ----------
     alpha : float

@@ -209,11 +209,11 @@ TRAILING = (
     ),
     Quantity(
         "ductility_left", _DUCTILITY.format("each"), "ductility_left",
-        page=ReportFormat("demand L", ".2f", behind="settlement_m"), bases=YIELDING,
+        page=ReportFormat("ductility L", ".2f", behind="settlement_m"), bases=YIELDING,
     ),
     Quantity(
         "ductility_right", _DUCTILITY.format("each"), "ductility_right",
-        page=ReportFormat("demand R", ".2f", behind="ductility_left"),
+        page=ReportFormat("ductility R", ".2f", behind="ductility_left"),
         bases=YIELDING, limits=greater("ductility", _DUCTILITY, Limit(ceiling=_SPENT)),
     ),
     Quantity(

@@ -62,7 +62,7 @@ def _responses(studies: list[Finished], responses: list[dict[str, Worst]], stood
     for name, pair in in_both.items():
         change = _change(*(w.value for w in pair))
         labels = (study.label(w.run["record"]) for study, w in zip(studies, pair, strict=True))
-        sign = "−" if change < 0.0 else "+"
+        sign = "−" if change < 0.0 else "+" if change > 0.0 else ""
         percent = f"{sign}{plain(abs(100.0 * change), 3)} %" if math.isfinite(change) else "from none"
         parts.append(f"{RESPONSES[name].words} {percent} ({'; then '.join(dict.fromkeys(labels))})")
     if not parts:

@@ -165,9 +165,7 @@ def margins(pair: Pair) -> Markup:
         return Markup("")
     heads = [Head("case"), Head("check")]
     heads += [Head(words, group=side) for side in SIDES for words in ("demand", "of the limit", "governs")]
-    return table(
-        [*heads, Head("B − A", note="difference of the shares of the limit")], rows, prose=True, name="Margins"
-    )
+    return table([*heads, Head("B − A, of the limit")], rows, prose=True, name="Margins")
 
 
 def _asked(check: str, cells: Sequence[tuple[Cell, str] | None]) -> str:

@@ -205,7 +205,7 @@ def test_rotations_follow_by_how_much_and_in_which_record_they_change(tmp_path):
     """Compare ratio and counts by hand: the only rotation that differs is the worst of each."""
     runs = [({"changes": {("SYL360", "2"): {"theta_max_over_alpha": theta}}}) for theta in (0.8, 0.4)]
     told = answered(two(tmp_path, *runs)).removeprefix(NO_LIMITS)
-    assert told.startswith("From A to B, over 30 runs: worst rotation −50 % (SYL360), mean settlement +0 % (")
+    assert told.startswith("From A to B, over 30 runs: worst rotation −50 % (SYL360), mean settlement 0 % (")
     assert "smaller in 1 of 30 pairs of runs, larger in 0. B/A ranges from 0.5 (SYL360, 2) to" in told
 
 
@@ -237,7 +237,7 @@ def test_settlement_out_of_nothing_has_no_share_and_counts(tmp_path):
     first, second = {"changes": settled}, {"changes": settled | {("SYL360", "2"): {"settlement_m": 0.01}}}
     assert "mean settlement from none (" in answered(two(tmp_path, first, second))
     (tmp_path / "none").mkdir()
-    assert "mean settlement +0 % (" in answered(two(tmp_path / "none", first, first))
+    assert "mean settlement 0 % (" in answered(two(tmp_path / "none", first, first))
 
 
 def test_the_worst_of_both_stands_with_its_value_its_record_and_its_case(tmp_path):

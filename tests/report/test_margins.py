@@ -269,6 +269,13 @@ def test_checks_of_one_name_that_compare_other_things_have_no_difference(tmp_pat
     assert row[-1] == "Lyttelton"  # what governs B: the difference behind it is empty
 
 
+def test_the_difference_of_two_shares_of_a_limit_says_of_what(tmp_path):
+    """From 0.2 to 0.3 of 0.5 a rotation is half as large again; of the limit it is 20 %."""
+    page = rb.report(*two(tmp_path, tables(), tables(), (0.2, 0.3))).path
+    margins = Page(page.read_text(encoding="utf-8")).tables["answer"]
+    assert (margins[1][-1], margins[2][-1]) == ("B − A, of the limit", "+20 %")
+
+
 def test_long_names_of_stations_break_into_lines(tmp_path):
     """A name of one line would push what stands behind it off the page."""
     name = "recorded at the north abutment of the old railway bridge over the river"
