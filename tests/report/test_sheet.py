@@ -10,7 +10,7 @@ import pytest
 from browser import HOSTILE, browse, needs_chromium
 from check_samples import verdict
 from report_page import Page
-from report_samples import FIG7, case_entry, write_results
+from report_samples import FIG7, FOUNDATIONS, case_entry, write_results
 
 import rockbatch as rb
 from rockbatch.checks import write_verdicts
@@ -107,6 +107,17 @@ def test_a_wide_table_is_in_parts_that_repeat_its_first_columns(tmp_path):
     assert all(sum(len(cell) for cell in row) <= PAPER for row in parts.tables["x"] if row[0] == "r0")
     off = Page(f'<section id="x">{table(heads, rows, name="Runs")}</section>')
     assert [len(row) for row in off.tables["x"]] == [42] * 4
+
+
+def test_every_part_of_the_verdicts_names_check_and_case(tmp_path, monkeypatch):
+    """The second part had the checks alone: three rows "tilt" for three cases."""
+    monkeypatch.setattr("rockbatch.reporting.table.PAPER", 80)
+    write_results(tmp_path)
+    write_verdicts(tmp_path, [verdict(name, "pass", counted="a remark") for name, _ in FOUNDATIONS[:3]])
+    rows = Page(made(read(tmp_path)).html()).tables["checks"]
+    heads = [row[:2] for row in rows if row[0] == "check" and "requirement" not in row]
+    assert len(heads) > 1
+    assert heads == [["check", "case"]] * len(heads)
 
 
 def test_each_constant_of_each_device_and_part_is_among_the_inputs(tmp_path):

@@ -262,7 +262,7 @@ def _every(finished: Finished, verdicts: Sequence[Verdict], notes: wording.Notes
     bounds = "bounds due to errors, the other spring law and runs without an outcome"
     heads = [
         Head("check"),
-        Head("case"),
+        Head("case", key=True),
         Head("verdict"),
         Head("demand"),
         Head("between", note=bounds),
