@@ -594,6 +594,15 @@ def test_the_command_prints_and_writes_what_python_has_without_records(tmp_path,
     assert last["moment_kN_m"].max() == pytest.approx(table["moment_kN_m"].iloc[-1])
 
 
+def test_cases_of_one_curve_share_it(tmp_path, capsys):
+    """A viscous damper has no static force."""
+    rigid, viscous = {"base": "rigid"}, [{"kind": "viscous", "coefficient_kN_s_m": 900.0}]
+    cases = [rigid | {"name": "rock"}, PADS | {"stiffness_kN_m": 2e6}, rigid | {"name": "damped", "damper": viscous}]
+    study = write_study(tmp_path, study_text(pier=BRIDGE, pulses=(), motions={"path": "nowhere"}, cases=cases))
+    assert main(["statics", str(study)]) == 0
+    assert re.findall(r"\n\n(.*)\ntheta/alpha", capsys.readouterr().out) == ["rock, damped", "pads"]
+
+
 def test_a_pier_that_is_not_rigid_is_warned_of_by_the_sheet_and_by_a_run(tmp_path, capsys):
     pier = BRIDGE | {"flexural_period_s": [0.3, 2.0]}
     study = write_study(tmp_path, study_text(pier=pier, cases=({"name": "rock", "base": "rigid"},)))

@@ -251,8 +251,13 @@ _CALLED = {
         {
             ("heel_uplift_m", "heel_uplift_mm"): "uplift heeluplift",
             ("theta_max_rad", "theta_max_over_alpha"): "rotation maxrotation peakrotation thetamax theta",
+            "theta_max_rad": "driftratio peakdriftratio maxdriftratio topdriftratio",
             ("theta_res_rad", "theta_res_over_alpha"): "residualrotation residual thetares",
-            ("top_drift_m", "top_drift_mm"): "displacement topdisplacement drift topdrift deckdisplacement",
+            "theta_res_rad": "residualdrift residualdriftratio residualtilt",
+            (
+                "top_drift_m",
+                "top_drift_mm",
+            ): "displacement topdisplacement drift topdrift deckdisplacement storydrift",
             "friction_demand": "sliding slip",
             "overturned": "overturning overturn collapse toppling",
         }

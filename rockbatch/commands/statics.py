@@ -11,6 +11,7 @@ import numpy.typing as npt
 from rockbatch.checks.remarks import pulled_supports, weak_supports
 from rockbatch.commands.summary import flexible
 from rockbatch.common.files import csv_text, write_output
+from rockbatch.common.grouping import grouped
 from rockbatch.motions import Motion
 from rockbatch.pier.statics import FACTS, Statics, statics
 from rockbatch.results.labelled import names_of
@@ -36,8 +37,9 @@ def main(arguments: argparse.Namespace) -> int:
     called = [names.named_case(case.name, case.columns, study.varied) for case in study.cases]
     show(table(called, [sheet for _, sheet in sheets]))
     if len(sheets) <= MOST_CASES:
-        for name, (_, sheet) in zip(called, sheets, strict=True):
-            show(f"\n{name}\n{rotations(sheet)}")
+        named = zip(called, (rotations(sheet) for _, sheet in sheets), strict=True)
+        for curve, alike in grouped(named, lambda one: one[1]).items():
+            show(f"\n{', '.join(name for name, _ in alike)}\n{curve}")
     else:
         say(f"{len(sheets)} cases: use --curves FILE for their curves")
     for warning in flexible(study):
