@@ -15,7 +15,7 @@ from rockbatch.motions import MotionSet
 from rockbatch.terminal.streams import give_up, say, tell
 
 SECONDS_BETWEEN_LINES = 2.0
-MOST_NAMES = 20
+MOST_NAMES = 3
 """Most records without a vertical component that are named; the report names all."""
 
 _VARIABLE = re.compile(r'"[^"]*"|\([^)]*\)|[^\s;:,]*(?:[\d/]|\.[\w.])[^\s;:,]*')
