@@ -17,6 +17,8 @@ from rockbatch.reporting.pair import SIDES, Pair
 from rockbatch.reporting.sections.verdicts import mark, named_designs
 from rockbatch.reporting.table import Head, table
 
+MOST_CHECKS = 3
+"""Most names of checks that the first line lists."""
 DIGITS = 1e-3
 """Difference of demands over limits that is none."""
 
@@ -74,14 +76,20 @@ def _state(side: str, study: Finished) -> str:
 def _passing(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
     """Return that cases pass, with the check that is closest to its limit: "passes all, closest 83 % (uplift, Te Mara)".
 
-    "passes all" and the ``share`` of the cases alone if no check has a share of its limit, as bans.
+    "passes all" and the ``share`` of the cases alone if no check has a share of its limit, as bans. Checks that leave something
+    out follow, of more than three their number: ", with remarks on uplift, drift".
     """
+    name_of, names = named_designs(study), {row.name for row in rows}
+    passed = (verdict for verdict in study.verdicts if verdict.case and name_of(verdict) in names)
+    noted = [*dict.fromkeys(verdict.check for verdict in passed if verdict.omits)]
+    words = ", ".join(noted) if len(noted) <= MOST_CHECKS else f"{len(noted)} checks"
+    remarks = f", with remarks on {words}" if noted else ""
     closest = _worst(list(_cells(rows)))
     if closest is None:
-        return f"passes all{share}"
+        return f"passes all{share}{remarks}"
     row, cell = closest
     words = ", ".join((cell.verdict.check, *_place(study, cell, row.name if several else "")))
-    return f"passes all{share}, closest {cell.percent} ({words})"
+    return f"passes all{share}, closest {cell.percent} ({words}){remarks}"
 
 
 def _failing(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:

@@ -67,7 +67,8 @@ def folder(path: Path, study: rb.Study, theta=0.2, **cells) -> Path:
                 "polarity": "+",
                 "scale": 1.0,
             }
-            rows.append(row | case.columns | {"status": "ok", "theta_max_over_alpha": given} | cells)
+            went = {"status": "ok", "theta_max_over_alpha": given, "theta_max_error": 1e-9}
+            rows.append(row | case.columns | went | cells)
     columns = [*names(FIXED), *study.varied, *names(TRAILING)]
     path.mkdir(parents=True, exist_ok=True)
     peaks = pd.DataFrame(rows).reindex(columns=columns)
@@ -109,6 +110,16 @@ def test_the_first_line_says_which_passes_with_its_closest_check_and_which_fails
     thetas = {"springs": {"Lyttelton": 0.41}}, {"springs": {"Te Mara": 0.98}}
     folders = two(tmp_path, tables(), tables(), thetas)
     assert said(folders) == "A passes all, closest 82 % (rotation, Lyttelton); B fails rotation at 196 % (Te Mara)."
+
+
+@pytest.mark.parametrize(("checks", "noted"), [(1, "rotation"), (3, "rotation, c1, c2"), (4, "4 checks")])
+def test_the_first_line_says_of_a_pass_which_checks_leave_something_out(tmp_path, checks, noted):
+    """Of four checks it has their number; a pier beyond its kinematics passed without a word in the first line."""
+    asked = [ROTATION, *(ROTATION | {"name": f"c{i}", "at_most": 0.6} for i in range(1, checks))]
+    study = rb.Study.from_dict(tables(check=asked))
+    folders = [folder(tmp_path / side, study, 0.2, beyond_linearised=far) for side, far in (("a", 1.0), ("b", 0.0))]
+    closest = "passes all, closest 40 % (rotation, Lyttelton)"
+    assert said(folders) == f"A {closest}, with remarks on {noted}; B {closest}."
 
 
 def test_a_study_that_fails_is_not_better_for_a_smaller_rotation(tmp_path):
