@@ -447,7 +447,7 @@ def _unmet_by_stations(rule: Rule, counted_as: Texts, stations: Texts, records: 
     """
     statistic = STATISTICS[rule.statistic or "max"]
     own = np.where(stations == "", counted_as, stations)
-    shocks = {name: motions.shocks.get(record, (name,)) for name, record in zip(own, records, strict=True)}
+    shocks = {name: motions.shocks.get(record) or (name,) for name, record in zip(own, records, strict=True)}
     motions_of = Counter(station for name in shocks for station in shocks[name])
     n, known = len({*counted_as}), len(motions_of)
     if known < statistic.least <= n:
@@ -456,6 +456,8 @@ def _unmet_by_stations(rule: Rule, counted_as: Texts, stations: Texts, records: 
     unrecorded = np.isin(records, [*motions.unrecorded])
     if statistic.code and unrecorded.any():
         return f"{len({*counted_as[unrecorded]})} of {n} stations are pulses, and {statistic.code} asks for records"
+    if statistic.code and any(motions.shocks.get(record) == () for record in records):
+        return "the stations of a sequence are not known: pass the motions of the table, too"
     (shared, most), *_ = motions_of.most_common(1) or [("", 0)]
     if statistic.code and most > 1:
         return (

@@ -12,7 +12,7 @@ class Suite(NamedTuple):
     stations, events : mapping
         Station and earthquake of each component, empty if it is not known.
     shocks : mapping
-        Stations of the shocks of each component that is a sequence of records of several stations.
+        Stations of the shocks of each component that is a sequence of records of several stations; () if they are not known.
     unrecorded : collection of str
         Components that are not records: pulses, and still ground.
     without_vertical : collection of str

@@ -115,7 +115,10 @@ def verdicts(
         own_rules, count = study.checks, study.count
         table, cases = given_table(results, study.varied), [describe_case(case) for case in study.cases]
         _refuse_runs_of_others(with_case(table), cases, study.motions.scale)
-        suite = Suite(unrecorded={pulse.name for pulse in study.motions.pulses})
+        suite = Suite(
+            unrecorded={pulse.name for pulse in study.motions.pulses},
+            shocks={sequence.name: () for sequence in study.motions.sequences},
+        )
         if motions is not None:
             info = describe(study, ground_motions(study))
             of_suite, suite = suite_verdicts(info, with_case(table)["scale"]), suite_of(info)

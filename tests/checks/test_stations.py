@@ -473,6 +473,8 @@ def test_sequences_that_share_a_station_are_no_independent_motions_of_a_code(sta
     assert found.why_open.startswith("2 of 13 motions have a record of S0")
     (plain,) = judge([replace(rule, statistic="mean")], table, [case()], Suite(shocks=shared))
     assert plain.verdict == "pass"
+    (unknown,) = judge([rule], table, [case()], Suite(shocks=apart | {"q3": ()}))
+    assert unknown.why_open == "the stations of a sequence are not known: pass the motions of the table, too"
 
 
 def test_sequences_of_few_stations_are_too_few_records_for_a_quantile():
@@ -530,3 +532,15 @@ base = "rigid"
     assert suite.shocks == {"both": sorted([first.of_station, second.of_station])}
     assert suite.not_selected == {weakest.of_station: 1}
     assert not suite.without_vertical
+
+
+def test_a_table_of_sequences_meets_no_code_without_its_motions():
+    """It has not what they are joined of; three of pulses passed EN 1998-1."""
+    pulses = [SINE | {"name": f"p{i}", "amplitude_g": 0.1 + 0.01 * i, "duration_s": 1.0} for i in range(6)]
+    sequences = [{"name": f"q{i}", "records": [f"p{2 * i}", f"p{2 * i + 1}"], "pause_s": 1.0} for i in range(3)]
+    check = {"name": "c", "demand": "theta_max_over_alpha", "statistic": "en1998-1", "at_most": 0.9, "reason": "r"}
+    text = {"motions": {"pulse": pulses, "sequence": sequences}, "case": [{"base": "rigid"}], "check": [check]}
+    study = rb.Study.from_dict({"pier": {"alpha": 0.2, "p": 1.0}} | text)
+    (row,) = rb.check(rb.run(study, progress=False), study=study).to_dict("records")
+    assert (row["verdict"], row["records"]) == ("not decided", 3)
+    assert row["note"].startswith("the stations of a sequence are not known: pass the motions of the table, too")
