@@ -21,7 +21,6 @@ from rockbatch.motions import MotionSet
 from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.pier import described, symmetric
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
-from rockbatch.quantities.demands import AT_HEIGHTS
 from rockbatch.quantities.design import BOUND
 from rockbatch.study.both_axes import with_other_axes
 from rockbatch.study.bound_keys import BOUNDS, read_bounds
@@ -342,7 +341,7 @@ def _checked_study(file: TomlFile, motions: Motions) -> Study:
     output = output.also({key for rule in checks.rules for key in DEMANDS[rule.demand].brings})
     _place_brought(file)
     for kind, complain in parts("study.COMPLAINS"):
-        complain(file, output.of(kind), [read.pier for read in piers])
+        complain(file, output.of(kind), [case.pier for case in cases if piers] or [read.pier for read in piers])
     placed_bounds = placed(file, bounds, keys_of_pier, keys_of_cases)
     file.finish()
     return Study(
@@ -382,7 +381,7 @@ def _problems_of_rule(
             *DEMANDS[rule.demand].brings,
             *(key for key in BROUGHT if output.has(key) or not _adds_columns(key, cases)),
         ],
-        sections=_heights(cases, output) if known_piers else {needs: {rule.at_m or 0.0} for needs in AT_HEIGHTS},
+        sections=_heights(cases if known_piers else (), output, rule.at_m or 0.0),
         piers=[_as_in_run_json(case) for case in cases] if known_piers else (),
     )
     return fitted(rule, available).problems
@@ -406,10 +405,17 @@ def _as_in_run_json(case: Case) -> dict[str, object]:
     return names | {"base": base.name, "pier": described(pier), "parameters": base.parameters(pier)}
 
 
-def _heights(cases: Sequence[Case], output: Output) -> dict[str, set[float]]:
-    """Return the heights [m] of sections that rules may be about, by what their demands need, for the piers of ``cases``."""
+def _heights(cases: Sequence[Case], output: Output, own: float) -> dict[str, set[float]]:
+    """Return the heights [m] of sections that a rule may be about, by what its demand needs, for the piers of ``cases``.
+
+    It is that of the rule, ``own``, without cases, and where [output] asks for sections that no pier can have.
+    """
     piers = {case.pier for case in cases}
-    return {needs: heights(output.of(kind), piers) for needs, kind, heights in parts("study.HEIGHTS")}
+    of_settings = ((needs, output.of(kind), heights) for needs, kind, heights in parts("study.HEIGHTS"))
+    return {
+        needs: heights(settings, piers) or ({own} if settings.requested or not piers else set())
+        for needs, settings, heights in of_settings
+    }
 
 
 def _numerics(file: TomlFile) -> Numerics:

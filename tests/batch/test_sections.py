@@ -98,6 +98,18 @@ def test_a_study_with_sections_that_cannot_be_is_refused(tmp_path, tables, messa
         assert f"{study.name}:{key}: [output]" in str(refused.value)
 
 
+@pytest.mark.parametrize("of_case", [False, True])
+def test_sections_that_no_pier_can_have_are_refused_without_advice_to_ask_for_them(tmp_path, of_case):
+    """Of the pier, or of the pier on the foot of a case, which was refused by the run alone."""
+    foot = {"base": "footing", "width_m": 6.0, "length_m": 6.0, "stiffness_MN_m3": 60.0}
+    plain = {name: value for name, value in PIER.items() if name != "deck_mass_t"}
+    tables = {"cases": [foot], "pier": plain} if of_case else {"pier": FRAME}
+    with pytest.raises(rb.InputError) as refused:
+        rb.load_study(study_of(tmp_path, output={"sections": 3}, check=CHECKS[:1], **tables))
+    (problem,) = refused.value.problems
+    assert "[output]: sections: " in str(problem)
+
+
 def test_parts_with_their_lengths_have_sections(tmp_path):
     part = IN_PARTS["part"][0] | {"length_m": 14.0}
     pier = {"width_m": 4.0, "deck_mass_t": 200.0, "deck_height_m": 15.0, "part": [part]}

@@ -18,6 +18,11 @@ class Interaction:
     interaction_m: tuple[float, ...] = ()
     interaction_base: bool = False
 
+    @property
+    def requested(self) -> tuple[float, ...]:
+        """Return the heights [m] of the sections; () if none are requested."""
+        return self.interaction_m
+
 
 OUTPUT = Section(
     ("output",),
