@@ -387,7 +387,7 @@ def test_a_pass_says_if_a_run_moves_as_the_model_does_not_follow(demand, name, c
     assert name not in judged(left_out, one=DAMPED, overturned="left out").omits
 
 
-def test_a_friction_demand_says_that_keys_carry_the_shear_where_little_presses_the_pier():
+def test_a_friction_demand_says_that_keys_carry_the_shear_of_a_light_contact():
     table = runs([0.1, 0.2], name="damped", friction_demand=0.3, key_shear_m_s2=[math.nan, 2.0], **SHEAR)
     asked = {"one": DAMPED, "demand": "friction_demand", "at_most": 0.5}
     assert judged(table, **asked).omits == (BENDING, KEYS)

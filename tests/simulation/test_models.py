@@ -45,7 +45,7 @@ def test_a_tendon_at_rest_pulls_between_nothing_and_its_strength():
 
 
 @pytest.mark.parametrize(("exponent", "nu", "speed"), [(0.5, 0.3, None), (0.999, 0.3, 0.0), (0.999, 2000.0, math.inf)])
-def test_a_viscous_damper_is_linear_where_its_power_law_would_be_steeper_than_the_ground_decays(exponent, nu, speed):
+def test_a_viscous_damper_is_linear_where_its_power_law_would_be_too_steep(exponent, nu, speed):
     """At 100 p, about the farther pivot; with an exponent near 1 that is nowhere, or everywhere, beyond what a float holds."""
     damper = Damper("viscous", nu=nu, exponent=exponent, at="left", confirm=("nu",))
     (oil,) = elements(FIG5, RigidBase(restraints=(damper,)))

@@ -178,7 +178,7 @@ def test_data_without_a_maximum_give_the_reason(exceeded, words):
 
 @pytest.mark.parametrize("confidence", [0.8, 0.9, 0.95, 0.99])
 @pytest.mark.parametrize("stations", range(3, 10))
-def test_all_on_one_side_of_the_median_bound_it_no_more_often_than_an_end_of_an_interval_is_wrong(stations, confidence):
+def test_all_on_one_side_of_the_median_bound_it_as_rarely_wrong_as_an_interval(stations, confidence):
     """At the median all 2ⁿ outcomes are as likely; the one with all on a side is either rarer than that, or bounds nothing."""
     x, run = np.array([1.0]), np.ones((stations, 1))
     none = fit(Capacities.of_same_records(x, run, 0 * run), confidence)

@@ -19,13 +19,13 @@ from rockbatch.quantities.arrays import Rows
 ])  # fmt: skip
 def test_a_run_that_did_not_go_through_counts_as_its_check_says(rule, expected):
     runs = of_statuses(["ok", "overturned", "flight", "failed"])
-    found = states(Rule("check", "theta_max_over_alpha", **rule), Rows(runs), {"base": "rigid", "pier": {"alpha": 0.2}})
+    found = states(Rule("check", "theta_max_over_alpha", **rule), Rows(runs), {"base": "rigid", "pier": {"alpha": 0.2}, "parameters": {}})
     assert list(found) == expected
 
 
 def test_whether_a_run_that_was_cut_short_would_have_overturned_is_undecided():
     runs = of_statuses(["ok", "overturned", "flight", "failed"])
-    found = states(Rule("overturning", "overturned", at_most=0), Rows(runs), {"base": "rigid"})
+    found = states(Rule("overturning", "overturned", at_most=0), Rows(runs), {"base": "rigid", "parameters": {}})
     assert list(found) == [WITHSTOOD, EXCEEDED, UNDECIDED, UNDECIDED]
 
 

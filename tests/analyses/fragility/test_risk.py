@@ -225,7 +225,7 @@ def test_a_bound_by_the_points_of_a_hazard_keeps_its_digits_beside_its_first_slo
     assert bound.least == pytest.approx(1e-3, rel=1e-6)
 
 
-def test_a_bound_by_the_points_of_a_hazard_is_the_end_of_the_interval_and_none_without_one():
+def test_a_bound_by_the_points_of_a_hazard_is_the_end_of_the_interval():
     """Medians of 0.5 and 2.5 g leave the rate of 2 g open down to that of motions of 2.5 g: 1e-3 · 0.8⁴ a year."""
     hazard = HazardCurve([2.0, 3.0], [1e-3, 1e-3 * (2 / 3) ** 4])
     spec = FragilitySpec("ida", "PGA", (0.2, 0.6), (), hazard=Hazard(hazard))
@@ -433,7 +433,7 @@ def test_without_a_hazard_there_are_no_rates_and_the_points_are_as_they_were(tmp
         found.risk()
 
 
-def test_a_limit_that_every_record_exceeds_has_a_rate_of_at_least_half_of_that_of_the_lowest_level(tmp_path, capsys):
+def test_a_limit_that_all_exceed_has_at_least_half_the_rate_of_the_lowest_level(tmp_path, capsys):
     """Six stations bound the median, five do not: at the median all of five are on one side in 3.1 % of suites."""
     levels = {"measure": "PGA", "levels_g": [20.0, 30.0], "confirm": "levels_g"}
     path = study(tmp_path, HAZARD, fragility=levels)
