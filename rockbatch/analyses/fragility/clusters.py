@@ -1,6 +1,6 @@
 """Clusters of records, by station or by earthquake: intervals count clusters, since records of one are not independent."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +20,8 @@ class Clusters:
     kind : str
         "station" or "event".
     stations, events : int
-        Number of stations, and of earthquakes among them, 0 if that of some record is unknown.
+        Number of stations, and of earthquakes among them, 0 if that of some record is unknown. Stations whose shocks one
+        sequence joins count as one.
     """
 
     of_motion: Numbers
@@ -31,10 +32,26 @@ class Clusters:
 
 def clusters(motions: Sequence[Motion]) -> Clusters:
     """Return the earthquakes of the records if all are known, five or more, and fewer than the stations; else the stations."""
-    by_station = [motion.of_station for motion in motions]
+    by_station = _joined([motion.stations for motion in motions])
     by_event = [motion.origin.event for motion in motions]
     stations, events = len(set(by_station)), len(set(by_event)) if all(by_event) else 0
     of_events = STATIONS_OF_INTERVAL <= events < stations
     shared = by_event if of_events else by_station
     _, numbers = np.unique(shared, return_inverse=True)
     return Clusters(numbers.astype(np.int64), "event" if of_events else "station", stations, events)
+
+
+def _joined(sets: Iterable[Sequence[str]]) -> list[str]:
+    """Return a name for each set, the same for all that common members connect; it is the first member of one of them."""
+    parents: dict[str, str] = {}
+
+    def root(name: str) -> str:
+        while (parent := parents.setdefault(name, name)) != name:
+            name = parent
+        return name
+
+    sets = list(sets)
+    for members in sets:
+        least = min(map(root, members))
+        parents |= {root(member): least for member in members}
+    return [root(members[0]) for members in sets]

@@ -125,7 +125,7 @@ def test_intervals_by_station_hold_the_truth_as_often_as_they_say(rho):
 
 def motions(events, stations):
     return [
-        SimpleNamespace(of_station=station, origin=SimpleNamespace(event=event))
+        SimpleNamespace(stations=(station,), origin=SimpleNamespace(event=event))
         for event, station in zip(events, stations, strict=True)
         for _ in range(2)
     ]
@@ -145,3 +145,11 @@ def test_records_count_by_earthquake_where_five_are_known_and_else_by_station(ev
     found = clusters(motions(events, "abcdefghij"))
     assert (found.kind, len(np.unique(found.of_motion)), found.stations) == (kind, groups, 10)
     assert found.events == (0 if "" in list(events) else len(set(events)))
+
+
+def test_sequences_that_share_a_station_are_one_cluster():
+    """Main shock and aftershock of two stations, in any order, are one pair of readings; a chain of three is one, too."""
+    shocks = ["ab", "ba", "c", "de", "ef", "fg", "h", "c"]
+    found = clusters([SimpleNamespace(stations=tuple(sorted(s)), origin=SimpleNamespace(event="")) for s in shocks])
+    assert found.of_motion.tolist() == [0, 0, 1, 2, 2, 2, 3, 1]
+    assert (found.kind, found.stations) == ("station", 4)

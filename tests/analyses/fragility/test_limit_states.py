@@ -19,7 +19,8 @@ from rockbatch.quantities.arrays import Rows
 ])  # fmt: skip
 def test_a_run_that_did_not_go_through_counts_as_its_check_says(rule, expected):
     runs = of_statuses(["ok", "overturned", "flight", "failed"])
-    found = states(Rule("check", "theta_max_over_alpha", **rule), Rows(runs), {"base": "rigid", "pier": {"alpha": 0.2}, "parameters": {}})
+    case = {"base": "rigid", "pier": {"alpha": 0.2}, "parameters": {}}
+    found = states(Rule("check", "theta_max_over_alpha", **rule), Rows(runs), case)
     assert list(found) == expected
 
 
