@@ -74,9 +74,9 @@ def test_the_worst_runs_are_counted_by_status_and_named():
 def suite_of(files=("a", "b", "c"), unusable=2, left_out=1):
     """Return a set of motions of two stations, with files that are not used and left out."""
     shaken = [rb.Motion(name, 0.01, (n + 1.0) * A, source=f"{name}.AT2") for n, name in enumerate(files)]
-    wrong = [Unusable(f"x{n}", f"x{n}.AT2", "empty") for n in range(unusable)]
+    wrong = [Unusable(f"x{n}", (f"x{n}.AT2",), "empty") for n in range(unusable)]
     return MotionSet(
-        tuple(shaken), tuple(wrong), tuple(LeftOut(f"y{n}", f"y{n}.AT2", "a copy") for n in range(left_out))
+        tuple(shaken), tuple(wrong), tuple(LeftOut(f"y{n}", (f"y{n}.AT2",), "a copy") for n in range(left_out))
     )
 
 

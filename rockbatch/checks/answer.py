@@ -145,7 +145,7 @@ def missing_stations(stations: Stations) -> Line | None:
 
 def _reason_of_file(file: File) -> str:
     """Return why a file could not be used: "a.at2: no unit", the reason alone if it has the file's name; no full stop."""
-    source, reason = str(file["source"]).split(", ")[0].rpartition("/")[2], str(file["reason"]).rstrip(".")
+    source, reason = str(file["source"]).rpartition("/")[2], str(file["reason"]).rstrip(".")
     return reason if str(file["name"]) in reason or source in reason else f"{source}: {reason}"
 
 

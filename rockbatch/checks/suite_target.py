@@ -14,8 +14,6 @@ from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS,
 NAMES = {"target": "suite to target", "vertical_target": "suite to vertical target"}
 """Names of the checks, by the entries of run.json on both targets."""
 
-UNRECORDED = ("pulse", "still")
-"""Sources of motions that no target scales."""
 VERTICALS = "suite_verticals"
 OF_STUDY = (MEAN_OVER_TARGET, VERTICALS)
 """Demands on a suite by the targets of the study, not by a code."""
@@ -104,7 +102,7 @@ def suite_of(info: Mapping[str, Any]) -> Suite:
         stations={record["record"]: record.get("station", "") for record in records},
         events={record["record"]: record.get("event") or "" for record in records},
         shocks={record["record"]: record["stations_of_shocks"] for record in records if "stations_of_shocks" in record},
-        unrecorded={record["record"] for record in records if record["source"] in UNRECORDED},
+        unrecorded={record["record"] for record in records if not record.get("recorded", True)},
         without_vertical=info.get("without_vertical", ()),
         not_selected=Counter(
             file["station"]
@@ -135,7 +133,7 @@ def _reached(demand: str, words: str, target: Target, scale: float, share: float
 
 def _verticals(info: Mapping[str, Any]) -> Iterator[Condition]:
     """Yield the condition that all recorded stations have the vertical component: their number, at least that of stations."""
-    recorded = [record for record in info["records"] if record["source"] not in UNRECORDED]
+    recorded = [record for record in info["records"] if record.get("recorded", True)]
     stations = {str(record.get("station") or record["record"]): False for record in recorded}
     stations |= {
         str(record.get("station") or record["record"]): True for record in recorded if record.get("pga_v_g") is not None

@@ -100,12 +100,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 def counts(suite: MotionSet) -> str:
     """Return "3 files: 2 usable recordings of 1 station, 0 not used, 1 left out" with the numbers of the set."""
-    of_records = [
-        motion.sources for motion in suite if not motion.shocks
-    ]  # those of a sequence are records or left out
-    of_records += [file.sources for file in suite.unusable]
-    of_records += [file.sources or (file.source,) for file in suite.left_out]
-    files = {file_of(source) for sources in of_records for source in sources}
+    files = {file_of(source) for item in (*suite, *suite.unusable, *suite.left_out) for source in item.sources}
     recordings = f"{count(len(suite), 'usable recording')} of {count(len(suite.stations()), 'station')}"
     return f"{count(len(files), 'file')}: {recordings}, {len(suite.unusable)} not used, {len(suite.left_out)} left out"
 

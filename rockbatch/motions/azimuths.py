@@ -42,7 +42,7 @@ def components_along(
         if len(azimuths) == 1 and same_azimuth(c.orientation.azimuth, azimuths[0]):
             kept.append(c)
         else:
-            refused.append(Unusable(c.name, c.source, f"cannot be turned: {obstacle}"))
+            refused.append(Unusable(c.name, c.sources, f"cannot be turned: {obstacle}"))
     return kept, refused
 
 
@@ -95,7 +95,7 @@ def _turned_component(first: Component, second: Component, azimuth: float) -> Co
         dt=common.dt,
         acceleration=along_azimuth(common.first, _azimuth(first), common.second, _azimuth(second), azimuth),
         orientation=Orientation(f"{azimuth:g}", azimuth=azimuth % 360.0),
-        source=f"{first.source} + {second.source}",
+        sources=(*first.sources, *second.sources),
         start=max(starts) if len(starts) == 2 else None,
         confirmed=tuple(key for key in first.confirmed if key in second.confirmed),
         processed=first.processed if first.processed == second.processed else None,

@@ -79,7 +79,7 @@ class Component:
     orientation: Orientation = UNKNOWN
     station: str = ""  # by the header: a key shared by the components of one station in one event
     folder: str = ""  # of the file, within which components are paired; empty for a package's
-    source: str = ""  # file, for people
+    sources: tuple[str, ...] = ()  # its file, for people; of a component turned from two, both files
     start: float | None = None  # time of the first sample [s since 1970, UTC]
     site: str = ""  # by the file's name: a key shared by the components of one station
     unit: str = ""  # in which the file's numbers were read; empty for counts, whose scale the format has
@@ -102,6 +102,11 @@ class Component:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "acceleration", frozen(self.acceleration))
+
+    @property
+    def source(self) -> str:
+        """Return its sources in words, "a.AT2"."""
+        return ", ".join(self.sources)
 
     @property
     def path(self) -> str:

@@ -56,6 +56,7 @@ def entry(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[
         **({} if motion.vertical_factor is None else {"vertical_factor": motion.vertical_factor}),
         "source": motion.source,
         "vertical_source": motion.vertical_source,
+        "recorded": motion.recorded,
         "processed": motion.processed,
         "digest": digest(motion),
         "findings": [asdict(finding) for finding in motion.findings],

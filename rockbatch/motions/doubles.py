@@ -44,7 +44,7 @@ def without_boreholes(components: Sequence[Component]) -> tuple[list[Component],
             used_components.append(component)
         else:
             reason = f"in a borehole below {used.source}"
-            left_out.append(LeftOut(component.name, component.source, reason, of=used.source))
+            left_out.append(LeftOut(component.name, component.sources, reason, of=used.source))
     return used_components, left_out
 
 
@@ -80,7 +80,7 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     left_out = []
     for i, j in sorted(stands_for.items()):
         copy, original, factor = components[i], components[j], factors[i, j]
-        left_out.append(LeftOut(copy.name, copy.source, _reason(copy, original, factor), of=original.source))
+        left_out.append(LeftOut(copy.name, copy.sources, _reason(copy, original, factor), of=original.source))
         decided = original.preferred or rank[i][1:4] != rank[j][1:4]
         if finding := _finding_on_copy(copy, original, factor, decided):
             findings.setdefault(j, []).append(finding)
@@ -206,7 +206,7 @@ def _reason(copy: Component, used: Component, factor: float | None) -> str:
 
 def tell_use_of_originals(left_out: Iterable[LeftOut], motions: MotionSet) -> list[LeftOut]:
     """Return left-out files; to the reason of a copy is added whether ``motions`` uses its original, or refuses it."""
-    used = {source for motion in motions for source in (*motion.source.split(" + "), motion.vertical_source)}
+    used = {source for motion in motions for source in motion.sources}
     refused = {source for file in motions.unusable for source in file.sources}
 
     def fate(file: LeftOut) -> str:

@@ -70,7 +70,7 @@ def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component
         acceleration=acceleration,
         orientation=Orientation(f"{azimuth:g}", azimuth=azimuth % 360.0),
         site=f"RSN{station_record.rsn}",
-        source=f"{_package()}, {station_record.name}",
+        sources=(f"{_package()}, {station_record.name}",),
         processed=True,
         origin=normal.origin,
         notes=(f"turned to {azimuth:g}° from {normal.name} and {parallel.name}",),
@@ -169,7 +169,7 @@ def _recorded(station: Station, direction: int, gravity: float) -> Component:
         acceleration=values * gravity,
         orientation=orientation_of(bare) or Orientation(bare),
         site=f"RSN{station.rsn}",
-        source=f"{_package()}, {station.event}/{station.code}{label}",
+        sources=(f"{_package()}, {station.event}/{station.code}{label}",),
         processed=True,
         origin=Origin(station.quake, station.title),
     )

@@ -244,7 +244,7 @@ def _unless_changed(readings: list[Reading], file: SourceFile, state: tuple[int,
     if not has_records or archives.state(file.path) in (state, ()):
         return readings
     path = archives.bare(file.path)
-    return [Unusable(path.stem, file.source, CHANGED, station=_site(path, name))]
+    return [Unusable(path.stem, (file.source,), CHANGED, station=_site(path, name))]
 
 
 def _with_progress(files: Sequence[SourceFile]) -> Iterable[SourceFile]:
@@ -270,7 +270,7 @@ def _without_companions(readings: Sequence[Reading]) -> list[Reading]:
     kept: list[Reading] = []
     for reading in readings:
         if isinstance(reading, Unusable) and (_folder(reading), reading.companion) in folders:
-            kept.append(LeftOut(reading.name, reading.source, f"no record: {reading.reason}"))
+            kept.append(LeftOut(reading.name, reading.sources, f"no record: {reading.reason}"))
         else:
             kept.append(reading)
     return kept
@@ -300,7 +300,7 @@ def _without_renamed(readings: Sequence[Reading], files: Sequence[SourceFile]) -
     for reading in readings:
         original = copies.get(reading.source)
         kept.append(
-            LeftOut(reading.name, reading.source, f"a copy of {original}", of=original) if original else reading
+            LeftOut(reading.name, reading.sources, f"a copy of {original}", of=original) if original else reading
         )
     return kept
 
@@ -358,7 +358,7 @@ def _readings(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
         reason = f"cannot be read: {error.strerror or error}"
     except Exception as error:  # a bug of a reader must not cost the other files; its type is reported
         reason = f"its reader failed: {type(error).__name__}: {error}"
-    unusable = Unusable(path.stem, file.source, reason, kind=kind, lacks=lacks, companion=companion, station=site)
+    unusable = Unusable(path.stem, (file.source,), reason, kind=kind, lacks=lacks, companion=companion, station=site)
     return [with_legible_texts(unusable)]
 
 
@@ -367,11 +367,11 @@ def _readings_of_entries(file: SourceFile, settings: _ReadSettings) -> list[Read
     path = archives.bare(file.path)
     entries = settings.manifest.entries_for(file.path)
     if any(not entry.use and entry.component is None for entry in entries):
-        return [LeftOut(path.stem, file.source, entries[0].unused, named=True)]
+        return [LeftOut(path.stem, (file.source,), entries[0].unused, named=True)]
     if file.companion:
-        return [LeftOut(path.stem, file.source, f"no record: {file.companion}")]
+        return [LeftOut(path.stem, (file.source,), f"no record: {file.companion}")]
     if file.refusal:
-        return [Unusable(path.stem, file.source, file.refusal)]
+        return [Unusable(path.stem, (file.source,), file.refusal)]
     in_order = _read(file, options_of(entries, settings.options), settings)
     numbered = [replace(reading, number=i) for i, reading in enumerate(in_order, start=1)]
     refused = [reading for reading in numbered if isinstance(reading, Unusable)]
@@ -379,9 +379,9 @@ def _readings_of_entries(file: SourceFile, settings: _ReadSettings) -> list[Read
     for item in refused:
         unwanted = next((entry for entry in entries if not entry.use and entry.is_for(item)), None)
         if is_clock(item.label):
-            readings.append(LeftOut(item.name, item.source, f"no record: {item.label}, the recorder's clock"))
+            readings.append(LeftOut(item.name, item.sources, f"no record: {item.label}, the recorder's clock"))
         else:
-            readings.append(LeftOut(item.name, item.source, unwanted.unused, named=True) if unwanted else item)
+            readings.append(LeftOut(item.name, item.sources, unwanted.unused, named=True) if unwanted else item)
     components = []
     for reading in numbered:
         if isinstance(reading, Component):
@@ -391,7 +391,7 @@ def _readings_of_entries(file: SourceFile, settings: _ReadSettings) -> list[Read
         if used:
             readings.append(_without_offset(component, settings))
         else:
-            readings.append(LeftOut(component.name, component.source, entries[0].unused, named=True))
+            readings.append(LeftOut(component.name, component.sources, entries[0].unused, named=True))
     return readings
 
 
@@ -446,4 +446,4 @@ def _without_offset(component: Component, settings: _ReadSettings) -> Component 
     try:
         return checked_reading(remove_offset(component, settings.offset))
     except InputError as error:
-        return Unusable(component.name, component.source, str(error))
+        return Unusable(component.name, component.sources, str(error))

@@ -39,7 +39,7 @@ class LeaveOut:
         pattern = self._fitting(reading.name, *stations, str(file), file.name, file.stem, *folders)
         if not pattern or isinstance(reading, LeftOut):
             return reading
-        return _left_out(reading.name, reading.source, pattern, stations[0])
+        return _left_out(reading.name, reading.sources, pattern, stations[0])
 
     def motions(self, motions: MotionSet) -> MotionSet:
         """Return the set with motions and unusable files moved to the left-out ones if their record or station fits a pattern."""
@@ -50,12 +50,12 @@ class LeaveOut:
         left_out: list[LeftOut] = []
         for motion in motions.motions:
             if pattern := self._fitting(motion.name, motion.of_station):
-                left_out.append(_left_out(motion.name, motion.files, pattern, motion.of_station))
+                left_out.append(_left_out(motion.name, motion.sources, pattern, motion.of_station))
             else:
                 used.append(motion)
         for file in motions.unusable:
             if pattern := self._fitting(file.name, file.station):
-                left_out.append(_left_out(file.name, file.source, pattern, file.station))
+                left_out.append(_left_out(file.name, file.sources, pattern, file.station))
             else:
                 unusable.append(file)
         return MotionSet(used, unusable, [*motions.left_out, *left_out])
@@ -81,6 +81,6 @@ class LeaveOut:
         return fitting[0] if fitting else ""
 
 
-def _left_out(name: str, source: str, pattern: str, station: str) -> LeftOut:
+def _left_out(name: str, sources: tuple[str, ...], pattern: str, station: str) -> LeftOut:
     """Return a file that the study leaves out by ``pattern``, with the key leave_out as the reason."""
-    return LeftOut(name, source, f"leave_out = [{shown(pattern)}] in the study", station, named=True)
+    return LeftOut(name, sources, f"leave_out = [{shown(pattern)}] in the study", station, named=True)

@@ -9,7 +9,7 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import legible, write_output
 from rockbatch.common.grouping import grouped
-from rockbatch.motions.component import Component
+from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.directions import judge_directions
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import Reading, read_files
@@ -69,7 +69,7 @@ def draft(folder: Path, options: ReadOptions | None = None) -> str:
     stated = options is not None and options.sensitivity is not None  # a unit in the draft would displace it
     blocks = [_HEAD]
     for source, file_readings in grouped(
-        readings, lambda r: r.source if r.source in paths else r.source.rpartition(" (")[0]
+        readings, lambda r: r.source if r.source in paths else file_of(r.source)
     ).items():
         name = paths[source].relative_to(folder).as_posix()
         for reading in file_readings:

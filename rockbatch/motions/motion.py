@@ -154,6 +154,11 @@ class Motion(Shown):
         that is a motion of its own, or there is none.
     vertical_factor : float or None
         What the vertical component as it was recorded was multiplied by, if that is not ``factor``.
+    sources : tuple of str
+        Where all its components came from, those of both horizontals of a rotated motion and of all shocks of a sequence
+        included; by default ``source`` and ``vertical_source``.
+    recorded : bool
+        Whether it is an earthquake's; False for pulses and still ground, which no target scales and no suite counts.
 
     All samples are copied and cannot be changed afterwards. Raises ``InputError`` for samples that are no finite numbers,
     components of different lengths, and a ``dt`` not above 0, or unusual and not confirmed.
@@ -193,10 +198,14 @@ class Motion(Shown):
     across: Samples | None = None
     vertical_factor: float | None = None
     listed: Listed = NOT_LISTED
+    sources: tuple[str, ...] = ()
+    recorded: bool = True
 
     def __post_init__(self) -> None:
         for text in ("name", "station"):  # which go into tables
             object.__setattr__(self, text, legible(getattr(self, text), keep="\t\r\n"))
+        if not self.sources:
+            object.__setattr__(self, "sources", tuple(filter(None, (self.source, self.vertical_source))))
         wrong: list[Problem | str] = []
         if not (math.isfinite(self.dt) and self.dt > 0):
             wrong.append(f'motion "{self.name}": dt = {self.dt:g}: must be a number above 0 [s]')
@@ -292,7 +301,7 @@ class Motion(Shown):
         (0.1, 0.0)
         """
         _check_still(duration_s, dt)
-        return cls(name, dt, np.zeros(round(duration_s / dt) + 1), source="still", initial=Initial())
+        return cls(name, dt, np.zeros(round(duration_s / dt) + 1), source="still", initial=Initial(), recorded=False)
 
     @classmethod
     def from_obspy(cls, stream: "obspy.Stream", unit: str, *, name: str = "") -> "Motion":
@@ -347,18 +356,13 @@ class Motion(Shown):
     @property
     def label(self) -> str:
         """Return its name in words, "Imperial Valley 1979, Meloland, 270", else its file; the name of a pulse or a sequence."""
-        by_name = self.source in ("", "pulse") or len(self.records) > 1
+        by_name = not (self.source and self.recorded) or len(self.records) > 1
         return self.origin.label or (self.name if by_name else self.source)
 
     @property
     def named(self) -> str:
         """Return its label, followed by its name in tables if that differs."""
         return self.label if self.label == self.name else f"{self.label} ({self.name})"
-
-    @property
-    def sources(self) -> tuple[str, ...]:
-        """Return the sources of its components."""
-        return tuple(source for source in (self.source, self.vertical_source) if source)
 
     @property
     def files(self) -> str:
@@ -489,7 +493,7 @@ class Unusable:
     """
 
     name: str
-    source: str
+    sources: tuple[str, ...]
     reason: str
     label: str = ""
     lacks: tuple[str, ...] = ()
@@ -500,9 +504,9 @@ class Unusable:
     motion: Motion | None = field(default=None, repr=False)
 
     @property
-    def sources(self) -> tuple[str, ...]:
-        """Return the sources of the motion's components, else its own."""
-        return (self.motion.sources if self.motion else ()) or (self.source,)
+    def source(self) -> str:
+        """Return its sources in words, "a.AT2, a-UP.AT2"."""
+        return ", ".join(self.sources)
 
     def __str__(self) -> str:
         return f"{self.source}: {self.reason}"
@@ -513,16 +517,20 @@ class LeftOut:
     """A file or record that is left out on purpose, with the reason: not selected, excluded, a copy, or no record.
 
     It is ``named`` if a manifest or the study names it; ``station`` is the name under which it would count, if known. ``of``
-    is the source of the original of a copy. ``sources`` are those of the components of a record.
+    is the source of the original of a copy.
     """
 
     name: str
-    source: str
+    sources: tuple[str, ...]
     reason: str
     station: str = ""
     named: bool = False
     of: str = ""
-    sources: tuple[str, ...] = ()
+
+    @property
+    def source(self) -> str:
+        """Return its sources in words, "a.AT2, a-UP.AT2"."""
+        return ", ".join(self.sources)
 
     def __str__(self) -> str:
         return f"{self.source}: {self.reason}"

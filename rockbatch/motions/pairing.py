@@ -59,7 +59,7 @@ def to_motions(
             sound.append(c)
         else:
             question, label = _direction_question(c), c.orientation.label
-            unusable.append(Unusable(c.name, c.source, question, label, station=station_of(c), kind=kind))
+            unusable.append(Unusable(c.name, c.sources, question, label, station=station_of(c), kind=kind))
     components = _with_steps_compared(_with_packaged(sound, packaged))
     stations = by_station(components)
     number = {id(c): i for i, station in enumerate(stations) for c in station}
@@ -83,12 +83,12 @@ def to_motions(
             for v, obstacle in refused:
                 notes.append(f"no vertical: {v.source}: {obstacle}")
                 if id(v) not in used:  # else it was listed with its station's other horizontal
-                    unusable.append(Unusable(v.name, v.source, obstacle, station=known_as[number[id(v)]]))
+                    unusable.append(Unusable(v.name, v.sources, obstacle, station=known_as[number[id(v)]]))
             used.update(id(v) for v in together)
         motions.append(_motion(component, partner, notes, known_as[station], requested=bool(vertical)))
     if vertical:
         for v in (v for group in verticals for v in group if id(v) not in used):
-            unusable.append(Unusable(v.name, v.source, _why_alone(v, components), station=known_as[number[id(v)]]))
+            unusable.append(Unusable(v.name, v.sources, _why_alone(v, components), station=known_as[number[id(v)]]))
     peaks = [[(c, c.pga) for c in station if not c.orientation.vertical] for station in stations]
     named = _with_unique_names(motions, [c.folder for _, c in horizontals])
     pairs = zip(named, horizontals, strict=True)
@@ -113,10 +113,10 @@ def _confirmed_motions(
         keys = by_study.union(candidate.component.confirmed)
         if motion.lacks_vertical and required:
             reason = f"{motion.label} {_NO_VERTICAL}"
-            unusable.append(Unusable(motion.name, motion.files, reason, station=motion.of_station))
+            unusable.append(Unusable(motion.name, motion.sources, reason, station=motion.of_station))
         elif refusal := confirmation_request(motion.name, motion_findings, keys):
             held = replace(motion, findings=motion_findings)
-            unusable.append(Unusable(motion.name, motion.files, refusal, station=motion.of_station, motion=held))
+            unusable.append(Unusable(motion.name, motion.sources, refusal, station=motion.of_station, motion=held))
         else:
             remarks = [f"confirmed: {finding.text}" if finding.gross else finding.text for finding in motion_findings]
             notes = (*motion.notes, *remarks)
@@ -268,6 +268,7 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str], station: st
         vertical=vertical,
         source=h.source,
         vertical_source=v.source if v is not None else "",
+        sources=h.sources if v is None else (*h.sources, *v.sources),
         notes=tuple(remarks),
         azimuth=h.orientation.azimuth,
         magnitude=h.magnitude,
@@ -289,7 +290,7 @@ def _with_unique_names(motions: Sequence[Motion], folders: Sequence[str]) -> lis
     in_folder = Counter((folder, motion.name) for folder, motion in zip(folders, motions, strict=True))
 
     def with_suffix(i: int, name: str) -> str:
-        first = motions[i].source.partition(" + ")[0]  # a rotated motion has two sources
+        first = next(iter(motions[i].sources), "")
         file = PurePosixPath(re.sub(r"(?i)(\.gz)?( \(.*\))?$", "", first))
         clashes = in_folder[folders[i], name] > 1 and name.startswith(file.stem)
         return file.name + name[len(file.stem) :] if clashes else name

@@ -103,7 +103,9 @@ def pulse(
     note = f"{shape} pulse, peak {amplitude:g} m/s², T = {period:g} s"
     if gamma is not None and nu is not None:
         note += f", gamma = {gamma:g}, nu = {nu:g} rad"
-    return Motion(name, dt, acceleration, source="pulse", notes=(note,), initial=Initial(), confirm=("dt",))
+    return Motion(
+        name, dt, acceleration, source="pulse", notes=(note,), initial=Initial(), confirm=("dt",), recorded=False
+    )
 
 
 def unlikely(amplitude_g: float, period: float, dt: float) -> dict[str, str]:

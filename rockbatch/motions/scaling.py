@@ -99,10 +99,8 @@ def at_target(
     lone = {file.name for file in unusable}
     paired = [motion for motion in motion_set.motions if motion.name not in lone]
     for motion, factor in zip(paired, target.factors_of(paired, gravity), strict=True):
-        if math.isinf(factor):
-            unusable.append(Unusable(motion.name, motion.files, f"has no motion that can be scaled to {target}"))
-        elif isinstance(target, SpectrumTarget) and factor > MOST_FACTOR and not fits_any(motion.name, confirmed):
-            unusable.append(Unusable(motion.name, motion.files, _too_weak(motion, factor, target, gravity)))
+        if refusal := _refusal(motion, factor, target, gravity, fits_any(motion.name, confirmed)):
+            unusable.append(Unusable(motion.name, motion.sources, refusal))
         elif factor == 1.0:
             motions.append(motion)
         else:
@@ -120,7 +118,7 @@ def scale_as_listed(motion_set: MotionSet) -> MotionSet:
     none = 'has no scale factor: scale = "list" takes those of PEER\'s _SearchResults.csv in its folder'
     several = 'has no scale factor that all its records share: scale them by its factors, and leave out scale = "list"'
     unusable = [
-        Unusable(m.name, m.files, f"{m.label} {several if len(m.records) > 1 else none}", station=m.of_station)
+        Unusable(m.name, m.sources, f"{m.label} {several if len(m.records) > 1 else none}", station=m.of_station)
         for m in lacking
     ]
     scaled = []
@@ -182,22 +180,24 @@ def scale_verticals(
     if target is None and scale == 1.0:
         return motion_set
     factors: dict[str, float] = {}
-    reasons: dict[str, str] = {}
+    alone: dict[str, Motion] = {}
     if target is not None:
         as_recorded = [replace(m, vertical=recorded[m.name]) for m in motion_set.motions if m.vertical is not None]
-        named = [motion.of_station for motion in motion_set.motions if fits_any(motion.name, confirmed)]
-        scaled = at_target(MotionSet(verticals(as_recorded)), target, gravity, named)
-        factors = {motion.name: motion.factor for motion in scaled}
-        reasons = {file.name: file.reason for file in scaled.unusable}
+        alone = {motion.name: motion for motion in verticals(as_recorded)}
+        factors = dict(zip(alone, target.factors_of([*alone.values()], gravity), strict=True))
+    named = {motion.of_station for motion in motion_set.motions if fits_any(motion.name, confirmed)}
     motions: list[Motion] = []
     unusable: list[Unusable] = []
     for motion in motion_set.motions:
         station, unscaled = motion.of_station, recorded[motion.name]
         if motion.vertical is None or unscaled is None:
             motions.append(motion)
-        elif station in reasons:
-            reason = reasons[station].replace(f'["{station}"]', f'["{motion.name}"]')
-            unusable.append(Unusable(motion.name, motion.files, f"its vertical component {reason}"))
+        elif station in alone and (
+            refusal := _refusal(
+                replace(alone[station], name=motion.name), factors[station], target, gravity, station in named
+            )
+        ):
+            unusable.append(Unusable(motion.name, motion.sources, f"its vertical component {refusal}"))
         else:
             factor = factors.get(station, motion.factor) * scale
             words = [f"vertical scaled by {factors[station]:.4g} to {target}"] if station in factors else []
@@ -215,12 +215,21 @@ def _without_pair(motions: Sequence[Motion], target: Target | SpectrumTarget) ->
     for station in grouped(motions, lambda motion: motion.of_station).values():
         if obstacle := pairing_obstacle(station):
             reason = f'no pair for pairs = "{target.pairs}": {obstacle}; write pairs = "apart", or leave it out'
-            unusable += [Unusable(motion.name, motion.files, reason) for motion in station]
+            unusable += [Unusable(motion.name, motion.sources, reason) for motion in station]
     return unusable
 
 
-def _too_weak(motion: Motion, factor: float, target: SpectrumTarget, gravity: float) -> str:
-    """Return the reason to refuse a motion that needs a ``factor`` above ``MOST_FACTOR``, with the PGA [g] that it would have."""
+def _refusal(
+    motion: Motion, factor: float, target: Target | SpectrumTarget | None, gravity: float, confirmed: bool
+) -> str:
+    """Return the reason to refuse a motion at rest, or one that needs more than ``MOST_FACTOR`` to meet a spectrum; else "".
+
+    The second one has the PGA [g] that it would have; it is used if ``confirmed``.
+    """
+    if math.isinf(factor):
+        return f"has no motion that can be scaled to {target}"
+    if confirmed or factor <= MOST_FACTOR or not isinstance(target, SpectrumTarget):
+        return ""
     vertical = "" if motion.pga_vertical is None else f", vertical {factor * motion.pga_vertical / gravity:.2g} g"
     return (
         f"takes {factor:.3g} times its motion, PGA {factor * motion.pga / gravity:.2g} g{vertical}, to meet {target}; a weak "

@@ -48,7 +48,7 @@ def selected(motion_set: MotionSet, selection: Selection, gravity: float = GRAVI
     for motion in motion_set.motions:
         if "magnitude" in ranges and motion.magnitude is None:
             reason = "selected by magnitude, which is not known; write magnitude in motions.toml"
-            unusable.append(Unusable(motion.name, motion.files, reason))
+            unusable.append(Unusable(motion.name, motion.sources, reason))
             continue
         outside = []
         for key, (low, high) in ranges.items():
@@ -57,7 +57,7 @@ def selected(motion_set: MotionSet, selection: Selection, gravity: float = GRAVI
                 outside.append(f"{key} = {value:.4g} is not within {low:g}..{high:g}")
         if outside:
             left_out.append(
-                LeftOut(motion.name, motion.files, f"not selected: {', '.join(outside)}", motion.of_station)
+                LeftOut(motion.name, motion.sources, f"not selected: {', '.join(outside)}", motion.of_station)
             )
         else:
             chosen.append(motion)

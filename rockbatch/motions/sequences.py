@@ -6,8 +6,9 @@ ends with 0. P is long, so that this is far below the acceleration that lifts a 
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import TypeVar
 
 import numpy as np
@@ -309,8 +310,10 @@ def _with_common_origin(parts: Sequence[Motion], whole: Motion) -> Motion:
     """
     return replace(
         whole,
-        source=_in_turn(part.source for part in parts),
-        vertical_source=_in_turn(part.vertical_source for part in parts),
+        source=", ".join(_in_turn((part.source,) for part in parts)),
+        vertical_source=", ".join(_in_turn((part.vertical_source,) for part in parts)),
+        sources=_in_turn(part.sources for part in parts),
+        recorded=any(part.recorded for part in parts),
         findings=tuple(dict.fromkeys(finding for part in parts for finding in part.findings)),
         station=" + ".join(sorted({part.of_station for part in parts})),  # the same for any order and repetition
         origin=UNKNOWN_ORIGIN,
@@ -331,9 +334,9 @@ def _listed_of_all(lists: Sequence[Listed]) -> Listed:
     return Listed(**shared | {"d5_95_s": None})
 
 
-def _in_turn(sources: Iterable[str]) -> str:
-    """Return the sources once each, joined by ", then "; empty ones are skipped."""
-    return ", then ".join(dict.fromkeys(filter(None, sources)))
+def _in_turn(sources: Iterable[Iterable[str]]) -> tuple[str, ...]:
+    """Return the sources of all shocks in their order, once each; empty ones are skipped."""
+    return tuple(dict.fromkeys(filter(None, chain.from_iterable(sources))))
 
 
 def _common(values: Iterable[T]) -> T | None:
@@ -374,21 +377,15 @@ def add_sequences(
     for name, whole in parts.items():
         if name not in alone:
             reason = f"a shock of the sequence {shown(whole)}; alone = true there also runs it on its own"
-            refused.append(LeftOut(name, by_name[name].files, reason, sources=by_name[name].sources))
+            refused.append(LeftOut(name, by_name[name].sources, reason))
     parts_only = parts.keys() - alone
-    pulse_names = {pulse.name for pulse in pulses}
-    as_pulses = [motion for motion in joined_motions if is_pulse(motion, pulse_names)]
+    as_pulses = [motion for motion in joined_motions if not motion.recorded]
     records = [motion for motion in motions.motions if motion.name not in parts_only]
     records += [motion for motion in joined_motions if motion not in as_pulses]
     unusable = [file for file in refused if isinstance(file, Unusable)]
     left_out = [file for file in refused if isinstance(file, LeftOut)]
     pulses_alone = [pulse for pulse in pulses if pulse.name not in parts_only]
     return motions.reduced_to(records, unusable, left_out), pulses_alone + as_pulses
-
-
-def is_pulse(motion: Motion, pulses: Set[str]) -> bool:
-    """Return whether a motion is one of the ``pulses`` of these names, or a sequence of these alone: no target scales it."""
-    return {*motion.records} <= pulses
 
 
 def _sequence_or_refusal(
@@ -408,14 +405,14 @@ def _sequence_or_refusal(
         raise InputError(*(f"[[motions.sequence]] {shown(entry.name)}: {message}" for message in (*taken, *unknown)))
     # if only one file beside the manifest is read, or rotation has renamed the records
     if len(unknown) == len(entry.records):
-        return LeftOut(entry.name, source, f"none of its records is read: {unknown[0]}")
+        return LeftOut(entry.name, (source,), f"none of its records is read: {unknown[0]}")
     if not missing and not taken:
         try:
             return entry.as_motion([by_name[name] for name in entry.records])
         except InputError as error:
             reasons_of_parts = list(error.messages)
     reason = f"sequence {shown(entry.name)}: {'; '.join((*taken, *reasons_of_parts, *unknown))}"
-    return Unusable(entry.name, source or "[[motions.sequence]]", reason)
+    return Unusable(entry.name, (source or "[[motions.sequence]]",), reason)
 
 
 def _unknown_record(name: str, records: Mapping[str, Motion]) -> str:

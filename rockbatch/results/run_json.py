@@ -17,7 +17,6 @@ from rockbatch.motions import MotionSet
 from rockbatch.motions.description import entry, spectra
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.scaling import verticals
-from rockbatch.motions.sequences import is_pulse
 from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
 from rockbatch.pier import Base, Damper, DeckSpring, Pier, Stop, Tendon, described
 from rockbatch.pier.bases import BASES
@@ -118,6 +117,7 @@ SHAPE = {
             "factor": Maybe(float),
             "vertical_factor": Maybe(float),
             "processed": Maybe((bool, None)),
+            "recorded": Maybe(bool),
             "digest": Maybe(str),
             "findings": Maybe([{"what": str}]),
         }
@@ -163,8 +163,7 @@ def describe(study: Study, motions: MotionSet) -> Row:
     gravity = study.cases[0].pier.gravity
     target = study.motions.target if isinstance(study.motions.target, SpectrumTarget) else None
     compared = target is not None and target.factors == "none"
-    pulses = {pulse.name for pulse in study.motions.pulses}
-    fitted = [motion for motion in motions.motions if compared or not is_pulse(motion, pulses)]
+    fitted = [motion for motion in motions.motions if compared or motion.recorded]
     with_pulses = target is not None or study.output.has("intensity")
     labels = motions.labels
     return {
@@ -186,7 +185,7 @@ def describe(study: Study, motions: MotionSet) -> Row:
         ),
         **_vertical_target(study, motions, gravity),
         "unusable": [_not_used(file) for file in motions.unusable],
-        "left_out": [asdict(file) for file in motions.left_out],
+        "left_out": [{"source": file.source} | asdict(file) for file in motions.left_out],
         "references": [asdict(reference) for reference in study.references],
     }
 
@@ -194,7 +193,7 @@ def describe(study: Study, motions: MotionSet) -> Row:
 def _not_used(file: Unusable) -> Row:
     """Return the entry of a file that is not used: its fields without the motion, what it ``lacks``, and its problem's class."""
     entry = {name: value for name, value in vars(file).items() if name != "motion"}
-    return entry | {"lacks": list(file.lacks), "kind": file.kind.__name__}
+    return {"source": file.source} | entry | {"lacks": list(file.lacks), "kind": file.kind.__name__}
 
 
 def describe_study(study: Study) -> dict[str, str]:

@@ -120,7 +120,7 @@ def _with_pairs(motions: MotionSet, pulses: Sequence[Motion]) -> tuple[MotionSet
     )
     lacking = [motion for motion in (*motions, *pulses) if motion.across is None]
     unusable = [
-        Unusable(motion.name, motion.files or motion.name, f"{motion.name} {reason}", station=motion.of_station)
+        Unusable(motion.name, motion.sources or (motion.name,), f"{motion.name} {reason}", station=motion.of_station)
         for motion in lacking
     ]
     paired = [motion for motion in motions if motion.across is not None]

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from check_samples import RIGID, folder, runs, verdict
+from motion_files import wiggle, write_at2
 from report_page import Page
 from studies import RIGID as RIGID_BASE
 from studies import SINE, study_text, write_study
@@ -16,7 +17,7 @@ import rockbatch as rb
 from rockbatch.checks import read_verdicts, wording
 from rockbatch.checks.answer import answer
 from rockbatch.checks.scorecard import scorecard
-from rockbatch.checks.suite_target import Condition, _verdict, suite_verdicts
+from rockbatch.checks.suite_target import Condition, _verdict, suite_of, suite_verdicts
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
 from rockbatch.commands.cli import main
 from rockbatch.motions.design_spectra import TableSpectrum
@@ -392,3 +393,13 @@ def test_remarks_on_a_target_are_for_what_is_beyond_it_only(tmp_path, keys, rema
     one_each = list({motion.of_station: motion for motion in motions}.values())
     assert len(target.remarks(one_each)) == remarks - ("pairs" not in keys)
     assert not replace(target, spectrum=TableSpectrum((0.1, 4.0), (1.0, 0.2))).remarks(motions)
+
+
+def test_a_record_in_a_file_called_pulse_is_recorded_and_a_pulse_of_any_name_is_not(tmp_path):
+    write_at2(tmp_path, "pulse", wiggle(400), title="Made-up, 1/17/1994, Test Station, 000")
+    motions = {"path": str(tmp_path / "pulse"), "vertical": False}
+    pulses = [SINE | {"name": "of a formula"}]
+    study = load_study(write_study(tmp_path, study_text(pulses=pulses, cases=[RIGID_BASE], motions=motions)))
+    found = ground_motions(study)
+    assert [motion.source for motion in found] == ["pulse", "pulse"]
+    assert suite_of(describe(study, found)).unrecorded == {"of a formula"}

@@ -42,7 +42,8 @@ def test_a_pair_becomes_one_motion_along_the_axis_with_the_vertical_of_its_stati
     np.testing.assert_allclose(motion.horizontal, expected, rtol=1e-5, atol=1e-7)  # AT2 has seven digits
     np.testing.assert_allclose(motion.vertical, up[:70], rtol=1e-6)
     assert (motion.name, motion.azimuth) == ("RSN7_X_STA_az030", 30.0)
-    assert motion.source == "RSN7_X_STA000.AT2 + RSN7_X_STA090.AT2"
+    assert motion.sources == ("RSN7_X_STA000.AT2", "RSN7_X_STA090.AT2", "RSN7_X_STA-UP.AT2")
+    assert motion.source == "RSN7_X_STA000.AT2, RSN7_X_STA090.AT2"
     assert "turned to 30° from RSN7_X_STA000 and RSN7_X_STA090" in motion.notes
     assert any(note.startswith("common span: 0.69 s of 0.79 s RSN7_X_STA000") for note in motion.notes)
 

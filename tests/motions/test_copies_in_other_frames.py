@@ -201,7 +201,7 @@ def test_a_turned_copy_at_another_station_of_the_network_is_another_recording(ot
     first = earthquake(1)
     sets = (("a", Sensor("A", "CI"), first, 0.0), ("b", other, turned(*first, 30.0), 30.0))
     components = [
-        Component(f"{name}{k}", 0.01, values, Orientation("", azimuth=azimuth + 90.0 * k), source=f"{name}{k}", folder=name,
+        Component(f"{name}{k}", 0.01, values, Orientation("", azimuth=azimuth + 90.0 * k), sources=(f"{name}{k}",), folder=name,
                   sensor=sensor, station=name)
         for name, sensor, pair, azimuth in sets for k, values in enumerate(pair)
     ]  # fmt: skip
@@ -216,7 +216,7 @@ def test_other_recordings_are_hardly_compared_in_any_frame(monkeypatch):
     plain = likeness._greatest_likeness
     monkeypatch.setattr(likeness, "_greatest_likeness", lambda *sets: (compared.append(sets), plain(*sets))[1])
     components = [
-        Component(f"{n}.{k}", 0.01, values, Orientation("", azimuth=90.0 * k), source=f"{n}.{k}", station=str(n))
+        Component(f"{n}.{k}", 0.01, values, Orientation("", azimuth=90.0 * k), sources=(f"{n}.{k}",), station=str(n))
         for n in range(60) for k, values in enumerate(earthquake(n))
     ]  # fmt: skip
     assert len(doubles.without_doubles(components)[0]) == 120

@@ -437,7 +437,7 @@ NORTH, EAST = Sensor("S1"), Sensor("S2")
 )
 def test_two_horizontals_of_one_sensor_are_skew_beyond_30_degrees_off_a_right_angle(sensors, azimuths, skew):
     pair = [
-        Component(name, 0.01, wiggle(100), Orientation(name, azimuth=azimuth), source=name, sensor=sensor)
+        Component(name, 0.01, wiggle(100), Orientation(name, azimuth=azimuth), sources=(name,), sensor=sensor)
         for name, sensor, azimuth in zip("ab", sensors, azimuths, strict=True)
     ]
     said = _skew_pair(*pair)

@@ -279,7 +279,13 @@ def test_two_channels_of_unknown_direction_do_not_contradict_each_other():
     def denied(label):
         made = [
             Component(
-                f"c{k}", 0.01, wiggle(seed=k), Orientation(label), source=f"{k}.x", sensor=Sensor("A", "CI"), event="E"
+                f"c{k}",
+                0.01,
+                wiggle(seed=k),
+                Orientation(label),
+                sources=(f"{k}.x",),
+                sensor=Sensor("A", "CI"),
+                event="E",
             )
             for k in (1, 2)
         ]
@@ -296,7 +302,9 @@ def test_two_channels_of_unknown_direction_do_not_contradict_each_other():
 )  # fmt: skip
 def test_a_copy_with_another_peak_says_how_many_times_that_of_the_one_in_use(peak, factor, said):
     used = Component("used", 0.01, 2.0 * np.sin(np.arange(1, 200) * np.pi / 4.0), Orientation("NS"))
-    copy = Component("copy", 0.01, peak * np.sin(np.arange(1, 200) * np.pi / 4.0), Orientation("NS"), source="copy.AT2")
+    copy = Component(
+        "copy", 0.01, peak * np.sin(np.arange(1, 200) * np.pi / 4.0), Orientation("NS"), sources=("copy.AT2",)
+    )
     finding = _finding_on_copy(copy, used, factor, decided=True)
     assert (finding is not None) == bool(said)
     assert finding is None or (said in finding.text and not finding.gross)

@@ -118,9 +118,9 @@ def test_a_record_that_begins_or_ends_in_the_strong_motion_has_a_finding(tmp_pat
 
 def test_copies_of_one_sample_a_second_cost_no_other_record():
     sensor, moment = Sensor("AAA", "XX", ""), 1.7e9
-    fine = Component("fine", DT, A, Orientation("N", azimuth=0.0), source="f", start=moment, sensor=sensor)
-    slow = Component("slow", 1.0, A[::100], Orientation("N", azimuth=0.0), source="s", start=moment, sensor=sensor)
-    copy = Component("copy", 1.0, A[::100], Orientation("N", azimuth=0.0), source="c", start=moment, sensor=sensor)
+    fine = Component("fine", DT, A, Orientation("N", azimuth=0.0), sources=("f",), start=moment, sensor=sensor)
+    slow = Component("slow", 1.0, A[::100], Orientation("N", azimuth=0.0), sources=("s",), start=moment, sensor=sensor)
+    copy = Component("copy", 1.0, A[::100], Orientation("N", azimuth=0.0), sources=("c",), start=moment, sensor=sensor)
     used, left_out = without_doubles([fine, slow, copy])
     assert len(used) + len(left_out) == 3
     assert left_out

@@ -102,7 +102,7 @@ def test_the_coarser_component_is_interpolated_and_keeps_its_own_samples(tmp_pat
 
 
 def component(values, dt=0.01, vertical=False, start=None, **more):
-    return Component("c", dt, np.asarray(values, float), Orientation("x", vertical), "S", "/f", "c.x", start, **more)
+    return Component("c", dt, np.asarray(values, float), Orientation("x", vertical), "S", "/f", ("c.x",), start, **more)
 
 
 def test_a_coarse_horizontal_is_brought_to_the_vertical_samples():

@@ -113,7 +113,7 @@ def test_of_geonet_in_mm():
 
 def component(values, azimuth=None, start=None, initial=None, dt=0.01) -> Component:
     way = Orientation("UP", vertical=True) if azimuth is None else Orientation(f"{azimuth:g}", azimuth=azimuth)
-    return Component(f"c{way.label}", dt, values, way, "S", "/f", f"{way.label}.x", start, initial=initial)
+    return Component(f"c{way.label}", dt, values, way, "S", "/f", (f"{way.label}.x",), start, initial=initial)
 
 
 def ground(motion: Motion) -> tuple[np.ndarray, np.ndarray]:

@@ -313,7 +313,7 @@ def test_mistakes_come_in_one_order_whatever_the_hashes_of_texts(tmp_path):
 
 
 def test_an_entry_of_a_whole_file_is_for_none_of_its_components():
-    without_number = Unusable("a", "a.txt", "it ends early")
+    without_number = Unusable("a", ("a.txt",), "it ends early")
     assert not Entry(Path("a.txt"), None, {}).is_for(without_number)
     assert Entry(Path("a.txt"), None, {"component": 2}).is_for(replace(without_number, number=2))
     assert not Entry(Path("a.txt"), None, {"component": 0}).is_for(without_number)

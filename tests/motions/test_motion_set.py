@@ -16,7 +16,7 @@ def motion(name, pga, vertical=None):
 
 
 FOUND = rb.MotionSet(
-    [motion("weak", 0.981), motion("strong", 4.905, vertical=-1.962)], [Unusable("bad", "bad.txt", "it ends early")]
+    [motion("weak", 0.981), motion("strong", 4.905, vertical=-1.962)], [Unusable("bad", ("bad.txt",), "it ends early")]
 )
 
 
@@ -82,7 +82,7 @@ def test_components_of_a_station_stand_together():
 
 
 def test_what_could_not_be_used_is_printed_as_its_file_and_the_reason():
-    assert str(FOUND.unusable[0]) == str(LeftOut("bad", "bad.txt", "it ends early")) == "bad.txt: it ends early"
+    assert str(FOUND.unusable[0]) == str(LeftOut("bad", ("bad.txt",), "it ends early")) == "bad.txt: it ends early"
 
 
 def test_a_notebook_shows_the_first_of_many_rows_and_escapes_names():

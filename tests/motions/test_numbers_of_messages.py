@@ -37,7 +37,7 @@ A = wiggle(400, 3, 1.0)
 
 
 def component(name, azimuth=0.0, *, dt=0.01, samples=A, **rest):
-    return Component(name, dt, samples, Orientation(name[-3:], azimuth=azimuth), source=f"{name}.AT2", **rest)
+    return Component(name, dt, samples, Orientation(name[-3:], azimuth=azimuth), sources=(f"{name}.AT2",), **rest)
 
 
 def motion(name, azimuth=0.0, *, dt=0.01, samples=A, **rest):
@@ -206,7 +206,7 @@ MESSAGES = {
         lambda: _reason(replace(FIRST, processed=False), replace(SECOND, processed=True), 0.45),
         ["less corrected", 0.45, "times as large", "second_090.AT2"],
     ),
-    "a copy": (lambda: _reason(FIRST, replace(FIRST, source="other.AT2"), None), ["copy of other.AT2"]),
+    "a copy": (lambda: _reason(FIRST, replace(FIRST, sources=("other.AT2",)), None), ["copy of other.AT2"]),
     "a copy of another size": (
         lambda: _finding_on_copy(FIRST, SECOND, 2.5, decided=True).text,
         ["first_000.AT2", 2.5],

@@ -36,13 +36,13 @@ def found():
             motion("odder", 0.2, findings=ODD),
         ],
         [
-            Unusable("B1", "B1.txt", "no unit", lacks=("unit",), station="B"),
-            Unusable("B2", "B2.txt", "no unit", lacks=("unit",), station="B"),
-            Unusable("cut", "cut.txt", "ends early"),
-            Unusable("which", "which.txt", "two ways", kind=Contradiction),
-            Unusable("tiny", "tiny.txt", "PGA outside", motion=held),
+            Unusable("B1", ("B1.txt",), "no unit", lacks=("unit",), station="B"),
+            Unusable("B2", ("B2.txt",), "no unit", lacks=("unit",), station="B"),
+            Unusable("cut", ("cut.txt",), "ends early"),
+            Unusable("which", ("which.txt",), "two ways", kind=Contradiction),
+            Unusable("tiny", ("tiny.txt",), "PGA outside", motion=held),
         ],
-        [LeftOut("meta", "meta.json", "no record"), LeftOut("twin", "twin.txt", "a copy of weak.txt", of="weak.txt")],
+        [LeftOut("meta", ("meta.json",), "no record"), LeftOut("twin", ("twin.txt",), "a copy of weak.txt", of="weak.txt")],
     )  # fmt: skip
 
 

@@ -47,7 +47,7 @@ def simulated(rng, count, samples=400):
     """Components of random motions of one length and envelope, all to the north, as a simulated suite has them."""
     t = np.arange(samples) / samples
     return [
-        Component(f"r{i}", 0.02, a, Orientation("000", azimuth=0.0), source=f"r{i}.AT2")
+        Component(f"r{i}", 0.02, a, Orientation("000", azimuth=0.0), sources=(f"r{i}.AT2",))
         for i, a in enumerate(rng.normal(size=(count, samples)) * t * np.exp(-4.0 * t))
     ]
 
@@ -62,7 +62,7 @@ def with_copies(rng, suite):
         lambda a: a + rng.uniform(0.1, 0.5) * a.std() * rng.normal(size=len(a)),
     ]
     changed = [rng.choice(changes)(suite[i].acceleration) for i in rng.integers(len(suite), size=len(suite) // 2)]
-    copies = [replace(suite[0], name=f"c{i}", source=f"c{i}.AT2", acceleration=a) for i, a in enumerate(changed)]
+    copies = [replace(suite[0], name=f"c{i}", sources=(f"c{i}.AT2",), acceleration=a) for i, a in enumerate(changed)]
     return [(suite + copies)[i] for i in rng.permutation(len(suite) + len(copies))]
 
 
@@ -105,7 +105,7 @@ def test_spectra_rule_out_no_copy_that_the_samples_tell(change):
         "another scale": (981.0 * a, 0.01),
     }[change]
     north = Orientation("000", azimuth=0.0)
-    one, two = Component("a", 0.01, a, north, source="a"), Component("b", dt, b, north, source="b")
+    one, two = Component("a", 0.01, a, north, sources=("a",)), Component("b", dt, b, north, sources=("b",))
     assert list(candidates.Candidates([one, two]).similar_pairs()) == [(0, 1)]
 
 
@@ -118,8 +118,8 @@ def test_steps_that_differ_by_half_a_per_cent_are_not_one_step():
         return np.interp(times, np.linspace(0.0, 40.0, 400), noise)
 
     one, two = (
-        Component("a", 0.01, shaken(t), north, source="a"),
-        Component("b", 0.01005, shaken(fine), north, source="b"),
+        Component("a", 0.01, shaken(t), north, sources=("a",)),
+        Component("b", 0.01005, shaken(fine), north, sources=("b",)),
     )
     assert likeness._are_one_recording(one, two)
 

@@ -59,7 +59,7 @@ def test_a_record_that_ends_at_rest_is_followed_by_no_motion_at_all():
     whole = rb.sequence([pulse, pulse], pause=5.0)
     assert not whole.horizontal[pulse.npts : round(whole.shocks[1].start / 0.01)].any()
     assert not any("rest" in note for note in whole.notes)
-    assert whole.source == "pulse"
+    assert (whole.sources, whole.recorded) == (("pulse",), False)
     assert measures.pgd(whole.horizontal, 0.01) == pytest.approx(2.0 * measures.pgd(pulse.horizontal, 0.01))
 
 
@@ -283,3 +283,11 @@ def test_a_strong_sequence_can_be_confirmed_as_a_whole():
     (said,) = unlikely_samples(rb.sequence([strong, weak]), 9.81)
     assert said.endswith('write confirm = ["pga"]')
     assert unlikely_samples(rb.sequence([strong, weak], confirm=["pga"]), 9.81) == []
+
+
+def test_a_sequence_has_the_sources_of_its_shocks_and_is_recorded_if_one_is():
+    one = record("a", source="a.AT2", vertical_source="a-UP.AT2")
+    pulse = rb.pulse("sine", name="p", amplitude=2.0, period=1.0, dt=0.01, duration=4.0)
+    both = rb.sequence([one, pulse, one])
+    assert (both.sources, both.source, both.recorded) == (("a.AT2", "a-UP.AT2", "pulse"), "a.AT2, pulse", True)
+    assert not rb.sequence([pulse, Motion.still(5.0, 0.01)]).recorded

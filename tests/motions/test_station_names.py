@@ -183,7 +183,7 @@ def test_components_without_times_are_one_record_unless_one_repeats_a_direction(
     """An event that both headers state is as good as a time."""
     both = [
         replace(
-            component("x", event=event, site=f"site {i}", source=f"x{i}.txt"),
+            component("x", event=event, site=f"site {i}", sources=(f"x{i}.txt",)),
             orientation=Orientation("H", azimuth=azimuth),
         )
         for i, (event, azimuth) in enumerate(zip(events, azimuths, strict=True))

@@ -285,3 +285,25 @@ def test_of_two_sets_the_one_that_is_called_raw_is_left_out(tmp_path, place):
     found = read_motions(tmp_path)
     assert len(found.motions) == 2
     assert all("published" in motion.source and "published" in motion.vertical_source for motion in found.motions)
+
+
+# Sources
+
+
+def test_a_file_with_a_plus_in_its_name_is_one_source(tmp_path):
+    write_at2(tmp_path, "A + B 000.AT2", wiggle(400), title="Made-up, 1/17/1994, Test Station, 000")
+    write_at2(tmp_path, "the copy of A + B 000.AT2", wiggle(400), title="Made-up, 1/17/1994, Test Station, 000")
+    found = read_motions(tmp_path)
+    assert [motion.sources for motion in found] == [("A + B 000.AT2",)]
+    (reason,) = left_out(found).values()
+    assert reason.startswith("a copy of A + B 000.AT2, which is used")
+
+
+def test_a_copy_of_both_horizontals_of_a_rotated_motion_is_of_files_that_are_used(tmp_path):
+    for folder in ("a", "b"):
+        for seed, way in enumerate(("000", "090"), 1):
+            write_at2(tmp_path / folder, f"RSN7_X_STA{way}.AT2", wiggle(80, seed), title=f"X, 1/17/1994, STA, {way}")
+    found = read_motions(tmp_path, azimuths=(30.0,))
+    assert [motion.sources for motion in found] == [("a/RSN7_X_STA000.AT2", "a/RSN7_X_STA090.AT2")]
+    assert all("which is used" in reason for reason in left_out(found).values())
+    assert [double.sources for double in found.left_out] == [("b/RSN7_X_STA000.AT2",), ("b/RSN7_X_STA090.AT2",)]

@@ -50,14 +50,14 @@ def test_a_folder_of_no_record_or_one_has_a_page(tmp_path, count):
 def test_more_records_than_a_table_shows_are_counted():
     text = page(MotionSet([motion(f"m{i}", 0.1, findings=()) for i in range(3)]), "t", "a")
     assert "rows are shown" not in Page(text).text
-    many = MotionSet([], [Unusable(f"u{i}", f"u{i}.txt", "cut") for i in range(1003)])
+    many = MotionSet([], [Unusable(f"u{i}", (f"u{i}.txt",), "cut") for i in range(1003)])
     assert "1,000 of 1,003 rows are shown" in Page(page(many, "t", "a")).text
 
 
 @needs_chromium
 def test_the_page_is_sorted_by_value_and_filtered_by_use(tmp_path):
     values = [0.2, 0.9, 0.05, 0.4, 0.1, 0.3, 0.7, 0.6, 0.15]
-    held = [Unusable("h", "h.txt", "no unit", lacks=("unit",))]
+    held = [Unusable("h", ("h.txt",), "no unit", lacks=("unit",))]
     path = tmp_path / "p.html"
     write_records(path, MotionSet([motion(f"m{i}", pga) for i, pga in enumerate(values)], held), "Records", "ten")
     act = """
@@ -88,8 +88,8 @@ def test_hostile_names_are_words_on_the_page_of_records(tmp_path, width):
         motion(text[:200], 0.1, source=text, origin=Origin(text, text, text), findings=(Finding(text, text),))
         for text in HOSTILE
     ]
-    unusable = [Unusable(text, text, text, lacks=(text,)) for text in HOSTILE]
-    left_out = [LeftOut(text, text, text, of=text) for text in HOSTILE]
+    unusable = [Unusable(text, (text,), text, lacks=(text,)) for text in HOSTILE]
+    left_out = [LeftOut(text, (text,), text, of=text) for text in HOSTILE]
     path = tmp_path / "p.html"
     write_records(path, MotionSet(motions, unusable, left_out), HOSTILE[0], HOSTILE[1])
     act = """

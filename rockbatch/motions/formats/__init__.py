@@ -182,7 +182,7 @@ def checked_reading(reading: Component | Unusable) -> Component | Unusable:
         refusal = f"found {len(reading.acceleration)} samples; {MOST_SAMPLES:,} are the most, more than a day: cut the event out"
     else:
         return reading
-    return Unusable(reading.name, reading.source, refusal, reading.orientation.label)
+    return Unusable(reading.name, reading.sources, refusal, reading.orientation.label)
 
 
 def _not_recognised(file: RecordFile) -> str:

@@ -90,7 +90,7 @@ def components_of_traces(
             except InputError as error:
                 lacks = error.keys if isinstance(error, Unstated) else ()
                 label, station = channel_id.rpartition(".")[2], _station(pieces[0])
-                readings.append(Unusable(name, source, str(error), label, lacks, station=station))
+                readings.append(Unusable(name, (source,), str(error), label, lacks, station=station))
     return readings
 
 
@@ -186,7 +186,7 @@ def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -
         orientation=decided_orientation(statements, stats.channel),
         statements=statements,
         station=f"{stats.network}.{stats.station}.{stats.location}.{stats.channel[:-1]}",
-        source=source,
+        sources=(source,),
         start=start,
         unit="" if entry is not None else unit,
         raw=True,

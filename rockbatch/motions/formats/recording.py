@@ -75,7 +75,7 @@ def to_components(file: RecordFile, recordings: Sequence[Recording]) -> list[Com
         try:
             readings.append(_component(file, recording, name, source))
         except InputError as error:
-            readings.append(Unusable(name, source, str(error), recording.label))
+            readings.append(Unusable(name, (source,), str(error), recording.label))
     return readings
 
 
@@ -101,7 +101,7 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         if orientation.known
         else (),
         station=recording.station,
-        source=source,
+        sources=(source,),
         start=recording.start,
         unit="" if recording.counts else recording.unit,
         raw=recording.processed is False if recording.raw is None else recording.raw,

@@ -77,7 +77,7 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
     numbers, names, samples = _parsed(file.data)
     station, location, channel, network = (names[name] for name in ("KSTNM", "KHOLE", "KCMPNM", "KNETWK"))
     if is_clock(channel):
-        return [Unusable(file.stem, file.source, "the recorder's clock, no ground motion", channel)]
+        return [Unusable(file.stem, (file.source,), "the recorder's clock, no ground motion", channel)]
     kind = _KINDS.get(int(numbers.get("IDEP", 0))) or not_acceleration(channel)
     if kind and "unit" not in options.instead:
         raise no_acceleration("its header says that it", kind)
@@ -100,7 +100,7 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
             orientation=decided_orientation(statements, channel),
             statements=statements,
             station=".".join((network, station, location, channel[:-1])) if station else "",
-            source=file.source,
+            sources=(file.source,),
             start=start,
             sensor=Sensor(
                 station if start >= FIRST_YEAR else "", network, location, depth_as_place(numbers.get("STDP"))
