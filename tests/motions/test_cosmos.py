@@ -158,6 +158,23 @@ def test_direction_is_by_the_text_else_by_the_sensors_code_else_by_the_seed_chan
     assert (way.vertical, way.down, way.azimuth) == expected
 
 
+@pytest.mark.parametrize(
+    ("text", "code", "said"),
+    [
+        ("90 Deg", 360, "90"),
+        ("S62W", 62, "S62W"),
+        ("North", 12, "North"),
+        ("S62W", 242, ""),
+        ("North", 360, ""),
+        ("N", 4, ""),
+    ],
+)
+def test_another_azimuth_in_the_sensors_code_is_remarked_though_the_text_decides(text, code, said):
+    (component,) = read(cosmos_text(direction=text, azimuth_code=code, scnl=""), "x.V2c")
+    words = [f'its header says "{said}", but code {code} (integer 54); decided by: the text; check which is right']
+    assert [finding.text for finding in component.findings] == words * bool(said)
+
+
 def test_a_clock_that_was_not_set_gives_no_start():
     assert read(cosmos_text(clock=(-999,) * 5), "x.V1")[0].start is None
     assert read(cosmos_text(clock=(2018, 13, 30, 17, 29)), "x.V1")[0].start is None

@@ -43,6 +43,7 @@ class Recording:
     counts: bool = False  # whether the file has counts with a scale, and so no unit of its own
     as_read: Samples | None = None  # accelerations before interpolation, with the stated peak and count
     notes: tuple[str, ...] = ()  # on processing
+    findings: tuple[Finding, ...] = ()  # contradictions within the header
     origin: Origin = UNKNOWN_ORIGIN  # event and station in words, by the header
     header: dict[str, str] = field(default_factory=dict)  # further facts, for ObsPy
 
@@ -111,7 +112,7 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         origin=recording.origin,
         initial=initial_of(acceleration, recording.dt, *series) or recording.initial,
         notes=(*recording.notes, *differences),
-        findings=findings,
+        findings=(*recording.findings, *findings),
     )
 
 
