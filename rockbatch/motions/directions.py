@@ -53,7 +53,7 @@ def _judge_set(station: Sequence[Component]) -> list[Component]:
     if contradictions:
         return [_held_back(c, contradictions.get(i, ""), components, contradictions) for i, c in enumerate(components)]
     remarked = [_with_remark(component) for component in components]
-    return list(map(_with_doubt, remarked)) if _is_independent_triple(components) else remarked
+    return list(map(_with_doubt, remarked)) if _leave_a_plane(components) else remarked
 
 
 def _held_back(
@@ -256,27 +256,31 @@ def _skew_pair(a: Component, b: Component) -> str:
     return f"{_components_and_statements(a, b)} are {abs(first - second):g}° apart, and no sensor's horizontal components are"
 
 
-def _is_independent_triple(components: Sequence[Component]) -> bool:
-    """Return whether a set is three horizontals of one sensor, not all stated by the user, that are no motion in a plane.
+def _leave_a_plane(components: Sequence[Component]) -> bool:
+    """Return whether a set is horizontals of one sensor, not all stated by the user, of which three are no motion in a plane.
 
-    For those in a plane sin(φ₂ − φ₃) a₁ + sin(φ₃ − φ₁) a₂ + sin(φ₁ − φ₂) a₃ = 0. False for several sensors, files of
+    For three in a plane sin(φ₂ − φ₃) a₁ + sin(φ₃ − φ₁) a₂ + sin(φ₁ − φ₂) a₃ = 0. False for several sensors, files of
     different steps or starts, and unknown azimuths.
     """
     azimuths = [c.orientation.azimuth for c in components if c.orientation.azimuth is not None]
-    if not len(components) == len(azimuths) == 3 or all(map(_by_user, components)):
+    if not len(components) == len(azimuths) > 2 or all(map(_by_user, components)):
         return False
     if len({(c.sensor, c.start, c.dt) for c in components}) > 1:
         return False
     phi = np.radians(azimuths)
     shortest = min(len(c.acceleration) for c in components)
-    across = np.sin(np.roll(phi, -1) - np.roll(phi, -2))[:, None]
-    turned = across * np.array([c.acceleration[:shortest] for c in components])
-    return bool(np.linalg.norm(turned.sum(axis=0)) > _IN_A_PLANE * np.linalg.norm(turned))
+    samples = np.array([c.acceleration[:shortest] for c in components])
+    products = samples @ samples.T
+    for three in map(list, combinations(range(len(components)), 3)):
+        across = np.sin(np.roll(phi[three], -1) - np.roll(phi[three], -2))
+        if across @ products[np.ix_(three, three)] @ across > _IN_A_PLANE**2 * across**2 @ products[three, three]:
+            return True
+    return False
 
 
 def _with_doubt(component: Component) -> Component:
-    """Return a component with a finding that it is one of three horizontals that are no motion in a plane."""
-    text = "one of three horizontal directions of one sensor that are no motion in a plane: is one vertical?"
+    """Return a component with a finding that it is one of several horizontals that are no motion in a plane."""
+    text = "one of several horizontal directions of one sensor that are no motion in a plane: is one vertical?"
     return replace(component, findings=(*component.findings, Finding("direction", text)))
 
 

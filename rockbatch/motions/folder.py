@@ -36,6 +36,7 @@ from rockbatch.motions.orientation import (
     accidental,
     counted,
     direction_of_suffix,
+    in_numbered_sets,
     is_clock,
     numbered,
     split_stem,
@@ -322,7 +323,7 @@ def _names(files: Sequence[SourceFile]) -> dict[Path, tuple[str, Orientation | N
     for paths in grouped((file.path for file in files), lambda path: path.parent).values():
         stems = {path: archives.bare(path).stem for path in paths}
         by_chance = set.union(*(rule(stems.values()) for rule in (counted, numbered, accidental)))
-        apart = told_apart(stems.values())
+        apart, in_sets = told_apart(stems.values()), in_numbered_sets(stems.values())
         alone = {stem: (stem, None) if stem in by_chance else split_stem(stem) for stem in stems.values()}
         ends = grouped(apart.items(), lambda told: told[1][0])
         shared = {site for site, of_site in ends.items() if len({alone[stem][1] for stem, _ in of_site}) == 1}
@@ -331,6 +332,7 @@ def _names(files: Sequence[SourceFile]) -> dict[Path, tuple[str, Orientation | N
             # where all names of a site end in x, x is no direction
             if found_apart and (found[1] is None or found_apart[0] in shared):
                 found = found_apart
+            found = in_sets.get(stem, found)
             names[path] = found[0], found[1] or direction_of_suffix(archives.bare(path).suffix)
     return names
 

@@ -343,6 +343,26 @@ def told_apart(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:
     return split_stems
 
 
+def in_numbered_sets(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:
+    """Return station's part and orientation of stems whose direction is followed by the number of their set: a_NS1, a_EW1, a_NS2.
+
+    Of a station two sets at least must have the same directions, north and east among them. KiK-net numbers its sensors.
+    """
+    sets: dict[str, dict[str, dict[str, Orientation]]] = {}
+    for stem in stems:
+        parts = re.fullmatch(r"(.*[-_. ])?([A-Za-z]+)(\d{1,2})", stem)
+        orientation = orientation_of(parts[2]) if parts and not KIK_NET.match(stem) else None
+        if parts and orientation:
+            sets.setdefault(parts[1] or "", {}).setdefault(parts[3], {})[stem] = orientation
+    split_stems: dict[str, tuple[str, Orientation]] = {}
+    for site, of_site in sets.items():
+        first, *others = (Counter((o.vertical, o.azimuth) for o in members.values()) for members in of_site.values())
+        if others and all(other == first for other in others) and {(False, 0.0), (False, 90.0)} <= first.keys():
+            for number, members in of_site.items():
+                split_stems |= {stem: (f"{site}{number}", orientation) for stem, orientation in members.items()}
+    return split_stems
+
+
 def _in_series(numbers: Iterable[int]) -> bool:
     """Return whether two of the numbers, as azimuths [degrees], are more than 45° off a right angle and not parallel."""
     return any(0 < abs((a - b + 90) % 180 - 90) < 45 for a, b in combinations(set(numbers), 2))

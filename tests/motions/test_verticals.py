@@ -1,12 +1,14 @@
 """Which of the components of a set is the vertical one, where names and headers do not say it plainly."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 from motion_files import wiggle, write_at2
 from waveform_files import channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.motions import read_motions
-from rockbatch.motions.orientation import split_stem
+from rockbatch.motions.orientation import in_numbered_sets, split_stem
 
 COMPONENTS = [wiggle(seed=seed) for seed in (1, 2, 3)]
 
@@ -102,6 +104,17 @@ def test_a_third_horizontal_that_is_no_combination_of_two_is_remarked(tmp_path, 
     assert doubted == {"plane": [False] * 3, "apart": [True] * 3}
     (tmp_path / "apart" / "motions.toml").write_text(f'[[record]]\nfile = "x_{third}.AT2"\nrole = "vertical"\n')
     assert [motion.vertical_source for motion in read_motions(tmp_path / "apart").motions] == [f"x_{third}.AT2"] * 2
+
+
+@pytest.mark.parametrize("vertical", range(4))
+def test_four_horizontals_that_are_no_motion_in_a_plane_are_remarked(tmp_path, vertical):
+    names, angles = ("000", "090", "045", "135"), np.radians((0.0, 90.0, 45.0, 135.0))
+    for folder, other in (("apart", COMPONENTS[2]), ("plane", None)):
+        for i, (name, angle) in enumerate(zip(names, angles, strict=True)):
+            a = COMPONENTS[0] * np.cos(angle) + COMPONENTS[1] * np.sin(angle)
+            write_at2(tmp_path / folder, f"x_{name}.AT2", a if other is None or i != vertical else other)
+        doubted = [any("plane" in note for note in motion.notes) for motion in read_motions(tmp_path / folder).motions]
+        assert doubted == [other is not None] * 4
 
 
 def test_a_vertical_with_another_number_of_peer_is_of_another_record(tmp_path):
@@ -202,3 +215,24 @@ def test_a_vertical_of_one_of_two_numbered_records_is_asked_for(tmp_path):
 def test_numbers_of_rotated_measures_are_no_azimuths():
     assert split_stem("x_RotD100") == ("x_RotD100", None)
     assert split_stem("x_GMRotI050") == ("x_GMRotI050", None)
+
+
+@pytest.mark.parametrize("ways", [("NS", "EW", "UD"), ("n", "e", "z"), ("North", "East", "Up")])
+@pytest.mark.parametrize("sets", [2, 3])
+def test_a_number_behind_the_direction_is_that_of_the_set(tmp_path, ways, sets):
+    numbers = range(1, sets + 1)
+    for i, (way, number) in enumerate(product(ways, numbers)):
+        write_at2(tmp_path, f"site_{way}{number}.AT2", wiggle(seed=i), title="Made-up, 1/17/1994, Test Station")
+    found = read_motions(tmp_path)
+    of_motions = {(m.source, m.vertical_source, m.azimuth) for m in found.motions}
+    assert of_motions == {
+        (f"site_{way}{number}.AT2", f"site_{ways[2]}{number}.AT2", azimuth)
+        for way, azimuth in zip(ways, (0.0, 90.0), strict=False)
+        for number in numbers
+    }
+
+
+def test_numbered_horizontals_with_one_vertical_are_no_sets():
+    assert in_numbered_sets(["a_NS1", "a_EW1", "a_UD1", "a_NS2", "a_EW2"]) == {}
+    assert in_numbered_sets(["a_H1", "a_V1", "a_H2", "a_V2"]) == {}
+    assert in_numbered_sets([f"IBRH11_{way}{sensor}" for way in ("NS", "EW", "UD") for sensor in (1, 2)]) == {}
