@@ -156,7 +156,8 @@ def _ranks(
 
     In this order: chosen by a manifest; sound before grossly odd; corrected before unknown before uncorrected; not called
     scaled; not called raw, if no header says; two horizontals and a vertical before fewer; a unit of acceleration before counts;
-    the finer time step; the stronger shaking, by powers of two; the suffix of a format; the shorter name; the first.
+    the finer time step; the stronger shaking, by powers of two; the longer one, by seconds; the suffix of a format; the shorter
+    name; the first.
     """
     sets: dict[int, list[int]] = {}
     for members in sets_of(components):
@@ -180,6 +181,7 @@ def _ranks(
             not first.unit,
             float(f"{first.dt:.3g}"),
             -round(math.log2(sum(energy[i] for i in members) or 1e-300)),
+            -round(first.duration),
             not is_usual(first.suffix),
             min(len(c.source) for c in of_set),
             members[0],

@@ -279,8 +279,8 @@ def _depths(text: str, is_name: bool) -> list[float]:
         stated = re.search(rf"(?:{depth})[ .=(-]*(?:of )?$", before) or re.match(
             rf"[ )]*(?:de |di |en )?(?:{depth})", behind
         )
-        in_place = not is_name and not _DIRECTED.match(behind)
-        if stated or (in_place and (_LEVEL.search(before) or _stands_alone(before, behind))):
+        alone = _LEVEL.search(before) or (not is_name and _stands_alone(before, behind))
+        if stated or (alone and not _DIRECTED.match(behind)):
             number = float(match["number"].replace(",", "."))
             depths.append(number * (_FOOT if match["unit"].startswith("f") else 1.0))
     return depths

@@ -656,3 +656,29 @@ def test_the_roof_beside_the_base_in_one_file_is_held_back(tmp_path):
     found = read(tmp_path, f"time (s),{heads}\n{in_columns(T, *values)}")
     assert {motion.of_station for motion in found.motions} == {"BASE"}
     assert [one.reason[:21] for one in found.unusable] == ['"roof" is in a struct'] * 2
+
+
+@pytest.mark.parametrize("unit", ["", " (cm/s^2)"])
+@pytest.mark.parametrize(
+    ("ways", "sign"), [(("000", "090", "up"), 1.0), (("32.0", "122.0", "upward"), 1.0), (("35", "125", "down"), -1.0)]
+)
+def test_columns_of_a_broadband_platform_have_the_directions_of_their_signs(tmp_path, unit, ways, sign):
+    names = ("N/S", "H2", "V")
+    lines = [
+        f"Column {i}: {name} component ground acceleration{unit} (+ is {way})"
+        for i, name, way in zip((2, 3, 4), names, ways, strict=True)
+    ]
+    head = "\n".join(
+        f"# {line}" for line in ("units= cm/s^2", "Data fields are TAB-separated", "Column 1: Time (s)", *lines)
+    )
+    (tmp_path / "8034.acc.bbp").write_text(f"{head}\n{in_columns(T, 981 * A, 981 * B, 981 * C, between=chr(9))}")
+    one, two = read_motions(tmp_path).motions
+    assert (one.azimuth, two.azimuth) == (float(ways[0]), float(ways[1]))
+    np.testing.assert_allclose(one.horizontal, 9.81 * A, atol=1e-6)
+    np.testing.assert_allclose(two.vertical, sign * 9.81 * C, atol=1e-6)
+
+
+@pytest.mark.parametrize("line", ["MUESTREO (Hz): 200", "delta: 0.005", "Pas de timp: 0.005 s"])
+def test_further_words_state_the_interval(tmp_path, line):
+    (tmp_path / "x.txt").write_text(f"{line}\nUnits: g\nN E Z\n{in_columns(A, B, C, between=' ')}", encoding="utf-8")
+    assert {motion.dt for motion in read_motions(tmp_path)} == {DT}

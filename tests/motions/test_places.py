@@ -224,3 +224,25 @@ def test_a_depth_over_two_metres_is_below_the_ground_in_either_unit(place):
             m: stand(place.format(f"{m / metres:.3f}").replace(" m", f" {unit}", 1), "Somewhere")[0] for m in expected
         }
         assert found == expected
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (["Station: Golden Bridge, top of pier 3"], "structure"),
+        (["Station: HTL", "Location: Roof"], "structure"),
+        (["Estación: Hotel Plaza, azotea"], "structure"),
+        (["Station name = WLA GL-22m"], "borehole"),
+        (["Site: Dam downhole 30 m"], "borehole"),
+        (["Station: Golden Bridge, free field"], ""),
+        (["Station: PIER"], ""),  # a code
+        (["Source: top of pier 3"], ""),
+    ],
+)
+def test_the_header_of_a_table_says_where_its_sensor_stands(tmp_path, lines, said):
+    rows = "\n".join(f"{a:.6f}" for a in wiggle(60))
+    head = "\n".join([*lines, "Component: NS", "Units: g", "dt = 0.01 s"])
+    (tmp_path / "x.txt").write_text(f"{head}\n{rows}\n", encoding="utf-8")
+    found = read_motions(tmp_path)
+    assert len(found.motions) == (not said)
+    assert not said or said in only_reason(found)

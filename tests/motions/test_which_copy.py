@@ -287,6 +287,15 @@ def test_of_two_sets_the_one_that_is_called_raw_is_left_out(tmp_path, place):
     assert all("published" in motion.source and "published" in motion.vertical_source for motion in found.motions)
 
 
+def test_a_copy_that_is_cut_stands_back_behind_the_whole_record_whatever_their_names(tmp_path):
+    for seed, way in enumerate(("000", "090", "UP"), 1):
+        write_at2(tmp_path, f"RSN5_A_STATION{way}.AT2", wiggle(500, seed), title=title(way))
+        write_at2(tmp_path, f"S{way}_cut.AT2", wiggle(500, seed)[150:], title=title(way))
+    found = read_motions(tmp_path)
+    assert [motion.npts for motion in found] == [500, 500]
+    assert set(left_out(found)) == {f"S{way}_cut.AT2" for way in ("000", "090", "UP")}
+
+
 # Sources
 
 

@@ -12,6 +12,7 @@ from rockbatch.motions.direction_words import folded
 from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.limits import HUGE, SAME_STEP
 from rockbatch.motions.orientation import orientation_in, orientation_of
+from rockbatch.motions.places import tells_place
 from rockbatch.motions.record_file import ReadOptions
 
 _SECOND = "s sec secs second seconds sek sekunde sekunden seg segundo segundos seconde secondes secondo secondi sn saniye сек 秒"
@@ -23,12 +24,12 @@ _SLOWEST = 1.0  # Hz: a lower "rate" is probably an interval
 _RATE_UNITS = ("hz", "sps", "samples/sec", "samples/s", "pts/sec", "points/sec", "1/s")
 _SAMPLE = r"sampl(?:e|es|ing)[ _-]?"
 _INTERVAL = (
-    rf"dt|delta ?t|Δt|time[ _-]?(?:step|increment|interval)|{_SAMPLE}(?:interval|period|step|time)|"
-    "intervalo? de (?:muestreo|tiempo|amostragem)|paso de tiempo|pas d['e] ?(?:temps|[eé]chantillonnage)|"
+    rf"dt|delta(?: ?t)?|Δt|time[ _-]?(?:step|increment|interval)|{_SAMPLE}(?:interval|period|step|time)|"
+    "intervalo? de (?:muestreo|tiempo|amostragem)|paso de tiempo|pas de timp|pas d['e] ?(?:temps|[eé]chantillonnage)|"
     "passo di campionamento|intervallo di campionamento|abtastintervall|zeitschritt|örnekleme aral[iı]ğ[iı]"
 )
 _RATE = (
-    rf"{_SAMPLE}(?:rate|freq(?:uency)?)|samples[ _-]per[ _-]sec(?:ond)?|sps|(?:frecuencia|tasa) de muestreo|"
+    rf"{_SAMPLE}(?:rate|freq(?:uency)?)|samples[ _-]per[ _-]sec(?:ond)?|sps|(?:(?:frecuencia|tasa) de )?muestreo|"
     "taxa de amostragem|fr[eé]quence d'[eé]chantillonnage|frequenza di campionamento|abtastrate|örnekleme frekans[iı]"
 )
 _SPACED = r"(?:equally[ _-])?spaced at|(?:equal|time|sec) intervals? of|at intervals? of"
@@ -44,7 +45,17 @@ _OF_OTHER_DATA = re.compile(r"\b(?:original|raw|recorder|instrument|resampled|fr
 
 # possessive (*+), so that matching any header line takes the square of its length at most
 _UNIT = r"[(\[]\s*+(?P<unit>[^()\[\]]*[^()\[\]\s])\s*+[)\]]"
-_NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>(?:.*?\S)??)\s*+{_UNIT}", re.IGNORECASE)
+_NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>[^()\[\]]*?)\s*+(?:{_UNIT}|$)", re.IGNORECASE)
+_POSITIVE_ALONG = re.compile(  # of SCEC's broadband platform: Column 2: H1 component ground acceleration (+ is 035)
+    r"^(?P<column>column\s+\d{1,3}\s*[:=]\s*)[^()\[\]]*(?P<unit>[(\[][^()\[\]]*[)\]])?\s*"
+    r"[(\[]\s*\+ is (?P<way>up|down|\d{1,3})(?:ward)?(?:\.0*)?\s*[)\]]$",
+    re.IGNORECASE,
+)
+_PLACE = re.compile(
+    r"^(?:recording )?(?:station|site|location|place|estaci[oó]n|esta[cç][aã]o|stazione|istasyon|lugar|ort|standort)"
+    r"(?: ?(?:name|location|nombre))?\s*[:=]\s*(?P<words>[^\W\d_]{3,}.*|\S*[^\x00-\x7f].*)$",
+    re.IGNORECASE,
+)
 _LABELLED = re.compile(rf"(?P<label>[^\s,;()\[\]](?:[^,;\t()\[\]]*[^\s,;()\[\]])?)\s*+{_UNIT}")
 _WORD = re.compile(rf"(?P<label>[^\s,;()\[\]]+)(?:\s*{_UNIT})?")  # a label of one word, perhaps with its unit
 _FIELD = re.compile(rf"(?P<label>[^()\[\]]*[^()\[\]\s])\s*(?:{_UNIT})?")  # a label between commas or tabs
@@ -213,10 +224,11 @@ def seconds_in(unit: str) -> float | None:
 
 
 def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None:
-    """Return the columns if the header states label and unit of all ``width``; else ``None``.
+    """Return the columns if the header states label and unit of all ``width``, or numbers their labels; else ``None``.
 
-    ``Column 2: North-south acceleration (cm/s/s)``, or in one line ``time(sec) N-S(cm/s/s) …``, of which one unit at least is
-    known and the last such line counts, or in two, the labels and their units, of which some may be "" or "-".
+    ``Column 2: North-south acceleration (cm/s/s)``, perhaps without unit, or in one line ``time(sec) N-S(cm/s/s) …``, of
+    which one unit at least is known and the last such line counts, or in two, the labels and their units, of which some may be
+    "" or "-".
     """
     numbered = {int(m["at"]): _column(m) for line in header if (m := _NUMBERED.match(line))}
     if sorted(numbered) == list(range(1, width + 1)):
@@ -267,8 +279,12 @@ def _is_of_motion(unit: str) -> bool:
 def spelled_out(line: str) -> list[str]:
     """Return a header line, and a named line for each property it states without a name; signs in brackets are in its labels.
 
-    "TIMESERIES XX_AAA__HNE_D, 3000 samples, 100 sps, …, M/S**2" has a count, a rate and a unit; "Z (positive down)" is Z-down.
+    "TIMESERIES XX_AAA__HNE_D, 3000 samples, 100 sps, …, M/S**2" has a count, a rate and a unit; "Z (positive down)" is Z-down,
+    and "Column 2: H1 (+ is 35.0)" is 035.
     """
+    if along := _POSITIVE_ALONG.match(line):
+        way = along["way"].zfill(3) if along["way"].isdecimal() else along["way"]
+        return [f"{along['column']}{way} {along['unit'] or ''}".rstrip()]
     service = _OF_SERVICE.match(line)
     if service is None:
         return [_POSITIVE.sub("", _POSITIVE_DOWN.sub(lambda match: f"-down{match['unit'] or ''}", line))]
@@ -343,6 +359,15 @@ def stated_direction(header: Sequence[str]) -> str:
         if orientation_in(label).known:
             return label
     return ""
+
+
+def stated_place(header: Sequence[str]) -> str:
+    """Return the words in lines such as ``Station: Bay Bridge`` and ``Location: Pier 3``, joined by commas; "" without any.
+
+    A code of one word that tells no place is none.
+    """
+    words = (match["words"].strip() for match in map(_PLACE.match, header) if match)
+    return ", ".join(dict.fromkeys(place for place in words if " " in place or tells_place(place)))
 
 
 def is_down(header: Sequence[str]) -> bool:

@@ -33,6 +33,7 @@ from rockbatch.motions.formats.column_header import (
     stated_direction,
     stated_factor,
     stated_of_samples,
+    stated_place,
     stated_step,
     stated_unit,
     with_quantities,
@@ -45,6 +46,7 @@ from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.limits import SAME_STEP, is_step
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_upward, orientation_in, same_azimuth, split_stem
+from rockbatch.motions.origin import origin_of
 from rockbatch.motions.places import Stand, stand, tells_place
 from rockbatch.motions.record_file import ReadOptions, RecordFile, no_acceleration, text_of
 
@@ -158,7 +160,7 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: st
         raise NoRecord(f"found {quantities or 'a column of time and no other'}; expected accelerations")
     omitted = tuple(f"{_column_name(i, columns[i])} left out: a {columns[i].other}" for i in not_acceleration)
     dt, values, moved = _on_one_step(columns, table, header, options)
-    recordings = []
+    recordings, origin = [], origin_of(station=stated_place(header))
     for i in used:
         orientation = _oriented(columns[i].label, header)
         recording = Recording(
@@ -169,6 +171,7 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: st
             values=values[:, i],
             unit=units[i],
             start=start,
+            origin=origin,
             stated=stated_of_samples(header) if len(used) == 1 else (),
             notes=(*notes, *omitted, *moved, *_remarks_on_sign(orientation, header, stem)),
         )
