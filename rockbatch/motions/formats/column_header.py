@@ -48,7 +48,7 @@ _UNIT = r"[(\[]\s*+(?P<unit>[^()\[\]]*[^()\[\]\s])\s*+[)\]]"
 _NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>[^()\[\]]*?)\s*+(?:{_UNIT}|$)", re.IGNORECASE)
 _POSITIVE_ALONG = re.compile(  # of SCEC's broadband platform: Column 2: H1 component ground acceleration (+ is 035)
     r"^(?P<column>column\s+\d{1,3}\s*[:=]\s*)[^()\[\]]*(?P<unit>[(\[][^()\[\]]*[)\]])?\s*"
-    r"[(\[]\s*\+ is (?P<way>up|down|\d{1,3})(?:ward)?(?:\.0*)?\s*[)\]]$",
+    r"[(\[]\s*\+ is (?P<azimuth>\d{1,3})(?:\.0*)?\s*[)\]]$",
     re.IGNORECASE,
 )
 _PLACE = re.compile(
@@ -283,8 +283,7 @@ def spelled_out(line: str) -> list[str]:
     and "Column 2: H1 (+ is 35.0)" is 035.
     """
     if along := _POSITIVE_ALONG.match(line):
-        way = along["way"].zfill(3) if along["way"].isdecimal() else along["way"]
-        return [f"{along['column']}{way} {along['unit'] or ''}".rstrip()]
+        return [f"{along['column']}{along['azimuth'].zfill(3)} {along['unit'] or ''}".rstrip()]
     service = _OF_SERVICE.match(line)
     if service is None:
         return [_POSITIVE.sub("", _POSITIVE_DOWN.sub(lambda match: f"-down{match['unit'] or ''}", line))]
