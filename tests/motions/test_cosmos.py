@@ -171,7 +171,7 @@ def test_direction_is_by_the_text_else_by_the_sensors_code_else_by_the_seed_chan
 )
 def test_another_azimuth_in_the_sensors_code_is_remarked_though_the_text_decides(text, code, said):
     (component,) = read(cosmos_text(direction=text, azimuth_code=code, scnl=""), "x.V2c")
-    words = [f'its header says "{said}", but code {code} (integer 54); decided by: the text; check which is right']
+    words = [f'its header says "{said}", but as integer 54 "{code}"; decided by: the first; check which is right']
     assert [finding.text for finding in component.findings] == words * bool(said)
 
 

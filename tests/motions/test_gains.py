@@ -297,3 +297,14 @@ def test_verticals_side_by_side_are_compared_as_positive_up(down, factor, agree)
 def test_sensors_that_agree_or_recorded_something_else_are_not(tmp_path, factor, noise, changed):
     two_sensors(tmp_path, factor, noise, **changed)
     assert len(read_motions(tmp_path, options=ReadOptions(sensitivity=1e5))) == 2
+
+
+def test_a_negative_sensitivity_is_remarked(tmp_path):
+    write_mseed(tmp_path / "x.mseed", *(trace(channel) for channel in ("HNN", "HNE")))
+    station_xml(tmp_path, channel_xml("HNN", value=-2e5), channel_xml("HNE", 90.0))
+    reversed_, upright = read_motions(tmp_path).motions
+    np.testing.assert_allclose(reversed_.horizontal, -upright.horizontal)
+    assert [any("negative" in finding.text for finding in motion.findings) for motion in (reversed_, upright)] == [
+        True,
+        False,
+    ]

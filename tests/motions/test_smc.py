@@ -44,6 +44,23 @@ def test_direction_is_by_the_angles_and_else_by_the_text(vertical, azimuth, labe
     assert (way.vertical, way.down, way.azimuth) == expected
 
 
+@pytest.mark.parametrize(
+    ("vertical", "azimuth", "label", "said"),
+    [
+        (180, 0, "UP", "Down"),
+        (90, 45, "UP", "45"),
+        (90, 45, "135", "45"),
+        (90, 45, "N45E", ""),
+        (0, 0, "UP", ""),
+        (0, 0, "V", ""),
+    ],
+)
+def test_words_of_another_direction_than_the_angles_are_remarked(vertical, azimuth, label, said):
+    (component,) = read(smc_text(vertical=vertical, azimuth=azimuth, label=label), "x.smc")
+    words = [f'its header says "{said}", but in words "{label}"; decided by: the first; check which is right']
+    assert [finding.text for finding in component.findings] == words * bool(said)
+
+
 def test_three_files_of_a_station_are_two_motions_with_their_vertical(tmp_path):
     for name, values, angles in (("a", A, (90, 360)), ("b", C, (0, -32768)), ("c", B, (90, 270))):
         text = smc_text(values, vertical=angles[0], azimuth=angles[1], label=name)

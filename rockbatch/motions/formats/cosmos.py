@@ -12,16 +12,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from rockbatch.common.errors import InputError, NoRecord
-from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import Sensor
-from rockbatch.motions.evidence import Kind, Statement
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in
 from rockbatch.motions.formats.header_lines import layout, line_at, match_line, moment, read_header, search_lines
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.formats.recording import Recording, other_direction
 from rockbatch.motions.formats.stated import Stated
-from rockbatch.motions.motion import Finding, Initial, Samples
+from rockbatch.motions.motion import Initial, Samples
 from rockbatch.motions.orientation import is_upward, orientation_of
 from rockbatch.motions.origin import origin_of
 from rockbatch.motions.places import tells_place
@@ -199,7 +197,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
     for quantity, value in (("duration", length), ("peak", peak), ("time of the peak", time_of_peak)):
         if value != header.unknown:
             stated.append(Stated(quantity, f"{value:.5f}"))
-    label = _label(header, channel)
+    label, code = _label(header, channel), header.integers[53]
     return Recording(
         label=label,
         dt=float(f"{interval / 1000:.12g}"),
@@ -217,7 +215,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
         origin=origin_of(event, name or station, line_at(header.text, 3)),
         stated=tuple(stated),
         notes=(f"location: {place}",) if place else (),
-        findings=_other_azimuth(label, header.integers[53]),
+        findings=other_direction(label, str(code) if 1 <= code <= 360 else "", "as integer 54"),
         header={"station": line_at(header.text, _STATION).strip(), "event": event.strip()},
     )
 
@@ -274,18 +272,6 @@ def _label(header: _Header, channel: str) -> str:
     if len({way.vertical for way in directions.values()}) > 1 or len(set(signed.values())) > 1:
         raise InputError(f"directions contradict each other: {' and '.join(directions)}; repair the header")
     return next(iter((*signed, *directions)), stated)
-
-
-def _other_azimuth(label: str, code: int) -> tuple[Finding, ...]:
-    """Return a finding in a tuple on a code of another azimuth than the text that decides; () for other codes, or none."""
-    text, by_code = orientation_of(label), orientation_of(str(code)) if 1 <= code <= 360 else None
-    if not text or not by_code:
-        return ()
-    said = Statement(Kind.HEADER, f"its header says {shown(label)}", text)
-    coded = Statement(Kind.HEADER, f"code {code} (integer 54)", by_code)
-    if not said.differs_from(coded):
-        return ()
-    return (Finding("direction", f"{said.words}, but {coded.words}; decided by: the text; check which is right"),)
 
 
 is_cosmos_file, read_cosmos_stream = plugin("COSMOS", is_cosmos, parse)

@@ -37,6 +37,7 @@ _BROKEN_OFF = (
         gross=True,
     ),
 )
+_REVERSED = Finding("gain", "its sensitivity is negative, which reverses its sign: check its polarity")
 
 
 def is_miniseed(head: bytes) -> bool:
@@ -86,7 +87,8 @@ def components_of_traces(
                 if len(pieces) > 1:
                     raise InputError(f"{channel_id} has gaps or overlaps: {len(pieces)} pieces; join them first")
                 component = _component(name, source, file, pieces[0])
-                readings.append(replace(component, findings=_BROKEN_OFF) if channel_id in broken else component)
+                findings = (*component.findings, *(_BROKEN_OFF if channel_id in broken else ()))
+                readings.append(replace(component, findings=findings))
             except InputError as error:
                 lacks = error.keys if isinstance(error, Unstated) else ()
                 label, station = channel_id.rpartition(".")[2], _station(pieces[0])
@@ -193,6 +195,7 @@ def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -
         processed=False,
         origin=origin_of(date=stats.starttime.strftime("%Y-%m-%d"), station=_station(trace)),
         sensor=Sensor(stats.station, stats.network, stats.location, _place(described) if described else None),
+        findings=() if sensitivity > 0 else (_REVERSED,),
         notes=(origin,),
     )
 

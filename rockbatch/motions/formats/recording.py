@@ -116,6 +116,18 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
     )
 
 
+def other_direction(label: str, other: str, place: str) -> tuple[Finding, ...]:
+    """Return a finding in a tuple if a header states an ``other`` direction at a ``place`` than its ``label``, which counts.
+
+    () if they agree, or one is unknown.
+    """
+    way, another = orientation_of(label), orientation_of(other)
+    if not way or not another or not Statement(Kind.HEADER, "", way).contradicts(Statement(Kind.HEADER, "", another)):
+        return ()
+    text = f"its header says {shown(label)}, but {place} {shown(other)}; decided by: the first; check which is right"
+    return (Finding("direction", text),)
+
+
 def contradictions_of(
     recording: Recording, factor: float, gravity: float
 ) -> tuple[tuple[Finding, ...], tuple[str, ...]]:

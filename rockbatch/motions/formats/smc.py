@@ -13,7 +13,7 @@ from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in, refuse_more
 from rockbatch.motions.formats.header_lines import layout, line_at, moment, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.recording import Recording, letters
+from rockbatch.motions.formats.recording import Recording, letters, other_direction
 from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.formats.time_steps import from_pairs
 from rockbatch.motions.motion import Samples
@@ -67,9 +67,10 @@ def parse(text: str) -> list[Recording]:
     extremes = [(peak, _real(lines, n - 1)) for n in (30, 32) if (peak := _real(lines, n))]
     peak, time_of_peak = max(extremes, key=lambda extreme: abs(number_in(extreme[0], 22)), default=("", ""))
     origin_line = line_at(lines, 3)
+    label = _label(integers[12], integers[13], unknown, fields["label"])
     return [
         Recording(
-            label=_label(integers[12], integers[13], unknown, fields["label"]),
+            label=label,
             dt=dt,
             values=values,
             unit=_UNIT,
@@ -83,6 +84,7 @@ def parse(text: str) -> list[Recording]:
             stated=(Stated("peak", peak), Stated("time of the peak", time_of_peak)),
             as_read=numbers[1::2] if rate is None else None,
             notes=(*notes, *(["its header flags a problem: read its comments"] if integers[17] == 1 else [])),
+            findings=other_direction(label, fields["label"], "in words"),
             header={"station": name, "event": origin_line[25:].strip()},
         )
     ]
