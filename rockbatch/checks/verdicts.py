@@ -2,8 +2,6 @@
 
 import csv
 import functools
-import hashlib
-import io
 import json
 import math
 from collections.abc import Collection, Iterable, Mapping
@@ -15,7 +13,7 @@ from rockbatch.checks.capacity import Curve, problems
 from rockbatch.checks.omissions import MODES, OMISSIONS
 from rockbatch.checks.rules import COUNTS, is_ban
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import csv_plain, csv_text, is_plain, legible, opened, opened_text, write_whole
+from rockbatch.common.files import csv_plain, csv_text, is_plain, legible, opened_text, sha256_of_lines, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.design import BOUND
@@ -205,13 +203,7 @@ def write_verdicts(directory: Path, verdicts: Iterable[Verdict]) -> Path:
 def _digest_of_peaks(path: Path) -> str:
     """Return the digest of the peaks.csv beside checks.csv at ``path``, the same with any line endings; "" without one."""
     peaks = path.with_name(PEAKS)
-    if not is_plain(peaks):
-        return ""
-    digest = hashlib.sha256()
-    with io.BufferedReader(opened(peaks)) as file:
-        for line in file:
-            digest.update(line.rstrip(b"\r\n") + b"\n")
-    return digest.hexdigest()
+    return sha256_of_lines(peaks) if is_plain(peaks) else ""
 
 
 def read_verdicts(directory: Path) -> list[Verdict] | None:

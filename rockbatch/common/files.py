@@ -177,6 +177,18 @@ def sha256_of(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
+def sha256_of_lines(path: Path) -> str:
+    """Return the SHA-256 of a table of a folder of results with "\\n" at the ends of its lines, whatever they are in the file.
+
+    Raises ``InputError`` as :func:`opened`.
+    """
+    digest = hashlib.sha256()
+    with io.BufferedReader(opened(path)) as file:
+        for line in file:
+            digest.update(line.rstrip(b"\r\n") + b"\n")
+    return digest.hexdigest()
+
+
 def made_folder(path: Path) -> Path:
     """Create a folder with its parents and return it; raise ``InputError`` if a file is in its place."""
     try:

@@ -14,7 +14,16 @@ import numpy as np
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import EditedTable, InputError, MissingColumns, NotFound, Problem, refuse
-from rockbatch.common.files import CHANGED, csv_plain, legible, opened, opened_text, read_text, sha256_of
+from rockbatch.common.files import (
+    CHANGED,
+    csv_plain,
+    legible,
+    opened,
+    opened_text,
+    read_text,
+    sha256_of,
+    sha256_of_lines,
+)
 from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
 from rockbatch.common.statuses import STATUSES
@@ -137,9 +146,10 @@ def _other_version(directory: Path) -> list[str]:
 
 
 def edited(directory: Path, info: Item) -> str:
-    """Return words if the digest of ``peaks.csv`` differs from that in ``info``; empty if equal or unknown."""
-    noted = info.get("peaks")
-    if noted is None or sha256_of(directory / PEAKS) == noted["sha256"]:
+    """Return words if the digest of ``peaks.csv`` differs from that in ``info``; empty if equal, but for the ends of lines, or
+    unknown."""
+    noted, path = info.get("peaks"), directory / PEAKS
+    if noted is None or noted["sha256"] in (sha256_of(path), sha256_of_lines(path)):
         return ""
     return f"not as `rockbatch run` wrote it, with {noted['rows']} rows: it was edited, or is damaged"
 

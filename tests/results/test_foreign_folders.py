@@ -1,6 +1,7 @@
 """Folders of results that somebody else has made: nothing in them leads elsewhere, and what does not fit is told in words."""
 
 import csv
+import hashlib
 import json
 import os
 import random
@@ -484,3 +485,15 @@ def test_what_is_expected_of_a_value_is_said_in_words():
     for key, words in expected.items():
         (problem,) = unfit(right | {key: 1.25}, shape)
         assert (problem.place, problem.expected) == (key, words)
+
+
+def test_a_table_with_other_ends_of_lines_is_not_edited(tmp_path):
+    written = b"record,status\na,ok\nb,overturned\n"
+    noted = {"peaks": {"rows": 2, "sha256": hashlib.sha256(written).hexdigest()}}
+    for content, differs in (
+        (written, False),
+        (written.replace(b"\n", b"\r\n"), False),
+        (written.replace(b"ok", b"ko"), True),
+    ):
+        (tmp_path / "peaks.csv").write_bytes(content)
+        assert bool(reading.edited(tmp_path, noted)) is differs
