@@ -414,7 +414,8 @@ def _with_place(component: Component, path: Path, name: tuple[str, Orientation |
     """Return a component with its folder, its site by the file's ``name``, and that name's direction if ``alone`` in the file."""
     site, direction = name
     component = add_name_statement(component, path.name, direction) if alone else component
-    return replace(component, site=_site(path, site), folder=path.parent.absolute().as_posix())
+    site = _site(path, site if alone else path.stem)  # no file of several components is named after one of them
+    return replace(component, site=site, folder=path.parent.absolute().as_posix())
 
 
 def _with_list(component: Component, path: Path, settings: _ReadSettings) -> Component:

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from motion_files import wiggle
 
 import rockbatch as rb
-from rockbatch.motions import ReadOptions, stations
+from rockbatch.motions import ReadOptions, read_motions, stations
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.stations import station_names
@@ -189,3 +190,13 @@ def test_components_without_times_are_one_record_unless_one_repeats_a_direction(
         for i, (event, azimuth) in enumerate(zip(events, azimuths, strict=True))
     ]
     assert len(stations._by_time(both)) == records
+
+
+def test_a_number_at_the_end_of_a_file_of_three_components_is_the_station_s(tmp_path):
+    for seed, station in enumerate(("ce12149", "ce12170")):
+        columns = [wiggle(200, 3 * seed + k) for k in (1, 2, 3)]
+        rows = "".join(
+            f"{0.01 * i:.2f} {a:.6f} {b:.6f} {c:.6f}\n" for i, (a, b, c) in enumerate(zip(*columns, strict=True))
+        )
+        (tmp_path / f"{station}.txt").write_text("time(s) N(g) E(g) Z(g)\n" + rows)
+    assert {motion.of_station for motion in read_motions(tmp_path)} == {"ce12149", "ce12170"}
