@@ -17,7 +17,7 @@ from pathlib import Path
 
 from rockbatch.batch.threads import cores
 from rockbatch.motions import Motion, fema_p695, read_motions
-from rockbatch.motions.pairing import to_motions
+from rockbatch.motions.identity.pairing import to_motions
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import run_fixed, run_to_tolerance

@@ -18,7 +18,7 @@ from rockbatch.analyses.fragility.cloud import Cloud
 from rockbatch.analyses.fragility.lognormal import Lognormal
 from rockbatch.analyses.fragility.statistics import capacities, cloud, stripes
 from rockbatch.common.errors import InputError
-from rockbatch.motions.hazard import HazardCurve
+from rockbatch.motions.suites.hazard import HazardCurve
 
 Values = npt.NDArray[np.float64]
 THETA, BETA = 1.0, 0.4

@@ -35,7 +35,7 @@ from independent.pool import NEAR_FAULT, Rng, a_pulse, log_uniform, noise, one_o
 from independent.taylor import Truth, truth
 
 from rockbatch.motions import Motion, fema_p695, read_motions
-from rockbatch.motions.pairing import to_motions
+from rockbatch.motions.identity.pairing import to_motions
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Pier, RigidBase
 from rockbatch.simulation import run_all_to_tolerance

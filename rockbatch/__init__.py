@@ -16,8 +16,7 @@ _NAMES = {
         "BadSyntax Contradiction InputError MissingKey NoDirection NoRecord NoStep NoUnit NotFound "
         "OutOfRange Problem Truncated UnknownFormat UnknownKey Unstated Unusual UnusableRecord WrongType"
     ),
-    "motions": "Motion MotionSet ReadOptions pair_spectrum pulse read_motions sequence",
-    "motions.hazard": "HazardCurve",
+    "motions": "HazardCurve Motion MotionSet ReadOptions pair_spectrum pulse read_motions sequence",
     "pier": "Damper DeckSpring ElasticBase FootingBase Part Pier RigidBase Stop Tendon YieldingBase",
     "pier.statics": "Statics statics",
     "reporting": "report statement",

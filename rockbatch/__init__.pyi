@@ -36,7 +36,7 @@ from rockbatch.motions import pair_spectrum as pair_spectrum
 from rockbatch.motions import pulse as pulse
 from rockbatch.motions import read_motions as read_motions
 from rockbatch.motions import sequence as sequence
-from rockbatch.motions.hazard import HazardCurve as HazardCurve
+from rockbatch.motions.suites.hazard import HazardCurve as HazardCurve
 from rockbatch.outcome.response import Response as Response
 from rockbatch.pier import Damper as Damper
 from rockbatch.pier import DeckSpring as DeckSpring

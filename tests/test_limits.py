@@ -26,14 +26,16 @@ NAMED = {
 }
 ROOM = {
     "batch/dask.py: deaths >= MOST_DEATHS", "motions/formats/table.py: len(header) < _MOST_HEADER",
-    "motions/manifest.py: len(file.problems) < _MOST_HINTS", "motions/stationxml.py: len(self.texts.get(key, '')) < _LONGEST",
-    "motions/stationxml.py: len(self.site) < _LONGEST", "reporting/sections/histories.py: count < MOST_HISTORIES",
+    "motions/sources/stationxml.py: len(self.texts.get(key, '')) < _LONGEST",
+    "motions/sources/stationxml.py: len(self.site) < _LONGEST",
+    "motions/manifest.py: len(file.problems) < _MOST_HINTS", "reporting/sections/histories.py: count < MOST_HISTORIES",
     "toml/lines.py: index < _MOST_ELEMENTS", "toml/reader.py: len(self.problems) >= MOST_REPORTED",
 }  # fmt: skip
 """Comparisons that ask whether there is room for one more."""
 NEVER_AT_IT = {
-    "analyses/fragility/lognormal.py: optimum.x[1] > LEAST_SLOPE", "motions/places.py: depth > _LEAST_DEPTH",
-    "motions/pairing.py: np.abs(common.first).max() < _MOST_OF_IT * h.pga", "study/bound_keys.py: 1.0 / _MOST < times < _MOST",
+    "analyses/fragility/lognormal.py: optimum.x[1] > LEAST_SLOPE", "motions/quality/places.py: depth > _LEAST_DEPTH",
+    "motions/identity/pairing.py: np.abs(common.first).max() < _MOST_OF_IT * h.pga",
+    "study/bound_keys.py: 1.0 / _MOST < times < _MOST",
     "reporting/overview.py: limit.theta < MOST_STRETCH * top", "results/shape.py: -MOST < value < MOST",
     "toml/kinds.py: 0.0 < bounds.low <= LEAST", "toml/kinds.py: bounds.high >= MOST",
 }  # fmt: skip

@@ -145,7 +145,8 @@ def test_files_that_are_not_used_for_one_reason_have_one_line(monkeypatch):
     monkeypatch.setattr(terminal, "say", told.append)
     reasons = [f'column 2 has no unit; write unit = "g" (PGA {peak} g)' for peak in (2.5, 4.7, 1.8)]
     unusable = tuple(
-        Unusable(f"{place}", f"{place}.acc", reason) for place, reason in enumerate([reasons[0], "empty", *reasons[1:]])
+        Unusable(f"{place}", (f"{place}.acc",), reason)
+        for place, reason in enumerate([reasons[0], "empty", *reasons[1:]])
     )
     terminal.Terminal().motions(MotionSet((), unusable, ()))
     assert told == [f"not used: 0.acc and 2 others: {reasons[0]}", "not used: 1.acc: empty"]

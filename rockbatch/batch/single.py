@@ -11,7 +11,7 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError, Problem, refuse
 from rockbatch.common.observers import parts
 from rockbatch.motions import Motion
-from rockbatch.motions.plausible import unlikely_samples
+from rockbatch.motions.quality.plausible import unlikely_samples
 from rockbatch.outcome.outcome import LEAST_NORMAL_SHARE, Outcome
 from rockbatch.outcome.response import Response
 from rockbatch.pier import Base, Pier, problems, unlikely_devices

@@ -1,28 +1,29 @@
 """Ground motions: from files, packages and formulas to accelerations in m/s², their measures, spectra and scaling.
 
-It stands alone: nothing here knows of a pier.
+It stands alone: nothing here knows of a pier. A file becomes components (``sources``, ``formats``), which are judged (``labels``,
+``quality``), put together as motions (``identity``, ``folder``), measured (``intensity``), and chosen and scaled (``suites``).
 """
 
 from rockbatch.common.lazy import loading
 
 _NAMES = {
-    "baseline": "Offset",
-    "design_spectra": "EUROCODE AashtoSpectrum AsceSpectrum EurocodeSpectrum NzsSpectrum TableSpectrum read_spectrum",
+    "quality.baseline": "Offset",
+    "suites.design_spectra": "EUROCODE AashtoSpectrum AsceSpectrum EurocodeSpectrum NzsSpectrum TableSpectrum read_spectrum",
     "folder": "read_motions",
-    "record_file": "ReadOptions",
-    "hazard": "HazardCurve",
+    "sources.record_file": "ReadOptions",
+    "suites.hazard": "HazardCurve",
     "manifest_draft": "write_manifest",
-    "measures": "arias_intensity bracketed_duration cumulative_absolute_velocity displacement pga pgd pgv significant_duration "
-    "uniform_duration velocity",
+    "intensity.measures": "arias_intensity bracketed_duration cumulative_absolute_velocity displacement pga pgd pgv "
+    "significant_duration uniform_duration velocity",
     "motion": "LeftOut Motion Unusable",
     "motion_set": "MotionSet",
-    "pairs": "pair_spectrum",
-    "pulses": "pulse",
-    "scaling": "Target at_target",
-    "selection": "Selection selected",
-    "sequences": "sequence",
+    "intensity.pairs": "pair_spectrum",
+    "suites.pulses": "pulse",
+    "suites.scaling": "Target at_target",
+    "suites.selection": "Selection selected",
+    "suites.sequences": "sequence",
     "spectrum": "spectral_acceleration",
-    "spectrum_target": "SpectrumTarget",
+    "suites.spectrum_target": "SpectrumTarget",
 }
 """Public names by their modules; ``__init__.pyi`` has all of them for type checkers."""
 

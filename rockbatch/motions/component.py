@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from rockbatch.motions.archives import bare
-from rockbatch.motions.evidence import Statement
-from rockbatch.motions.listed import NOT_LISTED, Listed
+from rockbatch.motions.labels.evidence import Statement
+from rockbatch.motions.labels.orientation import UNKNOWN, Orientation
+from rockbatch.motions.labels.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.motions.motion import Finding, Initial, Samples, frozen
-from rockbatch.motions.orientation import UNKNOWN, Orientation
-from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
+from rockbatch.motions.sources.archives import bare
+from rockbatch.motions.sources.listed import NOT_LISTED, Listed
 
 FIRST_YEAR = 365 * 86400.0
 """The end of 1970 [s since it began]: no recorder began in it, but headers without a date say so."""

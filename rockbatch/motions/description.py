@@ -8,11 +8,11 @@ from typing import NotRequired, TypedDict
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.motions import measures
+from rockbatch.motions.intensity import measures
+from rockbatch.motions.intensity.velocity_pulses import pulse_period
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
-from rockbatch.motions.spectrum_target import SpectrumTarget
-from rockbatch.motions.velocity_pulses import pulse_period
+from rockbatch.motions.suites.spectrum_target import SpectrumTarget
 
 MOST_SPECTRA = 200
 """Greatest number of motions whose spectra go into run.json; each takes about 10 ms."""

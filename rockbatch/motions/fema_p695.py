@@ -17,10 +17,10 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import h5py
 from rockbatch.common.units import GRAVITY
-from rockbatch.motions.azimuths import along_azimuth
 from rockbatch.motions.component import Component
-from rockbatch.motions.orientation import Orientation, orientation_of
-from rockbatch.motions.origin import Origin
+from rockbatch.motions.identity.azimuths import along_azimuth
+from rockbatch.motions.labels.orientation import Orientation, orientation_of
+from rockbatch.motions.labels.origin import Origin
 
 SETS = ("farfield", "nearfield_pulse", "nearfield_no_pulse")
 

@@ -16,22 +16,17 @@ from rockbatch.common.errors import InputError, NoRecord, NotFound, Problem, Uns
 from rockbatch.common.files import CHANGED
 from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
-from rockbatch.motions import archives, fema_p695
-from rockbatch.motions.baseline import Offset, remove_offset
-from rockbatch.motions.colocated import with_gains_compared
+from rockbatch.motions import fema_p695
 from rockbatch.motions.component import Component, file_of
-from rockbatch.motions.directions import judge_directions
-from rockbatch.motions.doubles import tell_use_of_originals, without_doubles
-from rockbatch.motions.evidence import Kind, Statement
-from rockbatch.motions.files import MANIFESTS, SourceFile, files_of, inventories_beside
 from rockbatch.motions.formats import add_name_statement, checked_reading, format_of, read_record
 from rockbatch.motions.formats.obspy_plugin import HEAD
-from rockbatch.motions.leaving_out import LeaveOut, Reading
-from rockbatch.motions.listed import NOT_LISTED
-from rockbatch.motions.manifest import Manifest, apply_entries, is_manifest, options_of
-from rockbatch.motions.motion import LeftOut, Unusable
-from rockbatch.motions.motion_set import MotionSet
-from rockbatch.motions.orientation import (
+from rockbatch.motions.identity.colocated import with_gains_compared
+from rockbatch.motions.identity.directions import judge_directions
+from rockbatch.motions.identity.doubles import tell_use_of_originals, without_doubles
+from rockbatch.motions.identity.leaving_out import LeaveOut, Reading
+from rockbatch.motions.identity.pairing import to_motions
+from rockbatch.motions.labels.evidence import Kind, Statement
+from rockbatch.motions.labels.orientation import (
     Orientation,
     accidental,
     counted,
@@ -42,13 +37,19 @@ from rockbatch.motions.orientation import (
     split_stem,
     told_apart,
 )
-from rockbatch.motions.pairing import to_motions
-from rockbatch.motions.peer_search import Lists, listed_in, of_file
-from rockbatch.motions.quantities_in_names import companions_by_quantity
-from rockbatch.motions.record_file import ReadOptions, RecordFile
-from rockbatch.motions.sequences import ShockSequence, add_sequences
-from rockbatch.motions.sorted_files import statements_beside
-from rockbatch.motions.stationxml import Inventories
+from rockbatch.motions.manifest import Manifest, apply_entries, is_manifest, options_of
+from rockbatch.motions.motion import LeftOut, Unusable
+from rockbatch.motions.motion_set import MotionSet
+from rockbatch.motions.quality.baseline import Offset, remove_offset
+from rockbatch.motions.sources import archives
+from rockbatch.motions.sources.files import MANIFESTS, SourceFile, files_of, inventories_beside
+from rockbatch.motions.sources.listed import NOT_LISTED
+from rockbatch.motions.sources.peer_search import Lists, listed_in, of_file
+from rockbatch.motions.sources.quantities_in_names import companions_by_quantity
+from rockbatch.motions.sources.record_file import ReadOptions, RecordFile
+from rockbatch.motions.sources.sorted_files import statements_beside
+from rockbatch.motions.sources.stationxml import Inventories
+from rockbatch.motions.suites.sequences import ShockSequence, add_sequences
 from rockbatch.motions.texts import with_legible_texts
 
 _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)

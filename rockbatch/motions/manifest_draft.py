@@ -10,13 +10,13 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.files import legible, write_output
 from rockbatch.common.grouping import grouped
 from rockbatch.motions.component import Component, file_of
-from rockbatch.motions.directions import judge_directions
-from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import Reading, read_files
+from rockbatch.motions.identity.directions import judge_directions
+from rockbatch.motions.identity.doubles import without_doubles
+from rockbatch.motions.identity.stations import by_station
 from rockbatch.motions.motion import Unusable
-from rockbatch.motions.plausible import gross_findings
-from rockbatch.motions.record_file import ReadOptions
-from rockbatch.motions.stations import by_station
+from rockbatch.motions.quality.plausible import gross_findings
+from rockbatch.motions.sources.record_file import ReadOptions
 
 _HEAD = """\
 # Facts about these records beyond their files; rockbatch reads them wherever the records are used.

@@ -15,10 +15,10 @@ from rockbatch.common.files import legible
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
 from rockbatch.common.units import GRAVITY, acceleration_factor
+from rockbatch.motions.labels.orientation import orientation_of, unknown
+from rockbatch.motions.labels.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.motions.limits import USUAL_STEP
-from rockbatch.motions.listed import NOT_LISTED, Listed
-from rockbatch.motions.orientation import orientation_of, unknown
-from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
+from rockbatch.motions.sources.listed import NOT_LISTED, Listed
 from rockbatch.motions.spectrum import PERIODS, Samples, as_periods, spectral_acceleration
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown, several
 from rockbatch.common.units import GRAVITY
-from rockbatch.motions import measures
+from rockbatch.motions.intensity import measures
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 
 Cell = str | float | None
@@ -153,7 +153,7 @@ class MotionSet(Shown):
         DataFrame, shape (len, 26)
             ``record``; ``file_h`` and ``file_v``, where its components are from; ``dt_s``, ``npts``, ``duration_s``;
             ``pga_h_g``, ``pga_v_g`` in g of 9.81 m/s², ``pgv_h_m_s``, ``pgd_h_m``, ``arias_m_s`` and ``d5_95_s``, measures of the
-            record (:mod:`rockbatch.motions.measures`); ``azimuth_deg``, ``magnitude``, ``distance_km``, where known;
+            record (:mod:`rockbatch.motions.intensity.measures`); ``azimuth_deg``, ``magnitude``, ``distance_km``, where known;
             ``processed``, "yes" or "no", as its agency says; ``check``, what is odd about it; ``processing``, what was done
             to it here; ``event``, ``station_name``, ``direction``, as its header says; ``station``, what components that
             count as one record share; ``vs30_m_s``, ``list_scale``, ``list_d5_95_s`` and ``list_pulse_period_s``, what PEER's

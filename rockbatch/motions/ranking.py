@@ -10,7 +10,7 @@ import numpy as np
 from rockbatch.common.errors import Contradiction, InputError, NoDirection
 from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
-from rockbatch.motions import velocity_pulses
+from rockbatch.motions.intensity import velocity_pulses
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.motions.motion_set import Cell, MotionSet, row
 

@@ -16,8 +16,8 @@ from rockbatch.common.version import commit
 from rockbatch.motions import MotionSet
 from rockbatch.motions.description import entry, spectra
 from rockbatch.motions.motion import Unusable
-from rockbatch.motions.scaling import verticals
-from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
+from rockbatch.motions.suites.scaling import verticals
+from rockbatch.motions.suites.spectrum_target import PAIRS, SpectrumTarget
 from rockbatch.pier import Base, Damper, DeckSpring, Pier, Stop, Tendon, described
 from rockbatch.pier.bases import BASES
 from rockbatch.pier.free_rocking import FreeRocking

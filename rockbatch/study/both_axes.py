@@ -11,7 +11,7 @@ from typing import Any
 from rockbatch.common.errors import InputError, refuse
 from rockbatch.common.showing import shown
 from rockbatch.motions import MotionSet
-from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.motions.suites.spectrum_target import SpectrumTarget
 from rockbatch.pier import Base, Pier, Restraint, offsets, problems
 from rockbatch.study.piers import with_width
 from rockbatch.study.spec import Case, MotionSpec

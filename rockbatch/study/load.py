@@ -18,7 +18,7 @@ from rockbatch.common.observers import parts
 from rockbatch.common.showing import Shown, several, shown
 from rockbatch.common.units import MOST, Bounds, Usual
 from rockbatch.motions import MotionSet
-from rockbatch.motions.sequences import SEQUENCE
+from rockbatch.motions.suites.sequences import SEQUENCE
 from rockbatch.pier import described, symmetric
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.quantities.design import BOUND

@@ -11,12 +11,12 @@ from rockbatch.common.errors import InputError, Problem, Unusual
 from rockbatch.common.showing import shown
 from rockbatch.common.units import GRAVITY, Bounds, Usual, in_other_units
 from rockbatch.motions import Motion, MotionSet, kinds
-from rockbatch.motions.azimuths import azimuths_every
-from rockbatch.motions.baseline import RULES, Offset
-from rockbatch.motions.pulses import MOST_PULSE, SHAPES, unlikely
-from rockbatch.motions.record_file import LAYOUTS, ROLES, ReadOptions
-from rockbatch.motions.selection import Selection
-from rockbatch.motions.sequences import read_sequences
+from rockbatch.motions.identity.azimuths import azimuths_every
+from rockbatch.motions.quality.baseline import RULES, Offset
+from rockbatch.motions.sources.record_file import LAYOUTS, ROLES, ReadOptions
+from rockbatch.motions.suites.pulses import MOST_PULSE, SHAPES, unlikely
+from rockbatch.motions.suites.selection import Selection
+from rockbatch.motions.suites.sequences import read_sequences
 from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec
 from rockbatch.study.target import read_target
 from rockbatch.toml.files_meant import nearby

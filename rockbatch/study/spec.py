@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Literal
 
 from rockbatch.motions import Motion, MotionSet, pulse
-from rockbatch.motions.baseline import Offset
-from rockbatch.motions.scaling import Target
-from rockbatch.motions.selection import Selection
-from rockbatch.motions.sequences import ShockSequence
-from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.motions.quality.baseline import Offset
+from rockbatch.motions.suites.scaling import Target
+from rockbatch.motions.suites.selection import Selection
+from rockbatch.motions.suites.sequences import ShockSequence
+from rockbatch.motions.suites.spectrum_target import SpectrumTarget
 from rockbatch.pier import Base, Pier
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
-from rockbatch.motions.design_spectra import (
+from rockbatch.motions.suites.design_spectra import (
     EUROCODE,
     VERTICAL_RATIO,
     VERTICAL_SHAPE,
@@ -17,8 +17,8 @@ from rockbatch.motions.design_spectra import (
     TableSpectrum,
     read_spectrum,
 )
-from rockbatch.motions.scaling import Target
-from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.motions.suites.scaling import Target
+from rockbatch.motions.suites.spectrum_target import SpectrumTarget
 from rockbatch.study.target_keys import (
     AASHTO_KEYS,
     ASCE_KEYS,

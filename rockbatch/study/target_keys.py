@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 from rockbatch.common.units import Usual
-from rockbatch.motions.design_spectra import EUROCODE, NZS_1170_5
-from rockbatch.motions.pairs import TWO_COMPONENT_RULES
-from rockbatch.motions.scaling import Target
-from rockbatch.motions.spectrum_target import FACTORS, PAIRS, SpectrumTarget
+from rockbatch.motions.intensity.pairs import TWO_COMPONENT_RULES
+from rockbatch.motions.suites.design_spectra import EUROCODE, NZS_1170_5
+from rockbatch.motions.suites.scaling import Target
+from rockbatch.motions.suites.spectrum_target import FACTORS, PAIRS, SpectrumTarget
 from rockbatch.toml.kinds import Choice, KindError, Number, Other, choice, not_negative, positive, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.section import CONFIRM, Key, Section

@@ -20,7 +20,7 @@ from rockbatch.checks.scorecard import scorecard
 from rockbatch.checks.suite_target import Condition, _verdict, suite_of, suite_verdicts
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
 from rockbatch.commands.cli import main
-from rockbatch.motions.design_spectra import TableSpectrum
+from rockbatch.motions.suites.design_spectra import TableSpectrum
 from rockbatch.results.checking import verdicts as rb_verdicts
 from rockbatch.results.run_json import describe
 from rockbatch.study import load_study

@@ -15,7 +15,7 @@ with warnings.catch_warnings():
 from rockbatch.motions import MotionSet, ReadOptions, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.folder import read_files
-from rockbatch.motions.orientation import split_stem
+from rockbatch.motions.labels.orientation import split_stem
 
 RECORDS = Path(os.environ.get("ROCKBATCH_RECORDS", "no-records"))
 """Folder of real records, most of which may not be redistributed; its path comes from the environment."""

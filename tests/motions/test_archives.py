@@ -17,8 +17,9 @@ from archive_files import tarred, write_zip
 from motion_files import at2_text, wiggle, write_at2
 from waveform_files import COUNTS, channel_xml, station_xml, trace, write_mseed
 
-from rockbatch.motions import archives, read_motions
+from rockbatch.motions import read_motions
 from rockbatch.motions.manifest_draft import write_manifest
+from rockbatch.motions.sources import archives
 
 NAMES = {"RSN1063_NORTHR_RRS228.AT2": 1, "RSN1063_NORTHR_RRS318.AT2": 2, "RSN1063_NORTHR_RRS-UP.AT2": 3}
 

@@ -7,7 +7,7 @@ import pytest
 from motion_files import wiggle, write_at2
 
 from rockbatch.motions import read_motions
-from rockbatch.motions.azimuths import along_azimuth, azimuths_every
+from rockbatch.motions.identity.azimuths import along_azimuth, azimuths_every
 
 
 def write_pair(folder, north, east, *, second: str = "090", **more) -> None:

@@ -12,7 +12,8 @@ from studies import RIGID, study_text, write_study
 import rockbatch as rb
 from rockbatch.batch import preparing
 from rockbatch.common.errors import InputError
-from rockbatch.motions import archives, folder, read_motions
+from rockbatch.motions import folder, read_motions
+from rockbatch.motions.sources import archives
 from rockbatch.toml.reader import LARGEST, TomlFile
 
 needs_pipes = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")

@@ -5,9 +5,10 @@ import pytest
 from copies import shaken, title
 from motion_files import write_at2
 
-from rockbatch.motions import ReadOptions, doubles, likeness, read_motions
+from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.component import Component, Sensor
-from rockbatch.motions.orientation import Orientation
+from rockbatch.motions.identity import doubles, likeness
+from rockbatch.motions.labels.orientation import Orientation
 
 
 def write_set(folder, first, second, upright, labels=("000", "090"), titled=title):

@@ -16,9 +16,9 @@ from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.component import Component, Sensor
-from rockbatch.motions.directions import _skew_pair
+from rockbatch.motions.identity.directions import _skew_pair
+from rockbatch.motions.labels.orientation import Orientation, counted, orientation_in, orientation_of, split_stem
 from rockbatch.motions.manifest_draft import write_manifest
-from rockbatch.motions.orientation import Orientation, counted, orientation_in, orientation_of, split_stem
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 

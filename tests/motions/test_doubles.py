@@ -14,10 +14,10 @@ from waveform_files import COUNTS, START, trace, write_mseed
 from rockbatch.common.errors import Contradiction
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.component import Component, Sensor
-from rockbatch.motions.doubles import _finding_on_copy
-from rockbatch.motions.likeness import pairs_of_one_recording
+from rockbatch.motions.identity.doubles import _finding_on_copy
+from rockbatch.motions.identity.likeness import pairs_of_one_recording
+from rockbatch.motions.labels.orientation import Orientation
 from rockbatch.motions.manifest_draft import draft
-from rockbatch.motions.orientation import Orientation
 
 
 def title(component: str, station: str = "STA", event: str = "Somewhere, 1/17/1994") -> str:

@@ -11,10 +11,10 @@ from waveform_files import channel_xml, station_xml, trace, write_mseed
 from rockbatch.common.errors import Contradiction
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.component import Component
-from rockbatch.motions.directions import _without_statement
-from rockbatch.motions.evidence import Kind, Statement, same_direction
+from rockbatch.motions.identity.directions import _without_statement
+from rockbatch.motions.labels.evidence import Kind, Statement, same_direction
+from rockbatch.motions.labels.orientation import Orientation, orientation_in
 from rockbatch.motions.manifest_draft import write_manifest
-from rockbatch.motions.orientation import Orientation, orientation_in
 
 SHAKES = {"a": 1, "b": 2, "c": 3}
 """Seeds of three series that do not resemble each other."""

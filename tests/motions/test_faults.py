@@ -6,9 +6,9 @@ from motion_files import needs_records, real_components, wiggle, write_at2
 
 from rockbatch.motions import fema_p695, read_motions
 from rockbatch.motions.component import Component, Sensor
-from rockbatch.motions.doubles import without_doubles
-from rockbatch.motions.faults import FILLED, at_rest, filled_gap, is_spike
-from rockbatch.motions.orientation import Orientation
+from rockbatch.motions.identity.doubles import without_doubles
+from rockbatch.motions.labels.orientation import Orientation
+from rockbatch.motions.quality.faults import FILLED, at_rest, filled_gap, is_spike
 
 DT = 0.01
 A, B, C = (wiggle(600, seed, 0.4) for seed in (1, 2, 3))

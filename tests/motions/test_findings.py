@@ -13,15 +13,17 @@ from studies import FOLDER_STUDY, write_study
 
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
-from rockbatch.motions import ReadOptions, fema_p695, measures, read_motions
+from rockbatch.motions import ReadOptions, fema_p695, read_motions
 from rockbatch.motions.component import Component
-from rockbatch.motions.doubles import without_doubles
-from rockbatch.motions.likeness import likeness_of
+from rockbatch.motions.identity.doubles import without_doubles
+from rockbatch.motions.identity.likeness import likeness_of
+from rockbatch.motions.identity.pairing import to_motions
+from rockbatch.motions.identity.stations import by_station
+from rockbatch.motions.intensity import measures
+from rockbatch.motions.labels.orientation import Orientation
 from rockbatch.motions.manifest_draft import draft
 from rockbatch.motions.motion import Finding, Motion
-from rockbatch.motions.orientation import Orientation
-from rockbatch.motions.pairing import to_motions
-from rockbatch.motions.plausible import (
+from rockbatch.motions.quality.plausible import (
     ALTERNATION,
     SELDOM_ABOVE,
     SELDOM_BELOW,
@@ -30,7 +32,6 @@ from rockbatch.motions.plausible import (
     flat_tops,
     unlikely_samples,
 )
-from rockbatch.motions.stations import by_station
 from rockbatch.results.run_json import describe
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions

@@ -8,11 +8,12 @@ import pytest
 from motion_files import wiggle, write_at2
 
 from rockbatch.common.errors import InputError
-from rockbatch.motions import ReadOptions, common_span, read_motions
+from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.component import Component
-from rockbatch.motions.orientation import Orientation
-from rockbatch.motions.pairing import to_motions
-from rockbatch.motions.stations import _may_join
+from rockbatch.motions.identity import common_span
+from rockbatch.motions.identity.pairing import to_motions
+from rockbatch.motions.identity.stations import _may_join
+from rockbatch.motions.labels.orientation import Orientation
 
 
 def title(component: str, station: str = "Test Station") -> str:

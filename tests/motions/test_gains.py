@@ -12,11 +12,11 @@ from waveform_files import channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.common.errors import InputError, UnusableRecord
 from rockbatch.motions import ReadOptions, read_motions
-from rockbatch.motions.colocated import with_gains_compared
 from rockbatch.motions.component import Component, Sensor
+from rockbatch.motions.identity.colocated import with_gains_compared
+from rockbatch.motions.labels.orientation import Orientation
 from rockbatch.motions.manifest_draft import draft
-from rockbatch.motions.orientation import Orientation
-from rockbatch.motions.stationxml import Channel, contradiction
+from rockbatch.motions.sources.stationxml import Channel, contradiction
 
 RECORD = "n.mseed"
 

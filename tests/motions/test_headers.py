@@ -10,7 +10,7 @@ from layouts import LAYOUTS
 from rockbatch.motions.formats import read_record
 from rockbatch.motions.formats.geonet import is_geonet
 from rockbatch.motions.formats.unam import _texts_of
-from rockbatch.motions.record_file import RecordFile
+from rockbatch.motions.sources.record_file import RecordFile
 
 GEONET = "20161113_110256_WTMC_20"
 CGS = "RCRD OF FRI JUL 5, 2019 20:19:37.0 PDT"

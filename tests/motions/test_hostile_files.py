@@ -14,11 +14,11 @@ from waveform_files import START, channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
-from rockbatch.motions.common_span import on_common_samples, too_unlike
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import columns, miniseed, with_obspy
 from rockbatch.motions.formats.with_obspy import CHECKS
-from rockbatch.motions.record_file import ReadOptions
+from rockbatch.motions.identity.common_span import on_common_samples, too_unlike
+from rockbatch.motions.sources.record_file import ReadOptions
 
 
 def names(found) -> list[str]:
@@ -194,7 +194,7 @@ def test_a_record_of_more_samples_than_a_day_has_is_refused(tmp_path, monkeypatc
 
 
 def test_components_whose_common_samples_would_be_too_many_are_not_brought_together(tmp_path, monkeypatch):
-    monkeypatch.setattr("rockbatch.motions.common_span.MOST_SAMPLES", 250)
+    monkeypatch.setattr("rockbatch.motions.identity.common_span.MOST_SAMPLES", 250)
     write_at2(tmp_path, "a000.AT2", wiggle(200), dt="0.02", title="X, 1/17/1994, S, 000")
     write_at2(tmp_path, "aUP.AT2", wiggle(400, 2), dt="0.01", title="X, 1/17/1994, S, UP")
     found = read_motions(tmp_path, confirmed=["*"])
@@ -214,7 +214,7 @@ def test_components_whose_common_samples_would_be_too_many_are_not_brought_toget
     ],
 )
 def test_the_shorter_component_and_the_finer_step_decide_how_many_samples_are_common(monkeypatch, first, second, fit):
-    monkeypatch.setattr("rockbatch.motions.common_span.MOST_SAMPLES", 250)
+    monkeypatch.setattr("rockbatch.motions.identity.common_span.MOST_SAMPLES", 250)
     components = [Component("c", dt, np.zeros(npts)) for dt, npts in (first, second)]
     assert [too_unlike(*pair) == "" for pair in (components, components[::-1])] == [fit, fit]
 
@@ -237,7 +237,7 @@ def test_components_that_are_the_time_itself_are_the_same_on_common_samples(step
 
 def test_a_common_span_is_built_where_both_are_and_nowhere_else():
     """Ten samples at the end of a long record take memory for ten samples."""
-    from rockbatch.motions.orientation import Orientation
+    from rockbatch.motions.labels.orientation import Orientation
 
     long = Component("h", 0.01, wiggle(10**6), Orientation("000", azimuth=0.0), start=1e9)
     short = Component("v", 0.005, wiggle(200, 2), Orientation("UP", vertical=True), start=1e9 + 5000.0025)
@@ -257,7 +257,7 @@ def test_a_large_file_takes_a_few_times_its_size():
     from pathlib import Path
 
     from rockbatch.motions.formats import read_record
-    from rockbatch.motions.record_file import RecordFile
+    from rockbatch.motions.sources.record_file import RecordFile
 
     small, data = (at2_text(wiggle(number), number="{:15.7E}".format).encode() for number in (100, 50_000))
     read_record(RecordFile(Path("x000.AT2"), "x000.AT2", small))  # what is loaded once
@@ -324,7 +324,7 @@ def test_a_stray_xml_costs_no_record_whatever_it_is(tmp_path, monkeypatch):
 
 
 def test_station_xml_is_read_up_to_a_stated_size_and_no_tree_is_built(tmp_path, monkeypatch):
-    from rockbatch.motions import stationxml
+    from rockbatch.motions.sources import stationxml
 
     write_mseed(tmp_path / "x.mseed", trace("HNN"))
     station_xml(tmp_path, "<abc/>" * 30_000, channel_xml("HNN"))

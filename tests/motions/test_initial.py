@@ -10,15 +10,16 @@ from fixed_column_files import NPTS, A, cosmos_header, cosmos_series, csmip_chan
 from motion_files import RECORDS, needs_records
 
 from rockbatch.batch.digests import digests
-from rockbatch.motions import Motion, measures, read_motions
+from rockbatch.motions import Motion, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import RecordFile, read_record
+from rockbatch.motions.identity.pairing import to_motions
+from rockbatch.motions.intensity import measures
+from rockbatch.motions.labels.orientation import Orientation
 from rockbatch.motions.motion import Initial
 from rockbatch.motions.motion_set import MotionSet
-from rockbatch.motions.orientation import Orientation
-from rockbatch.motions.pairing import to_motions
-from rockbatch.motions.scaling import Target, at_target
-from rockbatch.motions.selection import Selection, selected
+from rockbatch.motions.suites.scaling import Target, at_target
+from rockbatch.motions.suites.selection import Selection, selected
 
 DT = 0.005
 BEGINS = Initial(0.12, -0.03)

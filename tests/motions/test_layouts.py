@@ -12,7 +12,7 @@ from rockbatch.common.errors import Unstated
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.formats import read_record
-from rockbatch.motions.record_file import RecordFile
+from rockbatch.motions.sources.record_file import RecordFile
 
 N, DT = 203, 0.005
 A = np.round(wiggle(N, 1, 0.4), 6)

@@ -10,7 +10,7 @@ from damaged_files import SAMPLES
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions.formats import read_record
-from rockbatch.motions.record_file import ReadOptions, RecordFile
+from rockbatch.motions.sources.record_file import ReadOptions, RecordFile
 
 NUMBER = re.compile(r"-?\d+\.?\d*")
 

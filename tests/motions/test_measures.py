@@ -10,8 +10,9 @@ import pytest
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.units import GRAVITY
-from rockbatch.motions import Motion, measures
+from rockbatch.motions import Motion
 from rockbatch.motions.description import entry, suite_spectra
+from rockbatch.motions.intensity import measures
 from rockbatch.motions.motion import Initial
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.spectrum import PERIODS, spectral_acceleration

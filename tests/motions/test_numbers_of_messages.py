@@ -12,24 +12,24 @@ from messages import assert_states, said_by
 from motion_files import wiggle
 
 import rockbatch as rb
-from rockbatch.motions.azimuths import components_along
-from rockbatch.motions.baseline import Offset, remove_offset
-from rockbatch.motions.common_span import on_common_samples, too_unlike
 from rockbatch.motions.component import Component
-from rockbatch.motions.design_spectra import AashtoSpectrum, NzsSpectrum
-from rockbatch.motions.doubles import _finding_on_copy, _reason
 from rockbatch.motions.fema_p695 import _split_name
 from rockbatch.motions.formats import read_record
 from rockbatch.motions.formats.time_steps import on_even_steps
 from rockbatch.motions.formats.with_obspy import check_evt
-from rockbatch.motions.hazard import problems
+from rockbatch.motions.identity.azimuths import components_along
+from rockbatch.motions.identity.common_span import on_common_samples, too_unlike
+from rockbatch.motions.identity.doubles import _finding_on_copy, _reason
+from rockbatch.motions.intensity.pairs import common_samples
+from rockbatch.motions.labels.orientation import Orientation
 from rockbatch.motions.motion import Shock
-from rockbatch.motions.orientation import Orientation
-from rockbatch.motions.pairs import common_samples
-from rockbatch.motions.pulses import unlikely
-from rockbatch.motions.record_file import ReadOptions, RecordFile
-from rockbatch.motions.scaling import Target
-from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.motions.quality.baseline import Offset, remove_offset
+from rockbatch.motions.sources.record_file import ReadOptions, RecordFile
+from rockbatch.motions.suites.design_spectra import AashtoSpectrum, NzsSpectrum
+from rockbatch.motions.suites.hazard import problems
+from rockbatch.motions.suites.pulses import unlikely
+from rockbatch.motions.suites.scaling import Target
+from rockbatch.motions.suites.spectrum_target import SpectrumTarget
 
 G = 9.80665
 OPTIONS = ReadOptions(unit="m/s2")

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rockbatch.motions.orientation import Orientation, orientation_in, orientation_of, same_azimuth, split_stem
+from rockbatch.motions.labels.orientation import Orientation, orientation_in, orientation_of, same_azimuth, split_stem
 
 
 @pytest.mark.parametrize(

@@ -18,8 +18,8 @@ from studies import FOLDER_STUDY, write_study
 from rockbatch.commands.cli import main
 from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
 from rockbatch.motions.component import Sensor
-from rockbatch.motions.orientation import Orientation, orientation_of, unknown
-from rockbatch.motions.origin import Origin, origin_of, with_direction
+from rockbatch.motions.labels.orientation import Orientation, orientation_of, unknown
+from rockbatch.motions.labels.origin import Origin, origin_of, with_direction
 
 ROOT = Path(__file__).parents[2]
 

@@ -14,8 +14,8 @@ from rockbatch.commands.cli import main
 from rockbatch.motions import read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.folder import read_files
-from rockbatch.motions.own_files import is_own
-from rockbatch.motions.pairing import to_motions
+from rockbatch.motions.identity.pairing import to_motions
+from rockbatch.motions.sources.own_files import is_own
 
 OUTPUT = {"histories": "all", "forces": True, "half_cycles": True, "intensity": True, "sections": 3}
 CHECK = {"name": "upright", "reason": "test", "demand": "theta_max_over_alpha", "at_most": 0.9}

@@ -13,11 +13,11 @@ from studies import RIGID, study_text, write_study
 import rockbatch as rb
 from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet, read_motions
-from rockbatch.motions.design_spectra import TableSpectrum
-from rockbatch.motions.pairs import common_samples, station_spectra
-from rockbatch.motions.scaling import Target, at_target
+from rockbatch.motions.intensity.pairs import common_samples, station_spectra
 from rockbatch.motions.spectrum import responses, spectral_acceleration
-from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
+from rockbatch.motions.suites.design_spectra import TableSpectrum
+from rockbatch.motions.suites.scaling import Target, at_target
+from rockbatch.motions.suites.spectrum_target import PAIRS, SpectrumTarget
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 

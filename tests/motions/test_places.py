@@ -5,7 +5,7 @@ from fixed_column_files import cosmos_text, csmip_channel
 from motion_files import wiggle, write_at2
 
 from rockbatch.motions import ReadOptions, read_motions
-from rockbatch.motions.places import Stand, stand
+from rockbatch.motions.quality.places import Stand, stand
 
 
 def only_reason(found) -> str:

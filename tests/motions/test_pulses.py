@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rockbatch.common.errors import InputError
-from rockbatch.motions.measures import velocity
-from rockbatch.motions.pulses import LEAST_SAMPLES, SHAPES, pulse, pulse_length, unlikely
+from rockbatch.motions.intensity.measures import velocity
+from rockbatch.motions.suites.pulses import LEAST_SAMPLES, SHAPES, pulse, pulse_length, unlikely
 
 
 def make(shape, dt=0.005, period=0.5, amplitude=9.81, duration=10.0, **more):

@@ -13,10 +13,11 @@ import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.commands.motions import _GLANCE, _scorecard, overview
 from rockbatch.common.errors import Contradiction
-from rockbatch.motions import LeftOut, MotionSet, Unusable, measures, small_figures
-from rockbatch.motions.listed import Listed
+from rockbatch.motions import LeftOut, MotionSet, Unusable, small_figures
+from rockbatch.motions.intensity import measures
 from rockbatch.motions.motion import Finding
 from rockbatch.motions.ranking import COLUMNS, Use, pulse_period, ranked_records
+from rockbatch.motions.sources.listed import Listed
 from rockbatch.workflow import records as on_page
 
 ODD = (Finding("no PGD", "its displacement runs away"),)

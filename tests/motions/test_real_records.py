@@ -13,12 +13,12 @@ from motion_files import RECORDS, needs_records, real_components, real_motions, 
 
 from rockbatch.motions import Motion, ReadOptions, fema_p695, read_motions
 from rockbatch.motions.alignment import correlation
-from rockbatch.motions.baseline import Offset, remove_offset
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import RecordFile, read_record
 from rockbatch.motions.manifest_draft import write_manifest
-from rockbatch.motions.plausible import FARTHEST_MEAN
-from rockbatch.motions.stationxml import Inventories
+from rockbatch.motions.quality.baseline import Offset, remove_offset
+from rockbatch.motions.quality.plausible import FARTHEST_MEAN
+from rockbatch.motions.sources.stationxml import Inventories
 
 pytestmark = needs_records
 

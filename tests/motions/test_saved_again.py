@@ -9,7 +9,7 @@ import pytest
 from damaged_files import SAMPLES
 
 from rockbatch.motions.formats import dyna, geonet, read_record
-from rockbatch.motions.record_file import ReadOptions, RecordFile
+from rockbatch.motions.sources.record_file import ReadOptions, RecordFile
 
 STATED = ReadOptions(unit="m/s2", sensitivity=1e5)
 TEXTS = [(name, file, data) for name, files in SAMPLES.items() for file, data in files if b"\x00" not in data]
@@ -22,7 +22,7 @@ AGAIN = {
     "blank lines at the end": lambda text: text + "\n\n",
     "the mark of the end of DOS": lambda text: text + "\x1a",
 }
-OF_NAME = {"name", "source"}
+OF_NAME = {"name", "sources"}
 
 
 def facts(file, data):

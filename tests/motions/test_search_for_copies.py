@@ -9,9 +9,10 @@ import pytest
 from copies import title
 from motion_files import wiggle, write_at2
 
-from rockbatch.motions import alignment, candidates, likeness, read_motions, stations
+from rockbatch.motions import alignment, read_motions
 from rockbatch.motions.component import Component
-from rockbatch.motions.orientation import Orientation
+from rockbatch.motions.identity import candidates, likeness, stations
+from rockbatch.motions.labels.orientation import Orientation
 
 
 @pytest.fixture

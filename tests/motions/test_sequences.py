@@ -7,11 +7,12 @@ from studies import COSINE, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.common.errors import InputError
-from rockbatch.motions import Motion, measures, read_motions
+from rockbatch.motions import Motion, read_motions
+from rockbatch.motions.intensity import measures
 from rockbatch.motions.motion import Initial
-from rockbatch.motions.plausible import unlikely_samples
-from rockbatch.motions.sequences import MOST_IN_PAUSE, ShockSequence
+from rockbatch.motions.quality.plausible import unlikely_samples
 from rockbatch.motions.spectrum import spectral_acceleration
+from rockbatch.motions.suites.sequences import MOST_IN_PAUSE, ShockSequence
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 

@@ -7,7 +7,7 @@ import pytest
 
 import rockbatch as rb
 from rockbatch.common.errors import InputError
-from rockbatch.motions.measures import pgd
+from rockbatch.motions.intensity.measures import pgd
 from rockbatch.motions.spectrum import spectral_acceleration
 
 

@@ -9,7 +9,8 @@ from studies import study_text, write_study
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet, description
-from rockbatch.motions.design_spectra import (
+from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
+from rockbatch.motions.suites.design_spectra import (
     EUROCODE,
     AashtoSpectrum,
     AsceSpectrum,
@@ -18,9 +19,8 @@ from rockbatch.motions.design_spectra import (
     TableSpectrum,
     read_spectrum,
 )
-from rockbatch.motions.scaling import MOST_FACTOR, at_target, scale_to_targets
-from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
-from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.motions.suites.scaling import MOST_FACTOR, at_target, scale_to_targets
+from rockbatch.motions.suites.spectrum_target import SpectrumTarget
 from rockbatch.study import load_study
 
 

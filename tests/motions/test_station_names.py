@@ -9,10 +9,11 @@ import pytest
 from motion_files import wiggle
 
 import rockbatch as rb
-from rockbatch.motions import ReadOptions, read_motions, stations
+from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.component import Component, Sensor
-from rockbatch.motions.orientation import Orientation
-from rockbatch.motions.stations import station_names
+from rockbatch.motions.identity import stations
+from rockbatch.motions.identity.stations import station_names
+from rockbatch.motions.labels.orientation import Orientation
 
 RECORDS = Path(rb.__file__).parents[1] / "motions" / "near_fault"
 WTMC = RECORDS / "kaikoura2016_wtmc" / "20161113_110259_WTMC_20.V2A"

@@ -10,12 +10,13 @@ from studies import FOLDER_STUDY, write_study
 
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
-from rockbatch.motions import Motion, MotionSet, measures, read_motions
-from rockbatch.motions.baseline import Offset, remove_offset
+from rockbatch.motions import Motion, MotionSet, read_motions
 from rockbatch.motions.component import Component
-from rockbatch.motions.scaling import Target, at_target
-from rockbatch.motions.selection import Selection, selected
+from rockbatch.motions.intensity import measures
+from rockbatch.motions.quality.baseline import Offset, remove_offset
 from rockbatch.motions.spectrum import spectral_acceleration
+from rockbatch.motions.suites.scaling import Target, at_target
+from rockbatch.motions.suites.selection import Selection, selected
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 from rockbatch.terminal.messages import Terminal

@@ -6,7 +6,7 @@ from motion_files import wiggle, write_at2
 
 from rockbatch.motions import Motion, ReadOptions, read_motions
 from rockbatch.motions.component import Component
-from rockbatch.motions.plausible import FARTHEST_MEAN, Candidate, no_zero_line
+from rockbatch.motions.quality.plausible import FARTHEST_MEAN, Candidate, no_zero_line
 
 T = np.arange(80) * 0.05
 SPECTRUM = np.where(T < 0.1, 0.4 + 6 * T, np.where(T < 0.5, 1.0, 0.5 / np.maximum(T, 0.5)))  # a code's, in g
@@ -120,7 +120,7 @@ def test_a_series_that_never_changes_sign_is_used_only_when_it_is_confirmed(tmp_
 
 
 def test_a_series_with_an_offset_has_it_confirmed_or_taken_off(tmp_path):
-    from rockbatch.motions.baseline import Offset
+    from rockbatch.motions.quality.baseline import Offset
 
     write(tmp_path, "# time(s) N(g)", T, A + 0.3 * np.abs(A).max())
     assert "has a mean of 2" in reason(tmp_path)  # 0.3 of a peak that has grown by it

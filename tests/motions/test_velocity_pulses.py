@@ -6,9 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from rockbatch.motions import Motion, velocity_pulses
-from rockbatch.motions.measures import velocity
-from rockbatch.motions.velocity_pulses import (
+from rockbatch.motions import Motion
+from rockbatch.motions.intensity import velocity_pulses
+from rockbatch.motions.intensity.measures import velocity
+from rockbatch.motions.intensity.velocity_pulses import (
     PULSE_LIKE,
     _daubechies,
     _filter,

@@ -10,10 +10,10 @@ from studies import RIGID, study_text, write_study
 import rockbatch as rb
 from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet
-from rockbatch.motions.design_spectra import TableSpectrum
-from rockbatch.motions.scaling import Target, scale_verticals, verticals
 from rockbatch.motions.spectrum import spectral_acceleration
-from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.motions.suites.design_spectra import TableSpectrum
+from rockbatch.motions.suites.scaling import Target, scale_verticals, verticals
+from rockbatch.motions.suites.spectrum_target import SpectrumTarget
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 

@@ -8,7 +8,7 @@ from motion_files import wiggle, write_at2
 from waveform_files import channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.motions import read_motions
-from rockbatch.motions.orientation import in_numbered_sets, split_stem
+from rockbatch.motions.labels.orientation import in_numbered_sets, split_stem
 
 COMPONENTS = [wiggle(seed=seed) for seed in (1, 2, 3)]
 

@@ -11,9 +11,10 @@ from motion_files import wiggle, write_at2
 from national_files import unam_text
 from waveform_files import trace
 
-from rockbatch.motions import ReadOptions, alignment, likeness, read_motions
+from rockbatch.motions import ReadOptions, alignment, read_motions
 from rockbatch.motions.component import Component
-from rockbatch.motions.orientation import Orientation
+from rockbatch.motions.identity import likeness
+from rockbatch.motions.labels.orientation import Orientation
 
 NEAR_FAULT = Path(__file__).parents[2] / "motions" / "near_fault"
 

@@ -11,8 +11,8 @@ from report_page import Page, figures
 import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.motions import LeftOut, MotionSet, Unusable
+from rockbatch.motions.labels.origin import Origin
 from rockbatch.motions.motion import Finding
-from rockbatch.motions.origin import Origin
 from rockbatch.workflow.records import page, write_records
 
 

@@ -18,7 +18,7 @@ from studies import RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError, MissingColumns
-from rockbatch.motions.scaling import Target
+from rockbatch.motions.suites.scaling import Target
 from rockbatch.outcome.outcome import TERMS, Outcome
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.bed import OF_FOOTING

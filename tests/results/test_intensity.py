@@ -13,7 +13,7 @@ from studies import COSINE, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.common.errors import InputError
-from rockbatch.motions import measures
+from rockbatch.motions.intensity import measures
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.observers.intensity.order import order_of
 from rockbatch.observers.intensity.section import _symbol, _tables, section

@@ -12,10 +12,10 @@ import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.motions import MotionSet
-from rockbatch.motions.design_spectra import TableSpectrum
-from rockbatch.motions.scaling import at_target
 from rockbatch.motions.spectrum import spectral_acceleration
-from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.motions.suites.design_spectra import TableSpectrum
+from rockbatch.motions.suites.scaling import at_target
+from rockbatch.motions.suites.spectrum_target import SpectrumTarget
 from rockbatch.pier import unlikely_devices
 from rockbatch.study import load_study, target_keys
 

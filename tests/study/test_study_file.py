@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rockbatch.common.errors import InputError
-from rockbatch.motions.baseline import Offset
-from rockbatch.motions.scaling import Target
-from rockbatch.motions.selection import Selection
+from rockbatch.motions.quality.baseline import Offset
+from rockbatch.motions.suites.scaling import Target
+from rockbatch.motions.suites.selection import Selection
 from rockbatch.pier import Damper, DeckSpring, ElasticBase, Pier, RigidBase, Stop, Tendon, YieldingBase
 from rockbatch.study import FemaSpec, Numerics, PulseSpec, Reference, Study, load_study
 from rockbatch.study.case_keys import BASE_KEYS, CASE

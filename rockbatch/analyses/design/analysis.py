@@ -38,7 +38,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.motions import MotionSet
-from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.motions.suites.spectrum_target import SpectrumTarget
 from rockbatch.results.columns import columns, read_cells
 from rockbatch.results.run_json import describe, rocking_periods
 from rockbatch.simulation.observing import Observer

@@ -32,7 +32,7 @@ from rockbatch.batch.waves import Waves
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.motions.hazard import HazardCurve
+from rockbatch.motions.suites.hazard import HazardCurve
 from rockbatch.results.columns import columns
 from rockbatch.study import Motions, Study
 from rockbatch.workflow.analysis import Analysis, AnalysisFolder, run_analysis

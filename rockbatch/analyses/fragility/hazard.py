@@ -8,7 +8,7 @@ from typing import Any
 from rockbatch.common.errors import InputError
 from rockbatch.common.showing import shown
 from rockbatch.common.units import Usual
-from rockbatch.motions.hazard import HazardCurve, problems
+from rockbatch.motions.suites.hazard import HazardCurve, problems
 from rockbatch.toml.csv_columns import columns_of
 from rockbatch.toml.kinds import Number, choice, positive, text
 from rockbatch.toml.reader import Table, TomlFile, in_table

@@ -11,7 +11,7 @@ from rockbatch.common.errors import InputError, placed
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
 from rockbatch.motions import Motion
-from rockbatch.motions.measures import pgv
+from rockbatch.motions.intensity.measures import pgv
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.pier import Pier
 from rockbatch.toml.csv_columns import columns_of, heading_of

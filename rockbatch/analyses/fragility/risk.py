@@ -15,7 +15,7 @@ from rockbatch.analyses.fragility.bounds import Interval, NoCurve, Values
 from rockbatch.analyses.fragility.curves import Curve, Fitted
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.common.lazy import pd
-from rockbatch.motions.hazard import MOST_RATE, HazardCurve
+from rockbatch.motions.suites.hazard import MOST_RATE, HazardCurve
 
 RISK, DEAGGREGATION = "fragility_risk.csv", "fragility_deaggregation.csv"
 

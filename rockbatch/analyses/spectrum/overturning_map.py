@@ -15,7 +15,7 @@ from rockbatch.batch.plan import Made
 from rockbatch.common.analyses import Entry
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
-from rockbatch.motions.pulses import pulse, pulse_length
+from rockbatch.motions.suites.pulses import pulse, pulse_length
 from rockbatch.pier import Base
 from rockbatch.results.columns import StudyRun
 from rockbatch.study import Case

@@ -19,7 +19,8 @@ from rockbatch.common.analyses import Entry
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.statuses import NOT_STANDING
-from rockbatch.motions import Motion, MotionSet, measures
+from rockbatch.motions import Motion, MotionSet
+from rockbatch.motions.intensity import measures
 from rockbatch.results.columns import StudyRun, row
 from rockbatch.results.suite_statistics import suite
 from rockbatch.study import Study

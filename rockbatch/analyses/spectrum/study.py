@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rockbatch.motions.pulses import SHAPES
+from rockbatch.motions.suites.pulses import SHAPES
 from rockbatch.pier import Base, Pier, problems
 from rockbatch.quantities.design import BOUND
 from rockbatch.study.cases import read_cases

@@ -15,7 +15,6 @@ import numpy as np
 from rockbatch.common.errors import InputError, UnknownFormat, Unstated
 from rockbatch.common.showing import shown
 from rockbatch.motions.component import Component
-from rockbatch.motions.evidence import Kind, Statement, decided_orientation
 from rockbatch.motions.formats import (
     afad,
     asdf,
@@ -40,10 +39,11 @@ from rockbatch.motions.formats import (
 from rockbatch.motions.formats.advice import with_advice
 from rockbatch.motions.formats.obspy_plugin import HEAD, begin_of
 from rockbatch.motions.formats.recording import reader
+from rockbatch.motions.labels.evidence import Kind, Statement, decided_orientation
+from rockbatch.motions.labels.orientation import Orientation, is_place_or_direction, split_stem
 from rockbatch.motions.limits import HUGE, MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Unusable
-from rockbatch.motions.orientation import Orientation, is_place_or_direction, split_stem
-from rockbatch.motions.record_file import ReadOptions, RecordFile
+from rockbatch.motions.sources.record_file import ReadOptions, RecordFile
 from rockbatch.motions.texts import with_legible_texts
 
 _FOREIGN = {  # first bytes of files that hold records, but are not read

@@ -13,7 +13,7 @@ from rockbatch.motions.formats.header_lines import count_and_step, keys_of, mome
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.stated import Stated
-from rockbatch.motions.origin import TURKISH, origin_of
+from rockbatch.motions.labels.origin import TURKISH, origin_of
 
 _MOST = 40  # lines of header
 _TITLE = b"STRONG GROUND MOTION RECORDS OF TURKIYE"

@@ -14,12 +14,12 @@ import numpy as np
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import h5py, obspy
-from rockbatch.motions import stationxml
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.miniseed import components_of_traces
 from rockbatch.motions.limits import MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Unusable
-from rockbatch.motions.record_file import RecordFile
+from rockbatch.motions.sources import stationxml
+from rockbatch.motions.sources.record_file import RecordFile
 
 _MAGIC = b"\x89HDF\r\n\x1a\n"
 _NAME = re.compile(

@@ -14,8 +14,8 @@ from rockbatch.motions.formats.header_lines import layout, line_at, past_mark, r
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.stated import Stated
-from rockbatch.motions.orientation import Orientation
-from rockbatch.motions.origin import origin_of
+from rockbatch.motions.labels.orientation import Orientation
+from rockbatch.motions.labels.origin import origin_of
 
 _HEADER = 27  # lines
 _RATE = 21  # line of the header that begins with the sampling rate

@@ -8,12 +8,12 @@ from itertools import pairwise
 
 from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.common.units import acceleration_factor, length_factor
-from rockbatch.motions.direction_words import folded
 from rockbatch.motions.formats.stated import Stated
+from rockbatch.motions.labels.direction_words import folded
+from rockbatch.motions.labels.orientation import orientation_in, orientation_of
 from rockbatch.motions.limits import HUGE, SAME_STEP
-from rockbatch.motions.orientation import orientation_in, orientation_of
-from rockbatch.motions.places import tells_place
-from rockbatch.motions.record_file import ReadOptions
+from rockbatch.motions.quality.places import tells_place
+from rockbatch.motions.sources.record_file import ReadOptions
 
 _SECOND = "s sec secs second seconds sek sekunde sekunden seg segundo segundos seconde secondes secondo secondi sn saniye сек 秒"
 SECONDS = dict.fromkeys(_SECOND.split(), 1.0) | {"ms": 1e-3, "msec": 1e-3}

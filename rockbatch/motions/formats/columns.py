@@ -13,7 +13,6 @@ import numpy as np
 
 from rockbatch.common.errors import Contradiction, InputError, NoRecord, NoStep, NoUnit, Unstated
 from rockbatch.motions.component import Component, Sensor
-from rockbatch.motions.evidence import Kind
 from rockbatch.motions.formats.clock_times import in_seconds
 from rockbatch.motions.formats.column_header import (
     Column,
@@ -43,12 +42,13 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
+from rockbatch.motions.labels.evidence import Kind
+from rockbatch.motions.labels.orientation import Orientation, is_upward, orientation_in, same_azimuth, split_stem
+from rockbatch.motions.labels.origin import origin_of
 from rockbatch.motions.limits import SAME_STEP, is_step
 from rockbatch.motions.motion import Samples, Unusable
-from rockbatch.motions.orientation import Orientation, is_upward, orientation_in, same_azimuth, split_stem
-from rockbatch.motions.origin import origin_of
-from rockbatch.motions.places import Stand, stand, tells_place
-from rockbatch.motions.record_file import ReadOptions, RecordFile, no_acceleration, text_of
+from rockbatch.motions.quality.places import Stand, stand, tells_place
+from rockbatch.motions.sources.record_file import ReadOptions, RecordFile, no_acceleration, text_of
 
 _COMPONENTS = ("000", "090", "up")
 _REPEATED = 0.9  # correlation of a motion with itself, corrected; two stations have less

@@ -19,10 +19,10 @@ from rockbatch.motions.formats.header_lines import layout, line_at, match_line, 
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, other_direction
 from rockbatch.motions.formats.stated import Stated
+from rockbatch.motions.labels.orientation import is_upward, orientation_of
+from rockbatch.motions.labels.origin import origin_of
 from rockbatch.motions.motion import Initial, Samples
-from rockbatch.motions.orientation import is_upward, orientation_of
-from rockbatch.motions.origin import origin_of
-from rockbatch.motions.places import tells_place
+from rockbatch.motions.quality.places import tells_place
 
 _UNITS = {2: "g", 4: "cm/s2", 10: "gal"}  # the specification's unit codes of accelerations
 _DIRECTIONS = {400: "Up", 401: "Down", 402: "Vert", 600: "Long", 601: "Tran", 700: "H1", 701: "H2"}  # else azimuths

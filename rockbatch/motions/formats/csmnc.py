@@ -15,7 +15,7 @@ from rockbatch.motions.formats.header_lines import line_with, search_lines
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.stated import Stated
-from rockbatch.motions.origin import origin_of
+from rockbatch.motions.labels.origin import origin_of
 
 _MOST = 30  # lines of header
 _PER_LINE = 8

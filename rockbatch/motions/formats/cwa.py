@@ -10,7 +10,7 @@ from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import on_even_steps
-from rockbatch.motions.origin import origin_of
+from rockbatch.motions.labels.origin import origin_of
 
 _LABEL = re.compile(r"\s*(?P<label>[A-Za-z0-9]{1,8})\(\+\)\s*")
 _MOMENT = re.compile(

@@ -13,7 +13,7 @@ from rockbatch.motions.formats.header_lines import layout, line_at, moment, read
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.stated import Stated
-from rockbatch.motions.origin import origin_of
+from rockbatch.motions.labels.origin import origin_of
 
 _WIDTH, _PER_LINE = 8, 10
 _INTEGERS, _REALS, _DATA = 16, 20, 26  # lines of a component's header at which these begin

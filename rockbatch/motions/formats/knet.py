@@ -12,8 +12,8 @@ from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import layout, moment_of, read_header
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.stated import Stated
-from rockbatch.motions.orientation import orientation_of, unknown
-from rockbatch.motions.origin import origin_of
+from rockbatch.motions.labels.orientation import orientation_of, unknown
+from rockbatch.motions.labels.origin import origin_of
 
 _HEADER, _PER_LINE = 17, 8
 _JAPAN, _DELAY = 9 * 3600.0, 15.0  # s

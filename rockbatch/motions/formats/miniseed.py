@@ -12,15 +12,15 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import obspy
 from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
-from rockbatch.motions import stationxml
 from rockbatch.motions.component import Component, Sensor
-from rockbatch.motions.evidence import Kind, Statement, angles_statement, decided_orientation
 from rockbatch.motions.formats.with_obspy import read_stream
+from rockbatch.motions.labels.evidence import Kind, Statement, angles_statement, decided_orientation
+from rockbatch.motions.labels.orientation import is_clock, not_acceleration, orientation_of
+from rockbatch.motions.labels.origin import origin_of
 from rockbatch.motions.motion import Finding, Samples, Unusable
-from rockbatch.motions.orientation import is_clock, not_acceleration, orientation_of
-from rockbatch.motions.origin import origin_of
-from rockbatch.motions.places import Stand, depth_as_place, stand
-from rockbatch.motions.record_file import RecordFile, no_acceleration
+from rockbatch.motions.quality.places import Stand, depth_as_place, stand
+from rockbatch.motions.sources import stationxml
+from rockbatch.motions.sources.record_file import RecordFile, no_acceleration
 
 _YEARS = 1900, 2100
 _STATED = "sensitivity = … (counts per m/s²) in the study, or for this file in motions.toml"

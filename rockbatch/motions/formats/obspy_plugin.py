@@ -14,7 +14,7 @@ from rockbatch.common.errors import InputError, placed
 from rockbatch.common.lazy import obspy
 from rockbatch.common.units import GRAVITY, acceleration_factor
 from rockbatch.motions.formats.recording import Recording, contradictions_of, letters
-from rockbatch.motions.record_file import text_of
+from rockbatch.motions.sources.record_file import text_of
 
 HEAD = 4096
 """Number of first bytes by which formats are recognised."""

@@ -7,13 +7,13 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor, length_factor
 from rockbatch.motions.component import UNKNOWN_SENSOR, Component, Sensor
-from rockbatch.motions.evidence import Kind, Statement
 from rockbatch.motions.formats.stated import Sampled, Stated, contradictions
-from rockbatch.motions.measures import initial_of
+from rockbatch.motions.intensity.measures import initial_of
+from rockbatch.motions.labels.evidence import Kind, Statement
+from rockbatch.motions.labels.orientation import Orientation, is_clock, orientation_of, unknown
+from rockbatch.motions.labels.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.motions.motion import Finding, Initial, Samples, Unusable
-from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, unknown
-from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
-from rockbatch.motions.record_file import RecordFile
+from rockbatch.motions.sources.record_file import RecordFile
 
 Series = tuple[Samples, str]
 """Values, shape (npts,), and their unit."""

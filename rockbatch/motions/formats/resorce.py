@@ -11,7 +11,7 @@ from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, refus
 from rockbatch.motions.formats.header_lines import count_and_step, keys_of, line_with
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.stated import Stated
-from rockbatch.motions.origin import origin_of
+from rockbatch.motions.labels.origin import origin_of
 
 _WIDTH, _PER_LINE = 14, 5
 _UNIT = re.compile(r"acc\w* time series in +(?P<unit>\S+)", re.IGNORECASE)

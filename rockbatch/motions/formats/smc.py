@@ -16,8 +16,8 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, letters, other_direction
 from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.formats.time_steps import from_pairs
+from rockbatch.motions.labels.origin import origin_of
 from rockbatch.motions.motion import Samples
-from rockbatch.motions.origin import origin_of
 
 _UNIT = "cm/s2"  # by the format
 _INTEGERS, _REALS, _COMMENTS = 11, 17, 27  # lines at which these begin

@@ -26,9 +26,9 @@ from rockbatch.motions.formats.header_lines import (
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.stated import Stated
+from rockbatch.motions.labels.orientation import Orientation
+from rockbatch.motions.labels.origin import origin_of
 from rockbatch.motions.motion import Samples
-from rockbatch.motions.orientation import Orientation
-from rockbatch.motions.origin import origin_of
 
 _MOST = 200  # lines of header
 _MOST_CHANNELS = 6

@@ -23,9 +23,9 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, Series
 from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.formats.time_steps import from_pairs
+from rockbatch.motions.labels.orientation import is_clock
+from rockbatch.motions.labels.origin import origin_of
 from rockbatch.motions.motion import Samples
-from rockbatch.motions.orientation import is_clock
-from rockbatch.motions.origin import origin_of
 
 _DATA = {1: 27, 2: 45}  # lines of a channel's header, by volume
 _COMPONENT = 6  # line of the text that names it: "CHAN  1: 90 DEG", or USC's and Caltech's "COMP N90E"

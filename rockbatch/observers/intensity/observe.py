@@ -9,8 +9,9 @@ import numpy as np
 
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
-from rockbatch.motions import Motion, measures
-from rockbatch.motions.pairs import pairing_obstacle, station_spectra
+from rockbatch.motions import Motion
+from rockbatch.motions.intensity import measures
+from rockbatch.motions.intensity.pairs import pairing_obstacle, station_spectra
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.observers.intensity import TABLE
 from rockbatch.observers.intensity.order import Array

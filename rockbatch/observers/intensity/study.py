@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from rockbatch.motions.pairs import TWO_COMPONENT_RULES
+from rockbatch.motions.intensity.pairs import TWO_COMPONENT_RULES
 from rockbatch.toml.kinds import boolean, choice, positive
 from rockbatch.toml.meant import names
 from rockbatch.toml.section import Key, Section

@@ -20,7 +20,7 @@ from rockbatch.analyses.fragility.curves import CloudPoint, assess
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.common.errors import InputError
-from rockbatch.motions.hazard import HazardCurve
+from rockbatch.motions.suites.hazard import HazardCurve
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 

@@ -25,7 +25,7 @@ from rockbatch.batch.threads import Threads
 from rockbatch.batch.waves import Waves
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import EditedTable
-from rockbatch.motions.measures import pga
+from rockbatch.motions.intensity.measures import pga
 from rockbatch.pier import ElasticBase, Pier, RigidBase
 from rockbatch.reporting import finished_analysis
 from rockbatch.reporting.finished_analysis import Contents

@@ -10,7 +10,7 @@ import rockbatch as rb
 from rockbatch.analyses.fragility.answer import of_curves
 from rockbatch.analyses.fragility.measures import MEASURES, own_measure
 from rockbatch.common.errors import InputError
-from rockbatch.motions.measures import arias_intensity
+from rockbatch.motions.intensity.measures import arias_intensity
 from rockbatch.pier import Pier
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions

@@ -28,7 +28,7 @@ from rockbatch.analyses.fragility.section import _notes, _notes_on_rates
 from rockbatch.analyses.fragility.study import OVERTURNING, FragilitySpec, read_fragility
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
-from rockbatch.motions.hazard import HazardCurve
+from rockbatch.motions.suites.hazard import HazardCurve
 from rockbatch.pier import Pier, RigidBase
 from rockbatch.study import Case, load_study
 

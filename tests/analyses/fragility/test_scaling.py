@@ -13,7 +13,7 @@ from rockbatch.analyses.fragility.scale_factors import described_scales, scales
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.batch.plan import simulations
 from rockbatch.common.errors import InputError
-from rockbatch.motions.measures import pga, pgv
+from rockbatch.motions.intensity.measures import pga, pgv
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions

@@ -21,7 +21,7 @@ from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.analyses.fragility.tables import described, points
 from rockbatch.checks import Rule
 from rockbatch.commands.cli import main
-from rockbatch.motions.hazard import HazardCurve
+from rockbatch.motions.suites.hazard import HazardCurve
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.reporting.finished_analysis import Contents

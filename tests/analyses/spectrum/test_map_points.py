@@ -14,7 +14,7 @@ from rockbatch.analyses.spectrum.overturning_map import SAMPLES, Maps, columns, 
 from rockbatch.analyses.spectrum.study import MapSpec
 from rockbatch.batch.plan import Made
 from rockbatch.batch.threads import Threads
-from rockbatch.motions.pulses import pulse_length
+from rockbatch.motions.suites.pulses import pulse_length
 from rockbatch.pier import Pier, RigidBase
 from rockbatch.results.columns import StudyRun, as_table, row
 from rockbatch.study import Case, Numerics, Output, Study

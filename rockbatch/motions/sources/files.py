@@ -7,8 +7,8 @@ from pathlib import Path
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import legible
-from rockbatch.motions import archives
-from rockbatch.motions.own_files import OWN, is_own
+from rockbatch.motions.sources import archives
+from rockbatch.motions.sources.own_files import OWN, is_own
 
 MANIFESTS = ("motions.toml", "motions.csv")
 

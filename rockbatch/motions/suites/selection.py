@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from rockbatch.common.units import GRAVITY
-from rockbatch.motions import measures
+from rockbatch.motions.intensity import measures
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
 

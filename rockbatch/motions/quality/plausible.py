@@ -11,13 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from rockbatch.common.units import GRAVITY
-from rockbatch.motions import measures
 from rockbatch.motions.alignment import Copy, copy_between, same_step
 from rockbatch.motions.component import Component
-from rockbatch.motions.faults import at_rest, filled_gap, is_spike
+from rockbatch.motions.intensity import measures
+from rockbatch.motions.labels.orientation import KIK_NET, same_azimuth
 from rockbatch.motions.motion import Finding, Motion, Samples
-from rockbatch.motions.orientation import KIK_NET, same_azimuth
-from rockbatch.motions.places import Stand, stand
+from rockbatch.motions.quality.faults import at_rest, filled_gap, is_spike
+from rockbatch.motions.quality.places import Stand, stand
 
 LOWEST, HIGHEST = 0.001, 5.0
 """PGA [g] beyond which a wrong unit is likelier than the record; the largest recorded ones reach 2 to 4 g."""

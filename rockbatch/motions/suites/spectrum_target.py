@@ -9,9 +9,7 @@ import numpy.typing as npt
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
-from rockbatch.motions.design_spectra import Spectrum
-from rockbatch.motions.motion import Motion
-from rockbatch.motions.pairs import (
+from rockbatch.motions.intensity.pairs import (
     TWO_COMPONENT_RULES,
     pair_measures,
     pair_of,
@@ -19,7 +17,9 @@ from rockbatch.motions.pairs import (
     srss_components,
     station_spectra,
 )
+from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import Samples, spectral_acceleration
+from rockbatch.motions.suites.design_spectra import Spectrum
 
 Array = npt.NDArray[np.float64]
 

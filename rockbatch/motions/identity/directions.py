@@ -14,14 +14,14 @@ from itertools import combinations
 import numpy as np
 
 from rockbatch.common.grouping import grouped
-from rockbatch.motions.common_span import overlap
 from rockbatch.motions.component import UNKNOWN_SENSOR, Component, file_of
-from rockbatch.motions.evidence import Kind, Statement, decided_orientation, same_direction
-from rockbatch.motions.leaving_out import Reading
-from rockbatch.motions.likeness import pairs_of_one_recording
+from rockbatch.motions.identity.common_span import overlap
+from rockbatch.motions.identity.leaving_out import Reading
+from rockbatch.motions.identity.likeness import pairs_of_one_recording
+from rockbatch.motions.identity.stations import by_station
+from rockbatch.motions.labels.evidence import Kind, Statement, decided_orientation, same_direction
+from rockbatch.motions.labels.orientation import one_of_three, unknown
 from rockbatch.motions.motion import Finding
-from rockbatch.motions.orientation import one_of_three, unknown
-from rockbatch.motions.stations import by_station
 
 _COPIED = (Kind.CODE, Kind.HEADER)  # statements that programs copy from the first file to the others
 _SQUARE = 5.0  # degrees by which the azimuths of a pair may be off a right angle

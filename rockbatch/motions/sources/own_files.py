@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from rockbatch.common.errors import InputError
-from rockbatch.motions.archives import bare, content
+from rockbatch.motions.sources.archives import bare, content
 
 OWN = "a result that rockbatch wrote"
 

@@ -11,7 +11,7 @@ from functools import lru_cache
 from itertools import combinations
 
 from rockbatch.common.grouping import grouped
-from rockbatch.motions.direction_words import WORDS, folded, pairs, words
+from rockbatch.motions.labels.direction_words import WORDS, folded, pairs, words
 
 MOST_KEPT = 8192
 """Labels and stems of which the result is kept: those of a large folder, which several readers ask for."""

@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from rockbatch.common.errors import InputError
-from rockbatch.motions import archives
-from rockbatch.motions.files import SourceFile
-from rockbatch.motions.listed import NOT_LISTED, Listed
-from rockbatch.motions.record_file import text_of
+from rockbatch.motions.sources import archives
+from rockbatch.motions.sources.files import SourceFile
+from rockbatch.motions.sources.listed import NOT_LISTED, Listed
+from rockbatch.motions.sources.record_file import text_of
 
 NAME = "_searchresults.csv"
 _LARGEST = 2**24  # bytes; a search of a hundred records with its spectra has 0.3 MB

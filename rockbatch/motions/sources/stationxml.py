@@ -14,8 +14,8 @@ from pathlib import Path
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.units import acceleration_factor
-from rockbatch.motions import archives
-from rockbatch.motions.orientation import same_azimuth
+from rockbatch.motions.labels.orientation import same_azimuth
+from rockbatch.motions.sources import archives
 
 LARGEST = 64 * 2**20
 """Greatest size [bytes]: of a network with the responses of all its stations."""

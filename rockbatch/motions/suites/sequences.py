@@ -18,12 +18,12 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
 from rockbatch.common.units import GRAVITY, Usual
-from rockbatch.motions import measures
+from rockbatch.motions.intensity import measures
+from rockbatch.motions.labels.origin import UNKNOWN_ORIGIN
 from rockbatch.motions.limits import MOST_SAMPLES, MOST_STEPS
-from rockbatch.motions.listed import NOT_LISTED, Listed
 from rockbatch.motions.motion import Initial, LeftOut, Motion, Samples, Shock, Unusable
 from rockbatch.motions.motion_set import MotionSet
-from rockbatch.motions.origin import UNKNOWN_ORIGIN
+from rockbatch.motions.sources.listed import NOT_LISTED, Listed
 from rockbatch.toml.kinds import boolean, choice, positive, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import TomlFile

@@ -8,11 +8,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from rockbatch.motions.common_span import Common, on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
-from rockbatch.motions.measures import state_at
+from rockbatch.motions.identity.common_span import Common, on_common_samples, overlap, too_unlike
+from rockbatch.motions.intensity.measures import state_at
+from rockbatch.motions.labels.orientation import Orientation, not_square, same_azimuth, split_stem
 from rockbatch.motions.motion import Initial, Samples, Unusable
-from rockbatch.motions.orientation import Orientation, not_square, same_azimuth, split_stem
 
 
 def along_azimuth(first: Samples, azimuth1: float, second: Samples, azimuth2: float, azimuth: float) -> Samples:

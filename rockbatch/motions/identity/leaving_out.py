@@ -8,9 +8,9 @@ from rockbatch.common.grouping import closest
 from rockbatch.common.naming import fits
 from rockbatch.common.showing import shown
 from rockbatch.motions.component import Component, file_of
+from rockbatch.motions.identity.stations import station_of
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
-from rockbatch.motions.stations import station_of
 
 Reading = Component | Unusable | LeftOut
 

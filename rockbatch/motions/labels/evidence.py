@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
-from rockbatch.motions.orientation import SAME_AZIMUTH, Orientation, is_upward, unknown
+from rockbatch.motions.labels.orientation import SAME_AZIMUTH, Orientation, is_upward, unknown
 
 
 class Kind(Enum):

@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.grouping import distinct, grouped
-from rockbatch.motions.common_span import overlap
 from rockbatch.motions.component import Component, file_of
+from rockbatch.motions.identity.common_span import overlap
 from rockbatch.motions.motion import Samples
 
 Indices = npt.NDArray[np.int64]

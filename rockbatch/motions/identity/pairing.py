@@ -15,16 +15,16 @@ from rockbatch.common.naming import fits_any
 from rockbatch.common.showing import shown
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.alignment import same_step
-from rockbatch.motions.azimuths import components_along
-from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
-from rockbatch.motions.measures import state_at
+from rockbatch.motions.identity.azimuths import components_along
+from rockbatch.motions.identity.common_span import on_common_samples, overlap, too_unlike
+from rockbatch.motions.identity.stations import by_station, is_numbered, station_names, station_of
+from rockbatch.motions.intensity.measures import state_at
+from rockbatch.motions.labels.orientation import same_azimuth
+from rockbatch.motions.labels.origin import with_direction
 from rockbatch.motions.motion import Finding, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
-from rockbatch.motions.orientation import same_azimuth
-from rockbatch.motions.origin import with_direction
-from rockbatch.motions.plausible import ANY, Candidate, confirmation_request, findings, in_a_borehole
-from rockbatch.motions.stations import by_station, is_numbered, station_names, station_of
+from rockbatch.motions.quality.plausible import ANY, Candidate, confirmation_request, findings, in_a_borehole
 
 _NO_VERTICAL = (
     "has no vertical component, and the study requires it; put it beside the record, or write vertical = true under "

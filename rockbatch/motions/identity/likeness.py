@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from rockbatch.common.grouping import grouped
 from rockbatch.motions.alignment import common_factor, correlation, is_significant, same_step
-from rockbatch.motions.candidates import Candidates
 from rockbatch.motions.component import Component
+from rockbatch.motions.identity.candidates import Candidates
 from rockbatch.motions.motion import Samples
 
 _ALIKE = 0.7  # correlation: real files of one recording have 0.98 and more, other records 0.63 at most, halves 0.46

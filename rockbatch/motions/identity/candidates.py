@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from rockbatch.common.grouping import grouped
 from rockbatch.motions.component import UNKNOWN_SENSOR, Component
+from rockbatch.motions.identity.stations import is_numbered
+from rockbatch.motions.labels.orientation import SAME_AZIMUTH, UNKNOWN
 from rockbatch.motions.motion import Samples
-from rockbatch.motions.orientation import SAME_AZIMUTH, UNKNOWN
-from rockbatch.motions.stations import is_numbered
 
 _SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of ∫a² dt
 _SPREAD, _BLUR = 0.1, 0.05  # of the significant duration, and s: differences of these shares' times between copies

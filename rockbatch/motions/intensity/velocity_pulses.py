@@ -16,7 +16,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.motions.measures import velocity
+from rockbatch.motions.intensity.measures import velocity
 from rockbatch.motions.motion import Motion, Samples
 
 PERIODS_OF_PULSES = (0.25, 15.0)

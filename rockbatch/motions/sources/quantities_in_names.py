@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rockbatch.common.grouping import grouped
-from rockbatch.motions import archives
-from rockbatch.motions.files import SourceFile
+from rockbatch.motions.sources import archives
+from rockbatch.motions.sources.files import SourceFile
 
 _WORDS = {
     "acceleration": ("acc accel acceleration accelerations aceleracion", "a"),

@@ -8,12 +8,12 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.naming import fits_any
 from rockbatch.common.units import GRAVITY
-from rockbatch.motions import measures
+from rockbatch.motions.intensity import measures
+from rockbatch.motions.intensity.pairs import RULE_NAMES, TWO_COMPONENT_RULES, pairing_obstacle, station_spectra
 from rockbatch.motions.motion import Motion, Samples, Unusable
 from rockbatch.motions.motion_set import MotionSet
-from rockbatch.motions.pairs import RULE_NAMES, TWO_COMPONENT_RULES, pairing_obstacle, station_spectra
 from rockbatch.motions.spectrum import spectral_acceleration
-from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.motions.suites.spectrum_target import SpectrumTarget
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,8 @@ class Target:
     def factors_of(self, motions: Sequence[Motion], gravity: float) -> list[float]:
         """Return the factor that scales each of ``motions`` to the target; infinite for motions at rest.
 
-        Raises ``InputError`` if the rule takes pairs, and a station has none (:func:`rockbatch.motions.pairs.pairing_obstacle`).
+        Raises ``InputError`` if the rule takes pairs, and a station has none
+        (:func:`rockbatch.motions.intensity.pairs.pairing_obstacle`).
         """
         if self.pairs == "apart":
             return [self._factor(motion, gravity) for motion in motions]

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from rockbatch.common.errors import InputError
-from rockbatch.motions import archives
-from rockbatch.motions.files import SourceFile
+from rockbatch.motions.sources import archives
+from rockbatch.motions.sources.files import SourceFile
 
 _NAMED = re.compile(
     r"(?P<kind>(?:Sorted)?EQ_?File|Dt_?File|NumPoints?_?File)_?\(?(?P<number>[\w-]+?)\)?", re.IGNORECASE

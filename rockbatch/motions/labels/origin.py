@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from html import unescape
 
-from rockbatch.motions.orientation import Orientation
+from rockbatch.motions.labels.orientation import Orientation
 
 _LONGEST = 80  # characters of a header's text that are read
 _RECORD_OF = re.compile(r"^(?:record|rcrd) of +", re.IGNORECASE)

@@ -11,7 +11,7 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.units import GRAVITY, acceleration_factor
 from rockbatch.motions.limits import SAME_STEP, STEPS, is_step
-from rockbatch.motions.stationxml import Inventories
+from rockbatch.motions.sources.stationxml import Inventories
 
 LAYOUTS = ("columns", "wrapped")
 """Layouts of numbers in text files: a column for each component, or one series wrapped over lines."""

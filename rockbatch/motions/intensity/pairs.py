@@ -15,8 +15,8 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.units import GRAVITY
+from rockbatch.motions.labels.orientation import not_square
 from rockbatch.motions.motion import Motion
-from rockbatch.motions.orientation import not_square
 from rockbatch.motions.spectrum import PERIODS, Samples, as_periods, responses
 
 Array = npt.NDArray[np.float64]

@@ -7,10 +7,10 @@ from itertools import combinations
 
 from rockbatch.common.grouping import grouped
 from rockbatch.motions.alignment import alignment
-from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
+from rockbatch.motions.identity.common_span import on_common_samples, overlap, too_unlike
+from rockbatch.motions.labels.orientation import same_azimuth
 from rockbatch.motions.motion import Finding
-from rockbatch.motions.orientation import same_azimuth
 
 _ALIKE = 0.98  # correlation: sensors beside each other have more; a roof, or the bottom of a borehole, less
 _FACTOR = 1.25  # of the amplitudes: calibrations agree to some percent

@@ -1,0 +1,1 @@
+"""Intensity measures of motions and of pairs of components, and velocity pulses."""

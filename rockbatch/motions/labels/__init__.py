@@ -1,0 +1,1 @@
+"""What headers, channel codes and names say of a component: its direction, station and event."""

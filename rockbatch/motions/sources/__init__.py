@@ -1,0 +1,1 @@
+"""What lies on the disk: files, archives, station metadata and lists beside records."""

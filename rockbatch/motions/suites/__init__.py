@@ -1,0 +1,1 @@
+"""Suites of motions: selection, scaling, target spectra, hazard, sequences and pulses by formulas."""
