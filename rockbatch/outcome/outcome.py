@@ -129,7 +129,8 @@ class Outcome:
         "lean" if ``theta_max`` is mostly the lean of a base that has yielded; empty if the pier rocks.
     theta_max_error, theta_res_error, settlement_error : float or None
         Estimated errors of ``theta_max`` and ``theta_res`` [rad], and of ``settlement`` on a base that yields [m]; errors of
-        residuals include their drift while they were read. ``None`` with a fixed step, or if the result is chaotic.
+        residuals include their drift while they were read, and the further change as dampers slip. ``None`` with a fixed step, or
+        if the result is chaotic.
     theta_res, base_tilt : float or None
         Residual rotation, static on the deformed base, and tilt of the base itself [rad].
     settlement : float or None

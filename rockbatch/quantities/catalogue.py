@@ -196,8 +196,8 @@ _DISSIPATED = "plastic work of each support, per unit mass"
 TRAILING = (
     Quantity(
         "theta_res_error",
-        "estimated error of the residual rotation over α, including its drift between readings; empty if it is chaotic, "
-        "and with a fixed step",
+        "estimated error of the residual rotation over α, including its drift between readings and its further change as "
+        "dampers slip; empty if it is chaotic, and with a fixed step",
         "theta_res_error", over_alpha=True, bases=TILTS,
         stood=True,
     ),

@@ -17,6 +17,7 @@ from rockbatch.simulation.coarser import (
     with_modes_error,
     with_strips_error,
 )
+from rockbatch.simulation.relaxation import with_relaxation
 from rockbatch.simulation.runs import MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
 from rockbatch.simulation.steps import first_substeps, readings
 
@@ -91,7 +92,7 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
                 peak = _window_at(runs[i], fine.outcome.t_max, quiet_s)
                 outcome = _with_notes(fine, coarse, agreements[i][-1], tolerances.extremes, peak)
                 outcome = _with_peak_in_motion(runs[i], fine, coarse, outcome, tolerances.peak, until)
-                outcome = _with_drift(runs[i], outcome)
+                outcome = with_relaxation(runs[i], _with_drift(runs[i], outcome))
                 magnified = magnifies(runs[i], fine, coarse, outcome, until)
                 if magnified and extent == Agreement.RESULTS:
                     outcome = without_error(outcome, "other peaks near it follow the step")

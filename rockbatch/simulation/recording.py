@@ -24,11 +24,16 @@ SPARE = 1.1
 
 
 class Recording(NamedTuple):
-    """A run, the rows of its history (``core.history``), and the time of its first flight [s], None without."""
+    """A run, the rows of its history (``core.history``), and its result."""
 
     run: Run
     rows: np.recarray
-    t_flight: float | None = None
+    result: Result
+
+    @property
+    def t_flight(self) -> float | None:
+        """Time of the first flight [s]; None without one."""
+        return None if math.isnan(self.result.t_flight) else self.result.t_flight
 
     @property
     def at_samples(self) -> "Recording":
@@ -64,8 +69,7 @@ def recorded(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait:
 
 def _recording(run: Run, result: Result, rows: np.recarray) -> Recording:
     """Return the recording in the first of ``rows``, as many as the ``result`` has."""
-    t_flight = None if math.isnan(result.t_flight) else result.t_flight
-    return Recording(run, rows[: result.rows].view(np.recarray), t_flight)
+    return Recording(run, rows[: result.rows].view(np.recarray), result)
 
 
 def _room(run: Run, outcome: Outcome, every_step: bool, until: float = math.inf) -> int:

@@ -53,8 +53,13 @@ def apart(base: Base, rows: np.recarray) -> tuple[np.recarray, Samples]:
 def recorded(pier: Pier, base: Base, rows: np.recarray) -> RecordedDevices:
     """Return the devices of ``base`` as the core has them, with their states at the ``rows`` of a history."""
     laws = np.array([tuple(law) for law in elements(pier, base)], ELEMENT).view(np.recarray)
+    return RecordedDevices(laws, rows.state.copy(), level_at_rest(pier, base, rows))
+
+
+def level_at_rest(pier: Pier, base: Base, rows: np.recarray) -> float:
+    """Return v of the pier at rest [m], before it was pulled if it was, by the ``rows`` of its history from the start on."""
     level = start_of(pier, base).level
-    return RecordedDevices(laws, rows.state.copy(), float(rows.v[0]) if math.isnan(level) else level)
+    return float(rows.v[0]) if math.isnan(level) else level
 
 
 @entry
@@ -128,6 +133,16 @@ def with_devices(pier: Pier, base: Base, rows: np.recarray, terms: Samples) -> S
     return terms
 
 
+def static_rotation(pier: Pier, base: Base, result: Result, level: float, states: Samples, sticks: np.ndarray) -> float:
+    """Return the rotation [rad] at rest under devices after a run: :func:`rests_at` on supports, else as rigid ground allows.
+
+    There a pier that came to rest stands upright, and devices may hold any other (:func:`rests_on_rigid_base`).
+    """
+    if isinstance(base, ElasticBase | FootingBase):
+        return rests_at(pier, base, result, level, states, sticks)
+    return 0.0 if not math.isnan(result.t_rest) else rests_on_rigid_base(pier, base, result, states, sticks)
+
+
 def rests_at(
     pier: Pier, base: ElasticBase | FootingBase, result: Result, level: float, states: Samples, sticks: np.ndarray
 ) -> float:
@@ -138,28 +153,52 @@ def rests_at(
     is v of the pier at rest at the start [m]; ``states`` and ``sticks``, shape (devices,), are the state of each device at the
     end, and True for a friction damper that sticks then.
     """
-    v, theta, leaning = result.v_end, result.theta_end, pier.gravity * base.leaning_height(pier)
+    v, theta, stiffness = result.v_end, result.theta_end, stiffness_at_rest(pier, base, 0.0)
+    whole, rocking = _of_supports(pier, base)
+    k = 0.5 * whole
+    if isinstance(base, FootingBase):
+        load = np.array([-whole * result.settled - pier.gravity, rocking * result.bed_tilt])
+    else:
+        unstressed = level + 0.5 * (pier.gravity + prestress(pier, base)) / k  # at the start
+        left, right = result.base_left, result.base_right
+        load = np.array([k * (2.0 * unstressed + left + right) - pier.gravity, k * pier.half_width * (left - right)])
+    for law, state, holding in zip(elements(pier, base), states, sticks, strict=True):
+        reach = reach_at_rest(pier, base, law, 0.0)
+        u = float(reach[0] * (v - level) + reach[1] * theta)
+        force, tangent = at_rest(law, u, state, k if holding else 0.0)
+        # F = force + tangent (x − u) pulls down by F, and turns by F times the arm
+        stiffness += tangent * np.outer(reach, reach)
+        load -= (force - tangent * (u + reach[0] * level)) * reach
+    return float(np.linalg.solve(stiffness, load)[1])
+
+
+def stiffness_at_rest(pier: Pier, base: Base, theta: float) -> Samples:
+    """Return the stiffness in v [1/s²] and θ [m²/s²] of a pier at rest without devices, shape (2, 2), less the weight's moment.
+
+    On rigid ground the pier stands on one pivot at ``theta`` [rad], which leaves v no part: its stiffness is 1.
+    """
+    if isinstance(base, ElasticBase | FootingBase):
+        whole, rocking = _of_supports(pier, base)
+        return np.diag([whole, rocking - pier.gravity * base.leaning_height(pier)])
+    return np.diag([1.0, -pier.gravity * pier.size * math.cos(pier.alpha - abs(theta))])
+
+
+def _of_supports(pier: Pier, base: ElasticBase | FootingBase) -> tuple[float, float]:
+    """Return the stiffness of both springs, or of the whole bed, in v [1/s²] and θ [m²/s²]."""
     if isinstance(base, FootingBase):
         bed = footing(pier, base)
-        k, rocking = 0.5 * bed.stiffness, bed.stiffness * base.rocking_share * bed.half_width**2
-        stiffness = np.array([[2.0 * k, 0.0], [0.0, rocking - leaning]])
-        load = np.array([-2.0 * k * result.settled - bed.gravity, rocking * result.bed_tilt])
-    else:
-        m = springs(pier, base)
-        k, b = m.yield_force * m.stiffness, m.half_width
-        unstressed = level + 0.5 * (m.gravity + prestress(pier, base)) / k  # at the start
-        stiffness = np.array([[2.0 * k, 0.0], [0.0, 2.0 * k * b * b - leaning]])
-        left, right = result.base_left, result.base_right
-        load = np.array([k * (2.0 * unstressed + left + right) - m.gravity, k * b * (left - right)])
-    for law, state, holding in zip(elements(pier, base), states, sticks, strict=True):
-        u, soft = v - level - law.offset * theta, np.array([1.0, -law.offset])
-        if law.height != 0.0:
-            u, soft = law.way * law.height * theta, np.array([0.0, law.way * law.height])
-        force, tangent = _at_rest(law, u, state, k if holding else 0.0)
-        # F = force + tangent (x − u) pulls down by F, and turns by F times the arm
-        stiffness += tangent * np.outer(soft, soft)
-        load -= (force - tangent * (u + (level if law.height == 0.0 else 0.0))) * soft
-    return float(np.linalg.solve(stiffness, load)[1])
+        return bed.stiffness, bed.stiffness * base.rocking_share * bed.half_width**2
+    m = springs(pier, base)
+    whole = 2.0 * (m.yield_force * m.stiffness)
+    return whole, whole * m.half_width * m.half_width
+
+
+def reach_at_rest(pier: Pier, base: Base, law: Element, theta: float) -> Samples:
+    """Return ∂e/∂v and ∂e/∂θ [m] of a device, at small rotations on supports, on rigid ground at ``theta`` [rad]."""
+    if base.on_springs:
+        return np.array([0.0, law.way * law.height] if law.height != 0.0 else [1.0, -law.offset])
+    side = math.copysign(1.0, theta)
+    return np.array([0.0, side * _reach(law, pier.half_width, abs(theta), side)[1]])
 
 
 def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Samples, sticks: np.ndarray) -> float:
@@ -181,7 +220,7 @@ def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Sam
         for law, state in zip(laws, states, strict=True):
             u, arm = _reach(law, b, tilt, side)
             final, _ = _reach(law, b, abs(theta), side)
-            force, tangent = _at_rest(law, final, state, 0.0)
+            force, tangent = at_rest(law, final, state, 0.0)
             force = stop_force(law, u, state) if law.kind == CONTACT else force + tangent * (u - final)
             righting += force * arm
         return righting
@@ -206,7 +245,7 @@ def _reach(law: Element, b: float, tilt: float, side: float) -> tuple[float, flo
     return 2.0 * distance * math.sin(0.5 * tilt), distance * math.cos(0.5 * tilt)
 
 
-def _at_rest(law: Element, elongation: float, state: float, support: float) -> tuple[float, float]:
+def at_rest(law: Element, elongation: float, state: float, support: float) -> tuple[float, float]:
     """Return force [N/kg] and tangent stiffness [1/s²] of a device at rest.
 
     ``support`` is the stiffness of a support if a friction damper sticks, which is then much stiffer; 0 if it slides.

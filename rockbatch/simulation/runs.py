@@ -34,7 +34,7 @@ from rockbatch.simulation.beds import of_bed
 from rockbatch.simulation.compilation import kernel_of
 from rockbatch.simulation.elements import elements, prestress
 from rockbatch.simulation.models import Line, acceleration_at, ground_of, line_of, model
-from rockbatch.simulation.restraints import rests_at, rests_on_rigid_base
+from rockbatch.simulation.restraints import static_rotation
 from rockbatch.simulation.starting import start_of
 from rockbatch.simulation.steps import first_substeps, least_substeps, patience, readings
 
@@ -270,12 +270,10 @@ def _with_static_rotation(run: Run, result: Result, equipment: Equipment, number
     if outcome.status != "ok" or not base.has_residual:
         return outcome
     sticks, states = equipment.goes[number] == STICKS, equipment.x[number, : len(equipment.lanes)]
+    rotation = static_rotation(pier, base, result, float(equipment.level[number, 0]), states, sticks)
+    remark = f"dampers hold the pier at a rotation of {rotation:.3g} rad"
     if base.on_springs:
-        rotation = rests_at(pier, base, result, float(equipment.level[number, 0]), states, sticks)
         remark = f"dampers and tendons hold the pier at {rotation:.3g} rad, its supports would at {outcome.theta_res or 0.0:.3g}"
-    else:
-        rotation = 0.0 if not math.isnan(result.t_rest) else rests_on_rigid_base(pier, base, result, states, sticks)
-        remark = f"dampers hold the pier at a rotation of {rotation:.3g} rad"
     changed = abs(rotation - (outcome.theta_res or 0.0)) > NOTED_TILT * pier.alpha
     return outcome.noted(remark if changed else "", theta_res=rotation)
 

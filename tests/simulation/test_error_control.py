@@ -43,7 +43,7 @@ from rockbatch.simulation import (
 )
 from rockbatch.simulation.agreement import windows
 from rockbatch.simulation.elements import elements
-from rockbatch.simulation.restraints import _at_rest
+from rockbatch.simulation.restraints import at_rest
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
 from rockbatch.simulation.steps import fastest_rate, patience, readings
 
@@ -796,9 +796,9 @@ def test_devices_at_rest_have_the_force_and_the_stiffness_that_last():
     pier, g = Pier(0.2, 1.0), 9.81
     bare, braced = (Damper("hysteretic", f=0.05, yield_m=0.01, brace=brace) for brace in (math.inf, 2.0))
     base = RigidBase(restraints=(Damper("viscous", nu=0.1), bare, braced))
-    at_rest = {law.give: _at_rest(law, 0.3, 0.5, 7.0) for law in elements(pier, base) if law.kind == HYSTERETIC}
-    assert {_at_rest(law, 0.3, 0.5, 7.0) for law in elements(pier, base) if law.kind == VISCOUS} == {(0.0, 0.0)}
-    (force, elastic), (_, in_series) = at_rest[0.0], at_rest[max(at_rest)]
+    resting = {law.give: at_rest(law, 0.3, 0.5, 7.0) for law in elements(pier, base) if law.kind == HYSTERETIC}
+    assert {at_rest(law, 0.3, 0.5, 7.0) for law in elements(pier, base) if law.kind == VISCOUS} == {(0.0, 0.0)}
+    (force, elastic), (_, in_series) = resting[0.0], resting[max(resting)]
     assert (force, elastic) == pytest.approx((0.5 * 0.05 * g, 0.05 * g / 0.01))
     support = 2.0 * g * pier.size / pier.half_width**2
     assert in_series == pytest.approx(1.0 / (0.01 / (0.05 * g) + 1.0 / support))

@@ -8,7 +8,7 @@ from core_samples import FIG5
 from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation.elements import elements
 from rockbatch.simulation.models import model
-from rockbatch.simulation.restraints import _at_rest
+from rockbatch.simulation.restraints import at_rest
 
 UNITS = {
     "half_width": (1, 0), "height": (1, 0), "inertia": (2, 0), "gravity": (1, -2), "yield_deflection": (1, 0),
@@ -41,7 +41,7 @@ def test_a_tendon_at_rest_pulls_between_nothing_and_its_strength():
         (0.0, law.prestress, law.stiffness), (0.5 * longest, 0.5 * (law.prestress + law.strength), law.stiffness),
         (2.0 * longest, law.strength, 0.0), (-2.0 * law.prestress / law.stiffness, 0.0, 0.0),
     ):  # fmt: skip
-        assert _at_rest(law, elongation, 0.0, 0.0) == pytest.approx((force, stiffness), abs=0.0)
+        assert at_rest(law, elongation, 0.0, 0.0) == pytest.approx((force, stiffness), abs=0.0)
 
 
 @pytest.mark.parametrize(("exponent", "nu", "speed"), [(0.5, 0.3, None), (0.999, 0.3, 0.0), (0.999, 2000.0, math.inf)])
