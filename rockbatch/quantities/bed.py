@@ -78,7 +78,7 @@ OF_FOOTING = (
     _quantity("bed_pressure_error_MPa", f"estimated error of the greatest pressure: {_READ}", _of_bed("pressure_error"), "MPa",
         sometimes=True, weighed=True, stood=True),
     _quantity("yielding_half_cycles", "number of rocks to one side in which the ground yielded", _of_bed("yielding_rocks"), "1",
-        kind="count", limits=(Limit(),)),
+        more="; it has no error, and one that only just yields may count or not", kind="count", limits=(Limit(),)),
     _quantity("bed_work_J_kg", "plastic work of the ground, per unit mass of the pier", _of_bed("work"), "J/kg",
         error="bed_work_error_J_kg", limits=(Limit(),)),
     _quantity("bed_work_error_J_kg", f"estimated error of it: {_CHANGES.format('')}", _of_bed("work_error"), "J/kg", stood=True,
