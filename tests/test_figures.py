@@ -226,6 +226,12 @@ def test_both_renderers_write_the_same_ticks():
     assert list(Axis("", 1.1, 1.3, log=True, about=2).ticks()) == pytest.approx([1.1, 1.2, 1.3])
 
 
+def test_on_paper_axes_of_numbers_have_a_grid_and_those_of_names_none():
+    (axes,) = paper.drawn(figure(x=Axis("", 0, 3, names={1.0: "a"})), 88.0).axes
+    assert not any(line.get_visible() for line in axes.xaxis.get_gridlines())
+    assert all(line.get_visible() for line in axes.yaxis.get_gridlines())
+
+
 @pytest.mark.parametrize("about", [1, 3, 5, 6])
 @pytest.mark.parametrize("high", [0.3, 1.0, 1.01, 2.4, 7.0, 40.0, 990.0])
 @pytest.mark.parametrize("low", [0.0, -0.4, -90.0])

@@ -32,6 +32,12 @@ def test_an_error_that_straddles_the_limit_decides_nothing(theta, error, verdict
     assert (found.low, found.high) == (pytest.approx(theta - error), pytest.approx(theta + error))
 
 
+@pytest.mark.parametrize(("limit", "verdict", "record"), [(0.5, "not decided", "r1"), (0.6, "pass", "r0")])
+def test_a_limit_between_the_bounds_is_governed_by_the_run_that_may_exceed_it(limit, verdict, record):
+    found = judged(runs([0.45, 0.44], theta_max_error=[0.01, 0.08]), at_most=limit)
+    assert (found.verdict, found.record) == (verdict, record)
+
+
 def test_the_error_of_a_mean_is_the_mean_of_the_errors():
     found = judged(runs([0.2, 0.4], theta_max_error=[0.01, 0.03]), statistic="mean")
     assert (found.low, found.value, found.high) == tuple(map(pytest.approx, (0.28, 0.3, 0.32)))

@@ -356,6 +356,13 @@ def test_flat_tops_are_found_and_have_to_be_confirmed(tmp_path, clip, seed):
     assert whats(read_motions(tmp_path, confirmed=["x000"]).motions[0])[0] == "clipped"
 
 
+@pytest.mark.parametrize(("peak", "doubted"), [(1.99, False), (2.01, True)])
+def test_a_peak_above_2_g_under_a_header_of_g_is_doubted(tmp_path, peak, doubted):
+    write_at2(tmp_path, "x000.AT2", peak * smooth(), title=title("0"))
+    (motion,) = read_motions(tmp_path, confirmed_pga=["x000"]).motions
+    assert ("PGA" in whats(motion)) == doubted
+
+
 @pytest.mark.parametrize("digits", [2, 3, 6])
 @pytest.mark.parametrize("seed", [3, 4, 5])
 def test_peaks_of_smooth_and_of_coarsely_printed_records_are_no_flat_tops(digits, seed):

@@ -81,6 +81,10 @@ STEPS = [0.0011, *((0.0195 if i % 2 else 0.05) + 1e-5 * math.sin(i) for i in ran
 FIRST, SECOND = component("first_000"), component("second_090", 90.0)
 LATE = replace(SECOND, start=1.0e9 + 3.7)
 MESSAGES = {
+    "a count of other samples": (
+        lambda: damaged("CSMIP", b"43 points of", b"40 points of", which=1)()[:1],
+        ["x.V2", 90.0, 40.0, 43.0],
+    ),
     "components 75° apart": (lambda: turned(FIRST, component("x_075", 75.0)), ["first_000", "x_075", 75.0]),
     "one of unknown azimuth": (lambda: turned(FIRST, component("x_UNK", None)), ["x_UNK"]),
     "three components": (lambda: turned(FIRST, SECOND, component("x_180", 180.0)), [3.0]),

@@ -163,6 +163,7 @@ def test_without_overturning_the_curve_is_lognormal():
     wider = curve.widened(0.3)
     assert wider.median == pytest.approx(theta, rel=1e-9)
     assert wider.dispersion == pytest.approx(math.hypot(beta, 0.3), rel=1e-6)
+    assert curve.widened(1.0).dispersion > curve.widened(0.9).dispersion > wider.dispersion
     rate, *_ = wider.rate(*HazardCurve([0.25], [1 / 475], slope=2.0).quadrature())
     expected = 1 / 475 * (theta / 0.25) ** -2 * math.exp(2 * (beta**2 + 0.3**2))
     assert rate == pytest.approx(expected, rel=1e-5)

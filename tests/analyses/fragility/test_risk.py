@@ -478,9 +478,11 @@ def test_rates_under_another_hazard_need_no_run(tmp_path):
     found = rb.fragility(study(tmp_path, HAZARD, dispersion=ADDED))
     pd.testing.assert_frame_equal(found.risk(), found.fragility_risk, rtol=1e-9, check_dtype=False)
     twice = HazardCurve(HAZARD["levels_g"], [2 / years for years in HAZARD["return_period_years"]])
-    doubled = found.risk(twice, years=[10])
+    doubled = found.risk(twice, years=[0.5, 10])
     assert doubled["rate_per_year"].to_numpy() == pytest.approx(2 * found.fragility_risk["rate_per_year"].to_numpy())
     assert "p_in_10_years" in doubled
+    half_a_year = -np.expm1(-0.5 * doubled["rate_per_year"].to_numpy())
+    assert doubled["p_in_0.5_years"].to_numpy() == pytest.approx(half_a_year)
     alone = found.risk(added=0.0)
     assert alone["dispersion_total"].to_numpy() == pytest.approx(alone["dispersion"].to_numpy())
 

@@ -21,7 +21,7 @@ from rockbatch.study.suite import ground_motions
 pytestmark = pytest.mark.usefixtures("pages")
 
 STUDY = study_text(
-    title="spectra",
+    title="spectra of a Brücke",
     pulses=(
         SINE | {"name": "short", "amplitude_g": 0.5, "period_s": 0.6, "duration_s": 2.0},
         SINE | {"name": "long", "amplitude_g": 0.4, "period_s": 1.2, "duration_s": 2.0},
@@ -45,6 +45,10 @@ def folder(tmp_path_factory):
     path = tmp_path_factory.mktemp("spectrum")
     assert main(["spectrum", str(written(path)), "--out", str(path / "out")]) == 0
     return path / "out"
+
+
+def test_texts_of_a_study_stand_in_the_json_of_an_analysis_as_they_are(folder):
+    assert '"title": "spectra of a Brücke"' in (folder / "spectrum.json").read_text(encoding="utf-8")
 
 
 def test_every_point_is_the_run_of_its_pier(folder, tmp_path):
