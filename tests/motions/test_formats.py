@@ -102,6 +102,7 @@ def test_counts_without_sensitivity_are_refused_with_the_remedy(tmp_path):
         (channel_xml("HNN", unit="M/S"), "measures M/S, not an acceleration"),
         (channel_xml("HNN", dip=-35.3), "inclined (dip -35.3°): neither horizontal nor vertical"),
         (channel_xml("HNN", value=0.0), "no sensitivity"),
+        (channel_xml("HNN", value=float("inf")), "no sensitivity"),
         (channel_xml("HNE"), "counts without a sensitivity"),
     ],
 )
