@@ -41,6 +41,13 @@ def test_a_filled_gap_holds_the_component_back_with_its_time(tmp_path, kind):
     assert read_motions(tmp_path, confirmed=["X000"]).motions[0].findings[0].what == "gap"
 
 
+@pytest.mark.parametrize(("count", "filled"), [(5, False), (12, True)])
+def test_a_few_equal_samples_of_a_coarse_record_are_no_gap(count, filled):
+    a = A.copy()
+    a[200 : 200 + count] = 0.0
+    assert (filled_gap(a, 0.1) is not None) == filled
+
+
 @pytest.mark.parametrize("width", [1, 2])
 def test_a_spike_holds_the_component_back_and_a_wider_peak_does_not(tmp_path, width):
     assert "spike" in station(tmp_path, with_spike(width)).unusable[0].reason
