@@ -7,7 +7,6 @@ the components as recorded.
 
 import difflib
 import importlib.util
-import math
 import re
 from dataclasses import dataclass
 from functools import cache
@@ -58,7 +57,7 @@ def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component
     ones, and for an azimuth outside 0..360.
     """
     station_record = _find(station)
-    if not (math.isfinite(azimuth) and 0 <= azimuth <= 360):
+    if not 0 <= azimuth <= 360:
         raise InputError(f"azimuth = {azimuth:g}: must be within 0..360 [degrees from north]")
     normal, parallel = (_recorded(station_record, direction, gravity) for direction in (0, 1))
     azimuths = [float(component.orientation.label) for component in (normal, parallel)]
