@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from rockbatch.motions import Motion, fema_p695, pulse, read_motions
-from rockbatch.motions.pairing import to_motions
+from rockbatch.motions.identity.pairing import to_motions
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 
 from .reference import reference
