@@ -99,6 +99,7 @@ class Component:
     statements: tuple[Statement, ...] = ()  # of its direction, from all sources
     contradiction: str = ""  # between statements in its set, for which it is held back
     listed: Listed = NOT_LISTED  # PEER's search results
+    turned: bool = False  # whether it is made of two, turned to a direction
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "acceleration", frozen(self.acceleration))

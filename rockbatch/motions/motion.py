@@ -159,6 +159,8 @@ class Motion(Shown):
         included; by default ``source`` and ``vertical_source``.
     recorded : bool
         Whether it is an earthquake's; False for pulses and still ground, which no target scales and no suite counts.
+    turned : bool
+        Whether both horizontals of its station were turned to its azimuth.
 
     All samples are copied and cannot be changed afterwards. Raises ``InputError`` for samples that are no finite numbers,
     components of different lengths, and a ``dt`` not above 0, or unusual and not confirmed.
@@ -200,6 +202,7 @@ class Motion(Shown):
     listed: Listed = NOT_LISTED
     sources: tuple[str, ...] = ()
     recorded: bool = True
+    turned: bool = False
 
     def __post_init__(self) -> None:
         for text in ("name", "station"):  # which go into tables

@@ -132,12 +132,17 @@ def _without_the_square(motions: MotionSet, azimuths: Sequence[float]) -> Motion
 
     Each becomes the component across of its station's motion along the first, if that is as long.
     """
-    first, square = (f"_az{azimuth:03g}" for azimuth in (azimuths[0], azimuths[-1]))
-    across = {motion.of_station: motion for motion in motions if motion.name.endswith(square)}
+    first, square = (azimuth % 360.0 for azimuth in (azimuths[0], azimuths[-1]))
+    across = {motion.of_station: motion for motion in motions if motion.turned and motion.azimuth == square}
     along = [motion for motion in motions if across.get(motion.of_station) is not motion]
     for i, motion in enumerate(along):
         perpendicular = across.get(motion.of_station)
-        if perpendicular is not None and motion.name.endswith(first) and perpendicular.npts == motion.npts:
+        if (
+            perpendicular is not None
+            and motion.turned
+            and motion.azimuth == first
+            and perpendicular.npts == motion.npts
+        ):
             along[i] = replace(motion, across=perpendicular.horizontal)
     return replace(motions, motions=along)
 

@@ -356,6 +356,18 @@ def test_a_sequence_that_is_turned_keeps_its_pair(tmp_path):
     assert joined.npts == len(joined.across)
 
 
+def test_a_sequence_named_as_a_turned_record_stays(tmp_path):
+    folder = study(tmp_path, {"pga_g": 0.3}, axis_deg=33).motions.paths[0]
+    with (tmp_path / "study.toml").open("a") as file:
+        file.write('\n[output]\nintensity = true\nsa_periods_s = [0.3]\nsa_pairs = ["rotd50"]\n')
+    (folder / "motions.toml").write_text(
+        '[[sequence]]\nname = "both_az123"\nrecords = ["RSN1_A_az033", "RSN2_B_az033"]\npause_s = 10.0\nalone = true\n'
+    )
+    motions = ground_motions(load_study(tmp_path / "study.toml"))
+    lacking = {motion.name: motion.across is None for motion in motions}
+    assert lacking == {"RSN1_A_az033": False, "RSN2_B_az033": False, "both_az123": True}
+
+
 def test_the_single_measure_takes_pairs_too(tmp_path):
     found = ground_motions(study(tmp_path, {"sa_g": 0.4, "period_s": 0.5, "pairs": "rotd100"}))
     a, b = found.motions[:2]

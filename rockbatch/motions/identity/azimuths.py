@@ -95,6 +95,7 @@ def _turned_component(first: Component, second: Component, azimuth: float) -> Co
         dt=common.dt,
         acceleration=along_azimuth(common.first, _azimuth(first), common.second, _azimuth(second), azimuth),
         orientation=Orientation(f"{azimuth:g}", azimuth=azimuth % 360.0),
+        turned=True,
         sources=(*first.sources, *second.sources),
         start=max(starts) if len(starts) == 2 else None,
         confirmed=tuple(key for key in first.confirmed if key in second.confirmed),

@@ -282,6 +282,7 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str], station: st
         start=start,
         confirm=("dt",),  # a file's step was checked against the limits of recorders (limits.py)
         listed=h.listed,
+        turned=h.turned,
     )
 
 
