@@ -132,7 +132,9 @@ def missing_stations(stations: Stations) -> Line | None:
     text = f"{_listed(names, ', ')} could not be used"
     if stations.known:
         text = f"{len(stations.used)} of {stations.total} stations; {text}"
-    reasons = grouped(stations.unusable, lambda name: _reason_of_file(stations.unusable[name][0]))
+    reasons = grouped(
+        stations.unusable, lambda name: "{source}: {reason}".format_map(stations.unusable[name][0]).rstrip(".")
+    )
     details = [f"{_listed(of_reason, ', ')}: {reason}." for reason, of_reason in reasons.items()]
     more = [f"and {len(details) - MOST_CHECKS} more."] if len(details) > MOST_CHECKS else []
     keys = [*whole, *(file["name"] for files in parts.values() for file in files)]
@@ -141,12 +143,6 @@ def missing_stations(stations: Stations) -> Line | None:
     if len(details) == 1:
         return Line(NOT_DECIDED, text, next(iter(reasons)), (remedy,))
     return Line(NOT_DECIDED, text, "", (*details[:MOST_CHECKS], *more, remedy))
-
-
-def _reason_of_file(file: File) -> str:
-    """Return why a file could not be used: "a.at2: no unit", the reason alone if it has the file's name; no full stop."""
-    source, reason = str(file["source"]).rpartition("/")[2], str(file["reason"]).rstrip(".")
-    return reason if str(file["name"]) in reason or source in reason else f"{source}: {reason}"
 
 
 def _wholly_or_in_part(stations: Mapping[str, Sequence[File]], used: Collection[str]) -> list[str]:

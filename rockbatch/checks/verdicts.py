@@ -23,8 +23,8 @@ from rockbatch.quantities.statistics import STATISTICS
 PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY = "pass", "fail", "not decided", "does not apply"
 CHECKS = "checks.csv"
 """File of the verdicts, beside peaks.csv."""
-SEPARATOR = "; "
-"""Between the remarks in the column ``note`` of checks.csv."""
+NOTE = "note"
+"""Column of checks.csv with the remarks in one line, for people."""
 JUDGED = "peaks_sha256"
 """Column of checks.csv with the digest of the peaks.csv that was judged."""
 MEAN_OVER_TARGET = "mean_over_target"
@@ -69,7 +69,7 @@ class Verdict:
     counting, counted : str
         How runs that ended early count, and their number; empty without any.
     remarks : tuple of str
-        Reason of an undecided verdict, and remarks, none with :data:`SEPARATOR` in it; the column ``note`` has them all.
+        Reason of an undecided verdict, and remarks; checks.csv has them as JSON, and in words in the column ``note``.
     count : str
         The way to count records, one of :data:`rockbatch.checks.rules.COUNTS`; empty for a demand of the case.
     unit : str
@@ -133,7 +133,7 @@ class Verdict:
     @property
     def note(self) -> str:
         """Return the remarks in one line, with semicolons between them; "" for none."""
-        return SEPARATOR.join(self.remarks)
+        return "; ".join(self.remarks)
 
     @property
     def left_open(self) -> str:
@@ -158,9 +158,7 @@ class Verdict:
         return is_ban(self.demand, self.statistic, self.limit)
 
 
-_COLUMNS = {"remarks": "note"}
-"""Columns of checks.csv that have other names than their fields."""
-_KINDS: dict[str, Any] = {_COLUMNS.get(field.name, field.name): field.type for field in fields(Verdict)}
+_KINDS: dict[str, Any] = {field.name: field.type for field in fields(Verdict)}
 """Types of the columns, by name."""
 _WORDS: dict[str, Collection[str]] = {
     "verdict": (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY),
@@ -185,9 +183,11 @@ def _table(verdicts: Iterable[Verdict]) -> tuple[list[str], list[dict[str, objec
     rows: list[dict[str, object]] = []
     varied: dict[str, None] = {}
     for verdict in verdicts:
-        rows.append(vars(verdict) | {"note": verdict.note, "omits": ", ".join(verdict.omits)} | verdict.columns)
+        lists = {"remarks": json.dumps(verdict.remarks, ensure_ascii=False), "omits": ", ".join(verdict.omits)}
+        rows.append(vars(verdict) | {NOTE: verdict.note} | lists | verdict.columns)
         varied |= dict.fromkeys(verdict.columns)
     first, last = ("check", "case"), [name for name in _KINDS if name not in ("check", "case", "columns")]
+    last.insert(last.index("remarks"), NOTE)
     return [*first, *varied, *last], rows
 
 
@@ -221,7 +221,7 @@ def read_verdicts(directory: Path) -> list[Verdict] | None:
         return []
     except InputError:
         raise
-    except (AttributeError, KeyError, TypeError, ValueError, csv.Error) as error:
+    except (AttributeError, KeyError, RecursionError, TypeError, ValueError, csv.Error) as error:
         raise InputError(f"{path}: damaged ({error}); start `rockbatch check` again") from None
     return None if {row.get(JUDGED, "") for row in rows} - {"", _digest_of_peaks(path)} else verdicts
 
@@ -230,9 +230,9 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
     """Return the verdict in a row of checks.csv. Raises ``KeyError`` or ``ValueError`` for a damaged one."""
     values: dict[str, Any] = {}
     for name, kind in _KINDS.items():
-        if name not in ("columns", "note", "omits") and (name in row or name not in _LATER):
+        if name not in ("columns", "remarks", "omits") and (name in row or name not in _LATER):
             values[name] = kind(row[name] or ("nan" if kind is float else ""))
-    values["remarks"] = tuple(row["note"].split(SEPARATOR)) if row["note"] else ()
+    values["remarks"] = tuple(legible(str(remark), keep="\t\r\n") for remark in json.loads(row["remarks"]))
     values["omits"] = tuple(row["omits"].split(", ")) if row.get("omits") else ()
     for name, words in _WORDS.items():
         if values.get(name, "") not in words:
@@ -240,7 +240,9 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
     if not {*values["omits"]} <= OMISSIONS.keys():
         raise ValueError(f"omits = {values['omits']!r}")
     columns = {
-        name: text if name == BOUND else _value(text) for name, text in row.items() if name not in {*_KINDS, JUDGED}
+        name: text if name == BOUND else _value(text)
+        for name, text in row.items()
+        if name not in {*_KINDS, NOTE, JUDGED}
     }
     verdict = Verdict(
         columns={name: value for name, value in columns.items() if value != "" or name == BOUND}, **values

@@ -297,6 +297,12 @@ def test_missing_stations_come_first_and_take_the_green_from_what_passes():
     assert (second.verdict, second.text) == (NOT_DECIDED, "Every check passes in the only case")
 
 
+def test_a_file_is_named_though_letters_of_its_name_are_in_the_reason():
+    lost = LOST | {"name": "a", "source": "x/a.AT2"}
+    (line,) = lines([], stations=Stations(["s"], {"A": [lost]}))
+    assert line.cases == "x/a.AT2: the file is cut"
+
+
 def test_missing_stations_come_last_and_are_reported_without_checks_too():
     stations = Stations(["s"], {"RSN1633": [LOST]})
     failed = verdict("a", "fail", value=0.6, ratio=1.2)

@@ -34,6 +34,28 @@ def test_checks_csv_gives_the_verdicts_back(tmp_path):
     assert read[2].columns == {}
 
 
+def test_a_remark_with_a_semicolon_stays_one_remark(tmp_path):
+    remarks = ("2 of 3 stations are of one event, Kaikoura; 2016", 'the "worse" of two')
+    write_verdicts(tmp_path, [verdict("a", "not decided", remarks=remarks), verdict("b", "pass")])
+    a, b = read_verdicts(tmp_path)
+    assert (a.remarks, a.why_open, b.remarks) == (remarks, remarks[0], ())
+
+
+@pytest.mark.parametrize(
+    ("cell", "found"), [('"[""\\u001b[31mred""]"', (r"\x1b[31mred",)), ("[" * 100_000, None), ("5", None), ("", None)]
+)
+def test_remarks_of_another_hand_are_legible_or_damaged(tmp_path, cell, found):
+    path = write_verdicts(tmp_path, [verdict("a", "pass", remarks=("REMARK",))])
+    text = path.read_text(encoding="utf-8")
+    assert '"[""REMARK""]"' in text
+    path.write_text(text.replace('"[""REMARK""]"', cell), encoding="utf-8")
+    if found:
+        assert [each.remarks for each in read_verdicts(tmp_path)] == [found]
+        return
+    with pytest.raises(InputError, match=r"checks.csv: damaged"):
+        read_verdicts(tmp_path)
+
+
 def test_a_text_of_checks_csv_commands_no_terminal_and_no_spreadsheet(tmp_path):
     write_verdicts(
         tmp_path,
