@@ -26,8 +26,9 @@ from studies import RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.batch import listening
 from rockbatch.commands.cli import COMMANDS, EXIT_CODES, main, parser
-from rockbatch.commands.motions import _by_reason
+from rockbatch.commands.motions import _by_cause
 from rockbatch.commands.summary import summary
+from rockbatch.common.errors import NoUnit, Truncated
 from rockbatch.reporting import write_report
 from rockbatch.results.beside_peaks import write_semicolons
 from rockbatch.results.labelled import Labelled
@@ -250,22 +251,13 @@ def test_motions_shows_what_is_there_and_what_is_not_used(tmp_path, capsys):
 
 
 def test_reasons_are_counted_rarest_first_with_one_example_each():
-    """Those that differ in names in quotes, in brackets or with a number are one."""
-    cut = [(f"file{k}", f"line {k}: cut off in block (no. {k})") for k in range(3)]
-    entries = [
-        *cut,
-        ("x", "no unit"),
-        ("y", 'no record "y"'),
-        ("z", 'no record "z"'),
-        ("w", "no step; no date"),
-        ("u", "no unit"),
-    ]
-    assert _by_reason("Not used", entries, 2) == [
-        "", "Not used", "  1 ×: no step; no date (w)", "  2 ×: no unit (such as x)", "  5 × for 2 other reasons",
+    cut = [(Truncated, f"file{k}", f"line {k}: cut off in block (no. {k})") for k in range(3)]
+    entries = [*cut, (NoUnit, "x", "no unit"), ("y", "y", "no step; no date"), (NoUnit, "u", "no unit in column 2")]
+    assert _by_cause("Not used", entries, 2) == [
+        "", "Not used", "  1 ×: no step; no date (y)", "  2 ×: no unit (such as x)", "  3 × for 1 other reason",
     ]  # fmt: skip
-    lines = _by_reason("Not used", entries, 4)
-    assert lines[-2:] == ['  2 ×: no record "y" (such as y)', "  3 ×: line 0: cut off in block (no. 0) (such as file0)"]
-    assert not _by_reason("Not used", [], 2)
+    assert _by_cause("Not used", entries, 4)[-1] == "  3 ×: line 0: cut off in block (no. 0) (such as file0)"
+    assert not _by_cause("Not used", [], 2)
 
 
 def test_help_loads_neither_compiler_nor_tables_nor_obspy():

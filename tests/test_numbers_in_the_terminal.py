@@ -12,6 +12,7 @@ from messages import assert_states
 
 import rockbatch as rb
 from rockbatch.commands import cache, motions, run, scorecard, summary
+from rockbatch.common.errors import NoUnit, UnusableRecord
 from rockbatch.motions import MotionSet
 from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.outcome.outcome import Failure
@@ -98,13 +99,13 @@ def test_a_folder_of_records_is_counted_by_files_recordings_and_stations():
 
 def test_faults_are_listed_by_reason_the_rarest_first_and_the_rest_counted():
     faults = (
-        [("a", "no unit")] * 3
-        + [("b", "line 3: cut")] * 2
-        + [("c", "empty")]
-        + [("d", "spectra")] * 4
-        + [("e", "clock")] * 5
+        [("unit", "a", "no unit")] * 3
+        + [("cut", "b", "line 3: cut")] * 2
+        + [("empty", "c", "empty")]
+        + [("spectra", "d", "spectra")] * 4
+        + [("clock", "e", "clock")] * 5
     )
-    lines = motions._by_reason("Not used", faults, 3)
+    lines = motions._by_cause("Not used", faults, 3)
     assert lines[:2] == ["", "Not used"]
     assert_states(lines[2], 1.0, "empty", "c")
     assert lines[3].startswith("  2 ×: line 3: cut (such as b")
@@ -145,7 +146,7 @@ def test_files_that_are_not_used_for_one_reason_have_one_line(monkeypatch):
     monkeypatch.setattr(terminal, "say", told.append)
     reasons = [f'column 2 has no unit; write unit = "g" (PGA {peak} g)' for peak in (2.5, 4.7, 1.8)]
     unusable = tuple(
-        Unusable(f"{place}", (f"{place}.acc",), reason)
+        Unusable(f"{place}", (f"{place}.acc",), reason, kind=UnusableRecord if reason == "empty" else NoUnit)
         for place, reason in enumerate([reasons[0], "empty", *reasons[1:]])
     )
     terminal.Terminal().motions(MotionSet((), unusable, ()))

@@ -1,20 +1,19 @@
 """``rockbatch motions``: list the records of a folder, and the files that cannot be used, with reasons."""
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from pathlib import Path
 
 from rockbatch.batch.listening import count
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import csv_text, write_output
-from rockbatch.common.grouping import distinct
+from rockbatch.common.grouping import distinct, grouped
 from rockbatch.motions import MotionSet, ReadOptions, read_motions
 from rockbatch.motions.component import file_of
 from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.motion_set import COLUMNS, TEXTS, row
 from rockbatch.motions.ranking import ADDED, RankedRecord, Use, ranked_records
 from rockbatch.motions.ranking import rows as csv_rows
-from rockbatch.terminal.messages import by_reason
 from rockbatch.terminal.streams import WIDTH, aligned, filled, in_width, say, shortened, show, width
 
 _SHOWN = {  # heads and number formats of the table in the terminal
@@ -108,13 +107,13 @@ def counts(suite: MotionSet) -> str:
 def overview(suite: MotionSet) -> str:
     """Return counts, a scorecard of the doubtful and strongest records, and faults by reason, some :data:`MOST_LINES` lines."""
     entries = {
-        "Not used": [(file.source, file.reason) for file in suite.unusable],
-        "Look at these": [(motion.named, finding.text) for motion in suite for finding in motion.findings],
-        "No vertical": [(motion.named, "no matching file") for motion in suite if motion.lacks_vertical],
-        "Left out": [(file.source, file.reason.partition(";")[0]) for file in suite.left_out],
+        "Not used": [(file.cause, file.source, file.reason) for file in suite.unusable],
+        "Look at these": [(found.what, motion.named, found.text) for motion in suite for found in motion.findings],
+        "No vertical": [("", motion.named, "no matching file") for motion in suite if motion.lacks_vertical],
+        "Left out": [(Use.COPY if file.of else file.reason, file.source, file.reason) for file in suite.left_out],
     }
     for most in range(MOST_GROUPS, 0, -1):
-        groups = [line for title, of_title in entries.items() for line in _by_reason(title, of_title, most)]
+        groups = [line for title, of_title in entries.items() for line in _by_cause(title, of_title, most)]
         if len(groups) <= MOST_LINES - LEAST_LINES - 8:
             break
     records = [record for record in ranked_records(suite) if record.use in (Use.USED, Use.HELD_BACK)]
@@ -156,20 +155,20 @@ def _cell(value: object, form: str) -> str:
     return "" if value is None else format(value, form)
 
 
-def _by_reason(title: str, entries: Sequence[tuple[str, str]], most: int) -> list[str]:
-    """Return a title, and a line for each of the ``most`` rarest reasons, then the number of others; [] without entries.
+def _by_cause(title: str, entries: Sequence[tuple[Hashable, str, str]], most: int) -> list[str]:
+    """Return a title, and a line for each of the ``most`` rarest causes, then the number of others; [] without entries.
 
-    A line has the number, the reason and an example. Reasons that differ only in names and numbers are one.
+    ``entries`` are (cause, name, reason); a line has the number, and name and reason of the first as an example.
     """
-    reasons = sorted(by_reason(entries), key=len)
+    causes = sorted(grouped(entries, lambda entry: entry[0]).values(), key=len)
     lines = ["", title] if entries else []
-    for same in reasons[:most]:
-        name, reason = same[0]
+    for same in causes[:most]:
+        _, name, reason = same[0]
         example = f"such as {name}" if len(same) > 1 else name
         lines += filled(f"{len(same)} ×: {reason} ({example})", 2, 6).split("\n")
-    if len(reasons) > most:
-        rest = sum(map(len, reasons[most:]))
-        lines.append(f"  {rest} × for {count(len(reasons) - most, 'other reason')}")
+    if len(causes) > most:
+        rest = sum(map(len, causes[most:]))
+        lines.append(f"  {rest} × for {count(len(causes) - most, 'other reason')}")
     return lines
 
 

@@ -450,4 +450,4 @@ def _without_offset(component: Component, settings: _ReadSettings) -> Component 
     try:
         return checked_reading(remove_offset(component, settings.offset))
     except InputError as error:
-        return Unusable(component.name, component.sources, str(error))
+        return Unusable(component.name, component.sources, str(error), kind=type(error))

@@ -1,7 +1,7 @@
 """Ground motions: one horizontal component, perhaps with its station's vertical one."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from copy import copy
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError, Problem, UnusableRecord, refuse
+from rockbatch.common.errors import InputError, Problem, Truncated, UnknownFormat, Unstated, UnusableRecord, refuse
 from rockbatch.common.files import legible
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
@@ -510,6 +510,16 @@ class Unusable:
     def source(self) -> str:
         """Return its sources in words, "a.AT2, a-UP.AT2"."""
         return ", ".join(self.sources)
+
+    @property
+    def cause(self) -> Hashable:
+        """Return what files refused for one reason share: the names of gross findings, or the error and the missing keys.
+
+        The reason itself where the class of error has several.
+        """
+        if self.motion is not None:
+            return tuple(finding.what for finding in self.motion.findings if finding.gross)
+        return (self.kind, self.lacks) if issubclass(self.kind, (Unstated, Truncated, UnknownFormat)) else self.reason
 
     def __str__(self) -> str:
         return f"{self.source}: {self.reason}"

@@ -2,10 +2,9 @@
 
 import io
 import os
-import re
 import sys
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
@@ -17,14 +16,6 @@ from rockbatch.terminal.streams import give_up, say, tell
 SECONDS_BETWEEN_LINES = 2.0
 MOST_NAMES = 3
 """Most records without a vertical component that are named; the report names all."""
-
-_VARIABLE = re.compile(r'"[^"]*"|\([^)]*\)|[^\s;:,]*(?:[\d/]|\.[\w.])[^\s;:,]*')
-"""Names, of files and channels too, and numbers in a reason, which are ignored when reasons are compared."""
-
-
-def by_reason(entries: Iterable[tuple[str, str]]) -> list[list[tuple[str, str]]]:
-    """Return entries of a source and a reason in groups, whose reasons differ only in names and numbers."""
-    return list(grouped(entries, lambda entry: _VARIABLE.sub("", entry[1])).values())
 
 
 class Terminal(Listener):
@@ -38,9 +29,9 @@ class Terminal(Listener):
 
         Of files that are not used for one reason the first is named, the others are counted.
         """
-        for (source, reason), *others in by_reason((file.source, file.reason) for file in motion_set.unusable):
+        for file, *others in grouped(motion_set.unusable, lambda file: file.cause).values():
             beside = f" and {count(len(others), 'other')}" if others else ""
-            say(f"not used: {source}{beside}: {reason}")
+            say(f"not used: {file.source}{beside}: {file.reason}")
         for first, repeat in _repeated(motion_set):
             say(f"{first} and {repeat} have the same samples: checks count them once, curves twice; leave one out")
         if lacking := [motion.named for motion in motion_set.motions if motion.lacks_vertical]:

@@ -12,7 +12,7 @@ from motion_files import wiggle, write_at2
 import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.commands.motions import _GLANCE, _scorecard, overview
-from rockbatch.common.errors import Contradiction
+from rockbatch.common.errors import Contradiction, NoUnit, Truncated
 from rockbatch.motions import LeftOut, MotionSet, Unusable, small_figures
 from rockbatch.motions.intensity import measures
 from rockbatch.motions.motion import Finding
@@ -182,3 +182,26 @@ def test_what_is_held_back_is_written_into_run_json_without_its_samples():
     entries = [_not_used(file) for file in found().unusable]
     assert [entry["kind"] for entry in entries] == [*["UnusableRecord"] * 3, "Contradiction", "UnusableRecord"]
     assert all("motion" not in entry for entry in json.loads(json.dumps(entries)))
+
+
+def held_for(*oddities):
+    return motion("tiny", 0.0004, findings=tuple(Finding(what, "outside", gross=True) for what in oddities))
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "alike"),
+    [
+        ({"reason": "Te Mara ends early"}, {"reason": "Ward ends early"}, True),
+        (
+            {"reason": 'expected "NPTS="', "kind": Contradiction},
+            {"reason": 'expected "DT="', "kind": Contradiction},
+            False,
+        ),
+        ({"lacks": ("unit",), "kind": NoUnit}, {"lacks": ("unit", "dt"), "kind": NoUnit}, False),
+        ({"motion": held_for("PGA")}, {"motion": held_for("PGA"), "reason": "PGA 9 g"}, True),
+        ({"motion": held_for("PGA")}, {"motion": held_for("cut")}, False),
+    ],
+)
+def test_files_have_one_cause_by_their_error_or_findings_not_by_their_words(one, other, alike):
+    first, second = (Unusable("a", ("a",), **{"reason": "cut", "kind": Truncated} | keys) for keys in (one, other))
+    assert (first.cause == second.cause) is alike

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.common.errors import InputError, Truncated, Unstated
+from rockbatch.common.errors import InputError, Truncated, Unstated, UnusableRecord
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import obspy
 from rockbatch.common.showing import shown
@@ -90,9 +90,9 @@ def components_of_traces(
                 findings = (*component.findings, *(_BROKEN_OFF if channel_id in broken else ()))
                 readings.append(replace(component, findings=findings))
             except InputError as error:
-                lacks = error.keys if isinstance(error, Unstated) else ()
+                lacks, kind = (error.keys, type(error)) if isinstance(error, Unstated) else ((), UnusableRecord)
                 label, station = channel_id.rpartition(".")[2], _station(pieces[0])
-                readings.append(Unusable(name, (source,), str(error), label, lacks, station=station))
+                readings.append(Unusable(name, (source,), str(error), label, lacks, station=station, kind=kind))
     return readings
 
 

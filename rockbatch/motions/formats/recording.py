@@ -76,7 +76,7 @@ def to_components(file: RecordFile, recordings: Sequence[Recording]) -> list[Com
         try:
             readings.append(_component(file, recording, name, source))
         except InputError as error:
-            readings.append(Unusable(name, (source,), str(error), recording.label))
+            readings.append(Unusable(name, (source,), str(error), recording.label, kind=type(error)))
     return readings
 
 
