@@ -305,29 +305,19 @@ Restraint = Damper | Tendon | Stop | DeckSpring
 KINDS: dict[str, type[Restraint]] = {kind.what: kind for kind in (Damper, Tendon, Stop, DeckSpring)}
 """Devices by the names of their tables in a study."""
 
-
-def what_of(values: Mapping[str, object]) -> str:
-    """Return the kind of device, a key of :data:`KINDS`, by the names of its fields in run.json.
-
-    With ``side`` it is a deck spring, else with ``kind`` a damper, with ``gap_m`` a stop, and with none of them a tendon.
-    """
-    if "side" in values:
-        return "deck_spring"
-    return "damper" if "kind" in values else "stop" if "gap_m" in values else "tendon"
+DEVICE = "device"
+"""Key of run.json and histories with the kind of a device, a key of :data:`KINDS`."""
 
 
 def kinds_of(values: Mapping[str, Any]) -> tuple[str, ...]:
     """Return :attr:`Device.kinds` of a device by its fields in run.json; a tendon that yields has "yielding tendon", too."""
     yields = values.get("strength") is not None and values["strength"] < math.inf
-    return (what_of(values), YIELDING_TENDON) if yields else (what_of(values),)
+    return (values[DEVICE], YIELDING_TENDON) if yields else (values[DEVICE],)
 
 
 def restraint_of(values: Mapping[str, Any]) -> Restraint:
-    """Return the device with the fields of run.json or a history, of the kind :func:`what_of` them.
-
-    Other names are left out; None stands for the default.
-    """
-    kind = KINDS[what_of(values)]
+    """Return the device with the fields of run.json or a history; other names are left out, None stands for the default."""
+    kind = KINDS[values[DEVICE]]
     names = {attribute.name for attribute in fields(kind)}
     return kind(**{name: value for name, value in values.items() if name in names and value is not None})
 
@@ -338,6 +328,6 @@ def described_restraints(restraints: tuple[Restraint, ...]) -> dict[str, object]
 
 
 def _fields_given(device: Restraint) -> dict[str, object]:
-    """Return the fields of a device that are not None, but for ``confirm``; None for infinite ones, which JSON lacks."""
+    """Return kind and fields of a device that are not None, but for ``confirm``; None for infinite ones, which JSON lacks."""
     given = {name: value for name, value in asdict(device).items() if value is not None and name != "confirm"}
-    return {name: None if value == math.inf else value for name, value in given.items()}
+    return {DEVICE: device.what} | {name: None if value == math.inf else value for name, value in given.items()}

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
-from rockbatch.pier.restraints import what_of
+from rockbatch.pier.restraints import DEVICE
 from rockbatch.quantities.cases import Case, backbone, devices
 from rockbatch.quantities.design import BOUND
 
@@ -167,7 +167,7 @@ def unit_with_exponent(unit: str, exponent: float | None) -> str:
 
 def _exponent(case: Case, device: OfDevice) -> float | None:
     """Return the exponent of a device in a case of run.json, from the columns if it is varied; None if it has none."""
-    of_kind = [values for values in devices(case) if what_of(values) == device.kind]
+    of_kind = [values for values in devices(case) if values[DEVICE] == device.kind]
     fixed = next((values.get("exponent") for values in of_kind[device.number - 1 :]), None)
     return case["columns"].get(f"{device.kind}_{device.number}_exponent", fixed)
 

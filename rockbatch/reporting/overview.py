@@ -58,9 +58,14 @@ def drawn_by_record(
     single = names if len(names) <= MOST_ROWS else names[: MOST_ROWS - 1]
     folded = names[len(single) :] if len(runs) <= MOST_MARKS else []
 
+    ends = {
+        record["record"]: f", {record['direction']}" for record in finished.info["records"] if record.get("direction")
+    }
+
     def label(name: str) -> tuple[str, str, str]:
-        words, comma, end = finished.label(name).rpartition(", ")  # the direction is never cut off
-        return (words, comma + end, finished.named(name)) if words else (end, "", finished.named(name))
+        whole = finished.label(name)
+        words = whole.removesuffix(ends.get(name, ""))  # the direction is never cut off
+        return words, whole[len(words) :], finished.named(name)
 
     def description(run: Row) -> str:
         words = tooltip(finished.series[run["series"]], run, run["polarity"] if finished.both_directions else "")

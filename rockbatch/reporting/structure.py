@@ -83,7 +83,7 @@ def restraints_of(case: Case) -> tuple[Restraint, ...]:
     try:
         restraints = tuple(map(restraint_of, entries))
         return () if wrong_restraints(pier, restraints) else restraints
-    except (TypeError, ValueError):
+    except (KeyError, TypeError, ValueError):
         return ()
 
 

@@ -47,6 +47,7 @@ from rockbatch.pier import (
     vertical_frequency,
 )
 from rockbatch.pier.bases import BASES
+from rockbatch.pier.restraints import DEVICE
 from rockbatch.pier.sizes import USUAL as PIERS
 from rockbatch.pier.traits import USUAL as OF_BASES
 from rockbatch.quantities.demands import FORCES
@@ -182,7 +183,7 @@ def _write(group: "h5py.Group", response: Response) -> None:
     parts = json.dumps(response.pier.parts) if response.pier.parts else None
     _set(group.create_group("pier"), asdict(response.pier) | {"parts": parts, "confirm": None})
     base = {"name": response.base.name} | asdict(response.base) | {"confirm": None}
-    base["restraints"] = json.dumps([asdict(device) for device in response.base.restraints])
+    base["restraints"] = json.dumps([asdict(device) | {DEVICE: device.what} for device in response.base.restraints])
     if "backbone" in base:
         base["backbone"] = json.dumps(base["backbone"]) if base["backbone"] else None
     _set(group.create_group("base"), base)

@@ -18,9 +18,10 @@ from rockbatch.motions.description import entry, spectra
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.suites.scaling import verticals
 from rockbatch.motions.suites.spectrum_target import PAIRS, SpectrumTarget
-from rockbatch.pier import Base, Damper, DeckSpring, Pier, Stop, Tendon, described
+from rockbatch.pier import Base, Pier, described
 from rockbatch.pier.bases import BASES
 from rockbatch.pier.free_rocking import FreeRocking
+from rockbatch.pier.restraints import DEVICE, KINDS
 from rockbatch.pier.statics import COMPARED
 from rockbatch.pier.traits import BOUNDS, WORDS
 from rockbatch.quantities.rows import PEAKS
@@ -36,9 +37,10 @@ STUDY_FROM_PYTHON, MOTIONS_FROM_PYTHON = "(study from Python)", "(motions from P
 _NUMBER = (float, None)
 _VALUES = {str: (float, str)}
 _NUMBERS_OF_BASE = (*BOUNDS, "beta", "omega_v", "delta_s_m", "delta_y_m", "stiffness_kN_m", "yield_kN")
-_OF_DEVICES = [field.name for kind in (Damper, Tendon, Stop, DeckSpring) for field in fields(kind)]
+_OF_DEVICES = [field.name for kind in KINDS.values() for field in fields(kind)]
 _RESTRAINT = {name: Maybe(_NUMBER) for name in _OF_DEVICES if name != "confirm"} | {
     "kind": Maybe(str),
+    DEVICE: tuple(KINDS),
     "at": Maybe((float, str)),
     "side": Maybe(str),
 }

@@ -175,7 +175,8 @@ def test_a_run_says_what_else_than_its_foundation_tells_it_from_others_of_its_re
     ],
 )
 def test_the_unit_of_a_viscous_coefficient_has_the_exponent_of_its_own_damper(key, unit):
-    devices = [{"kind": "viscous", "exponent": 1.0}, {"psi": 0.2}, {"kind": "viscous", "exponent": 0.3}]
+    oil = {"device": "damper", "kind": "viscous"}
+    devices = [oil | {"exponent": 1.0}, {"device": "tendon", "psi": 0.2}, oil | {"exponent": 0.3}]
     case = {"columns": {}, "parameters": {"restraints": devices}}
     assert quantity(key, 900.0, case=case).replace("\u00a0", " ") == unit
 

@@ -1,5 +1,6 @@
 """The first screen is the answer, for any number of cases and records: the rest is summed up, or folded."""
 
+import json
 import re
 import xml.etree.ElementTree as ET
 from dataclasses import replace
@@ -226,12 +227,28 @@ def test_flights_in_the_picture_are_counted_with_the_highest_of_them(tmp_path):
     assert "In 3 runs the pier left the ground altogether, by up to 12.3 mm; it was guided down." in said
 
 
+@pytest.mark.parametrize(
+    ("direction", "words", "end"),
+    [("", "Kobe 1995, Port Island, bottom", ""), ("N, E", "Kobe 1995, Port Island", ", N, E"), ("up", "RRS228", "")],
+)
+def test_the_direction_alone_is_never_cut_off(tmp_path, direction, words, end):
+    write_results(tmp_path, records=[("RRS228", 0.5)])
+    info = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    info["records"][0] |= {"label": words + end, "direction": direction}
+    (tmp_path / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    text = of_the_answer(write_report(tmp_path, []))
+    (row,) = re.findall(r'<span class="words">([^<]*)</span>(?:<span class="end">([^<]*)</span>)?', text)
+    assert tuple(part.replace("\u00a0", " ") for part in row) == (words, end)
+
+
 def test_cases_that_differ_by_dampers_differ_in_mark_and_colour(tmp_path):
     """Check rigid ground, too, where the pier without dampers is the line to compare with."""
     names = ["bare", "steel", "oil"]
     cases = [case_entry(name, {}, PIER, RigidBase()) for name in names]
     for damped, kind in zip(cases[1:], ("hysteretic", "viscous"), strict=True):
-        damped["parameters"]["restraints"] = [{"kind": kind, "f": 0.02, "nu": 0.1, "yield_m": 0.005, "exponent": 1.0}]
+        damped["parameters"]["restraints"] = [
+            {"device": "damper", "kind": kind, "f": 0.02, "nu": 0.1, "yield_m": 0.005, "exponent": 1.0}
+        ]
     write_results(tmp_path, cases=cases)
     legend = re.findall(r"<li[^>]*>(.*?)</li>", of_the_answer(write_report(tmp_path, [])).split('class="key">')[1])
     drawn = [re.search(r'class="(rigid|s\d)"', entry)[1] for entry in legend]

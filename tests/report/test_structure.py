@@ -135,7 +135,16 @@ def test_a_base_that_cannot_be_has_no_statics():
 
 
 @pytest.mark.parametrize(
-    "wrong", [[{"kind": "magic"}], [{"kind": "friction", "f": "much"}], [3], [{"psi": -1.0}], "none", [None]]
+    "wrong",
+    [
+        [{"device": "damper", "kind": "magic"}],
+        [{"device": "damper", "kind": "friction", "f": "much"}],
+        [3],
+        [{"device": "tendon", "psi": -1.0}],
+        [{"psi": 0.1}],
+        "none",
+        [None],
+    ],
 )
 def test_devices_that_cannot_be_are_left_out(wrong):
     """Change run.json, which may come from anybody."""

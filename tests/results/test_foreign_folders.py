@@ -18,6 +18,7 @@ from studies import RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.common.files import csv_line, is_plain, opened, read_text
+from rockbatch.pier.restraints import kinds_of, restraint_of
 from rockbatch.results import reading
 from rockbatch.results.run_json import SHAPE
 from rockbatch.results.shape import Maybe, fits, unfit
@@ -246,12 +247,17 @@ def places(shape, value, at=()):
 def test_all_that_is_written_about_a_base_and_its_devices_has_a_shape(base):
     """What has none, such as restraints once, a reader would take as it comes."""
     devices = (rb.Damper("hysteretic", f=0.1, yield_m=0.01, at="left"), rb.Tendon(0.1, 0.5, at=0.5))
+    devices += (rb.Stop(lam=2.0, gap_m=0.1), rb.DeckSpring(lam=2.0, gap_m=0.1, height_m=5.0))
     pier = rb.Pier(0.2, 1.0, mass_t=100.0)
     written = replace(base, restraints=devices).parameters(pier)
     shape = SHAPE["cases"][0]["parameters"]
     assert written.keys() <= shape.keys()
     assert all({*device} <= {*shape["restraints"].shape[0]} for device in written["restraints"])
     assert fits(written, shape)
+    assert tuple(map(restraint_of, written["restraints"])) == devices
+    others = dict.fromkeys(("side", "kind", "gap_m"), "new")  # keys of other devices, which a later version may give it
+    assert restraint_of(others | written["restraints"][1]) == devices[1]
+    assert kinds_of(others | written["restraints"][1]) == ("tendon",)
 
 
 @pytest.mark.filterwarnings("ignore::rockbatch.common.errors.AboutResults")  # of a digest that is another
