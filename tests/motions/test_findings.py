@@ -155,7 +155,7 @@ def test_motions_of_no_file_are_asked_about_their_unit_until_confirmed():
     high = Motion("m", 0.01, np.array([0.0, 5.0 * G, -5.1 * G]))
     (asked,) = unlikely_samples(high, G)
     assert asked.startswith('motion "m": PGA 5.1 g')
-    judged = replace(high, findings=(Finding("PGA", "PGA 5.1 g", gross=True),))
+    judged = replace(high, findings=(Finding("peak", "PGA 5.1 g", gross=True, key="confirm_pga"),))
     for known in (judged, replace(high, recorded=False), replace(high, confirm=("pga",)), high.times(1.0 / 1.02)):
         assert unlikely_samples(known, G) == []
     assert len(unlikely_samples(replace(high, findings=(Finding("PGD", "47 m"),), confirm=()), G)) == 1

@@ -116,7 +116,7 @@ def dead_channel(candidate: Candidate) -> Finding | None:
 def unlikely_samples(motion: Motion, gravity: float) -> list[str]:
     """Return a message in a list on an unconfirmed PGA above 5 g; [] for others, pulses, and motions with a finding on PGA."""
     peak = max(motion.pga, motion.pga_vertical or 0.0)
-    candidate = not motion.recorded or any(finding.what == "PGA" for finding in motion.findings)
+    candidate = not motion.recorded or any(finding.key == "confirm_pga" for finding in motion.findings)
     if candidate or "pga" in motion.confirm or peak <= HIGHEST * gravity:
         return []
     return [
