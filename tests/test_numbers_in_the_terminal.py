@@ -1,6 +1,7 @@
 """Lines that commands print, read back: each count, time, size and name in them is that of what they speak of."""
 
 import argparse
+import pickle
 import time
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,6 +16,7 @@ from rockbatch.commands import cache, motions, run, scorecard, summary
 from rockbatch.common.errors import NoUnit, UnusableRecord
 from rockbatch.motions import MotionSet
 from rockbatch.motions.motion import LeftOut, Unusable
+from rockbatch.motions.sources.source import Source
 from rockbatch.outcome.outcome import Failure
 from rockbatch.simulation import kept
 from rockbatch.terminal import messages as terminal
@@ -95,6 +97,19 @@ def test_a_folder_of_records_is_counted_by_files_recordings_and_stations():
         "not used",
         1.0,
     )
+
+
+@pytest.mark.parametrize(
+    ("sources", "files"),
+    [
+        (("x.V1 (1)", "x.V1 (2)"), "2 files"),
+        ((Source("x.V1", "NS"), Source("x.V1", "Up (a)")), "1 file"),
+        ((Source("x (1)", "NS"), "x (2)"), "2 files"),
+    ],
+)
+def test_a_file_is_counted_once_with_all_its_parts_and_by_its_whole_name(sources, files):
+    wrong = pickle.loads(pickle.dumps([Unusable(source, (source,), "empty") for source in sources]))
+    assert motions.counts(MotionSet((), wrong)).startswith(f"{files}: ")
 
 
 def test_faults_are_listed_by_reason_the_rarest_first_and_the_rest_counted():

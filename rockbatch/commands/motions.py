@@ -9,11 +9,11 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.files import csv_text, write_output
 from rockbatch.common.grouping import distinct, grouped
 from rockbatch.motions import MotionSet, ReadOptions, read_motions
-from rockbatch.motions.component import file_of
 from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.motion_set import COLUMNS, TEXTS, row
 from rockbatch.motions.ranking import ADDED, RankedRecord, Use, ranked_records
 from rockbatch.motions.ranking import rows as csv_rows
+from rockbatch.motions.sources.source import file_of
 from rockbatch.terminal.streams import WIDTH, aligned, filled, in_width, say, shortened, show, width
 
 _SHOWN = {  # heads and number formats of the table in the terminal
@@ -106,7 +106,7 @@ def counts(suite: MotionSet) -> str:
 
 def overview(suite: MotionSet) -> str:
     """Return counts, a scorecard of the doubtful and strongest records, and faults by reason, some :data:`MOST_LINES` lines."""
-    entries = {
+    entries: dict[str, list[tuple[Hashable, str, str]]] = {
         "Not used": [(file.cause, file.source, file.reason) for file in suite.unusable],
         "Look at these": [(found.what, motion.named, found.text) for motion in suite for found in motion.findings],
         "No vertical": [("", motion.named, "no matching file") for motion in suite if motion.lacks_vertical],

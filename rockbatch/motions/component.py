@@ -12,6 +12,7 @@ from rockbatch.motions.labels.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.motions.motion import Finding, Initial, Samples, frozen
 from rockbatch.motions.sources.archives import bare
 from rockbatch.motions.sources.listed import NOT_LISTED, Listed
+from rockbatch.motions.sources.source import Sourced
 
 FIRST_YEAR = 365 * 86400.0
 """The end of 1970 [s since it began]: no recorder began in it, but headers without a date say so."""
@@ -60,17 +61,12 @@ def _bare(text: str) -> str:
     return re.sub(r"[\W_]+", "", text).upper()
 
 
-def file_of(source: str) -> str:
-    """Return the file of a component's source without the component's label: "x.V1 (NS)" gives "x.V1"."""
-    return re.sub(r" \([^()]*\)$", "", source)
-
-
 UNKNOWN_SENSOR = Sensor()
 """For a file that does not state its sensor."""
 
 
 @dataclass(frozen=True)
-class Component:
+class Component(Sourced):
     """One component of a record in m/s²; its samples cannot be changed, so that its motion shares them."""
 
     name: str  # of the motion that a horizontal component becomes
@@ -105,19 +101,14 @@ class Component:
         object.__setattr__(self, "acceleration", frozen(self.acceleration))
 
     @property
-    def source(self) -> str:
-        """Return its sources in words, "a.AT2"."""
-        return ", ".join(self.sources)
-
-    @property
     def path(self) -> str:
         """Return the path of its file, by folder and source."""
-        return f"{self.folder}/{file_of(self.source)}"
+        return f"{self.folder}/{self.file}"
 
     @property
     def suffix(self) -> str:
         """Return the suffix of its file, without .gz, in lower case."""
-        return bare(Path(file_of(self.source))).suffix.lower()
+        return bare(Path(self.file)).suffix.lower()
 
     @property
     def dated(self) -> bool:

@@ -17,7 +17,7 @@ from rockbatch.common.files import CHANGED
 from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import fema_p695
-from rockbatch.motions.component import Component, file_of
+from rockbatch.motions.component import Component
 from rockbatch.motions.formats import add_name_statement, checked_reading, format_of, read_record
 from rockbatch.motions.formats.obspy_plugin import HEAD
 from rockbatch.motions.identity.colocated import with_gains_compared
@@ -48,6 +48,7 @@ from rockbatch.motions.sources.peer_search import Lists, listed_in, of_file
 from rockbatch.motions.sources.quantities_in_names import companions_by_quantity
 from rockbatch.motions.sources.record_file import ReadOptions, RecordFile
 from rockbatch.motions.sources.sorted_files import statements_beside
+from rockbatch.motions.sources.source import file_of
 from rockbatch.motions.sources.stationxml import Inventories
 from rockbatch.motions.suites.sequences import ShockSequence, add_sequences
 from rockbatch.motions.texts import with_legible_texts
@@ -167,13 +168,13 @@ def _with_stations(readings: Sequence[Reading], paired: MotionSet) -> list[Unusa
     station_of_file = {file_of(source): station for of_one, station in sources for source in of_one}
     station_of_site = {}
     for reading in readings:
-        if isinstance(reading, Component) and (file := file_of(reading.source)) in station_of_file:
+        if isinstance(reading, Component) and (file := reading.file) in station_of_file:
             for name in (reading.site, reading.origin.station):
                 station_of_site[_folder(reading), name] = station_of_file[file]
 
     def station(reading: Unusable | LeftOut) -> str:
         by_name = station_of_site.get((_folder(reading), reading.station), reading.station)
-        return station_of_file.get(file_of(reading.source), by_name)
+        return station_of_file.get(reading.file, by_name)
 
     return [replace(r, station=station(r)) for r in readings if not isinstance(r, Component)]
 
@@ -280,13 +281,13 @@ def _without_companions(readings: Sequence[Reading]) -> list[Reading]:
 
 def _folder(reading: Reading) -> str:
     """Return the folder of a reading's file, by its source; "" at the top."""
-    return file_of(reading.source).rpartition("/")[0]
+    return reading.file.rpartition("/")[0]
 
 
 def _without_renamed(readings: Sequence[Reading], files: Sequence[SourceFile]) -> list[Reading]:
     """Return the readings; byte for byte copies of a record under names that no reader recognises are left out, not unusable."""
     refused = {reading.source for reading in readings if isinstance(reading, Unusable)}
-    records = {file_of(reading.source) for reading in readings if isinstance(reading, Component)}
+    records = {reading.file for reading in readings if isinstance(reading, Component)}
 
     def is_unrecognised(file: SourceFile) -> bool:
         if file.refusal or file.source not in refused:

@@ -9,7 +9,7 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import legible, write_output
 from rockbatch.common.grouping import grouped
-from rockbatch.motions.component import Component, file_of
+from rockbatch.motions.component import Component
 from rockbatch.motions.folder import Reading, read_files
 from rockbatch.motions.identity.directions import judge_directions
 from rockbatch.motions.identity.doubles import without_doubles
@@ -68,9 +68,7 @@ def draft(folder: Path, options: ReadOptions | None = None) -> str:
     stations = {id(c): station[0].station or station[0].site for station in by_station(components) for c in station}
     stated = options is not None and options.sensitivity is not None  # a unit in the draft would displace it
     blocks = [_HEAD]
-    for source, file_readings in grouped(
-        readings, lambda r: r.source if r.source in paths else file_of(r.source)
-    ).items():
+    for source, file_readings in grouped(readings, lambda r: r.file).items():
         name = paths[source].relative_to(folder).as_posix()
         for reading in file_readings:
             if legible(name) != name:

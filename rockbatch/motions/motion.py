@@ -19,6 +19,7 @@ from rockbatch.motions.labels.orientation import orientation_of, unknown
 from rockbatch.motions.labels.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.motions.limits import USUAL_STEP
 from rockbatch.motions.sources.listed import NOT_LISTED, Listed
+from rockbatch.motions.sources.source import Sourced
 from rockbatch.motions.spectrum import PERIODS, Samples, as_periods, spectral_acceleration
 
 if TYPE_CHECKING:
@@ -485,7 +486,7 @@ class Motion(Shown):
 
 
 @dataclass(frozen=True)
-class Unusable:
+class Unusable(Sourced):
     """A file or component that cannot be used, with the reason; it stays in the tables as a row.
 
     ``label`` and ``number``, from 1, are the component's in its file; "" and 0 for the whole file. ``lacks`` has the keys of a
@@ -507,11 +508,6 @@ class Unusable:
     motion: Motion | None = field(default=None, repr=False)
 
     @property
-    def source(self) -> str:
-        """Return its sources in words, "a.AT2, a-UP.AT2"."""
-        return ", ".join(self.sources)
-
-    @property
     def cause(self) -> Hashable:
         """Return what files refused for one reason share: the names of gross findings, or the error and the missing keys.
 
@@ -526,7 +522,7 @@ class Unusable:
 
 
 @dataclass(frozen=True)
-class LeftOut:
+class LeftOut(Sourced):
     """A file or record that is left out on purpose, with the reason: not selected, excluded, a copy, or no record.
 
     It is ``named`` if a manifest or the study names it; ``station`` is the name under which it would count, if known. ``of``
@@ -539,11 +535,6 @@ class LeftOut:
     station: str = ""
     named: bool = False
     of: str = ""
-
-    @property
-    def source(self) -> str:
-        """Return its sources in words, "a.AT2, a-UP.AT2"."""
-        return ", ".join(self.sources)
 
     def __str__(self) -> str:
         return f"{self.source}: {self.reason}"

@@ -17,6 +17,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.formats import FORMATS, RecordFile, read_record, with_obspy
 from rockbatch.motions.manifest_draft import write_manifest
+from rockbatch.motions.sources.source import file_of
 
 
 def only_reason(found) -> str:
@@ -86,6 +87,7 @@ def test_a_file_of_several_channels_names_them_by_channel_id(tmp_path):
     found = read_motions(tmp_path, options=ReadOptions(sensitivity=1e5))
     assert [motion.name for motion in found.motions] == ["CI.LRL..HNE", "CI.LRL..HNN"]
     assert all(motion.vertical is not None for motion in found.motions)
+    assert {file_of(source) for motion in found for source in motion.sources} == {"all.mseed"}
 
 
 def test_counts_without_sensitivity_are_refused_with_the_remedy(tmp_path):

@@ -21,6 +21,7 @@ from rockbatch.motions.motion import Finding, Samples, Unusable
 from rockbatch.motions.quality.places import Stand, depth_as_place, stand
 from rockbatch.motions.sources import stationxml
 from rockbatch.motions.sources.record_file import RecordFile, no_acceleration
+from rockbatch.motions.sources.source import Source
 
 _YEARS = 1900, 2100
 _STATED = "sensitivity = … (counts per m/s²) in the study, or for this file in motions.toml"
@@ -79,10 +80,10 @@ def components_of_traces(
         events = _events(of_channel)
         for pieces in events:
             name = channel_id if len(segments) > 1 else file.stem
-            source = file.source if len(segments) == 1 else f"{file.source} ({channel_id})"
+            source = file.source if len(segments) == 1 else Source(file.source, channel_id)
             if len(events) > 1:
                 moment = pieces[0].stats.starttime.strftime("%Y%m%dT%H%M%S")
-                name, source = f"{name}.{moment}", f"{file.source} ({channel_id} {moment})"
+                name, source = f"{name}.{moment}", Source(file.source, f"{channel_id} {moment}")
             try:
                 if len(pieces) > 1:
                     raise InputError(f"{channel_id} has gaps or overlaps: {len(pieces)} pieces; join them first")

@@ -14,6 +14,7 @@ from rockbatch.motions.labels.orientation import Orientation, is_clock, orientat
 from rockbatch.motions.labels.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.motions.motion import Finding, Initial, Samples, Unusable
 from rockbatch.motions.sources.record_file import RecordFile
+from rockbatch.motions.sources.source import Source
 
 Series = tuple[Samples, str]
 """Values, shape (npts,), and their unit."""
@@ -72,7 +73,7 @@ def to_components(file: RecordFile, recordings: Sequence[Recording]) -> list[Com
     for recording in recordings:
         several = len(recordings) > 1
         name = f"{file.stem}.{recording.label}" if several else file.stem
-        source = f"{file.source} ({recording.label})" if several else file.source
+        source = Source(file.source, recording.label) if several else file.source
         try:
             readings.append(_component(file, recording, name, source))
         except InputError as error:

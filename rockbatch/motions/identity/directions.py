@@ -14,7 +14,7 @@ from itertools import combinations
 import numpy as np
 
 from rockbatch.common.grouping import grouped
-from rockbatch.motions.component import UNKNOWN_SENSOR, Component, file_of
+from rockbatch.motions.component import UNKNOWN_SENSOR, Component
 from rockbatch.motions.identity.common_span import overlap
 from rockbatch.motions.identity.leaving_out import Reading
 from rockbatch.motions.identity.likeness import pairs_of_one_recording
@@ -228,7 +228,7 @@ def _impossible_pairs(
         i, j = horizontals
         if why := _skew_pair(components[i], components[j]):
             yield i, j, why
-    if all(file_of(components[i].source) == file_of(components[j].source) for i, j in alike):
+    if all(components[i].file == components[j].file for i, j in alike):
         return
     for a, b in pairs_of_one_recording([components[i] for i in places]).denied:
         if (pair := (places[a], places[b])) in pairs:
@@ -241,7 +241,7 @@ def _of_one_sensor(a: Component, b: Component) -> bool:
 
     Such a file may hold the channels of a building.
     """
-    if file_of(a.source) != file_of(b.source) or a.sensor != b.sensor or not overlap(a, b):
+    if a.file != b.file or a.sensor != b.sensor or not overlap(a, b):
         return False
     return a.sensor == UNKNOWN_SENSOR or all(_strong_statement(c, Kind.ANGLES) for c in (a, b))
 

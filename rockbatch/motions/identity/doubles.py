@@ -10,7 +10,7 @@ import numpy as np
 
 from rockbatch.common.grouping import grouped
 from rockbatch.motions.alignment import common_factor, same_step
-from rockbatch.motions.component import Component, file_of
+from rockbatch.motions.component import Component
 from rockbatch.motions.formats import is_usual
 from rockbatch.motions.identity.likeness import Pairs, factor_between, pairs_of_one_recording, sets_of
 from rockbatch.motions.identity.stations import in_one_event
@@ -111,7 +111,7 @@ def _at_other_steps(components: Sequence[Component]) -> Iterator[tuple[int, int]
         moving, lambda pair: (len(pair[1].acceleration), int(np.abs(pair[1].acceleration).argmax()))
     ).values():
         for (i, a), (j, b) in combinations(alike, 2):
-            one_file = file_of(a.source) == file_of(b.source)
+            one_file = a.file == b.file
             if not (one_file or same_step(a.dt, b.dt)) and common_factor(a.acceleration, b.acceleration):
                 yield i, j
 

@@ -7,7 +7,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
 from rockbatch.common.naming import fits
 from rockbatch.common.showing import shown
-from rockbatch.motions.component import Component, file_of
+from rockbatch.motions.component import Component
 from rockbatch.motions.identity.stations import station_of
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
@@ -34,7 +34,7 @@ class LeaveOut:
         stations = [reading.station]
         if isinstance(reading, Component):
             stations = [station_of(reading), reading.origin.station, reading.site]
-        file = PurePosixPath(file_of(reading.source))
+        file = PurePosixPath(reading.file)
         folders = [str(folder) for folder in file.parents if folder.name]
         pattern = self._fitting(reading.name, *stations, str(file), file.name, file.stem, *folders)
         if not pattern or isinstance(reading, LeftOut):

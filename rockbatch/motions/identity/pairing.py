@@ -1,10 +1,9 @@
 """From components to motions: every horizontal one with its station's vertical, on common samples."""
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from pathlib import PurePosixPath
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -25,6 +24,8 @@ from rockbatch.motions.labels.origin import with_direction
 from rockbatch.motions.motion import Finding, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.quality.plausible import ANY, Candidate, confirmation_request, findings, in_a_borehole
+from rockbatch.motions.sources.archives import bare
+from rockbatch.motions.sources.source import Source, file_of
 
 _NO_VERTICAL = (
     "has no vertical component, and the study requires it; put it beside the record, or write vertical = true under "
@@ -139,7 +140,7 @@ def _direction_question(component: Component) -> str:
             'each file in contradiction what is right: role = "horizontal" or "vertical", azimuth = …, or use = false'
         )
     label = component.orientation.label
-    one_of_several = bool(label) and component.source.endswith(f"({label})")
+    one_of_several = bool(label) and Source(component.file, label) in component.sources
     place = f"component = {shown(label)}" if one_of_several else "it"
     return (
         f"direction not known{f' from {shown(label)}' if label else ''}: in motions.toml, which `rockbatch motions FOLDER "
@@ -291,8 +292,7 @@ def _with_unique_names(motions: Sequence[Motion], folders: Sequence[str]) -> lis
     in_folder = Counter((folder, motion.name) for folder, motion in zip(folders, motions, strict=True))
 
     def with_suffix(i: int, name: str) -> str:
-        first = next(iter(motions[i].sources), "")
-        file = PurePosixPath(re.sub(r"(?i)(\.gz)?( \(.*\))?$", "", first))
+        file = bare(Path(file_of(*motions[i].sources)))
         clashes = in_folder[folders[i], name] > 1 and name.startswith(file.stem)
         return file.name + name[len(file.stem) :] if clashes else name
 
@@ -301,7 +301,7 @@ def _with_unique_names(motions: Sequence[Motion], folders: Sequence[str]) -> lis
 
     def with_folder_above(i: int, name: str) -> str:
         alike = in_folder[folders[i], motions[i].name] > 1  # which no folder tells apart
-        return name if alike or not folders[i] else f"{PurePosixPath(folders[i]).parent.name}/{name}"
+        return name if alike or not folders[i] else f"{Path(folders[i]).parent.name}/{name}"
 
     names = distinct([motion.name for motion in motions], with_suffix, with_folder, with_folder_above)
     pairs = zip(motions, names, strict=True)

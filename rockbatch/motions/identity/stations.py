@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.grouping import distinct, grouped
-from rockbatch.motions.component import Component, file_of
+from rockbatch.motions.component import Component
 from rockbatch.motions.identity.common_span import overlap
 from rockbatch.motions.motion import Samples
 
@@ -94,8 +94,8 @@ def _by_time(group: list[Component]) -> list[list[Component]]:
     if not all(component.dated for component in group):
         if all(component.event for component in group) or len(_directions(group)) == len(group):
             return [group]
-        files = Counter(file_of(component.source) for component in group)
-        return list(grouped(group, lambda c: (f, "") if files[f := file_of(c.source)] > 1 else ("", c.site)).values())
+        files = Counter(component.file for component in group)
+        return list(grouped(group, lambda c: (f, "") if files[f := c.file] > 1 else ("", c.site)).values())
     records: dict[int, list[Component]] = {}
     end, place = -math.inf, {id(component): i for i, component in enumerate(group)}
     for component in sorted(group, key=lambda component: component.start or 0.0):
@@ -108,7 +108,7 @@ def _by_time(group: list[Component]) -> list[list[Component]]:
 
 def _by_file(record: list[Component]) -> Iterator[list[Component]]:
     """Yield the components of each complete file, then the rest, if two files or more are complete; else all together."""
-    files = grouped(record, lambda c: file_of(c.source))
+    files = grouped(record, lambda c: c.file)
     whole = [components for components in files.values() if _is_whole(components)]
     if len(whole) < 2:
         yield record
@@ -204,7 +204,7 @@ def _keys(component: Component) -> Iterator[Hashable]:
             hours = (component.start // _HOUR, (component.start + component.duration) // _HOUR)
             yield from ((place, hour) for hour in range(int(hours[0]), int(hours[1]) + 1))
         if component.source:
-            yield place, component.folder, file_of(component.source)
+            yield place, component.folder, component.file
     if is_numbered(component.site):
         yield component.site
     peak = int(np.abs(component.acceleration).argmax())
@@ -219,7 +219,7 @@ def _share_record(a: Component, b: Component) -> bool:
     if is_numbered(a.site) and is_numbered(b.site):
         return a.site == b.site
     if a.station and (a.folder, a.station) == (b.folder, b.station):
-        return in_one_event(a, b) or (bool(a.source) and file_of(a.source) == file_of(b.source))
+        return in_one_event(a, b) or (bool(a.source) and a.file == b.file)
     first, second = a.sensor, b.sensor
     if not first.number or first.number.upper() != second.number.upper():
         return False
