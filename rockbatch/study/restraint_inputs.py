@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from rockbatch.common.errors import Problem
+from rockbatch.common.errors import InputError, Problem, refuse
 from rockbatch.common.showing import shown
 from rockbatch.pier import Pier, Restraint, fields_of
 from rockbatch.study.restraint_keys import FIELD_OF, IN_KN, KEYS_OF, RESTRAINTS
@@ -65,6 +65,11 @@ def _without_number(name: str) -> str:
     return re.sub(r"_[0-9]+\.", ".", name)
 
 
+def _tables(name: str) -> tuple[str, str]:
+    """Return the table of an input with its number and without: "damper_2" and "damper" for "damper_2.f"."""
+    return name.partition(".")[0], _without_number(name).partition(".")[0]
+
+
 def values_of_devices(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, float]:
     """Return the values of all :func:`parameters` by name, in the units of their keys."""
     return {
@@ -74,12 +79,18 @@ def values_of_devices(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, 
 
 
 def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str, float]) -> tuple[Restraint, ...]:
-    """Return the devices with ``values`` by names of :func:`parameters`, in the units of their keys; ``pier`` converts kN."""
+    """Return the devices with ``values`` by names of :func:`parameters`, in the units of their keys; ``pier`` converts kN.
+
+    Raises ``InputError`` for an impossible value, with the table of its name, such as "damper_2", as the place.
+    """
     places, changed = parameters(pier, restraints), list(restraints)
     for name, value in values.items():
         place, field, divisor = places[name]
         change: dict[str, Any] = {field: value / divisor}
-        changed[place] = replace(changed[place], **change)
+        try:
+            changed[place] = replace(changed[place], **change)
+        except InputError as error:
+            refuse(replace(problem, place=_tables(name)[0]) for problem in error.problems)
     return tuple(changed)
 
 
@@ -125,7 +136,7 @@ def in_words(problem: Problem, values: Mapping[str, float]) -> tuple[str, str]:
     The name is the problem's own key if no input became it.
     """
     symbol = problem.key
-    mine = [name for name in values if problem.place and name.startswith(problem.place)]
+    mine = [name for name in values if is_of_restraint(name) and problem.place in _tables(name)]
     if name := next((name for name in mine if name.endswith(f".{symbol}")), ""):
         return str(replace(problem, key=name, place="")), name
     symbols = IN_KILONEWTONS | {name: FIELD_OF[name.partition(".")[2]].replace("lam", "lambda") for name in mine}

@@ -27,7 +27,7 @@ from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, Yieldin
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study
-from rockbatch.study.inputs import varied
+from rockbatch.study.inputs import impossible, varied
 from rockbatch.study.suite import ground_motions
 
 STUDY = study_text(
@@ -292,6 +292,13 @@ def test_impossible_inputs_of_dampers_and_tendons_are_reported_at_their_line(tmp
     assert words in told
     number = int(told.partition("study.toml:")[2].partition(":")[0])
     assert line in path.read_text(encoding="utf-8").splitlines()[number - 1]
+
+
+@pytest.mark.parametrize("wrong", ["damper_1.f", "damper_2.f"])
+def test_an_impossible_value_is_told_of_the_one_of_two_dampers_that_has_it(tmp_path, wrong):
+    case = load_study(written(tmp_path, study_text(cases=[TWO]))).cases[0]
+    values = {"damper_1.f": 0.06, "damper_2.f": 0.06} | {wrong: -1.0}
+    assert impossible(case, values) == [(f"{wrong} = -1: its force over the weight must be within 0..10", wrong)]
 
 
 # How runs count
