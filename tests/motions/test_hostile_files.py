@@ -185,7 +185,7 @@ def test_a_vertical_of_a_far_finer_step_is_not_used(tmp_path, dt):
 def test_a_record_of_more_samples_than_a_day_has_is_refused(tmp_path, monkeypatch):
     write_at2(tmp_path, "a000.AT2", wiggle(300))
     write_at2(tmp_path, "b000.AT2", wiggle(100, 2))
-    for module in ("formats", "formats.at2", "common_span"):
+    for module in ("formats", "formats.at2", "identity.common_span"):
         monkeypatch.setattr(f"rockbatch.motions.{module}.MOST_SAMPLES", 200)
     (tmp_path / "c_HNE.csv").write_text("acc [g]\n" + "".join(f"{a:.5f}\n" for a in wiggle(300, 3)))
     found = read_motions(tmp_path, options=ReadOptions(dt=0.01))
