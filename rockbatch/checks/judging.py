@@ -18,6 +18,7 @@ from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.checks.suite import Suite
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
+from rockbatch.common.grouping import joined
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows, Texts
@@ -444,12 +445,13 @@ def _unmet_by_stations(rule: Rule, counted_as: Texts, stations: Texts, records: 
 
     Components of one station are not independent, nor are sequences with shocks of one station, and codes require recorded
     motions. All arrays describe the runs that count, shape (n,). An unknown station is ""; its record counts as a station.
+    Stations whose shocks one sequence joins count as one.
     """
     statistic = STATISTICS[rule.statistic or "max"]
     own = np.where(stations == "", counted_as, stations)
     shocks = {name: motions.shocks.get(record) or (name,) for name, record in zip(own, records, strict=True)}
     motions_of = Counter(station for name in shocks for station in shocks[name])
-    n, known = len({*counted_as}), len(motions_of)
+    n, known = len({*counted_as}), len({*joined(shocks.values())})
     if known < statistic.least <= n:
         words = "1 station" if known == 1 else f"{known} stations"
         return f"{n} components of {words} count, the {statistic.words} asks for {statistic.least} stations"

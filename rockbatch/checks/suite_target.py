@@ -95,6 +95,11 @@ def suite_verdicts(info: Mapping[str, Any], scales: Iterable[float]) -> list[Ver
     return verdicts
 
 
+def is_recorded(record: Mapping[str, Any]) -> bool:
+    """Return whether a record of run.json is an earthquake's; of an earlier version by its source, as a pulse has no other."""
+    return bool(record.get("recorded", record["source"] not in ("pulse", "still")))
+
+
 def suite_of(info: Mapping[str, Any]) -> Suite:
     """Return the :class:`Suite` of motions that run.json (``info``) describes."""
     records, target = info["records"], info.get("target")
@@ -102,7 +107,7 @@ def suite_of(info: Mapping[str, Any]) -> Suite:
         stations={record["record"]: record.get("station", "") for record in records},
         events={record["record"]: record.get("event") or "" for record in records},
         shocks={record["record"]: record["stations_of_shocks"] for record in records if "stations_of_shocks" in record},
-        unrecorded={record["record"] for record in records if not record.get("recorded", True)},
+        unrecorded={record["record"] for record in records if not is_recorded(record)},
         without_vertical=info.get("without_vertical", ()),
         not_selected=Counter(
             file["station"]
@@ -133,7 +138,7 @@ def _reached(demand: str, words: str, target: Target, scale: float, share: float
 
 def _verticals(info: Mapping[str, Any]) -> Iterator[Condition]:
     """Yield the condition that all recorded stations have the vertical component: their number, at least that of stations."""
-    recorded = [record for record in info["records"] if record.get("recorded", True)]
+    recorded = [record for record in info["records"] if is_recorded(record)]
     stations = {str(record.get("station") or record["record"]): False for record in recorded}
     stations |= {
         str(record.get("station") or record["record"]): True for record in recorded if record.get("pga_v_g") is not None

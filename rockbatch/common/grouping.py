@@ -19,6 +19,22 @@ def grouped(items: Iterable[T], key: Callable[[T], K]) -> dict[K, list[T]]:
     return groups
 
 
+def joined(sets: Iterable[Sequence[str]]) -> list[str]:
+    """Return a name for each set, the same for all that common members connect; it is the first member of one of them."""
+    parents: dict[str, str] = {}
+
+    def root(name: str) -> str:
+        while (parent := parents.setdefault(name, name)) != name:
+            name = parent
+        return name
+
+    sets = list(sets)
+    for members in sets:
+        least = min(map(root, members))
+        parents |= {root(member): least for member in members}
+    return [root(members[0]) for members in sets]
+
+
 def spread(items: Sequence[T], most: int) -> list[T]:
     """Return at most ``most`` of ``items``, evenly over all, with the first and the last; the first alone if ``most`` is 1."""
     if len(items) <= most:

@@ -1,11 +1,12 @@
 """Clusters of records, by station or by earthquake: intervals count clusters, since records of one are not independent."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from rockbatch.analyses.fragility.bounds import STATIONS_OF_INTERVAL, Numbers
+from rockbatch.common.grouping import joined
 from rockbatch.motions import Motion
 
 
@@ -32,26 +33,10 @@ class Clusters:
 
 def clusters(motions: Sequence[Motion]) -> Clusters:
     """Return the earthquakes of the records if all are known, five or more, and fewer than the stations; else the stations."""
-    by_station = _joined([motion.stations for motion in motions])
+    by_station = joined([motion.stations for motion in motions])
     by_event = [motion.origin.event for motion in motions]
     stations, events = len(set(by_station)), len(set(by_event)) if all(by_event) else 0
     of_events = STATIONS_OF_INTERVAL <= events < stations
     shared = by_event if of_events else by_station
     _, numbers = np.unique(shared, return_inverse=True)
     return Clusters(numbers.astype(np.int64), "event" if of_events else "station", stations, events)
-
-
-def _joined(sets: Iterable[Sequence[str]]) -> list[str]:
-    """Return a name for each set, the same for all that common members connect; it is the first member of one of them."""
-    parents: dict[str, str] = {}
-
-    def root(name: str) -> str:
-        while (parent := parents.setdefault(name, name)) != name:
-            name = parent
-        return name
-
-    sets = list(sets)
-    for members in sets:
-        least = min(map(root, members))
-        parents |= {root(member): least for member in members}
-    return [root(members[0]) for members in sets]

@@ -15,6 +15,7 @@ from rockbatch.checks.coverage import CaseRuns, Stations, joined, stations_of
 from rockbatch.checks.remarks import changes_of
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, worst_of_all
 from rockbatch.checks.scorecard import scorecard
+from rockbatch.checks.suite_target import is_recorded
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import distinct, grouped
 from rockbatch.quantities.cases import Case, is_across, name_along
@@ -203,7 +204,7 @@ def _reasons(design: _Design, stations: Stations) -> Iterator[str]:
 def _suite(finished: Finished, design: _Design) -> str:
     """Return the sentence on the motions under which the design was run: their number, factors, directions and verticals."""
     records = finished.info["records"]
-    recorded = [record for record in records if record.get("recorded", True)]
+    recorded = [record for record in records if is_recorded(record)]
     parts = []
     if recorded:
         stations = {record.get("station") or record["record"] for record in recorded}
