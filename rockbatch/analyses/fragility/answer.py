@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
+from rockbatch.analyses.fragility.bounds import is_among
 from rockbatch.analyses.fragility.figures import label
 from rockbatch.analyses.fragility.quantities import FEW, Curve, bound_in_words, level_of, percent, power
 from rockbatch.common.analyses import Entry
@@ -30,7 +31,8 @@ def of_curves(info: Info) -> Markup:
     """Return sentences on the weakest case for overturning and for the limit exceeded first, and remarks.
 
     The limit exceeded first has the lowest median of the others, if this is below that of overturning or below all levels. Else
-    the second sentence says that no other limit is exceeded, or none has a lower median. A single limit has no second sentence.
+    the second sentence says that no other limit is exceeded, or none has a lower median. There is none for a single limit, nor
+    where a median of another is not known.
     """
     overturning, *others = grouped(info["curves"], lambda curve: curve["limit_state"]).values()
     sentences = [_of_limit(info, overturning, capital(overturning[0]["limit_state"]))]
@@ -40,7 +42,7 @@ def of_curves(info: Info) -> Markup:
         sentences.append(_of_limit(info, weakest, f"The limit exceeded first, {weakest[0]['limit_state']}{words},"))
     elif others and all(_never(curve) for curves in others for curve in curves):
         sentences.append(sentence(f"No other limit is exceeded up to {_intensity(info, info['levels'][-1])}"))
-    elif others:
+    elif others and not any(_has_no_median(curve) for curves in others for curve in curves):
         sentences.append(sentence("No other limit has a lower median"))
     return answered(join(*sentences, between=" "), remarks=_of_all(info))
 
@@ -67,12 +69,16 @@ def of_rates(info: Info) -> Markup:
 def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
     """Return the sentence about a limit: the case with the lowest median, or bound of it, and what leaves it in doubt.
 
+    It is called the lowest if no case has an unknown median, and no other one below all levels.
+
     Without either it says that no run decides, that no record reaches the limit, or why there is no curve.
     """
     curve = min(curves, key=_strength)
     decided = _decided(curve)
     total = sum(point["records"] - point["undecided"] for point in decided)
-    lowest = f"{label(info, curve)}, the lowest of {len(curves)} cases" if len(curves) > 1 else ""
+    unknown = any(map(_has_no_median, curves)) or any(_strength(other) == 0.0 for other in curves if other is not curve)
+    rank = "one" if unknown else "the lowest"
+    lowest = f"{label(info, curve)}, {rank} of {len(curves)} cases" if len(curves) > 1 else ""
     case = f" for {lowest}" if lowest else ""
     if curve["median"] is not None:
         said = f"has a median of {_median(info, curve)}{case}"
@@ -123,7 +129,7 @@ def _left_open(info: Info, curve: Curve, curves: Sequence[Curve]) -> Iterator[st
     elif curve["median"] is None and undecided:
         yield f"{runs} undecided"
     if curve["median"] is not None:
-        if curve["median"] > info["levels"][-1] or curve["median"] < info["levels"][0]:
+        if not is_among(curve["median"], info["levels"][0], info["levels"][-1]):
             ends = " to ".join(plain(info["levels"][end], 3) for end in (0, -1))
             yield f"an extrapolation, as runs are at {ends} {info['unit']}"
         if "cloud" in curve and (beyond := sum(point["exceeded"] for point in curve["points"])) < FEW:
@@ -142,7 +148,8 @@ def _of_all(info: Info) -> Iterator[str]:
     curves = info["curves"]
     if len(curves) > 1:  # else the sentence has said it
         if lost := sum(map(_has_no_median, curves)):
-            yield f"{lost} of {len(curves)} curves could not be fitted: the table says why."
+            have = "has" if lost == 1 else "have"
+            yield f"{lost} of {len(curves)} curves {have} no median within the levels: the table says why."
         if little := sum(curve["says_little"] for curve in curves):
             yield f"{little} of {len(curves)} curves {'says' if little == 1 else 'say'} little: too many runs are undecided."
     yield from _shared(info)
@@ -214,16 +221,16 @@ def _lowest(curves: Sequence[Curve]) -> float:
 
 def _strength(curve: Curve) -> float:
     """Return the median of a curve, or for its bound 0 "below", infinity "above", the upper end "between"; without either the
-    lowest level at which half of the decided records exceed the limit, infinity if there is none.
+    lowest level at which half of the decided records exceed the limit, 0 if more than half do at the lowest, infinity if there
+    is none.
     """
     if curve["median"] is not None:
         return float(curve["median"])
     if bound := curve.get("median_bound"):
         return 0.0 if bound["is"] == "below" else float("inf") if bound["is"] == "above" else float(bound["below"])
-    half = (
-        point["level"] for point in _decided(curve) if 2 * point["exceeded"] >= point["records"] - point["undecided"]
-    )
-    return min(half, default=float("inf"))
+    over = {point["level"]: point["exceeded"] / (point["records"] - point["undecided"]) for point in _decided(curve)}
+    half = min((level for level, share in over.items() if share >= 0.5), default=float("inf"))
+    return 0.0 if half == min(over, default=None) and over[half] > 0.5 else half
 
 
 def _decided(curve: Curve) -> list[Entry]:

@@ -109,18 +109,24 @@ def _reached(intensity: Values, stations: Values, least: int) -> float:
     return float(intensity[order[place]]) if place < len(order) else -math.inf
 
 
+def is_among(median: float, least: float, most: float) -> bool:
+    """Return whether a median is among the intensities, ``least`` to ``most``, or beyond an end by no more than ROUNDING."""
+    return least * (1.0 - ROUNDING) <= median <= most * (1.0 + ROUNDING)
+
+
 def outside(curve: HasMedian, least: float, most: float) -> NoCurve | None:
     """Return ``NoCurve`` for a median below or above all intensities, ``least`` to ``most``; None for one among them.
 
     Its bound is the end of its interval, or the nearest intensity if that is beyond it; without an end among the intensities it
     has none.
     """
+    if is_among(curve.median, least, most):
+        return None
     low, high = curve.median_interval or (0.0, math.inf)
-    unbounded = "its interval has no end among them, and nothing bounds it"
-    if curve.median < least * (1.0 - ROUNDING):
+    unbounded = "its interval has no end among them" if curve.median_interval else "there is no interval"
+    unbounded += ", and nothing bounds it"
+    if curve.median < least:
         reason = f"the median by the fit is below all intensities, which begin at {least:.4g}"
         return NoCurve(reason, below=max(high, least)) if high <= most else NoCurve(f"{reason}: {unbounded}")
-    if curve.median > most * (1.0 + ROUNDING):
-        reason = f"the median by the fit is above all intensities, which end at {most:.4g}"
-        return NoCurve(reason, above=min(low, most)) if low >= least else NoCurve(f"{reason}: {unbounded}")
-    return None
+    reason = f"the median by the fit is above all intensities, which end at {most:.4g}"
+    return NoCurve(reason, above=min(low, most)) if low >= least else NoCurve(f"{reason}: {unbounded}")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.analyses.fragility.bounds import STATIONS_OF_INTERVAL, NoCurve, Values
+from rockbatch.analyses.fragility.bounds import STATIONS_OF_INTERVAL, NoCurve, Values, is_among
 from rockbatch.analyses.fragility.cloud_tables import described_cloud, note_on_cloud
 from rockbatch.analyses.fragility.curves import Curve, Fitted
 from rockbatch.analyses.fragility.ida import Capacity
@@ -322,7 +322,7 @@ def note(curve: Curve, spec: FragilitySpec) -> str:
         median = f"the median is {bound_in_words(bound, spec.label, spec.unit)}: " if bound else ""
         notes.append(median + fitted.reason)
     else:
-        if not spec.levels[0] <= fitted.median <= spec.levels[-1]:  # of a cloud, whose line goes on
+        if not is_among(fitted.median, spec.levels[0], spec.levels[-1]):  # of a cloud, whose line goes on
             notes.append("the median is extrapolated beyond the intensities that were run")
         if fitted.median_interval is None:
             stations = count(fitted.stations, "station")

@@ -123,7 +123,7 @@ def test_without_a_decided_run_nothing_is_claimed():
     nothing["points"] = [point | {"records": 0} for point in nothing["points"]]
     line, lost = said(nothing, curve(median=0.8))[0]
     assert "not reached" not in line
-    assert lost.startswith("1 of 2 curves could not be fitted")
+    assert lost == "1 of 2 curves has no median within the levels: the table says why."
 
 
 def test_without_medians_the_weakest_case_is_where_half_exceed_first():
@@ -156,7 +156,37 @@ def test_an_interval_without_a_bound_is_said_so(interval, words):
     assert f"(95 % from 10 records: {words})" in line
 
 
-@pytest.mark.parametrize(("median", "beyond"), [(0.1, True), (0.2, False), (2.0, False), (3.4, True)])
+OF_FEW = {"exceeded": (5, 5, 5, 5), "no_curve": f"{EVERY}: a bound of the median takes 6 stations"}
+
+
+def test_a_limit_that_most_records_exceed_at_the_lowest_level_comes_first_though_few_bound_it():
+    """Its median is not known, but below the levels for most of the records; half of them would not say so."""
+    assert (
+        "The limit exceeded first, tilt"
+        in said(curve(median=0.2), curve(limit="tilt", **OF_FEW | {"exceeded": (6,) * 4}))[0][0]
+    )
+    assert "The limit exceeded first" not in said(curve(median=0.2), curve(limit="tilt", **OF_FEW))[0][0]
+
+
+@pytest.mark.parametrize(
+    ("other", "known"),
+    [(OF_FEW, False), (OF_FEW | {"exceeded": (6,) * 4}, False), (NOT_KNOWN["between"], True), ({"median": 0.9}, True)],
+)
+def test_no_limit_and_no_case_is_called_the_lowest_beside_an_unknown_median(other, known):
+    (line, *_), _ = said(curve(median=0.3), curve(limit="tilt", **other))
+    assert ("No other limit has a lower median." in line) == known
+    (line, *_), _ = said(curve("rock", median=0.3), curve("pads", **other))
+    assert ("the lowest of 2 cases" in line, "one of 2 cases" in line) == (known, not known)
+
+
+def test_of_two_cases_below_all_levels_none_is_called_the_lowest():
+    (line,), _ = said(curve("rock", **NOT_KNOWN["below"]), curve("pads", **NOT_KNOWN["below"]))
+    assert ", for rock, one of 2 cases: " in line
+
+
+@pytest.mark.parametrize(
+    ("median", "beyond"), [(0.1, True), (0.2 - 1e-16, False), (0.2, False), (2.0 + 4e-16, False), (3.4, True)]
+)
 def test_a_median_beyond_the_levels_is_called_an_extrapolation(median, beyond):
     _, marked = said(curve(median=median))
     assert marked == ["an extrapolation, as runs are at 0.2 to 2 m/s"] * beyond
