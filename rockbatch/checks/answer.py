@@ -14,6 +14,7 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, MEAN_OVER_TARGET, NO
 from rockbatch.common.grouping import grouped
 from rockbatch.common.showing import capital, shown
 from rockbatch.quantities.cases import name_along
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.design import BOUND, under
 from rockbatch.quantities.statistics import STATISTICS
 
@@ -293,16 +294,23 @@ class _Cases:
         return (f"Single records are beyond the limit: {_listed(words, most=MOST_CHECKS)}.",) if words else ()
 
     def _omitted(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return a sentence, "drift, uplift: REMARK; REMARK.", on omissions of the same checks that these cases pass."""
-        passed = [(name, verdict.check) for verdict in self._of(names, PASS) for name in verdict.omits]
-        checks = grouped(passed, lambda pair: pair[0])
-        listed = {
-            name: ", ".join(dict.fromkeys(check for _, check in checks[name])) for name in OMISSIONS if name in checks
+        """Return a sentence, "drift, uplift: REMARK; REMARK.", on omissions of the same checks that these cases pass.
+
+        More than three checks are "all checks of runs", except whether they settled, or "drift, uplift, fall, and 2 more".
+        """
+        passed = self._of(names, PASS)
+        every = {verdict.check for verdict in passed if DEMANDS[verdict.demand].of_motion}
+        checks = {
+            name: omitting
+            for name in OMISSIONS
+            if (omitting := tuple(dict.fromkeys(verdict.check for verdict in passed if name in verdict.omits)))
         }
-        return tuple(
-            f"{of_checks}: {'; '.join(OMISSIONS[name].remark for name in names)}."
-            for of_checks, names in grouped(listed, listed.__getitem__).items()
-        )
+        sentences = []
+        for of_checks, omitted in grouped(checks, checks.__getitem__).items():
+            is_all = len(of_checks) > MOST_CHECKS and every.issubset(of_checks)
+            words = "all checks of runs" if is_all else _listed(of_checks, ", ", MOST_CHECKS)
+            sentences.append(f"{words}: {'; '.join(OMISSIONS[name].remark for name in omitted)}.")
+        return tuple(sentences)
 
     def _without_a_case(self) -> tuple[str, ...]:
         """Return "Applies to no case: bearing, tilt." for checks of which every verdict says so; () for none."""

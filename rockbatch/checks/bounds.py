@@ -161,8 +161,8 @@ def lacking(
 ) -> dict[str, tuple[int, int]]:
     """Return (runs that count, runs expected) of each record of which some runs count, but fewer than expected; {} if none.
 
-    Expected are all runs of the record, counting or not, with its components that are ``not_selected``, or the commonest number
-    of a record if that is more. The missing direction may be the worst.
+    Expected are all runs of the record, counting or not, with those of its components that are ``not_selected``, or the commonest
+    number of a record if that is more. The missing direction may be the worst.
     """
     planned, remaining = Counter(counted_as), Counter(counted_as[counting])
     planned.update({name: not_selected.get(name, 0) for name in planned})
@@ -184,7 +184,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
     counting, own = np.ones(len(runs), dtype=bool), value
     if demand.event:
         open_ = runs.facts("may_overturn") & (rule.demand == "overturned")
-        if rule.demand != "failed":  # the event might have followed in a run that was cut short
+        if demand.of_motion:  # the event might have followed in a run that was cut short
             open_ |= (status == "failed") | (status == "flight")
         bounds = Bounds(value, value, np.where(open_, 1.0, value), False)
         none = np.zeros(len(runs), dtype=bool)

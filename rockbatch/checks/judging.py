@@ -310,10 +310,13 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, motions: Suite) -
     if of_event and of_event.records > 1 and rule.per_event is None:
         left_out.add(EVENTS)
     recorded = ~np.isin(suite.texts("record"), [*motions.unrecorded])  # a pulse has one direction, and lacks none
-    lacks = {} if none.count == "component" else lacking(counting[recorded], counted_as[recorded], motions.not_selected)
+    polarities = len({*suite.texts("polarity")})
+    not_selected = {name: n * polarities for name, n in motions.not_selected.items()}
+    lacks = {} if none.count == "component" else lacking(counting[recorded], counted_as[recorded], not_selected)
     if lacks:
         left_out.add(DIRECTIONS)
-    flat = {*counted_as[counting][np.isin(records, [*motions.without_vertical])]}
+    without_vertical = np.isin(records, [*motions.without_vertical]) & DEMANDS[rule.demand].of_motion
+    flat = {*counted_as[counting][without_vertical]}
     if flat:
         left_out.add(VERTICALS)
     omitted = [name for name in OMISSIONS if name in left_out]
@@ -330,7 +333,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, motions: Suite) -
         unknown,
         *(of_event.remarks if of_event else ()),
         _remark_on_directions(lacks),
-        f"{len(flat)} of {n} {count}s lack the vertical component" if flat else "",
+        f"{len(flat)} of {n} {count}s {'lacks' if len(flat) == 1 else 'lack'} the vertical component" if flat else "",
         *dict.fromkeys(remark for of_axis in ends for remark in of_axis),
         *dict.fromkeys(_remark_on_chaos(int(its.chaotic.sum())) for its in demand.axes),
     ]

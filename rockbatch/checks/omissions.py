@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.pier.traits import FLIGHT_LIMIT_MM
 from rockbatch.quantities.arrays import Rows, Values
 from rockbatch.quantities.cases import (
     Case,
@@ -30,6 +31,9 @@ SLIDES, LINEARISED, FLIGHTS = "slides", "beyond_linearised", "flights"
 ERRORS, TARGET = "errors", "target"
 NAMED = DIRECTIONS, VERTICALS, EVENTS = ("directions", "verticals", "events")
 """Omissions about records, which a verdict's own remark names."""
+
+HEIGHT = "flight_height_m"
+"""Column of the height of flights, and the demand of the same name."""
 
 FOLLOWED = (SLIDES, LINEARISED)
 """Omissions of every demand of runs for which the column of the same name is 1: they moved as the model does not follow."""
@@ -86,11 +90,13 @@ OMISSIONS = {
         "shear: check key_shear_kN, too"
     ),
     SHAKEDOWN: Omission(
-        "a lower bound: above a safety factor of 2 the bed settles no further in cycles of constant rotation, in which ground "
-        "does"
+        f"a lower bound: above a safety factor of {SHAKES_DOWN:g} the bed settles no further in cycles of constant rotation, "
+        "in which ground does"
     ),
     SLIDES: Omission("runs would slide by the friction of the case, which is not followed"),
-    FLIGHTS: Omission("runs fly higher than flight_limit_mm of the case, to which keys are taken to guide the pier"),
+    FLIGHTS: Omission(
+        f"runs fly higher than flight_limit_mm ({FLIGHT_LIMIT_MM:g} unless given), to which keys are taken to guide the pier"
+    ),
     LINEARISED: Omission('runs rotate too far for linearised kinematics: run kinematics = "finite"'),
     DIRECTIONS: Omission("not every direction counts, and the worst may be another"),
     VERTICALS: Omission("not every motion has a vertical component"),
@@ -137,8 +143,11 @@ def _follows_modes(demand: Demand, case: Case) -> bool:
 
 def omissions(demand: Demand, runs: Rows, error: Values, case: Case) -> list[str]:
     """Return the names in :data:`OMISSIONS` of what the demand, of this ``error``, omits in runs of a case; [] for none."""
+    if not demand.of_motion:
+        return []
     omitted = [name for name in FOLLOWED if runs.facts(name).any()]
-    if (1000.0 * runs.numbers("flight_height_m") > case["parameters"].get("flight_limit_mm", math.inf)).any():
+    high = 1000.0 * runs.numbers(HEIGHT) > case["parameters"].get("flight_limit_mm", math.inf)
+    if high.any() and demand.name != HEIGHT:  # its own limit says how high keys guide the pier
         omitted.append(FLIGHTS)
     if demand.event:
         return omitted
@@ -146,7 +155,7 @@ def omissions(demand: Demand, runs: Rows, error: Values, case: Case) -> list[str
         omitted.append(TENDONS)
     if demand.while_pressed and (runs.numbers("key_shear_m_s2") > 0.0).any():
         omitted.append(KEYS)
-    if demand.residual and (case["parameters"].get("safety_factor") or 0.0) > SHAKES_DOWN:
+    if demand.settlement and (case["parameters"].get("safety_factor") or 0.0) > SHAKES_DOWN:
         omitted.append(SHAKEDOWN)
     return [*_of_blows(demand, runs, error, case), *omitted]
 

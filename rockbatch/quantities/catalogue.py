@@ -172,6 +172,7 @@ FIXED = (
         "settlement_m", "mean settlement of the supports", "settlement", "m",
         ReportFormat("settlement [mm]", ".2f", 1000), " since the start", bases=SPRINGS, stood=True,
         suite=OfSuite("Settlement [mm]", ".2f"), error="settlement_error_m", limits=_SETTLEMENTS,
+        settlement=True,
     ),
     Quantity("impacts", "number of impacts", "impacts", kind="count", limits=(Limit(),)),
     Quantity(

@@ -105,6 +105,8 @@ class Demand:
     directed : bool
         True if each axis of the pier has one by itself, so that those of two axes add up. Of others, such as settlements,
         axial forces and counts, which have the weight or the whole pier in them on either axis, the greater counts.
+    settlement : bool
+        True if it is a settlement of the supports.
     over_capacity : bool
         True for a share of a capacity that depends on the axial force, which a check states.
     """
@@ -130,6 +132,7 @@ class Demand:
     pointwise: bool = False
     while_pressed: bool = False
     directed: bool = False
+    settlement: bool = False
     over_capacity: bool = False
 
     def applies_to(self, case: Case) -> bool:
@@ -157,6 +160,11 @@ class Demand:
     def words(self) -> str:
         """The meaning, with the unit in brackets if there is one."""
         return f"{self.meaning} [{self.unit}]" if self.unit else self.meaning
+
+    @property
+    def of_motion(self) -> bool:
+        """True for what the motion of a pier decides: no property of the case, nor whether a run came to an end."""
+        return not self.per_case and self.name != "failed"
 
     @property
     def per_run(self) -> bool:

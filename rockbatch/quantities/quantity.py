@@ -163,6 +163,8 @@ class Quantity:
         True if it leaves out moments with a normal force below [output] least_normal_share of the weight.
     directed : bool
         True if each axis of the pier has one by itself, so that those of two axes add up.
+    settlement : bool
+        True if it is a settlement of the supports.
     least_is_worst : bool
         True if the smallest value of several runs is the worst.
     """
@@ -191,6 +193,7 @@ class Quantity:
     pointwise: bool = False
     while_pressed: bool = False
     directed: bool = False
+    settlement: bool = False
     least_is_worst: bool = False
 
     @property
@@ -254,6 +257,7 @@ class Quantity:
             pointwise=self.pointwise,
             while_pressed=self.while_pressed,
             directed=self.directed,
+            settlement=self.settlement,
         )
 
     @property

@@ -10,6 +10,7 @@ from check_samples import PIER, RIGID, case, runs, verdict
 from rockbatch.checks import wording
 from rockbatch.checks.answer import MOST_FILES, MOST_NAMES, _listed, answer, without_limits
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, Stations, runs_of_cases, stations_of
+from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.responses import in_words, worst_of_all, worst_of_cases
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.pier import Damper, RigidBase
@@ -98,6 +99,18 @@ def test_a_pass_says_that_directions_are_missing_and_that_stations_are_of_one_ev
         [verdict("pads", PASS, omits=("directions", "events")), verdict("pads", PASS, check="fall", omits=("events",))]
     )
     assert line.details[1:] == (f"margin: {directions}.", f"margin, fall: {events}.")
+
+
+def test_an_omission_of_many_checks_does_not_list_all_of_them():
+    """Six lines of names stood before each remark that is of every run."""
+    six = [verdict("pads", PASS, check=f"c{i}", omits=("flights", "slides")[: 1 + (i < 5)]) for i in range(6)]
+    settled = verdict("pads", PASS, check="settled", demand="failed")
+    (line,) = lines([*six, settled])
+    assert line.details[1:] == (
+        f"c0, c1, c2, and 2 more: {OMISSIONS['slides'].remark}.", f"all checks of runs: {OMISSIONS['flights'].remark}.",
+    )  # fmt: skip
+    (line,) = lines(six[:3])
+    assert line.details[1].startswith("c0, c1, c2: runs would slide")
 
 
 def test_the_worst_at_each_scale_is_that_of_its_runs_alone():
@@ -422,7 +435,7 @@ def test_a_share_of_a_limit_that_is_not_known_has_no_words(ratio, words):
         (0.25, {"high": math.inf}, ("≥ 0.25 ≤ 0.5", "≤ 0.5", "≥ 0.50", "≤ 0.25")),
     ],
 )
-def test_a_verdict_has_its_sign_and_distinguishing_digits_it_from_its_limit(value, more, words):
+def test_a_verdict_has_its_sign_and_digits_that_tell_it_from_its_limit(value, more, words):
     at_most = "sense" not in more
     ratio, margin = (value / 0.5, 0.5 - value) if at_most else (0.5 / value, value - 0.5)
     one = verdict("a", "pass", **({"value": value, "high": value, "ratio": ratio, "margin": margin} | more))

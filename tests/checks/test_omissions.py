@@ -383,8 +383,18 @@ def test_a_pass_says_if_a_run_moves_as_the_model_does_not_follow(demand, name, c
     for moved, omits in ((table.assign(**cells), (name,)), (table.assign(**dict.fromkeys(cells, 0)), ()), (table, ())):
         found = judged(moved, one=DAMPED, demand=demand, at_most=0.5)
         assert (found.verdict, found.omits, bool(found.note)) == ("pass", omits, bool(omits))
+    assert judged(table.assign(**cells), one=DAMPED, demand="failed", at_most=0.5).omits == ()
     left_out = table.assign(**{column: [0, value] for column, value in cells.items()}, status=["ok", "overturned"])
     assert name not in judged(left_out, one=DAMPED, overturned="left out").omits
+
+
+def test_a_limit_on_the_height_of_flights_omits_none_of_them():
+    table = runs([0.1], name="damped", theta_max_error=1e-5, flight_height_m=6e-3, flights=1, flight_duration_s=0.1)
+    for demand, omits in (("flight_height_m", ()), ("flights", (FLIGHTS,))):
+        assert [name for name in judged(table, one=DAMPED, demand=demand, at_most=9.0).omits if name == FLIGHTS] == [
+            *omits
+        ]
+    assert "flight_limit_mm (5 unless given)" in OMISSIONS[FLIGHTS].remark
 
 
 def test_a_friction_demand_says_that_keys_carry_the_shear_of_a_light_contact():
@@ -396,11 +406,16 @@ def test_a_friction_demand_says_that_keys_carry_the_shear_of_a_light_contact():
 
 
 @pytest.mark.parametrize(
-    ("demand", "below", "above"), [("settlement_m", (), (SHAKEDOWN,)), ("theta_max_over_alpha", (), ())]
+    ("demand", "above"),
+    [("settlement_m", (SHAKEDOWN,)), ("theta_max_over_alpha", ()), ("base_tilt_rad", ()), ("theta_res_over_alpha", ())],
 )
-def test_a_settlement_above_a_safety_factor_of_two_is_said_to_be_a_lower_bound(demand, below, above):
-    table = runs([0.1], name="foot", theta_max_error=1e-5, settlement_m=0.05, settlement_error_m=1e-4)
-    for factor, omits in ((2.0, below), (2.1, above), (None, below)):
+def test_a_settlement_above_a_safety_factor_of_two_is_said_to_be_a_lower_bound(demand, above):
+    """Its residual rotations have either sign in them."""
+    table = runs(
+        [0.1], name="foot", theta_max_error=1e-5, settlement_m=0.05, settlement_error_m=1e-4, base_tilt_rad=1e-3,
+        theta_res_over_alpha=1e-2, theta_res_error=1e-4,
+    )  # fmt: skip
+    for factor, omits in ((2.0, ()), (2.1, above), (None, ())):
         foot = case("foot", FootingBase(beta=60.0, safety_factor=factor))
         found = judged(table, one=foot, demand=demand, at_most=0.5)
         assert (found.verdict, found.omits) == ("pass", omits)

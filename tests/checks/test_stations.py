@@ -495,6 +495,8 @@ def test_a_station_of_which_one_component_is_not_selected_lacks_a_direction():
     for motions, told in ((Suite(not_selected={"A": 1, "C": 2}), "A (1 of 2)"), (Suite(not_selected={"C": 2}), "")):
         (found,) = judge([rule], alone, [case()], motions)
         assert (told in found.note, found.omits) == (True, ("directions",) if told else ())
+    both_ways = pd.concat([alone, alone.assign(polarity="-")])
+    assert "A (2 of 4)" in judge([rule], both_ways, [case()], Suite(not_selected={"A": 1}))[0].note
 
 
 def test_motions_without_the_vertical_component_asked_for_are_counted_by_station():
@@ -503,6 +505,9 @@ def test_motions_without_the_vertical_component_asked_for_are_counted_by_station
     (found,) = judge([rule], table, [case()], Suite(without_vertical=["A1", "A2", "C2"]))
     assert (found.verdict, found.omits) == ("pass", ("verticals",))
     assert found.note == "2 of 4 stations lack the vertical component"
+    for demand, told in (("overturned", "1 of 4 stations lacks the vertical component"), ("failed", "")):
+        (of_one,) = judge([Rule("c", demand, 0.0)], table, [case()], Suite(without_vertical=["A1"]))
+        assert (of_one.verdict, of_one.note) == ("pass", told)
     (by_component,) = judge([rule], table, [case()], Suite(without_vertical=["A1", "A2", "C2"]), "component")
     assert by_component.note == "3 of 8 components lack the vertical component"
     assert not judge([rule], table, [case()], Suite())[0].omits
