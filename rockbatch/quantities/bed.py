@@ -86,7 +86,7 @@ OF_FOOTING = (
     _quantity("settlement_left_m", _EDGE.format("left"), _of_bed("settlement_left"), "m",
         more="; above a safety factor of 2 a lower bound", stood=True),
     _quantity("settlement_right_m", _EDGE.format("right"), _of_bed("settlement_right"), "m",
-        more="; likewise", stood=True, error="edge_settlement_error_m", limits=(
+        more="; likewise", stood=True, settlement=True, error="edge_settlement_error_m", limits=(
             Limit("edge_settlement_m", ceiling=_WIDER, words=_EDGE.format("lower"),
                 columns=("settlement_left_m", "settlement_right_m")),
             _IN_MM._replace(name="edge_settlement_mm", words=_EDGE.format("lower"),

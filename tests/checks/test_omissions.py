@@ -407,13 +407,20 @@ def test_a_friction_demand_says_that_keys_carry_the_shear_of_a_light_contact():
 
 @pytest.mark.parametrize(
     ("demand", "above"),
-    [("settlement_m", (SHAKEDOWN,)), ("theta_max_over_alpha", ()), ("base_tilt_rad", ()), ("theta_res_over_alpha", ())],
+    [
+        ("settlement_m", (SHAKEDOWN,)),
+        ("edge_settlement_m", (SHAKEDOWN,)),
+        ("theta_max_over_alpha", ()),
+        ("base_tilt_rad", ()),
+        ("theta_res_over_alpha", ()),
+    ],
 )
 def test_a_settlement_above_a_safety_factor_of_two_is_said_to_be_a_lower_bound(demand, above):
     """Its residual rotations have either sign in them."""
     table = runs(
         [0.1], name="foot", theta_max_error=1e-5, settlement_m=0.05, settlement_error_m=1e-4, base_tilt_rad=1e-3,
-        theta_res_over_alpha=1e-2, theta_res_error=1e-4,
+        theta_res_over_alpha=1e-2, theta_res_error=1e-4, settlement_left_m=0.06, settlement_right_m=0.04,
+            edge_settlement_error_m=1e-4,
     )  # fmt: skip
     for factor, omits in ((2.0, ()), (2.1, above), (None, ())):
         foot = case("foot", FootingBase(beta=60.0, safety_factor=factor))

@@ -23,6 +23,7 @@ from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.threads import Engine
 from rockbatch.common.arguments import checked
 from rockbatch.common.files import opened_text
+from rockbatch.common.grouping import joined
 from rockbatch.common.lazy import pd
 from rockbatch.common.statuses import NO_PEAK
 from rockbatch.quantities.statistics import STATISTICS, Values
@@ -132,6 +133,7 @@ def _write_tables(results: AnalysisFolder, spec: SensitivitySpec) -> dict[str, o
         numerics=study.numerics,
     )
     results.info["motions"] = len(suite.members)
+    results.info["stations"] = len({*joined([motion.stations for motion in motions.motions])})
     many = f"{count(len(points), 'point')} × {count(len(suite.members), 'motion')} = {len(runs)} runs{once(study)}"
     results.listener.say(f"{many} on {results.engine}")
     results.execute_runs(sampled.RUNS, sampled.COLUMNS, digest, runs, suite.some_cases(), sampled.row_of)

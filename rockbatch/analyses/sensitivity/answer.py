@@ -105,11 +105,24 @@ def _in_most(cases: Sequence[Rows]) -> Markup:
     return join(f" depends most, in {len(cases)} cases, {', '.join(parts)}.")
 
 
+def on_coverage(info: Info) -> str:
+    """Return a sentence on how many further records exceed a quantile, or that its motions are not independent.
+
+    "" for other statistics, and if an earlier version did not write the number of stations.
+    """
+    statistic, motions, stations = STATISTICS[info["statistic"]], info["motions"], info.get("stations")
+    if statistic.coverage is None or stations is None:
+        return ""
+    if stations == motions:
+        return f"The {statistic.words} is {statistic.coverage(motions)}."
+    shared = f"{counted(motions, 'motion')} of {counted(stations, 'station')}"
+    return f"The {statistic.words} is of {shared}, which are not independent."
+
+
 def _of_runs(info: Info) -> Iterator[str]:
     """Yield remarks on the coverage of a quantile, on runs that overturned or flew, with their value, and on failed runs."""
-    statistic = STATISTICS[info["statistic"]]
-    if statistic.coverage is not None:
-        yield f"The {statistic.words} is {statistic.coverage(info['motions'])}."
+    if coverage := on_coverage(info):
+        yield coverage
     number, runs = info["statuses"], counted(sum(info["statuses"].values()), "run")
     if ended := number.get("overturned", 0) + number.get("flight", 0):
         yield f"{ended} of {runs} overturned or were ended by flight, and count as {info['overturned']:g} here."

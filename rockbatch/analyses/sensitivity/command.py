@@ -3,6 +3,7 @@
 import argparse
 
 from rockbatch.analyses.sensitivity.analysis import sensitivity
+from rockbatch.analyses.sensitivity.answer import on_coverage
 from rockbatch.analyses.sensitivity.quantities import of_inputs
 from rockbatch.batch.listening import count
 from rockbatch.common.analyses import Entry
@@ -23,6 +24,8 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
     ended = ", ".join(f"{number} {status}" for status, number in sorted(result.info["statuses"].items()))
     cut = f"theta_max/alpha = {result.spec.overturned:g}"
     say(f"{ended}; runs that overturned or were ended by flight count as {cut}")
+    if coverage := on_coverage(result.info):
+        say(coverage)
     print_files(result)
     return 1 if result.unusable else 0  # what failed counts, as the report says
 

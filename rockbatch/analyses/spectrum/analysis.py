@@ -15,6 +15,7 @@ from rockbatch.batch.waves import Waves
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import is_plain, read_table
+from rockbatch.common.grouping import joined
 from rockbatch.common.lazy import pd
 from rockbatch.results.columns import columns
 from rockbatch.study import Motions, Output, Study
@@ -146,7 +147,9 @@ def _write_spectra(results: AnalysisFolder, spectra: SpectrumSpec) -> None:
     results.listener.say(f"spectra: {many} on {results.engine}")
     results.info |= {"axis": spectra.axis, "varied": list(spectra.varied), "motions": len(motions.motions)}
     results.execute_runs(file, rocking_spectrum.columns(spectra), digest, runs, spectra.cases, rocking_spectrum.row_of)
-    suite = rocking_spectrum.of_suite(read_table(results.directory / file), spectra.varied)
+    names = [motion.name for motion in motions.motions]
+    stations = dict(zip(names, joined([motion.stations for motion in motions.motions]), strict=True))
+    suite = rocking_spectrum.of_suite(read_table(results.directory / file), spectra.varied, stations)
     results.keep_table(rocking_spectrum.SUITE, suite)
 
 

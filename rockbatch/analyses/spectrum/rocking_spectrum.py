@@ -10,7 +10,7 @@ self-similar spectrum has these for axes, with a_g = PGA and ω_g = PGA/PGV of e
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 
 from rockbatch.analyses.spectrum.study import INTENSITY, SELF_SIMILAR, SpectrumSpec
@@ -21,6 +21,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.statuses import NOT_STANDING
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.motions.intensity import measures
+from rockbatch.quantities.statistics import FRACTILES_FROM
 from rockbatch.results.columns import StudyRun, row
 from rockbatch.results.suite_statistics import suite
 from rockbatch.study import Study
@@ -103,19 +104,23 @@ def row_of(run: StudyRun) -> dict[str, object]:
     return size | row(run)
 
 
-def of_suite(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
+def of_suite(table: "pd.DataFrame", varied: Sequence[str], stations: Mapping[str, str]) -> "pd.DataFrame":
     """Return the statistics of the suite at every point of the spectrum from the rows of spectrum.csv.
 
+    ``stations`` has that of each record.
+
     A row for each case, scale and pier has the 16, 50 and 84 % quantiles of θ_max/α over the motions (``p16``, ``median``,
-    ``p84``), and the greatest (``largest``); of fewer than 6 motions ``p16`` and ``p84`` are empty. A run that overturned, or was
-    ended by flight, counts as infinite; a failed one is unknown and only counted. At a point of a self-similar spectrum every
-    record has its own pier and scale: of these it has the least and the greatest.
+    ``p84``), and the greatest (``largest``); of fewer than 6 stations ``p16`` and ``p84`` are empty. A run that overturned, or
+    was ended by flight, counts as infinite; a failed one is unknown and only counted. At a point of a self-similar spectrum
+    every record has its own pier and scale: of these it has the least and the greatest.
     """
     keys = groups(varied)
     rows: list[Entry] = []
     for names, runs in table.groupby(keys, sort=False, dropna=False):
         statistics = asdict(suite(runs["theta_max_over_alpha"].to_numpy(float), runs["status"].tolist()))
-        statistics["p16"], statistics["p84"] = statistics.pop("low"), statistics.pop("high")
+        known = {stations[name] for name in runs["record"][runs["status"] != "failed"]}
+        ends = statistics.pop("low"), statistics.pop("high")
+        statistics["p16"], statistics["p84"] = ends if len(known) >= FRACTILES_FROM else (math.nan, math.nan)
         rows.append(dict(zip(keys, names, strict=True)) | _sizes(runs, varied) | statistics)
     shown = ("count", "p16", "median", "p84", "largest", *NOT_STANDING)
     return pd.DataFrame(rows, columns=[*dict.fromkeys((*keys, *_sizes(table, varied), *shown))])

@@ -41,7 +41,7 @@ def _spectra(analysis: FinishedAnalysis, suite: "pd.DataFrame") -> Markup:
     caption = "Largest rotation over slenderness, a curve for each slenderness. "
     if (suite["count"] > 1).any():
         caption += "Solid: median of the motions. "
-        few = f"where {FRACTILES_FROM} motions or more have an outcome"
+        few = f"where motions of {FRACTILES_FROM} stations or more have an outcome"
         caption += f"Dashed and dotted: 84 % and 16 % quantiles, {few}. " if suite["p84"].notna().any() else ""
     caption += "Above the frame: overturned, or ended by flight."
     records = analysis.table("spectrum.csv", ("case", "alpha", "record", "polarity", "status", "theta_max_over_alpha"))

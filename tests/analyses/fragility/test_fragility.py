@@ -111,7 +111,14 @@ def test_notes_say_why_there_is_no_curve_and_what_one_rests_on():
         return note(Curve(case, OVERTURNING, (), fitted, Undecided(*undecided), **more), spec)
 
     assert (said(NoCurve("no record counts")), said(fitted)) == ("no record counts", "")
-    for median, beyond in ((0.19, True), (0.2 - 1e-16, False), (0.2, False), (0.8, False), (0.8 + 2e-16, False), (0.81, True)):
+    for median, beyond in (
+        (0.19, True),
+        (0.2 - 1e-16, False),
+        (0.2, False),
+        (0.8, False),
+        (0.8 + 2e-16, False),
+        (0.81, True),
+    ):
         words = "the median is extrapolated beyond the intensities that were run"
         assert said(replace(fitted, median=median)) == beyond * words
     few = replace(fitted, median_interval=None, dispersion_interval=None, stations=4)

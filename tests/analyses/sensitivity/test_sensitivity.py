@@ -386,7 +386,7 @@ def test_a_case_that_has_none_of_the_inputs_is_left_out(tmp_path):
 def test_another_statistic_of_finished_runs_takes_no_run(folder, tmp_path, monkeypatch, capsys):
     out = tmp_path / "out"
     shutil.copytree(folder, out)
-    path = written(tmp_path, STUDY.replace('"max"', '"mean"').replace("samples", "overturned = 0.5\nsamples"))
+    path = written(tmp_path, STUDY.replace('"max"', '"p84"').replace("samples", "overturned = 0.5\nsamples"))
 
     def refused(*_):
         raise TypeError("no run is wanted")
@@ -396,7 +396,9 @@ def test_another_statistic_of_finished_runs_takes_no_run(folder, tmp_path, monke
         assert main(["sensitivity", str(path), "--out", str(out)]) == 0
         with pytest.raises(TypeError):  # other runs: they would be carried out
             main(["sensitivity", str(written(tmp_path, STUDY.replace("= 8", "= 16"))), "--out", str(out)])
-    assert "theta_max/alpha = 0.5" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "theta_max/alpha = 0.5" in told
+    assert "The 84 % quantile is by interpolation between the ranks of" in told
     assert (out / "sensitivity_runs.csv").read_bytes() == (folder / "sensitivity_runs.csv").read_bytes()
     assert (out / "sensitivity.csv").read_bytes() != (folder / "sensitivity.csv").read_bytes()
 

@@ -153,7 +153,10 @@ def test_runs_that_only_flew_or_only_overturned_count():
 
 def test_a_quantile_of_few_motions_is_said_to_cover_less_than_its_name():
     """Rank 0.84 · 2 + 1 of three, below which 2.68/4 of all values are expected."""
-    (_, remark), _ = said({"rock": [("p", 0.9, 0.1, 0.1, 0.3)]}, statistic="p84")
+    (_, remark), _ = said({"rock": [("p", 0.9, 0.1, 0.1, 0.3)]}, statistic="p84", stations=3)
     assert remark == (
         "The 84 % quantile is by interpolation between the ranks of 3, which 33 % of further records exceed."
     )
+    (_, of_two), _ = said({"rock": [("p", 0.9, 0.1, 0.1, 0.3)]}, statistic="p84", stations=2)
+    assert of_two == "The 84 % quantile is of 3 motions of 2 stations, which are not independent."
+    assert len(said({"rock": [("p", 0.9, 0.1, 0.1, 0.3)]}, statistic="p84")[0]) == 1  # of an earlier version

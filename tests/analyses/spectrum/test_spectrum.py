@@ -97,15 +97,19 @@ def test_the_terminal_shows_every_median(folder, tmp_path):
 def test_quantiles_count_overturned_and_flight_as_infinite_and_failed_not_at_all():
     rows = [("ok", 0.2), ("ok", 0.4), ("overturned", 15.0), ("failed", 9.0), ("ok", 0.3), ("ok", 0.5), ("flight", 7.0)]
     table = pd.DataFrame(rows, columns=["status", "theta_max_over_alpha"]).assign(
-        case="rigid", scale=1.0, alpha=0.1, p=1.0, two_pi_over_p_s=2 * math.pi, size_m=7.0
+        case="rigid", scale=1.0, alpha=0.1, p=1.0, two_pi_over_p_s=2 * math.pi, size_m=7.0, record=[*"abcdefg"]
     )
-    (row,) = of_suite(table, ("alpha", "p")).to_dict("records")
+    own = {name: name for name in "abcdefg"}
+    (row,) = of_suite(table, ("alpha", "p"), own).to_dict("records")
     assert (row["count"], row["overturned"], row["failed"]) == (6, 1, 1)
     assert row["median"] == pytest.approx(0.45)  # between 0.4 and 0.5 of 0.2, 0.3, 0.4, 0.5, ∞, ∞
     assert row["p16"] == pytest.approx(0.2 + 0.8 * 0.1)
     assert math.isinf(row["p84"])
     assert math.isinf(row["largest"])
-    (few,) = of_suite(table[:6], ("alpha", "p")).to_dict("records")
+    (pair,) = of_suite(table, ("alpha", "p"), own | {"b": "a"}).to_dict("records")  # five stations, as d failed
+    assert (pair["count"], pair["median"]) == (6, row["median"])
+    assert np.isnan([pair["p16"], pair["p84"]]).all()
+    (few,) = of_suite(table[:6], ("alpha", "p"), own).to_dict("records")
     assert (few["count"], few["median"]) == (5, pytest.approx(0.4))
     assert np.isnan(
         [few["p16"], few["p84"]]
