@@ -255,6 +255,8 @@ def _verdict(name: str, condition: Condition, scale: float, target: Target) -> V
         counted="",
         remarks=(*condition.remarks, at_scale) if at_scale else condition.remarks,
         unit=condition.unit,
+        least=0,
+        per_event=0,
     )
 
 

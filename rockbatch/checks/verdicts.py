@@ -39,6 +39,10 @@ OF_SUITE = (
 """Demands of the verdicts on the suite itself."""
 
 
+UNWRITTEN = -1
+"""Number that checks.csv of an earlier version does not have."""
+
+
 @dataclass(frozen=True)
 class Verdict:
     """The outcome of a check for one case at one scale, or for the suite itself.
@@ -87,7 +91,8 @@ class Verdict:
     capacity : str
         Points of the capacity that depends on the axial force, as JSON; empty of other checks.
     least, per_event : int
-        Least number of records, and greatest of one event, with which anything passes, as the check asks; 0 if it does not.
+        Least number of records, and greatest of one event, with which anything passes, as the check asks; 0 if it does not,
+        :data:`UNWRITTEN` if an earlier version did not write them.
     """
 
     check: str
@@ -122,8 +127,8 @@ class Verdict:
     omits: tuple[str, ...] = ()
     axes: str = ""
     capacity: str = ""
-    least: int = 0
-    per_event: int = 0
+    least: int = UNWRITTEN
+    per_event: int = UNWRITTEN
 
     @property
     def curve(self) -> Curve:

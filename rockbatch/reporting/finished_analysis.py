@@ -138,6 +138,11 @@ def of_analysis(
     return section_of
 
 
+def of_earlier_version(name: str) -> Markup:
+    """Return what stands in place of a section of the analysis ``name`` whose files an earlier version wrote."""
+    return tag("p", tag("span", f"Of an earlier version; run `rockbatch {name}` again.", class_="undecided"))
+
+
 def answered(*paragraphs: str, remarks: Iterable[str] = ()) -> Markup:
     """Return paragraphs that state the result of an analysis, with a line for each remark below."""
     lines = (tag("p", tag("span", remark, class_="undecided")) for remark in remarks)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from rockbatch.checks import Verdict, wording
 from rockbatch.checks.scorecard import Cell, Row, scorecard
-from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, UNWRITTEN
 from rockbatch.common.grouping import grouped
 from rockbatch.quantities.design import of_design
 from rockbatch.quantities.rows import as_in_peaks
@@ -37,18 +37,21 @@ def headline(pair: Pair) -> str:
 
 def _unlike(a: Finished, b: Finished) -> str:
     """Return " Their motions and checks are not the same.", or one of both; "" if they are, or if one has no limits."""
-    checks = [{_requirement(verdict) for verdict in study.verdicts if verdict.case} for study in (a, b)]
+    of_cases = [[verdict for verdict in study.verdicts if verdict.case] for study in (a, b)]
+    numbers = all(verdict.least != UNWRITTEN for verdicts in of_cases for verdict in verdicts)
+    checks = [{_requirement(verdict, numbers=numbers) for verdict in verdicts} for verdicts in of_cases]
     kinds = {"motions": other_motions(a, b), "checks": checks[0] != checks[1]}
     words = " and ".join(kind for kind, differ in kinds.items() if differ)
     return f" Their {words} are not the same." if words and all(checks) else ""
 
 
-def _requirement(verdict: Verdict) -> tuple[object, ...]:
+def _requirement(verdict: Verdict, *, numbers: bool) -> tuple[object, ...]:
     """Return what a check asks: its name, demand in words with height and axes, ways of counting records and runs cut short,
-    numbers of records, sense, limit and capacity.
+    ``numbers`` of records if these are known, sense, limit and capacity.
     """
     demand = verdict.check, verdict.demand, verdict.words, verdict.sense, verdict.limit, verdict.capacity
-    return *demand, verdict.count, verdict.counting, verdict.least, verdict.per_event
+    of_records = (verdict.least, verdict.per_event) if numbers else ()
+    return *demand, verdict.count, verdict.counting, *of_records
 
 
 def _state(side: str, study: Finished) -> str:

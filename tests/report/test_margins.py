@@ -16,6 +16,7 @@ from studies import SINE
 
 import rockbatch as rb
 from rockbatch.checks import judge, read_verdicts, write_verdicts
+from rockbatch.checks.verdicts import UNWRITTEN
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.quantities.catalogue import FIXED, TRAILING, names
@@ -207,7 +208,17 @@ def test_a_capacity_a_height_and_what_counts_are_part_of_what_a_check_asks():
             )
         ),
     )
-    assert len(set(map(_requirement, asked))) == len(asked)
+    assert len({_requirement(one, numbers=True) for one in asked}) == len(asked)
+
+
+def test_checks_of_an_earlier_version_are_no_others_for_the_numbers_it_did_not_write(tmp_path):
+    """Its checks.csv had no columns for the least number of records, nor for that of one event."""
+    folders = two(tmp_path, *(tables(check=[ROTATION | {"least": 2}]),) * 2)
+    pd.read_csv(folders[0] / "checks.csv").drop(columns=["least", "per_event"]).to_csv(
+        folders[0] / "checks.csv", index=False
+    )
+    assert [one.least for one in read_verdicts(folders[0])] == [UNWRITTEN]
+    assert "not the same" not in said(folders)
 
 
 def test_a_record_without_a_run_in_one_study_ends_no_comparison(tmp_path):

@@ -65,16 +65,19 @@ COLUMNS = ("method", *NUMBERS, "machine", "study")
 """Columns of ``accuracy.csv``; the last one is the SHA-256 of the study file."""
 
 
-def read(path: Path, study: str) -> list[Level]:
+def read(path: Path, study: str) -> list[Level] | None:
     """Return the levels of ``accuracy.csv`` measured for the study with the SHA-256 ``study``.
 
-    Empty if the file is missing, belongs to another state of the study, or is no such table; the report then omits it.
+    None if an earlier version wrote it, without the column ``compared``. Empty if the file is missing, belongs to another state
+    of the study, or is no such table; the report then omits it.
     """
     try:
         with opened_text(path) as file:
             rows = list(csv.DictReader(file))
         if any(row["study"] != study for row in rows):
             return []
+        if rows and {*COLUMNS} - rows[0].keys() == {"compared"}:
+            return None
         return [Level(row["method"], row["machine"], *(_number(row[name]) for name in NUMBERS)) for row in rows]
     except (OSError, KeyError, TypeError, ValueError):
         return []

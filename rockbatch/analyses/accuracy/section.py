@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from rockbatch.analyses.accuracy.figures import error_and_time
 from rockbatch.analyses.accuracy.levels import NO_ERROR, Level, chosen, read
 from rockbatch.analyses.accuracy.quantities import QUANTITIES, rows
-from rockbatch.reporting.finished_analysis import Contents
+from rockbatch.reporting.finished_analysis import Contents, of_earlier_version
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import listed
@@ -15,6 +15,8 @@ from rockbatch.reporting.templates import render
 def section(contents: Contents) -> Markup:
     """Return the report's section of error against time measured for this study; empty without a measurement."""
     levels = read(contents.directory / "accuracy.csv", contents.study["sha256"])
+    if levels is None:
+        return of_earlier_version("accuracy")
     if not levels:
         return Markup("")
     own, last_change = chosen(levels), max((level.reference_change or 0.0 for level in levels), default=0)

@@ -6,7 +6,7 @@ from rockbatch.analyses.fragility import answer
 from rockbatch.analyses.fragility.figures import clouds, curves, in_brackets, remarks, risk
 from rockbatch.analyses.fragility.quantities import Curve, level_of, names_of_curves, of_curves, of_rates, power
 from rockbatch.common.analyses import Entry
-from rockbatch.reporting.finished_analysis import FinishedAnalysis, named, of_analysis
+from rockbatch.reporting.finished_analysis import FinishedAnalysis, named, of_analysis, of_earlier_version
 from rockbatch.reporting.markup import Markup, tag
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import Head, listed, table
@@ -20,6 +20,8 @@ def section(analysis: FinishedAnalysis) -> Markup:
     """Return the report's section of fragility curves; empty without any."""
     if not analysis.info["curves"]:
         return Markup("")
+    if _is_earlier(analysis.info):
+        return of_earlier_version("fragility")
     info = analysis.info
     entries, of_clouds = info["curves"], clouds(info)
     return render(
@@ -38,6 +40,12 @@ def section(analysis: FinishedAnalysis) -> Markup:
         capacities=_capacities(analysis),
         provenance=analysis.provenance(),
     )
+
+
+def _is_earlier(info: Entry) -> bool:
+    """Return whether an earlier version wrote fragility.json, in which bounds of medians had no confidence."""
+    bounds = (curve.get("median_bound") for curve in info["curves"])
+    return any("confidence" not in bound for bound in bounds if bound)
 
 
 def _table(info: Entry) -> Markup:
@@ -119,8 +127,11 @@ def _greatest(name: str) -> Callable[[Curve], object]:
 
 @of_analysis("fragility")
 def rates(analysis: FinishedAnalysis) -> Markup:
-    """Return the report's section of hazard and annual rates, a sentence if no curve has a rate; empty without a hazard."""
-    if not analysis.info.get("hazard"):
+    """Return the report's section of hazard and annual rates, a sentence if no curve has a rate; empty without a hazard.
+
+    It is empty for files of an earlier version, too, of which the section of curves says so.
+    """
+    if not analysis.info.get("hazard") or _is_earlier(analysis.info):
         return Markup("")
     info = analysis.info
     curves = [entry for entry in info["curves"] if entry["risk"]]

@@ -1,4 +1,4 @@
-"""Fragility curves of arrays, without a study: counts and records at levels, capacities, clouds of demands; bounds of rates."""
+"""Fragility curves of arrays, without a study: counts and records at levels, capacities, clouds of demands."""
 
 from collections.abc import Hashable, Sequence
 from typing import Any, TypeVar

@@ -284,6 +284,15 @@ def test_a_damaged_table_is_left_out(tmp_path, content):
     assert section(Contents(tmp_path, {"sha256": "x"})) == ""
 
 
+def test_a_table_of_an_earlier_version_says_what_to_run(tmp_path):
+    """It has no column with the number of runs that were compared."""
+    names = [name for name in COLUMNS if name != "compared"]
+    (tmp_path / "accuracy.csv").write_text(
+        f"{','.join(names)}\n{','.join(OWN[name] for name in names)}\n", encoding="utf-8"
+    )
+    assert "Of an earlier version; run `rockbatch accuracy` again." in section(Contents(tmp_path, {"sha256": "x"}))
+
+
 def test_runs_that_never_settle_are_counted(study_file, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(rockbatch.analyses.accuracy.error_and_time, "ACCEPTED", -1.0)
     assert main(["accuracy", str(study_file), "--out", str(tmp_path / "out"), "--runs", "1"]) == 2

@@ -17,7 +17,7 @@ from rockbatch.analyses.fragility.curves import Curve, Member, Undecided, assess
 from rockbatch.analyses.fragility.ida import Bracket, Capacity
 from rockbatch.analyses.fragility.lognormal import Lognormal
 from rockbatch.analyses.fragility.runs import LevelPlan
-from rockbatch.analyses.fragility.section import section
+from rockbatch.analyses.fragility.section import rates, section
 from rockbatch.analyses.fragility.study import OVERTURNING, FragilitySpec, read_fragility
 from rockbatch.analyses.fragility.tables import capacities, note
 from rockbatch.analyses.fragility.windows import Windows
@@ -213,6 +213,19 @@ def test_hunt_step_looks_between_the_levels_on_every_base(tmp_path):
     assert [spec.step_on(base) for base in (RigidBase(), ElasticBase(30.0))] == [0.05, 0.05]
     spec = read_fragility(load_study(written(tmp_path, IDA)))
     assert [spec.step_on(base) for base in (RigidBase(), ElasticBase(30.0))] == [0.0025, None]
+
+
+def test_a_file_of_an_earlier_version_says_what_to_run_and_the_rest_of_the_page_is_there(tmp_path, stripes):
+    """Its bounds of medians had no confidence, which ended the whole report as damaged."""
+    out = shutil.copytree(stripes, tmp_path / "out")
+    info = json.loads((out / "fragility.json").read_text(encoding="utf-8"))
+    info["curves"][0]["median_bound"] = {"is": "above", "above": 0.3, "below": None}
+    info["hazard"] = {"source": ""}
+    info["sha256"] = finished_analysis.digest_of(info)
+    (out / "fragility.json").write_text(json.dumps(info), encoding="utf-8")
+    contents = Contents(out, info["study"])
+    assert "Of an earlier version; run `rockbatch fragility` again." in section(contents)
+    assert rates(contents) == ""
 
 
 def test_an_edited_or_damaged_analysis_is_reported(tmp_path, stripes):
