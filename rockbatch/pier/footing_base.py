@@ -14,7 +14,6 @@ from rockbatch.pier.frequencies import rocking_frequency, static_deflection, ver
 from rockbatch.pier.restraints import Restraint, described_restraints
 from rockbatch.pier.shafts import WithShaft
 from rockbatch.pier.soil import FORMULAS, Formula, Soil, bed_stiffness, radiated
-from rockbatch.pier.supports import LEAST_DEFLECTION_MM
 from rockbatch.pier.traits import BETA, FLIGHT_LIMIT_MM, Flight, Kinematics, interface
 
 MOST_STRIPS = 160
@@ -25,6 +24,13 @@ POISSON = Bounds(0.0, 0.5, why="Poisson's ratio of the soil must be within 0..0.
 
 DEPTH = Bounds(0.0, MOST, " [m], a depth")
 """Possible depths of a footing."""
+
+STIFFEST_MPA = 30e3
+"""Shear modulus [MPa] above which a wrong unit is likelier than the ground: sound rock has some 10 to 30 GPa."""
+
+MODULI_OF_BED = 10.0
+"""Most that the stiffness of a bed times the width of the foot is over the shear modulus of its soil, by the formulas: 6 to 10
+times on feet that are no shorter than wide."""
 
 STRIPS = 40
 """Strips of a footing's bed, unless its base says otherwise."""
@@ -144,7 +150,8 @@ class FootingBase(WithShaft):
         if bearing_MPa is not None:
             rest["safety_factor"] = 1000.0 * bearing_MPa * area / (pier.mass_t * pier.gravity)
         base = cls(math.sqrt(1000.0 * stiffness_MN_m3 * area / pier.mass_t) / pier.p, length_m=length_m, **rest)
-        refuse(_too_stiff(pier, base, stiffness_MN_m3=stiffness_MN_m3))
+        modulus = 2.0 * pier.half_width * stiffness_MN_m3 / MODULI_OF_BED
+        refuse(_too_stiff("stiffness_MN_m3", stiffness_MN_m3, modulus, base.confirm))
         return base
 
     @classmethod
@@ -176,21 +183,21 @@ class FootingBase(WithShaft):
         confirm = rest.pop("confirm", ())
         base = cls.from_stiffness(pier, bed, length_m=length_m, confirm=(*confirm, "stiffness_MN_m3"), **rest)
         base = replace(base, confirm=confirm)
-        refuse(_too_stiff(pier, base, shear_modulus_MPa=shear_modulus_MPa))
+        refuse(_too_stiff("shear_modulus_MPa", shear_modulus_MPa, shear_modulus_MPa, base.confirm))
         if density_t_m3 is None or pier.mass_t is None:
             return base
         dashpot = 1000.0 * radiated(width, length_m, soil, density_t_m3)
         return replace(base, zeta=base.zeta + 0.5 * dashpot / (pier.mass_t * vertical_frequency(pier, base)))
 
 
-def _too_stiff(pier: Pier, base: FootingBase, **given: float) -> list[Problem]:
-    """Return a problem for each value ``given`` for a bed into which the weight hardly presses the foot; [] if confirmed."""
-    deflection = 1000.0 * float(static_deflection(pier, base))
-    if deflection >= LEAST_DEFLECTION_MM:
+def _too_stiff(name: str, value: float, modulus_MPa: float, confirm: Sequence[str]) -> list[Problem]:
+    """Return the problem of a bed stiffer than sound rock by its shear modulus; [] if it is not, or ``name`` is confirmed."""
+    if modulus_MPa <= STIFFEST_MPA or name in confirm:
         return []
-    text = f"the pier's weight presses the foot in by {deflection:.2g} mm only, where sound rock gives some 0.1 mm"
-    values = {name: value for name, value in given.items() if name not in base.confirm}
-    return [Problem(name, value, text, confirm=name, kind=Unusual) for name, value in values.items()]
+    text = (
+        f"the ground has a shear modulus of some {modulus_MPa / 1000.0:.2g} GPa, where sound rock has some 10 to 30 GPa"
+    )
+    return [Problem(name, value, text, confirm=name, kind=Unusual)]
 
 
 def wrong_soil(soil: Soil, length_m: float, density_t_m3: float | None = None) -> list[Problem]:
