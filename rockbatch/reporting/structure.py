@@ -47,7 +47,7 @@ _PREFERRED = {
     "lambda": "stiffness_kN_m",
 }
 """Keys without units, and the equivalent ones with units, for a pier whose mass is known."""
-_NAMED = {"stop": "lift stop", "deck_spring": "deck spring"}
+_STOPS = ("stop", "deck_spring")
 _OF_STOP = {"stiffness_kN_m": ("k", "kN/m")}
 
 
@@ -114,15 +114,14 @@ def device_in_words(pier: Pier, restraint: Restraint, digits: int = 4) -> str:
             field, divisor = fields[key]
             values[key] = getattr(restraint, field) * divisor
     power = values.pop("exponent", 1.0) if "coefficient_kN_s_m" in values else 1.0
-    words = _NAMED.get(restraint.what, restraint.words)
-    names = DEVICE_SYMBOLS | _OF_STOP if restraint.what in _NAMED else DEVICE_SYMBOLS
+    names = DEVICE_SYMBOLS | _OF_STOP if restraint.what in _STOPS else DEVICE_SYMBOLS
     numbers = [
         assigned(names[key][0], value, unit_with_exponent(names[key][1], power), digits)
         for key, value in values.items()
         if value < math.inf
     ]
     numbers += [f"n\u00a0=\u00a0{STEEL_EXPONENT:g}"] if restraint.law == "hysteretic" else []
-    return ", ".join([f"{words} {_place(restraint)}", *numbers])
+    return ", ".join([f"{restraint.words} {_place(restraint)}", *numbers])
 
 
 def devices_in_words(case: Case, digits: int = 4) -> list[str]:

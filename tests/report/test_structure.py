@@ -97,11 +97,11 @@ STIFFNESS = 9810.0 * HEAVY.size / HEAVY.half_width**2
             f"P0 = 981 kN, kt = {0.5 * STIFFNESS:,.0f} kN/m",
         ),
         (
-            rb.Stop(gap_m=0.01, lam=2.0, restitution=0.5), "lift stop at each pivot", "gap = 10 mm, λ = 2, e = 0.5",
+            rb.Stop(gap_m=0.01, lam=2.0, restitution=0.5), "stop at each pivot", "gap = 10 mm, λ = 2, e = 0.5",
             f"gap = 10 mm, k = {2.0 * STIFFNESS:,.0f} kN/m, e = 0.5",
         ),
         (
-            rb.Stop(gap_m=0.01, lam=2.0, at="left"), "lift stop at the left pivot", "gap = 10 mm, λ = 2, e = 1",
+            rb.Stop(gap_m=0.01, lam=2.0, at="left"), "stop at the left pivot", "gap = 10 mm, λ = 2, e = 1",
             f"gap = 10 mm, k = {2.0 * STIFFNESS:,.0f} kN/m, e = 1",
         ),
         (
