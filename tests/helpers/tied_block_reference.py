@@ -264,6 +264,10 @@ class TiedBlock:
             for i in (1.0, -1.0)
         ]
 
+    def ways(self, y):
+        """Angular velocity and, in flight, the velocity of the lower pivot: what turns at a peak."""
+        return y[3], min(self.pivots(y))[1] if self.mode == FLIES else 0.0
+
     def branches(self, y, states):
         found = []
         for device, q in zip(self.devices, states, strict=True):
@@ -276,7 +280,7 @@ class TiedBlock:
         states = [device.state for device in self.devices]
         return side * self.rates([0.0] * 4, states, x, ROCKS, side, side)[0][3]
 
-    def happens(self, y, states, x, branches, omega):
+    def happens(self, y, states, x, branches, ways):
         """The event that a state is behind, None for none."""
         if self.mode == REST:
             lifts = {side: self.lifts(side, x) for side in (1.0, -1.0)}
@@ -299,7 +303,7 @@ class TiedBlock:
             ]
             if landed:
                 return ("lands", landed)
-        if omega * y[3] < 0.0:
+        if any(before * now < 0.0 for before, now in zip(ways, self.ways(y), strict=True)):
             return "turns"
         return None if self.branches(y, states) == branches else "branch"
 
@@ -311,15 +315,15 @@ class TiedBlock:
                 hop = 2.5 * abs(self.y[3] / moves[3])
                 h = min(h, hop) if hop > 0.0 else h
             soon = self.stepped(x, 1e-7 * h)
-            branches, omega = self.branches(*soon), soon[0][3]
+            branches, ways = self.branches(*soon), self.ways(soon[0])
             y, states = self.stepped(x, h)
-            event = self.happens(y, states, x + h, branches, omega)
+            event = self.happens(y, states, x + h, branches, ways)
             if event:
                 low, high = 0.0, h
                 for _ in range(HALVINGS):
                     middle = 0.5 * (low + high)
                     y, states = self.stepped(x, middle)
-                    found = self.happens(y, states, x + middle, branches, omega)
+                    found = self.happens(y, states, x + middle, branches, ways)
                     low, high, event = (low, middle, found) if found else (middle, high, event)
                 h = high
                 if event == "branch" and h < 1e-9 * (end - x):  # a kink that stays within rounding

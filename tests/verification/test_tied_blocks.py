@@ -91,7 +91,7 @@ def allowed(row, name, value):
     if name in ("separations", "flights", "tendon_slack") or name.endswith("_blows"):
         return 0.0
     if name.startswith("flight"):
-        return 1e-5 if name.endswith("_s") else 1e-3 * value + 1e-8
+        return 1e-5 if name.endswith("_s") else 1e-5 * value + 1e-8
     claimed = row.get("forces_error" if name.endswith("m_s2") else "devices_error", math.inf)
     return (claimed + (5e-4 if name.endswith("m_s2") else 3e-4)) * value + 1e-6 + 0.01 * claimed
 
