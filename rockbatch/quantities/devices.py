@@ -71,7 +71,8 @@ def _depth(device: str) -> Quantity:
 def _energy(device: str) -> Quantity:
     """Return the quantity of the energy that all devices of a kind dissipate [J/kg]."""
     kinds = f"{device.replace('_', ' ')}s"
-    words, page = f"energy dissipated by all {kinds}, per unit mass of the pier", ReportFormat(f"{kinds} [J/kg]", ".4f")
+    words = f"energy dissipated by all {kinds} until the run ends, per unit mass of the pier"
+    page = ReportFormat(f"{kinds} [J/kg]", ".4f")
     return of_device(f"{device}_energy_J_kg", words, f"{device}_energy", "J/kg", page, device=device)
 
 

@@ -19,7 +19,7 @@ from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import Motion
 from rockbatch.observers.devices_work.observe import greatest_of
 from rockbatch.outcome.device_work import Courses, rainflow, with_turns, work_of
-from rockbatch.pier import Damper, RigidBase, Tendon, YieldingBase, places
+from rockbatch.pier import Damper, ElasticBase, RigidBase, Tendon, YieldingBase, places
 from rockbatch.simulation.restraints import device_histories, device_work
 from rockbatch.simulation.runs import Run, written_run
 
@@ -292,3 +292,23 @@ def test_devices_that_a_study_lacks_bring_no_columns_and_checks_of_them_do_not_a
     yields = any("yield_kN" in device for device in devices.get("tendon", ()))
     assert ("tendon_strain_over_yield" in table) == yields
     assert [verdict.verdict for verdict in read_verdicts(tmp_path / "out")] == verdicts
+
+
+@pytest.mark.slow
+def test_what_dampers_do_ends_with_the_run_while_the_pier_still_rocks():
+    """THEORY.md, section 5: the peak is the same with a tail of two minutes, and what follows is what the page says."""
+    oil, steel = (Damper("viscous", nu=0.02),), (Damper("hysteretic", f=0.02, yield_m=0.005),)
+    damped = {"kinematics": "finite", "zeta": 0.02}
+    bases = (
+        RigidBase(restraints=oil), RigidBase(restraints=steel), ElasticBase(30.0, restraints=oil, **damped),
+        ElasticBase(30.0, epsilon=0.5, restraints=steel), YieldingBase(30.0, eta=3.0, spring="epp", restraints=oil, **damped),
+    )  # fmt: skip
+    shaken = Motion("shaken", 0.01, broadband(np.random.default_rng(3), 0.01, 1200, 4.0), None)
+    missing = {"damper_energy_J_kg": [], "damper_travel_m": []}
+    for base in bases:
+        ended, later = (rb.simulate(FIG5, base, shaken, devices_work=True, quiet_s=tail).row for tail in (2.0, 120.0))
+        assert ended.theta_max_over_alpha == later.theta_max_over_alpha
+        for name, shares in missing.items():
+            shares.append(100.0 * (1.0 - ended[name] / later[name]))
+        assert ended.damper_half_cycles < later.damper_half_cycles
+    assert [(round(min(shares)), round(max(shares))) for shares in missing.values()] == [(6, 59), (26, 76)]
