@@ -39,8 +39,8 @@ def base_of(law: str = "elastic", stiffness: float = 3e6, pier: rb.Pier = PIER, 
     return rb.YieldingBase.from_stiffness(pier, stiffness, eta=2.2, spring=law, **BENDS | more)
 
 
-def supports_of(base: rb.ElasticBase) -> reference.Supports:
-    m, law = springs(PIER, base), LAWS[base.spring] if base.yields else reference.elastic
+def supports_of(base: rb.ElasticBase, pier: rb.Pier = PIER) -> reference.Supports:
+    m, law = springs(pier, base), LAWS[base.spring] if base.yields else reference.elastic
     return reference.Supports(m.yield_force, m.yield_deflection, m.damping, law)
 
 
@@ -317,6 +317,40 @@ def test_a_pier_on_supports_moves_as_its_mass_points_do(law, upwards):
     np.testing.assert_allclose(samples.v, expected[:, 0], rtol=0.0, atol=1e-8)
     np.testing.assert_allclose(of_modes(samples)[0][:3].T, expected[:, 2:5], rtol=0.0, atol=1e-7)
     np.testing.assert_allclose(samples.z_left, expected[:, 5], rtol=0.0, atol=1e-6)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("number", range(6))
+def test_random_piers_on_supports_move_as_their_mass_points_do(number):
+    """Course, modes and plastic deflection, relative to the peak of each, under a sine, every other pier with a vertical one."""
+    rng = np.random.default_rng([97, number])
+    width, law = rng.uniform(4.0, 12.0), ("elastic", *LAWS)[number % 3]
+    height, shaft, deck = width / rng.uniform(0.2, 0.4), rng.uniform(1000.0, 4000.0), rng.uniform(200.0, 3000.0)
+    numbers = width, height, (shaft, 0.3 * width), (deck, rng.uniform(0.5, 3.0)), rng.uniform(0.3, 1.2)
+    pier, beta = pier_of(*numbers), rng.uniform(4.0, 12.0)
+    given = BENDS | {"zeta": rng.uniform(0.05, 0.4), "flexural_modes": int(rng.integers(1, 4)), "confirm": ("beta",)}
+    base = rb.ElasticBase(beta * pier.least_beta, **given)
+    if law != "elastic":
+        base = rb.YieldingBase(base.beta, eta=rng.uniform(2.0, 3.5), spring=law, **given)
+    t, period = np.arange(0.0, 1.6, DT), rng.uniform(0.4, 1.0)
+    wave, rises = (np.sin(2.0 * math.pi * t / each) * (t < period) for each in (period, 0.3 * period))
+    motion = Motion("one sine", DT, G * width / height * rng.uniform(1.0, 5.0) * wave, 9.0 * (number % 2) * rises)
+    of, shaking = (
+        points_of(*numbers, replace(ROCK, flexural_modes=base.flexural_modes)),
+        np.column_stack([motion.horizontal, motion.vertical]),
+    )
+    expected = reference.run(of, supports_of(base, pier), shaking, DT, 1.5)
+    steps = max(8, math.ceil(fastest_rate(pier, base) * DT / 0.02))
+    found, rows = written_run(Run(pier, base, motion), steps, 0.0, 400_000, wait=False)
+    rows = rows[: found.rows].view(np.recarray)
+    samples = rows[rows.kind == SAMPLE][: len(expected)]
+    peak, bent = abs(expected[:, 1]).max(), abs(expected[:, 2:-2]).max()
+    np.testing.assert_allclose(samples.theta, expected[:, 1], rtol=0.0, atol=1e-7 * peak)
+    np.testing.assert_allclose(samples.v, expected[:, 0], rtol=0.0, atol=1e-7 * abs(expected[:, 0]).max())
+    np.testing.assert_allclose(
+        of_modes(samples)[0][: base.flexural_modes].T, expected[:, 2:-2], rtol=0.0, atol=1e-6 * bent
+    )
+    np.testing.assert_allclose(samples.z_left, expected[:, -2], rtol=0.0, atol=1e-7)
 
 
 @pytest.mark.slow
