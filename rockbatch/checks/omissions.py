@@ -26,7 +26,7 @@ MODES, POINTS = "modes", "modes at a point"
 LANDINGS, LANDINGS_OF_FRAME = "landings", "landings of a frame"
 LANDINGS_OF_BENDING = "landings under a bending shaft"
 IMPULSES, BENDING, TENDONS = "impulses", "bending", "tendons"
-KEYS, SHAKEDOWN = "keys", "shakedown"
+KEYS, SHAKEDOWN, TAIL = "keys", "shakedown", "tail"
 SLIDES, LINEARISED, FLIGHTS = "slides", "beyond_linearised", "flights"
 ERRORS, TARGET = "errors", "target"
 NAMED = DIRECTIONS, VERTICALS, EVENTS = ("directions", "verticals", "events")
@@ -93,6 +93,10 @@ OMISSIONS = {
         f"a lower bound: above a safety factor of {SHAKES_DOWN:g} the bed settles no further in cycles of constant rotation, "
         "in which ground does"
     ),
+    TAIL: Omission(
+        "a lower bound: it is counted until the run ends, when its peak is decided, and a pier that still rocks adds to it: "
+        "give a longer quiet_s"
+    ),
     SLIDES: Omission("runs would slide by the friction of the case, which is not followed"),
     FLIGHTS: Omission(
         f"runs fly higher than flight_limit_mm ({FLIGHT_LIMIT_MM:g} unless given), to which keys are taken to guide the pier"
@@ -157,6 +161,8 @@ def omissions(demand: Demand, runs: Rows, error: Values, case: Case) -> list[str
         omitted.append(KEYS)
     if demand.settlement and (case["parameters"].get("safety_factor") or 0.0) > SHAKES_DOWN:
         omitted.append(SHAKEDOWN)
+    if demand.cumulative:
+        omitted.append(TAIL)
     return [*_of_blows(demand, runs, error, case), *omitted]
 
 

@@ -107,6 +107,8 @@ class Demand:
         axial forces and counts, which have the weight or the whole pier in them on either axis, the greater counts.
     settlement : bool
         True if it is a settlement of the supports.
+    cumulative : bool
+        True if it grows until the run ends, when its peak is decided.
     over_capacity : bool
         True for a share of a capacity that depends on the axial force, which a check states.
     """
@@ -133,6 +135,7 @@ class Demand:
     while_pressed: bool = False
     directed: bool = False
     settlement: bool = False
+    cumulative: bool = False
     over_capacity: bool = False
 
     def applies_to(self, case: Case) -> bool:

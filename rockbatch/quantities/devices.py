@@ -73,7 +73,7 @@ def _energy(device: str) -> Quantity:
     kinds = f"{device.replace('_', ' ')}s"
     words = f"energy dissipated by all {kinds} until the run ends, per unit mass of the pier"
     page = ReportFormat(f"{kinds} [J/kg]", ".4f")
-    return of_device(f"{device}_energy_J_kg", words, f"{device}_energy", "J/kg", page, device=device)
+    return of_device(f"{device}_energy_J_kg", words, f"{device}_energy", "J/kg", page, device=device, cumulative=True)
 
 
 _STROKE, _SPEED = ReportFormat("damper stroke [mm]", ".1f", 1000), ReportFormat("damper speed [m/s]", ".3f")

@@ -165,6 +165,8 @@ class Quantity:
         True if each axis of the pier has one by itself, so that those of two axes add up.
     settlement : bool
         True if it is a settlement of the supports.
+    cumulative : bool
+        True if it grows until the run ends, when its peak is decided.
     least_is_worst : bool
         True if the smallest value of several runs is the worst.
     """
@@ -194,6 +196,7 @@ class Quantity:
     while_pressed: bool = False
     directed: bool = False
     settlement: bool = False
+    cumulative: bool = False
     least_is_worst: bool = False
 
     @property
@@ -258,6 +261,7 @@ class Quantity:
             while_pressed=self.while_pressed,
             directed=self.directed,
             settlement=self.settlement,
+            cumulative=self.cumulative,
         )
 
     @property

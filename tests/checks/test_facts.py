@@ -105,8 +105,6 @@ def test_words_of_notes_decide_nothing_on_the_page(results):
 
 
 PRINTING = {
-    "checks/verdicts.py": "remarks on a verdict, which checks.csv has in one cell with semicolons between",
-    "commands/motions.py": "the reason for which a record is left out, printed to its first semicolon",
     "reporting/sections/answer.py": "the number of runs that have a remark",
 }
 """Modules that print notes or reasons, and cut or count them for that."""

@@ -26,6 +26,7 @@ from rockbatch.checks.omissions import (
     POINTS,
     SHAKEDOWN,
     SLIDES,
+    TAIL,
     TENDONS,
 )
 from rockbatch.checks.scorecard import scorecard
@@ -428,6 +429,23 @@ def test_a_settlement_above_a_safety_factor_of_two_is_said_to_be_a_lower_bound(d
         assert (found.verdict, found.omits) == ("pass", omits)
     on_pads = judged(table, one=case("foot"), demand=demand, at_most=0.5)
     assert SHAKEDOWN not in on_pads.omits
+
+
+def test_what_grows_until_the_run_ends_is_said_to_be_a_lower_bound():
+    """Energies of devices, and travel, work and half cycles of dampers; strokes, forces and rotations are not."""
+    grow = {name for name, demand in DEMANDS.items() if demand.cumulative}
+    assert grow == {
+        *(f"{device}_energy_J_kg" for device in ("damper", "stop", "deck_spring")),
+        *("damper_travel_m", "damper_work_J_kg", "damper_work_kJ", "damper_half_cycles"),
+    }
+    oil = case("oil", RigidBase(restraints=(Damper("viscous", nu=0.3),)))
+    table = runs(
+        [0.1], name="oil", theta_max_error=1e-5, damper_energy_J_kg=0.2, damper_stroke_m=0.02, devices_error=1e-4
+    )
+    limited = [
+        judged(table, one=oil, demand=demand, at_most=0.5) for demand in ("damper_energy_J_kg", "damper_stroke_m")
+    ]
+    assert [(found.verdict, found.omits) for found in limited] == [("pass", (TAIL,)), ("pass", ())]
 
 
 def test_forces_in_a_section_say_that_they_have_no_tendon_in_them():

@@ -61,8 +61,14 @@ def _table(info: Entry) -> Markup:
 
 def _notes(info: Entry, entries: Iterable[Curve]) -> Markup:
     """Return a folded list of notes on single curves; empty without any."""
-    lines = [tag("li", f"{remark}.") for remark in remarks(info, entries, lambda entry: entry["note"])]
-    return tag("details", tag("summary", "Notes on the curves"), tag("ul", *lines)) if lines else Markup("")
+    lines = _lines(remarks(info, entries, lambda entry: entry["note"]))
+    return tag("details", tag("summary", "Notes on the curves"), lines) if lines else lines
+
+
+def _lines(sentences: Iterable[str]) -> Markup:
+    """Return sentences as a list, empty without any."""
+    points = [tag("li", f"{sentence}.") for sentence in sentences]
+    return tag("ul", *points) if points else Markup("")
 
 
 def _factors(info: Entry) -> Markup:
@@ -155,6 +161,4 @@ def rates(analysis: FinishedAnalysis) -> Markup:
 
 def _notes_on_rates(info: Entry, curves: Sequence[Curve]) -> Markup:
     """Return the remarks on annual rates, a line for each with the curves that have it."""
-    return tag(
-        "ul", *(tag("li", f"{remark}.") for remark in remarks(info, curves, lambda entry: entry["risk"]["note"]))
-    )
+    return _lines(remarks(info, curves, lambda entry: entry["risk"]["note"]))
