@@ -1,6 +1,7 @@
 """Step-halving error control: smaller steps until the results converge (THEORY.md, The error that a row reports)."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from rockbatch.core.clock import ON_ITS_SIDE, window_of
 from rockbatch.motions.motion import Motion, Samples
@@ -17,7 +18,7 @@ from rockbatch.simulation.coarser import (
     with_modes_error,
     with_strips_error,
 )
-from rockbatch.simulation.relaxation import with_relaxation
+from rockbatch.simulation.relaxation import add_relaxation
 from rockbatch.simulation.runs import MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
 from rockbatch.simulation.steps import first_substeps, readings
 
@@ -70,6 +71,7 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
     levels = {i: [trial] for i, trial in enumerate(try_all(runs, first, quiet_s, stop)) if trial is not None}
     agreements: dict[int, list[Agreement]] = {i: [] for i in levels}
     beds: dict[int, tuple[Trial, Trial]] = {}
+    last: dict[int, Trial] = {}
     while levels:
         for i in [i for i in levels if _steps_of_next(runs[i], levels[i], quiet_s) > MOST_STEPS]:
             more = f"; the next try would take {_steps_of_next(runs[i], levels[i], quiet_s):.0e} steps"
@@ -84,7 +86,7 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
             pier, coarse = runs[i].pier, levels[i][-1]
             share = share_of_strips(*beds[i], pier.half_width) if i in beds else None
             tolerances = tolerances_beside(tolerance * pier.alpha, share)
-            fine = Trial(_with_errors(runs[i], fine.outcome, coarse.outcome), fine.extremes)
+            fine = replace(fine, outcome=_with_errors(runs[i], fine.outcome, coarse.outcome))
             levels[i].append(fine)
             agreements[i].append(agreement(fine, coarse, tolerances, pier))
             if extent := converged_extent(agreements[i]):
@@ -92,18 +94,19 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
                 peak = _window_at(runs[i], fine.outcome.t_max, quiet_s)
                 outcome = _with_notes(fine, coarse, agreements[i][-1], tolerances.extremes, peak)
                 outcome = _with_peak_in_motion(runs[i], fine, coarse, outcome, tolerances.peak, until)
-                outcome = with_relaxation(runs[i], _with_drift(runs[i], outcome))
+                outcome = _with_drift(runs[i], outcome)
                 magnified = magnifies(runs[i], fine, coarse, outcome, until)
                 if magnified and extent == Agreement.RESULTS:
                     outcome = without_error(outcome, "other peaks near it follow the step")
                 doubts = magnified or outcome.chaotic or residuals_wander(levels[i], tolerance * pier.alpha, pier)
                 if doubts or lingers(runs[i], fine, quiet_s):
                     doubtful[i] = fine
-                outcomes[i] = outcome
+                outcomes[i], last[i] = outcome, coarse
                 del levels[i]
             elif len(agreements[i]) == HALVINGS:
                 outcomes[i] = _not_converged(pier, levels.pop(i), tolerance, "")
         look_for_chaos(runs, outcomes, doubtful, tolerance, quiet_s, stop)
+    add_relaxation(runs, outcomes, last, stop)
     for i, bed in beds.items():
         if (found := outcomes[i]) is not None:
             outcomes[i] = with_strips_error(found, *bed, runs[i].pier.half_width)

@@ -3,144 +3,137 @@
 See THEORY.md, Results of a run.
 """
 
-from collections.abc import Sequence
-from typing import NamedTuple
+import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, MAXWELL, Element
+from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, MAXWELL, VISCOUS, Element
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier.places import holds_a_tilt
 from rockbatch.simulation.chaos import MARGIN
 from rockbatch.simulation.elements import elements
-from rockbatch.simulation.recording import recorded
-from rockbatch.simulation.restraints import (
-    AT_REST,
-    at_rest,
-    level_at_rest,
-    reach_at_rest,
-    static_rotation,
-    stiffness_at_rest,
-)
-from rockbatch.simulation.runs import Run
+from rockbatch.simulation.restraints import at_rest, reach_at_rest, stiffness_at_rest, stiffness_of_supports
+from rockbatch.simulation.runs import End, Run, Stop, Trial, try_all
+from rockbatch.simulation.steps import fastest_rate
 
-FURTHER = 20.0
-"""Time in 1/p for which a run goes on."""
+FURTHER, FURTHER_WITH_FRICTION = 5.0, 20.0
+"""Time in 1/p for which a run goes on: with friction dampers until most of them hold."""
 
-PARTS = 4
-"""Equal parts of that time, by which the decay of the vibration is measured."""
-
-AHEAD = 1000
-"""Number of such parts for which the vibration is extrapolated, some hours: without damping it would last for ever."""
+AHEAD = 1000.0
+"""Most such times that are counted after it, some hours: without damping, vibration would last for ever."""
 
 
-class Slipping(NamedTuple):
-    """Hysteretic dampers after the end of a run: time [s] since then, shape (rows,), and of shape (rows, dampers) slip [m],
-    |speed| [m/s] and |z|.
+def add_relaxation(
+    runs: Sequence[Run], outcomes: list[Outcome | None], trials: Mapping[int, Trial], stop: Stop
+) -> None:
+    """Add to the errors of residual rotations in ``outcomes``, in place, what dampers may still change as they slip or stick.
+
+    Of each run ``trials`` has one, which goes on for :func:`further` if there is an error, and dampers that keep a force at rest;
+    not if the pier stands upright on rigid ground, or friction holds it. The outcome of a run that is stopped becomes None.
     """
-
-    t: Samples
-    slip: Samples
-    speed: Samples
-    force: Samples
-
-
-def with_relaxation(run: Run, outcome: Outcome) -> Outcome:
-    """Return ``outcome`` with the further change of the residual rotation in its error, as dampers slip or stick.
-
-    The run goes on for 20/p (:data:`FURTHER`). Twice the change until then is taken (:data:`MARGIN`), and a bound of that later:
-    by :func:`further_slip`, or by the loss of all force that hysteretic dampers have left. Unchanged without an error, without
-    dampers that keep a force at rest, and of a pier that came to rest upright on rigid ground.
-    """
-    pier, base = run.pier, run.base
-    if outcome.theta_res_error is None or outcome.theta_res is None or not holds_a_tilt(base.restraints):
-        return outcome
-    if outcome.theta_res == 0.0 and not base.on_springs:
-        return outcome
-    t_end = outcome.t_end + FURTHER / pier.p
-    longer = recorded(run, outcome.changed(t_end=t_end), t_end - run.motion.duration, every_step=False)
-    rows, level = longer.rows, level_at_rest(pier, base, longer.rows)
-    rest = static_rotation(pier, base, longer.result, level, rows.state[-1], _sticks(run, rows[-1]))
-    slipping = _slipping(run, rows[rows.t >= outcome.t_end])
-    by_slip, by_force = _turns(run, level, rows[-1])
-    greatest = slipping.force[slipping.t >= 0.5 * slipping.t[-1]].max(axis=0)
-    left = float(by_force @ greatest) if base.on_springs else abs(rest)
-    if slipping.t[-1] > 0.0:  # no late flight has stopped the run
-        left = min(float(by_slip @ further_slip(slipping, decays(run))), left)
-    return outcome.changed(theta_res_error=outcome.theta_res_error + MARGIN * abs(rest - outcome.theta_res) + left)
+    moving = [i for i, trial in trials.items() if _may_turn(runs[i], outcomes[i], trial)]
+    tails = [trials[i].outcome.t_end - runs[i].motion.duration + further(runs[i]) for i in moving]
+    substeps = [trials[i].outcome.substeps for i in moving]
+    for i, later in zip(moving, try_all([runs[i] for i in moving], substeps, tails, stop, wait=False), strict=True):
+        outcome = outcomes[i]
+        outcomes[i] = None if outcome is None or later is None else _with_relaxation(runs[i], outcome, trials[i], later)
 
 
-def further_slip(during: Slipping, damped: bool) -> Samples:
-    """Return a bound of the slip [m] of each damper after the last row, shape (dampers,).
-
-    If the vibration is ``damped``, travel in equal times falls geometrically, by the greatest ratio of two of the :data:`PARTS`
-    that follow each other; else it does not fall. Slip over travel is at most that in the last part, since force and vibration
-    decrease; :data:`MARGIN` times that is taken.
-    """
-    part = np.minimum(during.t / during.t[-1] * PARTS, PARTS - 1).astype(int)
-    steps = 0.5 * np.diff(during.t)[:, None] * (during.speed[1:] + during.speed[:-1])
-    travel = np.array([steps[part[1:] == number].sum(axis=0) for number in range(PARTS)])
-    ratios = np.divide(travel[1:], travel[:-1], out=np.ones_like(travel[1:]), where=travel[:-1] > 0.0)
-    falls = np.minimum(ratios.max(axis=0), 1.0) if damped else np.ones(travel.shape[1])
-    ahead = (falls ** np.arange(1, AHEAD + 1)[:, None]).sum(axis=0)  # over the last part
-    return MARGIN * ahead * np.ptp(during.slip[part == PARTS - 1], axis=0)
+def further(run: Run) -> float:
+    """Return the time [s] for which a run goes on."""
+    rubs = any(law.kind == FRICTION for law in elements(run.pier, run.base))
+    return (FURTHER_WITH_FRICTION if rubs else FURTHER) / run.pier.p
 
 
-def decays(run: Run) -> bool:
-    """Return True if rocking decays geometrically in the end: by dashpots, or by viscous dampers that are linear at low speed.
-
-    Hysteresis alone damps ever less.
-    """
-    if run.base.on_springs and run.base.zeta:
+def _may_turn(run: Run, outcome: Outcome | None, trial: Trial) -> bool:
+    """Return True if ``outcome`` has the error of a residual rotation that dampers may change after the end of ``trial``."""
+    base, end = run.base, trial.end
+    if outcome is None or outcome.theta_res_error is None or not holds_a_tilt(base.restraints):
+        return False
+    if end is None or (outcome.theta_res == 0.0 and not base.on_springs):
+        return False
+    laws = elements(run.pier, base)
+    if base.bends or any(law.kind == MAXWELL for law in laws):  # the force on friction that sticks still changes
         return True
-    laws = elements(run.pier, run.base)
-    linear = [law for law in laws if law.slope > 0.0 or (law.kind == MAXWELL and law.exponent == 1.0)]
-    return any(law.height != 0.0 or law.offset != 0.0 or not run.base.on_springs for law in linear)
+    freedoms = 2 if base.on_springs else 1
+    return int(np.linalg.matrix_rank(_reaches(run, laws, end.position[1])[end.sticks])) < freedoms
 
 
-def _hysteretic(run: Run) -> tuple[list[int], list[Element]]:
-    """Return the numbers of hysteretic dampers among the devices, and their Elements."""
-    laws = elements(run.pier, run.base)
-    numbers = [j for j, law in enumerate(laws) if law.kind == HYSTERETIC]
-    return numbers, [laws[j] for j in numbers]
+def _with_relaxation(run: Run, outcome: Outcome, trial: Trial, later: Trial) -> Outcome:
+    """Return ``outcome`` with twice (:data:`MARGIN`) the change from ``trial`` to a ``later`` one, and a bound of that after it.
+
+    After it each hysteretic damper slips by at most twice the :func:`share_ahead` of its slip between both ends, or all lose all
+    of their force; friction that slides at the later end may get its whole force as it sticks. On rigid ground the pier can at
+    most stand up.
+    """
+    assert trial.end is not None
+    laws, end = elements(run.pier, run.base), later.end or trial.end  # the later trial may take too many steps
+    reaches = _reaches(run, laws, end.position[1])
+    by_slip, by_force = _turns(run, laws, reaches, end)
+    yields, rubs = (np.array([law.kind == kind for law in laws]) for kind in (HYSTERETIC, FRICTION))
+    soft = np.array(
+        [(1.0 + law.give) / law.stiffness for law in laws if law.kind == HYSTERETIC]
+    )  # ∂e/∂z [m] without slip
+    ends = [trial.end, end]
+    moving = [each.states[yields] for each in ends]
+    resting = [z + reaches[yields] @ (e.rest - e.position) / soft for z, e in zip(moving, ends, strict=True)]
+    bound, change = float(by_force[yields] @ np.abs([*moving, *resting]).max(axis=0)), 0.0
+    went_on = later.outcome.t_end - trial.outcome.t_end
+    if went_on > 0.0 and later.outcome.theta_res is not None:  # it went on, and no late flight ended it
+        change = abs(later.outcome.theta_res - (trial.outcome.theta_res or 0.0))
+        slip = np.abs(reaches[yields] @ (end.rest - trial.end.rest) - soft * (resting[1] - resting[0]))
+        ahead = MARGIN * share_ahead(decay_rate(run, trial.outcome) * went_on)
+        bound = min(ahead * float(by_slip[yields] @ slip), bound)
+    bound += float(by_force[rubs & ~end.sticks].sum())
+    if not run.base.on_springs:
+        bound = min(bound, abs(float(end.rest[1])))
+    return outcome.changed(theta_res_error=(outcome.theta_res_error or 0.0) + MARGIN * change + bound)
+
+
+def share_ahead(exponent: float) -> float:
+    """Return what comes after an interval over what came in it, of what falls by exp(−``exponent``) in each interval."""
+    return 1.0 / max(math.expm1(exponent), 1.0 / AHEAD)
+
+
+def decay_rate(run: Run, outcome: Outcome) -> float:
+    """Return the least decay rate [1/s] of rocking about its rest by dashpots, and by viscous dampers at speeds of ``outcome``.
+
+    0 without either, or with dampers of exponent > 1 alone: they damp ever less, as hysteresis does.
+    """
+    pier, base, speed = run.pier, run.base, outcome.damper_speed or 0.0
+    laws = elements(pier, base)
+    inertia = pier.inertia + pier.height**2 if base.on_springs else pier.inertia_about_pivot
+    damping = 0.0
+    if base.on_springs and base.zeta:
+        whole, rocking = stiffness_of_supports(pier, base)
+        damping = 2.0 * base.zeta * rocking / math.sqrt(whole)
+    for law, reach in zip(laws, _reaches(run, laws, outcome.theta_res or 0.0), strict=True):
+        if law.kind == VISCOUS and law.exponent <= 1.0 and speed > 0.0:
+            damping += min(law.coefficient * speed ** (law.exponent - 1.0), law.slope) * reach[1] ** 2
+        elif law.kind == MAXWELL and law.exponent == 1.0:
+            damping += law.coefficient / (1.0 + (fastest_rate(pier, base) / law.quickest) ** 2) * reach[1] ** 2
+    return 0.5 * damping / inertia
 
 
 def _reaches(run: Run, laws: Sequence[Element], theta: float) -> Samples:
     """Return ∂e/∂v and ∂e/∂θ [m] of devices at rest at ``theta`` [rad], shape (devices, 2)."""
-    return np.array([reach_at_rest(run.pier, run.base, law, theta) for law in laws]).reshape(-1, 2)
+    return np.array([reach_at_rest(run.pier, run.base, law, theta) for law in laws])
 
 
-def _sticks(run: Run, row: np.record) -> np.ndarray:
-    """Return True for each friction damper that sticks in a ``row``, shape (devices,)."""
-    laws, moves = elements(run.pier, run.base), AT_REST * run.pier.size * run.pier.alpha * run.pier.p
-    rubs = np.array([law.kind == FRICTION for law in laws])
-    return rubs & (np.abs(_reaches(run, laws, row.theta) @ (row.v_rate, row.omega)) <= moves)
+def _turns(run: Run, laws: Sequence[Element], reaches: Samples, end: End) -> tuple[Samples, Samples]:
+    """Return the |rotation| at rest by a unit of slip of each hysteretic damper [1/m], and by the whole force of each one [rad].
 
-
-def _slipping(run: Run, rows: np.recarray) -> Slipping:
-    """Return the hysteretic dampers in ``rows``; their elongations are linear, as at rest."""
-    numbers, laws = _hysteretic(run)
-    reaches = _reaches(run, laws, rows["theta"][-1]).T
-    soft = np.array([(1.0 + law.give) / law.stiffness for law in laws])  # elastic elongation at z = 1 [m]
-    z = rows["state"][:, numbers]
-    slip = np.column_stack((rows["v"], rows["theta"])) @ reaches - soft * z
-    speed = np.column_stack((rows["v_rate"], rows["omega"])) @ reaches
-    return Slipping(rows["t"] - rows["t"][0], slip, np.abs(speed), np.abs(z))
-
-
-def _turns(run: Run, level: float, row: np.record) -> tuple[Samples, Samples]:
-    """Return the |rotation| at rest by a unit of slip of each hysteretic damper [1/m], and by all of its force [rad].
-
-    In the latter no hysteretic damper has stiffness. Tendons and stops bear as in the ``row``; ``level`` is v at rest [m].
+    Both have a number for each device; friction has a force alone, with which no hysteretic damper has stiffness. Tendons and
+    stops bear as at the ``end``.
     """
-    laws = elements(run.pier, run.base)
-    reaches = _reaches(run, laws, row.theta)
-    extended = reaches @ (row.v - level, row.theta)
-    stiff = np.array([at_rest(law, u, z, 0.0)[1] for law, u, z in zip(laws, extended, row.state, strict=True)])
-    yields = np.array([law.kind == HYSTERETIC for law in laws])
-    bare = stiffness_at_rest(run.pier, run.base, row.theta) + (reaches[~yields].T * stiff[~yields]) @ reaches[~yields]
-    dampers, tangents = reaches[yields].T, stiff[yields]
-    strengths = np.array([law.strength for law in _hysteretic(run)[1]])
-    by_slip = np.linalg.solve(bare + (dampers * tangents) @ dampers.T, dampers)[1] * tangents
-    return np.abs(by_slip), np.abs(np.linalg.solve(bare, dampers)[1] * strengths)
+    extended = reaches @ (end.position - (end.level, 0.0))
+    stiff = np.array([at_rest(law, u, z, 0.0)[1] for law, u, z in zip(laws, extended, end.states, strict=True)])
+    forces = np.array([law.strength if law.kind in (HYSTERETIC, FRICTION) else 0.0 for law in laws])
+    lasting = np.where([law.kind == HYSTERETIC for law in laws], 0.0, stiff)
+    supports = stiffness_at_rest(run.pier, run.base, end.position[1])
+    by_slip, by_force = (
+        np.abs(np.linalg.solve(supports + (reaches.T * each) @ reaches, reaches.T)[1]) for each in (stiff, lasting)
+    )
+    return by_slip * stiff, by_force * forces

@@ -133,20 +133,23 @@ def with_devices(pier: Pier, base: Base, rows: np.recarray, terms: Samples) -> S
     return terms
 
 
-def static_rotation(pier: Pier, base: Base, result: Result, level: float, states: Samples, sticks: np.ndarray) -> float:
-    """Return the rotation [rad] at rest under devices after a run: :func:`rests_at` on supports, else as rigid ground allows.
+def static_position(
+    pier: Pier, base: Base, result: Result, level: float, states: Samples, sticks: np.ndarray
+) -> Samples:
+    """Return v [m] and θ [rad] at rest under devices after a run: :func:`rests_at` on supports, else as rigid ground allows.
 
     There a pier that came to rest stands upright, and devices may hold any other (:func:`rests_on_rigid_base`).
     """
     if isinstance(base, ElasticBase | FootingBase):
         return rests_at(pier, base, result, level, states, sticks)
-    return 0.0 if not math.isnan(result.t_rest) else rests_on_rigid_base(pier, base, result, states, sticks)
+    upright = not math.isnan(result.t_rest)
+    return np.array([result.v_end, 0.0 if upright else rests_on_rigid_base(pier, base, result, states, sticks)])
 
 
 def rests_at(
     pier: Pier, base: ElasticBase | FootingBase, result: Result, level: float, states: Samples, sticks: np.ndarray
-) -> float:
-    """Return the static rotation [rad] of the pier on its supports after a run with this ``result``.
+) -> Samples:
+    """Return v [m] and the static rotation [rad] of the pier on its supports after a run with this ``result``.
 
     Rotations are small, both springs or the whole bed of a footing bear, and the P–Δ moment of the weight adds to the tilt;
     devices deform elastically from their state at the end of the run, and a sticking friction damper holds its place. ``level``
@@ -154,7 +157,7 @@ def rests_at(
     end, and True for a friction damper that sticks then.
     """
     v, theta, stiffness = result.v_end, result.theta_end, stiffness_at_rest(pier, base, 0.0)
-    whole, rocking = _of_supports(pier, base)
+    whole, rocking = stiffness_of_supports(pier, base)
     k = 0.5 * whole
     if isinstance(base, FootingBase):
         load = np.array([-whole * result.settled - pier.gravity, rocking * result.bed_tilt])
@@ -169,7 +172,8 @@ def rests_at(
         # F = force + tangent (x − u) pulls down by F, and turns by F times the arm
         stiffness += tangent * np.outer(reach, reach)
         load -= (force - tangent * (u + reach[0] * level)) * reach
-    return float(np.linalg.solve(stiffness, load)[1])
+    position: Samples = np.linalg.solve(stiffness, load)
+    return position
 
 
 def stiffness_at_rest(pier: Pier, base: Base, theta: float) -> Samples:
@@ -178,12 +182,12 @@ def stiffness_at_rest(pier: Pier, base: Base, theta: float) -> Samples:
     On rigid ground the pier stands on one pivot at ``theta`` [rad], which leaves v no part: its stiffness is 1.
     """
     if isinstance(base, ElasticBase | FootingBase):
-        whole, rocking = _of_supports(pier, base)
+        whole, rocking = stiffness_of_supports(pier, base)
         return np.diag([whole, rocking - pier.gravity * base.leaning_height(pier)])
     return np.diag([1.0, -pier.gravity * pier.size * math.cos(pier.alpha - abs(theta))])
 
 
-def _of_supports(pier: Pier, base: ElasticBase | FootingBase) -> tuple[float, float]:
+def stiffness_of_supports(pier: Pier, base: ElasticBase | FootingBase) -> tuple[float, float]:
     """Return the stiffness of both springs, or of the whole bed, in v [1/s²] and θ [m²/s²]."""
     if isinstance(base, FootingBase):
         bed = footing(pier, base)

@@ -3,8 +3,10 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.common.statuses import Status
 from rockbatch.core import types
@@ -34,7 +36,7 @@ from rockbatch.simulation.beds import of_bed
 from rockbatch.simulation.compilation import kernel_of
 from rockbatch.simulation.elements import elements, prestress
 from rockbatch.simulation.models import Line, acceleration_at, ground_of, line_of, model
-from rockbatch.simulation.restraints import static_rotation
+from rockbatch.simulation.restraints import static_position
 from rockbatch.simulation.starting import start_of
 from rockbatch.simulation.steps import first_substeps, least_substeps, patience, readings
 
@@ -95,16 +97,27 @@ class Run:
     motion: Motion
 
 
+class End(NamedTuple):
+    """Pier and devices at the end of a run."""
+
+    position: Samples  # v [m] and θ [rad]
+    rest: Samples  # at which the pier comes to rest; the same without residuals
+    level: float  # v of the pier at rest at the start [m]
+    states: Samples  # of each device, shape (devices,)
+    sticks: npt.NDArray[np.bool_]  # True for a friction damper that sticks, shape (devices,)
+
+
 @dataclass(frozen=True)
 class Trial:
     """Outcome of a run with given steps, and a summary of its trajectory.
 
     ``extremes``, shape (:data:`rockbatch.core.clock.WINDOWS`,), holds the greatest |θ| [rad] at samples in equal
-    windows of the run, NaN for those that it did not reach.
+    windows of the run, NaN for those that it did not reach. ``end`` is None without devices.
     """
 
     outcome: Outcome
     extremes: Samples
+    end: End | None = None
 
 
 class Stop:
@@ -178,25 +191,25 @@ def written_runs(
     system, equipment = kernel_of(runs[0].pier, runs[0].base)[0], _equipment(runs)
     columns = _row_type(system, 0 if equipment is None else len(equipment.lanes))
     written = np.zeros((len(runs), rows, columns.itemsize // 8))
-    lines, ground = _lines(runs, substeps, quiet_s, wait)
+    lines, ground = _lines(runs, substeps, [quiet_s] * len(runs), wait)
     records = march(system, lines, ground, Stop().flag, substeps, locate, every_step, written, equipment)
     histories = written.view(columns)[:, :, 0]
     return [(result, rows.view(np.recarray)) for result, rows in zip(_results(records), histories, strict=True)]
 
 
-def _lines(runs: Sequence[Run], substeps: int, quiet_s: float, wait: bool) -> tuple[list[Line], Samples]:
-    """Return the core's lines of runs, and the ground rows of all their motions, each motion once."""
+def _lines(runs: Sequence[Run], substeps: int, tails: Sequence[float], wait: bool) -> tuple[list[Line], Samples]:
+    """Return the core's lines of runs with ``tails`` [s], and the ground rows of all their motions, each motion once."""
     first_rows: dict[int, int] = {}
     grounds: list[Samples] = []
-    of_piers: dict[tuple[int, int, float], Line] = {}
+    of_piers: dict[tuple[int, int, float, float], Line] = {}
     lines = []
-    for run in runs:
-        motion, pier = run.motion, (id(run.pier), id(run.base), run.motion.dt)
+    for run, tail in zip(runs, tails, strict=True):
+        motion, pier = run.motion, (id(run.pier), id(run.base), run.motion.dt, tail)
         if id(motion) not in first_rows:
             first_rows[id(motion)] = sum(map(len, grounds))
             grounds.append(ground_of(motion))
         if pier not in of_piers:
-            of_piers[pier] = _line(run.pier, run.base, float(motion.dt), substeps, quiet_s, wait)
+            of_piers[pier] = _line(run.pier, run.base, float(motion.dt), substeps, tail, wait)
         lines.append(of_piers[pier]._replace(first_row=first_rows[id(motion)], npts=motion.npts))
     return lines, grounds[0] if len(grounds) == 1 else np.concatenate(grounds)
 
@@ -236,10 +249,19 @@ def run_all_fixed(
 
 
 def try_all(
-    runs: Sequence[Run], substeps: Sequence[int], quiet_s: float, stop: Stop, locate: bool = True, wait: bool = True
+    runs: Sequence[Run],
+    substeps: Sequence[int],
+    quiet_s: float | Sequence[float],
+    stop: Stop,
+    locate: bool = True,
+    wait: bool = True,
 ) -> list[Trial | None]:
-    """Return trials as :func:`run_all_fixed` returns outcomes: with summaries of the trajectories."""
-    trials: list[Trial | None] = [_refusal(run, steps, quiet_s) for run, steps in zip(runs, substeps, strict=True)]
+    """Return trials as :func:`run_all_fixed` returns outcomes: with summaries of the trajectories.
+
+    ``quiet_s`` [s] is that of all runs, or of each.
+    """
+    tails = np.broadcast_to(quiet_s, len(runs)).tolist()
+    trials: list[Trial | None] = list(map(_refusal, runs, substeps, tails))
     groups: dict[tuple[object, ...], list[int]] = {}
     for i, run in enumerate(runs):
         if trials[i] is None:
@@ -248,29 +270,38 @@ def try_all(
         if stop.is_set:
             break
         some, steps = [runs[i] for i in members], substeps[members[0]]
-        lines, ground = _lines(some, steps, quiet_s, wait)
+        lines, ground = _lines(some, steps, [tails[i] for i in members], wait)
         equipment, system = _equipment(some), kernel_of(some[0].pier, some[0].base)[0]
         records = march(system, lines, ground, stop.flag, steps, locate, False, NO_ROWS, equipment)
         for number, (i, result, extremes) in enumerate(zip(members, _results(records), records.extremes, strict=True)):
             if result.status != types.RUNNING:
-                outcome = _outcome(runs[i], steps, result)
+                outcome, end = _outcome(runs[i], steps, result), None
                 if equipment is not None:
-                    outcome = _with_static_rotation(runs[i], result, equipment, number, outcome)
+                    end = _end(runs[i], result, equipment, number)
+                    outcome = _with_static_rotation(runs[i], end, outcome)
                     outcome = outcome.changed(**_device_demands(runs[i], equipment.use[number]))
-                trials[i] = Trial(outcome, extremes)
+                trials[i] = Trial(outcome, extremes, end)
     return trials
 
 
-def _with_static_rotation(run: Run, result: Result, equipment: Equipment, number: int, outcome: Outcome) -> Outcome:
-    """Return ``outcome`` of the run ``number`` with its static residual rotation under devices; unchanged without residuals.
+def _end(run: Run, result: Result, equipment: Equipment, number: int) -> End:
+    """Return the End of the run ``number``."""
+    level, states = float(equipment.level[number, 0]), equipment.x[number, : len(equipment.lanes)]
+    sticks = equipment.goes[number] == STICKS
+    position = np.array([result.v_end, result.theta_end])
+    rests = _STATUS.get(result.status) == "ok" and run.base.has_residual
+    rest = static_position(run.pier, run.base, result, level, states, sticks) if rests else position
+    return End(position, rest, level, states, sticks)
+
+
+def _with_static_rotation(run: Run, end: End, outcome: Outcome) -> Outcome:
+    """Return ``outcome`` with its static residual rotation under devices; unchanged without residuals.
 
     A note says so if devices change it by more than :data:`NOTED_TILT` α.
     """
-    pier, base = run.pier, run.base
+    pier, base, rotation = run.pier, run.base, float(end.rest[1])
     if outcome.status != "ok" or not base.has_residual:
         return outcome
-    sticks, states = equipment.goes[number] == STICKS, equipment.x[number, : len(equipment.lanes)]
-    rotation = static_rotation(pier, base, result, float(equipment.level[number, 0]), states, sticks)
     remark = f"dampers hold the pier at a rotation of {rotation:.3g} rad"
     if base.on_springs:
         remark = f"dampers and tendons hold the pier at {rotation:.3g} rad, its supports would at {outcome.theta_res or 0.0:.3g}"

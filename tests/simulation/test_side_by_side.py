@@ -7,6 +7,7 @@ from rockbatch.motions import Motion
 from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import Run, Stop, recording, run_all_fixed
 from rockbatch.simulation.recording import recorded, recorded_side_by_side
+from rockbatch.simulation.runs import try_all
 
 PIER = Pier(0.2, 1.0)
 BASES = (
@@ -78,3 +79,16 @@ def test_histories_that_are_too_long_are_left_out_and_a_stop_leaves_out_the_rest
     stop = Stop()
     stop.set()
     assert list(recorded_side_by_side(*runs, 1.0, stop=stop)) == []
+
+
+def test_runs_side_by_side_go_on_for_times_of_their_own(runs):
+    """To the bit as alone, and for just that time behind the record."""
+    some, outcomes = runs[0][3::4], runs[1][3::4]
+    steps, tails = [outcome.substeps for outcome in outcomes], [0.5 + 0.1 * i for i in range(len(some))]
+    together = try_all(some, steps, tails, Stop(), wait=False)
+    for run, substeps, tail, trial in zip(some, steps, tails, together, strict=True):
+        (alone,) = try_all([run], [substeps], tail, Stop(), wait=False)
+        assert trial.outcome == alone.outcome
+        if trial.outcome.status == "ok":
+            assert trial.outcome.t_end == pytest.approx(run.motion.duration + tail, abs=run.motion.dt)
+    assert sum(trial.outcome.status == "ok" for trial in together) > 4
