@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from fragility_samples import of_statuses
 from report_page import Page
+from scipy.integrate import quad
 from scipy.optimize import brentq, minimize
 from scipy.special import expit
 from scipy.stats import beta, chi2, kstest, linregress, norm, t
@@ -163,10 +164,24 @@ def test_without_overturning_the_curve_is_lognormal():
     wider = curve.widened(0.3)
     assert wider.median == pytest.approx(theta, rel=1e-9)
     assert wider.dispersion == pytest.approx(math.hypot(beta, 0.3), rel=1e-6)
-    assert curve.widened(1.0).dispersion > curve.widened(0.9).dispersion > wider.dispersion
     rate, *_ = wider.rate(*HazardCurve([0.25], [1 / 475], slope=2.0).quadrature())
     expected = 1 / 475 * (theta / 0.25) ** -2 * math.exp(2 * (beta**2 + 0.3**2))
     assert rate == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.parametrize("added", [0.3, 1.5, 2.5])
+@pytest.mark.parametrize(("sigma", "share"), [(0.5, None), (0.1, None), (0.3, (-4.0, 12.0))])
+def test_an_added_dispersion_is_that_of_a_normal_ln_x_however_wide(added, sigma, share):
+    """√(β² + added²) of a lognormal curve; with a share SciPy's integral over it, to 1e-7."""
+    line = Regression(LN_A, B, sigma, np.array([[LN_A, B, sigma]]))
+    curve = Cloud(LIMIT, line, share and Logistic(*share, np.array([share])), 0.95, 0.0)
+    wider, at = curve.widened(added), 0.4
+    if share is None:
+        assert wider.dispersion == pytest.approx(math.hypot(sigma / B, added), rel=1e-7)
+    assert wider.probability(np.array([at]))[0] == pytest.approx(
+        quad(lambda z: norm.pdf(z) * curve.probability(at * np.exp(added * np.array([z])))[0], -8, 8, limit=400)[0],
+        abs=1e-7,
+    )
 
 
 def test_intervals_are_quantiles_of_the_curves_that_are_drawn():
