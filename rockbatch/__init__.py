@@ -8,6 +8,7 @@ from rockbatch.common.version import __version__ as __version__
 
 _NAMES = {
     "workflow.running": "run",
+    "workflow.statics": "statics",
     "batch.dask": "Dask",
     "batch.single": "simulate",
     "checks": "Rule",
@@ -18,7 +19,7 @@ _NAMES = {
     ),
     "motions": "HazardCurve Motion MotionSet ReadOptions pair_spectrum pulse read_motions sequence",
     "pier": "Damper DeckSpring ElasticBase FootingBase Part Pier RigidBase Stop Tendon YieldingBase",
-    "pier.statics": "Statics statics",
+    "pier.statics": "Statics",
     "reporting": "report statement",
     "results.opened": "open_results",
     "outcome.response": "Response",

@@ -49,7 +49,6 @@ from rockbatch.pier import Stop as Stop
 from rockbatch.pier import Tendon as Tendon
 from rockbatch.pier import YieldingBase as YieldingBase
 from rockbatch.pier.statics import Statics as Statics
-from rockbatch.pier.statics import statics as statics
 from rockbatch.reporting import report as report
 from rockbatch.reporting import statement as statement
 from rockbatch.results.checking import check as check
@@ -57,3 +56,4 @@ from rockbatch.results.opened import open_results as open_results
 from rockbatch.study import Study as Study
 from rockbatch.study import load_study as load_study
 from rockbatch.workflow.running import run as run
+from rockbatch.workflow.statics import statics as statics

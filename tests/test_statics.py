@@ -511,6 +511,21 @@ def test_the_sheet_of_a_footing_has_its_ground_by_the_formulas_and_its_share_pre
     assert springs.contact_share is None
 
 
+def test_a_study_or_its_path_gives_the_sheet_of_every_case(tmp_path):
+    path = write_study(tmp_path, study_text(pier=BRIDGE, pulses=(), motions={"path": "nowhere"}, cases=(PADS,)))
+    expected = [
+        rb.statics(TALL, ElasticBase.from_stiffness(TALL, k, zeta=0.05, area_m2=6.0)).row
+        for k in PADS["stiffness_kN_m"]
+    ]
+    from_file, from_study = rb.statics(path), rb.statics(rb.load_study(path, motions=rb.Motion.still(2.0)))
+    assert list(from_file) == list(from_study) == ["K = 1 × 10⁶ kN/m", "K = 2 × 10⁶ kN/m"]
+    assert [sheet.row for sheet in from_file.values()] == [sheet.row for sheet in from_study.values()] == expected
+    with pytest.raises(rb.InputError, match="foundation: a study has its own"):
+        rb.statics(path, RigidBase())
+    with pytest.raises(rb.MissingKey, match="foundation: a pier needs one"):
+        rb.statics(PIER)
+
+
 def test_impossible_piers_are_refused_with_the_limit():
     soft = ElasticBase(beta=0.9 * least_beta(PIER, ElasticBase(beta=30.0)))
     with pytest.raises(rb.InputError, match="beta must be above"):

@@ -12,12 +12,11 @@ from rockbatch.checks.remarks import pulled_supports, weak_supports
 from rockbatch.commands.summary import flexible
 from rockbatch.common.files import csv_text, write_output
 from rockbatch.common.grouping import grouped
-from rockbatch.motions import Motion
-from rockbatch.pier.statics import FACTS, Statics, statics
-from rockbatch.results.labelled import names_of
+from rockbatch.pier.statics import FACTS, Statics
 from rockbatch.results.run_json import describe_case
-from rockbatch.study import Case, Study, load_study
+from rockbatch.study import Study
 from rockbatch.terminal.streams import in_width, say, show
+from rockbatch.workflow.statics import statics, without_records
 
 MOST_CASES = 12
 """Most cases whose curves are printed."""
@@ -28,16 +27,14 @@ Line = Mapping[Any, object]
 
 def main(arguments: argparse.Namespace) -> int:
     """Print the statics sheets of a study, and write them and their curves if requested; return 0."""
-    study = load_study(arguments.file, motions=Motion("none", 0.01, np.zeros(2)))
-    sheets = [(case, statics(case.pier, case.base)) for case in study.cases]
+    study = without_records(arguments.file)
+    sheets = statics(study)
     entries = [describe_case(case) for case in study.cases]
     for remark in filter(None, (weak_supports(entries), pulled_supports(entries))):
         show(f"{remark}\n")
-    names = names_of(entries, study.varied, study.text)
-    called = [names.named_case(case.name, case.columns, study.varied) for case in study.cases]
-    show(table(called, [sheet for _, sheet in sheets]))
+    show(table(sheets))
     if len(sheets) <= MOST_CASES:
-        named = zip(called, (rotations(sheet) for _, sheet in sheets), strict=True)
+        named = ((name, rotations(sheet)) for name, sheet in sheets.items())
         for curve, alike in grouped(named, lambda one: one[1]).items():
             show(f"\n{', '.join(name for name, _ in alike)}\n{curve}")
     else:
@@ -47,22 +44,22 @@ def main(arguments: argparse.Namespace) -> int:
     if any(device.law == "viscous" for case in study.cases for device in case.base.restraints):
         say("viscous dampers carry no static force and are left out of these numbers")
     if arguments.csv:
-        _write(arguments.csv, study, [fact.name for fact in FACTS], [(case, [sheet.row]) for case, sheet in sheets])
+        _write(arguments.csv, study, [fact.name for fact in FACTS], [[sheet.row] for sheet in sheets.values()])
     if arguments.curves:
-        curves = [(case, sheet.curve.to_dict("records")) for case, sheet in sheets]
-        columns = [str(name) for name in max((sheet.curve.columns for _, sheet in sheets), key=len)]
+        curves = [sheet.curve.to_dict("records") for sheet in sheets.values()]
+        columns = [str(name) for name in max((sheet.curve.columns for sheet in sheets.values()), key=len)]
         _write(arguments.curves, study, columns, curves)
     return 0
 
 
-def table(names: Sequence[str], sheets: Sequence[Statics]) -> str:
-    """Return the sheets side by side as text: a column for each case, and a line for each quantity that any of them has."""
+def table(sheets: Mapping[str, Statics]) -> str:
+    """Return the named sheets side by side as text: a column for each case, and a line for each quantity that any of them has."""
     lines = []
     for fact in FACTS:
-        values = [sheet.row[fact.name] for sheet in sheets]
+        values = [sheet.row[fact.name] for sheet in sheets.values()]
         if any(value is not None for value in values):
             lines.append([fact.heading.replace("θ", "theta").replace("α", "alpha"), *map(fact.written, values)])
-    return in_width(["", *names], lines)
+    return in_width(["", *sheets], lines)
 
 
 def rotations(sheet: Statics) -> str:
@@ -100,8 +97,9 @@ def rotations(sheet: Statics) -> str:
     return in_width(list(shown), list(zip(*shown.values(), strict=True)))
 
 
-def _write(path: Path, study: Study, columns: Sequence[str], rows: Sequence[tuple[Case, Sequence[Line]]]) -> None:
-    """Write a CSV whose rows begin with case and varied values, and print its path."""
-    lines = [{"case": case.name, **case.columns, **line} for case, of_case in rows for line in of_case]
+def _write(path: Path, study: Study, columns: Sequence[str], rows: Sequence[Sequence[Line]]) -> None:
+    """Write a CSV of the rows of each case, which begin with case and varied values, and print its path."""
+    cases = zip(study.cases, rows, strict=True)
+    lines = [{"case": case.name, **case.columns, **line} for case, of_case in cases for line in of_case]
     write_output(path, csv_text(["case", *study.varied, *columns], lines))
     say(str(path))

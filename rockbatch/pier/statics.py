@@ -6,20 +6,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from rockbatch.common.arguments import checked
-from rockbatch.common.errors import refuse
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
 from rockbatch.pier.bases import Base
 from rockbatch.pier.bending import flexural_period
 from rockbatch.pier.block import Pier
-from rockbatch.pier.devices import unlikely_devices
 from rockbatch.pier.equilibrium import ONSET, Array, Equilibria, SlowTurn, without_dampers
 from rockbatch.pier.footings import facts_of_bed, slow_turn
 from rockbatch.pier.free_rocking import FreeRocking, Swings
 from rockbatch.pier.frequencies import vertical_frequency
 from rockbatch.pier.places import symmetric
-from rockbatch.pier.possible import problems
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -323,44 +319,8 @@ def flexure(sheet: Statics) -> str:
     )
 
 
-@checked
-def statics(pier: Pier, foundation: Base) -> Statics:
-    """Return the statics sheet of a pier on a foundation, with its devices: nothing is simulated.
-
-    Parameters
-    ----------
-    pier : Pier
-        Its ``mass_t`` gives kN, its ``flexural_period_s`` a comparison with the period of rocking.
-    foundation : RigidBase, ElasticBase, YieldingBase or FootingBase
-        Its ``restraints`` are the devices, its ``area_m2`` gives bearing stresses.
-
-    Returns
-    -------
-    Statics
-        Numbers, a moment–rotation ``curve`` up to overturning, the period and the damping of free ``swings``, and ``plot()``.
-
-    Raises
-    ------
-    InputError
-        If the pier cannot stand on the foundation, or a device is implausible and not named in its ``confirm``.
-
-    Examples
-    --------
-    >>> rb.statics(rb.Pier(alpha=0.13, p=0.38), rb.RigidBase())
-    <statics of a pier, base rigid>
-      lift-off  0.1307 g, at θ/α = 0
-      strength  0.1307 g, at θ/α = 0
-      moment    6.605 m × weight
-      balance   θ/α = 1
-      periods   0.1 α 4.92 s, 0.5 α 13.9 s, 0.9 α 31.5 s
-      impacts   as viscous damping 0.1 α 1.71%, 0.5 α 2.33%, 0.9 α 4.59%
-    """
-    refuse(problems(pier, foundation) or unlikely_devices(pier, foundation.restraints))
-    return sheet_of(pier, foundation)
-
-
 def sheet_of(pier: Pier, foundation: Base) -> Statics:
-    """Return the statics sheet as :func:`statics` does, without checking that the pier can stand on the foundation."""
+    """Return the statics sheet of a pier on a foundation; whether the pier can stand on it is not checked."""
     even = symmetric(pier, foundation.restraints)
     sides = [_Side.of(pier, foundation, side) for side in ((1.0,) if even else (1.0, -1.0))]
     weaker, first = min(sides, key=lambda side: side.strength[0]), min(sides, key=lambda side: side.lift_off[0])

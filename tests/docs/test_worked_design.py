@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rockbatch.pier.statics import FACTS, statics
+import rockbatch as rb
+from rockbatch.pier.statics import FACTS
 from rockbatch.study.load import load_study
 
 ROOT = Path(__file__).parents[2]
@@ -37,7 +38,7 @@ def test_every_table_on_the_page_is_in_the_study():
 
 def test_its_statics_are_those_that_are_printed():
     made = cases()
-    sheets = [statics(made[bound].pier, made[bound].base).row for bound in SHOWN]
+    sheets = [rb.statics(made[bound].pier, made[bound].base).row for bound in SHOWN]
     rows = dict(re.findall(r"^\| (.*?) \| (.*) \|$", PAGE, re.MULTILINE))
     facts = [fact for fact in FACTS if fact.heading in rows]
     assert len(facts) == 10
@@ -50,14 +51,14 @@ def test_its_statics_are_those_that_are_printed():
 def test_its_statics_are_those_of_a_hand():
     """W, h, FS, K_θ by Gazetas' formula, settlement, ultimate moment, lift-off without dampers."""
     case = cases()[""]
-    row = statics(case.pier, case.base).row
+    row = rb.statics(case.pier, case.base).row
     weight, height = 9.81 * (1900 + 600 + 368), (1900 * 24.5 + 600 * 1 + 368 * 12) / 2868
     stiffness = 100 / 0.7 * 1000**0.75 * 1.2**0.25 * (2.4 + 0.5 / 1.2)
     assert case.pier.height == pytest.approx(height)
     assert case.base.safety_factor == pytest.approx(144e3 / weight)
     assert row["rocking_stiffness_MN_m"] == pytest.approx(stiffness)
     assert row["ultimate_moment_kN_m"] == pytest.approx(0.5 * weight * 10 * (1 - weight / 144e3))
-    plain = statics(case.pier, dataclasses.replace(case.base, restraints=())).row
+    plain = rb.statics(case.pier, dataclasses.replace(case.base, restraints=())).row
     assert plain["lift_off_g"] == pytest.approx(10 / 6 / height, rel=0.01)  # P-delta of a rotation of 0.6 mrad
     said = (
         f"{weight:,.0f} kN",

@@ -27,7 +27,6 @@ from rockbatch.analyses.spectrum.study import read_spectrum
 from rockbatch.checks.judging import judge
 from rockbatch.common.errors import InputError
 from rockbatch.pier.bases import BASES
-from rockbatch.pier.statics import statics
 from rockbatch.results.run_json import describe_case
 from rockbatch.study.case_keys import CASE
 from rockbatch.study.load import OF_REFERENCE, REFERENCE
@@ -69,7 +68,7 @@ def numbers(tables):
     """Return the rows with their remarks, and the statics sheet of each case."""
     of_study = rb.Study.from_dict(tables)
     peaks = rb.run(of_study, jobs=1, progress=False).drop(columns=["record", "case", "station"])
-    sheets = [value for case in of_study.cases for value in statics(case.pier, case.base).row.values()]
+    sheets = [value for case in of_study.cases for value in rb.statics(case.pier, case.base).row.values()]
     return [peaks.to_csv(), *sheets]
 
 
