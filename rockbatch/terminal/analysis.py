@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TypedDict
 
-from rockbatch.batch.listening import Listener
+from rockbatch.batch.listening import Listener, count
 from rockbatch.batch.threads import Engine
 from rockbatch.reporting.markup import number
 from rockbatch.reporting.table import Head
@@ -30,10 +30,19 @@ def analysis_arguments(arguments: argparse.Namespace) -> AnalysisArguments:
     return {"out": folder(arguments), "jobs": engine(arguments), "fresh": arguments.fresh, "progress": Terminal()}
 
 
-def print_files(analysis: Analysis) -> None:
-    """Print the paths of the files that were written on stderr, a line each."""
+def finished(analysis: Analysis) -> int:
+    """Print the paths of the files that were written, and how many runs failed, on stderr; return the exit code.
+
+    It is 1 if a record is unusable or a run failed, of all that were carried out, else 0.
+    """
     for path in analysis.files:
         say(str(path))
+    code = 1 if analysis.unusable else 0
+    for name, runs in analysis.tables.items():
+        if name in analysis.RUNS and (failed := int((runs["status"] == "failed").sum())):
+            say(f"{failed} of {count(len(runs), 'run')} failed: see the column reason of {name}.csv")
+            code = 1
+    return code
 
 
 def in_lines(heads: Sequence[Head], items: Iterable[Item], names: int = 1) -> str:

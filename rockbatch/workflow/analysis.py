@@ -47,6 +47,8 @@ Spec = TypeVar("Spec")
 class Analysis(Shown):
     """Results of an analysis; each table is an attribute named after its CSV file, None if the analysis has none.
 
+    ``RUNS`` are those of its ``TABLES`` that have a row for each run.
+
     Attributes
     ----------
     study : Study
@@ -61,6 +63,7 @@ class Analysis(Shown):
 
     NAME: ClassVar[str]
     TABLES: ClassVar[tuple[str, ...]]
+    RUNS: ClassVar[tuple[str, ...]] = ()
 
     study: Study
     info: dict[str, Any]

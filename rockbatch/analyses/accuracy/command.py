@@ -7,18 +7,17 @@ from rockbatch.analyses.accuracy.levels import NO_ERROR, chosen, of_table
 from rockbatch.analyses.accuracy.quantities import QUANTITIES, rows
 from rockbatch.common.lazy import pd
 from rockbatch.study import Study
-from rockbatch.terminal.analysis import in_lines, print_files
+from rockbatch.terminal.analysis import finished, in_lines
 from rockbatch.terminal.messages import Terminal
 from rockbatch.terminal.options import folder
 from rockbatch.terminal.streams import show
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Measure errors against times, and print them; return 0."""
+    """Measure errors against times, and print them; return the exit code."""
     result = accuracy(study, folder(arguments), runs=arguments.runs, seconds=arguments.seconds, progress=Terminal())
     show(shown(result.accuracy))
-    print_files(result)
-    return 0
+    return finished(result)
 
 
 def shown(table: "pd.DataFrame") -> str:

@@ -84,6 +84,7 @@ class DesignSearch(Analysis):
         "design_interaction",
         "design_runs",
     )
+    RUNS: ClassVar[tuple[str, ...]] = ("design_runs",)
 
     design: "pd.DataFrame"
     design_values: "pd.DataFrame"

@@ -9,20 +9,19 @@ from rockbatch.checks.verdicts import PASS
 from rockbatch.checks.wording import SIGNS
 from rockbatch.results.labelled import as_dicts
 from rockbatch.study import Study
-from rockbatch.terminal.analysis import analysis_arguments, in_lines, print_files
+from rockbatch.terminal.analysis import analysis_arguments, finished, in_lines
 from rockbatch.terminal.streams import filled, show
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
     """Find the values that pass, and print them: the answer, then the intervals.
 
-    Return 1 if a record is unusable, or no value passes in some case, else 0.
+    Return the exit code, 1 also if no value passes in some case.
     """
     result = design(study, **analysis_arguments(arguments))
     said = answer(result.info, result.design, result.design_values)
     show("\n".join(filled(f"{SIGNS.get(verdict, '')} {words}".lstrip()) for verdict, words in said))
     show(f"\n{in_lines(heads(result.info), as_dicts(result.design))}")
-    print_files(result)
     passing = set(result.design.loc[result.design["verdict"] == PASS, "case"])
     every = {entry["case"] for entry in result.info["designs"]}
-    return 1 if result.unusable or passing != every else 0
+    return max(finished(result), passing != every)

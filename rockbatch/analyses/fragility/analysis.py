@@ -83,6 +83,7 @@ class Fragility(Analysis):
         "fragility_deaggregation",
         "fragility_runs",
     )
+    RUNS: ClassVar[tuple[str, ...]] = ("fragility_runs",)
 
     fragility: "pd.DataFrame"
     fragility_capacities: "pd.DataFrame | None"

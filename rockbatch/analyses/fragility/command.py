@@ -7,27 +7,21 @@ from rockbatch.analyses.fragility.figures import remarks
 from rockbatch.analyses.fragility.limit_states import words
 from rockbatch.analyses.fragility.quantities import names_of_curves, of_curves, of_rates
 from rockbatch.analyses.fragility.study import FragilitySpec
-from rockbatch.analyses.fragility.tables import RUNS
 from rockbatch.batch.listening import count
 from rockbatch.common.analyses import Entry
 from rockbatch.study import Study
-from rockbatch.terminal.analysis import analysis_arguments, in_lines, print_files
-from rockbatch.terminal.options import folder
-from rockbatch.terminal.streams import say, show
+from rockbatch.terminal.analysis import analysis_arguments, finished, in_lines
+from rockbatch.terminal.streams import show
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Fit fragility curves, and print them; return 1 if a record is unusable or a run at a level failed, else 0."""
+    """Fit fragility curves, and print them; return the exit code."""
     result = fragility(study, **analysis_arguments(arguments))
     show(table(result.info, result.spec))
     show(result.info["scales"]["said"])
     if result.spec.hazard is not None:
         show(f"\n{risk_lines(result.info)}")
-    print_files(result)
-    failed = any(stripe.failed for curve in result.curves for stripe in curve.stripes)
-    if failed:
-        say(f"some runs failed and are undecided; the column reason of {folder(arguments) / RUNS} says why")
-    return 1 if result.unusable or failed else 0
+    return finished(result)
 
 
 def table(info: Entry, spec: FragilitySpec) -> str:

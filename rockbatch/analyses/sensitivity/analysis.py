@@ -53,6 +53,7 @@ class Sensitivity(Analysis):
 
     NAME: ClassVar[str] = "sensitivity"
     TABLES: ClassVar[tuple[str, ...]] = ("sensitivity_runs", "sensitivity", "sobol")
+    RUNS: ClassVar[tuple[str, ...]] = ("sensitivity_runs",)
 
     sensitivity_runs: "pd.DataFrame"
     sensitivity: "pd.DataFrame"

@@ -13,12 +13,12 @@ from rockbatch.reporting.finished_analysis import named
 from rockbatch.reporting.table import Head
 from rockbatch.results.labelled import as_dicts
 from rockbatch.study import Study
-from rockbatch.terminal.analysis import analysis_arguments, in_lines, print_files
+from rockbatch.terminal.analysis import analysis_arguments, finished, in_lines
 from rockbatch.terminal.streams import say, show
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Compute and print the sensitivity of the peak rotation; return 1 if a record is unusable, else 0."""
+    """Compute and print the sensitivity of the peak rotation; return the exit code."""
     result = sensitivity(study, **analysis_arguments(arguments))
     show(shown(result.info, result.sensitivity, result.sobol))
     ended = ", ".join(f"{number} {status}" for status, number in sorted(result.info["statuses"].items()))
@@ -26,8 +26,7 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
     say(f"{ended}; runs that overturned or were ended by flight count as {cut}")
     if coverage := on_coverage(result.info):
         say(coverage)
-    print_files(result)
-    return 1 if result.unusable else 0  # what failed counts, as the report says
+    return finished(result)
 
 
 def shown(info: Entry, swings: "pd.DataFrame", shares: "pd.DataFrame") -> str:

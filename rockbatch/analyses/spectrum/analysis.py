@@ -47,6 +47,7 @@ class Spectrum(Analysis):
 
     NAME: ClassVar[str] = "spectrum"
     TABLES: ClassVar[tuple[str, ...]] = ("spectrum", "spectrum_suite", "overturning_map", "overturning_runs")
+    RUNS: ClassVar[tuple[str, ...]] = ("spectrum", "overturning_runs")
 
     spectrum: "pd.DataFrame | None"
     spectrum_suite: "pd.DataFrame | None"

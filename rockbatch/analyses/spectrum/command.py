@@ -7,33 +7,26 @@ import numpy as np
 from rockbatch.analyses.spectrum.analysis import spectrum
 from rockbatch.analyses.spectrum.rocking_spectrum import OWN, groups
 from rockbatch.analyses.spectrum.study import SELF_SIMILAR, SpectrumSpec
-from rockbatch.batch.listening import count
 from rockbatch.common.analyses import Entry
 from rockbatch.common.grouping import spread
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.finished_analysis import named
 from rockbatch.study import Study
-from rockbatch.terminal.analysis import analysis_arguments, print_files
-from rockbatch.terminal.streams import in_width, say, show
+from rockbatch.terminal.analysis import analysis_arguments, finished
+from rockbatch.terminal.streams import in_width, show
 
 MOST_LINES = 12
 """Greatest number of lines of a table for the terminal."""
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Compute spectra and maps, and print them; return 1 if a record is unusable or a run of a spectrum failed, else 0."""
+    """Compute spectra and maps, and print them; return the exit code."""
     result = spectrum(study, **analysis_arguments(arguments))
-    failed = 0
-    if result.spectra is not None and result.spectrum is not None and result.spectrum_suite is not None:
+    if result.spectra is not None and result.spectrum_suite is not None:
         show(shown(result.info, result.spectrum_suite, result.spectra))
-        failed = int((result.spectrum["status"] == "failed").sum())
-        if failed:
-            runs = count(len(result.spectrum), "run")
-            say(f"{failed} of {runs} failed and are left out of the quantiles; the column reason says why")
     if result.overturning_map is not None:
         show(shown_maps(result.info, result.overturning_map))
-    print_files(result)
-    return 1 if failed or result.unusable else 0
+    return finished(result)
 
 
 def shown(info: Entry, suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
