@@ -152,22 +152,23 @@ def _implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[Problem]:
         return
     given = rule.number_of_capacity or value
 
-    def odd(text: str, what: str = "unit") -> Problem:
-        remedy = f'check the {what}; if it is right, write confirm = ["{key}"] in this table'
-        return Problem(key, float(given), f"{text}; {remedy}", kind=Unusual)
+    def odd(text: str, remedy: str = "check the unit") -> Problem:
+        confirmed = f'if it is right, write confirm = ["{key}"] in this table'
+        return Problem(key, float(given), f"{text}; {remedy}; {confirmed}", kind=Unusual)
 
     if value < 0:
         passing = "nothing" if key == "at_most" else "all"
-        yield odd(f"{rule.demand} is counted without its sign, so that {passing} passes", "sign")
+        yield odd(f"{rule.demand} is counted without its sign, so that {passing} passes", "check the sign")
     if demand.event and value >= 1:
-        yield odd(f"{rule.demand} is 0 or 1 for every record, so that nothing exceeds {value:g}", "limit")
+        yield odd(f"{rule.demand} is 0 or 1 for every record, so that nothing exceeds {value:g}", "check the limit")
     mine = [case for case in cases if demand.applies_to(case)]
     most = max((demand.ceiling.value(case) for case in mine if demand.ceiling), default=math.inf)
     shown = 1e-3 * most if rule.demand in ("top_drift_mm", "heel_uplift_mm") and math.isfinite(most) else 0.0
     if demand.unit == "mm" and 0 < value < max(LEAST_MM, shown):
         yield odd(f"in mm, as {rule.demand} is, hardly more than nothing; {value:g} m are {1000 * value:g} mm")
     if demand.ceiling is not None and value > most:
-        yield odd(f"{rule.demand} above {most:.4g} {demand.ceiling.beyond}, so the limit decides nothing")
+        text = f"{rule.demand} above {most:.4g} {demand.ceiling.beyond}, so the limit decides nothing"
+        yield odd(text, demand.ceiling.remedy)
     elif value > 0 and (text := _far_from(rule.demand, value, mine)):
         yield odd(text)
 

@@ -3,12 +3,15 @@
 from collections.abc import Callable
 from typing import Any
 
-from rockbatch.quantities.cases import THOUSAND, always, width
+from rockbatch.quantities.cases import THOUSAND, always, bearing, width
 from rockbatch.quantities.demands import Ceiling
 from rockbatch.quantities.quantity import FOOTING, Limit, Quantity, ReportFormat, Run
 
 MOST_PUSH = 100.0
 """Greatest push of the ground over the weight: landings on stiff ground have some ten."""
+
+ROUNDING = 1e-9
+"""Share of the bearing strength by which a limit equal to it may lie below it, for rounding."""
 
 
 def _on_footing(study: Any) -> bool:
@@ -56,6 +59,11 @@ def _quantity(
 
 _WIDER = Ceiling(width, "is more than the pier is wide")
 _IN_MM = Limit(unit="mm", times=THOUSAND, ceiling=Ceiling(lambda case: 1000.0 * width(case), _WIDER.beyond))
+_BEARING = Ceiling(
+    lambda case: bearing(case) * (1.0 - ROUNDING),
+    "does not occur, as the bed yields there",
+    "limit edge_settlement_m or yielding_half_cycles instead, or the pressure below the bearing strength",
+)
 _CHANGES = "4 times its change by twice the step, and by half as many strips{}; empty with a fixed step"
 _READ = _CHANGES.format(", and 0.125 % of it, for what steps may miss of a peak")
 _EDGE = "settlement of the {} edge of the foot, at rest on its bed"
@@ -72,7 +80,7 @@ OF_FOOTING = (
         sometimes=True),
     _quantity("bed_pressure_MPa", "greatest pressure at an edge", _of_bed("pressure"), "MPa",
         ReportFormat("pressure [MPa]", ".3g", behind="bed_force_over_weight"), ", if mass_t and length_m are given",
-        sometimes=True, weighed=True, error="bed_pressure_error_MPa", limits=(Limit(),)),
+        sometimes=True, weighed=True, error="bed_pressure_error_MPa", limits=(Limit(ceiling=_BEARING),)),
     _quantity("bed_pressure_s", "time of it", _of_bed("t_pressure"), "s"),
     _quantity("bed_pressure_at_m", "place of it to the right of the middle", _of_bed("pressure_at"), "m"),
     _quantity("bed_pressure_error_MPa", f"estimated error of the greatest pressure: {_READ}", _of_bed("pressure_error"), "MPa",

@@ -78,6 +78,13 @@ def weight(case: Case) -> float:
     return float(case["pier"]["mass_t"]) * float(case["pier"]["gravity"])
 
 
+def bearing(case: Case) -> float:
+    """Return the bearing strength of a footing [MPa]; infinite of a bed that does not yield, or with a mass that is not known."""
+    factor, length = (case["parameters"].get(name) for name in ("safety_factor", "length_m"))
+    known = factor is not None and length is not None and "mass_t" in case["pier"]
+    return 1e-3 * factor * weight(case) / (width(case) * length) if known else math.inf
+
+
 def per_gravity(case: Case) -> float:
     """Return 1/g [s²/m]."""
     return 1.0 / float(case["pier"]["gravity"])

@@ -36,10 +36,11 @@ Evaluate = Callable[[Rows, Case], Estimated]
 
 
 class Ceiling(NamedTuple):
-    """A value of the case beyond which a limit decides nothing, such as that at θ = α, and words for it."""
+    """A value of the case beyond which a limit decides nothing, such as that at θ = α, words for it, and what to do instead."""
 
     value: Lever
     beyond: str
+    remedy: str = "check the unit"
 
 
 class OtherEnd(NamedTuple):

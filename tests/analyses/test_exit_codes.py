@@ -21,7 +21,9 @@ OF_RUNS = [(kind, name) for kind in (DesignSearch, Fragility, Sensitivity, Spect
 
 def ended(kind, statuses, unusable=()):
     """An analysis of ``kind`` whose runs ended so, in each of its tables of runs."""
-    tables = dict.fromkeys(kind.TABLES) | {name: pd.DataFrame({"status": of_runs}) for name, of_runs in statuses.items()}
+    tables = dict.fromkeys(kind.TABLES) | {
+        name: pd.DataFrame({"status": of_runs}) for name, of_runs in statuses.items()
+    }
     rest = {name: None for name in ("curves", "spec", "spectra", "maps") if name in kind.__dataclass_fields__}
     return kind(study=None, info={}, unusable=unusable, **tables, **rest)
 

@@ -115,6 +115,27 @@ def test_the_mass_of_a_case_is_judged_too(tmp_path):
     assert problems_of(written(tmp_path, pier=pier, case=believed)) == ()
 
 
+@pytest.mark.parametrize(("limit", "refused"), [(0.9, True), (0.75, True), (0.749, False), (0.5, False)])
+@pytest.mark.parametrize("strength", ["bearing_MPa = 0.75", "safety_factor = {factor!r}", ""])
+def test_a_pressure_that_the_bed_never_exceeds_is_no_limit(tmp_path, limit, refused, strength):
+    """The bed yields at 0.75 MPa, which is its safety factor times the weight over the area, 4 × 10 m; an elastic bed never."""
+    factor = 0.75e3 * 40.0 / (3000.0 * 9.81)
+    case = f'[[case]]\nbase = "footing"\nstiffness_MN_m3 = 60\nlength_m = 10\n{strength.format(factor=factor)}\n'
+    check = f'[[check]]\nname = "ground"\ndemand = "bed_pressure_MPa"\nat_most = {limit}\nreason = "report"\n'
+    said = problems_of(written(tmp_path, case=case, check=check))
+    assert bool(said) is (refused and bool(strength))
+    if said:
+        (problem,) = said
+        assert (
+            f"at_most = {limit:g}: bed_pressure_MPa above 0.75 does not occur, as the bed yields there, so the limit"
+            in problem
+        )
+        assert "; limit edge_settlement_m or yielding_half_cycles instead, or" in problem
+        assert problem.endswith('write confirm = ["at_most"] in this table')
+        advised = check.replace("bed_pressure_MPa", "yielding_half_cycles").replace(f"= {limit}", "= 0")
+        assert problems_of(written(tmp_path, case=case, check=advised)) == ()
+
+
 def test_a_study_that_is_confirmed_runs(tmp_path):
     """Stiff as a laboratory's floor, and a limit that is not meant to bite."""
     case = at_the_key(PARTS["case"].replace("4e4", "37e6"), "37e6", "yield_kN")
