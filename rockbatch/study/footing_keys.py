@@ -8,7 +8,9 @@ from typing import Any, get_args
 from rockbatch.common.errors import Contradiction, InputError, MissingKey, Problem, Unusual
 from rockbatch.pier import OF_SHAFT, FootingBase, Pier
 from rockbatch.pier.footing_base import POISSON, STRIPS
+from rockbatch.pier.parts import Part
 from rockbatch.pier.restraints import DeckSpring, Restraint
+from rockbatch.pier.sections import distribution_problems
 from rockbatch.pier.soil import Formula
 from rockbatch.toml.kinds import Kind, Whole, boolean, choice, not_negative, positive, within
 from rockbatch.toml.section import Key, fix_the_same
@@ -83,12 +85,18 @@ FOOTING_KEYS = {
 
 
 def on_foot(pier: Pier, width_m: float) -> Pier:
-    """Return ``pier`` on a foot of another width: with its height and inertia, and α of that foot."""
+    """Return ``pier`` on a foot of another width: with its height and inertia, and α of that foot.
+
+    A solid rectangle gets a part of its own width: α and μ no longer say how its mass is spread.
+    """
     half, height = 0.5 * width_m, pier.height
     size = math.hypot(half, height)
     mu = size**2 / pier.inertia
     p = math.sqrt(mu / (1.0 + mu) * pier.gravity / size)
-    return replace(pier, alpha=math.atan2(half, height), p=p, mu=mu, confirm=("p", "mass_t", "top_m"))
+    parts = pier.parts
+    if parts is None and not distribution_problems(pier):
+        parts = (Part.shaft(2.0 * pier.half_width, 2.0 * height, pier.mass_t or 1.0),)
+    return replace(pier, alpha=math.atan2(half, height), p=p, mu=mu, parts=parts, confirm=("p", "mass_t", "top_m"))
 
 
 def unlikely_foot(pier: Pier, on_its_foot: Pier) -> list[Problem]:

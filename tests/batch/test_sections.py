@@ -8,6 +8,7 @@ from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.commands.cli import main
+from rockbatch.pier.sections import above, section_heights
 from rockbatch.quantities.demands import OF_SECTIONS, SECTIONS
 
 PIER = {"width_m": 3.0, "height_m": 14.0, "mass_t": 400.0, "deck_mass_t": 200.0}
@@ -98,12 +99,26 @@ def test_a_study_with_sections_that_cannot_be_is_refused(tmp_path, tables, messa
         assert f"{study.name}:{key}: [output]" in str(refused.value)
 
 
+def test_a_rectangle_on_a_wider_foot_has_the_sections_of_the_rectangle(tmp_path):
+    """Its mass is spread as without the foot, which has none; α and μ are those of the foot, h and I0 its own."""
+    foot = {"name": "foot", "base": "footing", "width_m": 6.0, "length_m": 6.0, "stiffness_MN_m3": 60.0}
+    plain = {name: value for name, value in PIER.items() if name != "deck_mass_t"}
+    study = rb.load_study(study_of(tmp_path, pier=plain, cases=[RIGID, foot], output={"sections": 3}, check=CHECKS[:1]))
+    own, wide = (case.pier for case in study.cases)
+    assert (wide.half_width, wide.height) == pytest.approx((3.0, own.height))
+    assert wide.mu == pytest.approx((3.0**2 + 7.0**2) / own.inertia)
+    assert section_heights(wide, 3) == section_heights(own, 3) == (0.0, 7.0, 14.0)
+    for height in (0.0, 5.0, 14.0):
+        assert above(wide, height) == pytest.approx(above(own, height), rel=1e-12)
+    assert (wide.shaft_share, wide.highest) == pytest.approx((1.0, 14.0))
+
+
 @pytest.mark.parametrize("of_case", [False, True])
 def test_sections_that_no_pier_can_have_are_refused_without_advice_to_ask_for_them(tmp_path, of_case):
-    """Of the pier, or of the pier on the foot of a case, which was refused by the run alone."""
+    """Of the pier, or of a pier on the foot of a case, whose α and μ are those of the foot."""
     foot = {"base": "footing", "width_m": 6.0, "length_m": 6.0, "stiffness_MN_m3": 60.0}
-    plain = {name: value for name, value in PIER.items() if name != "deck_mass_t"}
-    tables = {"cases": [foot], "pier": plain} if of_case else {"pier": FRAME}
+    shaped = {"alpha": 0.2, "p": 1.0, "mu": 4.0, "mass_t": 400.0}
+    tables = {"cases": [foot], "pier": shaped} if of_case else {"pier": FRAME}
     with pytest.raises(rb.InputError) as refused:
         rb.load_study(study_of(tmp_path, output={"sections": 3}, check=CHECKS[:1], **tables))
     (problem,) = refused.value.problems
