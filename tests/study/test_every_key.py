@@ -954,8 +954,8 @@ ANALYSES = {
     "design": read_design, "fragility": read_fragility, "release": read_release, "sensitivity": read_sensitivity,
     "spectrum": read_spectrum,
 }  # fmt: skip
-UNWRITTEN = {("[fragility]", "least_scale"), ("[fragility]", "most_scale"), ("[design]", "points")}
-"""Keys that take no value for what holds without them, and one that does not go with the studies of :data:`USES`."""
+UNWRITTEN = {("[design]", "points")}
+"""A key that does not go with the studies of :data:`USES`."""
 DEFAULTS = [
     pytest.param(section, key, id=f"{section.header} {key}")
     for section in STUDY

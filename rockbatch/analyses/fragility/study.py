@@ -29,7 +29,7 @@ from rockbatch.pier import Base, Pier
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.load import Study
 from rockbatch.study.target_keys import PERIOD
-from rockbatch.toml.kinds import Number, choice, positive, share, text
+from rockbatch.toml.kinds import Number, choice, not_negative, positive, share, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
@@ -189,13 +189,13 @@ FRAGILITY = Section(
             only=_SCALED,
         ),
         "least_scale": Key(
-            positive,
+            not_negative,
             "0.25",
             "Least factor on a record, as it was recorded: at levels that take a smaller one it is not used.",
             only=_SCALED,
         ),
         "most_scale": Key(
-            positive,
+            Number("a number above 0, or inf", low=0.0, above=True, endless=True),
             "4.0",
             "Greatest factor on a record, as it was recorded: at levels that take a larger one it is not used.",
             only=_SCALED,
