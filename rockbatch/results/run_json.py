@@ -121,7 +121,7 @@ SHAPE = {
             "processed": Maybe((bool, None)),
             "recorded": Maybe(bool),
             "digest": Maybe(str),
-            "findings": Maybe([{"what": str}]),
+            "findings": Maybe([{"what": str, "text": str}]),
         }
     ],
     "unusable": [_OF_FILE],

@@ -25,13 +25,17 @@ class Terminal(Listener):
         self._bars = Bars()
 
     def motions(self, motion_set: MotionSet) -> None:
-        """Print files that are not used, repeated records, missing vertical components, and the number of files left out.
+        """Print files that are not used, records to check, repeated ones, missing vertical components, and the number of files
+        left out.
 
-        Of files that are not used for one reason the first is named, the others are counted.
+        Of files or records with one reason the first is named, the others are counted.
         """
-        for file, *others in grouped(motion_set.unusable, lambda file: file.cause).values():
-            beside = f" and {count(len(others), 'other')}" if others else ""
-            say(f"not used: {file.source}{beside}: {file.reason}")
+        unusable = [(file.cause, file.source, file.reason) for file in motion_set.unusable]
+        doubtful = [(found.what, motion.named, found.text) for motion in motion_set.motions for found in motion.findings]
+        for words, entries in (("not used", unusable), ("to check", doubtful)):
+            for (_, source, reason), *others in grouped(entries, lambda entry: entry[0]).values():
+                beside = f" and {count(len(others), 'other')}" if others else ""
+                say(f"{words}: {source}{beside}: {reason}")
         for first, repeat in _repeated(motion_set):
             say(f"{first} and {repeat} have the same samples: checks count them once, curves twice; leave one out")
         if lacking := [motion.named for motion in motion_set.motions if motion.lacks_vertical]:

@@ -1,6 +1,7 @@
 """Suites: offsets, selection, targets, strictness, and what ``rockbatch motions`` tells of them."""
 
 import csv
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -296,3 +297,22 @@ def test_a_manifest_is_drafted_once(tmp_path, capsys):
     assert main(["motions", "--all", str(tmp_path), "--write-manifest"]) == 2
     assert "is there already" in capsys.readouterr().err
     assert main(["motions", "--all", str(tmp_path), str(tmp_path), "--write-manifest"]) == 2
+
+
+@pytest.mark.usefixtures("pages")
+def test_run_and_its_report_name_a_record_that_would_be_usual_in_another_unit(tmp_path, capsys):
+    """A peak of 3.9 m/s² without a unit in its file, read as 3.9 g because the study says so."""
+    samples = 3.9 * np.sin(0.5 * np.arange(200)) * np.exp(-0.02 * np.arange(200))
+    (tmp_path / "records").mkdir()
+    for name, factor in (("strong_NS.txt", 1.0), ("weak_EW.txt", 0.01)):
+        (tmp_path / "records" / name).write_text("\n".join(f"{factor * a:.6f}" for a in samples), encoding="utf-8")
+    text = 'title = "t"\n[pier]\nalpha = 0.2\np = 1.0\n[motions]\npath = "records"\nunit = "g"\ndt = 0.01\n'
+    path = write_study(tmp_path, f'{text}[[case]]\nname = "rigid"\nbase = "rigid"\n[output]\nhistories = "none"\n')
+    assert main(["run", str(path), "--out", str(tmp_path / "out")]) == 0
+    (warned,) = (line for line in capsys.readouterr().err.splitlines() if "to check: " in line and ": PGA " in line)
+    assert "strong_NS.txt" in warned
+    assert "if its numbers are in m/s², it is 0.3" in warned
+    page = (tmp_path / "out/report.html").read_text("utf-8")
+    (noted,) = re.findall(r'<a href="#records">[^<]* to check</a>, .*? check the unit\.', page)
+    assert "strong_NS.txt" in noted
+    assert "if its numbers are in m/s², it is 0.3" in noted

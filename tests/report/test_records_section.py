@@ -29,7 +29,8 @@ def test_what_is_odd_about_a_record_and_whether_it_is_processed_stand_in_the_tab
     info["records"][1] |= {"processed": True, "findings": []}
     (tmp_path / "run.json").write_text(json.dumps(info), encoding="utf-8")
     text = write_report(tmp_path).read_text(encoding="utf-8")
-    table = text[text.index("to check") :].split("</table>")[0]
+    assert '<a href="#records">One record to check</a>, ' in text
+    table = text[text.rindex(">to check<") :].split("</table>")[0]
     assert ">alternates, no PGD<" in table
     assert table.index(">no<") < table.index(">yes<")
     assert "displacement 0.30 m" in text

@@ -197,6 +197,13 @@ def _notes(finished: Finished, checked: bool) -> Iterator[object]:
         if remark:
             yield f"{remark}. "
     yield _error(finished)
+    if doubtful := [record for record in finished.info["records"] if record.get("findings")]:
+        strongest = max(doubtful, key=lambda record: record["pga_g"])  # as one in another unit would be
+        records = tag("a", f"{counted(len(doubtful), 'record').capitalize()} to check", href="#records")
+        among = ", such as " if len(doubtful) > 1 else ", "
+        yield join(
+            " ", records, among, finished.shown(strongest["record"]), ": ", strongest["findings"][0]["text"], "."
+        )
     noted = int((finished.runs.loc[finished.runs["status"] == "ok", "note"] != "").sum())
     if noted:
         yield join(
