@@ -1,8 +1,8 @@
 """The cases of a study file, with every combination of listed values: [[case]]."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from rockbatch.common.errors import Contradiction, Problem
 from rockbatch.common.naming import alike
@@ -263,16 +263,22 @@ def _complain_of_mass(table: Table, key: str) -> None:
 
 
 def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: Base) -> None:
-    """Add a problem of pier and base to the table, at its key; of β or η at K or F_y if these are given.
+    """Add a problem of pier and base to the table, at the key by which the case gives what is wrong."""
+    values = {key: setting.value for key, setting in chosen.items()}
+    complain_where_due(table, chosen, as_given(values, problem, pier, base))
+
+
+def as_given(values: Mapping[str, Any], problem: Problem, pier: Pier, base: Base) -> Problem:
+    """Return a problem of pier and base as one of the keys in ``values`` of the case: of β or η as one of K or F_y if given.
 
     It then says what K or F_y would have to be.
     """
-    if "backbone_mm_kN" in chosen and problem.key in ("beta", "eta"):
+    if "backbone_mm_kN" in values and problem.key in ("beta", "eta"):
         text = f"it gives {problem}; {_REMEDIES[problem.key]}"
-        problem = replace(problem, key="backbone_mm_kN", value=None, text=text)
+        return replace(problem, key="backbone_mm_kN", value=None, text=text)
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(problem.key, "")
     mass = pier.mass_t
-    if source in chosen and mass is not None:
+    if source in values and mass is not None:
         needed = {
             "yield_kN": rounded_up(0.5 * enough_eta(pier, base) * mass * pier.gravity),
             "stiffness_kN_m": rounded_up(0.5 * (least_beta(pier, base) * pier.p) ** 2 * mass),
@@ -280,14 +286,14 @@ def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: 
         strength, stiffness = (f"{name} above {value:.4g}" for name, value in needed.items())
         remedies = {"eta": strength, "beta": stiffness}
         # β would do for springs that are further from yielding
-        if "yield_kN" in chosen and base.beta > pier.least_beta:
+        if "yield_kN" in values and base.beta > pier.least_beta:
             remedies["beta"] = f"{strength}, or {stiffness}"
-        weighing = f"mass_t = {mass:g}" if "mass_t" in chosen else f"the {mass:g} t of [pier]"
-        derived = f"{source} = {chosen[source].value:g} with {weighing}"
-        unit = _other_unit(source, chosen[source].value, needed[source], pier.gravity)
+        weighing = f"mass_t = {mass:g}" if "mass_t" in values else f"the {mass:g} t of [pier]"
+        derived = f"{source} = {values[source]:g} with {weighing}"
+        unit = _other_unit(source, values[source], needed[source], pier.gravity)
         text = f"{derived} means {problem}; {unit}write {remedies[problem.key]}"
-        problem = replace(problem, key=source, text=text, named=False)
-    complain_where_due(table, chosen, problem)
+        return replace(problem, key=source, text=text, named=False)
+    return problem
 
 
 def _other_unit(name: str, value: float, needed: float, gravity: float) -> str:

@@ -1,6 +1,7 @@
 """Inputs of analyses that vary a case: quantities of its pier, its base and its devices, by the keys of a study file."""
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 
 from rockbatch.common.errors import InputError, Problem
@@ -141,15 +142,28 @@ def impossible(case: Case, values: KeyValues) -> list[tuple[str, str]]:
     return [in_words(problem, values) for problem in wrong]
 
 
-def outside(name: str, ends: Sequence[float], value: float | None, case: Case) -> str:
-    """Return a message with a wider range if the ``value`` of the case is outside the range ``ends``; "" if within, or None."""
+def _outwards(value: float, side: int) -> float:
+    """Return an end of a range with four digits at most: rounded down if ``side`` is −1, that of the lower end, up if it is 1."""
+    nearest = float(f"{value:.4g}")
+    if side * nearest >= side * value:
+        return nearest
+    return float(f"{nearest + side * 10.0 ** (math.floor(math.log10(abs(value))) - 3):.4g}")
+
+
+def outside(name: str, ends: Sequence[float], values: Iterable[tuple[str, float | None]]) -> str:
+    """Return a message with a wider range if a case, of these names and ``values``, is outside the range ``ends``; "" if none is.
+
+    A value of None is in any range.
+    """
     low, high = ends
-    if value is None or low <= value <= high:
+    missed = [(case, value) for case, value in values if value is not None and not low <= value <= high]
+    if not missed:
         return ""
-    return (
-        f'{name} = {shown([low, high])}: does not hold the {value:g} of case "{case.name}"; '
-        f"write {name} = {shown([min(low, value), max(high, value)])}"
-    )
+    (case, value), *others = missed
+    least, most = (end(value for _, value in missed) for end in (min, max))
+    wider = [low if low <= least else _outwards(least, -1), high if high >= most else _outwards(most, 1)]
+    beside = f", and {len(others)} more" if others else ""
+    return f'{name} = {shown([low, high])}: does not hold the {value:g} of case "{case}"{beside}; write {name} = {shown(wider)}'
 
 
 def why_no_case(name: str, study: Study) -> str:

@@ -31,7 +31,9 @@ class Terminal(Listener):
         Of files or records with one reason the first is named, the others are counted.
         """
         unusable = [(file.cause, file.source, file.reason) for file in motion_set.unusable]
-        doubtful = [(found.what, motion.named, found.text) for motion in motion_set.motions for found in motion.findings]
+        doubtful = [
+            (found.what, motion.named, found.text) for motion in motion_set.motions for found in motion.findings
+        ]
         for words, entries in (("not used", unusable), ("to check", doubtful)):
             for (_, source, reason), *others in grouped(entries, lambda entry: entry[0]).values():
                 beside = f" and {count(len(others), 'other')}" if others else ""

@@ -18,7 +18,7 @@ _NAMED = ("event", "station_name", "record")
 
 COLUMNS = {
     "record": Head("record", note="station_name, event, and record: the name of the stronger component"),
-    "use": Head("use", note="use: whether and how the record is used", filter=True),
+    "use": Head("status", note="use: whether and how the record is used", filter=True),
     "check": Head("to check", note="check: doubts; reasons are below"),
     "acceleration": Head("acceleration", note="of the stronger component, on its own scale"),
     "sa": Head("SA", note="response spectrum, 5 % damped, 0.05 to 5 s"),

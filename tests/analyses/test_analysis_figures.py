@@ -256,6 +256,19 @@ def test_a_spectrum_has_a_panel_for_each_case_and_a_curve_for_each_slenderness(s
     hold_plot(result, tmp_path, beside={"rockbatch.analyses.spectrum.analysis.plot"})
 
 
+@pytest.mark.parametrize("count", [3, 1])
+def test_where_a_quantile_is_infinite_a_spectrum_has_a_mark_instead_of_a_gap(count):
+    """A full one where the median is, an open one where the 84 % quantile alone is, which a single motion has not."""
+    suite = pd.DataFrame({
+        "case": "rigid", "scale": 1.0, "alpha": 0.1, "p": [0.5, 1.0, 1.5, 2.0], "count": count,
+        "p16": [0.1, 0.2, 0.3, np.inf], "median": [0.2, 0.3, 0.4, np.inf], "p84": [0.3, np.inf, np.inf, np.inf],
+    })  # fmt: skip
+    (panel,) = spectra(suite, None, {"axis": "p", "varied": ["alpha", "p"], "cases": []}).panels
+    shown = {points.look.open: (points.x.tolist(), points.label) for points in of_kind(panel.marks, Points)}
+    of_median = {False: ([2.0], "overturned or ended by flight")}
+    assert shown == (of_median | {True: ([1.0, 1.5], "likewise, 84 % quantile alone")} if count > 1 else of_median)
+
+
 def test_a_map_has_the_colours_of_its_regions_and_their_boundaries(spectrum):
     result = spectrum
     panel = maps(result.overturning_map, result.info).panels[0]

@@ -92,7 +92,7 @@ def test_the_period_of_the_pulse_is_the_lists_else_that_of_a_pulse_like_record()
 
 
 def test_terminal_csv_and_page_have_the_same_columns(tmp_path, capsys):
-    for i in range(3):
+    for i in range(4):
         write_at2(tmp_path / "in", f"RSN{i}_X_S{i}000.AT2", wiggle(300, i), title=f"Made-up, 1/17/1994, S{i}, 000")
     main(["motions", str(tmp_path / "in"), "--csv", str(tmp_path / "t.csv"), "--html", str(tmp_path / "t.html")])
     with (tmp_path / "t.csv").open(encoding="utf-8", newline="") as file:
@@ -103,6 +103,7 @@ def test_terminal_csv_and_page_have_the_same_columns(tmp_path, capsys):
     assert {*_GLANCE, *on_page._NAMED, "use", "check", "duration_s"} == set(COLUMNS)
     printed = capsys.readouterr().out
     page = (tmp_path / "t.html").read_text(encoding="utf-8")
+    assert re.search(r"In every row: status <span[^>]*>used</span>", page)
     for row in rows:
         assert f"{float(row['pga_h_g']):.3f}" in printed
         assert f"{float(row['pga_h_g']):.3f}" in page

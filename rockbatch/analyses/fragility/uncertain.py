@@ -246,7 +246,7 @@ def _unfit(parameter: Input, own: float, case: Case) -> str:
     Empty if it fits.
     """
     if parameter.spread == "uniform":
-        return outside(parameter.name, parameter.size, own, case)
+        return outside(parameter.name, parameter.size, [(case.name, own)])
     zero = f'{parameter.name} = 0 in case "{case.name}", about which nothing is lognormal; write it under uniform'
     return "" if own else zero
 

@@ -207,6 +207,7 @@ def _check_inputs(table: Table, inputs: Sequence[Input], study: Study) -> None:
     """Complain about inputs that no case has, ranges without the study's value, and impossible corners of all ranges."""
     used: set[str] = set()
     places = {parameter.name: parameter.at for parameter in inputs}
+    own: dict[str, list[tuple[str, float | None]]] = {}
     for case in study.cases:
         values_of_case = own_values(study, case)
         applicable = applying(inputs, case)
@@ -215,11 +216,13 @@ def _check_inputs(table: Table, inputs: Sequence[Input], study: Study) -> None:
         for name, message in wrong.items():
             table.complain(message, *places[name])
         for parameter in applicable:
-            name, value = parameter.name, values_of_case[parameter.name]
-            if parameter.spread != "choice" and (message := outside(name, parameter.levels, value, case)):
-                table.complain(message, *places[name])
+            own.setdefault(parameter.name, []).append((case.name, values_of_case[parameter.name]))
         if not wrong:
             _check_corners(table, applicable, case)
+    for parameter in inputs:
+        values = own.get(parameter.name, ())
+        if parameter.spread != "choice" and (message := outside(parameter.name, parameter.levels, values)):
+            table.complain(message, *parameter.at)
     for name in places.keys() - used:
         table.complain(f"{name}: {why_no_case(name, study)}; leave it out", *places[name])
 

@@ -32,6 +32,7 @@ ACROSS = {"size_m": "R_0 [m]", "omega_g_over_p": "ω_g/p,  ω_g = PGA/PGV"}
 QUANTILES = {"median": 0, "p16": 2, "p84": 1}
 """Dashes of the statistics of the suite."""
 FELL = "overturned or ended by flight"
+FELL_P84 = "likewise, 84 % quantile alone"
 REGIONS = {
     WITH_IMPACT: (2, "overturns after an impact or more (mode 1)"),
     OUTRIGHT: (1, "overturns without impact (mode 2)"),
@@ -79,12 +80,13 @@ def _spectrum(suite: "pd.DataFrame", records: "pd.DataFrame | None", axis: str, 
                     x, np.where(np.isfinite(up), up, np.nan), look=Look("level", colour, QUANTILES[name]), label=label
                 )
             )
-        fell = x[np.isinf(of_alpha["median"].to_numpy(float))]
-        if len(fell):
-            height = np.full(len(fell), top * (1.0 + ROW * (place + 0.75)))
-            marks.append(
-                Points(fell, height, title=f"{words}: ∞", look=Look("", colour, shape="overturned"), label=FELL)
-            )
+        fell = {name: np.isinf(of_alpha[name].to_numpy(float)) for name in names}
+        some = fell.get("p84", fell["median"]) & ~fell["median"]
+        for which, alone, label in ((fell["median"], False, FELL), (some, True, FELL_P84)):
+            if which.any():
+                height = np.full(np.count_nonzero(which), top * (1.0 + ROW * (place + 0.75)))
+                look = Look("", colour, shape="overturned", open=alone)
+                marks.append(Points(x[which], height, title=f"{words}: ∞", look=look, label=label))
     x = suite[axis].to_numpy(float)
     across = Axis(ACROSS.get(axis, symbol(axis)), float(x.min()), float(x.max()), about=8)
     return Panel(across, y, marks, caption, width=420.0, height=190.0)

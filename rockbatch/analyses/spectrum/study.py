@@ -9,7 +9,7 @@ import numpy as np
 from rockbatch.motions.suites.pulses import SHAPES
 from rockbatch.pier import Base, Pier, problems
 from rockbatch.quantities.design import BOUND
-from rockbatch.study.cases import read_cases
+from rockbatch.study.cases import as_given, read_cases
 from rockbatch.study.load import Study
 from rockbatch.study.motions import PULSE
 from rockbatch.study.piers import PierRead, has_mass
@@ -216,12 +216,14 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
         {case.name: case.base for case, large in zip(expanded, larger, strict=False) if case.base != large.base},
     )
     reported = set()
-    for case in expanded:
+    written = {case.data.get("name"): case.data for case in table.file.tables("case", title="name")}
+    for case in sorted(expanded, key=lambda case: -case.pier.p):  # at the greatest p a stiffness in kN/m lacks most
         alpha = case.pier.alpha
         for problem in problems(case.pier, case.base):
             if (alpha, case.name) not in reported:
                 reported.add((alpha, case.name))
-                table.complain(f'alpha = {alpha:g}, case "{case.name}": {problem}', "alpha")
+                given = as_given({**written.get(case.name, {}), **case.columns}, problem, case.pier, case.base)
+                table.complain(f'alpha = {alpha:g}, case "{case.name}": {given}', "alpha")
     apart = [name for name in ("mu", "mass_t") if len({values.get(name) for _, values, _ in piers}) > 1]
     intensities = read.get(INTENSITY, ()) if axis == SELF_SIMILAR else ()
     of_axis = (INTENSITY, axis) if intensities else (axis,)

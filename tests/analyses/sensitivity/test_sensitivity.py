@@ -27,7 +27,7 @@ from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, Yieldin
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study
-from rockbatch.study.inputs import impossible, varied
+from rockbatch.study.inputs import impossible, outside, varied
 from rockbatch.study.suite import ground_motions
 
 STUDY = study_text(
@@ -357,8 +357,26 @@ def test_every_mistake_is_reported_with_its_line(tmp_path):
         assert any(f"study.toml:{line}: " in problem and words in problem for problem in caught.value.messages), told
 
 
+def test_a_range_without_the_values_of_several_cases_is_answered_once_with_four_digits(tmp_path):
+    """α of the study is atan(3.9/30) and atan(5/30); the range that is advised holds both, and is taken."""
+    text = study_text(
+        pier={"width_m": [3.9, 5.0], "height_m": 30.0, "mass_t": 3000.0},
+        cases=(RIGID,),
+        sensitivity={"uniform": {"alpha": [0.14, 0.15]}},
+    )
+    with pytest.raises(InputError) as caught:
+        read_sensitivity(load_study(written(tmp_path, text)))
+    (message,) = caught.value.messages
+    assert message.endswith('does not hold the 0.129275 of case "rigid", and 1 more; write alpha = [0.1292, 0.1652]')
+    (parameter,) = read_sensitivity(
+        load_study(written(tmp_path, text.replace("[0.14, 0.15]", "[0.1292, 0.1652]")))
+    ).inputs
+    assert parameter.levels == (0.1292, 0.1652)
+    assert outside("f", (0.2, 0.8), [("a", 0.0), ("b", None), ("c", 0.5)]).endswith("write f = [0.0, 0.8]")
+
+
 @pytest.mark.parametrize(("old", "new", "words"), [
-    ("alpha = [0.18, 0.22]", "alpha = [0.21, 0.22]", 'does not hold the 0.2 of case "rigid"; write alpha = [0.2, 0.22]'),
+    ("alpha = [0.18, 0.22]", "alpha = [0.21, 0.22]", 'the 0.2 of case "rigid", and 1 more; write alpha = [0.2, 0.22]'),
     ("eta = [2.5, 3.5]", "beta = [4, 30]", "beta = 4: the pier topples on its springs"),
     ("eta = [2.5, 3.5]", "eta = [0.5, 3.5]", "eta = 0.5: the springs cannot carry the weight"),
     ("alpha = [0.18, 0.22]", "alpha = [0.02, 0.22]", "beta = 30: the pier topples on its springs"),

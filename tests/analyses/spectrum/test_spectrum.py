@@ -169,6 +169,26 @@ def test_impossible_slendernesses_are_reported_with_the_case(tmp_path):
     assert 'alpha = 0.01, case "pads": beta = 40' in first + second
 
 
+def test_a_spectrum_names_the_stiffness_that_a_case_gives_and_what_it_takes(tmp_path):
+    """β > √((1+μ) cos α/μ)/sin α is K > M (β p)²/2, greatest at the greatest p; with it the spectrum is read."""
+    case = PADS | {"base": "elastic", "stiffness_kN_m": 1e5}
+    case = {name: value for name, value in case.items() if name in ("name", "base", "stiffness_kN_m")}
+    pier, wide = {"width_m": 4.0, "height_m": 20.0, "mass_t": 3000.0}, {"alpha": 0.08, "p": [0.4, 1.0], "points": 4}
+    text = study_text(pier=pier, cases=(case,), spectrum=wide)
+    with pytest.raises(InputError) as caught:
+        read(text, tmp_path)
+    (message,) = caught.value.messages
+    assert (
+        'alpha = 0.08, case "pads": stiffness_kN_m = 100000 with mass_t = 3000 means beta = 8.16497: the pier'
+        in message
+    )
+    needed = 0.5 * 3000.0 * (math.sqrt(4.0 / 3.0 * math.cos(0.08)) / math.sin(0.08)) ** 2
+    advised = float(message.rpartition("write stiffness_kN_m above ")[2])
+    assert needed <= advised <= 1.001 * needed
+    spectra, _ = read(text.replace("100000.0", f"{1.0001 * advised!r}"), tmp_path)
+    assert len(spectra.cases) == 4
+
+
 @pytest.mark.parametrize(("lines", "words"), [
     ("", "[spectrum] is missing"),
     ("[spectrum]\nalpha = 0.1", "it runs over one range; write two_pi_over_p_s ="),
