@@ -357,7 +357,7 @@ def test_every_mistake_is_reported_with_its_line(tmp_path):
         assert any(f"study.toml:{line}: " in problem and words in problem for problem in caught.value.messages), told
 
 
-def test_a_range_without_the_values_of_several_cases_is_answered_once_with_four_digits(tmp_path):
+def test_a_range_without_the_values_of_several_cases_is_answered_once(tmp_path):
     """α of the study is atan(3.9/30) and atan(5/30); the range that is advised holds both, and is taken."""
     text = study_text(
         pier={"width_m": [3.9, 5.0], "height_m": 30.0, "mass_t": 3000.0},
