@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -59,6 +59,14 @@ _MANY = 200  # files; fewer take no time worth a bar
 Paths = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
 
 
+class _Name(NamedTuple):
+    """What the name of a file says."""
+
+    site: str  # the station's part
+    direction: Orientation | None
+    site_of_several: str  # the station's part if the file holds several components, and is named after none of them
+
+
 @dataclass(frozen=True)
 class _ReadSettings:
     """Settings for all files that are read together."""
@@ -67,7 +75,7 @@ class _ReadSettings:
     options: ReadOptions
     gravity: float
     offset: Offset
-    names: Mapping[Path, tuple[str, Orientation | None]]  # station's part and direction of the names of files
+    names: Mapping[Path, _Name]
     inventories: Inventories
     beside: Mapping[Path, tuple[str, ...]]  # header lines that other files state
     lists: Lists
@@ -232,7 +240,7 @@ def read_files(
     readings = [
         reading
         for file, state, its_readings in read
-        for reading in _unless_changed(its_readings, file, state, settings.names[file.path][0])
+        for reading in _unless_changed(its_readings, file, state, settings.names[file.path].site)
     ]
     companions = _without_companions(_without_renamed(readings, files))
     return companions, {file.source: file.path for file in files}, manifest.sequences
@@ -316,12 +324,13 @@ def _content(file: SourceFile, first: int | None = None) -> bytes:
         return b""
 
 
-def _names(files: Sequence[SourceFile]) -> dict[Path, tuple[str, Orientation | None]]:
-    """Return the station's part of each file's name and its direction, by the stem, else by the suffix (.EW), else None.
+def _names(files: Sequence[SourceFile]) -> dict[Path, _Name]:
+    """Return what each file's name says, its direction by the stem, else by the suffix (.EW), else None.
 
-    The names in one folder decide together whether digits are azimuths, and letters directions.
+    The names in one folder decide together whether digits are azimuths, and letters directions. Digits in the name of a file of
+    several components are its station's, unless a vertical one has the same site without them: TAF021 and TAF-UP.
     """
-    names: dict[Path, tuple[str, Orientation | None]] = {}
+    names: dict[Path, _Name] = {}
     for paths in grouped((file.path for file in files), lambda path: path.parent).values():
         stems = {path: archives.bare(path).stem for path in paths}
         by_chance = set.union(*(rule(stems.values()) for rule in (counted, numbered, accidental)))
@@ -329,13 +338,19 @@ def _names(files: Sequence[SourceFile]) -> dict[Path, tuple[str, Orientation | N
         alone = {stem: (stem, None) if stem in by_chance else split_stem(stem) for stem in stems.values()}
         ends = grouped(apart.items(), lambda told: told[1][0])
         shared = {site for site, of_site in ends.items() if len({alone[stem][1] for stem, _ in of_site}) == 1}
-        for path, stem in stems.items():
+        of_folder: dict[str, tuple[str, Orientation | None]] = {}
+        for stem in stems.values():
             found, found_apart = alone[stem], apart.get(stem)
             # where all names of a site end in x, x is no direction
             if found_apart and (found[1] is None or found_apart[0] in shared):
                 found = found_apart
-            found = in_sets.get(stem, found)
-            names[path] = found[0], found[1] or direction_of_suffix(archives.bare(path).suffix)
+            of_folder[stem] = in_sets.get(stem, found)
+        upright = {site for site, direction in of_folder.values() if direction and direction.vertical}
+        for path, stem in stems.items():
+            site, direction = of_folder[stem]
+            numbered_site = direction is not None and direction.label.isdigit() and site not in upright
+            by_suffix = direction_of_suffix(archives.bare(path).suffix)
+            names[path] = _Name(site, direction or by_suffix, stem if numbered_site else site)
     return names
 
 
@@ -345,7 +360,7 @@ def _readings(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
     No error goes further, so that a bad file never costs another; texts are made legible.
     """
     path = archives.bare(file.path)
-    site = _site(path, settings.names[file.path][0])
+    site = _site(path, settings.names[file.path].site)
     lacks: tuple[str, ...] = ()
     companion = None
     kind: type[InputError] = UnusableRecord
@@ -412,11 +427,10 @@ def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Se
     return read_record(RecordFile(path, file.source, data, options, settings.gravity, settings.inventories, beside))
 
 
-def _with_place(component: Component, path: Path, name: tuple[str, Orientation | None], alone: bool) -> Component:
+def _with_place(component: Component, path: Path, name: _Name, alone: bool) -> Component:
     """Return a component with its folder, its site by the file's ``name``, and that name's direction if ``alone`` in the file."""
-    site, direction = name
-    component = add_name_statement(component, path.name, direction) if alone else component
-    site = _site(path, site if alone else path.stem)  # no file of several components is named after one of them
+    component = add_name_statement(component, path.name, name.direction) if alone else component
+    site = _site(path, name.site if alone else name.site_of_several)
     return replace(component, site=site, folder=path.parent.absolute().as_posix())
 
 

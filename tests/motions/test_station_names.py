@@ -201,3 +201,14 @@ def test_a_number_at_the_end_of_a_file_of_three_components_is_the_station_s(tmp_
         )
         (tmp_path / f"{station}.txt").write_text("time(s) N(g) E(g) Z(g)\n" + rows)
     assert {motion.of_station for motion in read_motions(tmp_path)} == {"ce12149", "ce12170"}
+
+
+@pytest.mark.parametrize(
+    ("horizontals", "vertical"),
+    [("T068_horizontal.txt", "T068_vertical.txt"), ("TAF021.txt", "TAF-UP.txt"), ("P_H.txt", "P_V.txt")],
+)
+def test_both_horizontals_in_one_file_have_the_vertical_beside_it(tmp_path, horizontals, vertical):
+    for name, head, seeds in ((horizontals, "N(g) E(g)", (1, 2)), (vertical, "Z(g)", (3,))):
+        rows = np.column_stack([0.01 * np.arange(200), *(wiggle(200, seed) for seed in seeds)])
+        np.savetxt(tmp_path / name, rows, "%.6f", header=f"time(s) {head}")
+    assert [motion.vertical_source for motion in read_motions(tmp_path)] == [vertical] * 2
