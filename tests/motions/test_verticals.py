@@ -234,5 +234,6 @@ def test_a_number_behind_the_direction_is_that_of_the_set(tmp_path, ways, sets):
 
 def test_numbered_horizontals_with_one_vertical_are_no_sets():
     assert in_numbered_sets(["a_NS1", "a_EW1", "a_UD1", "a_NS2", "a_EW2"]) == {}
+    assert in_numbered_sets(["a_N1", "a_E1", "a_N2", "a_E2"]) == {}
     assert in_numbered_sets(["a_H1", "a_V1", "a_H2", "a_V2"]) == {}
     assert in_numbered_sets([f"IBRH11_{way}{sensor}" for way in ("NS", "EW", "UD") for sensor in (1, 2)]) == {}

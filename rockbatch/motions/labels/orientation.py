@@ -346,7 +346,8 @@ def told_apart(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:
 def in_numbered_sets(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:
     """Return station's part and orientation of stems whose direction is followed by the number of their set: a_NS1, a_EW1, a_NS2.
 
-    Of a station two sets at least must have the same directions, north and east among them. KiK-net numbers its sensors.
+    Of a station two sets at least must have the same directions, north, east and vertical among them: an array may number its
+    sites, whose headers tell other azimuths. KiK-net numbers its sensors.
     """
     sets: dict[str, dict[str, dict[str, Orientation]]] = {}
     for stem in stems:
@@ -357,7 +358,8 @@ def in_numbered_sets(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]
     split_stems: dict[str, tuple[str, Orientation]] = {}
     for site, of_site in sets.items():
         first, *others = (Counter((o.vertical, o.azimuth) for o in members.values()) for members in of_site.values())
-        if others and all(other == first for other in others) and {(False, 0.0), (False, 90.0)} <= first.keys():
+        complete = {(False, 0.0), (False, 90.0)} <= first.keys() and any(vertical for vertical, _ in first)
+        if complete and others and all(other == first for other in others):
             for number, members in of_site.items():
                 split_stems |= {stem: (f"{site}{number}", orientation) for stem, orientation in members.items()}
     return split_stems
