@@ -237,3 +237,11 @@ def test_numbered_horizontals_with_one_vertical_are_no_sets():
     assert in_numbered_sets(["a_N1", "a_E1", "a_N2", "a_E2"]) == {}
     assert in_numbered_sets(["a_H1", "a_V1", "a_H2", "a_V2"]) == {}
     assert in_numbered_sets([f"IBRH11_{way}{sensor}" for way in ("NS", "EW", "UD") for sensor in (1, 2)]) == {}
+
+
+@pytest.mark.parametrize("names", [("A_000", "A_090", "B_045", "B_135"), ("000", "090", "045", "135")])
+def test_columns_of_two_records_in_one_table_need_not_be_in_a_plane(tmp_path, names):
+    rows = np.column_stack([0.01 * np.arange(len(COMPONENTS[0])), *COMPONENTS, wiggle(seed=4)])
+    np.savetxt(tmp_path / "x.txt", rows, "%.6f", header="time(s) " + " ".join(f"{name}(g)" for name in names))
+    found = read_motions(tmp_path).motions
+    assert [any("plane" in note for note in motion.notes) for motion in found] == [names[0] == "000"] * 4

@@ -20,12 +20,13 @@ from rockbatch.motions.identity.leaving_out import Reading
 from rockbatch.motions.identity.likeness import pairs_of_one_recording
 from rockbatch.motions.identity.stations import by_station
 from rockbatch.motions.labels.evidence import Kind, Statement, decided_orientation, same_direction
-from rockbatch.motions.labels.orientation import one_of_three, unknown
+from rockbatch.motions.labels.orientation import one_of_three, split_stem, unknown
 from rockbatch.motions.motion import Finding
 
 _COPIED = (Kind.CODE, Kind.HEADER)  # statements that programs copy from the first file to the others
 _SQUARE = 5.0  # degrees by which the azimuths of a pair may be off a right angle
-_IN_A_PLANE = 0.7  # of the sum of squares of three components: those of a plane have 0, independent ones 1
+_IN_A_PLANE = 0.7  # deviation over both its terms, of their sums of squares: 0 in a plane, 1 for independent motions
+_ALONE = 1e-6  # residual of a component along an axis that no other has
 _ASKEW = 30.0  # degrees off a right angle beyond which no sensor is built
 
 
@@ -257,25 +258,26 @@ def _skew_pair(a: Component, b: Component) -> str:
 
 
 def _leave_a_plane(components: Sequence[Component]) -> bool:
-    """Return whether a set is horizontals of one sensor, not all stated by the user, of which three are no motion in a plane.
+    """Return whether a set is horizontals of one sensor, not all stated by the user, that are no motion in a plane.
 
-    For three in a plane sin(φ₂ − φ₃) a₁ + sin(φ₃ − φ₁) a₂ + sin(φ₁ − φ₂) a₃ = 0. False for several sensors, files of
-    different steps or starts, and unknown azimuths.
+    Then one of them is not what the least squares of the others, turned to two axes, give in its direction. False for several
+    sensors, columns whose labels differ in more than the direction, files of different steps or starts, and unknown azimuths.
     """
     azimuths = [c.orientation.azimuth for c in components if c.orientation.azimuth is not None]
     if not len(components) == len(azimuths) > 2 or all(map(_by_user, components)):
         return False
-    if len({(c.sensor, c.start, c.dt) for c in components}) > 1:
+    sites = {site for site, way in (split_stem(c.orientation.label) for c in components) if way}
+    if len({(c.sensor, c.start, c.dt) for c in components}) > 1 or len(sites) > 1:
         return False
     phi = np.radians(azimuths)
     shortest = min(len(c.acceleration) for c in components)
     samples = np.array([c.acceleration[:shortest] for c in components])
-    products = samples @ samples.T
-    for three in map(list, combinations(range(len(components)), 3)):
-        across = np.sin(np.roll(phi[three], -1) - np.roll(phi[three], -2))
-        if across @ products[np.ix_(three, three)] @ across > _IN_A_PLANE**2 * across**2 @ products[three, three]:
-            return True
-    return False
+    axes = np.column_stack([np.cos(phi), np.sin(phi)])
+    residual = np.eye(len(phi)) - axes @ np.linalg.pinv(axes)  # of the fit to all
+    checked = residual.diagonal() > _ALONE
+    deviations = (residual @ samples)[checked] / residual.diagonal()[checked, None]  # from the fit to all others
+    energies = (samples[checked] ** 2 + (samples[checked] - deviations) ** 2).sum(axis=1)
+    return bool(((deviations**2).sum(axis=1) > _IN_A_PLANE**2 * energies).any())
 
 
 def _with_doubt(component: Component) -> Component:
