@@ -678,7 +678,39 @@ def test_columns_of_a_broadband_platform_have_the_directions_of_their_signs(tmp_
     np.testing.assert_allclose(two.vertical, sign * 9.81 * C, atol=1e-6)
 
 
-@pytest.mark.parametrize("line", ["MUESTREO (Hz): 200", "delta: 0.005", "Pas de timp: 0.005 s"])
+@pytest.mark.parametrize("line", ["MUESTREO (Hz): 200", "Muestreo: 200 Hz", "Pas de timp: 0.005 s"])
 def test_further_words_state_the_interval(tmp_path, line):
     (tmp_path / "x.txt").write_text(f"{line}\nUnits: g\nN E Z\n{in_columns(A, B, C, between=' ')}", encoding="utf-8")
     assert {motion.dt for motion in read_motions(tmp_path)} == {DT}
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["Muestreo: 0.01", "Muestreo: 100 Hz original", "Muestreo original: 100 Hz", "Delta: 0.45 deg", "delta = 54.2"],
+)
+def test_distances_and_other_rates_are_no_interval(tmp_path, line):
+    (motion,) = read(tmp_path, f"{line}\ntime(s) N(g)\n{in_columns(T, A, between=' ')}").motions
+    assert motion.dt == DT
+
+
+@pytest.mark.parametrize("unit", ["", " (m/s)"])
+def test_columns_of_velocity_keep_this_word_and_are_left_out_beside_accelerations(tmp_path, unit):
+    for name, quantity, of_it in (("a", "acceleration", unit and " (m/s/s)"), ("v", "velocity", unit)):
+        lines = [
+            f"# Column {i}: H{i - 1} component ground {quantity}{of_it} (+ is {way})"
+            for i, way in ((2, "055"), (3, "145"))
+        ]
+        head = "\n".join(["# Column 1: Time (s)", *lines, "# units= m/s^2" if quantity == "acceleration" else "#"])
+        (tmp_path / f"{name}.txt").write_text(f"{head}\n{in_columns(T, A, B, between=' ')}")
+    found = read_motions(tmp_path)
+    assert [motion.azimuth for motion in found.motions] == [55.0, 145.0]
+    assert [file.source for file in found.left_out] == ["v.txt"]
+
+
+def test_numbered_lines_without_units_give_way_to_labels_with_units_and_to_the_study(tmp_path):
+    rows = in_columns(T, A, B, between=" ")
+    lines = "# Column 1: seconds after origin\n# Column 2: first\n# Column 3: second\n"
+    labelled = read(tmp_path, f"{lines}# time(sec) N-S(g) E-W(g)\n{rows}", options=ReadOptions())
+    stated = read(tmp_path, lines + rows, options=ReadOptions(columns=("time", "NS", "EW"), unit="g"))
+    for found in (labelled, stated):
+        assert [(motion.azimuth, motion.dt) for motion in found.motions] == [(0.0, DT), (90.0, DT)]

@@ -233,10 +233,14 @@ def test_a_depth_over_two_metres_is_below_the_ground_in_either_unit(place):
         (["Station: HTL", "Location: Roof"], "structure"),
         (["Estación: Hotel Plaza, azotea"], "structure"),
         (["Station name = WLA GL-22m"], "borehole"),
-        (["Site: Dam downhole 30 m"], "borehole"),
+        (["Location: Dam downhole 30 m"], "borehole"),
         (["Station: Golden Bridge, free field"], ""),
         (["Station: PIER"], ""),  # a code
         (["Source: top of pier 3"], ""),
+        (["Site: NEHRP class D, groundwater at 3 m"], ""),
+        (["Location: Shinjuku, water table at 4 m"], ""),
+        (["Station: Shaft Hill, bedrock depth 45 m"], ""),
+        (["Location: Vs30 = 300 m/s at a depth of 30 m"], ""),
     ],
 )
 def test_the_header_of_a_table_says_where_its_sensor_stands(tmp_path, lines, said):
@@ -246,3 +250,4 @@ def test_the_header_of_a_table_says_where_its_sensor_stands(tmp_path, lines, sai
     found = read_motions(tmp_path)
     assert len(found.motions) == (not said)
     assert not said or said in only_reason(found)
+    assert not any(motion.origin.station for motion in found)

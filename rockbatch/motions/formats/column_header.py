@@ -12,7 +12,7 @@ from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.labels.direction_words import folded
 from rockbatch.motions.labels.orientation import orientation_in, orientation_of
 from rockbatch.motions.limits import HUGE, SAME_STEP
-from rockbatch.motions.quality.places import tells_place
+from rockbatch.motions.quality.places import Stand, stand
 from rockbatch.motions.sources.record_file import ReadOptions
 
 _SECOND = "s sec secs second seconds sek sekunde sekunden seg segundo segundos seconde secondes secondo secondi sn saniye сек 秒"
@@ -24,12 +24,13 @@ _SLOWEST = 1.0  # Hz: a lower "rate" is probably an interval
 _RATE_UNITS = ("hz", "sps", "samples/sec", "samples/s", "pts/sec", "points/sec", "1/s")
 _SAMPLE = r"sampl(?:e|es|ing)[ _-]?"
 _INTERVAL = (
-    rf"dt|delta(?: ?t)?|Δt|time[ _-]?(?:step|increment|interval)|{_SAMPLE}(?:interval|period|step|time)|"
+    rf"dt|delta ?t|Δt|time[ _-]?(?:step|increment|interval)|{_SAMPLE}(?:interval|period|step|time)|"
     "intervalo? de (?:muestreo|tiempo|amostragem)|paso de tiempo|pas de timp|pas d['e] ?(?:temps|[eé]chantillonnage)|"
     "passo di campionamento|intervallo di campionamento|abtastintervall|zeitschritt|örnekleme aral[iı]ğ[iı]"
 )
 _RATE = (
-    rf"{_SAMPLE}(?:rate|freq(?:uency)?)|samples[ _-]per[ _-]sec(?:ond)?|sps|(?:(?:frecuencia|tasa) de )?muestreo|"
+    rf"{_SAMPLE}(?:rate|freq(?:uency)?)|samples[ _-]per[ _-]sec(?:ond)?|sps|(?:frecuencia|tasa) de muestreo|"
+    "muestreo(?=[^A-Za-z]*Hz[^A-Za-z]*$)|"
     "taxa de amostragem|fr[eé]quence d'[eé]chantillonnage|frequenza di campionamento|abtastrate|örnekleme frekans[iı]"
 )
 _SPACED = r"(?:equally[ _-])?spaced at|(?:equal|time|sec) intervals? of|at intervals? of"
@@ -47,15 +48,16 @@ _OF_OTHER_DATA = re.compile(r"\b(?:original|raw|recorder|instrument|resampled|fr
 _UNIT = r"[(\[]\s*+(?P<unit>[^()\[\]]*[^()\[\]\s])\s*+[)\]]"
 _NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>[^()\[\]]*?)\s*+(?:{_UNIT}|$)", re.IGNORECASE)
 _POSITIVE_ALONG = re.compile(  # of SCEC's broadband platform: Column 2: H1 component ground acceleration (+ is 035)
-    r"^(?P<column>column\s+\d{1,3}\s*[:=]\s*)[^()\[\]]*(?P<unit>[(\[][^()\[\]]*[)\]])?\s*"
+    r"^(?P<column>column\s+\d{1,3}\s*[:=]\s*)[^()\[\]]*\bacc[^()\[\]]*(?P<unit>[(\[][^()\[\]]*[)\]])?\s*"
     r"[(\[]\s*\+ is (?P<azimuth>\d{1,3})(?:\.0*)?\s*[)\]]$",
     re.IGNORECASE,
 )
 _PLACE = re.compile(
-    r"^(?:recording )?(?:station|site|location|place|estaci[oó]n|esta[cç][aã]o|stazione|istasyon|lugar|ort|standort)"
+    r"^(?:recording )?(?:station|location|place|estaci[oó]n|esta[cç][aã]o|stazione|istasyon|lugar|ort|standort)"
     r"(?: ?(?:name|location|nombre))?\s*[:=]\s*(?P<words>[^\W\d_]{3,}.*|\S*[^\x00-\x7f].*)$",
     re.IGNORECASE,
 )
+_OF_SOIL = re.compile(r"rock\b|\bsoil|water\b|\bvs|\bclass\b", re.IGNORECASE)
 _LABELLED = re.compile(rf"(?P<label>[^\s,;()\[\]](?:[^,;\t()\[\]]*[^\s,;()\[\]])?)\s*+{_UNIT}")
 _WORD = re.compile(rf"(?P<label>[^\s,;()\[\]]+)(?:\s*{_UNIT})?")  # a label of one word, perhaps with its unit
 _FIELD = re.compile(rf"(?P<label>[^()\[\]]*[^()\[\]\s])\s*(?:{_UNIT})?")  # a label between commas or tabs
@@ -224,22 +226,25 @@ def seconds_in(unit: str) -> float | None:
 
 
 def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None:
-    """Return the columns if the header states label and unit of all ``width``, or numbers their labels; else ``None``.
+    """Return the columns if the header states label and unit of all ``width``; else ``None``.
 
-    ``Column 2: North-south acceleration (cm/s/s)``, perhaps without unit, or in one line ``time(sec) N-S(cm/s/s) …``, of
-    which one unit at least is known and the last such line counts, or in two, the labels and their units, of which some may be
-    "" or "-".
+    ``Column 2: North-south acceleration (cm/s/s)``, without unit if they are time and directions, or in one line
+    ``time(sec) N-S(cm/s/s) …``, of which one unit at least is known and the last such line counts, or in two, the labels and
+    their units, of which some may be "" or "-".
     """
-    numbered = {int(m["at"]): _column(m) for line in header if (m := _NUMBERED.match(line))}
-    if sorted(numbered) == list(range(1, width + 1)):
-        return [numbered[i + 1] for i in range(width)]
+    by_number = {int(m["at"]): _column(m) for line in header if (m := _NUMBERED.match(line))}
+    numbered = [by_number[at] for at in sorted(by_number)] if sorted(by_number) == list(range(1, width + 1)) else []
+    if numbered and all(column.unit for column in numbered):
+        return numbered
     for line in reversed(header):
         labelled = [] if _KEYED.match(line) else [_column(match) for match in _LABELLED.finditer(line)]
         # "PGA (g): 0.5" is no label, and "Final (Baseline corrected)" has no unit
         complete = len(labelled) == width and not _LABELLED.sub("", line).strip(' \t,;"')
         if complete and any(_is_unit(column.unit or "") for column in labelled):
             return labelled
-    return _with_unit_row(header, width)
+    directions = [column.label for column in numbered if not column.is_time]
+    telling = len(directions) < len(numbered) and all(map(orientation_of, directions))
+    return _with_unit_row(header, width) or (numbered if telling else None)
 
 
 def _with_unit_row(header: Sequence[str], width: int) -> list[Column] | None:
@@ -360,13 +365,15 @@ def stated_direction(header: Sequence[str]) -> str:
     return ""
 
 
-def stated_place(header: Sequence[str]) -> str:
-    """Return the words in lines such as ``Station: Bay Bridge`` and ``Location: Pier 3``, joined by commas; "" without any.
+def stated_place(header: Sequence[str]) -> str | None:
+    """Return the words in lines such as ``Station: Bay Bridge`` and ``Location: top of pier 3`` that place a sensor.
 
-    A code of one word that tells no place is none.
+    ``None`` unless they place it on a structure or in a borehole. Phrases on the soil, whose depths are not the sensor's, do not
+    count.
     """
-    words = (match["words"].strip() for match in map(_PLACE.match, header) if match)
-    return ", ".join(dict.fromkeys(place for place in words if " " in place or tells_place(place)))
+    phrases = (phrase for match in map(_PLACE.match, header) if match for phrase in match["words"].split(","))
+    where, words = stand("", ",".join(phrase for phrase in phrases if not _OF_SOIL.search(phrase)))
+    return None if where is Stand.GROUND else words
 
 
 def is_down(header: Sequence[str]) -> bool:

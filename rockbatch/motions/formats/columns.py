@@ -44,7 +44,6 @@ from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.labels.evidence import Kind
 from rockbatch.motions.labels.orientation import Orientation, is_upward, orientation_in, same_azimuth, split_stem
-from rockbatch.motions.labels.origin import origin_of
 from rockbatch.motions.limits import SAME_STEP, is_step
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.quality.places import Stand, stand, tells_place
@@ -108,7 +107,7 @@ def _by_station(recordings: Sequence[Recording], stem: str) -> list[Recording]:
     are_places = all(tells_place(site) for site, _ in sites)  # else codes of stations, such as COL beside KEM
 
     def of_site(recording: Recording, site: str) -> Recording:
-        place = site if are_places or stand("", site)[0] is not Stand.GROUND else None
+        place = site if are_places or stand("", site)[0] is not Stand.GROUND else recording.sensor.place
         return replace(recording, station=f"{stem}, {site}", sensor=Sensor(site.upper(), place=place))
 
     return [of_site(recording, site) for recording, (site, _) in zip(recordings, sites, strict=True)]
@@ -160,7 +159,7 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: st
         raise NoRecord(f"found {quantities or 'a column of time and no other'}; expected accelerations")
     omitted = tuple(f"{_column_name(i, columns[i])} left out: a {columns[i].other}" for i in not_acceleration)
     dt, values, moved = _on_one_step(columns, table, header, options)
-    recordings, origin = [], origin_of(station=stated_place(header))
+    recordings, sensor = [], Sensor(place=stated_place(header))
     for i in used:
         orientation = _oriented(columns[i].label, header)
         recording = Recording(
@@ -171,7 +170,7 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: st
             values=values[:, i],
             unit=units[i],
             start=start,
-            origin=origin,
+            sensor=sensor,
             stated=stated_of_samples(header) if len(used) == 1 else (),
             notes=(*notes, *omitted, *moved, *_remarks_on_sign(orientation, header, stem)),
         )
