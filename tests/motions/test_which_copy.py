@@ -297,6 +297,17 @@ def test_a_copy_that_is_cut_stands_back_behind_the_whole_record_whatever_their_n
     assert set(left_out(found)) == {f"S{way}_cut.AT2" for way in ("000", "090", "UP")}
 
 
+def test_zeros_around_a_copy_do_not_make_it_the_longer_record(tmp_path):
+    for seed, way in enumerate(("000", "090", "UP"), 1):
+        values = wiggle(500, seed) * np.sin(np.pi * np.arange(500) / 499)
+        write_at2(tmp_path, f"A_{way}.AT2", values, title=title(way))
+        write_at2(
+            tmp_path, f"A_{way}_padded.AT2", np.concatenate((np.zeros(150), values, np.zeros(300))), title=title(way)
+        )
+    found = read_motions(tmp_path)
+    assert [motion.npts for motion in found] == [500, 500]
+
+
 # Sources
 
 

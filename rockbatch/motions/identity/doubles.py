@@ -23,6 +23,7 @@ _GROSS_FACTOR = 0.05  # relative difference between copies beyond which they hav
 _UNITS, _SAME_UNIT = (3.2808, 9.81, 10.0, 32.185, 39.37, 98.1, 100.0, 386.22, 981.0, 1000.0, 9810.0), 0.003
 """Factors between units of acceleration (10 is g/10), and how far off they may be, relative: g is 9.80665 to 9.81 m/s²."""
 _UNEQUAL = 1.5  # ratio of the peaks of two copies that is reported
+_MOVING = 1e-3  # of the peak
 _SCALED = re.compile(r"(?<!un)(?<!not_)scaled", re.IGNORECASE)
 _RAW = re.compile(r"(?<![a-z])(?:raw|uncorr(?:ected)?)(?![a-z])", re.IGNORECASE)
 
@@ -156,8 +157,8 @@ def _ranks(
 
     In this order: chosen by a manifest; sound before grossly odd; corrected before unknown before uncorrected; not called
     scaled; not called raw, if no header says; two horizontals and a vertical before fewer; a unit of acceleration before counts;
-    the finer time step; the stronger shaking, by powers of two; the longer one, by seconds; the suffix of a format; the shorter
-    name; the first.
+    the finer time step; the stronger shaking, by powers of two; the longer shaking, by seconds; the suffix of a format; the
+    shorter name; the first.
     """
     sets: dict[int, list[int]] = {}
     for members in sets_of(components):
@@ -181,13 +182,19 @@ def _ranks(
             not first.unit,
             float(f"{first.dt:.3g}"),
             -round(math.log2(sum(energy[i] for i in members) or 1e-300)),
-            -round(first.duration),
+            -round(_shaken(first)),
             not is_usual(first.suffix),
             min(len(c.source) for c in of_set),
             members[0],
         )
         ranks.update({i: (*rank, i) for i in members})
     return ranks
+
+
+def _shaken(component: Component) -> float:
+    """Return the time between the first and the last sample above 0.1 % of the peak [s], which zeros put around do not change."""
+    moving = np.flatnonzero(np.abs(component.acceleration) >= _MOVING * component.pga)
+    return float(moving[-1] - moving[0]) * component.dt
 
 
 def _is_unit_ratio(factor: float) -> bool:
