@@ -308,3 +308,9 @@ def test_a_negative_sensitivity_is_remarked(tmp_path):
         True,
         False,
     ]
+
+
+def test_a_negative_sensitivity_that_the_study_states_is_not(tmp_path):
+    write_mseed(tmp_path / "x.mseed", *(trace(channel) for channel in ("HNN", "HNE")))
+    found = read_motions(tmp_path, options=ReadOptions(sensitivity=-2e5))
+    assert not any("negative" in finding.text for motion in found for finding in motion.findings)

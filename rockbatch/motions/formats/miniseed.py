@@ -196,7 +196,7 @@ def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -
         processed=False,
         origin=origin_of(date=stats.starttime.strftime("%Y-%m-%d"), station=_station(trace)),
         sensor=Sensor(stats.station, stats.network, stats.location, _place(described) if described else None),
-        findings=() if sensitivity > 0 else (_REVERSED,),
+        findings=(_REVERSED,) if entry is not None and sensitivity < 0 else (),
         notes=(origin,),
     )
 
