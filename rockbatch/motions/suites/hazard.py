@@ -74,11 +74,11 @@ class HazardCurve:
     def rate(self, x: "Sequence[float] | Values") -> Values:
         """Return the annual rate at which each intensity ``x`` above 0 is exceeded, in its shape; extrapolated beyond the points.
 
-        Below the summit of a parabola it is the rate of the summit.
+        Below the summit of a parabola it is the rate of the summit, and beyond its bottom the rate of the bottom.
         """
         log_x = np.log(np.asarray(x, dtype=np.float64))
         if self.shape == "quadratic":
-            return np.exp(np.polyval(self._parabola, np.maximum(log_x, self._summit)))
+            return np.exp(np.polyval(self._parabola, np.clip(log_x, *self._falling)))
         logs, k = np.log(self.levels), self._slopes
         segment = np.clip(np.searchsorted(logs, log_x) - 1, 0, len(k) - 1)
         return np.exp(np.log(np.array(self.rates))[segment] - k[segment] * (log_x - logs[segment]))
@@ -124,10 +124,11 @@ class HazardCurve:
         return np.polyfit(np.log(self.levels), np.log(self.rates), 2)
 
     @property
-    def _summit(self) -> float:
-        """Return the ln x of the maximum of a parabola, below which its rate is kept constant; −inf without a maximum."""
+    def _falling(self) -> tuple[float, float]:
+        """Return the ln x between which a parabola falls, and beyond which its rate is kept constant; ±inf without a turn."""
         a, b, _ = self._parabola
-        return float(-b / (2.0 * a)) if a < 0 else -math.inf
+        turn = float(-b / (2.0 * a)) if a else math.inf
+        return (turn, math.inf) if a < 0 else (-math.inf, turn)
 
 
 def problems(
@@ -154,7 +155,7 @@ def problems(
             yield place, f"level {high:g} after {low:g}: write them in rising order"
         elif less >= more:
             yield place, f"rate {less:g} per year at {high:g} after {more:g} at {low:g}: a stronger motion is rarer"
-        elif math.log(more / less) > STEEPEST * math.log(high / low):
+        elif place == 1 and math.log(more / less) > STEEPEST * math.log(high / low):  # of rates below the points
             yield place, f"the rate falls from {more:g} to {less:g} per year between {low:g} and {high:g}, {_TOO_STEEP}"
     if max(rates) > MOST_RATE:
         yield None, f"a rate of {max(rates):g} per year: is it a return period in years? Its rate is one over it"
@@ -180,8 +181,5 @@ def _about_shape(
         yield None, f"a parabola needs three points, and there {'are' if len(levels) == 2 else 'is'} {len(levels)}"
     elif shape == "quadratic" and all(b > a > 0 for a, b in pairwise(levels)):
         a, b, _ = np.polyfit(np.log(levels), np.log(rates), 2)
-        advice = 'write shape = "points", or other points'
         if not max(2.0 * a * math.log(x) + b for x in (levels[0], levels[-1])) < 0:
-            yield None, f"the parabola does not fall all over its points: {advice}"
-        elif 2.0 * a * (math.log(levels[-1]) + REACH) + b >= 0:
-            yield None, f"the parabola rises again, from {math.exp(-b / (2.0 * a)):.3g} on: {advice}"
+            yield None, 'the parabola does not fall all over its points: write shape = "points", or other points'

@@ -262,6 +262,19 @@ def test_the_steepest_hazard_that_is_taken_has_the_closed_form_without_an_overfl
     assert (np.diff(convex.rate(np.geomspace(0.1, 0.4 * math.exp(10.0), 100))) < 0).all()
 
 
+def test_beyond_its_bottom_a_parabola_keeps_the_rate_of_the_bottom():
+    convex = HazardCurve([0.1, 0.2, 0.4], [1e-2, 1e-3, 1.6e-4], shape="quadratic")
+    assert (np.diff(convex.rate(np.geomspace(0.1, 4.2, 100))) < 0).all()
+    assert convex.rate([4.3, 40.0, 4e3]) == pytest.approx([convex.rate([4.22])[0]] * 3, rel=1e-6)
+    assert rate_of(exactly(0.2, 0.1), convex) == pytest.approx(1.05e-3, rel=0.05)
+
+
+def test_a_tail_of_a_hazard_that_is_cut_by_truncation_is_taken():
+    levels, rates = [0.5, 1.0, 1.5, 1.6], [1e-4, 1e-6, 1.5e-9, 1e-14]
+    whole, cut = HazardCurve(levels, rates), HazardCurve(levels[:-1], rates[:-1])
+    assert rate_of(exactly(1.0, 0.2), whole) == pytest.approx(rate_of(exactly(1.0, 0.2), cut), rel=1e-3)
+
+
 def test_rates_are_integrated_once_for_each_curve(tmp_path, monkeypatch):
     """For a cloud that takes seconds."""
     integrated = []
@@ -513,7 +526,6 @@ def test_a_hazard_in_a_file_is_that_of_its_points(tmp_path):
         ({"file": "not_there.csv"}, "not_there.csv: no such file"),
         ({"file": "hazard.csv", "levels_g": [0.1]}, "file and levels_g are given; keep one"),
         ({"levels_g": [0.1, 0.2, 0.4], "rate_per_year": [0.1, 0.09, 0.0001], "shape": "quadratic"}, "does not fall all over"),
-        ({"levels_g": [0.1, 0.2, 0.4], "rate_per_year": [1e-2, 1e-3, 1.6e-4], "shape": "quadratic"}, "rises again, from 4.22 on"),
         ({"levels_g": [0.2], "rate_per_year": [0.02], "slope": 30.1}, "slope = 30.1: steeper than 1/x^30"),
         ({"levels_g": [0.2, 0.202], "rate_per_year": [0.02, 0.0148]}, "between 0.2 and 0.202, steeper than 1/x^30"),
     ],
