@@ -155,9 +155,9 @@ class Motion(Shown):
         that is a motion of its own, or there is none.
     vertical_factor : float or None
         What the vertical component as it was recorded was multiplied by, if that is not ``factor``.
-    sources : tuple of str
-        Where all its components came from, those of both horizontals of a rotated motion and of all shocks of a sequence
-        included; by default ``source`` and ``vertical_source``.
+    component_sources : tuple of str
+        Where all its components came from, if from more than ``source`` and ``vertical_source``: those of both horizontals of
+        a rotated motion, and of all shocks of a sequence.
     recorded : bool
         Whether it is an earthquake's; False for pulses and still ground, which no target scales and no suite counts.
     turned : bool
@@ -201,15 +201,13 @@ class Motion(Shown):
     across: Samples | None = None
     vertical_factor: float | None = None
     listed: Listed = NOT_LISTED
-    sources: tuple[str, ...] = ()
+    component_sources: tuple[str, ...] = ()
     recorded: bool = True
     turned: bool = False
 
     def __post_init__(self) -> None:
         for text in ("name", "station"):  # which go into tables
             object.__setattr__(self, text, legible(getattr(self, text), keep="\t\r\n"))
-        if not self.sources:
-            object.__setattr__(self, "sources", tuple(filter(None, (self.source, self.vertical_source))))
         wrong: list[Problem | str] = []
         if not (math.isfinite(self.dt) and self.dt > 0):
             wrong.append(f'motion "{self.name}": dt = {self.dt:g}: must be a number above 0 [s]')
@@ -360,13 +358,18 @@ class Motion(Shown):
     @property
     def label(self) -> str:
         """Return its name in words, "Imperial Valley 1979, Meloland, 270", else its file; the name of a pulse or a sequence."""
-        by_name = not (self.source and self.recorded) or len(self.records) > 1
+        by_name = self.source in ("", "pulse") or not self.recorded or len(self.records) > 1
         return self.origin.label or (self.name if by_name else self.source)
 
     @property
     def named(self) -> str:
         """Return its label, followed by its name in tables if that differs."""
         return self.label if self.label == self.name else f"{self.label} ({self.name})"
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Return the sources of all its components."""
+        return self.component_sources or tuple(filter(None, (self.source, self.vertical_source)))
 
     @property
     def files(self) -> str:
@@ -485,6 +488,7 @@ class Motion(Shown):
         return times
 
 
+@checked
 @dataclass(frozen=True)
 class Unusable(Sourced):
     """A file or component that cannot be used, with the reason; it stays in the tables as a row.
@@ -521,6 +525,7 @@ class Unusable(Sourced):
         return f"{self.source}: {self.reason}"
 
 
+@checked
 @dataclass(frozen=True)
 class LeftOut(Sourced):
     """A file or record that is left out on purpose, with the reason: not selected, excluded, a copy, or no record.

@@ -1,6 +1,7 @@
 """A set of motions as a list of them, and as a table; what it tells of itself."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -101,3 +102,16 @@ def test_what_is_stated_about_files_is_public(tmp_path):
     assert len(rb.read_motions(tmp_path)) == 0
     found = rb.read_motions(tmp_path, options=rb.ReadOptions(unit="g", dt=0.01, columns=("090",)))
     assert found[0].pga == pytest.approx(0.4 * 9.81)
+
+
+def test_sources_follow_a_source_that_is_replaced_unless_they_are_stated():
+    motion = rb.Motion("x", 0.02, np.ones(3), source="a.AT2")
+    assert replace(motion, source="b.AT2").sources == ("b.AT2",)
+    assert replace(motion, component_sources=("a", "b"), source="c").sources == ("a", "b")
+    assert rb.Motion("x", 0.02, np.ones(3), source="pulse").label == "x"
+
+
+@pytest.mark.parametrize("refused", [Unusable, LeftOut])
+def test_a_text_is_not_taken_for_several_sources(refused):
+    with pytest.raises(rb.InputError, match=r"sources = 'a\.AT2'"):
+        refused("n", "a.AT2", "reason")

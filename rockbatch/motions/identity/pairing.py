@@ -269,7 +269,7 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str], station: st
         vertical=vertical,
         source=h.source,
         vertical_source=v.source if v is not None else "",
-        sources=h.sources if v is None else (*h.sources, *v.sources),
+        component_sources=(*h.sources, *(() if v is None else v.sources)) if len(h.sources) > 1 else (),
         notes=tuple(remarks),
         azimuth=h.orientation.azimuth,
         magnitude=h.magnitude,

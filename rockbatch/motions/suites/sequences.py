@@ -312,7 +312,7 @@ def _with_common_origin(parts: Sequence[Motion], whole: Motion) -> Motion:
         whole,
         source=", ".join(_in_turn((part.source,) for part in parts)),
         vertical_source=", ".join(_in_turn((part.vertical_source,) for part in parts)),
-        sources=_in_turn(part.sources for part in parts),
+        component_sources=_in_turn(part.sources for part in parts),
         recorded=any(part.recorded for part in parts),
         findings=tuple(dict.fromkeys(finding for part in parts for finding in part.findings)),
         station=" + ".join(sorted({part.of_station for part in parts})),  # the same for any order and repetition
