@@ -488,7 +488,6 @@ class Motion(Shown):
         return times
 
 
-@checked
 @dataclass(frozen=True)
 class Unusable(Sourced):
     """A file or component that cannot be used, with the reason; it stays in the tables as a row.
@@ -525,7 +524,6 @@ class Unusable(Sourced):
         return f"{self.source}: {self.reason}"
 
 
-@checked
 @dataclass(frozen=True)
 class LeftOut(Sourced):
     """A file or record that is left out on purpose, with the reason: not selected, excluded, a copy, or no record.

@@ -187,7 +187,9 @@ def describe(study: Study, motions: MotionSet) -> Row:
         ),
         **_vertical_target(study, motions, gravity),
         "unusable": [_not_used(file) for file in motions.unusable],
-        "left_out": [{"source": file.source} | asdict(file) for file in motions.left_out],
+        "left_out": [
+            {"source": file.source} | asdict(file) | {"sources": list(file.sources)} for file in motions.left_out
+        ],
         "references": [asdict(reference) for reference in study.references],
     }
 
@@ -195,7 +197,11 @@ def describe(study: Study, motions: MotionSet) -> Row:
 def _not_used(file: Unusable) -> Row:
     """Return the entry of a file that is not used: its fields without the motion, what it ``lacks``, and its problem's class."""
     entry = {name: value for name, value in vars(file).items() if name != "motion"}
-    return {"source": file.source} | entry | {"lacks": list(file.lacks), "kind": file.kind.__name__}
+    return (
+        {"source": file.source}
+        | entry
+        | {"sources": list(file.sources), "lacks": list(file.lacks), "kind": file.kind.__name__}
+    )
 
 
 def describe_study(study: Study) -> dict[str, str]:

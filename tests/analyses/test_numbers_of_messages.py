@@ -244,7 +244,10 @@ SENSITIVITY = {
     ),
     "runs of a sample": (
         lambda: sensitivity._of_runs(
-            {"statistic": "median", "statuses": {"ok": 80, "overturned": 7, "flight": 4, "failed": 3}, "overturned": 2.5}
+            {
+                **{"statistic": "median", "statuses": {"ok": 80, "overturned": 7, "flight": 4, "failed": 3}},
+                **{"overturned": 2.5, "motions": 4, "stations": 4},
+            }
         ),
         [11.0, 94.0, "runs", 2.5, 3.0, 94.0, "runs"],
     ),

@@ -1,7 +1,7 @@
 """A rigid pier with devices on rigid ground: Runge–Kutta in plain Python, every event by bisection, the row that comes of it.
 
 The height v of the centre of mass and the rotation θ are coordinates on the ground and in flight alike; on a pivot v follows θ.
-Friction dampers are for piers that do not fly. It shares nothing with the product but THEORY.md, section 5.
+Friction dampers are for piers that do not fly. It shares nothing with the product but the equations of THEORY.md.
 """
 
 import math

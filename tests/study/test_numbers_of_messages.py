@@ -200,7 +200,7 @@ MESSAGES = {
     ),
     "too many cases": (lambda: too_many(MOST_CASES + 7, "piers"), [MOST_CASES + 7.0, "piers", MOST_CASES]),
     "a range beside the value": (
-        lambda: outside("beta", (30.0, 45.0), 50.0, type("Case", (), {"name": "pads"})),
+        lambda: outside("beta", (30.0, 45.0), [("pads", 50.0)]),
         ["beta", 30.0, 45.0, 50.0, '"pads"', "beta", 30.0, 50.0],
     ),
 }

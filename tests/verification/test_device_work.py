@@ -296,7 +296,7 @@ def test_devices_that_a_study_lacks_bring_no_columns_and_checks_of_them_do_not_a
 
 @pytest.mark.slow
 def test_what_dampers_do_ends_with_the_run_while_the_pier_still_rocks():
-    """THEORY.md, section 5: the peak is the same with a tail of two minutes, and what follows is what the page says."""
+    """THEORY.md, Dampers and tendons: the peak is the same with a tail of two minutes, and what follows is what the page says."""
     oil, steel = (Damper("viscous", nu=0.02),), (Damper("hysteretic", f=0.02, yield_m=0.005),)
     damped = {"kinematics": "finite", "zeta": 0.02}
     bases = (

@@ -182,7 +182,7 @@ def _ranks(
             not first.unit,
             float(f"{first.dt:.3g}"),
             -round(math.log2(sum(energy[i] for i in members) or 1e-300)),
-            -round(_shaken(first)),
+            -round(_shaken(of_set)),
             not is_usual(first.suffix),
             min(len(c.source) for c in of_set),
             members[0],
@@ -191,10 +191,16 @@ def _ranks(
     return ranks
 
 
-def _shaken(component: Component) -> float:
-    """Return the time between the first and the last sample above 0.1 % of the peak [s], which zeros put around do not change."""
-    moving = np.flatnonzero(np.abs(component.acceleration) >= _MOVING * component.pga)
-    return float(moving[-1] - moving[0]) * component.dt
+def _shaken(components: Sequence[Component]) -> float:
+    """Return the time [s] between the first and the last sample at which a set moves by 0.1 % of its peak or more.
+
+    Zeros put around a record do not change it, nor do turned axes, since the components are taken as one vector.
+    """
+    squares = np.zeros(max(len(c.acceleration) for c in components))
+    for component in components:
+        squares[: len(component.acceleration)] += np.square(component.acceleration)
+    moving = np.flatnonzero(squares >= _MOVING**2 * squares.max())
+    return float(moving[-1] - moving[0]) * components[0].dt
 
 
 def _is_unit_ratio(factor: float) -> bool:

@@ -1,5 +1,7 @@
 """Where a component comes from: its file, and the part of it."""
 
+from rockbatch.common.errors import WrongType
+
 
 class Source(str):
     """The text for people, "x.V1 (NS)", of a ``file`` and a ``part`` of it, such as a channel; a plain text is a whole file."""
@@ -25,6 +27,10 @@ class Sourced:
     """What was read from files: a component, or what cannot be used."""
 
     sources: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        if isinstance(self.sources, str):  # which would be a tuple of its letters
+            raise WrongType(f"sources = {self.sources!r}: must be a tuple of texts; write ({self.sources!r},)")
 
     @property
     def source(self) -> str:

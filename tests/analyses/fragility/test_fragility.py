@@ -215,7 +215,7 @@ def test_hunt_step_looks_between_the_levels_on_every_base(tmp_path):
     assert [spec.step_on(base) for base in (RigidBase(), ElasticBase(30.0))] == [0.0025, None]
 
 
-def test_a_file_of_an_earlier_version_says_what_to_run_and_the_rest_of_the_page_is_there(tmp_path, stripes):
+def test_a_file_of_an_earlier_version_says_what_to_run_and_the_rest_is_there(tmp_path, stripes):
     """Its bounds of medians had no confidence, which ended the whole report as damaged."""
     out = shutil.copytree(stripes, tmp_path / "out")
     info = json.loads((out / "fragility.json").read_text(encoding="utf-8"))

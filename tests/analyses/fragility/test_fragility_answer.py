@@ -159,7 +159,7 @@ def test_an_interval_without_a_bound_is_said_so(interval, words):
 OF_FEW = {"exceeded": (5, 5, 5, 5), "no_curve": f"{EVERY}: a bound of the median takes 6 stations"}
 
 
-def test_a_limit_that_most_records_exceed_at_the_lowest_level_comes_first_though_few_bound_it():
+def test_a_limit_that_most_exceed_at_the_lowest_level_comes_first():
     """Its median is not known, but below the levels for most of the records; half of them would not say so."""
     assert (
         "The limit exceeded first, tilt"
