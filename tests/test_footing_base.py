@@ -101,8 +101,7 @@ def test_slenderness_of_a_case_is_that_of_its_foot_and_devices_stay_at_the_pivot
     ({"length_m": 12.0, "stiffness_MN_m3": 60.0, "bearing_MPa": 1.0, "safety_factor": 3.0}, "keep one"),
     ({"length_m": 12.0, "stiffness_MN_m3": 60.0, "bearing_MPa": 0.2}, "the bed cannot carry the weight"),
     ({"length_m": 12.0, "stiffness_MN_m3": 1.0}, "too soft to hold the pier upright"),
-    ({"length_m": 12.0, "stiffness_MN_m3": 600e3}, "some 480 GPa, where sound rock has .*confirm = ..stiffness_MN_m3"),
-    ({"length_m": 12.0, "shear_modulus_MPa": 60e3, "poisson": 0.4}, "modulus of some 60 GPa, .*confirm = ..shear_modulus_MPa"),
+    ({"length_m": 12.0, "shear_modulus_MPa": 60e3, "poisson": 0.4}, "stiffer than the ground is, .*confirm = ..shear_modulus_MPa"),
     ({"length_m": 12.0, "stiffness_MN_m3": 60.0, "width_m": 2.0}, "narrower than the pier on it, 8 m wide"),
     ({"length_m": 12.0, "stiffness_MN_m3": 60.0, "strips": 7}, "must be an even number"),
     ({"length_m": 12.0, "stiffness_MN_m3": 60.0, "epsilon": 0.1}, "epsilon"),
@@ -115,7 +114,6 @@ def test_what_cannot_be_is_refused_with_a_remedy(study, keys, words):
 @pytest.mark.parametrize(
     ("confirm", "keys"),
     [
-        ("stiffness_MN_m3", {"stiffness_MN_m3": 60e3}),
         ("shear_modulus_MPa", {"shear_modulus_MPa": 60e3, "poisson": 0.4}),
         ("width_m", {"stiffness_MN_m3": 60.0, "width_m": 6.0}),
     ],
@@ -126,13 +124,11 @@ def test_what_is_unusual_about_a_footing_is_taken_once_confirmed(study, confirm,
 
 
 def test_a_bed_of_soil_too_stiff_for_any_ground_is_refused_in_python_too():
-    for given, name in (({"shear_modulus_MPa": 60e3, "poisson": 0.4}, "shear_modulus_MPa"), ({}, "stiffness_MN_m3")):
-        make = rb.FootingBase.from_soil if given else rb.FootingBase.from_stiffness
-        values = {"length_m": 12.0} | (given or {"stiffness_MN_m3": 600e3})
-        with pytest.raises(rb.InputError, match="where sound rock has") as refusal:
-            make(TALL, **values)
-        assert [problem.key for problem in refusal.value.problems] == [name]
-        assert make(TALL, **values, confirm=(name,)).beta > 0.0
+    values = {"shear_modulus_MPa": 60e3, "poisson": 0.4, "length_m": 12.0}
+    with pytest.raises(rb.InputError, match="stiffer than the ground is") as refusal:
+        rb.FootingBase.from_soil(TALL, **values)
+    assert [problem.key for problem in refusal.value.problems] == ["shear_modulus_MPa"]
+    assert rb.FootingBase.from_soil(TALL, **values, confirm=("shear_modulus_MPa",)).beta > 0.0
 
 
 def test_a_block_of_a_laboratory_on_soft_soil_is_no_footing_on_rock():

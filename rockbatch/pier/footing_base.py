@@ -28,14 +28,6 @@ DEPTH = Bounds(0.0, MOST, " [m], a depth")
 STIFFEST_MPA = 30e3
 """Shear modulus [MPa] above which a wrong unit is likelier than the ground: sound rock has some 10 to 30 GPa."""
 
-STIFFEST_BED_MPA = 100e3
-"""The same of a bed given by its stiffness, which may be a layer of concrete: one of 35 GPa, a twentieth as thick as the foot is
-wide, is as stiff as ground of 70 GPa."""
-
-MODULI_OF_BED = 10.0
-"""Most that the stiffness of a bed times the width of the foot is over the shear modulus of its soil, by the formulas: 6 to 10
-times on feet that are no shorter than wide."""
-
 STRIPS = 40
 """Strips of a footing's bed, unless its base says otherwise."""
 
@@ -153,10 +145,7 @@ class FootingBase(WithShaft):
         assert pier.mass_t is not None
         if bearing_MPa is not None:
             rest["safety_factor"] = 1000.0 * bearing_MPa * area / (pier.mass_t * pier.gravity)
-        base = cls(math.sqrt(1000.0 * stiffness_MN_m3 * area / pier.mass_t) / pier.p, length_m=length_m, **rest)
-        modulus = 2.0 * pier.half_width * stiffness_MN_m3 / MODULI_OF_BED
-        refuse(_too_stiff("stiffness_MN_m3", stiffness_MN_m3, modulus, STIFFEST_BED_MPA, base.confirm))
-        return base
+        return cls(math.sqrt(1000.0 * stiffness_MN_m3 * area / pier.mass_t) / pier.p, length_m=length_m, **rest)
 
     @classmethod
     @checked
@@ -184,24 +173,21 @@ class FootingBase(WithShaft):
         stiffness = FORMULAS[formula](width, length_m, soil)
         bed = bed_stiffness(width, length_m, stiffness.rocking)
         rest["vertical_over_formula"] = bed * width * length_m / stiffness.vertical
-        confirm = rest.pop("confirm", ())
-        base = cls.from_stiffness(pier, bed, length_m=length_m, confirm=(*confirm, "stiffness_MN_m3"), **rest)
-        base = replace(base, confirm=confirm)
-        refuse(_too_stiff("shear_modulus_MPa", shear_modulus_MPa, shear_modulus_MPa, STIFFEST_MPA, base.confirm))
+        base = cls.from_stiffness(pier, bed, length_m=length_m, **rest)
+        refuse(_unlikely_ground(shear_modulus_MPa, base.confirm))
         if density_t_m3 is None or pier.mass_t is None:
             return base
         dashpot = 1000.0 * radiated(width, length_m, soil, density_t_m3)
         return replace(base, zeta=base.zeta + 0.5 * dashpot / (pier.mass_t * vertical_frequency(pier, base)))
 
 
-def _too_stiff(name: str, value: float, modulus_MPa: float, most_MPa: float, confirm: Sequence[str]) -> list[Problem]:
-    """Return the problem of a bed whose shear modulus is above ``most_MPa``; [] if it is not, or ``name`` is confirmed."""
-    if modulus_MPa <= most_MPa or name in confirm:
+def _unlikely_ground(shear_modulus_MPa: float, confirm: Sequence[str]) -> list[Problem]:
+    """Return the problem of a shear modulus above :data:`STIFFEST_MPA`; [] if it is not, or confirmed."""
+    name = "shear_modulus_MPa"
+    if shear_modulus_MPa <= STIFFEST_MPA or name in confirm:
         return []
-    text = (
-        f"the ground has a shear modulus of some {modulus_MPa / 1000.0:.3g} GPa, where sound rock has some 10 to 30 GPa"
-    )
-    return [Problem(name, value, text, confirm=name, kind=Unusual)]
+    text = "stiffer than the ground is, of which sound rock has some 10 to 30 GPa"
+    return [Problem(name, shear_modulus_MPa, text, confirm=name, kind=Unusual)]
 
 
 def wrong_soil(soil: Soil, length_m: float, density_t_m3: float | None = None) -> list[Problem]:
