@@ -101,7 +101,7 @@ def test_slenderness_of_a_case_is_that_of_its_foot_and_devices_stay_at_the_pivot
     ({"length_m": 12.0, "stiffness_MN_m3": 60.0, "bearing_MPa": 1.0, "safety_factor": 3.0}, "keep one"),
     ({"length_m": 12.0, "stiffness_MN_m3": 60.0, "bearing_MPa": 0.2}, "the bed cannot carry the weight"),
     ({"length_m": 12.0, "stiffness_MN_m3": 1.0}, "too soft to hold the pier upright"),
-    ({"length_m": 12.0, "shear_modulus_MPa": 60e3, "poisson": 0.4}, "stiffer than the ground is, .*confirm = ..shear_modulus_MPa"),
+    ({"length_m": 12.0, "shear_modulus_MPa": 60e3, "poisson": 0.4}, "than the ground is, .*confirm = ..shear_modulus_MPa"),
     ({"length_m": 12.0, "stiffness_MN_m3": 60.0, "width_m": 2.0}, "narrower than the pier on it, 8 m wide"),
     ({"length_m": 12.0, "stiffness_MN_m3": 60.0, "strips": 7}, "must be an even number"),
     ({"length_m": 12.0, "stiffness_MN_m3": 60.0, "epsilon": 0.1}, "epsilon"),
@@ -135,7 +135,7 @@ def test_a_block_of_a_laboratory_on_soft_soil_is_no_footing_on_rock():
     """Its weight presses it in by micrometres, whatever the ground is."""
     block = rb.Pier.rectangle(0.06, 0.3, mass_t=0.005, confirm=("width_m", "height_m", "mass_t"))
     soft = rb.FootingBase.from_soil(block, shear_modulus_MPa=60.0, poisson=0.3, length_m=0.1)
-    with pytest.raises(rb.InputError, match="modulus of some 60 GPa"):
+    with pytest.raises(rb.InputError, match="stiffer than the ground is"):
         rb.FootingBase.from_soil(block, shear_modulus_MPa=60e3, poisson=0.3, length_m=0.1, confirm=("beta",))
     stiffness = (soft.beta * block.p) ** 2 * block.mass_t / 1000.0 / (0.06 * 0.1)
     assert rb.FootingBase.from_stiffness(block, stiffness, length_m=0.1).beta == pytest.approx(soft.beta)

@@ -169,8 +169,6 @@ def _footing_base(values: Mapping[str, Any], pier: Pier, fields: dict[str, Any])
         return FootingBase(**fields)
     fields |= {"bearing_MPa": values.get("bearing_MPa")}
     if "shear_modulus_MPa" not in values:
-        if "young_GPa" in values:  # a toe of concrete or steel gives less than any ground
-            fields["confirm"] += ("stiffness_MN_m3",)
         stiffness = values.get("stiffness_MN_m3") or 1000.0 * values["young_GPa"] / values["depth_m"]
         return FootingBase.from_stiffness(pier, stiffness, **fields)
     density = values["density_t_m3"] if values.get("radiation") else None
