@@ -152,13 +152,13 @@ def test_a_fragility_and_its_rates(tmp_path, capsys):
 @pytest.mark.slow
 def test_an_accuracy(tmp_path, capsys):
     printed, page, out = made(tmp_path, capsys, ACCURACY, "accuracy", "--runs", "1", "--seconds", "5")
-    table = pd.read_csv(out / "accuracy.csv").astype({"substeps": float, "runs": float})
-    heads = ["method", "k", "tolerance", "runs", "median error", "95 %", "largest", "time per run [ms]"]
+    table = pd.read_csv(out / "accuracy.csv").astype({"substeps": float, "runs": float, "compared": float})
+    heads = ["method", "k", "tolerance", "runs", "with error", "median error", "95 %", "largest", "time per run [ms]"]
     rows = page.tables["error_and_time"]
     assert rows[0][: len(heads)] == heads
     assert " ".join(heads) in plain(printed)
     for row, expected in zip(rows[1:], table.to_dict("records"), strict=True):
-        formats = {"method": "", "substeps": ".0f", "tolerance": ".0e", "runs": ".0f"}
+        formats = {"method": "", "substeps": ".0f", "tolerance": ".0e", "runs": ".0f", "compared": ".0f"}
         formats |= {"error_median": ".1e", "error_95": ".1e", "error_max": ".1e"}
         texts = [number(expected[name], form) for name, form in formats.items()]
         assert row[: len(texts)] == texts
