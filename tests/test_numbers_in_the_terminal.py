@@ -15,8 +15,8 @@ import rockbatch as rb
 from rockbatch.commands import cache, motions, run, scorecard, summary
 from rockbatch.common.errors import NoUnit, UnusableRecord
 from rockbatch.motions import MotionSet
-from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.sources.source import Source
+from rockbatch.motions.unused import LeftOut, Unusable
 from rockbatch.outcome.outcome import Failure
 from rockbatch.simulation import kept
 from rockbatch.terminal import messages as terminal

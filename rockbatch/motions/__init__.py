@@ -15,7 +15,7 @@ _NAMES = {
     "manifest_draft": "write_manifest",
     "intensity.measures": "arias_intensity bracketed_duration cumulative_absolute_velocity displacement pga pgd pgv "
     "significant_duration uniform_duration velocity",
-    "motion": "LeftOut Motion Unusable",
+    "motion": "Motion",
     "motion_set": "MotionSet",
     "intensity.pairs": "pair_spectrum",
     "suites.pulses": "pulse",
@@ -24,6 +24,7 @@ _NAMES = {
     "suites.sequences": "sequence",
     "spectrum": "spectral_acceleration",
     "suites.spectrum_target": "SpectrumTarget",
+    "unused": "LeftOut Unusable",
 }
 """Public names by their modules; ``__init__.pyi`` has all of them for type checkers."""
 

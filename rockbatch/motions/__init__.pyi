@@ -14,9 +14,7 @@ from rockbatch.motions.intensity.measures import uniform_duration as uniform_dur
 from rockbatch.motions.intensity.measures import velocity as velocity
 from rockbatch.motions.intensity.pairs import pair_spectrum as pair_spectrum
 from rockbatch.motions.manifest_draft import write_manifest as write_manifest
-from rockbatch.motions.motion import LeftOut as LeftOut
 from rockbatch.motions.motion import Motion as Motion
-from rockbatch.motions.motion import Unusable as Unusable
 from rockbatch.motions.motion_set import MotionSet as MotionSet
 from rockbatch.motions.quality.baseline import Offset as Offset
 from rockbatch.motions.sources.record_file import ReadOptions as ReadOptions
@@ -36,3 +34,5 @@ from rockbatch.motions.suites.selection import Selection as Selection
 from rockbatch.motions.suites.selection import selected as selected
 from rockbatch.motions.suites.sequences import sequence as sequence
 from rockbatch.motions.suites.spectrum_target import SpectrumTarget as SpectrumTarget
+from rockbatch.motions.unused import LeftOut as LeftOut
+from rockbatch.motions.unused import Unusable as Unusable

@@ -38,7 +38,6 @@ from rockbatch.motions.labels.orientation import (
     told_apart,
 )
 from rockbatch.motions.manifest import Manifest, apply_entries, is_manifest, options_of
-from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.quality.baseline import Offset, remove_offset
 from rockbatch.motions.sources import archives
@@ -52,6 +51,7 @@ from rockbatch.motions.sources.source import file_of
 from rockbatch.motions.sources.stationxml import Inventories
 from rockbatch.motions.suites.sequences import ShockSequence, add_sequences
 from rockbatch.motions.texts import with_legible_texts
+from rockbatch.motions.unused import LeftOut, Unusable
 
 _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
 _MANY = 200  # files; fewer take no time worth a bar
@@ -60,7 +60,7 @@ Paths = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
 
 
 class _Name(NamedTuple):
-    """What the name of a file says."""
+    """Statements of the name of a file."""
 
     site: str  # the station's part
     direction: Orientation | None
@@ -336,15 +336,15 @@ def _names(files: Sequence[SourceFile]) -> dict[Path, _Name]:
         by_chance = set.union(*(rule(stems.values()) for rule in (counted, numbered, accidental)))
         apart, in_sets = told_apart(stems.values()), in_numbered_sets(stems.values())
         alone = {stem: (stem, None) if stem in by_chance else split_stem(stem) for stem in stems.values()}
-        ends = grouped(apart.items(), lambda told: told[1][0])
+        ends = grouped(apart.items(), lambda item: item[1][0])
         shared = {site for site, of_site in ends.items() if len({alone[stem][1] for stem, _ in of_site}) == 1}
         of_folder: dict[str, tuple[str, Orientation | None]] = {}
         for stem in stems.values():
-            found, found_apart = alone[stem], apart.get(stem)
+            parts = alone[stem]
             # where all names of a site end in x, x is no direction
-            if found_apart and (found[1] is None or found_apart[0] in shared):
-                found = found_apart
-            of_folder[stem] = in_sets.get(stem, found)
+            if stem in apart and (parts[1] is None or apart[stem][0] in shared):
+                parts = apart[stem]
+            of_folder[stem] = in_sets.get(stem, parts)
         upright = {site for site, direction in of_folder.values() if direction and direction.vertical}
         for path, stem in stems.items():
             site, direction = of_folder[stem]

@@ -22,10 +22,10 @@ from rockbatch.motions import kinds
 from rockbatch.motions.component import Component
 from rockbatch.motions.labels.evidence import Kind, Statement
 from rockbatch.motions.labels.orientation import Orientation
-from rockbatch.motions.motion import Unusable
 from rockbatch.motions.sources.archives import archive_of, is_member
 from rockbatch.motions.sources.record_file import LAYOUTS, ReadOptions
 from rockbatch.motions.suites.sequences import SEQUENCE, ShockSequence, read_sequences
+from rockbatch.motions.unused import Unusable
 from rockbatch.toml.files_meant import nearby
 from rockbatch.toml.kinds import boolean, choice, nonzero, not_negative, number, positive, text
 from rockbatch.toml.meant import names

@@ -14,9 +14,9 @@ from rockbatch.motions.folder import Reading, read_files
 from rockbatch.motions.identity.directions import judge_directions
 from rockbatch.motions.identity.doubles import without_doubles
 from rockbatch.motions.identity.stations import by_station
-from rockbatch.motions.motion import Unusable
 from rockbatch.motions.quality.plausible import gross_findings
 from rockbatch.motions.sources.record_file import ReadOptions
+from rockbatch.motions.unused import Unusable
 
 _HEAD = """\
 # Facts about these records beyond their files; rockbatch reads them wherever the records are used.

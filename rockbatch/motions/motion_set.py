@@ -13,7 +13,8 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown, several
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.intensity import measures
-from rockbatch.motions.motion import LeftOut, Motion, Unusable
+from rockbatch.motions.motion import Motion
+from rockbatch.motions.unused import LeftOut, Unusable
 
 Cell = str | float | None
 """A value of a table; ``None`` where it is unknown."""

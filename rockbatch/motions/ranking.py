@@ -11,8 +11,9 @@ from rockbatch.common.errors import Contradiction, InputError, NoDirection
 from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.intensity import velocity_pulses
-from rockbatch.motions.motion import LeftOut, Motion, Unusable
+from rockbatch.motions.motion import Motion
 from rockbatch.motions.motion_set import Cell, MotionSet, row
+from rockbatch.motions.unused import LeftOut, Unusable
 
 
 class Use(Enum):

@@ -15,9 +15,9 @@ from rockbatch.common.files import is_plain, read_text, replacing
 from rockbatch.common.version import commit
 from rockbatch.motions import MotionSet
 from rockbatch.motions.description import entry, spectra
-from rockbatch.motions.motion import Unusable
 from rockbatch.motions.suites.scaling import verticals
 from rockbatch.motions.suites.spectrum_target import PAIRS, SpectrumTarget
+from rockbatch.motions.unused import Unusable
 from rockbatch.pier import Base, Pier, described
 from rockbatch.pier.bases import BASES
 from rockbatch.pier.free_rocking import FreeRocking

@@ -6,12 +6,12 @@ from dataclasses import fields, replace
 from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
 from rockbatch.motions.labels.orientation import same_azimuth
-from rockbatch.motions.motion import Unusable
 from rockbatch.motions.quality.baseline import Offset
 from rockbatch.motions.suites.scaling import scale_as_listed, scale_to_targets
 from rockbatch.motions.suites.selection import Selection, selected
 from rockbatch.motions.suites.sequences import add_sequences
 from rockbatch.motions.suites.spectrum_target import SpectrumTarget
+from rockbatch.motions.unused import Unusable
 from rockbatch.study.both_axes import on_both_axes
 from rockbatch.study.load import Study
 from rockbatch.study.spec import MotionSpec

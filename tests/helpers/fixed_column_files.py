@@ -7,7 +7,7 @@ from motion_files import wiggle
 
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import RecordFile, read_record
-from rockbatch.motions.motion import Unusable
+from rockbatch.motions.unused import Unusable
 
 NPTS = 43  # no multiple of the values per line
 A, B, C = (np.round(wiggle(NPTS, seed, 90.0), 3) for seed in (1, 2, 3))  # cm/s²

@@ -53,7 +53,7 @@ from rockbatch.motions.formats import (
     unam,
     volumes,
 )
-from rockbatch.motions.motion import Unusable
+from rockbatch.motions.unused import Unusable
 
 
 @dataclass(frozen=True)

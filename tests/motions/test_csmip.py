@@ -21,7 +21,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
 from rockbatch.motions.formats import volumes
 from rockbatch.motions.formats.volumes import read_csmip_stream
-from rockbatch.motions.motion import Unusable
+from rockbatch.motions.unused import Unusable
 
 START = datetime(2019, 7, 6, 3, 19, 37, tzinfo=UTC).timestamp() + 0.5
 TO_M_S2 = {1: 9.81e-3, 2: 0.01}  # of the values that csmip_text takes: g/1000, and cm/s²

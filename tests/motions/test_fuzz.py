@@ -19,8 +19,8 @@ from rockbatch.motions import read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import FORMATS, read_record
 from rockbatch.motions.identity.pairing import to_motions
-from rockbatch.motions.motion import Unusable
 from rockbatch.motions.sources.record_file import ReadOptions, RecordFile
+from rockbatch.motions.unused import Unusable
 
 OPTIONS = (ReadOptions(), ReadOptions(unit="cm/s2", dt=0.01), ReadOptions(unit="g", sensitivity=1e5))
 

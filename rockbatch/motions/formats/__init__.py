@@ -42,9 +42,9 @@ from rockbatch.motions.formats.recording import reader
 from rockbatch.motions.labels.evidence import Kind, Statement, decided_orientation
 from rockbatch.motions.labels.orientation import Orientation, is_place_or_direction, split_stem
 from rockbatch.motions.limits import HUGE, MOST_SAMPLES, STEPS, is_step
-from rockbatch.motions.motion import Unusable
 from rockbatch.motions.sources.record_file import ReadOptions, RecordFile
 from rockbatch.motions.texts import with_legible_texts
+from rockbatch.motions.unused import Unusable
 
 _FOREIGN = {  # first bytes of files that hold records, but are not read
     b"MS\x03": "MiniSEED 3: fetch it as MiniSEED 2",

@@ -11,9 +11,9 @@ from rockbatch.common.errors import InputError, Unstated
 from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import Component
-from rockbatch.motions.motion import Unusable
 from rockbatch.motions.quality.plausible import HIGHEST, LOWEST
 from rockbatch.motions.sources.record_file import ReadOptions
+from rockbatch.motions.unused import Unusable
 
 _UNITS = (("g", "m/s2", "cm/s2", "mm/s2"), ("mg", "in/s2", "ft/s2"))  # the second if none of the first is plausible
 _TRIED: Mapping[str, str | float] = {"unit": "m/s2", "dt": 0.01}  # any unit and step show whether a file can be read

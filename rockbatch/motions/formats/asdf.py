@@ -17,9 +17,9 @@ from rockbatch.common.lazy import h5py, obspy
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.miniseed import components_of_traces
 from rockbatch.motions.limits import MOST_SAMPLES, STEPS, is_step
-from rockbatch.motions.motion import Unusable
 from rockbatch.motions.sources import stationxml
 from rockbatch.motions.sources.record_file import RecordFile
+from rockbatch.motions.unused import Unusable
 
 _MAGIC = b"\x89HDF\r\n\x1a\n"
 _NAME = re.compile(

@@ -24,8 +24,9 @@ from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.labels.orientation import orientation_of
 from rockbatch.motions.labels.origin import origin_of
 from rockbatch.motions.limits import MOST_SAMPLES, STEPS, is_step
-from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.motion import Samples
 from rockbatch.motions.sources.record_file import RecordFile, no_acceleration
+from rockbatch.motions.unused import Unusable
 
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[ED][-+]?\d+)?"
 _COUNT_AND_STEP = (

@@ -45,9 +45,10 @@ from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.labels.evidence import Kind
 from rockbatch.motions.labels.orientation import Orientation, is_upward, orientation_in, same_azimuth, split_stem
 from rockbatch.motions.limits import SAME_STEP, is_step
-from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.motion import Samples
 from rockbatch.motions.quality.places import Stand, stand, tells_place
 from rockbatch.motions.sources.record_file import ReadOptions, RecordFile, no_acceleration, text_of
+from rockbatch.motions.unused import Unusable
 
 _COMPONENTS = ("000", "090", "up")
 _REPEATED = 0.9  # correlation of a motion with itself, corrected; two stations have less

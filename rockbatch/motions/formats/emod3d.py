@@ -11,8 +11,8 @@ from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import count_and_step, layout, read_header
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.labels.origin import origin_of
-from rockbatch.motions.motion import Unusable
 from rockbatch.motions.sources.record_file import RecordFile
+from rockbatch.motions.unused import Unusable
 
 _PER_LINE = 6
 _TEXT = layout(

@@ -7,8 +7,8 @@ from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.formats.with_obspy import is_evt, read_stream
 from rockbatch.motions.labels.orientation import unknown
 from rockbatch.motions.labels.origin import origin_of
-from rockbatch.motions.motion import Unusable
 from rockbatch.motions.sources.record_file import RecordFile
+from rockbatch.motions.unused import Unusable
 
 __all__ = ["is_evt", "read_evt"]
 

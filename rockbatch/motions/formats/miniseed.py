@@ -17,11 +17,12 @@ from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.labels.evidence import Kind, Statement, angles_statement, decided_orientation
 from rockbatch.motions.labels.orientation import is_clock, not_acceleration, orientation_of
 from rockbatch.motions.labels.origin import origin_of
-from rockbatch.motions.motion import Finding, Samples, Unusable
+from rockbatch.motions.motion import Finding, Samples
 from rockbatch.motions.quality.places import Stand, depth_as_place, stand
 from rockbatch.motions.sources import stationxml
 from rockbatch.motions.sources.record_file import RecordFile, no_acceleration
 from rockbatch.motions.sources.source import Source
+from rockbatch.motions.unused import Unusable
 
 _YEARS = 1900, 2100
 _STATED = "sensitivity = … (counts per m/s²) in the study, or for this file in motions.toml"

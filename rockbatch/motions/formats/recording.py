@@ -12,9 +12,10 @@ from rockbatch.motions.intensity.measures import initial_of
 from rockbatch.motions.labels.evidence import Kind, Statement
 from rockbatch.motions.labels.orientation import Orientation, is_clock, orientation_of, unknown
 from rockbatch.motions.labels.origin import UNKNOWN_ORIGIN, Origin
-from rockbatch.motions.motion import Finding, Initial, Samples, Unusable
+from rockbatch.motions.motion import Finding, Initial, Samples
 from rockbatch.motions.sources.record_file import RecordFile
 from rockbatch.motions.sources.source import Source
+from rockbatch.motions.unused import Unusable
 
 Series = tuple[Samples, str]
 """Values, shape (npts,), and their unit."""

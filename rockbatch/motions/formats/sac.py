@@ -19,9 +19,10 @@ from rockbatch.motions.formats.stated import Sampled, Stated, contradictions
 from rockbatch.motions.labels.evidence import Kind, Statement, angles_statement, decided_orientation
 from rockbatch.motions.labels.orientation import is_clock, not_acceleration, orientation_of
 from rockbatch.motions.labels.origin import origin_of
-from rockbatch.motions.motion import Samples, Unusable
+from rockbatch.motions.motion import Samples
 from rockbatch.motions.quality.places import depth_as_place
 from rockbatch.motions.sources.record_file import RecordFile, no_acceleration
+from rockbatch.motions.unused import Unusable
 
 _DAY = 86400.0  # s
 _STALE = (1.0, 1.0)  # limits for DEPMIN and DEPMAX, which some programs do not update: a factor of 2

@@ -12,7 +12,8 @@ from rockbatch.motions.component import Component
 from rockbatch.motions.identity.common_span import Common, on_common_samples, overlap, too_unlike
 from rockbatch.motions.intensity.measures import state_at
 from rockbatch.motions.labels.orientation import Orientation, not_square, same_azimuth, split_stem
-from rockbatch.motions.motion import Initial, Samples, Unusable
+from rockbatch.motions.motion import Initial, Samples
+from rockbatch.motions.unused import Unusable
 
 
 def along_azimuth(first: Samples, azimuth1: float, second: Samples, azimuth2: float, azimuth: float) -> Samples:

@@ -14,9 +14,10 @@ from rockbatch.motions.component import Component
 from rockbatch.motions.formats import is_usual
 from rockbatch.motions.identity.likeness import Pairs, factor_between, pairs_of_one_recording, sets_of
 from rockbatch.motions.identity.stations import in_one_event
-from rockbatch.motions.motion import Finding, LeftOut
+from rockbatch.motions.motion import Finding
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.quality.plausible import gross_findings, in_a_borehole
+from rockbatch.motions.unused import LeftOut
 
 _CORRECTED = {True: 0, None: 1, False: 2}
 _GROSS_FACTOR = 0.05  # relative difference between copies beyond which they have to be confirmed

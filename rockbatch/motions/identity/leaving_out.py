@@ -9,8 +9,9 @@ from rockbatch.common.naming import fits
 from rockbatch.common.showing import shown
 from rockbatch.motions.component import Component
 from rockbatch.motions.identity.stations import station_of
-from rockbatch.motions.motion import LeftOut, Motion, Unusable
+from rockbatch.motions.motion import Motion
 from rockbatch.motions.motion_set import MotionSet
+from rockbatch.motions.unused import LeftOut, Unusable
 
 Reading = Component | Unusable | LeftOut
 

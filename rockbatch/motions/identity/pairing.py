@@ -21,11 +21,12 @@ from rockbatch.motions.identity.stations import by_station, is_numbered, station
 from rockbatch.motions.intensity.measures import state_at
 from rockbatch.motions.labels.orientation import same_azimuth
 from rockbatch.motions.labels.origin import with_direction
-from rockbatch.motions.motion import Finding, Motion, Unusable
+from rockbatch.motions.motion import Finding, Motion
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.quality.plausible import ANY, Candidate, confirmation_request, findings, in_a_borehole
 from rockbatch.motions.sources.archives import bare
 from rockbatch.motions.sources.source import Source, file_of
+from rockbatch.motions.unused import Unusable
 
 _NO_VERTICAL = (
     "has no vertical component, and the study requires it; put it beside the record, or write vertical = true under "

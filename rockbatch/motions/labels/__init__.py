@@ -1,1 +1,1 @@
-"""What headers, channel codes and names say of a component: its direction, station and event."""
+"""Labels of components: direction, station and event by headers, channel codes and names."""

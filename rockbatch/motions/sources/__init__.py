@@ -1,1 +1,1 @@
-"""What lies on the disk: files, archives, station metadata and lists beside records."""
+"""Sources of records: files, archives, station metadata, and lists beside records."""

@@ -24,7 +24,7 @@ def file_of(*sources: str) -> str:
 
 
 class Sourced:
-    """What was read from files: a component, or what cannot be used."""
+    """A component, or a file that is not used, by its sources."""
 
     sources: tuple[str, ...]
 

@@ -10,10 +10,11 @@ from rockbatch.common.naming import fits_any
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.intensity import measures
 from rockbatch.motions.intensity.pairs import RULE_NAMES, TWO_COMPONENT_RULES, pairing_obstacle, station_spectra
-from rockbatch.motions.motion import Motion, Samples, Unusable
+from rockbatch.motions.motion import Motion, Samples
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.motions.suites.spectrum_target import SpectrumTarget
+from rockbatch.motions.unused import Unusable
 
 
 @dataclass(frozen=True)

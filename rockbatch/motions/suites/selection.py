@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.intensity import measures
-from rockbatch.motions.motion import LeftOut, Motion, Unusable
+from rockbatch.motions.motion import Motion
 from rockbatch.motions.motion_set import MotionSet
+from rockbatch.motions.unused import LeftOut, Unusable
 
 Range = tuple[float, float]
 

@@ -21,9 +21,10 @@ from rockbatch.common.units import GRAVITY, Usual
 from rockbatch.motions.intensity import measures
 from rockbatch.motions.labels.origin import UNKNOWN_ORIGIN
 from rockbatch.motions.limits import MOST_SAMPLES, MOST_STEPS
-from rockbatch.motions.motion import Initial, LeftOut, Motion, Samples, Shock, Unusable
+from rockbatch.motions.motion import Initial, Motion, Samples, Shock
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.sources.listed import NOT_LISTED, Listed
+from rockbatch.motions.unused import LeftOut, Unusable
 from rockbatch.toml.kinds import boolean, choice, positive, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import TomlFile
