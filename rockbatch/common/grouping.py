@@ -30,8 +30,8 @@ def joined(sets: Iterable[Sequence[str]]) -> list[str]:
 
     sets = list(sets)
     for members in sets:
-        least = min(map(root, members))
-        parents |= {root(member): least for member in members}
+        common = root(members[0])
+        parents |= {root(member): common for member in members}
     return [root(members[0]) for members in sets]
 
 
