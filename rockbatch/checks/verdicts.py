@@ -29,7 +29,7 @@ JUDGED = "peaks_sha256"
 """Column of checks.csv with the digest of the peaks.csv that was judged."""
 MEAN_OVER_TARGET = "mean_over_target"
 """Demand of the verdict on the mean spectrum of the suite."""
-_CONDITIONS = ("stations", "pairs", "shortest_period", "longest_period", "zero_period", "verticals", "share")
+_CONDITIONS = ("stations", "pairs", "shortest_period", "longest_period", "zero_period", "verticals", "share", "damping")
 _FACTORS = ("least_record", "greatest_record", "least_family", "greatest_family")
 OF_SUITE = (
     MEAN_OVER_TARGET,

@@ -242,7 +242,9 @@ STATISTICS = {
         11,
         "ASCE 7-16",
         "eleven motions, their mean, and one unacceptable response at most, as Hamburger (2014) presented the proposed chapter "
-        "16; neither the 120 % of the median nor the clauses' own text (look into 16.2.2 and 16.4.1.1) could be checked",
+        "16, and 120 % of the median in its place, as a public program has 16.4 of ASCE 7-22; the clauses' own text (look into "
+        "16.2.2 and 16.4.1.1) could not be checked. The suite has to be of MCE_R, and motions matched to a spectrum may have no "
+        "unacceptable response",
         _asce7_16_remark,
         counts_unacceptable=True,
     ),
@@ -251,8 +253,8 @@ STATISTICS = {
         _mean_or_worst,
         3,
         "EN 1998-1",
-        "at least three records, the mean from seven on, as EN 1998 is commonly cited; the clauses' own text (look into "
-        "EN 1998-1:2004, 3.2.3.1.2 and 4.3.3.4.3) could not be checked",
+        "at least three records, the mean from seven on, as two public programs have EN 1998-1:2004, 3.2.3.1.2 and "
+        "4.3.3.4.3; the clauses' own text could not be checked",
         _mean_or_worst_remark,
     ),
     "en1998-2": Statistic(

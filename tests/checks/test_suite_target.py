@@ -18,9 +18,10 @@ from rockbatch.checks import read_verdicts, wording
 from rockbatch.checks.answer import answer
 from rockbatch.checks.scorecard import scorecard
 from rockbatch.checks.suite_target import Condition, _verdict, suite_of, suite_verdicts
-from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
+from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, OF_SUITE, PASS
 from rockbatch.commands.cli import main
-from rockbatch.motions.suites.design_spectra import TableSpectrum
+from rockbatch.motions.suites.design_spectra import AsceSpectrum, TableSpectrum
+from rockbatch.motions.suites.spectrum_target import SpectrumTarget
 from rockbatch.results.checking import verdicts as rb_verdicts
 from rockbatch.results.run_json import describe
 from rockbatch.study import load_study
@@ -127,6 +128,7 @@ def conditions(scale=1.0, **more):
     asked = {"range_s": [0.2, 4.0]} | CODE | more
     first, *rest = suite_verdicts({"target": target(0.9, **asked)}, [scale])
     assert first.demand == "mean_over_target"
+    assert {found.demand for found in rest} < {*OF_SUITE}  # checks.csv has these
     return {found.words: (found.value, found.sense, found.limit, found.verdict == PASS) for found in rest}
 
 
@@ -163,7 +165,7 @@ def test_a_code_asks_what_it_asks_and_nothing_else():
     assert conditions(code="") == {}
 
 
-@pytest.mark.parametrize(("code", "share"), [("EN 1998-1", 0.9), ("EN 1998-2", 1.3), ("ASCE 7-16", 0.9)])
+@pytest.mark.parametrize(("code", "share"), [("EN 1998-1", 0.9), ("EN 1998-2", 1.3), ("ASCE 7-16", 1.35)])
 def test_a_study_that_asks_for_less_than_its_code_does_not_lower_the_code(code, share):
     words = "mean over target by the code"
     asked = {"code": code, "pairs": {"EN 1998-2": "srss", "ASCE 7-16": "rotd100"}.get(code, "apart")}
@@ -176,6 +178,33 @@ def test_a_study_that_asks_for_less_than_its_code_does_not_lower_the_code(code, 
         (scaled,) = (row for row in suite_verdicts(info, [0.5]) if row.words == words)
         assert scaled.verdict == FAIL
     assert words not in conditions(**asked, at_least=share)
+
+
+def test_asce_judges_a_suite_at_the_maximum_considered_earthquake():
+    """Its chapter 16 asks for 0.9 of MCE_R, 1.5 times the design spectrum of S_DS and S_D1: more than the default of a fit."""
+    asked = CODE | {"code": "ASCE 7-16", "pairs": "rotd100", "range_s": [0.2, 4.0]}
+
+    def judged(over, scale, **more):
+        rows = suite_verdicts({"target": target(over, **asked, **more)}, [scale])
+        return [(row.verdict, row.remarks[1:]) for row in rows if row.demand == "suite_share"]
+
+    level = "0.9 of MCE_R, which is 1.5 times the design spectrum: at_least = 1.35 scales to it"
+    assert judged(0.9, 1.0) == [(FAIL, (level,))]
+    assert judged(0.9, 1.5) == [(PASS, (level, "at scale 1.5"))]
+    assert judged(1.35, 1.0, at_least=1.35) == []  # the condition of the study
+    motions = [rb.Motion(f"{i}", 0.01, wiggle(900, i), azimuth=90.0 * (i % 2), station=f"S{i // 2}") for i in range(22)]
+    fitted = SpectrumTarget(AsceSpectrum(0.8, 0.5, 8.0), (0.3, 3.0), pairs="rotd100", at_least=1.35)
+    factors = fitted.factors_of(motions, 9.81)
+    scaled = [motion.times(factor) for motion, factor in zip(motions, factors, strict=True)]
+    mcer = 1.5 * fitted.spectrum.at(fitted.periods)
+    assert (fitted.mean(scaled, fitted.periods, 9.81) / mcer).min() == pytest.approx(0.9)
+
+
+@pytest.mark.parametrize(("damping", "sense"), [(0.2, "at most"), (0.02, "at least")])
+def test_codes_compare_spectra_of_5_percent_damping(damping, sense):
+    found = conditions(damping=damping)
+    assert found["damping of the target"] == (damping, sense, 0.05, False)
+    assert "damping of the target" not in conditions()
 
 
 @pytest.mark.parametrize("value", [0.8, 1.0, 1.3])
