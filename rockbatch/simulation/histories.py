@@ -1,5 +1,6 @@
 """Histories of runs: rows of the core as tables, with derived quantities in SI units."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -96,7 +97,7 @@ def histories(
     )
 
 
-def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str, str, int, int]]:
+def _events(rows: np.recarray, t_flight: float) -> list[tuple[float, str, str, int, int]]:
     """Return time, kind and pivot of every event, and the indices of the rows before and after it, in order of time.
 
     Both are the same row for an event without a jump; for the first flight it is the last row until then.
@@ -106,7 +107,7 @@ def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str,
     for row in np.flatnonzero(kinds > 0):
         jumps = kinds[row - 1] == types.BEFORE_EVENT
         events.append((float(rows.t[row]), *_EVENTS[int(kinds[row])], int(row - jumps), int(row)))
-    if t_flight is not None:
+    if not math.isnan(t_flight):
         last = int(np.searchsorted(rows.t, t_flight, side="right")) - 1
         events.append((t_flight, "flight", "", last, last))
         events.sort(key=lambda event: event[0])

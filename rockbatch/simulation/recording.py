@@ -24,16 +24,11 @@ SPARE = 1.1
 
 
 class Recording(NamedTuple):
-    """A run, the rows of its history (``core.history``), and its result."""
+    """A run, the rows of its history (``core.history``), and the time of its first flight [s], NaN without one."""
 
     run: Run
     rows: np.recarray
-    result: Result
-
-    @property
-    def t_flight(self) -> float | None:
-        """Time of the first flight [s]; None without one."""
-        return None if math.isnan(self.result.t_flight) else self.result.t_flight
+    t_flight: float
 
     @property
     def at_samples(self) -> "Recording":
@@ -69,7 +64,7 @@ def recorded(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait:
 
 def _recording(run: Run, result: Result, rows: np.recarray) -> Recording:
     """Return the recording in the first of ``rows``, as many as the ``result`` has."""
-    return Recording(run, rows[: result.rows].view(np.recarray), result)
+    return Recording(run, rows[: result.rows].view(np.recarray), result.t_flight)
 
 
 def _room(run: Run, outcome: Outcome, every_step: bool, until: float = math.inf) -> int:
