@@ -31,10 +31,9 @@ class Response(NamedTuple):
     unit: str = "mm"
     factor: float = 1e3
 
-    def head(self, heights: Collection[float] = ()) -> str:
-        """Return its name with the unit, and with the height if all are read at the same one: "drift at 72 m [mm]"."""
-        words = f"{self.words}{at(*heights)}" if len(heights) == 1 else self.words
-        return f"{words} [{self.unit}]" if self.unit else words
+    def named(self, heights: Collection[float]) -> str:
+        """Return its name, with the height if all are read at the same one: "drift at 72 m"."""
+        return f"{self.words}{at(*heights)}" if len(heights) == 1 else self.words
 
 
 RESPONSES = {

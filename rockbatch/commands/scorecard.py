@@ -12,6 +12,7 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, PASS
 from rockbatch.checks.wording import SIGNS, is_alone
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
+from rockbatch.common.units import with_unit
 from rockbatch.quantities.cases import Case
 from rockbatch.quantities.rows import rows_of_cases
 from rockbatch.reporting.markup import number
@@ -92,7 +93,10 @@ def of_responses(
         rows.append((lost, rotation, [name_of(case), *cells, ended]))
     rows.sort(key=lambda row: row[:2])
     any_lost = any(lost for lost, *_ in rows)
-    heads = [*(_head(RESPONSES[name].head(heights[name])) for name in names), *([_head(LOST)] if any_lost else [])]
+    heads = [
+        *(_head(with_unit(RESPONSES[name].named(heights[name]), RESPONSES[name].unit)) for name in names),
+        *([_head(LOST)] if any_lost else []),
+    ]
     return _table(heads, [row if any_lost else row[:-1] for *_, row in rows])
 
 

@@ -15,6 +15,11 @@ LEAST, MOST = 1e-15, 1e15
 """Bounds of any number that a user states, but for 0, whatever its unit: products and powers of some stay finite."""
 
 
+def with_unit(words: str, unit: str) -> str:
+    """Return words with their unit in brackets, "drift [mm]"; the words alone if it is ""."""
+    return f"{words} [{unit}]" if unit else words
+
+
 class ColumnUnits(dict[str, str]):
     """Units of the columns of a table, for its ``attrs``.
 

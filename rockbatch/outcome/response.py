@@ -14,6 +14,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
 from rockbatch.common.statuses import Status
 from rockbatch.common.units import ColumnUnits
+from rockbatch.outcome.outcome import TERMS
 from rockbatch.pier import Base, Pier, place_names
 
 if TYPE_CHECKING:
@@ -57,6 +58,9 @@ FORCE_UNITS = {
 
 IMPACT_UNITS = {"t": "s", "landing_velocity": "m/s", "impulse_horizontal": "m/s", "impulse_vertical": "m/s"}
 """Columns of the table of impacts except the pivot, with their units."""
+
+DEVICE_UNITS = {"elongation": "m", "force": "N/kg"}
+"""What the table of restraints has of each device, as "damper 1 force", with the units."""
 
 EVENT_TYPES = {"t": "float64", "kind": "str", "pivot": "str", "before": "int64", "after": "int64"}
 """Columns of the table of events, with their types."""
@@ -163,12 +167,21 @@ class Response(Shown):
     sections: "pd.DataFrame | None" = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
-        """Set ``attrs["units"]`` of the tables of history, forces and impacts, those that are given."""
-        of_tables = {"history": HISTORY_UNITS, "forces": {"t": "s"} | FORCE_UNITS, "impacts": IMPACT_UNITS}
+        """Set ``attrs["units"]`` of the tables that are given."""
+        names = place_names(self.pier, self.base.restraints)
+        of_tables = {
+            "history": HISTORY_UNITS,
+            "events": {"t": "s"},
+            "restraints": {f"{name} {what}": unit for name in names for what, unit in DEVICE_UNITS.items()},
+            "ledger": dict.fromkeys(TERMS, "J/kg"),
+            "forces": FORCE_UNITS,
+            "impacts": IMPACT_UNITS,
+        }
         for name, units in of_tables.items():
             table = getattr(self, name)
             if table is not None:
-                table.attrs["units"] = ColumnUnits({column: units[column] for column in table if column in units})
+                of_columns = {"t": "s"} | units
+                table.attrs["units"] = ColumnUnits({name: of_columns[name] for name in table if name in of_columns})
 
     @classmethod
     def unread(cls, read: Callable[[], "Response"], **known: Any) -> Self:

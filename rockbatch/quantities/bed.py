@@ -79,7 +79,7 @@ OF_FOOTING = (
     _quantity("bed_force_error", f"estimated error of the greatest push over the weight: {_READ}", _push_error, "1", stood=True,
         sometimes=True),
     _quantity("bed_pressure_MPa", "greatest pressure at an edge", _of_bed("pressure"), "MPa",
-        ReportFormat("pressure [MPa]", ".3g", behind="bed_force_over_weight"), ", if mass_t and length_m are given",
+        ReportFormat("pressure", ".3g", behind="bed_force_over_weight"), ", if mass_t and length_m are given",
         sometimes=True, weighed=True, error="bed_pressure_error_MPa", limits=(Limit(ceiling=_BEARING),)),
     _quantity("bed_pressure_s", "time of it", _of_bed("t_pressure"), "s"),
     _quantity("bed_pressure_at_m", "place of it to the right of the middle", _of_bed("pressure_at"), "m"),

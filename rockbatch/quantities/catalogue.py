@@ -158,7 +158,7 @@ FIXED = (
         "or weaker; empty if it is chaotic, and with a fixed step",
         "theta_max_error", page=ReportFormat("±", ".5f"), over_alpha=True, stood=True,
     ),
-    Quantity("t_max_s", "time of the greatest rotation", "t_max", "s", ReportFormat("at t [s]", ".2f")),
+    Quantity("t_max_s", "time of the greatest rotation", "t_max", "s", ReportFormat("at t", ".2f")),
     Quantity(
         "theta_res_over_alpha", "residual rotation over α", "theta_res", more=", at rest on the deformed base",
         page=ReportFormat("θ_res/α", ".5f"), over_alpha=True, bases=TILTS, stood=True, directed=True,
@@ -170,8 +170,8 @@ FIXED = (
     ),
     Quantity(
         "settlement_m", "mean settlement of the supports", "settlement", "m",
-        ReportFormat("settlement [mm]", ".2f", 1000), " since the start", bases=SPRINGS, stood=True,
-        suite=OfSuite("Settlement [mm]", ".2f"), error="settlement_error_m", limits=_SETTLEMENTS,
+        ReportFormat("settlement", ".2f", 1000), " since the start", bases=SPRINGS, stood=True,
+        suite=OfSuite("Settlement", ".2f"), error="settlement_error_m", limits=_SETTLEMENTS,
         settlement=True,
     ),
     Quantity("impacts", "number of impacts", "impacts", kind="count", limits=(Limit(),)),
@@ -205,7 +205,7 @@ TRAILING = (
     Quantity("t_end_s", "end of the run", "t_end", "s"),
     Quantity(
         "base_tilt_rad", "residual tilt of the base", "base_tilt", "rad",
-        ReportFormat("base tilt [mrad]", ".3f", 1000, "theta_res_over_alpha"), bases=SPRINGS, stood=True,
+        ReportFormat("base tilt", ".3f", 1000, "theta_res_over_alpha"), bases=SPRINGS, stood=True,
         limits=_TILTS, directed=True,
     ),
     Quantity(
@@ -255,20 +255,20 @@ TRAILING = (
     ),
     Quantity(
         "top_drift_m", "greatest drift, at the height `drift_height_m`",
-        _top_drift, "m", ReportFormat("drift [mm]", ".1f", 1000, "t_max_s"),
+        _top_drift, "m", ReportFormat("drift", ".1f", 1000, "t_max_s"),
         ": that height times the greatest rotation; of a shaft that bends its greatest horizontal way",
         limits=tuple(_bent_as_well(limit) for limit in _displacements("top_drift", top)), directed=True,
     ),
     Quantity(
         "heel_uplift_m", "greatest rise of the heel above the toe",
         lambda run: 2.0 * run.pier.half_width * run.outcome.theta_max, "m",
-        ReportFormat("heel uplift [mm]", ".1f", 1000, "top_drift_m"),
+        ReportFormat("heel uplift", ".1f", 1000, "top_drift_m"),
         ": the width between the pivots times the greatest rotation", limits=_displacements("heel_uplift", width),
         directed=True,
     ),
     Quantity(
         "pga_g", "peak horizontal acceleration of the scaled motion, over g",
-        lambda run: run.pga / run.pier.gravity, "standard_gravity", ReportFormat("PGA [g]", ".3f", behind="scale"),
+        lambda run: run.pga / run.pier.gravity, "standard_gravity", ReportFormat("PGA", ".3f", behind="scale"),
     ),
     Quantity(
         "flights", "number of flights, with both pivots off the ground", "flights",
@@ -283,7 +283,7 @@ TRAILING = (
     Quantity(
         "flight_height_m", "greatest height of the lower pivot above the ground",
         lambda run: run.outcome.flight_height or None, "m",
-        ReportFormat("flight height [mm]", ".2f", 1000, "ductility_right"),
+        ReportFormat("flight height", ".2f", 1000, "ductility_right"),
         ", or above its support, in these flights", sometimes=True,
         limits=(Limit(evaluate=in_flight("flight_height_m"), ceiling=WIDER),),
     ),
@@ -310,7 +310,7 @@ TRAILING = (
     ),
     Quantity(
         "drift_height_m", "height above the pivots at which drift is read", lambda run: run.pier.top, "m",
-        ReportFormat("drift at [m]", ".6g", behind="top_drift_m"), ": `top_m` of the pier, or its highest point",
+        ReportFormat("drift at", ".6g", behind="top_drift_m"), ": `top_m` of the pier, or its highest point",
     ),
     Quantity(
         "failure",
@@ -368,7 +368,7 @@ _OF_BENDING = (
         "greatest deflection of the shaft's top, across the shaft",
         "deflection_max",
         "m",
-        ReportFormat("deflection [mm]", ".1f", 1000, "drift_height_m"),
+        ReportFormat("deflection", ".1f", 1000, "drift_height_m"),
         bases=BENDING,
         error="deflection_error_m",
         limits=LENGTHS,

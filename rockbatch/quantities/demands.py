@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.common.units import with_unit
 from rockbatch.pier import tilt_over_residual
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import ONE, Case, Lever, alpha, bends, holds_a_tilt, width
@@ -163,7 +164,7 @@ class Demand:
     @property
     def words(self) -> str:
         """The meaning, with the unit in brackets if there is one."""
-        return f"{self.meaning} [{self.unit}]" if self.unit else self.meaning
+        return with_unit(self.meaning, self.unit)
 
     @property
     def of_motion(self) -> bool:

@@ -45,7 +45,7 @@ def _force_in_kilonewtons(device: str, symbol: str) -> Quantity:
         return None if force is None or mass is None else force * mass * run.pier.gravity
 
     kind, over_weight = device.replace("_", " "), f"{device}_force_over_weight"
-    words, page = f"greatest force of a {kind}", ReportFormat(f"{kind} {symbol} [kN]", ".0f", behind=over_weight)
+    words, page = f"greatest force of a {kind}", ReportFormat(f"{kind} {symbol}", ".0f", behind=over_weight)
     limits = (Limit(times=weight, columns=(over_weight,)),)
     return of_device(
         f"{device}_force_kN",
@@ -64,7 +64,7 @@ def _depth(device: str) -> Quantity:
     """Return the quantity of the greatest deflection of a stop or a deck spring beyond its gap [m]."""
     kind = device.replace("_", " ")
     words = f"greatest deflection of a {kind} beyond its gap"
-    page = ReportFormat(f"{kind} deflection [mm]", ".1f", 1000)
+    page = ReportFormat(f"{kind} deflection", ".1f", 1000)
     return of_device(f"{device}_deflection_m", words, f"{device}_depth", "m", page, limits=LENGTHS, device=device)
 
 
@@ -72,12 +72,12 @@ def _energy(device: str) -> Quantity:
     """Return the quantity of the energy that all devices of a kind dissipate [J/kg]."""
     kinds = f"{device.replace('_', ' ')}s"
     words = f"energy dissipated by all {kinds} until the run ends, per unit mass of the pier"
-    page = ReportFormat(f"{kinds} [J/kg]", ".4f")
+    page = ReportFormat(f"{kinds}", ".4f")
     return of_device(f"{device}_energy_J_kg", words, f"{device}_energy", "J/kg", page, device=device, cumulative=True)
 
 
-_STROKE, _SPEED = ReportFormat("damper stroke [mm]", ".1f", 1000), ReportFormat("damper speed [m/s]", ".3f")
-_YIELD = ReportFormat("tendon yield [mm]", ".2f", 1000)
+_STROKE, _SPEED = ReportFormat("damper stroke", ".1f", 1000), ReportFormat("damper speed", ".3f")
+_YIELD = ReportFormat("tendon yield", ".2f", 1000)
 
 DEVICES = (
     _force("damper", "F"),

@@ -71,7 +71,7 @@ class Run(Protocol):
 
 
 class ReportFormat(NamedTuple):
-    """A quantity in the report: its heading with the unit there, its format, and the factor from the file's unit to the page's.
+    """A quantity in the report: its heading, its format, and the factor from the file's unit to the page's, 1 or 1000.
 
     The page makes an index of a word after a low line: "θ_max/α". ``behind`` names the column after which it is put, if
     that is not the one before it in the file. ``table`` is the section in whose tables it is.
@@ -203,6 +203,12 @@ class Quantity:
     def meaning(self) -> str:
         """The whole meaning in a sentence, with the key of [output] that it needs."""
         return f"{self.words}{self.more}" + (f"; with [output] {self.needs} = true" if self.needs else "")
+
+    @property
+    def unit_on_page(self) -> str:
+        """Unit of its numbers in the report, "mm" of metres times 1000; empty for none."""
+        prefix = "m" if self.page and self.page.factor == 1000 else ""
+        return prefix + in_print(self.unit)
 
     @property
     def applies(self) -> str:

@@ -11,7 +11,7 @@ from rockbatch.quantities.labels import plain
 from rockbatch.reporting.differing import differences
 from rockbatch.reporting.drawings import drawings
 from rockbatch.reporting.finished import Finished, worst_first
-from rockbatch.reporting.labels import counted, first_of, head, symbol
+from rockbatch.reporting.labels import counted, first_of, head, head_of_key
 from rockbatch.reporting.margins import headline, margins
 from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.reporting.overview import drawn_by_record
@@ -166,9 +166,9 @@ def pairs(pair: Pair) -> Markup:
     names = [key for key in pair.keys if key in ("record", "case") or a[key].nunique() > 1]
     in_both = {*a.columns} & {*b.columns} - {"theta_max_over_alpha"}
     more = [column for column in COLUMNS.values() if column.suite and column.name in in_both]
-    heads = [*(Head(symbol(name)) for name in names), *(Head(side, THETA_FORMAT, group=THETA) for side in SIDES)]
+    heads = [*(head_of_key(name) for name in names), *(Head(side, THETA_FORMAT, group=THETA) for side in SIDES)]
     heads.append(Head("B / A", ".3f", group=THETA))
-    heads += [Head(side, group=head(column).text, form=head(column).form) for column in more for side in SIDES]
+    heads += [Head(side, group=head(column).words, form=head(column).form) for column in more for side in SIDES]
     rows = []
     for pair_of_runs in zip(as_dicts(a.iloc[order]), as_dicts(b.iloc[order]), strict=True):
         first, second = (run["theta_max_over_alpha"] if run["status"] == "ok" else math.nan for run in pair_of_runs)

@@ -3,11 +3,11 @@
 import re
 from collections.abc import Sequence
 
-from rockbatch.quantities.cases import Case
+from rockbatch.common.units import with_unit
 from rockbatch.quantities.labels import symbol_of
 from rockbatch.quantities.quantity import Quantity
 from rockbatch.reporting.markup import Markup, escape, tag
-from rockbatch.reporting.table import Head
+from rockbatch.reporting.table import WHOLE, Head
 
 
 def counted(count: int, word: str) -> str:
@@ -15,10 +15,15 @@ def counted(count: int, word: str) -> str:
     return f"{count:,} {word}s" if count != 1 else f"one {word}"
 
 
-def symbol(key: str, case: Case | None = None) -> str:
-    """Return symbol and unit of a study key for a head or an axis: "p [rad/s]"; ``case`` as in :func:`symbol_of`."""
-    letter, unit = symbol_of(key, case)
-    return letter + (f" [{unit}]" if unit else "")
+def symbol(key: str) -> str:
+    """Return symbol and unit of a study key for an axis or a sentence: "p [rad/s]"."""
+    return with_unit(*symbol_of(key))
+
+
+def head_of_key(key: str, form: str = WHOLE, note: str | None = None, *, filter: bool = False) -> Head:
+    """Return the head of a study key: its symbol and unit."""
+    letter, unit = symbol_of(key)
+    return Head(letter, form, note, unit=unit, filter=filter)
 
 
 def heading(words: str) -> Markup:
@@ -30,7 +35,8 @@ def head(column: Quantity) -> Head:
     """Return the head of a column that is in the report, its tooltip with the column's name and meaning."""
     assert column.page is not None
     factor = f" × {column.page.factor}" if column.page.factor != 1 else ""
-    return Head(heading(column.page.head), column.page.form, f"{column.name}{factor}: {column.meaning}")
+    note = f"{column.name}{factor}: {column.meaning}"
+    return Head(heading(column.page.head), column.page.form, note, unit=column.unit_on_page)
 
 
 def first_of(names: Sequence[str], most: int) -> str:

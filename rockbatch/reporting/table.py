@@ -26,7 +26,7 @@ WRAPPED, WRAPPED_PROSE = 46, 16
 
 
 class Head(NamedTuple):
-    """Head of a column: its text, the format of its numbers, a tooltip, and a head over several columns.
+    """Head of a column: its text, the format of its numbers, a tooltip, a head over several columns, and the unit, "" for none.
 
     ``value`` is the key of its cells in the items of :func:`listed`, or a function of an item. The page's script lets
     readers select rows by a column with ``filter``. A table too wide for paper has its columns that identify a row in each
@@ -37,9 +37,15 @@ class Head(NamedTuple):
     form: str = WHOLE
     note: str | None = None
     group: str = ""
+    unit: str = ""
     value: str | Callable[[Item], object] = ""
     filter: bool = False
     key: bool = False
+
+    @property
+    def words(self) -> Markup:
+        """Return the text with the unit as HTML: "drift [mm]"."""
+        return join(self.text, f" [{self.unit}]" if self.unit else "")
 
     def value_in(self, item: Item) -> object:
         """Return the cell of an item; None if the item lacks the key."""
@@ -146,7 +152,7 @@ def _parts(
 
 def _width(head: Head, cells: Iterable[object], longest: int) -> int:
     """Return the width of a column in characters, at most ``longest`` for its cells, with the gap to the next one."""
-    of_head = max((len(word) for word in re.split(r"[ \n]+", _plain(head.text))), default=0)
+    of_head = max((len(word) for word in re.split(r"[ \n]+", _plain(head.words))), default=0)
     return GAP + max(of_head, max((min(len(_plain(_text(cell, head.form))), longest) for cell in cells), default=0))
 
 
@@ -163,25 +169,16 @@ def _numbered(parts: Sequence[Markup], name: str) -> Iterator[Markup]:
 
 
 def _heading(head: Head, class_: str | None) -> Markup:
-    text = _with_unit(head.text)
-    return tag("th", text, class_=class_, scope="col", title=head.note, data_filter=head.filter)
-
-
-def _with_unit(text: str) -> Markup:
-    """Return the text of a head as HTML, without line breaks inside its unit."""
-    name, bracket, unit = escape(text).rpartition(" [")
-    return Markup(f'{name} <span class="unit">[{unit}</span>') if bracket else Markup(unit)
+    unit = join(" ", tag("span", f"[{head.unit}]", class_="unit")) if head.unit else ""
+    return tag("th", head.text, unit, class_=class_, scope="col", title=head.note, data_filter=head.filter)
 
 
 def _common(heads: Sequence[Head], values: Sequence[object], complete: bool) -> Markup:
     """Return a line with the values of constant columns and their units; ``complete`` if the table shows every row."""
     words = []
     for head, value in zip(heads, values, strict=True):
-        name, bracket, unit = escape(head.text.removesuffix("]")).rpartition(" [")
-        has_unit = bool(bracket) and head.text.endswith("]")
         shown = value if isinstance(value, Markup) else number(value, head.form)
-        behind = f"\u00a0{unit}" if has_unit else ""
-        words.append(join(Markup(name) if has_unit else head.text, " ", shown, Markup(behind)))
+        words.append(join(head.text, " ", shown, f"\u00a0{head.unit}" if head.unit else ""))
     rows = "In every row: " if complete else "In each of these rows: "
     return tag("p", rows, join(*words, between="; "), ".", class_="legend")
 

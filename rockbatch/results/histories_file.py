@@ -95,7 +95,6 @@ _IMPACTS = {"t": "f", "pivot": "S"} | dict.fromkeys(IMPACT_UNITS, "f")
 _BESIDE = {"restraints": (), "ledger": TERMS, "forces": tuple(FORCE_UNITS)}
 """Optional tables with a row for each row of the history: their columns by HDF5 group, () for those present."""
 
-_ALL_UNITS = HISTORY_UNITS | FORCE_UNITS | IMPACT_UNITS | dict.fromkeys(TERMS, "J/kg")
 _OF_RUN = ("record", "case", "polarity", "scale", "status")
 _DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, OverflowError)
 """Exceptions raised while reading a damaged file."""
@@ -198,14 +197,12 @@ def _write(group: "h5py.Group", response: Response) -> None:
 
 def _write_all(group: "h5py.Group", table: "pd.DataFrame", columns: Iterable[str]) -> None:
     """Write columns of a table: "kind" and "pivot" as texts of at most 16 bytes, others as numbers with their unit."""
-    is_devices = group.name.endswith("restraints")
+    units = table.attrs["units"]
     for name in columns:
         if name in ("kind", "pivot"):
             group[name] = np.array(table[name], dtype="S16")
         else:
-            of_device = "N/kg" if name.endswith("force") else "m"
-            unit = of_device if is_devices else _ALL_UNITS.get(name, "1")
-            group.create_dataset(name, data=table[name].to_numpy()).attrs["unit"] = unit
+            group.create_dataset(name, data=table[name].to_numpy()).attrs["unit"] = units.get(name, "1")
 
 
 def _set(group: "h5py.Group", values: Mapping[str, object]) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from rockbatch.common.lazy import pd
 from rockbatch.outcome.outcome import Section
@@ -30,15 +30,25 @@ def read_forces(path: Path, varied: Sequence[str], columns: Iterable[str]) -> "p
     return read_beside(path, varied, columns).astype(dict.fromkeys(columns, "float64"))
 
 
-def columns_in(runs: "pd.DataFrame") -> tuple[dict[str, str], dict[str, str]]:
-    """Return headings with units, and columns, by force ("shear", "moment", …): in kN if all rows have these, else over M."""
+_SYMBOLS = {"shear": "V", "moment": "moment", "axial_least": "N", "axial_greatest": "N", "axial_at_moment": "N"}
+
+
+class ForceColumn(NamedTuple):
+    """A column of sections.csv, with symbol and unit of its force."""
+
+    name: str
+    symbol: str
+    unit: str
+    over_mass: bool
+
+
+def columns_in(runs: "pd.DataFrame") -> dict[str, ForceColumn]:
+    """Return the columns by force ("shear", "moment", …): in kN if all rows have these, else over the mass."""
     over_mass = bool(runs["section_shear_kN"].isna().any())
-    symbols = {"shear": "V", "moment": "moment", "axial_least": "N", "axial_greatest": "N", "axial_at_moment": "N"}
-    heads, columns = {}, {}
-    for name, symbol in symbols.items():
+    columns = {}
+    for name, symbol in _SYMBOLS.items():
         unit, ending = ("kN m", "kNm") if name == "moment" else ("kN", "kN")
         if over_mass:
-            unit, ending = ("m²/s²", "m2_s2") if name == "moment" else ("m/s²", "m_s2")
-        heads[name] = f"{symbol}{'/M' if over_mass else ''} [{unit}]"
-        columns[name] = f"section_{name}_{ending}"
-    return heads, columns
+            symbol, unit, ending = f"{symbol}/M", *(("m²/s²", "m2_s2") if name == "moment" else ("m/s²", "m_s2"))
+        columns[name] = ForceColumn(f"section_{name}_{ending}", symbol, unit, over_mass)
+    return columns

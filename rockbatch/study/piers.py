@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import asdict, replace
+from itertools import count, takewhile
 from typing import NamedTuple
 
 from rockbatch.common.errors import InputError, refuse
@@ -301,22 +302,20 @@ def read_piers(file: TomlFile, bounds: Sequence[DesignBound] = ()) -> Piers:
         message = "a pier has one part at least; write [[pier.part]] above each, or leave it out"
         table.complain(f"part = []: {message}", "part")
     for n, part in enumerate(parts, 1):
-        grid += Grid.of(part, PART, f"part_{n}_")
+        grid += Grid.of(part, PART, _key_of_part(n, ""))
     if message := too_many(len(grid), "piers"):
         table.complain(message)
     if not file.is_sound_since(problems_before):
         return Piers([], (), tuple(grid.settings))
     piers = [
-        PierRead(*nominal, _under_bounds(table, chosen, len(parts), bounds))
+        PierRead(*nominal, _under_bounds(table, chosen, bounds))
         for chosen in grid
-        if (nominal := _pier_of(table, chosen, len(parts))) is not None
+        if (nominal := _pier_of(table, chosen)) is not None
     ]
     return Piers(piers, grid.varied, tuple(grid.settings))
 
 
-def _under_bounds(
-    table: Table, chosen: Chosen, parts: int, bounds: Sequence[DesignBound]
-) -> dict[str, tuple[Pier, Values]]:
+def _under_bounds(table: Table, chosen: Chosen, bounds: Sequence[DesignBound]) -> dict[str, tuple[Pier, Values]]:
     """Return the pier of one choice of values under each bound that changes keys of [pier], by the bound's name.
 
     A pier that cannot be made is left out; a single value that a bound makes impossible stays nominal. Problems of both are added
@@ -327,18 +326,18 @@ def _under_bounds(
         if any(change.of_pier for change in bound.changes):
             gathered = bound.without_mistakes(table.file)
             own = bound.table(table, gathered)
-            changed = _pier_of(own, bound.changed(chosen, own, of_pier=True), parts)
+            changed = _pier_of(own, bound.changed(chosen, own, of_pier=True))
             bound.note(table.file, gathered)
             if changed is not None:
                 piers[bound.name] = changed
     return piers
 
 
-def _pier_of(table: Table, chosen: Chosen, parts: int) -> tuple[Pier, Values] | None:
+def _pier_of(table: Table, chosen: Chosen) -> tuple[Pier, Values] | None:
     """Return the pier of one choice of values, and its values by key; None if impossible, with problems added to the table."""
     values = {name: setting.value for name, setting in chosen.items()}
     try:
-        pier = _pier(values, parts, table.confirmed)
+        pier = _pier(values, table.confirmed)
         pier = replace(
             pier,
             flexural_period_s=values.get("flexural_period_s"),
@@ -358,8 +357,8 @@ def has_mass(file: TomlFile) -> bool:
     return file.has(("pier", "mass_t")) or bool(file.value(("pier", "part"))) or ("pier",) in file.misspelt
 
 
-def _pier(values: KeyValues, parts: int, confirmed: Collection[str]) -> Pier:
-    """Return the pier with these ``values``, which reading has found to go together; ``parts`` is the number of its parts.
+def _pier(values: KeyValues, confirmed: Collection[str]) -> Pier:
+    """Return the pier with these ``values``, which reading has found to go together.
 
     Raises ``InputError`` for an impossible pier, or for unusual values of keys that are not ``confirmed``.
     """
@@ -368,8 +367,8 @@ def _pier(values: KeyValues, parts: int, confirmed: Collection[str]) -> Pier:
     def constructed(constructor: Callable[..., Pier], *names: str) -> Pier:
         return constructor(**{name: values[name] for name in names if name in values}, **common)
 
-    if parts:
-        return _pier_of_parts(values, parts, common)
+    if _key_of_part(1, "mass_t") in values:
+        return _pier_of_parts(values, common)
     if "deck_mass_t" in values and "columns" not in values:
         names = ("width_m", "height_m", "mass_t", "deck_mass_t", "deck_height_m", "deck_inertia_t_m2")
         return constructed(Pier.with_deck, *names)
@@ -394,15 +393,18 @@ def with_width(values: Values, width_m: float, confirmed: Collection[str]) -> Pi
     Heights, masses, and the inertias of parts and deck stay. A flexural period is along the axis alone, and left out.
     Raises ``InputError`` for an impossible pier, or an unusual one that is not ``confirmed``.
     """
-    parts = sum(name.startswith("part_") and name.endswith("_mass_t") for name in values)
-    return _pier(values | {"width_m": width_m}, parts, confirmed)
+    return _pier(values | {"width_m": width_m}, confirmed)
 
 
-def _pier_of_parts(values: KeyValues, parts: int, common: KeyValues) -> Pier:
+def _key_of_part(number: int, name: str) -> str:
+    """Return the name of a key of a [[pier.part]] among the values of the pier: "part_1_mass_t"."""
+    return f"part_{number}_{name}"
+
+
+def _pier_of_parts(values: KeyValues, common: KeyValues) -> Pier:
     """Return a pier of parts, with the deck as its last part. Raises ``InputError`` for impossible ones and unusual decks."""
-    written = (
-        {name: values[f"part_{n}_{name}"] for name in PART if f"part_{n}_{name}" in values} for n in range(1, parts + 1)
-    )
+    numbers = takewhile(lambda n: _key_of_part(n, "mass_t") in values, count(1))
+    written = ({name: values[key] for name in PART if (key := _key_of_part(n, name)) in values} for n in numbers)
     all_of_them = [Part.rectangle(**part) if "width_m" in part else Part(**part) for part in written]
     deck = None
     if "deck_mass_t" in values:

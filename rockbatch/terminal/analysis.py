@@ -7,6 +7,7 @@ from typing import TypedDict
 
 from rockbatch.batch.listening import Listener, count
 from rockbatch.batch.threads import Engine
+from rockbatch.common.units import with_unit
 from rockbatch.reporting.markup import number
 from rockbatch.reporting.table import Head
 from rockbatch.results.labelled import Item
@@ -54,7 +55,10 @@ def in_lines(heads: Sequence[Head], items: Iterable[Item], names: int = 1) -> st
     rows = [[cell(head, item) for head in heads] for item in items]
     used = [place for place in range(len(heads)) if place < names or any(row[place] for row in rows)]
     groups = [heads[place].group for place in used]
-    lines = [[heads[place].text for place in used], *([row[place] for place in used] for row in rows)]
+    lines = [
+        [with_unit(heads[place].text, heads[place].unit) for place in used],
+        *([row[place] for place in used] for row in rows),
+    ]
     if any(groups):
         pairs = zip(["", *groups], groups, strict=False)
         lines.insert(0, ["" if group == previous else group for previous, group in pairs])

@@ -22,19 +22,22 @@ COLUMNS = {
     "check": Head("to check", note="check: doubts; reasons are below"),
     "acceleration": Head("acceleration", note="of the stronger component, on its own scale"),
     "sa": Head("SA", note="response spectrum, 5 % damped, 0.05 to 5 s"),
-    "pga_h_g": Head("PGA [g]", ".3f", "pga_h_g: of the stronger horizontal component"),
-    "pga_h2_g": Head("across [g]", ".3f", "pga_h2_g: PGA of the other horizontal component"),
-    "pga_v_g": Head("vertical [g]", ".3f", "pga_v_g: PGA of the vertical component"),
-    "pgv_h_m_s": Head("PGV [m/s]", ".3f", "pgv_h_m_s: of the stronger component"),
-    "d5_95_s": Head("D5–95 [s]", ".1f", "d5_95_s: significant duration, from 5 to 95 % of the Arias intensity"),
+    "pga_h_g": Head("PGA", ".3f", "pga_h_g: of the stronger horizontal component", unit="g"),
+    "pga_h2_g": Head("across", ".3f", "pga_h2_g: PGA of the other horizontal component", unit="g"),
+    "pga_v_g": Head("vertical", ".3f", "pga_v_g: PGA of the vertical component", unit="g"),
+    "pgv_h_m_s": Head("PGV", ".3f", "pgv_h_m_s: of the stronger component", unit="m/s"),
+    "d5_95_s": Head("D5–95", ".1f", "d5_95_s: significant duration, from 5 to 95 % of the Arias intensity", unit="s"),
     "pulse_period_s": Head(
-        "pulse [s]", ".1f", "pulse_period_s: from PEER's list, else for a component that is pulse-like by Baker (2007)"
+        "pulse",
+        ".1f",
+        "pulse_period_s: from PEER's list, else for a component that is pulse-like by Baker (2007)",
+        unit="s",
     ),
     "magnitude": Head("M", note="magnitude"),
-    "distance_km": Head("R [km]", "g", "distance_km"),
-    "vs30_m_s": Head("Vs30 [m/s]", "g", "vs30_m_s"),
-    "dt_s": Head("dt [s]", "g", "dt_s"),
-    "duration_s": Head("length [s]", ".1f", "duration_s: from the first to the last sample"),
+    "distance_km": Head("R", "g", "distance_km", unit="km"),
+    "vs30_m_s": Head("Vs30", "g", "vs30_m_s", unit="m/s"),
+    "dt_s": Head("dt", "g", "dt_s", unit="s"),
+    "duration_s": Head("length", ".1f", "duration_s: from the first to the last sample", unit="s"),
 }
 """Heads of the columns: those of :mod:`rockbatch.motions.ranking`, and pictures."""
 

@@ -278,16 +278,16 @@ def test_a_table_of_an_analysis_that_is_empty_or_lacks_a_column_is_left_out(tmp_
 
 
 @pytest.mark.parametrize(
-    ("key", "words"),
+    ("key", "symbol", "unit"),
     [
-        ("toe_level_m", "toe level [m]"),
-        ("impulse_kN_s", "impulse [kN s]"),
-        ("spring_kN_m", "spring [kN/m]"),
-        ("rate_per_s", "rate [1/s]"),
-        ("speed_m_s", "speed [m/s]"),
-        ("push_m_s2", "push [m/s²]"),
-        ("colour", "colour"),
+        ("toe_level_m", "toe level", "m"),
+        ("impulse_kN_s", "impulse", "kN s"),
+        ("spring_kN_m", "spring", "kN/m"),
+        ("rate_per_s", "rate", "1/s"),
+        ("speed_m_s", "speed", "m/s"),
+        ("push_m_s2", "push", "m/s²"),
+        ("colour", "colour", ""),
     ],
 )
-def test_keys_without_a_symbol_have_their_unit_as_people_write_it(key, words):
-    assert inputs._symbol(key) == words
+def test_keys_without_a_symbol_have_their_unit_as_people_write_it(key, symbol, unit):
+    assert inputs.symbol_and_unit(key) == (symbol, unit)

@@ -94,14 +94,14 @@ def test_every_page_has_study_version_commit_date_and_its_number(tmp_path):
 
 
 def test_a_wide_table_is_in_parts_that_repeat_its_first_columns(tmp_path):
-    heads = [Head("record"), Head("case", filter=True), *(Head(f"quantity {i} [kN m]", ".2f") for i in range(40))]
+    heads = [Head("record"), Head("case", filter=True), *(Head(f"quantity {i}", ".2f", unit="kN m") for i in range(40))]
     rows = [[f"r{row}", "pads", *(row + i / 7 for i in range(40))] for row in range(3)]
     with on_paper():
         parts = Page(f'<section id="x">{table(heads, rows, name="Runs")}</section>')
     heads_of_parts = [row for row in parts.tables["x"] if row[0] == "record"]
     assert len(heads_of_parts) > 2
     assert all(row[:2] == ["record", "case"] for row in heads_of_parts)
-    assert [name for row in heads_of_parts for name in row[2:]] == [head.text for head in heads[2:]]
+    assert [name for row in heads_of_parts for name in row[2:]] == [head.words for head in heads[2:]]
     assert sum(row[0] == "r0" for row in parts.tables["x"]) == len(heads_of_parts)
     assert f"Runs, part 2 of {len(heads_of_parts)}" in parts.text
     assert all(sum(len(cell) for cell in row) <= PAPER for row in parts.tables["x"] if row[0] == "r0")

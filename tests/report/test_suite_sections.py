@@ -12,6 +12,7 @@ from studies import COSINE, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.observers.forces import section as forces
 from rockbatch.observers.intensity import section as intensity
+from rockbatch.observers.intensity.table import measures_in
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.reporting import write_report
 from rockbatch.reporting.finished import read
@@ -87,7 +88,7 @@ def test_intensity_measures_are_shown_by_case_with_the_best_of_each(asked):
     for row, (_, same) in zip(ranks, order.groupby(["case", "alpha"], sort=False), strict=True):
         measures = same.set_index("measure")
         assert row[-len(measures) :] == [f"{value:.2f}" for value in measures["rank_correlation"]]
-        assert intensity._symbol(measures["rank_correlation"].idxmax()) in row
+        assert measures_in(measures.index)[measures["rank_correlation"].idxmax()].symbol in row
     for row, (_, same) in zip(lines, order.groupby(["case", "alpha"], sort=False), strict=True):
         measures = same.set_index("measure")
         assert row[-len(measures) :] == ["—" if value != value else f"{value:.2f}" for value in measures["dispersion"]]

@@ -49,7 +49,7 @@ def test_decimal_points_stand_below_each_other_whatever_the_digits():
 
 
 def test_a_table_names_its_rows_groups_its_heads_and_breaks_no_unit():
-    heads = [Head("a < b"), Head("θ [mm/s]", ".1f", "meaning", "both"), Head("n", group="both"), Head("left")]
+    heads = [Head("a < b"), Head("θ", ".1f", "meaning", "both", "mm/s"), Head("n", group="both"), Head("left")]
     drawn = ET.fromstring(table(heads, [["<x>", 1.5, 2, Markup("<b>y</b>")], ["z", None, 3, ""]], prose=True))
     assert (drawn.get("class"), drawn.get("role"), drawn.get("aria-label")) == ("wide prose", "region", "Table")
     assert ET.fromstring(table(heads, [["x", 1.5, 2, ""]], name="all")).get("class") == "wide"
@@ -76,7 +76,9 @@ def test_what_is_the_same_in_every_row_of_a_long_table_stands_above_it_once():
     assert "In every row: status ok; scale 1.50." in shown.text
     assert shown.tables["x"][0] == ["name", "peak"]
     with_unit = table(
-        [heads[0], Head("drift at [m]", ".4g"), *heads[2:]], [[row[0], 30.0, *row[2:]] for row in rows], sortable=True
+        [heads[0], Head("drift at", ".4g", unit="m"), *heads[2:]],
+        [[row[0], 30.0, *row[2:]] for row in rows],
+        sortable=True,
     )
     assert "In every row: drift at 30\u00a0m; scale 1.50." in with_unit
     at_rest = table([heads[0], Head("period [s] of rest"), *heads[2:]], rows, sortable=True)

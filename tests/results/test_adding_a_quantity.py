@@ -17,7 +17,7 @@ TOP = Path(rockbatch.__file__).parent
 
 ROW = """    Quantity(
         "toe_lift_m", "greatest rotation times the width", lambda run: 2.0 * run.pier.half_width * run.outcome.theta_max, "m",
-        ReportFormat("toe lift [mm]", ".1f", 1000, "theta_max_over_alpha"),
+        ReportFormat("toe lift", ".1f", 1000, "theta_max_over_alpha"),
         limits=(Limit(), Limit(unit="mm", times=THOUSAND)),
     ),
 )  # fmt: skip

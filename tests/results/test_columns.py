@@ -132,14 +132,11 @@ def test_a_name_ends_with_its_unit():
 
 
 def test_the_page_shows_a_column_in_the_unit_of_its_heading():
-    """A column of errors has no unit in its heading, but that of the quantity beside it, unless it is a share of several."""
-    named = {"g": "standard_gravity", "kN m": "kN*m"}
-    of_errors = {(column.error, column.unit): column for column in COLUMNS.values()}
+    named = {"g": "standard_gravity", "": "1"}
     for column in COLUMNS.values():
         if column.page is not None:
-            shown = of_errors.get((column.name, column.unit), column)
-            unit = re.search(r"\[(.+)\]", shown.page.head)
-            unit = named.get(unit[1], unit[1].replace("²", "**2").replace(" ", "*")) if unit else column.unit
+            unit = column.unit_on_page
+            unit = named.get(unit, unit.replace("²", "**2").replace(" ", "*"))
             assert pint.Quantity(1.0, column.unit).to(unit).magnitude == pytest.approx(column.page.factor), column.name
 
 

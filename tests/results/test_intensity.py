@@ -16,7 +16,8 @@ from rockbatch.common.errors import InputError
 from rockbatch.motions.intensity import measures
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.observers.intensity.order import order_of
-from rockbatch.observers.intensity.section import _symbol, _tables, section
+from rockbatch.observers.intensity.section import _tables, section
+from rockbatch.observers.intensity.table import measures_in
 from rockbatch.reporting.finished import read
 from rockbatch.results import suite_statistics
 from rockbatch.results.suite_statistics import distribution
@@ -255,7 +256,7 @@ def test_the_best_measure_is_the_extreme_of_those_that_have_a_number(results, bl
         groups = order.groupby(["case", *finished.info["varied"], "scale"], sort=False)
         for row, (_, group) in zip(rows, groups, strict=True):
             numbers = group.set_index("measure")[column].dropna()
-            assert row[place] == (_symbol(getattr(numbers, best)()) if len(numbers) else "—")
+            assert row[place] == (measures_in(numbers.index)[getattr(numbers, best)()].symbol if len(numbers) else "—")
 
 
 def test_the_page_has_a_row_for_each_case_and_scale_and_names_both(results):

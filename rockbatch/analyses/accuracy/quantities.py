@@ -15,7 +15,7 @@ QUANTITIES = (
     Head("median error", ".1e", value="error_median"),
     Head("95 %", ".1e", "error that 95 % of the runs keep", value="error_95"),
     Head("largest", ".1e", value="error_max"),
-    Head("time per run [ms]", ".3g", value="milliseconds"),
+    Head("time per run", ".3g", value="milliseconds", unit="ms"),
     Head(
         "other outcome",
         ".0f",

@@ -23,6 +23,7 @@ from rockbatch.common.figures.description import (
     sign_of,
 )
 from rockbatch.common.grouping import grouped
+from rockbatch.common.units import with_unit
 from rockbatch.reporting.finished_analysis import named
 
 STRIP = 0.03
@@ -49,18 +50,14 @@ def remarks(info: Entry, curves: Iterable[Curve], note: Callable[[Curve], str]) 
     return lines
 
 
-def in_brackets(unit: str) -> str:
-    """Return a unit in brackets, "[g]", for heads and axes; empty without one."""
-    return f"[{unit}]" if unit else ""
-
-
 def _looks(info: Entry) -> dict[str, Look]:
     """Return the marks of each case by its label, the same in every figure."""
     return {name: marks_of(i) for i, name in enumerate(dict.fromkeys(label(info, entry) for entry in info["curves"]))}
 
 
-def _intensity(info: Entry) -> str:
-    return f"{info['measure']} {in_brackets(info['unit'])}".strip()
+def intensity(info: Entry) -> str:
+    """Return the intensity measure with its unit, "PGV [m/s]"."""
+    return with_unit(info["measure"], info["unit"])
 
 
 def curves(info: Entry) -> Figure:
@@ -70,7 +67,7 @@ def curves(info: Entry) -> Figure:
         for first in range(0, len(of_limit), CASES_OF_A_PANEL):
             group = [(label(info, entry), entry) for entry in of_limit[first : first + CASES_OF_A_PANEL]]
             looked = [(case, entry) for case, entry in group if entry.get("looked")]
-            x = Axis(_intensity(info), 0.0, 1.1 * info["levels"][-1], about=6)
+            x = Axis(intensity(info), 0.0, 1.1 * info["levels"][-1], about=6)
             y = Axis("probability", 0.0, 1.0 + STRIP * (len(looked) + 0.5 * bool(looked)), last=1.0)
             strips = [
                 _line([low, high], [1.0 + STRIP * (place + 1)] * 2, looks[case])
@@ -178,7 +175,7 @@ def _cloud(info: Entry, entry: Curve, look: Look) -> Panel:
     """
     cloud, runs = entry["cloud"], entry["cloud"]["runs"]
     demands = [run["demand"] for run in runs if run["counts"] == "line"] + [cloud["limit"], cloud["floor"]]
-    x = log_spanning(_intensity(info), np.array([run["x"] for run in runs], dtype=float), margin=0.1)
+    x = log_spanning(intensity(info), np.array([run["x"] for run in runs], dtype=float), margin=0.1)
     top = 1.5 * max(demands)
     y = Axis(cloud["demand"], min(demands) / 1.2, top * (top / min(demands)) ** 0.1, log=True, last=top)
     marks: list[Mark] = [
@@ -216,7 +213,7 @@ def risk(info: Entry, shown: Sequence[Curve]) -> Figure:
         f"{level:g} {info['unit']}: {often:.3g} per year, once in {1.0 / often:.0f} years"
         for level, often in zip(hazard["levels"], hazard["rates"], strict=True)
     ]
-    x = Axis(_intensity(info), float(across[0]), float(across[-1]), log=True)
+    x = Axis(intensity(info), float(across[0]), float(across[-1]), log=True)
     points = Points(
         np.array(hazard["levels"], dtype=float), np.array(hazard["rates"], dtype=float), None, titles, look=Look()
     )
@@ -231,7 +228,7 @@ def _densities(info: Entry, shown: Sequence[Curve], looks: Mapping[str, Look], c
     densities = [entry["risk"]["density"] for entry in shown]
     ends = [float(x) for density in densities for x in (density["x"][0], density["x"][-1])] or [0.1, 10.0]
     most = max((max(density["share"]) for density in densities), default=1.0)
-    x = Axis(_intensity(info), min(ends), max(ends), log=True)
+    x = Axis(intensity(info), min(ends), max(ends), log=True)
     known = sorted(end for end in {info["hazard"]["levels"][0], info["hazard"]["levels"][-1]} if x.low <= end <= x.high)
     marks: list[Mark] = [Rule("x", np.array(known, dtype=float), look=Look("edge"))]
     marks += [

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 
-from rockbatch.analyses.fragility.figures import in_brackets, label
+from rockbatch.analyses.fragility.figures import label
 from rockbatch.common.analyses import Entry
 from rockbatch.quantities.labels import plain
 from rockbatch.reporting.markup import Markup, interval
@@ -31,9 +31,10 @@ def of_curves(info: Entry) -> list[Head]:
     level = level_of(info)
     return [
         Head(
-            f"median {in_brackets(info['unit'])}".strip(),
+            "median",
             ".3g",
             f"θ: the {info['measure']} that half of the motions need; < and > are bounds ({level})",
+            unit=info["unit"],
             value=_median,
         ),
         Head(level, note="interval of the median, by stations", value=_interval("median_interval")),
@@ -67,7 +68,7 @@ def of_curves(info: Entry) -> list[Head]:
             value="dispersion_total",
         ),
         Head("by shares", ".3g", info.get("by_shares"), value=lambda curve: curve.get("windows", {}).get("median")),
-        Head("apart [%]", "+.1f", "by shares, above that of the first exceedances [%]", value=_apart),
+        Head("apart", "+.1f", "by shares, above that of the first exceedances [%]", value=_apart, unit="%"),
     ]
 
 
@@ -102,7 +103,7 @@ def of_rates(info: Entry, written: Callable[[float], str]) -> list[Head]:
     level = level_of(info)
     return [
         Head("dispersion", ".2f", "β with the added dispersion", value=lambda curve: curve["risk"]["dispersion_total"]),
-        Head("rate [1/year]", note="mean annual rate of exceedance", value=_rate(written, level)),
+        Head("rate", note="mean annual rate of exceedance", value=_rate(written, level), unit="1/year"),
         Head(level, note="interval of the rate by the fit", value=_rates("rate_low", "rate_high", written)),
         Head(
             "undecided",
@@ -111,8 +112,9 @@ def of_rates(info: Entry, written: Callable[[float], str]) -> list[Head]:
         ),
         *(_head_of_years(years, level) for years in info["hazard"]["years"]),
         Head(
-            f"90 % come from {in_brackets(info['unit'])}".strip(),
+            "90 % come from",
             note="intensities that contribute, but for 5 % at either end",
+            unit=info["unit"],
             value=_contributing,
         ),
     ]

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Sequence
 
 from rockbatch.analyses.fragility import answer
-from rockbatch.analyses.fragility.figures import clouds, curves, in_brackets, remarks, risk
+from rockbatch.analyses.fragility.figures import clouds, curves, intensity, remarks, risk
 from rockbatch.analyses.fragility.quantities import Curve, level_of, names_of_curves, of_curves, of_rates, power
 from rockbatch.common.analyses import Entry
 from rockbatch.reporting.finished_analysis import FinishedAnalysis, named, of_analysis, of_earlier_version
@@ -76,11 +76,7 @@ def _factors(info: Entry) -> Markup:
     scales = info.get("scales")
     if not scales or not scales["records"]:
         return Markup("")
-    measure = f"{info['measure']} {in_brackets(info['unit'])}".strip()
-    heads = [
-        Head("record"),
-        *(Head(f"{level:g}", group=measure) for level in info["levels"]),
-    ]
+    heads = [Head("record"), *(Head(f"{level:g}", group=intensity(info)) for level in info["levels"])]
     rows = []
     for name, factors, used in zip(scales["records"], scales["factors"], scales["used"], strict=True):
         rows.append([name, *map(_factor, factors, used)])
@@ -103,16 +99,18 @@ def _capacities(analysis: FinishedAnalysis) -> Markup:
         Head("limit", value="limit_state"),
         Head("case", value=case),
         Head(
-            f"exceeded from {in_brackets(analysis.info['unit'])}".strip(),
+            "exceeded from",
             ".4g",
             "empty: not up to the highest level",
+            unit=analysis.info["unit"],
             value="at_most",
         ),
         Head("as scale", ".4g", value="scale_at_most"),
         Head(
-            "widest step below [%]",
+            "widest step below",
             ".3g",
             "an island of exceedance that is narrower may lie below",
+            unit="%",
             value=lambda row: 100.0 * float(row["widest_step"]),
         ),
     ]

@@ -32,16 +32,16 @@ _WORK, _IN_KILOJOULES = _of_work("damper_work"), _of_work("damper_work", lambda 
 
 FURTHER = (
     _work(
-        "damper_travel_m", "greatest cumulative travel of a damper", _TRAVEL, "m", "damper travel [m]", ".3f",
+        "damper_travel_m", "greatest cumulative travel of a damper", _TRAVEL, "m", "damper travel", ".3f",
         device="damper", cumulative=True, more=", the sum of its way to and fro until the run ends",
     ),
     _work(
         "damper_work_J_kg", "greatest energy that one damper dissipates until the run ends, per unit mass of the pier", _WORK,
-        "J/kg", "damper work [J/kg]", ".4f", device="damper", cumulative=True,
+        "J/kg", "damper work", ".4f", device="damper", cumulative=True,
     ),
     _work(
         "damper_work_kJ", "greatest energy that one damper dissipates until the run ends", _IN_KILOJOULES, "kJ",
-        "damper work [kJ]", ".1f", device="damper", cumulative=True, more=", if mass_t is given", weighed=True,
+        "damper work", ".1f", device="damper", cumulative=True, more=", if mass_t is given", weighed=True,
     ),
     _work(
         "damper_half_cycles", "most half cycles of a damper until the run ends", _CYCLES, "1", "half cycles", ".0f",

@@ -12,7 +12,7 @@ def _energy(term: str, form: str) -> Quantity:
         return None if energies is None else energies[term]
 
     words = "energy ledger at the end, per unit mass, and the greatest remainder during the run"
-    page = ReportFormat(f"{term.replace('_', '-')} [J/kg]", form)
+    page = ReportFormat(f"{term.replace('_', '-')}", form)
     return Quantity(f"energy_{term}_J_kg", words, value, "J/kg", page, needs="ledger")
 
 

@@ -58,7 +58,7 @@ def _in_kilonewtons(
     """Return the quantity of a ``field`` in kN, kN m or kN s, for piers whose mass is known, described as "the same in kN, …"."""
     words = f"the same in {in_print(unit)}, if mass_t is given"
     more: dict[str, Any] = {"sometimes": True, "weighed": True, "limits": (limit,) if limit.words else (), **entered}
-    return _force(name, words, field, unit, f"{head} [{in_print(unit)}]", ".0f", per=per, behind=behind, **more)
+    return _force(name, words, field, unit, head, ".0f", per=per, behind=behind, **more)
 
 
 _TIMES_MASS = {"m/s^2": "kN", "m/s": "kN*s", "m^2/s^2": "kN*m"}
@@ -79,7 +79,7 @@ def _over_mass(
     """Return a quantity over the mass, and the same of a pier whose mass is known."""
     first, second = f"{name}_{ENDINGS[unit]}", f"{name}_{ENDINGS[_TIMES_MASS[unit]]}"
     limit = Limit(words=words)
-    head = f"{symbol}/M [{in_print(unit)}]"
+    head = f"{symbol}/M"
     entered = {name: facts[name] for name in ("landing", "bending", "directed") if name in facts}
     return (
         _force(
@@ -136,24 +136,24 @@ QUANTITIES = (
         "pivot_force_right_kN", "pivot_right", "kN", "support R", _half_weight,
         greater("pivot_force/_kN", _PIVOT_KN)[0], landing=True,
     ),
-    _force("heel_gap_left_m", _GAP.format("each"), "heel_gap_left", "m", "heel gap L [mm]", ".1f", 1000, more=_GAP_MORE),
+    _force("heel_gap_left_m", _GAP.format("each"), "heel_gap_left", "m", "heel gap L", ".1f", 1000, more=_GAP_MORE),
     _force(
-        "heel_gap_right_m", _GAP.format("each"), "heel_gap_right", "m", "heel gap R [mm]", ".1f", 1000, more=_GAP_MORE,
+        "heel_gap_right_m", _GAP.format("each"), "heel_gap_right", "m", "heel gap R", ".1f", 1000, more=_GAP_MORE,
         limits=greater("heel_gap/_m", _GAP, *LENGTHS), directed=True,
     ),
-    _force("heel_speed_left_m_s", _SPEED, "heel_speed_left", "m/s", "heel speed L [m/s]", ".3f"),
+    _force("heel_speed_left_m_s", _SPEED, "heel_speed_left", "m/s", "heel speed L", ".3f"),
     _force(
-        "heel_speed_right_m_s", _SPEED, "heel_speed_right", "m/s", "heel speed R [m/s]", ".3f",
+        "heel_speed_right_m_s", _SPEED, "heel_speed_right", "m/s", "heel speed R", ".3f",
         limits=greater("heel_speed/_m_s", _SPEED), directed=True,
     ),
     _force(
         "deck_acceleration_m_s2", "greatest absolute horizontal acceleration of the deck", "deck_acceleration", "m/s^2",
-        "deck [m/s²]", ".3f", more=", or of the top without one", limits=(Limit(), Limit(unit="g", times=per_gravity)),
+        "deck", ".3f", more=", or of the top without one", limits=(Limit(), Limit(unit="g", times=per_gravity)),
         landing=True, bending=True, pointwise=True, directed=True,
     ),
     _force(
         "landing_velocity_m_s", "speed of the landing pivot at the hardest impact", "landing_velocity", "m/s",
-        "landing [m/s]", ".3f", sometimes=True, limits=(Limit(),),
+        "landing", ".3f", sometimes=True, limits=(Limit(),),
     ),
     *_over_mass("impulse", "vertical impulse of the hardest impact", "impulse", "m/s", "impulse", sometimes=True),
     _force(
@@ -161,12 +161,12 @@ QUANTITIES = (
         "V/N at impact", ".4f", sometimes=True, limits=_SLIDES,
     ),
     _force(
-        "first_uplift_s", "time at which a pivot first leaves its support", "first_uplift", "s", "first uplift [s]", ".3f",
+        "first_uplift_s", "time at which a pivot first leaves its support", "first_uplift", "s", "first uplift", ".3f",
         sometimes=True, least_is_worst=True,
     ),
     _force(
         "first_uplift_g", "magnitude of the horizontal ground acceleration then, over g", "uplift_ground",
-        "standard_gravity", "ground then [g]", ".4f", per=lambda pier: 1.0 / pier.gravity, sometimes=True, least_is_worst=True,
+        "standard_gravity", "ground then", ".4f", per=lambda pier: 1.0 / pier.gravity, sometimes=True, least_is_worst=True,
     ),
     _force(
         "omega_max_over_p", "greatest angular velocity over p", "omega_over_p", "1", "θ̇_max/p", ".4f", limits=(Limit(),),
@@ -178,7 +178,7 @@ QUANTITIES = (
     ),
     _force(
         "flight_longest_s", "duration of the longest flight", "flight_longest", "s",
-        "longest flight [s]", ".3f", sometimes=True, limits=(Limit(),),
+        "longest flight", ".3f", sometimes=True, limits=(Limit(),),
     ),
     _force(
         "forces_error", "largest relative error among the force columns", "error", "1", "±", ".1g", sometimes=True,
@@ -207,7 +207,7 @@ _LANDING_FORCE = replace(
         "greatest force of a foot at the hardest impact, by contact_stiffness_kN_m of the case",
         "landing_force",
         "kN",
-        "landing foot [kN]",
+        "landing foot",
         ".0f",
         per=lambda pier: pier.mass_t,
         sometimes=True,

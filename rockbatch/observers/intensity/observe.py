@@ -16,7 +16,7 @@ from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.observers.intensity import TABLE
 from rockbatch.observers.intensity.order import Array
 from rockbatch.observers.intensity.study import Measures
-from rockbatch.observers.intensity.table import MEANING
+from rockbatch.observers.intensity.table import MEASURES, spectral_column
 from rockbatch.results import beside_peaks
 from rockbatch.study import Study
 
@@ -51,17 +51,16 @@ def intensities(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) 
         pgv, cav, sa = of_record(motion)
         bracketed, uniform = durations(motion, uplift / scale)
         values = (scale * motion.pga / uplift, pier.p * scale * pgv / uplift, bracketed, uniform, scale * cav)
-        of_spectrum = {_column(period): scale * float(s) / pier.gravity for period, s in zip(periods, sa, strict=True)}
+        of_spectrum = {
+            spectral_column(period): scale * float(s) / pier.gravity for period, s in zip(periods, sa, strict=True)
+        }
         for rule in rules:
             pair = of_pair(motion.of_station)[rule]
             of_spectrum |= {
-                _column(period, rule): scale * float(s) / pier.gravity for period, s in zip(periods, pair, strict=True)
+                spectral_column(period, rule): scale * float(s) / pier.gravity
+                for period, s in zip(periods, pair, strict=True)
             }
-        yield {**row, **dict(zip(MEANING, values, strict=True)), **of_spectrum}
-
-
-def _column(period: float, rule: str = "") -> str:
-    return f"sa_{period:g}s_{rule}_g" if rule else f"sa_{period:g}s_g"
+        yield {**row, **dict(zip(MEASURES, values, strict=True)), **of_spectrum}
 
 
 def requested_table(study: Study) -> str:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from rockbatch.common.lazy import pd
 from rockbatch.common.statuses import NO_PEAK
-from rockbatch.observers.intensity.table import MEANING
+from rockbatch.observers.intensity.table import measures_in
 
 LEAST_RUNS = 3
 """Fewest runs with values for a rank correlation or a regression line."""
@@ -83,7 +83,7 @@ def _line(x: Array, y: Array) -> tuple[float, float]:
 def orders(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
     """Return a row for each case, scale and measure of intensity.csv: keys, ``measure``, and the fields of :class:`Order`."""
     keys = ["case", *varied, "scale"]
-    measures = [name for name in map(str, table) if name in MEANING or name.startswith("sa_")]
+    measures = measures_in(map(str, table))
     rows = []
     for key, group in table.groupby(keys, sort=False, dropna=False):
         theta, status = group["theta_max_over_alpha"].to_numpy(dtype=np.float64), group["status"].to_list()

@@ -21,11 +21,11 @@ FIRST = (
         "both_laws = true, or with a check of a settlement",
         lambda run: run.outcome.observed.get("other_law"),
         "m",
-        ReportFormat("by the other law [mm]", ".2f", 1000, "settlement_m"),
+        ReportFormat("by the other law", ".2f", 1000, "settlement_m"),
         bases=YIELDING,
         stood=True,
         sometimes=True,
-        suite=OfSuite("Settlement by the other law [mm]", ".2f"),
+        suite=OfSuite("Settlement by the other law", ".2f"),
         requested=_asked,
     ),
 )

@@ -6,6 +6,7 @@ import numpy as np
 
 from rockbatch.common.figures.description import DASHES, Figure, Look, Panel, Polyline, line_of, spanning
 from rockbatch.common.lazy import pd
+from rockbatch.common.units import with_unit
 from rockbatch.results.labels import Series
 from rockbatch.results.sections import columns_in
 
@@ -17,15 +18,16 @@ def over_height(groups: "Iterable[tuple[str, pd.DataFrame]]", series: Sequence[S
     """
     panels = []
     for words, runs in groups:
-        heads, columns = columns_in(runs)
+        columns = columns_in(runs)
         height = spanning("height [m]", runs["height_m"].to_numpy())
         for caption, forces in _OVER_HEIGHT.items():
             marks = [
-                _envelope(runs[runs["series"] == place], columns[name], which, series[place])
+                _envelope(runs[runs["series"] == place], columns[name].name, which, series[place])
                 for place in runs["series"].unique()
                 for name, which in forces.items()
             ]
-            across = spanning(heads[next(iter(forces))], *(mark.x for mark in marks))
+            first = columns[next(iter(forces))]
+            across = spanning(with_unit(first.symbol, first.unit), *(mark.x for mark in marks))
             panels.append(Panel(across, height, marks, caption, words, 240.0, 200.0))
     return Figure(panels, "Envelopes of shear, moment and axial force over the height of the shaft")
 

@@ -19,12 +19,11 @@ def _axial(sign: float) -> Evaluate:
     return evaluate
 
 
-def _in_section(name: str, meaning: str, evaluate: Evaluate | None = None) -> Demand:
-    """Return a demand on a section of the shaft, in kN or kN m; the largest of its column unless ``evaluate`` says otherwise.
+def _in_section(name: str, meaning: str, evaluate: Evaluate | None = None, unit: str = "kN") -> Demand:
+    """Return a demand on a section of the shaft; the largest of its column unless ``evaluate`` says otherwise.
 
     Bending is across the axis: axial forces, which ``evaluate`` gives, have none of it, and the weight in them on either axis.
     """
-    unit = "kN m" if name.endswith("kNm") else "kN"
     return Demand(
         name,
         meaning,
@@ -40,7 +39,7 @@ def _in_section(name: str, meaning: str, evaluate: Evaluate | None = None) -> De
 
 DEMANDS = (
     _in_section("section_shear_kN", "greatest shear in a section of the shaft, across its axis"),
-    _in_section("section_moment_kNm", "greatest moment in a section of the shaft"),
+    _in_section("section_moment_kNm", "greatest moment in a section of the shaft", unit="kN m"),
     _in_section("section_axial_kN", "greatest compression of a section of the shaft", _axial(1.0)),
     _in_section("section_tension_kN", "greatest tension of a section of the shaft, 0 if it has none", _axial(-1.0)),
 )

@@ -41,16 +41,17 @@ def section(finished: Finished) -> Markup:
 
 
 def _heads(runs: "pd.DataFrame") -> list[Head]:
-    heads, columns = columns_in(runs)
+    columns = columns_in(runs)
     words = {"axial_at_moment": "with the moment, ", "axial_least": "least ", "axial_greatest": "greatest "}
     order = ("shear", "moment", "axial_at_moment", "axial_least", "axial_greatest")
     forces = [
-        Head(words.get(name, "") + heads[name], ".0f" if "kN" in columns[name] else ".3f", OF_SECTIONS[columns[name]])
+        Head(words.get(name, "") + own.symbol, ".3f" if own.over_mass else ".0f", OF_SECTIONS[own.name], unit=own.unit)
         for name in order
+        for own in [columns[name]]
     ]
     return [
         Head("case"),
-        Head("height [m]", ".2f", OF_SECTIONS["height_m"]),
+        Head("height", ".2f", OF_SECTIONS["height_m"], unit="m"),
         *forces,
         Head("±", ".0e", OF_SECTIONS["sections_error"]),
         Head("runs", note="that went through, of all"),
@@ -61,7 +62,7 @@ def _heads(runs: "pd.DataFrame") -> list[Head]:
 def _rows(finished: Finished, groups: "list[tuple[str, pd.DataFrame]]") -> Iterator[list[object]]:
     """Yield a row for each case and height: the worst of its runs, N with the greatest of their moments."""
     for words, group in groups:
-        _, columns = columns_in(group)
+        columns = {name: column.name for name, column in columns_in(group).items()}
         for _, runs in group.groupby(["series", "height_m"], sort=False):
             bent = runs.iloc[int(runs[columns["moment"]].argmax())]
             label = finished.series[bent["series"]].label

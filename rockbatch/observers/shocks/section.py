@@ -58,14 +58,14 @@ def _table(finished: Finished, rows: Sequence[dict[str, Any]]) -> Markup:
         Head("case"),
         Head("shock", ".0f", MEANING["shock"]),
         Head("record"),
-        Head("from [s]", ".2f", MEANING["start_s"]),
-        Head("PGA [g]", ".3f", MEANING["shock_pga_g"]),
+        Head("from", ".2f", MEANING["start_s"], unit="s"),
+        Head("PGA", ".3f", MEANING["shock_pga_g"], unit="g"),
         Head("status", note=MEANING["shock_status"]),
         Head(THETA, THETA_FORMAT, MEANING["theta_max_over_alpha"]),
         Head("±", ".0e", MEANING["theta_max_error"]),
-        Head("at t [s]", ".2f", MEANING["t_max_s"]),
+        Head("at t", ".2f", MEANING["t_max_s"], unit="s"),
         Head(sub("θ", "res", "/α"), ".5f", MEANING["theta_res_over_alpha"]),
-        Head("settlement [mm]", ".2f", MEANING["settlement_m"]),
+        Head("settlement", ".2f", MEANING["settlement_m"], unit="mm"),
         Head("still moving/α", ".4f", MEANING["moving_over_alpha"]),
     ]
     cells = []

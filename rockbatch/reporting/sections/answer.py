@@ -109,7 +109,7 @@ def _rotation(of_case: "list[Worst]") -> float:
 
 
 def _head(name: str, heights: Collection[float]) -> Head:
-    return Head(RESPONSES[name].head(heights), ".3g", DEMANDS[name].words)
+    return Head(RESPONSES[name].named(heights), ".3g", DEMANDS[name].words, unit=RESPONSES[name].unit)
 
 
 def _response(finished: Finished, worst: Worst, run: Row, heights: Collection[float]) -> Markup:
@@ -123,7 +123,7 @@ def _device_heads(finished: Finished, kind: str) -> list[Head]:
     words = DEVICES[kind][1]
     name = kind.replace("_", " ")
     unit = "kN" if _weighed(finished.runs, kind) else "of the weight"
-    return [Head(f"{name} force [{unit}]", ".3g"), Head(f"{words} [mm]", ".3g", f"greatest of a {name}")]
+    return [Head(f"{name} force", ".3g", unit=unit), Head(words, ".3g", f"greatest of a {name}", unit="mm")]
 
 
 def _weighed(runs: "pd.DataFrame", kind: str) -> bool:

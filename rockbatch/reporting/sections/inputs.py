@@ -7,10 +7,11 @@ from typing import Any
 from rockbatch.pier import Pier, Restraint
 from rockbatch.pier.devices import FIELDS
 from rockbatch.quantities.cases import Case
+from rockbatch.quantities.labels import symbol_of
 from rockbatch.quantities.quantity import ENDINGS, in_print
 from rockbatch.reporting.drawings import drawings
 from rockbatch.reporting.finished import Finished
-from rockbatch.reporting.labels import heading, symbol
+from rockbatch.reporting.labels import heading
 from rockbatch.reporting.markup import Markup, join, number, tag
 from rockbatch.reporting.structure import device_in_words, names_of, pier_of, restraints_of
 from rockbatch.reporting.table import WHOLE, Head, table
@@ -18,38 +19,38 @@ from rockbatch.results.labelled import Row
 
 DIGITS = ".6g"
 OF_PIER = {
-    "size_m": "R0 [m]",
-    "half_width_m": "half-width b [m]",
-    "height_m": "centre of mass at [m]",
-    "highest_m": "highest point [m]",
-    "top_m": "drift read at [m]",
-    "mass_t": "mass [t]",
-    "deck_height_m": "deck at [m]",
-    "deck_over_columns": "deck over columns",
-    "flexural_period_s": "flexural period [s]",
-    "shaft_share": "share of the shaft in the mass",
+    "size_m": ("R0", "m"),
+    "half_width_m": ("half-width b", "m"),
+    "height_m": ("centre of mass at", "m"),
+    "highest_m": ("highest point", "m"),
+    "top_m": ("drift read at", "m"),
+    "mass_t": ("mass", "t"),
+    "deck_height_m": ("deck at", "m"),
+    "deck_over_columns": ("deck over columns", ""),
+    "flexural_period_s": ("flexural period", "s"),
+    "shaft_share": ("share of the shaft in the mass", ""),
 }
-"""Heads of values of a pier in run.json whose names mean something else in a study, or nothing."""
+"""Heads and units of values of a pier in run.json whose names mean something else in a study, or nothing."""
 OF_FOUNDATION = {
-    "omega_v": "ω_v [rad/s]",
-    "delta_s_m": "static deflection [m]",
-    "delta_y_m": "yield deflection [m]",
-    "zeta_rocking": "ζ of rocking",
+    "omega_v": ("ω_v", "rad/s"),
+    "delta_s_m": ("static deflection", "m"),
+    "delta_y_m": ("yield deflection", "m"),
+    "zeta_rocking": ("ζ of rocking", ""),
 }
 OF_DEVICE = {
-    "f": "F/(M g)",
-    "nu": "C/(M p)",
-    "yield_m": "yield displacement [m]",
-    "exponent": "exponent",
-    "brace": "brace λ",
-    "psi": "P0/(M g)",
-    "lam": "λ = k b²/(M g R0)",
-    "strength": "Ty/(M g)",
-    "gap_m": "gap [m]",
-    "restitution": "restitution e",
-    "height_m": "height [m]",
+    "f": ("F/(M g)", ""),
+    "nu": ("C/(M p)", ""),
+    "yield_m": ("yield displacement", "m"),
+    "exponent": ("exponent", ""),
+    "brace": ("brace λ", ""),
+    "psi": ("P0/(M g)", ""),
+    "lam": ("λ = k b²/(M g R0)", ""),
+    "strength": ("Ty/(M g)", ""),
+    "gap_m": ("gap", "m"),
+    "restitution": ("restitution e", ""),
+    "height_m": ("height", "m"),
 }
-"""Fields of devices and their heads, in the order of the table."""
+"""Fields of devices, their heads and units, in the order of the table."""
 _UNITS = {ending: in_print(unit) for unit, ending in ENDINGS.items()}
 _UNITS |= {"mm": "mm", "m2": "m²", "kN_m": "kN/m", "t": "t", "GPa": "GPa"}
 """Units as people write them by the ends of keys that have no symbol of their own."""
@@ -61,7 +62,7 @@ def section(finished: Finished) -> Markup:
 
     Empty tables are left out.
     """
-    tables: tuple[tuple[str, list[Row], Mapping[str, str]], ...] = (
+    tables: tuple[tuple[str, list[Row], Mapping[str, tuple[str, str]]], ...] = (
         ("Pier as given", [finished.pier_as_given], {}),
         ("Parts of the pier", _parts(finished), {}),
         ("Cases as given", _cases(finished), {}),
@@ -73,7 +74,7 @@ def section(finished: Finished) -> Markup:
     return join(drawings(finished), *shown)
 
 
-def of_rows(rows: Sequence[Mapping[str, object]], name: str, words: Mapping[str, str]) -> Markup:
+def of_rows(rows: Sequence[Mapping[str, object]], name: str, words: Mapping[str, tuple[str, str]]) -> Markup:
     """Return a table of constants with a column for each key that has a number or text in any row.
 
     A column is headed by the entry of its key in ``words``, or by symbol and unit.
@@ -81,21 +82,23 @@ def of_rows(rows: Sequence[Mapping[str, object]], name: str, words: Mapping[str,
     keys = [
         key for key in dict.fromkeys(key for row in rows for key in row) if any(_single(row.get(key)) for row in rows)
     ]
-    heads = [Head(heading(words.get(key) or _symbol(key)), _form(rows, key)) for key in keys]
+    named = [(key, *(words.get(key) or symbol_and_unit(key))) for key in keys]
+    heads = [Head(heading(symbol), _form(rows, key), unit=unit) for key, symbol, unit in named]
     cells = ([_written(row.get(key)) for key in keys] for row in rows)
     return table(heads, cells, name=name, prose=True)
 
 
-def _symbol(key: str) -> str:
-    """Return symbol and unit of a key, "p [rad/s]".
+def symbol_and_unit(key: str) -> tuple[str, str]:
+    """Return symbol and unit of a key, ("p", "rad/s").
 
-    Of a key without a symbol it is its words, and the unit at its end if any: "toe level [m]" of "toe_level_m".
+    Of a key without a symbol it is its words, and the unit at its end if any: ("toe level", "m") of "toe_level_m".
     """
-    if symbol(key) != key:
-        return symbol(key)
-    unit = _UNIT.search(key)
-    words = key[: unit.start()] if unit else key
-    return words.replace("_", " ") + (f" [{_UNITS[unit[1]]}]" if unit else "")
+    symbol, unit = symbol_of(key)
+    if (symbol, unit) != (key, ""):
+        return symbol, unit
+    ending = _UNIT.search(key)
+    words = key[: ending.start()] if ending else key
+    return words.replace("_", " "), _UNITS[ending[1]] if ending else ""
 
 
 def _form(rows: Sequence[Mapping[str, object]], key: str) -> str:

@@ -10,7 +10,7 @@ from rockbatch.quantities.design import BOUND
 from rockbatch.quantities.limits import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.quantities.rows import PEAKS
 from rockbatch.reporting.finished import Finished, worst_first
-from rockbatch.reporting.labels import counted, head, symbol
+from rockbatch.reporting.labels import counted, head, head_of_key
 from rockbatch.reporting.markup import Markup, join, number, tag
 from rockbatch.reporting.table import MOST_ROWS, THETA_FORMAT, Head, alarm, table
 from rockbatch.reporting.templates import render
@@ -82,7 +82,7 @@ def _every_run(finished: Finished) -> Markup:
     # Shown only if they vary
     also = {"polarity": finished.both_directions, "scale": finished.many_scales}
     names = {"case": head(COLUMNS["case"])._replace(filter=True)}
-    names |= {key: Head(symbol(key), note=key, filter=True) for key in varied}
+    names |= {key: head_of_key(key, note=key, filter=True) for key in varied}
     names |= {name: head(COLUMNS[name])._replace(filter=True) for name, changes in also.items() if changes}
     if runs["with_vertical"].nunique() > 1:
         names["with_vertical"] = Head("vertical component", filter=True)

@@ -5,7 +5,7 @@ import math
 from rockbatch.common.naming import fits
 from rockbatch.common.statuses import NOT_STANDING
 from rockbatch.reporting.finished import Finished
-from rockbatch.reporting.labels import symbol
+from rockbatch.reporting.labels import head_of_key
 from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.reporting.sections.peaks import outcome
 from rockbatch.reporting.table import THETA, THETA_FORMAT, Head, table
@@ -21,9 +21,9 @@ def section(finished: Finished) -> Markup:
     if not references:
         return Markup("")
     keys = [*finished.info["varied"], *(key for key in ("polarity", "scale") if runs[key].nunique() > 1)]
-    heads = [Head("record"), Head("case", key=True), *(Head(symbol(key)) for key in keys)]
+    heads = [Head("record"), Head("case", key=True), *(head_of_key(key) for key in keys)]
     heads += [Head(join(THETA, ", ours"), THETA_FORMAT), Head(join(THETA, ", published"))]
-    heads += [Head("difference [%]", "+.1f"), Head("source")]
+    heads += [Head("difference", "+.1f", unit="%"), Head("source")]
     rows: list[list[object]] = []
     for reference in references:
         case, theirs, source = reference["case"], reference["theta_max_over_alpha"], reference["source"]

@@ -9,6 +9,7 @@ import numpy as np
 
 from rockbatch.common.lazy import pd
 from rockbatch.common.statuses import NOT_STANDING
+from rockbatch.common.units import with_unit
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import COLUMNS
 from rockbatch.quantities.rows import counts_as
@@ -85,7 +86,7 @@ def tables(
         present = all(column.name in runs for runs, _ in grouped)
         if column.suite is None or column.page is None or not present:
             continue
-        title, form = heading(column.suite.heading), column.suite.form
+        title, form = with_unit(column.suite.heading, column.unit_on_page), column.suite.form
         of_sides = []
         for (runs, rows), records in zip(grouped, counted_as, strict=True):
             values = column.page.factor * runs[column.name].to_numpy(dtype=np.float64)
@@ -98,7 +99,7 @@ def tables(
                 cells.append([*words, *(_cell(suite, name, form) for name in _COLUMNS for suite in row_of_sides)])
         if cells:
             all_heads = [*heads, *_heads(list(sides), form)]
-            drawn += [tag("h3", title), table(all_heads, cells, name=f"Suite: {column.suite.heading}")]
+            drawn += [tag("h3", heading(title)), table(all_heads, cells, name=f"Suite: {title}")]
     return join(*drawn)
 
 

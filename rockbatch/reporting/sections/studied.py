@@ -10,8 +10,9 @@ from rockbatch.quantities.design import BOUND
 from rockbatch.quantities.labels import plain, titled
 from rockbatch.quantities.quantity import FOOTING
 from rockbatch.reporting.finished import Finished
-from rockbatch.reporting.labels import counted, symbol
-from rockbatch.reporting.markup import Markup, join, number
+from rockbatch.reporting.labels import counted, head_of_key
+from rockbatch.reporting.markup import Markup, number
+from rockbatch.reporting.sections.inputs import symbol_and_unit
 from rockbatch.reporting.structure import devices_in_words
 from rockbatch.reporting.table import Head, sub, table
 from rockbatch.reporting.templates import render
@@ -141,7 +142,7 @@ def _vertical(finished: Finished) -> str:
 def _foundations(finished: Finished) -> Markup:
     """Return a table of the bases: parameters, and the deflections [mm] that follow from them."""
     varied = [key for key in finished.info["varied"] if key in PIER_KEYS or key.startswith(DEVICES)]
-    heads = [Head("case"), *(Head(symbol(key)) for key in varied), Head("base")]
+    heads = [Head("case"), *(head_of_key(key) for key in varied), Head("base")]
     present = {key for case in finished.info["cases"] for key in case["parameters"]}
     at_corner, static = "", ""
     if "backbone" in present:
@@ -152,7 +153,7 @@ def _foundations(finished: Finished) -> Markup:
     heads += [
         Head("β", ".5g", note="vertical over rocking frequency parameter"),
         Head("η", ".5g", note=f"yield over static deflection: a support's yield force over its static load{at_corner}"),
-        *(Head(symbol(key), ",.0f", note) for key, note in in_kilonewtons.items()),
+        *(head_of_key(key, ",.0f", note) for key, note in in_kilonewtons.items()),
         Head("impact", note="landing: impulse at the landing pivot, by ε; housner: factor e on the angular velocity"),
         Head("ε", note="restitution of the landing pivot's velocity"),
         Head("ζ", note="damping of the supports, as a share of critical damping of the vertical vibration"),
@@ -161,9 +162,9 @@ def _foundations(finished: Finished) -> Markup:
         Head("kinematics"),
         Head("in flight"),
         Head("e", note="factor on the angular velocity at impact; empty: Housner's"),
-        Head(join(sub("ω", "v"), " [rad/s]"), ".2f", "vertical frequency"),
-        Head(join(sub("δ", "s"), " [mm]"), ".2f", f"static deflection, elastic{static}"),
-        Head(join(sub("δ", "y"), " [mm]"), ".2f", f"yield deflection{at_corner}"),
+        Head(sub("ω", "v"), ".2f", "vertical frequency", unit="rad/s"),
+        Head(sub("δ", "s"), ".2f", f"static deflection, elastic{static}", unit="mm"),
+        Head(sub("δ", "y"), ".2f", f"yield deflection{at_corner}", unit="mm"),
     ]
     keys = ("impact", "epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution", "omega_v")
     names = ("beta", "eta", *in_kilonewtons, *keys)
@@ -181,7 +182,7 @@ def _foundations(finished: Finished) -> Markup:
             values = values | {"spring": f"backbone of {len(points)} points (δ/δ_y, F/F_y): {listed}"}
         cells = [name, *own, case["base"], *(values.get(key) for key in names), *millimetres]
         rows.append([*cells, *(values.get(key) for key in further), of_case])
-    heads += [*(Head(words, ".6g") for words in further.values()), Head("devices")]
+    heads += [*(Head(symbol, ".6g", unit=unit) for symbol, unit in map(symbol_and_unit, further)), Head("devices")]
     heads = [head._replace(form=_telling(head.form, [row[i] for row in rows])) for i, head in enumerate(heads)]
     return table(heads, rows, name="Foundations")
 
@@ -204,12 +205,12 @@ def _devices(cases: Sequence[Case]) -> list[str]:
     return next(words for digits in range(4, 11) if len(set(words := in_words(digits))) == most)
 
 
-def _further(cases: Sequence[Case], shown: Collection[str]) -> dict[str, str]:
-    """Return the heads of parameters, by key, that are not ``shown`` and differ between cases, so that rows can be told apart.
+def _further(cases: Sequence[Case], shown: Collection[str]) -> list[str]:
+    """Return the keys of parameters that are not ``shown`` and differ between cases, so that rows can be told apart.
 
     Devices, which have a column of their own, are left out.
     """
     parameters = [case["parameters"] for case in cases]
     keys = dict.fromkeys(key for of_case in parameters for key in of_case if key not in shown)
     differing = [key for key in keys if len({str(of_case.get(key)) for of_case in parameters}) > 1]
-    return {key: symbol(key).replace("_", " ") for key in differing if key != "restraints"}
+    return [key for key in differing if key != "restraints"]

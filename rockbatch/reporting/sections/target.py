@@ -96,9 +96,9 @@ def _mean_over(target: Target) -> MeanOverTarget:
     places = spread(range(len(periods)), MOST_PERIODS)
     rows = [[periods[i], target["sa_g"][i], target["mean_sa_g"][i], float(ratio[i])] for i in places]
     heads = [
-        Head("T [s]", ".3g"),
-        Head("target SA [g]", ".3f"),
-        Head("mean SA [g]", ".3f"),
+        Head("T", ".3g", unit="s"),
+        Head("target SA", ".3f", unit="g"),
+        Head("mean SA", ".3f", unit="g"),
         Head("mean over target", ".2f"),
     ]
     ratios = table(heads, rows, name="Mean over target")
