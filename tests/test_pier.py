@@ -3,6 +3,7 @@
 import inspect
 import math
 from dataclasses import replace
+from functools import partial
 from types import SimpleNamespace
 from typing import get_args
 
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 from core_samples import FIG5
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, UnknownKey
 from rockbatch.motions.motion import Motion
 from rockbatch.observers.other_law.observe import by_other_law
 from rockbatch.pier import (
@@ -392,6 +393,20 @@ def test_what_is_odd_is_made_when_it_is_confirmed():
     assert Pier(0.2, 0.001, confirm=("p",)) == replace(Pier(0.2, 1.0), p=0.001, confirm=("p",))
     assert Damper.friction(TALL, force_kN=2.0, confirm=("f",)).f == pytest.approx(2.0 / (2700.0 * 9.81))
     assert ElasticBase.from_stiffness(TALL, 1e9, confirm=("stiffness_kN_m",)).beta > 1000.0
+
+
+def test_a_misspelt_confirmation_is_refused_on_every_base():
+    bases = (
+        partial(RigidBase),
+        partial(ElasticBase, 50.0),
+        partial(YieldingBase, 50.0, eta=3.0),
+        partial(FootingBase, 50.0),
+    )
+    for base in bases:
+        assert base(confirm=("friction", "beta")).confirm == ("friction", "beta")
+        with pytest.raises(UnknownKey, match='did you mean "friction"') as refused:
+            base(confirm=("fricton",))
+        assert [(problem.key, problem.value) for problem in refused.value.problems] == [("confirm", "fricton")]
 
 
 def test_the_columns_of_a_frame_are_no_frames():

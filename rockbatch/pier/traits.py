@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import fields
 from typing import ClassVar, Literal, get_args
 
-from rockbatch.common.errors import Problem, WrongType, refuse
+from rockbatch.common.errors import Problem, UnknownKey, WrongType, refuse
+from rockbatch.common.grouping import closest
 from rockbatch.common.showing import InNotebook, shown
 from rockbatch.common.units import LEAST, MOST, Bounds, Usual
 from rockbatch.pier.bending import MOST_MODES
@@ -12,6 +13,7 @@ from rockbatch.pier.laws import LAWS
 from rockbatch.pier.places import holds_a_tilt
 from rockbatch.pier.restraints import Restraint
 from rockbatch.pier.sizes import unusual
+from rockbatch.pier.supports import SUPPORTS
 
 LEAST_ETA = 1.000001
 """Least η: closer to 1, Bouc–Wen and hardening springs would sink without bound to carry the weight."""
@@ -85,6 +87,16 @@ USUAL = {
 }
 """Usual values of the fields of bases, in a study and in Python alike."""
 
+CONFIRMED = frozenset((*USUAL, *SUPPORTS, "shear_modulus_MPa"))
+"""Names that ``confirm`` may have beside those of fields, on every base."""
+
+
+def _unknown(name: str) -> Problem:
+    """Return the problem of a name in ``confirm`` that is none of :data:`CONFIRMED`, with the one that is probably meant."""
+    meant = closest(name, CONFIRMED)
+    hint = f"; did you mean {shown(meant)}?" if meant else f"; it may name {', '.join(sorted(CONFIRMED))}"
+    return Problem("confirm", name, f"a base has no value of this name{hint}", kind=UnknownKey)
+
 
 def wrong_blow(flexural_impact: str) -> str:
     """Return the problem text of a ``flexural_impact`` other than "momentum", the only rule of a blow; "" for that."""
@@ -130,6 +142,7 @@ class Traits(InNotebook):
         for name, words in WORDS.items():
             if name in values and values[name] not in words:
                 wrong.append(Problem(name, values[name], f"must be {' or '.join(map(shown, words))}", kind=WrongType))
+        wrong += [_unknown(name) for name in self.confirm if name not in values.keys() | CONFIRMED]
         wrong += self._wrong_together()
         refuse(wrong or unusual(USUAL, self.confirm, **{name: values[name] for name in USUAL if name in values}))
 

@@ -12,6 +12,7 @@ from rockbatch.pier.parts import Part
 from rockbatch.pier.restraints import DeckSpring, Restraint
 from rockbatch.pier.sections import distribution_problems
 from rockbatch.pier.soil import Formula
+from rockbatch.pier.traits import CONFIRMED
 from rockbatch.toml.kinds import Kind, Whole, boolean, choice, not_negative, positive, within
 from rockbatch.toml.section import Key, fix_the_same
 
@@ -131,7 +132,7 @@ def footing_of(
     ``pier`` is that on the foot; keys in ``confirm`` may be unusual.
     """
     fields: dict[str, Any] = {name: values[name] for name in _FIELDS if name in values}
-    fields |= {"restraints": devices, "confirm": tuple(confirm)}
+    fields |= {"restraints": devices, "confirm": tuple(CONFIRMED.intersection(confirm))}
     ways = [way for way, keys in _WAYS.items() if any(key in values for key in keys)]
     fallback = FootingBase(4.0 * pier.least_beta, restraints=devices, confirm=("beta",))
     if len(ways) != 1:
