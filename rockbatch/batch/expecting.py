@@ -37,27 +37,14 @@ BYTES_OF_A_CELL = 9.0
 
 @dataclass(frozen=True)
 class Expected:
-    """Estimate of the cost of a batch.
+    """Estimate of the cost of a batch."""
 
-    Attributes
-    ----------
-    what : str
-        The number of runs in words: "2 records × 5 cases = 10 runs".
-    runs : int
-        Number of simulations; mirror images count once.
-    tried : int
-        Number of simulations tried.
-    seconds : float
-        Time of all runs on ``jobs`` threads, without report and histories.
-    table, histories : float
-        Sizes of peaks.csv and of the kept histories [bytes].
-    """
-
-    what: str
-    runs: int
-    tried: int
-    seconds: float
+    what: str  # the number of runs in words: "2 records × 5 cases = 10 runs"
+    runs: int  # number of simulations; mirror images count once
+    tried: int  # number of simulations tried
+    seconds: float  # time of all runs on ``jobs`` threads, without report and histories
     jobs: int
+    # sizes of peaks.csv and of the kept histories [bytes]
     table: float
     histories: float
 

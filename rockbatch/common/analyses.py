@@ -29,28 +29,17 @@ class Door:
 
     Its command, if ``help`` describes one, is ``command.main``, its function in Python ``analysis.NAME``, and its sections of the
     study file, if it has ``tables`` there, are ``study.SECTIONS``.
-
-    Attributes
-    ----------
-    parts : tuple of ReportPart
-        Its parts of the report.
-    help, example, writes : str
-        Of its command: what it does, a command line that does it, and the files that it leaves, in lines; empty without one.
-    tables : tuple of str
-        Names of its tables at the top of the study file.
-    options : mapping
-        Arguments of its command beyond the study, with what ``ArgumentParser.add_argument`` takes beside.
-    engine : bool
-        True if its runs are carried out by an engine that the command line may choose.
     """
 
-    parts: tuple[ReportPart, ...]
+    parts: tuple[ReportPart, ...]  # its parts of the report
+    # of its command: what it does, a command line that does it, and the files that it leaves, in lines; empty without one
     help: str = ""
     example: str = ""
     writes: str = ""
-    tables: tuple[str, ...] = ()
+    tables: tuple[str, ...] = ()  # names of its tables at the top of the study file
+    # arguments of its command beyond the study, with what ``ArgumentParser.add_argument`` takes beside
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    engine: bool = True
+    engine: bool = True  # true if its runs are carried out by an engine that the command line may choose
 
 
 @cache

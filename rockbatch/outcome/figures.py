@@ -59,35 +59,22 @@ CUT = 0.9
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """The curves and events of a :class:`Response` that are drawn, thinned, since many are in memory at once.
-
-    Attributes
-    ----------
-    curves : list
-        Abscissae [s] and ordinates of each of :data:`QUANTITIES`, with every extremum that a pixel resolves.
-    impacts, separations, flights : ndarray
-        Times of the events [s], rounded to a pixel; events of a kind in the same pixel appear once.
-    peak : tuple of float
-        Time and θ/α, with its sign, of the largest |θ|.
-    end : tuple of float
-        Time and θ/α at the end.
-    moving : tuple of float
-        Times [s] at which θ/α is first beyond :data:`MOVES` from 0, and last from its final value.
-    band : float
-        |θ/α| up to which both supports of a weakly rocking pier stay loaded (THEORY.md, eq. 10); 0 on the rigid base.
-    springs, devices : tuple of Panel
-        Force against deflection of each spring, or loops of a footing's bed; force against elongation of the first devices.
-    """
+    """The curves and events of a :class:`Response` that are drawn, thinned, since many are in memory at once."""
 
     status: Status
+    # abscissae [s] and ordinates of each of :data:`QUANTITIES`, with every extremum that a pixel resolves
     curves: list[tuple[Array, Array]]
+    # times of the events [s], rounded to a pixel; events of a kind in the same pixel appear once
     impacts: Array
     separations: Array
     flights: Array
-    peak: tuple[float, float]
-    end: tuple[float, float]
+    peak: tuple[float, float]  # time and θ/α, with its sign, of the largest |θ|
+    end: tuple[float, float]  # time and θ/α at the end
+    # times [s] at which θ/α is first beyond :data:`MOVES` from 0, and last from its final value
     moving: tuple[float, float]
+    # |θ/α| up to which both supports of a weakly rocking pier stay loaded (THEORY.md, eq. 10); 0 on the rigid base.
     band: float = 0.0
+    # force against deflection of each spring, or loops of a footing's bed; force against elongation of the first devices
     springs: tuple[Panel, ...] = ()
     devices: tuple[Panel, ...] = ()
 

@@ -49,41 +49,23 @@ LEAST_NORMAL_SHARE = 0.1
 
 @dataclass(frozen=True)
 class BedDemands:
-    """Demands on the bed of a footing; SI units, per unit mass of the pier.
+    """Demands on the bed of a footing; SI units, per unit mass of the pier."""
 
-    Attributes
-    ----------
-    contact_least : float
-        Least share of the foot that was pressed.
-    force, t_force : float
-        Greatest push of the bed on the foot [m/s²], dashpots included, and its time [s].
-    pressure : float or None
-        Greatest pressure at an edge [MPa]; None if mass or length is not known.
-    t_pressure, pressure_at : float
-        Its time [s], and the place of that edge [m], positive to the right.
-    yielding_rocks : int
-        Rocks to one side in which the ground yielded: half cycles.
-    work : float
-        Plastic work of the ground [J/kg].
-    settlement_left, settlement_right : float or None
-        Settlements of both edges of the foot at rest [m].
-    strips_error : float or None
-        Share of the error of ``theta_max`` that the number of strips has [rad].
-    force_error, pressure_error, work_error : float or None
-        Estimated errors of ``force`` [m/s²], ``pressure`` [MPa] and ``work`` [J/kg] by step and strips.
-    """
-
-    contact_least: float
+    contact_least: float  # least share of the foot that was pressed
+    # greatest push of the bed on the foot [m/s²], dashpots included, and its time [s]
     force: float
     t_force: float
-    pressure: float | None
+    pressure: float | None  # greatest pressure at an edge [MPa]; None if mass or length is not known
+    # its time [s], and the place of that edge [m], positive to the right
     t_pressure: float
     pressure_at: float
-    yielding_rocks: int
-    work: float
+    yielding_rocks: int  # rocks to one side in which the ground yielded: half cycles
+    work: float  # plastic work of the ground [J/kg]
+    # settlements of both edges of the foot at rest [m]
     settlement_left: float | None = None
     settlement_right: float | None = None
-    strips_error: float | None = None
+    strips_error: float | None = None  # share of the error of ``theta_max`` that the number of strips has [rad]
+    # estimated errors of ``force`` [m/s²], ``pressure`` [MPa] and ``work`` [J/kg] by step and strips
     force_error: float | None = None
     pressure_error: float | None = None
     work_error: float | None = None
@@ -100,140 +82,88 @@ class BedDemands:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Results of a run. SI units, angles in radians; ``None`` if a result does not apply.
+    """Results of a run. SI units, angles in radians; ``None`` if a result does not apply."""
 
-    Attributes
-    ----------
-    status : Status
-        "ok", "overturned", "flight" (the run was stopped by it) or "failed".
-    reason : str
-        Reason that it failed or left the ground, for people; empty otherwise.
-    failure : Failure or None
-        The kind of failure of a run that failed.
-    note : str
-        Remarks on a valid run for people, e.g. counts that did not converge; empty otherwise.
-    chaotic : bool or None
-        True if a change of the motion or of the step below any record's resolution changes the peak or the residuals beyond
-        the tolerance; ``None`` with a fixed step and for a run that failed.
-    may_overturn : bool or None
-        True if the run did not overturn, but does under a motion 10⁻⁸ stronger or weaker; ``None`` as for ``chaotic``.
-    beyond_linearised : bool or None
-        True if the peak is too large for the linearised kinematics of its base; ``None`` with finite rotations.
-    theta_max, t_max : float
-        Greatest rotation |θ| [rad] until the end of the run, and its time [s].
-    theta_max_in_motion : float
-        Greatest rotation |θ| until the record's last sample, or the end of a run that ended before it [rad].
-    change_in_motion : float or None
-        Change of that by halving the step [rad], if it has converged.
-    theta_max_is : str
-        "lean" if ``theta_max`` is mostly the lean of a base that has yielded; empty if the pier rocks.
-    theta_max_error, theta_res_error, settlement_error : float or None
-        Estimated errors of ``theta_max`` and ``theta_res`` [rad], and of ``settlement`` on a base that yields [m]; errors of
-        residuals include their drift while they were read, and the further change as dampers slip. ``None`` with a fixed step, or
-        if the result is chaotic.
-    theta_res, base_tilt : float or None
-        Residual rotation, static on the deformed base, and tilt of the base itself [rad].
-    settlement : float or None
-        Mean plastic settlement of the supports since the start [m].
-    t_read : float or None
-        Time at which residual rotation, tilt and settlement on yielding springs were read [s] (THEORY.md, Results of a run).
-    settlement_drift, theta_res_drift : float or None
-        Their rates of change then [m/s, rad/s].
-    impacts, separations : int
-        Counts; on the rigid base a separation is a lift-off from rest. On springs a pivot that its own impact throws up again
-        has separated, too, without an event of its own.
-    t_flight : float or None
-        First time at which neither pivot was in contact [s].
-    flights : int
-        Number of flights, in which both pivots leave the ground, with the one that ended the run.
-    flight_duration, flight_height : float
-        Total duration of the flights that were followed [s], and greatest height of the lower pivot in them [m]; 0 without.
-    t_end : float
-        End of the run [s].
-    ductility_left, ductility_right : float or None
-        Greatest deflection of each support over its yield deflection.
-    dissipated_left, dissipated_right : float or None
-        Plastic work in each spring [J/kg].
-    substeps : int
-        Steps per sample.
-    damper_force, damper_stroke, damper_speed, damper_energy : float or None
-        Greatest force over M g, elongation [m] and speed [m/s] of any damper; total energy [J/kg].
-    tendon_force, tendon_yield, tendon_slack : float or None
-        Greatest force over M g and plastic elongation [m] of any tendon; number of times that tendons went slack.
-    stop_force, stop_depth, stop_blows, stop_energy : float or None
-        Greatest force over M g and deflection [m] of any stop; number of blows; total energy [J/kg].
-    deck_spring_force, deck_spring_depth, deck_spring_blows, deck_spring_energy : float or None
-        The same of deck springs.
-    devices_error : float or None
-        Greatest relative error of these demands except counts; relative to at least 1 % of each demand's scale.
-    deflection_max, top_drift_max : float or None
-        Greatest transverse deflection and horizontal displacement of the top of an elastic shaft [m].
-    deflection_max_error, top_drift_max_error : float or None
-        Their estimated errors [m].
-    bed : BedDemands or None
-        Demands on the bed of a footing.
-    observed : mapping
-        Results of observers by their names, which their quantities turn into columns. Results that the direction of the
-        motion changes have a method ``mirrored``.
-    tables : mapping
-        Rows of tables beside peaks.csv by file, if requested; empty for a mirror image.
-    """
-
-    status: Status
-    reason: str
+    status: Status  # "ok", "overturned", "flight" (the run was stopped by it) or "failed"
+    reason: str  # reason that it failed or left the ground, for people; empty otherwise
+    # greatest rotation |θ| [rad] until the end of the run, and its time [s]
     theta_max: float
     t_max: float
+    # Counts; on the rigid base a separation is a lift-off from rest. On springs a pivot that its own impact throws up again has
+    # separated, too, without an event of its own.
     impacts: int
     separations: int
-    t_flight: float | None
-    t_end: float
-    substeps: int
+    t_flight: float | None  # first time at which neither pivot was in contact [s]
+    t_end: float  # end of the run [s]
+    substeps: int  # steps per sample
+    # Estimated error of ``theta_max`` [rad], as of others below: ``None`` with a fixed step, or if the result is chaotic; errors
+    # of residuals include their drift while they were read, and the further change as dampers slip.
     theta_max_error: float | None = None
-    theta_res: float | None = None
+    theta_res: float | None = None  # residual rotation, static on the deformed base [rad]
     theta_res_error: float | None = None
-    base_tilt: float | None = None
-    settlement: float | None = None
+    base_tilt: float | None = None  # residual tilt of the base itself [rad]
+    settlement: float | None = None  # mean plastic settlement of the supports since the start [m]
+    # time at which residual rotation, tilt and settlement on yielding springs were read [s] (THEORY.md, Results of a run)
     t_read: float | None = None
+    # their rates of change then [m/s, rad/s]
     settlement_drift: float | None = None
     theta_res_drift: float | None = None
+    # greatest deflection of each support over its yield deflection
     ductility_left: float | None = None
     ductility_right: float | None = None
+    # plastic work in each spring [J/kg]
     dissipated_left: float | None = None
     dissipated_right: float | None = None
+    # greatest force over M g, elongation [m] and speed [m/s] of any damper; total energy [J/kg]
     damper_force: float | None = None
     damper_stroke: float | None = None
     damper_speed: float | None = None
     damper_energy: float | None = None
+    # greatest force over M g and plastic elongation [m] of any tendon; number of times that tendons went slack
     tendon_force: float | None = None
     tendon_yield: float | None = None
     tendon_slack: int | None = None
+    # greatest force over M g and deflection [m] of any stop; number of blows; total energy [J/kg]
     stop_force: float | None = None
     stop_depth: float | None = None
     stop_blows: int | None = None
     stop_energy: float | None = None
+    # the same of deck springs
     deck_spring_force: float | None = None
     deck_spring_depth: float | None = None
     deck_spring_blows: int | None = None
     deck_spring_energy: float | None = None
-    note: str = ""
+    note: str = ""  # remarks on a valid run for people, e.g. counts that did not converge
+    # greatest relative error of these demands except counts; relative to at least 1 % of each demand's scale
     devices_error: float | None = None
+    # greatest rotation |θ| until the record's last sample, or the end of a run that ended before it [rad]
     theta_max_in_motion: float = math.nan
-    change_in_motion: float | None = None
-    flights: int = 0
+    change_in_motion: float | None = None  # change of that by halving the step [rad], if it has converged
+    flights: int = 0  # number of flights, in which both pivots leave the ground, with the one that ended the run
+    # total duration of the flights that were followed [s], and greatest height of the lower pivot in them [m]; 0 without
     flight_duration: float = 0.0
     flight_height: float = 0.0
+    # "lean" if ``theta_max`` is mostly the lean of a base that has yielded; empty if the pier rocks
     theta_max_is: str = ""
-    settlement_error: float | None = None
+    settlement_error: float | None = None  # estimated error of ``settlement`` on a base that yields [m]
+    # greatest transverse deflection and horizontal displacement of the top of an elastic shaft [m], each with its estimated error
     deflection_max: float | None = None
     deflection_max_error: float | None = None
     top_drift_max: float | None = None
     top_drift_max_error: float | None = None
-    bed: BedDemands | None = None
-    failure: Failure | None = None
+    bed: BedDemands | None = None  # demands on the bed of a footing
+    failure: Failure | None = None  # the kind of failure of a run that failed
+    # true if a change of the motion or of the step below any record's resolution changes the peak or the residuals beyond the
+    # tolerance; ``None`` with a fixed step and for a run that failed
     chaotic: bool | None = None
+    # true if the run did not overturn, but does under a motion 10⁻⁸ stronger or weaker; ``None`` as for ``chaotic``
     may_overturn: bool | None = None
+    # true if the peak is too large for the linearised kinematics of its base; ``None`` with finite rotations
     beyond_linearised: bool | None = None
+    # Results of observers by their names, which their quantities turn into columns. Results that the direction of the motion
+    # changes have a method ``mirrored``.
     observed: Mapping[str, Any] = field(default_factory=dict)
+    # rows of tables beside peaks.csv by file, if requested; empty for a mirror image
     tables: Mapping[str, Any] = field(default_factory=dict)
 
     @property

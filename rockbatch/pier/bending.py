@@ -28,17 +28,10 @@ Values = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Lowest modes of a pier fixed at its foot, with ∫φ_i φ_j dm/M = 1 or 0, and φ_i above 0 at the highest point.
+    """Lowest modes of a pier fixed at its foot, with ∫φ_i φ_j dm/M = 1 or 0, and φ_i above 0 at the highest point."""
 
-    Attributes
-    ----------
-    frequency : ndarray, shape (n,)
-        ω_i [rad/s], ascending.
-    share, coupling : ndarray, shape (n,)
-        μ_i = ∫φ_i dm/M and λ_i = ∫φ_i z dm/M [m].
-    """
-
-    frequency: Values
+    frequency: Values  # ω_i [rad/s], ascending, shape (n,)
+    # μ_i = ∫φ_i dm/M and λ_i = ∫φ_i z dm/M [m], shape (n,)
     share: Values
     coupling: Values
     _stretches: tuple["Stretch", ...]
@@ -160,23 +153,15 @@ def _flexibility(stretches: tuple[Stretch, ...], heights: Values, loaded: Values
 
 
 class BentAbove(NamedTuple):
-    """Integrals over the mass above a section, dm over M, at the heights z and Δz above it; Δφ_j is φ_j less that there.
+    """Integrals over the mass above a section, dm over M, at the heights z and Δz above it; Δφ_j is φ_j less that there."""
 
-    Attributes
-    ----------
-    share, lever : ndarray, shape (n,)
-        ∫φ_i dm and ∫Δz φ_i dm [m].
-    offset, turning : ndarray, shape (n,)
-        ∫Δφ_j dm and ∫Δφ_j z dm [m].
-    both : ndarray, shape (n, n)
-        ∫Δφ_j φ_i dm.
-    """
-
+    # ∫φ_i dm and ∫Δz φ_i dm [m], shape (n,)
     share: Values
     lever: Values
+    # ∫Δφ_j dm and ∫Δφ_j z dm [m], shape (n,)
     offset: Values
     turning: Values
-    both: Values
+    both: Values  # ∫Δφ_j φ_i dm, shape (n, n)
 
 
 def bent_above(pier: Pier, modes: Modes, height: float) -> BentAbove:

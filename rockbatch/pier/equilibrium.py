@@ -102,30 +102,20 @@ class Place:
 
 @dataclass(frozen=True)
 class Equilibria:
-    """The pier in equilibrium at rotations ``theta`` [rad]; all arrays of the shape of ``theta``.
-
-    Attributes
-    ----------
-    weight, tendons, stops, dampers : ndarray
-        Contributions to the righting moment about the more heavily loaded pivot, over the weight [m]; ``weight`` contains the
-        P–Δ moment, ``stops`` that of deck springs.
-    lever : ndarray
-        Lever arm of the horizontal inertia force [m].
-    toe, heel : ndarray
-        Forces over the weight of the more heavily loaded support and of the other.
-    depth : ndarray
-        Depth of the toe below its unstressed place [m]; 0 on rigid ground.
-    """
+    """The pier in equilibrium at rotations ``theta`` [rad]; all arrays of the shape of ``theta``."""
 
     theta: Array
+    # contributions to the righting moment about the more heavily loaded pivot, over the weight [m]; ``weight`` contains the P–Δ
+    # moment, ``stops`` that of deck springs
     weight: Array
     tendons: Array
     stops: Array
     dampers: Array
-    lever: Array
+    lever: Array  # lever arm of the horizontal inertia force [m]
+    # forces over the weight of the more heavily loaded support and of the other
     toe: Array
     heel: Array
-    depth: Array
+    depth: Array  # depth of the toe below its unstressed place [m]; 0 on rigid ground
 
     @property
     def moment(self) -> Array:

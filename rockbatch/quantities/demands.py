@@ -61,84 +61,48 @@ class OtherEnd(NamedTuple):
     models: str
 
 
-@dataclass(frozen=True)
-class Demand:
-    """A quantity that a check limits; less is better, except for properties of the case.
+@dataclass(frozen=True, kw_only=True)
+class Facts:
+    """Facts about a quantity that the demands on it share."""
 
-    Attributes
-    ----------
-    name : str
-        By which a rule calls it; it ends with the unit.
-    meaning, unit : str
-        Its meaning, and its unit as people write it; "" is none.
-    evaluate : function
-        Its values from the rows of one case, n of them, and the case.
-    bases : tuple of str
-        Bases to which it applies; "held" stands for every base on which dampers may hold the pier at a tilt.
-    event : bool
-        True for an outcome of a run, 1 or 0.
-    per_case : bool
-        True if it is the same for all records.
-    residual : bool
-        True if it is what remains after a motion.
-    other_end : OtherEnd or None
-        The other end of its range, where two models give one; the worse counts.
-    ceiling : Ceiling or None
-        Value beyond which a limit decides nothing.
-    verb : str
-        Of an event: the words for a record that causes it.
-    needs : "", "forces", "rocking", :data:`OF_BASE`, or one of :data:`AT_HEIGHTS`
-        Key of [output] that brings the columns it takes; those of :data:`AT_HEIGHTS` are of a table of its own, at the height of
-        the check.
-    weighed : bool
-        True if it takes the mass of the pier.
-    device : "", "damper", "tendon", "yielding tendon", "stop" or "deck_spring"
-        Device that the pier has to have.
-    reached : function or None
-        Values that runs had reached when their motion ended, n of them, with errors: lower bounds for those that failed later.
-    height : function or None
-        Of a case: the height above the pivots at which it is read [m].
-    landing, bending : bool
-        True if the blow of a landing, or the bending of the shaft, enters it (THEORY.md, Forces).
-    pointwise : bool
-        True if it is an acceleration of one point of the shaft.
-    while_pressed : bool
-        True if it leaves out moments with a normal force below [output] least_normal_share of the weight.
-    directed : bool
-        True if each axis of the pier has one by itself, so that those of two axes add up. Of others, such as settlements,
-        axial forces and counts, which have the weight or the whole pier in them on either axis, the greater counts.
-    settlement : bool
-        True if it is a settlement of the supports.
-    cumulative : bool
-        True if it grows until the run ends, when its peak is decided.
-    over_capacity : bool
-        True for a share of a capacity that depends on the axial force, which a check states.
-    """
-
-    name: str
-    meaning: str
-    evaluate: Evaluate
-    unit: str = ""
-    bases: tuple[str, ...] = ("rigid", "elastic", "yielding", "footing")
-    event: bool = False
-    per_case: bool = False
-    residual: bool = False
-    other_end: OtherEnd | None = None
-    ceiling: Ceiling | None = None
-    verb: str = ""
-    needs: str = ""
-    weighed: bool = False
-    device: str = ""
-    reached: Evaluate | None = None
-    height: Lever | None = None
+    needs: str = (
+        ""  # key of [output] that brings it: "forces", "rocking", OF_BASE, or one of AT_HEIGHTS; empty if none does
+    )
+    device: str = ""  # kind of device that brings it, one of :attr:`Device.kinds`; empty if none does
+    weighed: bool = False  # true if it takes the mass of the pier
+    # true if the blow of a landing enters it (THEORY.md, Forces): on rigid ground, where that is an impulse, it is a lower bound
     landing: bool = False
-    bending: bool = False
-    pointwise: bool = False
+    bending: bool = False  # true if the bending of the shaft enters it, which a rigid shaft leaves out
+    pointwise: bool = False  # true if it is an acceleration of one point of the shaft
+    # true if it leaves out moments with a normal force below [output] least_normal_share of the weight
     while_pressed: bool = False
+    # True if each axis of the pier has one by itself, so that those of two axes add up. Of others, such as settlements, axial
+    # forces and counts, which have the weight or the whole pier in them on either axis, the greater counts.
     directed: bool = False
-    settlement: bool = False
-    cumulative: bool = False
-    over_capacity: bool = False
+    settlement: bool = False  # true if it is a settlement of the supports
+    cumulative: bool = False  # true if it grows until the run ends, when its peak is decided
+
+
+@dataclass(frozen=True)
+class Demand(Facts):
+    """A quantity that a check limits; less is better, except for properties of the case."""
+
+    name: str  # by which a rule calls it; it ends with the unit
+    meaning: str
+    evaluate: Evaluate  # its values from the rows of one case, n of them, and the case
+    unit: str = ""  # as people write it; "" is none
+    # bases to which it applies; "held" stands for every base on which dampers may hold the pier at a tilt
+    bases: tuple[str, ...] = ("rigid", "elastic", "yielding", "footing")
+    event: bool = False  # true for an outcome of a run, 1 or 0
+    per_case: bool = False  # true if it is the same for all records
+    residual: bool = False  # true if it is what remains after a motion
+    other_end: OtherEnd | None = None  # the other end of its range, where two models give one; the worse counts
+    ceiling: Ceiling | None = None  # value beyond which a limit decides nothing
+    verb: str = ""  # of an event: the words for a record that causes it
+    # values that runs had reached when their motion ended, n of them, with errors: lower bounds for those that failed later
+    reached: Evaluate | None = None
+    height: Lever | None = None  # of a case: the height above the pivots at which it is read [m]
+    over_capacity: bool = False  # true for a share of a capacity that depends on the axial force, which a check states
 
     def applies_to(self, case: Case) -> bool:
         """Return whether the demand applies to a case by one of ``bases``.

@@ -1,12 +1,12 @@
 """A quantity: a column of peaks.csv, its place in the report, and the demands that checks make of it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Literal, NamedTuple, Protocol
 
 from rockbatch.pier import Pier
 from rockbatch.quantities.cases import ONE, Lever
-from rockbatch.quantities.demands import Ceiling, Demand, Evaluate, OtherEnd, largest, largest_force
+from rockbatch.quantities.demands import Ceiling, Demand, Evaluate, Facts, OtherEnd, largest, largest_force
 
 ALL = ("rigid", "elastic", "yielding", "footing")
 SPRINGS = ("elastic", "yielding", "footing")
@@ -110,94 +110,28 @@ class Limit(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Quantity:
-    """A quantity of a run.
+class Quantity(Facts):
+    """A quantity of a run."""
 
-    Attributes
-    ----------
-    name : str
-        Of its column, with its unit, if any; fixed, since users' scripts read it.
-    words : str
-        Its meaning, as far as checks need it; the same for columns that are explained together.
-    source : str, function or None
-        Field of ``Outcome``, or function of a :class:`Run`; None for names of the run.
-    unit : str
-        Of a number, as pint reads it; "1" is none.
-    page : ReportFormat or None
-        Its place in the report; None: it has none.
-    more : str
-        What its meaning goes on with.
-    kind : str
-        "number", "count" (a whole one), "fact" (1 if it holds, 0 if not) or "text".
-    over_alpha : bool
-        True if the outcome's angle is divided by the pier's α.
-    bases : tuple of str
-        Bases to which it applies; it is empty on others.
-    stood : bool
-        True if it is empty for a pier that overturned, and a run that flight ended.
-    unbounded : bool
-        True if a number may be infinite.
-    sometimes : bool
-        True if only some of the runs to which it applies have one: a flight, a reason.
-    suite : OfSuite or None
-        Its statistics, if it has any; two studies are compared by it, too.
-    error : str
-        Column of its estimated error; empty without one.
-    limits : tuple of Limit
-        Demands that checks make of it.
-    needs : str
-        Key of [output] that brings it; empty if none does.
-    device : str
-        Kind of device that brings it, one of :attr:`Device.kinds`; empty if none does.
-    weighed : bool
-        True if it takes the mass of the pier.
-    requested : function or None
-        True for a study that brings it otherwise.
-    landing : bool
-        True if the blow of a landing enters it: on rigid ground, where a landing is an impulse, it is a lower bound.
-    bending : bool
-        True if the bending of the shaft enters it, which a rigid shaft leaves out.
-    pointwise : bool
-        True if it is an acceleration of one point of the shaft.
-    while_pressed : bool
-        True if it leaves out moments with a normal force below [output] least_normal_share of the weight.
-    directed : bool
-        True if each axis of the pier has one by itself, so that those of two axes add up.
-    settlement : bool
-        True if it is a settlement of the supports.
-    cumulative : bool
-        True if it grows until the run ends, when its peak is decided.
-    least_is_worst : bool
-        True if the smallest value of several runs is the worst.
-    """
-
-    name: str
-    words: str
+    name: str  # of its column, with its unit, if any; fixed, since users' scripts read it
+    words: str  # its meaning, as far as checks need it; the same for columns that are explained together
+    # field of ``Outcome``, or function of a :class:`Run`; None for names of the run
     source: str | Callable[[Run], Any] | None = None
-    unit: str = "1"
-    page: ReportFormat | None = None
-    more: str = ""
+    unit: str = "1"  # of a number, as pint reads it; "1" is none
+    page: ReportFormat | None = None  # its place in the report; None: it has none
+    more: str = ""  # what its meaning goes on with
+    # "number", "count" (a whole one), "fact" (1 if it holds, 0 if not) or "text"
     kind: Literal["number", "count", "fact", "text"] = "number"
-    over_alpha: bool = False
-    bases: tuple[str, ...] = ALL
-    stood: bool = False
-    unbounded: bool = False
-    sometimes: bool = False
-    suite: OfSuite | None = None
-    error: str = ""
-    limits: tuple[Limit, ...] = ()
-    needs: str = ""
-    device: str = ""
-    weighed: bool = False
-    requested: Callable[[Any], bool] | None = None
-    landing: bool = False
-    bending: bool = False
-    pointwise: bool = False
-    while_pressed: bool = False
-    directed: bool = False
-    settlement: bool = False
-    cumulative: bool = False
-    least_is_worst: bool = False
+    over_alpha: bool = False  # true if the outcome's angle is divided by the pier's α
+    bases: tuple[str, ...] = ALL  # bases to which it applies; it is empty on others
+    stood: bool = False  # true if it is empty for a pier that overturned, and a run that flight ended
+    unbounded: bool = False  # true if a number may be infinite
+    sometimes: bool = False  # true if only some of the runs to which it applies have one: a flight, a reason
+    suite: OfSuite | None = None  # its statistics, if it has any; two studies are compared by it, too
+    error: str = ""  # column of its estimated error; empty without one
+    limits: tuple[Limit, ...] = ()  # demands that checks make of it
+    requested: Callable[[Any], bool] | None = None  # true for a study that brings it otherwise
+    least_is_worst: bool = False  # true if the smallest value of several runs is the worst
 
     @property
     def meaning(self) -> str:
@@ -256,18 +190,9 @@ class Quantity:
             residual=self.stood,
             other_end=limit.other_end,
             ceiling=limit.ceiling,
-            needs=self.needs,
-            weighed=self.weighed,
-            device=self.device,
             reached=limit.reached,
             height=limit.height,
-            landing=self.landing,
-            bending=self.bending,
-            pointwise=self.pointwise,
-            while_pressed=self.while_pressed,
-            directed=self.directed,
-            settlement=self.settlement,
-            cumulative=self.cumulative,
+            **{shared.name: getattr(self, shared.name) for shared in fields(Facts)},
         )
 
     @property

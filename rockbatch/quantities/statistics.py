@@ -180,39 +180,21 @@ def _mean_or_worst_remark(values: Values) -> str:
 
 @dataclass(frozen=True)
 class Statistic:
-    """A function of the values of all records, shape (n,), at least one of them.
+    """A function of the values of all records, shape (n,), at least one of them."""
 
-    Attributes
-    ----------
-    words : str
-        Name in a sentence: "mean of …".
-    evaluate : function
-        Of finite or infinite values; ``None`` for the count of those above a threshold, which the rule gives.
-    least : int
-        Number of records below which no check passes.
-    code : str
-        The code that prescribes it; empty for a plain statistic.
-    unchecked : str
-        Sources of a code's statistic, and texts that could not be checked.
-    remark : function or None
-        Of the values: a remark on how they were evaluated, or "".
-    interval : function or None
-        Of the values and of their bounds: the bounds of the statistic, where those are not the statistics of the bounds.
-    coverage : function or None
-        Of the number of records: what share of further ones exceeds the value, in words, without which a check that passes by
-        it would promise more than it holds.
-    counts_unacceptable : bool
-        Whether its code says how many records may respond unacceptably, by overturning, flight or failure: these are infinite.
-    """
-
-    words: str
+    words: str  # name in a sentence: "mean of …"
+    # of finite or infinite values; ``None`` for the count of those above a threshold, which the rule gives
     evaluate: Callable[[Values], float] | None
-    least: int = 1
-    code: str = ""
-    unchecked: str = ""
-    remark: Callable[[Values], str] | None = None
+    least: int = 1  # number of records below which no check passes
+    code: str = ""  # the code that prescribes it; empty for a plain statistic
+    unchecked: str = ""  # sources of a code's statistic, and texts that could not be checked
+    remark: Callable[[Values], str] | None = None  # of the values: a remark on how they were evaluated, or ""
+    # of the values and of their bounds: the bounds of the statistic, where those are not the statistics of the bounds
     interval: Callable[[Values, Values, Values], tuple[float, float]] | None = None
+    # of the number of records: what share of further ones exceeds the value, in words, without which a check that passes by it
+    # would promise more than it holds
     coverage: Callable[[int], str] | None = None
+    # whether its code says how many records may respond unacceptably, by overturning, flight or failure: these are infinite
     counts_unacceptable: bool = False
 
 

@@ -37,24 +37,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Finished(Contents, Labelled):
-    """A folder of results: its contents and its labelled runs.
+    """A folder of results: its contents and its labelled runs."""
 
-    Attributes
-    ----------
-    saved : Saved
-        Contents of ``peaks.csv`` and ``run.json``.
-    responses : sequence of Response
-        Runs whose histories are shown.
-    verdicts : sequence of Verdict
-        Results of ``rockbatch check``; empty if they are ``outdated``.
-    outdated : bool
-        Whether checks.csv has verdicts on another peaks.csv than is there now.
-    """
-
-    saved: Saved
-    responses: Sequence[Response] = ()
-    verdicts: Sequence[Verdict] = ()
-    outdated: bool = False
+    saved: Saved  # contents of ``peaks.csv`` and ``run.json``
+    responses: Sequence[Response] = ()  # runs whose histories are shown
+    verdicts: Sequence[Verdict] = ()  # results of ``rockbatch check``; empty if they are ``outdated``
+    outdated: bool = False  # whether checks.csv has verdicts on another peaks.csv than is there now
 
     @property
     def info(self) -> Row:

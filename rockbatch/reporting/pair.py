@@ -24,30 +24,15 @@ _UNPAIRED = "\x00"
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """Two studies, A and B, with their runs matched.
+    """Two studies, A and B, with their runs matched."""
 
-    Attributes
-    ----------
-    studies : tuple of Finished
-        Results of both studies.
-    runs : tuple of DataFrame
-        Matched runs of A and of B, row by row; those of B have A's ``series`` and ``pier``.
-    only : tuple of DataFrame
-        Runs without a unique counterpart in the other study.
-    keys : list of str
-        The matched columns.
-    named : Finished
-        A with series labelled by the matched keys only: others may differ in B.
-    names : dict
-        The name of the case of A for each case of B that is paired with one.
-    """
-
-    studies: tuple[Finished, Finished]
+    studies: tuple[Finished, Finished]  # results of both studies
+    # matched runs of A and of B, row by row; those of B have A's ``series`` and ``pier``
     runs: "tuple[pd.DataFrame, pd.DataFrame]"
-    only: "tuple[pd.DataFrame, pd.DataFrame]"
-    keys: list[str]
-    named: Finished
-    names: dict[str, str]
+    only: "tuple[pd.DataFrame, pd.DataFrame]"  # runs without a unique counterpart in the other study
+    keys: list[str]  # the matched columns
+    named: Finished  # A with series labelled by the matched keys only: others may differ in B
+    names: dict[str, str]  # the name of the case of A for each case of B that is paired with one
 
 
 def pair(a: Finished, b: Finished, asked: Mapping[str, str] | None = None) -> Pair:

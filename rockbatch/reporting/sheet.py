@@ -50,22 +50,13 @@ AFTER = (
 
 @dataclass(frozen=True)
 class Sheet:
-    """The calculation sheet of one folder.
+    """The calculation sheet of one folder."""
 
-    Attributes
-    ----------
-    title, path : str
-        Title and path of the study file.
-    version : str
-        Version and commit of the rockbatch that computed the results, and the date.
-    sections : list of Section
-        Those with content, with their folds open.
-    """
-
+    # title and path of the study file
     title: str
     path: str
-    version: str
-    sections: list[Section]
+    version: str  # version and commit of the rockbatch that computed the results, and the date
+    sections: list[Section]  # those with content, with their folds open
 
     def html(self) -> str:
         """Return the sheet as HTML, which needs no script and prints on paper of any size from A5."""

@@ -28,20 +28,11 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True, eq=False)
 class Names:
-    """Names of the cases of a study, made of the values that distinguish them.
+    """Names of the cases of a study, made of the values that distinguish them."""
 
-    Attributes
-    ----------
-    series : list of Series
-        The foundations.
-    piers : list of str
-        Descriptions of the varied values of each pier; [""] if none varies.
-    places, pier_places : dict
-        Index of each foundation in ``series``, and of each pier's varied values in ``piers``.
-    """
-
-    series: list[Series]
-    piers: list[str]
+    series: list[Series]  # the foundations
+    piers: list[str]  # descriptions of the varied values of each pier; [""] if none varies
+    # index of each foundation in ``series``, and of each pier's varied values in ``piers``
     places: dict[Key, int]
     pier_places: dict[Key, int]
 
@@ -66,20 +57,13 @@ class Names:
 
 @dataclass(frozen=True, eq=False)
 class Labelled(Names):
-    """Runs with labels that distinguish them.
+    """Runs with labels that distinguish them."""
 
-    Attributes
-    ----------
-    runs : DataFrame
-        The simulated rows of ``peaks.csv``, without mirror images, with further columns: ``series`` and ``pier``, indices
-        into the lists of names; ``alpha`` [rad]; ``pga`` of the scaled motion [g]; ``with_vertical``, "" unless the study ran
-        with and without the vertical component. Piers are those with a run.
-    cases : dict
-        Entries of run.json by the indices (series, pier) of their runs.
-    """
-
+    # The simulated rows of ``peaks.csv``, without mirror images, with further columns: ``series`` and ``pier``, indices into
+    # the lists of names; ``alpha`` [rad]; ``pga`` of the scaled motion [g]; ``with_vertical``, "" unless the study ran with and
+    # without the vertical component. Piers are those with a run.
     runs: "pd.DataFrame"
-    cases: dict[tuple[int, int], Case]
+    cases: dict[tuple[int, int], Case]  # entries of run.json by the indices (series, pier) of their runs
 
     @cached_property
     def many_scales(self) -> bool:

@@ -15,40 +15,18 @@ from rockbatch.toml.meant import Also, known_as, plain
 
 @dataclass(frozen=True)
 class Key:
-    """A key of a table.
-
-    Attributes
-    ----------
-    kind : Kind
-        Its values.
-    example : str
-        A value as TOML writes it, for messages.
-    words : str
-        What it means, in a sentence.
-    required : bool
-        Whether it has to be written, where it applies.
-    many : bool
-        Whether a list is welcome; the value read is then a tuple, also for a single value.
-    distinct : bool
-        Whether the values of a list must differ.
-    pair : bool
-        Whether it is a range, [low, high]; the value read is then a tuple.
-    usual : Usual, optional
-    default : object
-        The value that counts if the key is not written, where no dataclass of the section has it.
-    only : mapping of str to tuple
-        Another key of the table, and its values with which this key applies.
-    """
+    """A key of a table."""
 
     kind: Kind
-    example: str
-    words: str = ""
-    required: bool = False
-    many: bool = False
-    distinct: bool = True
-    pair: bool = False
+    example: str  # a value as TOML writes it, for messages
+    words: str = ""  # what it means, in a sentence
+    required: bool = False  # whether it has to be written, where it applies
+    many: bool = False  # whether a list is welcome; the value read is then a tuple, also for a single value
+    distinct: bool = True  # whether the values of a list must differ
+    pair: bool = False  # whether it is a range, [low, high]; the value read is then a tuple
     usual: Usual | None = None
-    default: object = None
+    default: object = None  # the value that counts if the key is not written, where no dataclass of the section has it
+    # another key of the table, and its values with which this key applies
     only: Mapping[str, tuple[Any, ...]] = field(default_factory=dict)
 
     @property
@@ -101,47 +79,22 @@ CONFIRM = {"confirm": Key(text, '["height_m"]', "Keys of this table with unusual
 
 @dataclass(frozen=True)
 class Section(Mapping[str, Key]):
-    """A table of a TOML file: a mapping of its keys.
+    """A table of a TOML file: a mapping of its keys."""
 
-    Attributes
-    ----------
-    at : tuple of str
-        Its name, such as ("motions", "pulse"); empty for the keys at the top of the file.
-    about : str
-        What it is for.
-    keys_read : mapping of Key
-    many : bool
-        Whether there may be several, under double brackets.
-    required : bool
-    homes : tuple of type
-        Dataclasses whose fields have the defaults of keys.
-    single : bool
-        Whether one of several may also stand under single brackets.
-    clashes : tuple of Clash
-    free : str
-        Pattern of further keys that the section cannot list because a study makes their names.
-    free_schema : mapping
-        JSON schema of their values.
-    numbered : bool
-        Whether the same table may go with a number, too: damper_2.
-    also : mapping of str to Also
-        Other names of its keys, letters and digits in lower case; a unit may follow them in a file.
-    instead : mapping of str to str, or to a pair
-        Names in the same form for which there is no key, and what to write; or the key of which the value has to change, and how.
-    """
-
-    at: tuple[str, ...]
-    about: str
+    at: tuple[str, ...]  # its name, such as ("motions", "pulse"); empty for the keys at the top of the file
+    about: str  # what it is for
     keys_read: Mapping[str, Key]
-    many: bool = False
+    many: bool = False  # whether there may be several, under double brackets
     required: bool = False
-    homes: tuple[type, ...] = ()
-    single: bool = False
+    homes: tuple[type, ...] = ()  # dataclasses whose fields have the defaults of keys
+    single: bool = False  # whether one of several may also stand under single brackets
     clashes: tuple[Clash, ...] = ()
-    free: str = ""
-    free_schema: Mapping[str, Any] = field(default_factory=lambda: {"type": "number"})
-    numbered: bool = False
+    free: str = ""  # pattern of further keys that the section cannot list because a study makes their names
+    free_schema: Mapping[str, Any] = field(default_factory=lambda: {"type": "number"})  # JSON schema of their values
+    numbered: bool = False  # whether the same table may go with a number, too: damper_2
+    # other names of its keys, letters and digits in lower case; a unit may follow them in a file
     also: Mapping[str, Also] = field(default_factory=dict)
+    # names in the same form for which there is no key, and what to write; or the key of which the value has to change, and how
     instead: Mapping[str, str | tuple[str, str]] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Key:

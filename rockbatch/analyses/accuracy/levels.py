@@ -12,41 +12,22 @@ from rockbatch.common.lazy import pd
 
 @dataclass(frozen=True)
 class Level:
-    """One row of ``accuracy.csv``: a method at one setting, on this machine.
+    """One row of ``accuracy.csv``: a method at one setting, on this machine."""
 
-    Attributes
-    ----------
-    method : str
-        "located", "not located" (events, at fixed steps), or "study", the setting of the study.
-    machine : str
-        Operating system, architecture and number of processors.
-    substeps, tolerance : float or None
-        Steps per sample, and tolerance on θ_max/α, if given.
-    runs : float
-        Number of runs.
-    compared : float
-        Number of runs with an error: those that end as the reference does and do not overturn.
-    error_median, error_95, error_max : float or None
-        Their errors of θ_max/α, each no less than what its reference is known to.
-    seconds_per_run : float or None
-        Time per run [s].
-    status_differs : float
-        Number of runs that end otherwise than the reference.
-    reference_change : float
-        Change of θ_max/α by the last halving of the step, in the least converged reference: to that the references are known.
-    """
-
-    method: str
-    machine: str
+    method: str  # "located", "not located" (events, at fixed steps), or "study", the setting of the study
+    machine: str  # operating system, architecture and number of processors
+    # steps per sample, and tolerance on θ_max/α, if given
     substeps: float | None
     tolerance: float | None
-    runs: float | None
-    compared: float | None
+    runs: float | None  # number of runs
+    compared: float | None  # number of runs with an error: those that end as the reference does and do not overturn
+    # their errors of θ_max/α, each no less than what its reference is known to
     error_median: float | None
     error_95: float | None
     error_max: float | None
-    seconds_per_run: float | None
-    status_differs: float | None
+    seconds_per_run: float | None  # time per run [s]
+    status_differs: float | None  # number of runs that end otherwise than the reference
+    # change of θ_max/α by the last halving of the step, in the least converged reference: to that the references are known
     reference_change: float | None
 
     @property

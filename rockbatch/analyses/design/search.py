@@ -26,28 +26,17 @@ def middles(verdicts: Verdicts, width: float) -> list[float]:
 
 
 class Interval(NamedTuple):
-    """Neighbouring values with one verdict.
-
-    Attributes
-    ----------
-    verdict : str
-    low, high : float
-        The least and the greatest of them.
-    below, above : float or None
-        Neighbours with other verdicts; None where the scan ends.
-    values : int
-        Number of values that were tried in it.
-    widest : float
-        Greatest distance of two neighbours in it, between which nothing was tried.
-    """
+    """Neighbouring values with one verdict."""
 
     verdict: str
+    # the least and the greatest of them
     low: float
     high: float
+    # neighbours with other verdicts; None where the scan ends
     below: float | None
     above: float | None
-    values: int
-    widest: float
+    values: int  # number of values that were tried in it
+    widest: float  # greatest distance of two neighbours in it, between which nothing was tried
 
 
 def intervals(verdicts: Verdicts) -> list[Interval]:

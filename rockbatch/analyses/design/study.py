@@ -53,22 +53,12 @@ class Varied:
 
 @dataclass(frozen=True)
 class DesignSpec:
-    """[design]: what is varied, and how closely. :data:`DESIGN` says what each key means.
+    """[design]: what is varied, and how closely. :data:`DESIGN` says what each key means."""
 
-    Attributes
-    ----------
-    vary : tuple of Varied
-        One key or two; intervals are those of the first, at each value of the second.
-    find : "least" or "greatest"
-    width : float
-        To which a change of verdict is narrowed, in the unit of the first key.
-    cases, lacking : tuple of str
-        Names of the cases that have the keys, and of those that have not.
-    """
-
-    vary: tuple[Varied, ...]
-    find: str
-    width: float
+    vary: tuple[Varied, ...]  # one key or two; intervals are those of the first, at each value of the second
+    find: str  # "least" or "greatest"
+    width: float  # to which a change of verdict is narrowed, in the unit of the first key
+    # names of the cases that have the keys, and of those that have not
     cases: tuple[str, ...]
     lacking: tuple[str, ...]
 

@@ -85,32 +85,16 @@ def _dispersion(x_16: Values, x_84: Values) -> Values:
 
 @dataclass(frozen=True)
 class Cloud:
-    """A fragility curve of a cloud analysis.
+    """A fragility curve of a cloud analysis."""
 
-    Attributes
-    ----------
-    limit : float
-        d, in the unit of the demand; 1 of an event.
-    line : Regression or None
-        Demands of those that stand; None for an event, such as overturning itself.
-    overturning : Logistic or None
-        Share that overturns, or has the event; None if no record did, and it counts as 0.
-    confidence : float
-    centre : float
-        Mean of ln x.
-    stations : int
-        Number of stations whose records it is of; of fewer than five there are no intervals.
-    added : float
-        Dispersion added to that of the records.
-    """
-
-    limit: float
-    line: Regression | None
-    overturning: Logistic | None
+    limit: float  # d, in the unit of the demand; 1 of an event
+    line: Regression | None  # demands of those that stand; None for an event, such as overturning itself
+    overturning: Logistic | None  # share that overturns, or has the event; None if no record did, and it counts as 0
     confidence: float
-    centre: float
+    centre: float  # mean of ln x
+    # number of stations whose records it is of; of fewer than five there are no intervals
     stations: int = STATIONS_OF_INTERVAL
-    added: float = 0.0
+    added: float = 0.0  # dispersion added to that of the records
 
     def probability(self, x: Values) -> Values:
         """Return P(x), shape of ``x``."""

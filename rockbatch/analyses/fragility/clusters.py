@@ -12,21 +12,12 @@ from rockbatch.motions import Motion
 
 @dataclass(frozen=True, eq=False)
 class Clusters:
-    """Groups of records that are independent of each other.
+    """Groups of records that are independent of each other."""
 
-    Attributes
-    ----------
-    of_motion : ndarray, shape (n,)
-        Number of the group of each motion.
-    kind : str
-        "station" or "event".
-    stations, events : int
-        Number of stations, and of earthquakes among them, 0 if that of some record is unknown. Stations whose shocks one
-        sequence joins count as one.
-    """
-
-    of_motion: Numbers
-    kind: str
+    of_motion: Numbers  # number of the group of each motion, shape (n,)
+    kind: str  # "station" or "event"
+    # Number of stations, and of earthquakes among them, 0 if that of some record is unknown. Stations whose shocks one sequence
+    # joins count as one.
     stations: int
     events: int
 

@@ -112,47 +112,26 @@ class CloudPoint(NamedTuple):
 
 @dataclass(frozen=True)
 class Curve:
-    """Fragility of one case for one limit.
-
-    Attributes
-    ----------
-    case, limit
-        Its case and its limit.
-    stripes : tuple of Stripe
-        Counts at every level.
-    fitted : Lognormal, Cloud or NoCurve
-        The curve, to which undecided runs add nothing, or why there is none.
-    undecided : Undecided
-        Number of undecided runs.
-    readings : Readings or None
-        The curves between which it lies, whatever undecided runs would have come to; None without any.
-    capacities : tuple of (Member, Capacity)
-        Numbers of the case and motion of each record that counts, and its capacity; of incremental dynamic analysis only.
-    windows : Windows or None
-        Shares of the scales about the levels that exceed the limit, and the curve through them; of incremental dynamic
-        analysis only, where the case has windows.
-    cloud : tuple of CloudPoint
-        What each run came to; of cloud analysis only, whose ``stripes`` are these runs one by one.
-    drawn : tuple of str
-        Names of the inputs that are drawn for its case.
-    drawn_share : Contribution, NoCurve or None
-        What these contribute to its dispersion, or why that is not known; None if nothing is drawn.
-    cases : int
-        Number of the cases that share it: piers, and both axes of one.
-    """
+    """Fragility of one case for one limit."""
 
     case: Case
     limit: Rule
-    stripes: tuple[Stripe, ...]
-    fitted: Fitted | NoCurve
-    undecided: Undecided
+    stripes: tuple[Stripe, ...]  # counts at every level
+    fitted: Fitted | NoCurve  # the curve, to which undecided runs add nothing, or why there is none
+    undecided: Undecided  # number of undecided runs
+    # the curves between which it lies, whatever undecided runs would have come to; None without any
     readings: Readings | None = None
+    # numbers of the case and motion of each record that counts, and its capacity; of incremental dynamic analysis only
     capacities: "tuple[tuple[Member, Capacity], ...]" = ()
+    # shares of the scales about the levels that exceed the limit, and the curve through them; of incremental dynamic analysis
+    # only, where the case has windows
     windows: Windows | None = None
+    # what each run came to; of cloud analysis only, whose ``stripes`` are these runs one by one
     cloud: tuple[CloudPoint, ...] = ()
-    drawn: tuple[str, ...] = ()
+    drawn: tuple[str, ...] = ()  # names of the inputs that are drawn for its case
+    # what these contribute to its dispersion, or why that is not known; None if nothing is drawn
     drawn_share: Contribution | NoCurve | None = None
-    cases: int = 1
+    cases: int = 1  # number of the cases that share it: piers, and both axes of one
 
     @property
     def inconclusive(self) -> bool:

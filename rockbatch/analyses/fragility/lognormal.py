@@ -128,30 +128,18 @@ class Capacities:
 
 @dataclass(frozen=True)
 class Lognormal:
-    """A fitted fragility curve.
+    """A fitted fragility curve."""
 
-    Attributes
-    ----------
-    median, dispersion : float
-        θ, in the unit of the levels, and β of the sample, β² unbiased.
-    median_interval, dispersion_interval : tuple of two floats, or None
-        Profile-likelihood intervals by stations; a bound is 0 or infinite where the data leave it open; None with fewer than
-        STATIONS_OF_INTERVAL, 5, stations.
-    region : ndarray, shape (m, 2), or None
-        Edge of the region of (a, b) from which all intervals come.
-    most_likely_dispersion : float
-        β of the maximum of the likelihood, which is low at few records.
-    stations : int
-        Number of stations whose records it is of.
-    """
-
+    # θ, in the unit of the levels, and β of the sample, β² unbiased
     median: float
     dispersion: float
+    # profile-likelihood intervals by stations; a bound is 0 or infinite where the data leave it open; None with fewer than
+    # STATIONS_OF_INTERVAL, 5, stations
     median_interval: Interval | None
     dispersion_interval: Interval | None
-    region: Values | None
-    most_likely_dispersion: float = math.nan
-    stations: int = 0
+    region: Values | None  # edge of the region of (a, b) from which all intervals come, shape (m, 2)
+    most_likely_dispersion: float = math.nan  # β of the maximum of the likelihood, which is low at few records
+    stations: int = 0  # number of stations whose records it is of
 
     def probability(self, x: Values) -> Values:
         """Return P(x), shape of ``x``."""
@@ -227,20 +215,11 @@ def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | NoCurve
 
 @dataclass(frozen=True)
 class Contribution:
-    """Contribution of drawn inputs to the dispersion of capacities.
+    """Contribution of drawn inputs to the dispersion of capacities."""
 
-    Attributes
-    ----------
-    dispersion : float
-        Standard deviation of ln x that goes with them.
-    interval : tuple of two floats
-        Its interval, by the standard error of the square.
-    effects, errors : tuple of float
-        Change of ln x with a standard deviation of each, and its standard error.
-    """
-
-    dispersion: float
-    interval: tuple[float, float]
+    dispersion: float  # standard deviation of ln x that goes with them
+    interval: tuple[float, float]  # its interval, by the standard error of the square
+    # change of ln x with a standard deviation of each, and its standard error
     effects: tuple[float, ...]
     errors: tuple[float, ...]
 

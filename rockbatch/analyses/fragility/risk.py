@@ -39,41 +39,24 @@ BINS_PER_DECADE, POINTS_PER_BIN = 10, 50
 
 @dataclass(frozen=True)
 class Risk:
-    """The mean annual rate at which a case exceeds a limit.
-
-    Attributes
-    ----------
-    curve : Curve
-        The fragility.
-    total : Lognormal or Cloud
-        Its curve with the added dispersion.
-    rate : float
-        Mean annual rate of exceedance.
-    interval : tuple of two floats, or None
-        What the fit of the fragility leaves open; the upper bound may be infinite. The hazard is taken as known. None with fewer
-        than five stations.
-    undecided : tuple of two floats or None
-        The rates with all undecided runs counted as within the limit, and as beyond it; None without any.
-    below, above : float
-        Parts of the rate from intensities below and above the hazard's points, where its end slopes go on.
-    bounds : tuple of two floats
-        The rate whatever the hazard is above its highest point: with the fragility there as it is at that point, and 1.
-    beyond_levels : tuple of two floats
-        Parts from intensities below and above the levels that were run, where the curve is an extrapolation.
-    contributing : tuple of two floats
-        Intensities between which nine tenths of the rate come about.
-    """
+    """The mean annual rate at which a case exceeds a limit."""
 
     curve: Curve
-    total: Fitted
-    rate: float
+    total: Fitted  # its curve with the added dispersion
+    rate: float  # mean annual rate of exceedance
+    # What the fit of the fragility leaves open; the upper bound may be infinite. The hazard is taken as known. None with fewer
+    # than five stations.
     interval: Interval | None
+    # the rates with all undecided runs counted as within the limit, and as beyond it; None without any
     undecided: tuple[float, float] | None
+    # parts of the rate from intensities below and above the hazard's points, where its end slopes go on
     below: float
     above: float
+    # the rate whatever the hazard is above its highest point: with the fragility there as it is at that point, and 1
     bounds: tuple[float, float]
+    # parts from intensities below and above the levels that were run, where the curve is an extrapolation
     beyond_levels: tuple[float, float]
-    contributing: tuple[float, float]
+    contributing: tuple[float, float]  # intensities between which nine tenths of the rate come about
 
 
 @dataclass(frozen=True)

@@ -26,20 +26,11 @@ Value = float | str | bool
 
 @dataclass(frozen=True)
 class Input:
-    """Something that the answer may depend on.
+    """Something that the answer may depend on."""
 
-    Attributes
-    ----------
-    name : str
-        Key of the study file; of a device "damper.f", "tendon_2.psi".
-    spread : "uniform", "log_uniform" or "choice"
-    levels : tuple of two
-        Ends of the range, or the two choices.
-    """
-
-    name: str
-    spread: str
-    levels: tuple[Any, Any]
+    name: str  # key of the study file; of a device "damper.f", "tendon_2.psi"
+    spread: str  # "uniform", "log_uniform" or "choice"
+    levels: tuple[Any, Any]  # ends of the range, or the two choices
 
     @property
     def at(self) -> tuple[str, ...]:

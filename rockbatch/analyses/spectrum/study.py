@@ -32,26 +32,16 @@ LEAST_TOLERANCE = 1e-9
 
 @dataclass(frozen=True)
 class SpectrumSpec:
-    """A rocking spectrum: every base of the study on piers of given slenderness and varied size.
+    """A rocking spectrum: every base of the study on piers of given slenderness and varied size."""
 
-    Attributes
-    ----------
-    axis : str
-        One of :data:`AXES`.
-    cases : tuple of Case
-        α slowest, then the value on the axis, then the bases. Piers of a self-similar spectrum are those of a record with
-        ω_g = 1 rad/s.
-    varied : tuple of str
-        Keys of ``Case.columns``: α, ``axis``, and the keys of bases that the study varies; of a self-similar spectrum
-        :data:`INTENSITY` too.
-    intensities : tuple of float
-        Values of :data:`INTENSITY` of a self-similar spectrum.
-    """
-
-    axis: str
+    axis: str  # one of :data:`AXES`
+    # α slowest, then the value on the axis, then the bases. Piers of a self-similar spectrum are those of a record with ω_g = 1
+    # rad/s.
     cases: tuple[Case, ...]
+    # keys of ``Case.columns``: α, ``axis``, and the keys of bases that the study varies; of a self-similar spectrum
+    # :data:`INTENSITY` too
     varied: tuple[str, ...]
-    intensities: tuple[float, ...] = ()
+    intensities: tuple[float, ...] = ()  # values of :data:`INTENSITY` of a self-similar spectrum
 
 
 @dataclass(frozen=True)

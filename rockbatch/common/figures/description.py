@@ -235,29 +235,19 @@ def _power_of_ten(value: float) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """Axes with marks, which are drawn in their order over spans, areas and the grid.
-
-    Attributes
-    ----------
-    caption, note : str
-        Its title, and what stands in paler words beside it.
-    width, height : float
-        Width with all that stands beside the axes, and height of the axes alone [px of 1/96 inch].
-    reads : str
-        "time" or "plane" if the script of the page reads values from its lines.
-    framed : bool
-        Whether its axes are drawn; without them its marks have one scale both ways.
-    """
+    """Axes with marks, which are drawn in their order over spans, areas and the grid."""
 
     x: Axis
     y: Axis
     marks: Sequence[Mark]
+    # its title, and what stands in paler words beside it
     caption: str = ""
     note: str = ""
+    # width with all that stands beside the axes, and height of the axes alone [px of 1/96 inch]
     width: float = 300.0
     height: float = 132.0
-    reads: str = ""
-    framed: bool = True
+    reads: str = ""  # "time" or "plane" if the script of the page reads values from its lines
+    framed: bool = True  # whether its axes are drawn; without them its marks have one scale both ways
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,22 +19,14 @@ from rockbatch.study import Output
 
 @dataclass(frozen=True)
 class DeviceWork:
-    """Work of the devices until the end of a run; ``None`` without such a device.
+    """Work of the devices until the end of a run; ``None`` without such a device."""
 
-    Attributes
-    ----------
-    damper_travel, damper_work : float or None
-        Greatest cumulative travel [m] and greatest energy [J/kg] of a single damper.
-    damper_half_cycles : int or None
-        Greatest number of half cycles of a single damper, of at least the study's least stroke.
-    tendon_strain : float or None
-        Greatest strain over yield strain of the tendons that can yield.
-    """
-
+    # greatest cumulative travel [m] and greatest energy [J/kg] of a single damper
     damper_travel: float | None = None
     damper_work: float | None = None
+    # greatest number of half cycles of a single damper, of at least the study's least stroke
     damper_half_cycles: int | None = None
-    tendon_strain: float | None = None
+    tendon_strain: float | None = None  # greatest strain over yield strain of the tendons that can yield
 
 
 def greatest_of(pier: Pier, base: Base, work: Work) -> DeviceWork:

@@ -29,64 +29,40 @@ class PeakForces:
     """Design demands of a run until it ends or the pier leans beyond α for good; SI units, per unit mass of the pier.
 
     Magnitudes; ``None`` if a demand does not apply (THEORY.md, Results of a run).
-
-    Attributes
-    ----------
-    base_shear, normal_force : float
-        Greatest V/M, and N/M of all supports, without the impulses of impacts [m/s²].
-    base_moment : float
-        Greatest moment over M about the middle of the base, of supports, dampers and tendons, without impulses [m²/s²].
-    friction_demand : float
-        Greatest |V|/N while N is above a share of the weight.
-    pivot_left, pivot_right : float
-        Greatest force of each support over half the weight.
-    heel_gap_left, heel_gap_right : float
-        Greatest gap between each pivot and its support [m].
-    heel_speed_left, heel_speed_right : float
-        Greatest speed at which each gap opens or closes [m/s].
-    deck_acceleration : float
-        Greatest absolute horizontal acceleration of the deck [m/s²].
-    omega_over_p : float
-        Greatest |θ̇|/p.
-    landing_velocity, impulse : float or None
-        Speed of the landing pivot, and vertical impulse over M, at the hardest impact [m/s].
-    impact_friction_demand : float or None
-        Greatest horizontal over vertical impulse of an impact.
-    first_uplift, uplift_ground : float or None
-        Time of the first uplift [s], and magnitude of the horizontal ground acceleration then [m/s²].
-    key_shear : float or None
-        Greatest V/M while N is below the share of ``friction_demand``, which shear keys carry [m/s²].
-    flight_longest : float or None
-        Longest flight that was followed [s].
-    error : float or None
-        Four times the greatest relative change of a demand by halving the step; ``None`` with a fixed step.
-    landing_force : float or None
-        Greatest force of a foot over M at the hardest impact, estimated by a contact stiffness of the base [m/s²].
-    slides : bool or None
-        True if the greatest friction demand, impacts included, exceeds the interface's friction; ``None`` if it is not given.
     """
 
+    # greatest V/M, and N/M of all supports, without the impulses of impacts [m/s²]
     base_shear: float
     normal_force: float
+    # greatest moment over M about the middle of the base, of supports, dampers and tendons, without impulses [m²/s²]
     base_moment: float
-    friction_demand: float
+    friction_demand: float  # greatest |V|/N while N is above a share of the weight
+    # greatest force of each support over half the weight
     pivot_left: float
     pivot_right: float
+    # greatest gap between each pivot and its support [m]
     heel_gap_left: float
     heel_gap_right: float
+    # greatest speed at which each gap opens or closes [m/s]
     heel_speed_left: float
     heel_speed_right: float
-    deck_acceleration: float
-    omega_over_p: float
+    deck_acceleration: float  # greatest absolute horizontal acceleration of the deck [m/s²]
+    omega_over_p: float  # greatest |θ̇|/p
+    # speed of the landing pivot, and vertical impulse over M, at the hardest impact [m/s]
     landing_velocity: float | None = None
     impulse: float | None = None
-    impact_friction_demand: float | None = None
+    impact_friction_demand: float | None = None  # greatest horizontal over vertical impulse of an impact
+    # time of the first uplift [s], and magnitude of the horizontal ground acceleration then [m/s²]
     first_uplift: float | None = None
     uplift_ground: float | None = None
+    # greatest V/M while N is below the share of ``friction_demand``, which shear keys carry [m/s²]
     key_shear: float | None = None
-    flight_longest: float | None = None
+    flight_longest: float | None = None  # longest flight that was followed [s]
+    # four times the greatest relative change of a demand by halving the step; ``None`` with a fixed step
     error: float | None = None
+    # greatest force of a foot over M at the hardest impact, estimated by a contact stiffness of the base [m/s²]
     landing_force: float | None = None
+    # true if the greatest friction demand, impacts included, exceeds the interface's friction; ``None`` if it is not given
     slides: bool | None = None
 
     def mirrored(self) -> "PeakForces":

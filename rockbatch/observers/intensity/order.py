@@ -18,24 +18,16 @@ Array = npt.NDArray[np.float64]
 
 
 class Order(NamedTuple):
-    """How well a measure orders the peaks of a case at one scale.
+    """How well a measure orders the peaks of a case at one scale."""
 
-    Attributes
-    ----------
-    runs, without_peak : int
-        Numbers of runs that count, and of those that overturned or stopped in flight, which rank above all others.
-    rank_correlation : float
-        Spearman's ρ of the measure and θ_max; NaN with fewer than three runs, or if all of either are equal.
-    fitted : int
-        Number of runs that stood and rocked, to which ln θ_max = a + b ln(measure) is fitted by least squares.
-    slope, dispersion : float
-        b, and the standard deviation of ln θ_max about the line; NaN with fewer than three runs, or if all measures are equal.
-    """
-
+    # numbers of runs that count, and of those that overturned or stopped in flight, which rank above all others
     runs: int
     without_peak: int
+    # Spearman's ρ of the measure and θ_max; NaN with fewer than three runs, or if all of either are equal
     rank_correlation: float
+    # number of runs that stood and rocked, to which ln θ_max = a + b ln(measure) is fitted by least squares
     fitted: int
+    # b, and the standard deviation of ln θ_max about the line; NaN with fewer than three runs, or if all measures are equal
     slope: float
     dispersion: float
 

@@ -11,30 +11,17 @@ ShockStatus = Status | Literal["not reached", "not read"]
 
 @dataclass(frozen=True)
 class ShockOutcome:
-    """Effects of a shock; SI units, angles in radians, NaN if one does not apply.
+    """Effects of a shock; SI units, angles in radians, NaN if one does not apply."""
 
-    Attributes
-    ----------
-    status : ShockStatus
-        "ok"; "overturned" or "flight" if the run ended so before the next shock began; "not reached"; "failed"; or "not read",
-        of a run too long to be held in memory.
-    theta_max, t_max : float
-        Greatest rotation |θ| from its first sample until the next shock begins, or the run ends, and its time.
-    theta_max_error : float
-        Its change by halving the step; NaN with a fixed step.
-    theta_res : float
-        Static rest rotation on the deformed base when the next shock begins; with dampers or tendons the middle of the
-        extremes of θ in the last quarter of the pause. The last shock has a pause, too.
-    settlement : float
-        Mean settlement of the supports since the start, at that time.
-    moving : float
-        Half the range of θ in the last quarter of the pause.
-    """
-
+    # "ok"; "overturned" or "flight" if the run ended so before the next shock began; "not reached"; "failed"; or "not read", of
+    # a run too long to be held in memory
     status: ShockStatus
+    # greatest rotation |θ| from its first sample until the next shock begins, or the run ends, and its time
     theta_max: float = math.nan
     t_max: float = math.nan
-    theta_max_error: float = math.nan
+    theta_max_error: float = math.nan  # its change by halving the step; NaN with a fixed step
+    # Static rest rotation on the deformed base when the next shock begins; with dampers or tendons the middle of the extremes
+    # of θ in the last quarter of the pause. The last shock has a pause, too.
     theta_res: float = math.nan
-    settlement: float = math.nan
-    moving: float = math.nan
+    settlement: float = math.nan  # mean settlement of the supports since the start, at that time
+    moving: float = math.nan  # half the range of θ in the last quarter of the pause
