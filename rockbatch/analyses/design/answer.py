@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from rockbatch.analyses.design.search import REFUSED
-from rockbatch.analyses.design.tables import is_known
+from rockbatch.analyses.design.tables import RECORDS, is_known
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
 from rockbatch.checks.wording import percent
 from rockbatch.common.analyses import Entry
@@ -44,7 +44,7 @@ def with_labels(info: Entry, table: "pd.DataFrame") -> list[dict[str, Any]]:
     """Return the rows of a table with the labels of records in place of their names."""
     labels = {motion["record"]: motion["label"] for motion in info["under"]}
     return [
-        {name: labels.get(cell, cell) if name.endswith("record") else cell for name, cell in row.items()}
+        {name: labels.get(cell, cell) if name in RECORDS else cell for name, cell in row.items()}
         for row in as_dicts(table)
     ]
 

@@ -19,6 +19,8 @@ BESIDE = {SECTIONS: "design_sections.csv", INTERACTION: "design_interaction.csv"
 GOVERNING = ("check", "under_bound", "at_scale", "station", "record", "ratio")
 """Columns of the check that governs: its name, the bound and scale at which it does, the run, and demand over limit."""
 ENDS = ("below", "above")
+RECORDS = ("record", *(f"{end}_record" for end in ENDS))
+"""Columns with the name of a record."""
 _OF_INTERVAL = ("verdict", "low", "high", "values", "widest_step")
 _OF_END = ("", "_verdict", *(f"_{name}" for name in GOVERNING), "_reason")
 
