@@ -50,9 +50,9 @@ def answer(pair: Pair) -> Markup:
 
 
 def _responses(studies: list[Finished], responses: list[dict[str, Worst]], stood: int) -> str:
-    """Return a sentence on the worst responses' change from A to B, over the ``stood`` runs that end standing in both.
+    """Return a sentence on the change of the worst responses from A to B, over the ``stood`` runs that end standing in both.
 
-    One before it has the numbers of runs that do not end standing, if any; if none stands in both, it says so instead.
+    If some do not end standing, a sentence before it has their numbers; if none stands in both, it says so instead.
     """
     lost = [int(study.runs["status"].isin(NOT_STANDING).sum()) for study in studies]
     total = counted(len(studies[0].runs), "run")

@@ -221,9 +221,9 @@ def _shown(value: object, digits: int) -> str:
 
 
 def _of_motions(a: Finished, b: Finished) -> list[Difference]:
-    """Return one difference each for motions in one study only, motions that differ under the same name, and unused files.
+    """Return the differences between the motions; [] without any.
 
-    Of these one for files that could not be used, and one for files left out; [] if all agree.
+    They are motions in one study only, motions that differ under one name, files that could not be used, and files left out.
     """
     only = [[name for name in x.records if name not in y.records] for x, y in ((a, b), (b, a))]
     rows = [Difference("motions in one study only", *(_listed(names, "motion") for names in only))] if any(only) else []

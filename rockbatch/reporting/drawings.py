@@ -19,7 +19,7 @@ MOST_NAMES, MOST_LINES = 4, 6
 
 
 class Drawing(NamedTuple):
-    """A drawing, and its cases: those of one pier with devices at the same places, on one support if it is named after them."""
+    """A drawing and its cases: those of one pier with devices at the same places, on one support if it is named after them."""
 
     row: Row
     """The pier as in run.json, with its deck, heights and devices."""
@@ -39,8 +39,8 @@ class Drawing(NamedTuple):
 def drawings(finished: Finished) -> Markup:
     """Return a sketch of each distinct pier with its devices, up to four, captioned with the constants of the devices.
 
-    Of several with the same pier only the first has dimensions and the devices that all of them have; they are named after
-    their cases, and stand on the support of these. Empty if no pier can be drawn.
+    Of several drawings of one pier only the first has the dimensions, and the devices that all cases have in its caption. Each
+    is named after its cases, and stands on their support. Empty if no pier can be drawn.
     """
     rows = [_drawing(finished, case) for case in finished.info["cases"]]
     by_pier = [_distinct(of_pier) for of_pier in grouped(rows, lambda drawing: drawing.shape).values()]

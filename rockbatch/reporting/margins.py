@@ -26,8 +26,8 @@ DIGITS = 1e-3
 def headline(pair: Pair) -> str:
     """Return which study passes, by how much, and which fails what: "A passes all, closest 83 % (…); B fails ….".
 
-    If no verdict of either is on a case, it says that neither study has limits; of two with limits, which of motions and checks
-    are other ones, so that the shares do not compare the piers alone.
+    If neither has a verdict on a case, it says that neither study has limits. If both have, it says whether their motions or
+    checks differ, since the shares then do not compare the piers alone.
     """
     if not any(study.outdated or any(verdict.case for verdict in study.verdicts) for study in pair.studies):
         return "Neither study has limits, so that neither passes or fails."
@@ -79,8 +79,8 @@ def _state(side: str, study: Finished) -> str:
 def _passing(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
     """Return that cases pass, with the check that is closest to its limit: "passes all, closest 83 % (uplift, Te Mara)".
 
-    "passes all" and the ``share`` of the cases alone if no check has a share of its limit, as bans. Checks that leave something
-    out follow, of more than three their number: ", with remarks on uplift, drift".
+    If no check has a share of its limit, as of bans, that is "passes all" and the ``share`` of the cases. Checks that leave
+    something out follow by name, or by number if more than three: ", with remarks on uplift, drift".
     """
     name_of, names = named_designs(study), {row.name for row in rows}
     passed = (verdict for verdict in study.verdicts if verdict.case and name_of(verdict) in names)
@@ -96,10 +96,10 @@ def _passing(study: Finished, rows: Sequence[Row], share: str, several: bool) ->
 
 
 def _failing(study: Finished, rows: Sequence[Row], share: str, several: bool) -> str:
-    """Return the failing check with the greatest finite share of its limit, else the first, that share and its place.
+    """Return the failing check with the greatest finite share of its limit, or the first without such a share, and its place.
 
     "fails anchor at 196 % (Te Mara) and 2 more in 2 of 3 cases": 2 other checks fail; ``share``, " in 2 of 3 cases", says how
-    many cases fail, and the place begins with the case if ``several``. A share that is not known is left out.
+    many cases fail. The place begins with the case if ``several``. A share that is not known is left out.
     """
     cells = [(row, cell) for row, cell in _cells(rows) if cell.verdict.verdict == FAIL]
     row, cell = _worst(cells) or cells[0]

@@ -38,9 +38,10 @@ class Pair:
 def pair(a: Finished, b: Finished, asked: Mapping[str, str] | None = None) -> Pair:
     """Match the runs of two studies by record, polarity, scale, case and the values of the keys that both vary.
 
-    Cases are paired as ``asked``, of B by those of A; then by their names; and those that are left by the inputs that differ
-    least. Of a study with bounds beside one without, the nominal design is matched, and runs with a vertical component if both
-    say which have it. Runs alike in all of these are not matched. Raises ``InputError`` for ``asked`` as :func:`paired_cases`.
+    Cases are paired as ``asked``, by name of A and of B, then by equal names, and the others by the inputs that differ least.
+    If only one study has bounds, its nominal design is matched. Runs with a vertical component are matched with such runs, if
+    both studies say which have it. Runs alike in all of these are not matched. Raises ``InputError`` for ``asked`` as
+    :func:`paired_cases`.
     """
     names = paired_cases(a, b, asked or {})
     in_both = [key for key in a.info["varied"] if key in b.info["varied"] and key != "vertical"]

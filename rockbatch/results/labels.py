@@ -137,8 +137,8 @@ def _constants(cases: Sequence[Case], given: Collection[str]) -> dict[str, objec
     """Return the parameters and varied values of a foundation that are equal on every pier, except keys of the pier and None.
 
     Of β and the stiffness, and of η and the yield force, the one with units is kept if it is in ``given``, since the other then
-    depends on the pier; else the one without. β of a footing is left out unless it is given, and η of a backbone, which is that
-    of its first corner, where a check of η is of its greatest force.
+    depends on the pier; else the one without. β of a footing is left out unless it is given. So is η of a backbone, which is
+    that of its first corner, while checks of η take its greatest force.
     """
     first, *further = [case["parameters"] | case["columns"] for case in cases]
     omitted = {free if unit in given else unit for free, unit in SAME.items()}.union(PIER_KEYS)

@@ -57,7 +57,7 @@ class Clock:
 
 @dataclass(frozen=True)
 class Reference:
-    """A run, its converged outcome, and to what it is known [θ_max/α]: the last change by halving, CONVERGED, 1e-12, at least."""
+    """A run, its converged outcome, and the uncertainty of its θ_max/α: the last change by halving, 1e-12 at least."""
 
     run: StudyRun
     outcome: Outcome
@@ -65,10 +65,11 @@ class Reference:
 
 
 def reference(run: StudyRun, quiet_s: float, seconds: float = math.inf) -> Reference | None:
-    """Return a run with its outcome, by halving the step until that changes θ_max/α by CONVERGED, 1e-12, or less.
+    """Return a run with its converged outcome: the step is halved until θ_max/α changes by CONVERGED, 1e-12, or less.
 
-    At most HALVINGS, 10, are made, and those for which ``seconds`` last; None if the last one changed θ_max/α by more than
-    ACCEPTED, 1e-9, or the status, if that is "failed", or if none was made. Of a run that overturns the status alone counts.
+    Halving stops after HALVINGS, 10, times, or if the next would take more of the ``seconds`` than remain. Returns None if the
+    last change is above ACCEPTED, 1e-9, if the status changed or is "failed", or without any halving. For a run that overturns
+    only the status is compared.
     """
     (simulation,) = simulations([run])
     pier, base, motion = simulation.pier, simulation.base, simulation.motion
@@ -94,9 +95,9 @@ def reference(run: StudyRun, quiet_s: float, seconds: float = math.inf) -> Refer
 def references(
     study: Study, motions: MotionSet, most: int, listener: Listener, clock: Clock | None = None
 ) -> list[Reference]:
-    """Return converged references of at most ``most`` runs of the study, as many as the time of the clock allows.
+    """Return converged references of at most ``most`` runs of the study, as many as the clock allows.
 
-    Until one has converged they may take the whole time, then no more than half. Raises ``InputError`` if none converges.
+    Until one has converged they may take all the time, then half of it. Raises ``InputError`` if none converges.
     """
     clock = clock or Clock()
     runs = Plan(study, motions)
@@ -191,10 +192,10 @@ def _ends(outcomes: Sequence[Outcome | None]) -> list[tuple[str, float]]:
 
 
 def _measured(references: Sequence[Reference], simulate: Simulate, seconds: float) -> dict[str, object]:
-    """Return errors of θ_max/α and the time per run of ``simulate``, run up to REPEATS, 5, times while ``seconds`` last, or once.
+    """Return errors of θ_max/α and the time per run of ``simulate``, called REPEATS, 5, times, or as often as ``seconds`` allow.
 
-    Errors are of runs that end as their references do and do not overturn, None without any, and are no less than what the
-    reference is known to; the time is that of runs that were not broken off as unstable, None without any.
+    Errors are of runs that end as their references do and do not overturn, None without any, and no smaller than the
+    uncertainty of the reference. The time is per run that was not stopped as unstable, None without any.
     """
     runs = [ref.run for ref in references]
     times: list[float] = []

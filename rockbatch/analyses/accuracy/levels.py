@@ -21,13 +21,13 @@ class Level:
     tolerance: float | None
     runs: float | None  # number of runs
     compared: float | None  # number of runs with an error: those that end as the reference does and do not overturn
-    # their errors of θ_max/α, each no less than what its reference is known to
+    # errors of θ_max/α of these runs, each no smaller than the uncertainty of its reference
     error_median: float | None
     error_95: float | None
     error_max: float | None
     seconds_per_run: float | None  # time per run [s]
     status_differs: float | None  # number of runs that end otherwise than the reference
-    # change of θ_max/α by the last halving of the step, in the least converged reference: to that the references are known
+    # change of θ_max/α by the last halving of the step of the least converged reference: the uncertainty of all
     reference_change: float | None
 
     @property

@@ -68,8 +68,8 @@ def plain(value: float) -> str:
 def governs(row: Entry, end: str = "", short: bool = False) -> str:
     """Return what governs at a value, or at an ``end`` of an interval: "drift under soft ground at 101 %, in LGP000".
 
-    Without a check it is the reason, or empty; of what is not decided the reason follows. A ratio that is 0 or infinite and a
-    scale of 1 are left out, and so are record and reason if ``short``.
+    Without a check it is the reason, or empty; the reason also follows if the value is not decided. A ratio of 0 or infinity
+    and a scale of 1 are left out, and with ``short`` record and reason, too.
     """
     prefix = f"{end}_" if end else ""
     check, reason = row[f"{prefix}check"], row[f"{prefix}reason"]

@@ -215,7 +215,8 @@ def _why_not_over(path: str, low: float, high: float) -> str:
 def _having(table: Table, study: Study, paths: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the names of the cases that have all keys at these ``paths``, and of the others.
 
-    A key that no case has becomes a problem of the file, and both are empty; so does that no case has all keys, and the first is.
+    A key that no case has becomes a problem of the file, and both are empty. If no case has all keys, that is a problem, too,
+    and the first is empty.
     """
     tables: dict[str, Any] = tomllib.loads(study.text)
     having = {name_of(case): [with_value(tables, path, name_of(case), 1.0) is not None for path in paths]

@@ -50,8 +50,8 @@ class Trial(NamedTuple):
 class Judged(NamedTuple):
     """The verdict on a trial, the check that governs it, and the reason why it is refused or not decided.
 
-    The check that fails most governs what fails, of what is not decided the one that is nearest to failing or beyond, and of
-    what passes the one that is closest to its limit.
+    A trial that fails is governed by the check that fails most, one that is not decided by the check nearest to failing or
+    beyond, and one that passes by the check closest to its limit.
     """
 
     verdict: str
@@ -120,13 +120,13 @@ class Written:
 
 
 class Trials:
-    """All trials, each run and judged once; ``verdicts`` has those of every check.
+    """All trials, each run and judged once, with the ``verdicts`` of every check.
 
-    Of those that pass ``free`` has the responses without a limit, ``omitted`` the checks whose demands leave something out, by
-    its name in :data:`rockbatch.checks.omissions.OMISSIONS`, ``beyond`` the checks that a single record exceeds, and
-    ``cut_short`` is the number of those with runs that do not end standing; ``of_one_motion`` says whether any counts one record
-    only. ``of_motions`` is what is known of the motions;
-    ``suite`` returns the verdicts on the suite with the cases of a trial: under one that fails nothing is decided.
+    Of the trials that pass, ``free`` has the responses without a limit, ``omitted`` the checks whose demands leave something
+    out, by the names of :data:`rockbatch.checks.omissions.OMISSIONS`, ``beyond`` the checks that a single record exceeds, and
+    ``cut_short`` the number of trials with runs that do not end standing; ``of_one_motion`` is True if any counts a single
+    record. ``of_motions`` describes the motions. ``suite`` returns the verdicts on the suite with the cases of a trial: if one
+    of them fails, the trial is not decided.
     """
 
     def __init__(self, written: Written, motions: MotionSet, waves: Waves, of_motions: Suite, suite: OnSuite) -> None:
@@ -217,9 +217,9 @@ def _values(columns: Mapping[str, Any], spec: DesignSpec) -> tuple[tuple[float, 
 
 
 def _judged(verdicts: Sequence[Verdict]) -> Judged:
-    """Return the worst of the verdicts of all checks on a trial, governed by the greatest ratio among those that have it.
+    """Return the worst verdict of all checks on a trial, governed by the check with the greatest ratio among those that have it.
 
-    A ratio of NaN is the least. If no check applies it is not decided, without a check that governs.
+    A ratio of NaN is the least. If no check applies the trial is not decided, and no check governs.
     """
     applying = [verdict for verdict in verdicts if verdict.verdict != DOES_NOT_APPLY]
     if not applying:

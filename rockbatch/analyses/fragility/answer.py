@@ -30,9 +30,9 @@ Interval = Sequence[float | None] | None
 def of_curves(info: Info) -> Markup:
     """Return sentences on the weakest case for overturning and for the limit exceeded first, and remarks.
 
-    The limit exceeded first has the lowest median of the others, if this is below that of overturning or below all levels. Else
-    the second sentence says that no other limit is exceeded, or none has a lower median. There is none for a single limit, nor
-    where a median of another is not known.
+    The limit exceeded first is the other limit with the lowest median, if that is below the median of overturning or below all
+    levels. Otherwise the second sentence says that no other limit is exceeded, or that none has a lower median. There is none
+    for a single limit, or if a median of another limit is unknown.
     """
     overturning, *others = grouped(info["curves"], lambda curve: curve["limit_state"]).values()
     sentences = [_of_limit(info, overturning, capital(overturning[0]["limit_state"]))]
@@ -69,9 +69,8 @@ def of_rates(info: Info) -> Markup:
 def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
     """Return the sentence about a limit: the case with the lowest median, or bound of it, and what leaves it in doubt.
 
-    It is called the lowest if no case has an unknown median, and no other one below all levels.
-
-    Without either it says that no run decides, that no record reaches the limit, or why there is no curve.
+    The case is called the lowest unless a median is unknown, or another one below all levels. Without a median and a bound the
+    sentence says that no run decides, that no record reaches the limit, or why there is no curve.
     """
     curve = min(curves, key=_strength)
     decided = _decided(curve)
@@ -220,9 +219,10 @@ def _lowest(curves: Sequence[Curve]) -> float:
 
 
 def _strength(curve: Curve) -> float:
-    """Return the median of a curve, or for its bound 0 "below", infinity "above", the upper end "between"; without either the
-    lowest level at which half of the decided records exceed the limit, 0 if more than half do at the lowest, infinity if there
-    is none.
+    """Return the median of a curve; of a bound of it 0 for "below", infinity for "above", and the upper end for "between".
+
+    Without either it is the lowest level at which half of the decided records exceed the limit: 0 if more than half do at the
+    lowest, infinity if there is no such level.
     """
     if curve["median"] is not None:
         return float(curve["median"])
@@ -301,7 +301,7 @@ def _intensity(info: Info, value: float) -> str:
 
 
 def _rates(curve: Curve) -> tuple[float, float]:
-    """Return the bounds of a curve's annual rate, the upper one infinite if only the lower one is known; twice a known rate."""
+    """Return the lower and the upper bound of a curve's annual rate: a known rate twice, infinity above a lower bound alone."""
     risk = curve["risk"]
     return (risk["rate_least"], math.inf) if risk["bound"] else (risk["rate_per_year"], risk["rate_per_year"])
 

@@ -37,8 +37,10 @@ def cloud_table(
 
 
 def counts(run: CloudPoint, curve: Curve, spec: FragilitySpec) -> str:
-    """Return how a run counts: "line", "overturned", "undecided", "left out", or "below" the share of the limit at which demands
-    are censored; for an event "exceeds" or "within". One that ended normally, within its error of the limit, is no undecided one.
+    """Return how a run counts: "line", "overturned", "undecided", "left out" or "below"; for an event "exceeds" or "within".
+
+    "below" is a demand below the share of the limit at which demands are censored. A run that ended normally counts as decided,
+    even within its error of the limit.
     """
     if run.state == LEFT_OUT:
         return "left out"

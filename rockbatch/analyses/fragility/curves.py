@@ -84,9 +84,10 @@ class Readings(NamedTuple):
 
     @property
     def medians(self) -> tuple[float, float]:
-        """Return both medians, the lower first; without a curve the lower bound of ``exceeded``, 0 if there is none.
+        """Return both medians, the lower first.
 
-        Or the upper bound of ``withstood``, infinite if there is none.
+        A missing curve counts as its bound: the lower one of ``exceeded``, 0 without it, and the upper one of ``withstood``,
+        infinite without it.
         """
         low = self.exceeded.above if isinstance(self.exceeded, NoCurve) else self.exceeded.median
         high = self.withstood.below if isinstance(self.withstood, NoCurve) else self.withstood.median
@@ -162,15 +163,14 @@ def assess(
     simulate: Simulate,
     plans: Sequence[LevelPlan] | None = None,
 ) -> list[Curve]:
-    """Return the fragility curves of every case for every limit that applies to it; piers with intensities over g tan α share
-    one.
+    """Return the fragility curves of every case for every limit that applies to it.
 
     Every record is run at the levels of ``plans``, one for each case (:func:`level_plans` if they are not given). With method
-    "ida" it is also run in windows about them and, in one wave, between the levels below its first exceedance so far, both on
-    rigid ground or where the study asks for it; then the first exceedance is bisected, in several. Piers share a curve if the
+    "ida" it is also run in windows about the levels and, in one wave, between the levels below its first exceedance so far,
+    both on rigid ground or if the study asks for it; several waves then bisect the first exceedance. Piers share a curve if the
     measure is relative to them (:func:`_shared_by`).
 
-    ``simulate`` is called once for the levels and windows, and once for every wave.
+    ``simulate`` is called once for the levels and windows, and once for every further wave.
     """
     plans = plans or level_plans(study, spec, motions)
     runs = RecordRuns(study, spec, motions, plans, simulate)

@@ -199,7 +199,7 @@ def _curve(table: Table, points: dict[str, Any], levels: str, read: dict[str, An
 def read_dispersions(file: TomlFile, drawn: Sequence[str] = ()) -> tuple[Dispersion, ...]:
     """Return a study's added dispersions that have a name and a value; mistakes become problems of ``file``.
 
-    A mistake is also a value that is not said to be ``without`` each of the ``drawn`` inputs.
+    It is a mistake, too, if the ``without`` of one does not name each of the ``drawn`` inputs.
     """
     added: list[Dispersion] = []
     for table in file.tables("fragility", "dispersion", title="name"):

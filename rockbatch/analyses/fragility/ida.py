@@ -37,7 +37,7 @@ class Bracket(NamedTuple):
         return math.sqrt(self.low * self.high)
 
     def is_wider(self, tolerance: float) -> bool:
-        """Return whether a bisection can narrow it, and should, to a relative width of ``tolerance``."""
+        """Return whether the bracket can be bisected and is wider than ``tolerance``, relative to its lower end."""
         return self.low > 0 and math.isfinite(self.high) and self.high > self.low * (1.0 + tolerance)
 
 
@@ -45,10 +45,10 @@ class Bracket(NamedTuple):
 class Capacity:
     """Bounds of the intensity at which a record first exceeds a limit.
 
-    ``decided`` leaves undecided runs out, and stays open if one is in between; the others hold if all of them exceeded the
-    limit, and if all withstood it. The three are the same if none is undecided below the first exceedance. ``undecided`` is the
-    number of those below it, ``returns`` of the levels above it that were withstood. ``widest_step`` is the greatest relative
-    step from one run to the next, from the lowest to the first exceedance.
+    ``decided`` ignores undecided runs, and stays open if one lies within it; the two others count all of them as exceeding and
+    as withstanding the limit. All three are equal if no run below the first exceedance is undecided. ``undecided`` is the
+    number of those below it, ``returns`` that of levels above it that were withstood, and ``widest_step`` the greatest relative
+    step between neighbouring runs from the lowest to the first exceedance.
     """
 
     decided: Bracket
@@ -124,8 +124,9 @@ def bisect(
 ) -> dict[K, dict[float, int]]:
     """Return the states of each record by intensity: those ``on_levels``, and those that bisect its first exceedance.
 
-    Two brackets of it, if undecided runs exceeded and if they withstood, are cut at their geometric mean until their
-    high ≤ (1 + tolerance) low; a bracket from 0 or up to infinity stays. Each wave has one run for every bracket still wider.
+    It has two brackets, with undecided runs counted as exceeding and as withstanding the limit. Each is cut at its geometric
+    mean until high ≤ (1 + tolerance) low; a bracket from 0 or to infinity stays. A wave has one run for every bracket that is
+    still wider.
     """
     states = {key: dict(looks) for key, looks in on_levels.items()}
     while new := [(key, x) for key, looks in states.items() for x in _middles(capacity(looks, levels), tolerance)]:

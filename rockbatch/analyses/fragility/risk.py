@@ -300,8 +300,8 @@ def deaggregation_table(risks: Sequence[Risk], spec: FragilitySpec, varied: Sequ
 def deaggregated(risk: Risk, spec: FragilitySpec) -> list[tuple[float, float, str, float]]:
     """Return bins of intensity: low and high, "below", "within" or "above" the hazard's points, and the rate from each.
 
-    There are ten a decade, cut at the hazard's ends; the first and the last have also what is beyond them, a thousandth of the
-    rate or less, so that the sum is the rate.
+    There are ten a decade, cut at the ends of the hazard. The first and the last include what lies beyond them, a thousandth of
+    the rate or less, so that the bins add up to the rate.
     """
     assert spec.hazard is not None
     x, rates = spec.hazard.curve.quadrature()

@@ -58,10 +58,9 @@ class ScaledRuns(Made):
 class LevelPlan(NamedTuple):
     """Levels at which each motion is run.
 
-    ``unscaled`` are the intensities of the motions as they come, which grow with the scale to ``power``, and ``earlier``
-    the factors by which the study has scaled them to its target before. ``used`` has the intensity at each level at which a
-    motion is run, by the level: the level itself, or what a given factor comes to; ``not_used`` those at which its factor is
-    beyond the limits of the study.
+    ``unscaled`` are the intensities of the motions without a scale, which grow with it to ``power``, and ``earlier`` the
+    factors by which the study scaled them to its target. ``used`` has, by level, the intensity with which a motion is run: the
+    level itself, or the result of a given factor. ``not_used`` has the levels whose factor is beyond the limits of the study.
     """
 
     unscaled: list[float]
@@ -84,7 +83,7 @@ class LevelPlan(NamedTuple):
         return self.earlier[motion] * self.scale(motion, intensity)
 
     def number(self, motion: int, intensity: float) -> int:
-        """Return which of a motion's levels, from 0 in rising order and with unused ones, is run with an intensity."""
+        """Return the place of the level that is run with an intensity among all levels of a motion, in rising order."""
         levels = sorted(self.used[motion] | self.not_used[motion])
         return next(n for n, level in enumerate(levels) if self.used[motion].get(level) == intensity)
 

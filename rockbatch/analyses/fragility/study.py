@@ -91,8 +91,10 @@ class FragilitySpec:
         return HUNT_STEP if self.hunt_step is None and not base.on_springs else self.hunt_step
 
     def window_on(self, base: Base) -> float | None:
-        """Return the relative half-width of the windows about the levels on ``base``: the given one, else WINDOW, 0.02, on rigid
-        ground, and None, no windows, on springs or a footing; None unless the method is "ida".
+        """Return the relative half-width of the windows about the levels on ``base``; None for no windows.
+
+        With method "ida" it is the given one, else WINDOW, 0.02, on rigid ground, and None on springs or a footing; None with
+        others.
         """
         if self.method != "ida":
             return None

@@ -148,7 +148,7 @@ def _write_tables(results: AnalysisFolder, spec: SensitivitySpec) -> dict[str, o
 
 
 def counted_as(status: str, theta_max_over_alpha: float, overturned: float) -> float:
-    """Return what a run adds to the answer: ``overturned`` at most, and that if it overturned or was ended by flight.
+    """Return what a run adds to the answer, at most ``overturned``, that of a run that overturned or was ended by flight.
 
     A failed run counts with its best value, or as overturned if it has none.
     """
@@ -158,7 +158,7 @@ def counted_as(status: str, theta_max_over_alpha: float, overturned: float) -> f
 
 
 def values_of(rows: Iterable[Mapping[str, str]], points: int, overturned: float) -> tuple[dict[str, int], Values]:
-    """Return how many runs ended in which way, and what each adds to the answer, shape (members of the suite, points).
+    """Return the numbers of runs by how they ended, and what each run adds to the answer, shape (members of the suite, points).
 
     ``rows`` are the texts of the runs' rows, in their order.
     """

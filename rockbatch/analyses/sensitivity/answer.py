@@ -47,7 +47,7 @@ def answer(info: Info, swings: "pd.DataFrame", sobol: "pd.DataFrame") -> Markup:
 
 
 def _of_case(rows: Rows, overturned: float) -> Markup:
-    """Return the rest of the sentence about a case, and one about the input that moves the answer most by itself, if one does.
+    """Return the rest of the sentence about a case, and one about the input that alone moves the answer most, if one does.
 
     If all answers are the same (NaN indices), the sentence says so. An answer of ``overturned`` is that "or more".
     """

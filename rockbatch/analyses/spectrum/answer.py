@@ -45,10 +45,10 @@ def of_spectra(info: Info, suite: "pd.DataFrame") -> tuple[list[str], list[str]]
 
 
 def _overturning(info: Info, suite: "pd.DataFrame", fallen: "pd.DataFrame") -> Iterator[str]:
-    """Yield a sentence on the largest piers that overturn under one motion or more, and under half of them.
+    """Yield a sentence on the largest piers that overturn under at least one motion, and under half of them.
 
-    It has a size for each slenderness, of over MOST_SLENDERNESSES, 4, for the least and the greatest alone. If no pier
-    overturns it says that.
+    It has a size for each slenderness; of more than MOST_SLENDERNESSES, 4, for the least and the greatest only. If no pier
+    overturns, it says so.
     """
     axis, motions, many = info["axis"], counted(info["motions"], "motion"), info["motions"] > 1
     if fallen.empty:

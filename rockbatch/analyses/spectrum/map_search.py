@@ -109,9 +109,9 @@ class Search:
             self._regions[column] = regions(sorted(self._ends[column].items()), self.tolerance)
 
     def _suggested(self, number: int, frequencies: Sequence[float]) -> list[Point]:
-        """Return points of each column at the middles of the regions of a neighbour with other outcomes, if not run yet.
+        """Return the points of each column at which a neighbour with other outcomes has the middle of a region, if not run yet.
 
-        What is narrow there may be here, too.
+        The same region may be narrow, and unseen, in this column.
         """
         suggested: dict[Point, None] = {}
         for left, right in pairwise(frequencies):

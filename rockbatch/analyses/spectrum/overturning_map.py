@@ -30,9 +30,9 @@ SAMPLES = 400
 def ending(status: str, impacts: int, base: Base) -> End:
     """Return the region to which a run belongs, and the way there; a status such as "failed" is UNDECIDED.
 
-    Rigid blocks that overturn after another number of impacts do so by another way, with a boundary between the two, on which
-    they would stay at the unstable equilibrium: near it there may be a window of safe amplitudes, however narrow. On springs
-    the impacts change with every amplitude, and say nothing.
+    Of a rigid block that overturns the way is the number of impacts. Between two ways is a boundary on which the block would
+    stay at the unstable equilibrium: near it there may be a window of safe amplitudes, however narrow. On springs the impacts
+    change with every amplitude, and say nothing.
     """
     if status == "overturned":
         return End(WITH_IMPACT if impacts else OUTRIGHT, 0 if base.on_springs else impacts)
