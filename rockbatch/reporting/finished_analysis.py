@@ -109,9 +109,10 @@ def _warn_edited(path: Path) -> None:
 def of_analysis(
     name: str, **tables: Collection[str]
 ) -> Callable[[Callable[..., Markup]], Callable[[Contents], Markup]]:
-    """Decorate ``drawn(analysis, *tables)`` as a section of the analysis ``name``; empty if it or a table is missing.
+    """Decorate ``drawn(analysis, *tables)`` as a section of the analysis ``name``; empty if it has none or lacks a table.
 
-    ``tables`` gives the columns each table needs. The section raises ``InputError`` if NAME.json and its tables are
+    ``tables`` gives the columns each table needs. A sentence stands in place of the section if NAME.json lists a table that
+    cannot be used. The section raises ``InputError`` if NAME.json and its tables are
     inconsistent, or if arithmetic on their numbers overflows.
     """
 
@@ -120,13 +121,15 @@ def of_analysis(
         def section(contents: Contents) -> Markup:
             try:
                 analysis = contents.analysis(name)
-                read_tables = [
-                    analysis and analysis.table(f"{table}.csv", columns) for table, columns in tables.items()
-                ]
-                if analysis is None or any(table is None for table in read_tables):
+                if analysis is None:
                     return Markup("")
+                files = {f"{table}.csv": columns for table, columns in tables.items()}
+                found = {file: analysis.table(file, columns) for file, columns in files.items()}
+                if lacking := [file for file, table in found.items() if table is None]:
+                    listed = [file for file in lacking if file in analysis.info.get("files", ())]
+                    return _again(name, f"{', '.join(listed)}: edited or damaged") if listed else Markup("")
                 with np.errstate(divide="raise", over="raise", invalid="raise"):
-                    return drawn(analysis, *read_tables)
+                    return drawn(analysis, *found.values())
             except InputError:
                 raise
             except _DAMAGE as error:
@@ -140,7 +143,11 @@ def of_analysis(
 
 def of_earlier_version(name: str) -> Markup:
     """Return what stands in place of a section of the analysis ``name`` whose files an earlier version wrote."""
-    return tag("p", tag("span", f"Of an earlier version; run `rockbatch {name}` again.", class_="undecided"))
+    return _again(name, "Of an earlier version")
+
+
+def _again(name: str, fault: str) -> Markup:
+    return tag("p", tag("span", f"{fault}; run `rockbatch {name}` again.", class_="undecided"))
 
 
 def answered(*paragraphs: str, remarks: Iterable[str] = ()) -> Markup:

@@ -1,6 +1,7 @@
 """Every section has the same entry point, is in the page's list once, and is left out if it does not apply."""
 
 import inspect
+import json
 import pkgutil
 import re
 from importlib import import_module
@@ -17,7 +18,7 @@ from rockbatch.observers.forces import section as forces
 from rockbatch.pier import Damper, FootingBase, Pier, RigidBase
 from rockbatch.reporting import compared, write_analyses
 from rockbatch.reporting.finished import read
-from rockbatch.reporting.finished_analysis import Contents, FinishedAnalysis
+from rockbatch.reporting.finished_analysis import Contents, FinishedAnalysis, of_analysis
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.page import PARTS, PARTS_OF_TWO, page, sections
 from rockbatch.reporting.sections import answer, inputs
@@ -79,6 +80,21 @@ def test_analyses_go_into_the_report_of_their_study_or_a_page_of_their_own(tmp_p
     assert write_analyses(tmp_path, study).name == "report.html"
     (tmp_path / "peaks.csv").unlink()
     assert write_analyses(tmp_path, study).name == "analyses.html"
+
+
+def test_an_analysis_with_a_table_that_cannot_be_used_says_so(tmp_path):
+    """It was left out, and the readers of analyses.html missed its other tables without a word."""
+    info = {"study": {"sha256": STUDY["sha256"]}, "files": ["sensitivity.csv", "sobol.csv"], "digests": {}}
+    (tmp_path / "sensitivity.json").write_text(json.dumps(info), encoding="utf-8")
+    (tmp_path / "sensitivity.csv").write_text("case,low\npads,1.0\n", encoding="utf-8")
+    contents = Contents(tmp_path, STUDY)
+    section = of_analysis("sensitivity", sensitivity=("case",), sobol=("case", "total"))(lambda *_: Markup("drawn"))
+    for sobol in ("case,all\npads,0.5\n", ""):
+        (tmp_path / "sobol.csv").write_text(sobol, encoding="utf-8")
+        assert "sobol.csv: edited or damaged; run `rockbatch sensitivity` again." in section(contents)
+    (tmp_path / "sobol.csv").write_text("case,total\npads,0.5\n", encoding="utf-8")
+    assert section(contents) == "drawn"
+    assert of_analysis("sensitivity", other=("case",))(lambda *_: Markup("drawn"))(contents) == ""
 
 
 def test_a_section_that_does_not_apply_has_no_heading_and_no_link():
