@@ -4,21 +4,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
-from typing import Any, NamedTuple
+from typing import Any
+
+from rockbatch.common.slices import ReportPart, from_slice
 
 Entry = Mapping[str, Any]
 """An object in the JSON file of an analysis, by key; the reader of the file has checked its shape."""
 
 ANALYSES = ("design", "fragility", "spectrum", "sensitivity", "release", "accuracy")
 """Each has its folder ``rockbatch/analyses/NAME``; in the order of the help and of the report."""
-
-
-class ReportPart(NamedTuple):
-    """A part of the report: its heading, its anchor, and the function of the folder's contents that returns it."""
-
-    heading: str
-    anchor: str
-    function: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,5 +44,4 @@ def doors() -> dict[str, Door]:
 
 def from_analysis(name: str, function: str) -> Any:
     """Return the ``function`` of an analysis, such as "section.section", importing its module."""
-    module, _, attribute = function.partition(".")
-    return getattr(import_module(f"rockbatch.analyses.{name}.{module}"), attribute)
+    return from_slice(f"analyses.{name}", function)

@@ -3,7 +3,9 @@
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
-from typing import Any, NamedTuple
+from typing import Any
+
+from rockbatch.common.slices import ReportPart, from_slice
 
 OBSERVERS = (
     "other_law",
@@ -20,15 +22,6 @@ OBSERVERS = (
 """Each has its folder ``rockbatch/observers/NAME``; in the order in which they add to a run."""
 
 
-class ReportPart(NamedTuple):
-    """A part of the report, ``section.section`` of the observer: its heading, its anchor, and the anchor of that before it."""
-
-    heading: str
-    anchor: str
-    behind: str
-    folded: bool = False
-
-
 def from_observer(name: str, function: str) -> Any:
     """Return the attribute of an observer, such as "observe.requested", importing its module.
 
@@ -36,8 +29,7 @@ def from_observer(name: str, function: str) -> Any:
     """
     if name not in OBSERVERS:
         raise AttributeError(f"there is no observer {name}")
-    module, _, attribute = function.partition(".")
-    return getattr(import_module(f"rockbatch.observers.{name}.{module}"), attribute)
+    return from_slice(f"observers.{name}", function)
 
 
 def tables() -> list[str]:

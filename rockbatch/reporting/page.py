@@ -73,12 +73,12 @@ def of_observers(behind: str | None = None) -> Iterator[Part]:
     """Yield the sections of observers, all or those that stand behind an anchor; their modules load when a section is drawn."""
     for name, part in report_parts():
         if behind in (None, part.behind):
-            yield Part(part.heading, part.anchor, partial(_of_observer, name), part.folded)
+            yield Part(part.heading, part.anchor, partial(_of_observer, name, part.function), part.folded)
 
 
-def _of_observer(name: str, finished: Finished) -> Markup:
+def _of_observer(name: str, function: str, finished: Finished) -> Markup:
     """Return the section of an observer, empty if it has nothing to show."""
-    content: Markup = from_observer(name, "section.section")(finished)
+    content: Markup = from_observer(name, function)(finished)
     return content
 
 

@@ -80,9 +80,10 @@ def test_an_analysis_is_added_with_a_folder_and_a_name(copied):
     folder = copied / "rockbatch" / "analyses" / "census"
     folder.mkdir()
     (folder / "__init__.py").write_text(
-        "from rockbatch.common.analyses import Door, ReportPart\n"
+        "from rockbatch.common.analyses import Door\n"
+        "from rockbatch.common.slices import ReportPart\n"
         'DOOR = Door(help="count cases", example="rockbatch census pier.toml", writes="",\n'
-        '            parts=(ReportPart("Census", "census", "section.section"),), tables=("census",))\n'
+        '            parts=(ReportPart("Census", "census"),), tables=("census",))\n'
     )
     (folder / "study.py").write_text(
         "from rockbatch.toml.kinds import boolean\n"

@@ -2,8 +2,9 @@
 
 from argparse import SUPPRESS
 
-from rockbatch.common.analyses import Door, ReportPart
+from rockbatch.common.analyses import Door
 from rockbatch.common.argument_values import flag, seconds, value, whole
+from rockbatch.common.slices import ReportPart
 
 RUNS, SECONDS = 24, 60.0
 """Default number of runs that are measured, and default time limit [s]."""
@@ -12,7 +13,7 @@ DOOR = Door(
     help="measure error against time of a study on this machine",
     example="rockbatch accuracy pier.toml --seconds 30",
     writes="  accuracy.csv, and a section of report.html if the folder has results of the study",
-    parts=(ReportPart("Error against time", "error_and_time", "section.section"),),
+    parts=(ReportPart("Error against time", "error_and_time"),),
     options={
         "--runs": value(whole, "N", f"runs to measure, spread over the study (default: {RUNS})", default=RUNS),
         "--seconds": value(

@@ -1,5 +1,5 @@
 """Forces and motions that a designer sizes."""
 
-from rockbatch.common.observers import ReportPart
+from rockbatch.common.slices import ReportPart
 
 REPORT = ReportPart("Forces", "forces", behind="references")

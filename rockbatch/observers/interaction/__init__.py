@@ -1,6 +1,6 @@
 """Axial force and moment of sections, and normal force and shear of the base, at the same moment: interaction.csv."""
 
-from rockbatch.common.observers import ReportPart
+from rockbatch.common.slices import ReportPart
 from rockbatch.quantities.demands import INTERACTION
 
 TABLE = INTERACTION

@@ -1,6 +1,6 @@
 """Forces in sections of the shaft: sections.csv."""
 
-from rockbatch.common.observers import ReportPart
+from rockbatch.common.slices import ReportPart
 from rockbatch.quantities.demands import SECTIONS
 
 TABLE = SECTIONS
