@@ -299,7 +299,7 @@ def test_a_table_of_an_analysis_that_is_empty_or_lacks_a_column_is_left_out(tmp_
         ("toe_level_m", "toe level", "m"),
         ("impulse_kN_s", "impulse", "kN s"),
         ("spring_kN_m", "spring", "kN/m"),
-        ("rate_per_s", "rate", "1/s"),
+        ("bed_stiffness_MN_m3", "bed stiffness", "MN/m³"),
         ("speed_m_s", "speed", "m/s"),
         ("push_m_s2", "push", "m/s²"),
         ("colour", "colour", ""),

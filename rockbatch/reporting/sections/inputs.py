@@ -1,14 +1,13 @@
 """Every constant of the study: piers and their parts, foundations and devices, as given and as derived from it."""
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from rockbatch.common.units import unit_in_words, unit_of
 from rockbatch.pier import Pier, Restraint
 from rockbatch.pier.devices import FIELDS
 from rockbatch.quantities.cases import Case
 from rockbatch.quantities.labels import symbol_of
-from rockbatch.quantities.quantity import ENDINGS, in_print
 from rockbatch.reporting.drawings import drawings
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import heading
@@ -51,10 +50,6 @@ OF_DEVICE = {
     "height_m": ("height", "m"),
 }
 """Fields of devices, their heads and units, in the order of the table."""
-_UNITS = {ending: in_print(unit) for unit, ending in ENDINGS.items()}
-_UNITS |= {"mm": "mm", "m2": "m²", "kN_m": "kN/m", "t": "t", "GPa": "GPa"}
-"""Units as people write them by the ends of keys that have no symbol of their own."""
-_UNIT = re.compile(f"_({'|'.join(_UNITS)})$")
 
 
 def section(finished: Finished) -> Markup:
@@ -96,9 +91,8 @@ def symbol_and_unit(key: str) -> tuple[str, str]:
     symbol, unit = symbol_of(key)
     if (symbol, unit) != (key, ""):
         return symbol, unit
-    ending = _UNIT.search(key)
-    words = key[: ending.start()] if ending else key
-    return words.replace("_", " "), _UNITS[ending[1]] if ending else ""
+    ending = unit_of(key)
+    return key.removesuffix(f"_{ending}").replace("_", " "), unit_in_words(ending)
 
 
 def _form(rows: Sequence[Mapping[str, object]], key: str) -> str:
