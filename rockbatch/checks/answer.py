@@ -47,19 +47,9 @@ def answer(
     """Return the lines of the answer: failing suite, cases that pass, lack a limit, fail or are undecided, missing stations.
 
     A line with nothing to say is left out; missing stations come before the cases if any case meets its limits. Unchecked cases
-    have a line of their own only if no case passes.
-
-    Parameters
-    ----------
-    verdicts : sequence of Verdict
-    worst : sequence of Worst
-        The worst responses of every case at each scale.
-    case_of, record_of : function
-        Of a verdict: the name of its case, the same under all bounds of the design, and of the record that governs it.
-    runs : sequence of CaseRuns
-        Every case of the study, checked or not; by default those of the verdicts.
-    stations : Stations
-        Stations of the suite, and those without a motion.
+    have a line of their own only if no case passes. ``worst`` are the worst responses of every case at each scale. ``case_of``
+    and ``record_of`` name the case of a verdict, the same under all bounds of the design, and the record that governs it.
+    ``runs`` are of every case of the study, checked or not; by default of those with verdicts.
     """
     below = [verdict for verdict in verdicts if not verdict.case and verdict.verdict == FAIL]
     of_cases = [verdict for verdict in verdicts if verdict.case]

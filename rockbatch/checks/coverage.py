@@ -70,16 +70,8 @@ ALL_STATIONS = Stations()
 def runs_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], records: int) -> list[CaseRuns]:
     """Return every case at every scale, scales ascending; one of both axes of a pier has the runs of both.
 
-    Runs short of one for each record and polarity are "not run".
-
-    Parameters
-    ----------
-    runs : DataFrame
-        Simulated rows of peaks.csv.
-    cases : sequence of mappings
-        Cases as run.json has them.
-    records : int
-        Number of ground motions, each of which every case should meet.
+    ``runs`` are simulated rows of peaks.csv, ``cases`` as run.json has them. Runs short of one for each of the ``records``,
+    motions that every case should meet, and each polarity are "not run".
     """
     scales, scale_of = np.unique(runs["scale"].to_numpy(np.float64), return_inverse=True)
     statuses = [status for status in ENDED if status != NOT_RUN]

@@ -50,36 +50,16 @@ def judge(
 ) -> list[Verdict]:
     """Judge each case by every rule at the scales that the rule chooses; a case run on both axes of its pier is one.
 
-    Parameters
-    ----------
-    rules : sequence of Rule
-    peaks : DataFrame
-        Rows of peaks.csv; those without a case, of files that could not be used, are in no suite, and mirror images count
-        once.
-    cases : sequence of mappings
-        ``cases`` of run.json, or some of them; that across the axis of a pier follows the one along it.
-    suite : Suite, optional
-        Its stations are those of all horizontal components, of which a run that is missing counts as failed; without any, those
-        in ``peaks``, with its column ``station``.
-    count : str
-        How those rules count that do not say it, one of :data:`rockbatch.checks.rules.COUNTS`; a code counts stations.
-    sections : DataFrame, optional
-        Rows of sections.csv, for rules about a section.
-    interaction : DataFrame, optional
-        Rows of interaction.csv, for rules about the capacity of a section.
-    doubted : bool
-        Whether limits are compared with the piers: those of a study were when it was read.
+    ``peaks`` are rows of peaks.csv; those without a case, of files that could not be used, are in no suite, and mirror images
+    count once. ``cases`` are of run.json, all or some; that across the axis of a pier follows the one along it. The stations of
+    the ``suite`` are those of all horizontal components, of which a missing run counts as failed; without a suite they are
+    those of the column ``station``. ``count``, one of :data:`rockbatch.checks.rules.COUNTS`, applies to rules that do not say
+    how they count; a code counts stations. ``sections`` and ``interaction``, rows of sections.csv and interaction.csv, are for
+    rules about a section, and about its capacity. Limits that are ``doubted`` are compared with the piers; those of a study
+    were when it was read.
 
-    Returns
-    -------
-    list of Verdict
-        By case, then scale, then rule; none of cases and scales that a rule does not choose.
-
-    Raises
-    ------
-    InputError
-        If there is no run, or a rule asks for a case, scale or column that the results do not have, or has a doubted limit that
-        decides nothing.
+    Returns verdicts by case, then scale, then rule. Raises ``InputError`` if there is no run, if a rule asks for a case, scale
+    or column that the results lack, or for a doubted limit that decides nothing.
     """
     runs = with_case(peaks)
     if runs.empty:

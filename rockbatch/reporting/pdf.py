@@ -53,19 +53,9 @@ def frame(title: str, top: tuple[str, str], bottom: str, size: str, margin: str 
 
 
 def compiled(source: str, pictures: Mapping[str, bytes]) -> bytes:
-    """Return the PDF of a document in Typst's markup.
+    """Return the PDF of a document in Typst's markup, which begins with a :func:`frame`; ``InputError`` without Typst.
 
-    Parameters
-    ----------
-    source : str
-        The document, which begins with a :func:`frame`.
-    pictures : mapping of str to bytes
-        SVG by the path under which the document shows it.
-
-    Raises
-    ------
-    InputError
-        If Typst is not installed.
+    ``pictures`` are SVG by the path under which the document shows each.
     """
     if not installed():
         raise InputError('a PDF needs typst: pip install "rockbatch[pdf]", or print the HTML from a browser')
