@@ -65,9 +65,8 @@ class OtherEnd(NamedTuple):
 class Facts:
     """Facts about a quantity that the demands on it share."""
 
-    needs: str = (
-        ""  # key of [output] that brings it: "forces", "rocking", OF_BASE, or one of AT_HEIGHTS; empty if none does
-    )
+    # key of [output] that brings it: "forces", "rocking", OF_BASE, or one of AT_HEIGHTS; empty if none does
+    needs: str = ""
     device: str = ""  # kind of device that brings it, one of :attr:`Device.kinds`; empty if none does
     weighed: bool = False  # true if it takes the mass of the pier
     # true if the blow of a landing enters it (THEORY.md, Forces): on rigid ground, where that is an impulse, it is a lower bound
