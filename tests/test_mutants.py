@@ -97,6 +97,9 @@ SMALL = """
 LIMIT = 3
 HALVES = [x / 2 for x in (10, 11)]
 RATIO = 12 / (13 - 14)
+def double(x):
+    return x + x
+DOUBLES = [double(x) for x in HALVES]
 def small(x):
     return x < LIMIT
 def stopped(x):
@@ -109,8 +112,9 @@ class Few:
 """
 TESTS = """
 import pytest, sys
-from few import HALVES, Few, small, stopped
+from few import DOUBLES, HALVES, Few, small, stopped
 def test_halves(): assert HALVES == [5.0, 5.5]
+def test_doubles(): assert DOUBLES == [10.0, 11.0]
 def test_small(): assert small(1) and not small(9)
 def test_few(): assert Few().all_small([1, 2]) and not Few().all_small([5, 1])
 def test_stopped(): assert stopped(0) == 5
@@ -125,6 +129,7 @@ JUDGED = {
     "4 → (5)": (["unsound", "few"], "few"),  # in a generator in a method
     "3 → (4)": (["unsound", "small"], ""),  # when it is imported
     "x / 2 → (x * 2)": (["small", "halves"], "halves"),
+    "x + x → (x - x)": (["small", "doubles"], "doubles"),  # in a function that only runs then
     "13 → (14)": (["small"], "test_few.py"),  # which cannot be imported
     "1 → (2)": (["stopped"], "stopped"),
 }
@@ -142,7 +147,12 @@ def test_an_error_is_noticed_by_a_sound_test_that_fails_with_it(tmp_path):
     (tmp_path / "test_few.py").write_text(TESTS)
     wrong = {str(mutant): mutant.put_into(SMALL) for mutant in mutants(SMALL)}
     requests = [
-        {"file": "few.py", "wrong": wrong[error], "tests": [[f"test_few.py::test_{name}" for name in tests]]}
+        {
+            "file": "few.py",
+            "wrong": wrong[error],
+            "tests": [[f"test_few.py::test_{name}" for name in tests]],
+            "at_import": "x + x" in error,
+        }
         for error, (tests, _) in JUDGED.items()
     ]
     process = subprocess.run(
@@ -152,6 +162,31 @@ def test_an_error_is_noticed_by_a_sound_test_that_fails_with_it(tmp_path):
     answers = [json.loads(line).removeprefix("test_few.py::test_") for line in process.stdout.splitlines()]
     assert dict(zip(JUDGED, answers, strict=True)) == {error: noticed for error, (_, noticed) in JUDGED.items()}
     assert (tmp_path / "few.py").read_text() == SMALL
+
+
+def test_an_error_in_a_constant_meets_first_the_tests_that_name_it(tmp_path):
+    from places import mutants
+    from recording import Record
+    from run import Place, tests_of
+
+    seconds = {
+        "tests/test_a.py::test_other": 0.1,
+        "tests/test_b.py::test_long": 2.0,
+        "tests/test_b.py::test_short": 0.2,
+    }
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "tests" / "test_a.py").write_text("MOST_STEPS_RECORDED, STEPS\n")
+    (tmp_path / "tests" / "test_b.py").write_text('"{MOST_STEPS}"\n')
+    record = Record.__new__(Record)
+    record.top, record.seconds = tmp_path, seconds
+    record.tests_of, record.nearest = lambda file, lines: [], lambda file, count: ["tests/test_a.py::test_other"]
+    file = "rockbatch/motions/limits.py"
+    source = (TOOL.parents[1] / file).read_text(encoding="utf-8")
+    met = {str(error): tests_of(Place(file, error), record, 9.0)[0] for error in mutants(source)}
+    assert met["20 → (21)"] == [
+        f"tests/test_{name}" for name in ("b.py::test_short", "b.py::test_long", "a.py::test_other")
+    ]
+    assert met["0.01 → (0.011000000000000001)"] == ["tests/test_a.py::test_other"]
 
 
 @pytest.mark.thorough

@@ -108,14 +108,20 @@ class Judge:
         self.items = {item.nodeid: item for item in session.items}
         for line in self.requests:
             request = json.loads(line)
-            found = self.noticed_by(Path(request["file"]).absolute(), request["wrong"], request["tests"])
+            found = self.noticed_by(
+                Path(request["file"]).absolute(), request["wrong"], request["tests"], request["at_import"]
+            )
             print(json.dumps(found), file=self.answers, flush=True)
         return True
 
-    def noticed_by(self, path: Path, wrong: str, tests: list[list[str]]) -> str:
-        """Return the test that fails with a ``wrong`` source in the file, and passes with the right one; "" if none does."""
+    def noticed_by(self, path: Path, wrong: str, tests: list[list[str]], at_import: bool) -> str:
+        """Return the test that fails with a ``wrong`` source in the file, and passes with the right one; "" if none does.
+
+        What only runs ``at_import`` of the file meets them in new processes.
+        """
         source, times = path.read_text(encoding="utf-8"), path.stat()
-        functions = None if is_compiled(str(path)) else changed_functions(source, wrong, str(path))
+        anew = at_import or is_compiled(str(path))
+        functions = None if anew else changed_functions(source, wrong, str(path))
         for stage in tests:
             names = [name for name in self.items if name in set(stage)]  # files after each other, as fixtures want them
             while names:

@@ -141,6 +141,12 @@ class Record:
         """Return the tests that run one of these lines of a file, in turn one of each test file, and its quickest first."""
         return self._in_turn(set().union(*(self._lines(file).get(line, ()) for line in lines)))
 
+    def naming(self, names: set[str]) -> list[str]:
+        """Return the tests of the files in which one of these names is a word: they hold a constant that they do not run."""
+        word = re.compile(rf"(?<!\w)(?:{'|'.join(names)})(?!\w)")
+        files = [file for file in self._in_file if names and word.search((self.top / file).read_text(encoding="utf-8"))]
+        return self._in_turn(set().union(*(self._in_file[file] for file in files)))
+
     def nearest(self, file: str, count: int) -> list[str]:
         """Return the tests that run most of a file: for what runs when it is imported."""
         runs = Counter(test for tests in self._lines(file).values() for test in tests)

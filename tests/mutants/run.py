@@ -4,9 +4,10 @@
     python tests/mutants/run.py --seed 1 --count 200 [--only core | --without core] [--jobs 2] [--fast] [--seconds 180]
 
 Places are drawn at random from all lines that compute (places.py). The tests of CI run once, to record which of them runs which
-line (recording.py); an error meets those that run its line, three minutes of them, or those that run anything of its module if
-it is in what runs when this is imported (judging.py). It is noticed where a test fails that passes without it, or computes far
-longer. Errors in the core meet tests without the compiler, of a few seconds each; with ``--fast``, no error meets a slow test.
+line (recording.py); an error meets those that run its line, three minutes of them, or those whose file names its constant and
+those that run anything of its module, if it is in what only runs when this is imported (judging.py). It is noticed where a test
+fails that passes without it, or computes far longer. Errors in the core meet tests without the compiler, of a few seconds each;
+with ``--fast``, no error meets a slow test.
 What is finished is kept in build/mutants and not done again. An error that changes no answer is listed, with the reason, in
 equivalent.toml.
 """
@@ -42,6 +43,8 @@ FIRST = 40
 OF_MODULE = 150
 """Tests that run most of a module, which an error in what runs when it is imported meets before others that run any of it, and
 one that few tests run meets, too."""
+OF_SOURCES = "tests/test_limits.py"
+"""Tests that read the sources instead of running them: every error meets them."""
 NOT_COPIED = (".venv*", "build", "reports", ".git", ".mypy_cache", ".ruff_cache", ".pytest_cache")
 
 
@@ -104,8 +107,9 @@ def copied(number: int) -> Path:
 def tests_of(place: Place, record: Record, longest: float) -> list[list[str]]:
     """Return the tests that an error meets first and those that it meets then, which took so many seconds without it."""
     tests = record.tests_of(place.file, place.lines)
-    if not tests and not _in_function(place):
-        tests = record.nearest(place.file, OF_MODULE)
+    if not tests:
+        tests = record.naming(_constants(place))
+        tests += [test for test in record.nearest(place.file, OF_MODULE) if test not in tests]
         tests += [test for test in record.nearest(place.file, len(record.seconds)) if test not in tests]
     elif 0 < len(tests) < FIRST:  # of a function that keeps its results, only the first test runs the lines
         tests += [test for test in record.nearest(place.file, OF_MODULE) if test not in tests]
@@ -114,14 +118,21 @@ def tests_of(place: Place, record: Record, longest: float) -> list[list[str]]:
         seconds += record.seconds[test]
         if seconds < longest:
             rest.append(test)
-    return [stage for stage in (tests[:FIRST], rest) if stage]
+    of_sources = [test for test in record.seconds if test.startswith(OF_SOURCES)]
+    return [stage for stage in (tests[:FIRST], of_sources, rest) if stage]
 
 
-def _in_function(place: Place) -> bool:
-    functions = (
-        node for node in ast.walk(ast.parse("\n".join(_lines(place.file)))) if isinstance(node, ast.FunctionDef)
+def _constants(place: Place) -> set[str]:
+    """Return the names that are bound where the error is."""
+    statements = ast.parse("\n".join(_lines(place.file))).body
+    bound = (
+        node
+        for node in statements
+        if isinstance(node, ast.Assign) and place.mutant.line in range(node.lineno, (node.end_lineno or 0) + 1)
     )
-    return any(node.body[0].lineno <= place.mutant.line <= (node.end_lineno or 0) for node in functions)
+    return {
+        name.id for node in bound for target in node.targets for name in ast.walk(target) if isinstance(name, ast.Name)
+    }
 
 
 def judged(
@@ -150,6 +161,7 @@ def judged(
         assert process.stdout
         wrong = place.mutant.put_into((TOP / place.file).read_text(encoding="utf-8"))
         request = {"file": place.file, "wrong": wrong, "tests": tests_of(place, record, longest)}
+        request["at_import"] = not record.tests_of(place.file, place.lines)
         print(json.dumps(request), file=process.stdin, flush=True)
         found = str(json.loads(process.stdout.readline()))
         free.put(process)
