@@ -49,7 +49,7 @@ def test_of_a_share_its_runs_count_and_no_histories(study):
 
 def test_what_a_run_refuses_its_dry_run_refuses(study, capsys):
     for wrong, words in (
-        (["--shard", "1/100"], "make as many shares or fewer"),
+        (["--shard", "1/100"], "rockbatch: --shard 1/100: the study has 15 simulations"),
         (["--history", "one"], "no such record"),
     ):
         assert main(["run", str(study), "--dry-run", *wrong]) == 2

@@ -332,7 +332,7 @@ def test_the_drafted_manifest_has_the_line_to_fill_in(tmp_path):
     write_text(tmp_path, "three.txt", 3, "# time(s) ch1(g) ch2(g) ch3(g)")
     draft = write_manifest(tmp_path)
     text = draft.read_text(encoding="utf-8")
-    assert text.count('# role = "horizontal"   # or "vertical"') == 4
+    assert text.count('# role = "horizontal"   # or "vertical"') == text.count("# azimuth =\n") == 4
     assert len(read_motions(tmp_path).unusable) == 4  # a draft says nothing of its own
     draft.write_text(text.replace('# role = "horizontal"', 'role = "horizontal"'), encoding="utf-8")
     found = read_motions(tmp_path)

@@ -173,6 +173,8 @@ def test_small_spectra_are_on_one_scale():
     pair = [motion("a", 0.2), motion("b", 0.4)]
     first, second = (figure.panels[0] for figure in small_figures.spectra(pair))
     assert first.y == second.y
+    assert first.y.fraction(np.sqrt(first.y.low * first.y.high)) == pytest.approx(0.5)
+    assert first.x.fraction(small_figures.PERIODS) == pytest.approx(np.linspace(0.0, 1.0, len(small_figures.PERIODS)))
     assert second.marks[1].y == pytest.approx(2 * first.marks[1].y)
     assert first.marks[1].y == pytest.approx(pair[0].spectrum(small_figures.PERIODS).to_numpy())
 

@@ -158,3 +158,9 @@ def test_any_two_samples_lie_in_one_plane_and_tell_nothing_of_turned_copies(tmp_
     for name, direction, samples in (("A", "000", (1.0, 0.5)), ("B", "030", (0.9, -0.3)), ("C", "060", (0.4, 1.0))):
         write_at2(tmp_path, f"{name}{direction}.AT2", samples, title=title(direction, station=name))
     assert len(read_motions(tmp_path).motions) == 3
+
+
+@pytest.mark.parametrize(("squares", "samples"), [([1.0, 0.0, 0.0, 0.0, 1.0], 4), ([1.0, 0.0, 0.0, 30.0], 0)])
+def test_the_strong_part_of_a_series_is_of_all_its_samples(squares, samples):
+    """Of 1, 1, 1, 1, 2 the sum passes 5 % at the first and 95 % at the last; of 1, 1, 1, 31 both at the last."""
+    assert alignment._strong_samples(np.sqrt(squares)) == samples

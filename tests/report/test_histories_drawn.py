@@ -5,6 +5,7 @@ import re
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -16,6 +17,7 @@ from rockbatch.common.figures.description import SHAPES, thin
 from rockbatch.pier import Damper, Pier, RigidBase, YieldingBase, yield_deflection
 from rockbatch.reporting import write_report
 from rockbatch.reporting.finished import read
+from rockbatch.reporting.sections import histories
 from rockbatch.reporting.svg import curve
 
 
@@ -88,6 +90,20 @@ def test_every_curve_of_a_picture_is_drawn_to_its_peaks(tmp_path):
     assert theta.max() < high
     # one piece: nothing of it is cut off
     assert next(node for node in axes if node.get("data-name") == "θ/α rigid").get("d").count("M") == 1
+
+
+@pytest.mark.parametrize(
+    ("scale", "polarity", "words"),
+    [
+        (1.0, "+", "Kobe"),
+        (2.5, "+", "Kobe, scaled by 2.5"),
+        (1.0, "-", "Kobe, reversed"),
+        (2.0, "-", "Kobe, scaled by 2, reversed"),
+    ],
+)
+def test_a_picture_says_how_its_motion_was_scaled_and_whether_it_was_reversed(scale, polarity, words):
+    named = SimpleNamespace(named={"TAK000": "Kobe"}.get)
+    assert histories._of_motion(named, {"record": "TAK000", "scale": scale, "polarity": polarity}) == words
 
 
 def test_the_largest_rotation_and_the_events_are_marked(tmp_path):

@@ -118,6 +118,8 @@ def test_three_sides_and_more_have_colours_of_their_own(results):
     looks = {mark.look for mark in marks if isinstance(mark, Points | Rule)}
     assert len(looks) == 2 * 4  # of the pads and of the rigid base
     assert not any(look.open for look in looks)
+    of_rigid, of_pads = ({mark.look.colour for mark in marks if isinstance(mark, kind)} for kind in (Rule, Points))
+    assert of_rigid == of_pads
 
 
 def test_a_study_of_rigid_bases_alone_has_its_cases_on_the_axis(tmp_path):
@@ -149,6 +151,15 @@ def test_distributions_are_those_of_the_table_and_end_below_one_by_what_overturn
         )
         assert sum(mark.label == OVER for mark in panel.marks) == fell.sum()
     results.plot_cdf(88.0).draw_without_rendering()
+
+
+def test_distributions_have_room_for_overturned_runs_everywhere_if_one_panel_has_any(results):
+    runs = own(results)
+    (first, rows), (second, others) = groups_of(runs.runs, runs.piers)
+    stood = others[others["status"] == "ok"]
+    for groups, room in (([(first, rows), (second, stood)], True), ([(second, stood)], False)):
+        panels = distributions(groups, runs.series, "station").panels
+        assert {panel.x.last < panel.x.high for panel in panels} == {room}
 
 
 def test_a_distribution_climbs_at_each_peak_and_leaves_a_gap_for_overturned_runs(results):

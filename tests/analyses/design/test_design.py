@@ -17,6 +17,7 @@ from rockbatch.analyses.design.study import DesignSpec, Varied, read_design
 from rockbatch.analyses.design.tables import intervals_table, values_table
 from rockbatch.analyses.design.trials import Design, Judged, Trial, Written
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
+from rockbatch.checks.wording import SIGNS
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.common.figures.description import Area, Points, Polyline
@@ -309,7 +310,8 @@ def test_where_nothing_passes_the_nearest_value_is_named():
     assert "rotation at 178 %" in found.answer[0]
 
 
-def test_what_is_not_decided_is_no_pass():
+@pytest.mark.usefixtures("pages")
+def test_what_is_not_decided_is_no_pass(tmp_path):
     few = ROTATION | {"statistic": "mean", "least": 7}
     found = rb.design(study(check=[few]))
     assert rows(found, "verdict") == [["not decided"], ["fail"]]
@@ -317,6 +319,9 @@ def test_what_is_not_decided_is_no_pass():
     assert found.answer[0].endswith(
         ", in one-sine: 1 station counts, the check asks for 7."
     )  # a share alone looks like a pass
+    found.save(tmp_path / "out")
+    page = (tmp_path / "out/analyses.html").read_text(encoding="utf-8")
+    assert f"{SIGNS[NOT_DECIDED]} No value of pier.p that was run" in page
     pair = {"vary": ["pier.p", "pier.alpha"], "between": [[1.0, 2.2], [0.2, 0.25]], "points": [2, 2], "width": 1.0}
     found = rb.design(study(pair, check=[few]))
     told = "No pair of values that was run passes every check; nearest is 1, 0."
@@ -646,7 +651,7 @@ def test_the_command_counts_its_runs_beforehand_and_prints_the_answer(tmp_path, 
     assert "✓ The greatest pier.p found that passes every check is " in printed
     assert "end of the scan" in printed
     page = (tmp_path / "out/analyses.html").read_text(encoding="utf-8")
-    assert "The greatest pier.p found that passes every check is " in page
+    assert "✓ The greatest pier.p found that passes every check is " in page
     assert "demand over limit" in page
     worse = text.replace("0.5\nreason", "0.01\nreason")
     assert main(["design", str(write_study(tmp_path, worse, "worse.toml")), "--out", str(tmp_path / "worse")]) == 1

@@ -46,6 +46,15 @@ def fitted(runs, floor=1e-9, **more):
 # The line
 
 
+def test_a_demand_on_the_line_is_no_exact_line():
+    """Of five demands whose deviations from a line have neither mean nor slope, the middle one is on it."""
+    log_x, apart = np.linspace(-2.0, 2.0, 5), 0.1 * np.array([1.0, -1.0, 0.0, -1.0, 1.0])
+    x = np.exp(np.append(log_x, [2.5, 3.0]))
+    demand = np.exp(np.append(LN_A + log_x + apart, [0.0, 0.0]))
+    line = fitted(Demands(x, demand, x > np.exp(2.2), np.zeros(7, dtype=bool))).line
+    assert (line.intercept, line.slope) == pytest.approx((LN_A, 1.0))
+
+
 def test_without_censored_demands_the_line_is_that_of_least_squares():
     """SciPy's linregress on the logarithms, and σ² = SSE/(n − 2); to 1e-8."""
     runs = made_up(np.random.default_rng(1))
@@ -137,6 +146,13 @@ def test_of_two_intensities_the_share_is_the_closed_form(records, overturned):
         drawn.append(expit(share.draws @ [1.0, math.log(intensity)]))
         assert kstest(drawn[-1], beta(k + 0.5, n - k + 0.5).cdf).statistic < 0.06
     assert abs(np.corrcoef(drawn)[0, 1]) < 0.1
+
+
+def test_draws_of_a_share_stay_finite_however_unlikely_many_records_are_together():
+    """The likelihood of 600 tosses of a coin is 2⁻⁶⁰⁰, and its square no number."""
+    x = np.column_stack((np.ones(600), np.repeat([-1.0, 1.0], 300)))
+    draws = cloud._posterior(np.zeros(2), np.linalg.inv(0.25 * x.T @ x), x, np.arange(600) % 2 == 0)
+    assert draws.std(axis=0) == pytest.approx(2.0 / math.sqrt(600.0), rel=0.1)
 
 
 def test_intensities_that_part_what_overturned_from_the_rest_leave_a_finite_share():

@@ -123,6 +123,8 @@ def test_given_factors_are_taken_as_they_are(tmp_path):
     assert found.fragility_runs["scale"].to_list() == pytest.approx([1.2, 1.5, 1.3, 2.5])
     rows = found.fragility_scales.set_index(["record", "level"])
     assert rows.loc[("ricker_1.3", 0.6), "intensity"] == pytest.approx(PGA * 2.5, rel=0.01)
+    of_levels = [(one.scale_least, one.scale_median, one.scale_most) for one in found.curves[0].stripes]
+    assert of_levels == [pytest.approx((1.2, 1.25, 1.3)), pytest.approx((1.5, 2.0, 2.5))]
     assert (
         "to intensities away from their levels, 0.6 to 1 at 0.6 g: is PGA the measure" in found.info["scales"]["said"]
     )
