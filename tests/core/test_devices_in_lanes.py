@@ -156,6 +156,8 @@ def course(start, end, h=0.1):
     [
         ((0.05, 0.2), (0.06, -0.2), TAUT, True),
         ((0.09, 1.0), (0.09, -1.0), TAUT, False),  # 3.7 at both ends, but 4.7 by the cubic's inner points
+        ((0.02, 0.5), (0.11, 3.0), TAUT, False),  # 4.3 at the end, 2.1 at most by the inner points
+        ((0.02, -0.5), (-0.04, -3.0), TAUT, False),  # -0.2 at the end, 1.1 at least by the inner points
         ((-0.02, -1.0), (-0.02, 1.0), TAUT, False),  # 0.4 at both ends, slack between
         ((-0.05, 0.2), (-0.06, -0.2), SLACK, True),
         ((-0.05, 1.0), (-0.05, -1.0), SLACK, False),
