@@ -14,6 +14,7 @@ from rockbatch.checks import write_verdicts
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Pier, RigidBase, YieldingBase
+from rockbatch.reporting import compared
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.pair import pair, paired_cases
 
@@ -50,6 +51,12 @@ def test_runs_of_one_record_and_case_stand_side_by_side_with_their_ratio(changed
     assert rows[0][:2] == ["SYL360", "2"]  # the worst of both comes first
     assert [float(cell) for cell in rows[0][2:5]] == pytest.approx([ours, 0.5, 0.5 / ours], abs=5e-4)
     assert {row[4] for row in rows[1:]} == {"1.000"}
+
+
+def test_runs_of_the_only_record_are_named_by_it_and_by_their_case(tmp_path):
+    folders = two(tmp_path, *[{"records": FIG7[:1]}] * 2)
+    drawn = Page(f'<section id="peaks">{compared.pairs(pair(*map(read, folders)))}</section>')
+    assert drawn.tables["peaks"][1][:2] == ["record", "case"]
 
 
 def test_each_study_names_its_case_without_a_check_and_its_missing_station(tmp_path):

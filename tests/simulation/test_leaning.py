@@ -26,6 +26,7 @@ from rockbatch.simulation import Run, Stop, run_all_to_tolerance, run_fixed, run
 from rockbatch.simulation.leaning import PARTS, greatest_swing, lean_of, unstressed, with_lean
 from rockbatch.simulation.observing import observed
 from rockbatch.simulation.recording import recorded
+from rockbatch.simulation.restraints import stiffness_at_rest
 from rockbatch.simulation.steps import readings
 from rockbatch.study import Case, Numerics, Output, load_study
 
@@ -49,6 +50,14 @@ def outcome_of(base, motion, **output):
     planned = StudyRun(motion, "+", 1.0, Case("case", PIER, base, {}))
     (outcome,) = outcomes_of([planned], Numerics(tolerance=1e-4), observers_of(Output.with_keys(**output)))
     return outcome
+
+
+def test_the_stiffness_of_a_pier_on_springs_at_rest_is_less_by_its_weights_moment():
+    """Two springs of K/2 at ±b have K b² in rocking, of which the weight takes M g h; per unit mass, with K/M = (β p)²."""
+    pier = Pier.from_size(0.2, 10.0, 3.0, 9.81)
+    whole = (30.0 * pier.p) ** 2
+    rocking = whole * pier.half_width**2 - pier.gravity * pier.height
+    assert stiffness_at_rest(pier, ElasticBase(30.0), 0.0) == pytest.approx(np.diag([whole, rocking]), rel=1e-12)
 
 
 @pytest.mark.parametrize(
