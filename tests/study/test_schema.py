@@ -20,7 +20,9 @@ import rockbatch.study
 from rockbatch.analyses.sensitivity.study import read_sensitivity
 from rockbatch.common.errors import InputError
 from rockbatch.common.units import NOT_NEGATIVE, POSITIVE, Bounds
-from rockbatch.study import load_study
+from rockbatch.pier import devices, traits
+from rockbatch.study import case_keys, load_study
+from rockbatch.study.restraint_keys import DEVICES
 from rockbatch.study.schema import CHECKS, FILES, MANIFEST, STUDY, main, schema_of
 from rockbatch.toml import kinds
 from rockbatch.toml.kinds import KindError, Text, Whole
@@ -288,6 +290,20 @@ def test_every_example_is_taken_by_the_reader_and_by_the_schema(name):
 def test_a_kind_says_what_it_takes(kind, schema, words):
     assert kind.schema() == schema
     assert kind.words == words
+
+
+def test_a_key_that_is_named_as_a_quantity_has_its_bounds():
+    """Of devices and bases; but for η, whose bound depends on the law of its springs."""
+    tables = [(devices.BOUNDS, section) for section in DEVICES.values()] + [(traits.BOUNDS, case_keys.CASE)]
+    found = [
+        (bounds[name], key.kind)
+        for bounds, section in tables
+        for name, key in section.items()
+        if name in {*bounds} - {"eta"}
+    ]
+    numbers = [(bounds, kind.bounds) for bounds, kind in found if isinstance(kind, kinds.Number)]
+    assert len(numbers) > 10
+    assert all(own == bounds for bounds, own in numbers)
 
 
 NUMBER = r"(-?\d[\d.]*(?:e-?\d+)?)"
