@@ -162,6 +162,15 @@ def test_a_bit_of_the_time_of_a_block_of_miniseed_makes_no_two_motions(block, by
     assert all(any(reason in unusable.reason for reason in reasons) for unusable in found.unusable)
 
 
+def test_blocks_of_a_channel_with_a_location_code_are_counted_too():
+    whole = OF["MiniSEED"]
+    data = bytearray(whole.data)
+    for start in range(0, len(data), 512):
+        data[start + 13 : start + 15] = b"00"
+    found = read_as(whole, bit(512 * 4 + 24, 2)(bytes(data)))
+    assert any("by its number, but not by its time" in unusable.reason for unusable in found.unusable)
+
+
 def test_blocks_of_miniseed_without_a_rate_are_refused():
     """Logs of recorders have none."""
     data = bytearray(OF["MiniSEED"].data)
