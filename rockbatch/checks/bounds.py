@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.checks.omissions import omissions, open_landings, unconverged
+from rockbatch.checks.omissions import omissions, open_ends, open_landings, unconverged
 from rockbatch.checks.rules import Rule
 from rockbatch.quantities.arrays import Rows, Texts
 from rockbatch.quantities.cases import Case
@@ -203,7 +203,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
     if rule.ways["overturned"] == "infinite":
         high = np.where(runs.facts("may_overturn"), np.inf, high)
-    unknown = at_least | (open_landings(demand, runs, case) & np.isfinite(value))
+    unknown = at_least | ((open_landings(demand, runs, case) | open_ends(demand, runs)) & np.isfinite(value))
     for name, way in rule.ways.items():
         ended = status == name
         if way == "infinite":

@@ -35,6 +35,9 @@ NAMED = DIRECTIONS, VERTICALS, EVENTS = ("directions", "verticals", "events")
 HEIGHT = "flight_height_m"
 """Column of the height of flights, and the demand of the same name."""
 
+STILL_ROCKS = "still_rocks"
+"""Omission of demands of runs for which the column of the same name is 1: their later landings."""
+
 FOLLOWED = (SLIDES, LINEARISED)
 """Omissions of every demand of runs for which the column of the same name is 1: they moved as the model does not follow."""
 
@@ -76,6 +79,11 @@ OMISSIONS = {
     ),
     LANDINGS_OF_FRAME: Omission(
         f"{_LANDINGS}: take them from a program with springs under the columns, which a frame cannot have here",
+        decides=False,
+    ),
+    STILL_ROCKS: Omission(
+        "a lower bound: runs end so soon after the greatest rotation that the pier may land harder later: give a longer quiet_s "
+        "under [numerics]",
         decides=False,
     ),
     IMPULSES: Omission(
@@ -122,6 +130,11 @@ def open_landings(demand: Demand, runs: Rows, case: Case) -> npt.NDArray[np.bool
     return runs.numbers("impacts") != 0.0
 
 
+def open_ends(demand: Demand, runs: Rows) -> npt.NDArray[np.bool_]:
+    """Return True for each run that ends before landings that may raise the demand, shape (n,): a lower bound."""
+    return runs.facts(STILL_ROCKS) & demand.grows_with_landings
+
+
 def unconverged(demand: Demand, error: Values, case: Case) -> npt.NDArray[np.bool_]:
     """Return True for each run with no estimate of what the modes left out of a bending shaft add to the demand, shape (n,).
 
@@ -163,6 +176,8 @@ def omissions(demand: Demand, runs: Rows, error: Values, case: Case) -> list[str
         omitted.append(SHAKEDOWN)
     if demand.cumulative:
         omitted.append(TAIL)
+    if open_ends(demand, runs).any():
+        omitted.append(STILL_ROCKS)
     return [*_of_blows(demand, runs, error, case), *omitted]
 
 

@@ -160,6 +160,8 @@ class Outcome:
     may_overturn: bool | None = None
     # true if the peak is too large for the linearised kinematics of its base; ``None`` with finite rotations
     beyond_linearised: bool | None = None
+    # true if the pier may land harder after the end of the run than in it; ``None`` unless it is "ok"
+    still_rocks: bool | None = None
     # Results of observers by their names, which their quantities turn into columns. Results that the direction of the motion
     # changes have a method ``mirrored``.
     observed: Mapping[str, Any] = field(default_factory=dict)

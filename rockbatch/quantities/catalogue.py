@@ -324,6 +324,10 @@ TRAILING = (
         "beyond_linearised", "the rotations are too large for linearised kinematics",
         '; empty with kinematics = "finite"',
     ),
+    fact(
+        "still_rocks", "the run ends so soon after the greatest rotation that the pier may land harder later",
+        "; forces and demands of devices are then lower bounds, which a longer `quiet_s` may raise",
+    ),
 )  # fmt: skip
 """Quantities that every table has behind the varied keys. A table of an earlier version may lack the last of them."""
 

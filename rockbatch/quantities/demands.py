@@ -117,6 +117,11 @@ class Demand(Facts):
         return self.needs in AT_HEIGHTS
 
     @property
+    def grows_with_landings(self) -> bool:
+        """True if landings after the greatest rotation may raise it: a force, a speed, or what a device does."""
+        return self.needs == "forces" or self.in_section or bool(self.device)
+
+    @property
     def brings(self) -> set[str]:
         """Keys of [output] that a check of it switches on: that of the other end of its range, if any, else OF_BASE if needed.
 

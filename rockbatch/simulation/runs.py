@@ -25,6 +25,7 @@ from rockbatch.pier import (
     ElasticBase,
     FootingBase,
     Pier,
+    YieldingBase,
     neglected,
     places,
     tilt_over_residual,
@@ -71,6 +72,9 @@ _REASONS = {
 
 LEFT_ALONE = (Failure.UNDECIDED, Failure.RATCHETS)
 """Failures of runs that the longest tail did not decide; smaller steps do not change them."""
+
+MOST_AMPLITUDE = 0.999
+"""Greatest θ/α whose period of free rocking is waited for, 30/p: at 1 it is infinite."""
 
 NOTED_TILT = 1e-4
 """Change of the residual rotation by dampers and tendons, in units of α, above which a note reports it."""
@@ -303,6 +307,8 @@ def _with_static_rotation(run: Run, end: End, outcome: Outcome) -> Outcome:
     if outcome.status != "ok" or not base.has_residual:
         return outcome
     remark = f"dampers hold the pier at a rotation of {rotation:.3g} rad"
+    if not base.on_springs and rotation != 0.0:  # held, it does not land
+        outcome = outcome.changed(still_rocks=False)
     if base.on_springs:
         remark = f"dampers and tendons hold the pier at {rotation:.3g} rad, its supports would at {outcome.theta_res or 0.0:.3g}"
     changed = abs(rotation - (outcome.theta_res or 0.0)) > NOTED_TILT * pier.alpha
@@ -408,6 +414,7 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
         reason=reason,
         failure=failure,
         beyond_linearised=beyond_linearised,
+        still_rocks=_still_rocks(pier, base, result) if status == "ok" else None,
         theta_max=min(result.theta_max, ON_ITS_SIDE),
         theta_max_in_motion=min(in_motion, ON_ITS_SIDE),
         separations=result.uplifts,
@@ -417,6 +424,24 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
         **{name: getattr(result, name) for name in _UNCHANGED},
         **more,
     )
+
+
+def _still_rocks(pier: Pier, base: Base, result: Result) -> bool:
+    """Return True if a pier that stands may land harder, or load its devices more, after the end of its run than in it.
+
+    On bare rigid ground it has not landed since its peak. Else its run ended within a period of free rocking of a rigid block
+    from there: devices may be on the other side, the force of a landing on springs comes after it, and with vertical vibration
+    the next one may be harder. False for a pier that rests or never left its springs, and on yielding springs, where a run
+    lasts until the pier stays down.
+    """
+    stays_down = result.uplifts + result.impacts == 0 and not isinstance(base, FootingBase)  # footings count neither
+    rests = stays_down if base.on_springs else result.theta_end == 0.0
+    if rests or isinstance(base, YieldingBase):
+        return False
+    if not (base.on_springs or base.restraints):
+        return not result.t_impact > result.t_max
+    amplitude = min(result.theta_max / pier.alpha, MOST_AMPLITUDE)
+    return result.t_end - result.t_max < 4.0 / pier.p * math.acosh(1.0 / (1.0 - amplitude))
 
 
 def cause_of_flight(

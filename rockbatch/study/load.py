@@ -80,7 +80,7 @@ NUMERICS = Section(
         "quiet_s": Key(
             not_negative,
             "2.0",
-            "Time at rest after the record, at least; a run continues as long as anything larger may follow.",
+            "Time at rest after the record, at least; a run continues as long as a larger rotation may follow.",
             usual=Usual(600.0, "s: a pier that rocks comes to rest in less", 0.01),
         ),
         **CONFIRM,

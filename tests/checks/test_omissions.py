@@ -26,6 +26,7 @@ from rockbatch.checks.omissions import (
     POINTS,
     SHAKEDOWN,
     SLIDES,
+    STILL_ROCKS,
     TAIL,
     TENDONS,
 )
@@ -446,6 +447,54 @@ def test_what_grows_until_the_run_ends_is_said_to_be_a_lower_bound():
         judged(table, one=oil, demand=demand, at_most=0.5) for demand in ("damper_energy_J_kg", "damper_stroke_m")
     ]
     assert [(found.verdict, found.omits) for found in limited] == [("pass", (TAIL,)), ("pass", ())]
+
+
+@pytest.mark.parametrize(
+    ("demand", "open_"),
+    [
+        *(
+            (demand, True)
+            for demand in ("normal_force_kN", "landing_velocity_m_s", "damper_stroke_m", "section_axial_kN")
+        ),
+        *((demand, False) for demand in ("theta_max_over_alpha", "heel_uplift_m", "overturned")),
+    ],
+)
+def test_a_run_that_ends_before_a_harder_landing_decides_no_force_that_it_could_pass(demand, open_):
+    """On rigid ground too, before the first of all; what exceeds its limit fails."""
+    oil = case("oil", RigidBase(restraints=(Damper("viscous", nu=0.3),)))
+    cells = {"normal_force_kN": 0.2, "damper_stroke_m": 0.2, "landing_velocity_m_s": math.nan}
+    errors = {"base_shear_m_s2": 1.0, "forces_error": 1e-6, "devices_error": 1e-6, "theta_max_error": 1e-5}
+    table = runs([0.1, 0.2], name="oil", impacts=0, **errors, **cells)
+    soon, later = table.assign(still_rocks=[1, 0]), table.assign(still_rocks=0)
+    asked = {"one": oil, "demand": demand, "at_most": 9e4 if demand.startswith("section") else 0.5}
+    found = judged(soon, **asked)
+    assert (found.verdict, found.left_open) == (("not decided", STILL_ROCKS) if open_ else ("pass", ""))
+    assert judged(later, **asked).verdict == judged(table, **asked).verdict == "pass"
+    if demand in ("normal_force_kN", "damper_stroke_m"):
+        assert judged(soon, **asked | {"at_most": 0.1}).verdict == "fail"
+
+
+@pytest.mark.parametrize(("quiet_s", "found"), [(2.0, ["not decided", "not decided"]), (20.0, ["not decided", "fail"])])
+def test_a_block_that_is_up_when_its_run_ends_passes_no_limit_on_its_landing(tmp_path, quiet_s, found):
+    """A half-sine of 1.5 s, whose peak comes after it; the normal force of a landing on rigid ground is never decided."""
+    pulse = {
+        "name": "half",
+        "shape": "half-sine",
+        "amplitude_g": 0.38,
+        "period_s": 3.0,
+        "dt_s": 0.01,
+        "duration_s": 1.5,
+    }
+    checks = [
+        {"name": demand, "demand": demand, "at_most": most, "reason": "drawing", "confirm": ["at_most"]}
+        for demand, most in (("normal_force_kN", 25e3), ("landing_velocity_m_s", 0.05))
+    ]
+    output = {"forces": True, "histories": "none"}
+    pier = {"alpha": 0.13, "p": 0.35, "mass_t": 2000.0}
+    more = {"output": output, "check": checks, "numerics": {"quiet_s": quiet_s}}
+    path = write_study(tmp_path, study_text(pier=pier, pulses=[pulse], cases=(ROCK,), **more))
+    assert main(["run", str(path), "--out", str(tmp_path / "out")]) == 1
+    assert [one.verdict for one in read_verdicts(tmp_path / "out")] == found
 
 
 def test_forces_in_a_section_say_that_they_have_no_tendon_in_them():

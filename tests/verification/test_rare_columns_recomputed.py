@@ -430,6 +430,7 @@ def test_a_pier_may_overturn_where_a_motion_stronger_by_a_part_in_1e8_overturns_
 LEDGER = "kinetic", "potential", "elastic", "input", "plastic", "impact", "p_delta", "constraint", "damping"
 ELSEWHERE = {
     "beyond_linearised": "verification/test_large_rotations.py",
+    "still_rocks": "simulation/test_still_rocks.py",
     "landing_force_kN": "simulation/test_landing_force.py",
     "failure": "simulation/test_error_control.py",
     "note": "simulation/test_error_control.py",
