@@ -19,6 +19,7 @@ from rockbatch.pier.devices import doubt as doubt
 from rockbatch.pier.devices import fields_of as fields_of
 from rockbatch.pier.devices import unlikely_devices as unlikely_devices
 from rockbatch.pier.footing_base import FootingBase as FootingBase
+from rockbatch.pier.frequencies import block_period as block_period
 from rockbatch.pier.frequencies import fastest as fastest
 from rockbatch.pier.frequencies import rocking_frequency as rocking_frequency
 from rockbatch.pier.frequencies import static_deflection as static_deflection

@@ -1,4 +1,7 @@
-"""Frequencies of a pier in full contact with its springs, and static deflections (THEORY.md, eqs. 12 and 20)."""
+"""Frequencies of a pier in full contact with its springs, the period of a free block, and static deflections.
+
+See THEORY.md, eqs. 12 and 20, and Statics.
+"""
 
 import math
 from typing import Protocol
@@ -75,3 +78,12 @@ def fastest(pier: Pier, base: Springs) -> float:
         rate(vertical_frequency(pier, base), damping),
         rate(rocking_frequency(pier, base), damping * share),
     )
+
+
+def block_period(pier: Pier, rotation: float) -> float:
+    """Return the period [s] of a free slender block that rocks with the amplitude ``rotation`` [rad]; inf from α on.
+
+    It is 4/p arcosh(1/(1 − θ/α)), Housner's (THEORY.md, Statics).
+    """
+    left = 1.0 - rotation / pier.alpha
+    return 4.0 / pier.p * math.acosh(1.0 / left) if left > 0.0 else math.inf

@@ -118,8 +118,9 @@ class Demand(Facts):
 
     @property
     def grows_with_landings(self) -> bool:
-        """True if landings after the greatest rotation may raise it: a force, a speed, or what a device does."""
-        return self.needs == "forces" or self.in_section or bool(self.device)
+        """True if landings after the greatest rotation may raise it: a force, a speed, or what a device or a bed does."""
+        of_bed = self.bases == ("footing",) and not self.settlement
+        return self.needs == "forces" or self.in_section or bool(self.device) or of_bed
 
     @property
     def brings(self) -> set[str]:

@@ -18,7 +18,7 @@ from rockbatch.simulation.coarser import (
     with_modes_error,
     with_strips_error,
 )
-from rockbatch.simulation.relaxation import add_relaxation
+from rockbatch.simulation.relaxation import add_later_yield, add_relaxation
 from rockbatch.simulation.runs import MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
 from rockbatch.simulation.steps import first_substeps, readings
 
@@ -110,6 +110,7 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
     for i, bed in beds.items():
         if (found := outcomes[i]) is not None:
             outcomes[i] = with_strips_error(found, *bed, runs[i].pier.half_width)
+    add_later_yield(runs, outcomes, last, stop)
     return _with_modes_errors(runs, outcomes, quiet_s, stop)
 
 

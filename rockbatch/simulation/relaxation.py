@@ -1,4 +1,4 @@
-"""How far dampers on supports still let a pier turn while its vibration dies away: a share of the error of θ_res.
+"""How far dampers on supports, or a bed that yields, still let a pier turn while it comes to rest: a share of residuals' errors.
 
 See THEORY.md, Results of a run.
 """
@@ -11,15 +11,20 @@ import numpy as np
 from rockbatch.core.devices.laws import FRICTION, HYSTERETIC, MAXWELL, VISCOUS, Element
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.outcome import Outcome
+from rockbatch.pier import FootingBase
 from rockbatch.pier.places import holds_a_tilt
 from rockbatch.simulation.chaos import MARGIN
 from rockbatch.simulation.elements import elements
 from rockbatch.simulation.restraints import at_rest, reach_at_rest, stiffness_at_rest, stiffness_of_supports
-from rockbatch.simulation.runs import End, Run, Stop, Trial, try_all
+from rockbatch.simulation.runs import End, Run, Stop, Trial, swing_after_peak, try_all
 from rockbatch.simulation.steps import fastest_rate
 
 FURTHER, FURTHER_WITH_FRICTION = 5.0, 20.0
 """Time in 1/p for which a run goes on: with friction dampers until most of them hold."""
+
+SWINGS, LASTING = 4.0, 40.0
+"""Periods of free rocking from its peak within which a pier on a footing may still yield it, and time in 1/p for which it goes
+on then, as long as one on yielding springs is waited for."""
 
 AHEAD = 1000.0
 """Most such times that are counted after it, some hours: without damping, vibration would last for ever."""
@@ -39,6 +44,44 @@ def add_relaxation(
     for i, later in zip(moving, try_all([runs[i] for i in moving], substeps, tails, stop, wait=False), strict=True):
         outcome = outcomes[i]
         outcomes[i] = None if outcome is None or later is None else _with_relaxation(runs[i], outcome, trials[i], later)
+
+
+def add_later_yield(
+    runs: Sequence[Run], outcomes: list[Outcome | None], trials: Mapping[int, Trial], stop: Stop
+) -> None:
+    """Add to the errors of residuals in ``outcomes``, in place, what the bed of a footing still yields after the end of a run.
+
+    Each run that ends soon after its peak goes on for :data:`LASTING`/p, with the steps of its trial in ``trials``; twice
+    (:data:`MARGIN`) the change is added. The outcome of a run that is stopped becomes None.
+    """
+    yielding = [i for i in trials if _may_yield(runs[i], outcomes[i])]
+    tails = [trials[i].outcome.t_end - runs[i].motion.duration + LASTING / runs[i].pier.p for i in yielding]
+    substeps = [trials[i].outcome.substeps for i in yielding]
+    for i, later in zip(yielding, try_all([runs[i] for i in yielding], substeps, tails, stop, wait=False), strict=True):
+        outcome, before = outcomes[i], trials[i].outcome
+        if outcome is None or later is None:
+            outcomes[i] = None
+            continue
+        changes = {}
+        for name in ("theta_res", "settlement"):
+            after, known = getattr(later.outcome, name), getattr(outcome, f"{name}_error")
+            if after is not None and known is not None:
+                changes[f"{name}_error"] = known + MARGIN * abs(after - getattr(before, name))
+        outcomes[i] = outcome.changed(**changes)
+
+
+def _may_yield(run: Run, outcome: Outcome | None) -> bool:
+    """Return True if ``outcome`` has errors of residuals on a footing whose bed may yield further after the end of the run.
+
+    That is within :data:`SWINGS` periods of free rocking from the peak.
+    """
+    if (
+        outcome is None
+        or outcome.theta_res_error is None
+        or not (isinstance(run.base, FootingBase) and run.base.yields)
+    ):
+        return False
+    return outcome.t_end - outcome.t_max < SWINGS * swing_after_peak(run.pier, outcome.theta_max)
 
 
 def further(run: Run) -> float:

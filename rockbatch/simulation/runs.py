@@ -26,6 +26,7 @@ from rockbatch.pier import (
     FootingBase,
     Pier,
     YieldingBase,
+    block_period,
     neglected,
     places,
     tilt_over_residual,
@@ -73,8 +74,8 @@ _REASONS = {
 LEFT_ALONE = (Failure.UNDECIDED, Failure.RATCHETS)
 """Failures of runs that the longest tail did not decide; smaller steps do not change them."""
 
-MOST_AMPLITUDE = 0.999
-"""Greatest θ/α whose period of free rocking is waited for, 30/p: at 1 it is infinite."""
+LONGEST = 30.0
+"""Longest period of free rocking after a peak, in 1/p, about that at 0.999 α: at α it is infinite."""
 
 NOTED_TILT = 1e-4
 """Change of the residual rotation by dampers and tendons, in units of α, above which a note reports it."""
@@ -440,8 +441,12 @@ def _still_rocks(pier: Pier, base: Base, result: Result) -> bool:
         return False
     if not (base.on_springs or base.restraints):
         return not result.t_impact > result.t_max
-    amplitude = min(result.theta_max / pier.alpha, MOST_AMPLITUDE)
-    return result.t_end - result.t_max < 4.0 / pier.p * math.acosh(1.0 / (1.0 - amplitude))
+    return result.t_end - result.t_max < swing_after_peak(pier, result.theta_max)
+
+
+def swing_after_peak(pier: Pier, theta_max: float) -> float:
+    """Return the period [s] of free rocking from a peak of ``theta_max`` [rad], :data:`LONGEST`/p at most."""
+    return min(block_period(pier, theta_max), LONGEST / pier.p)
 
 
 def cause_of_flight(

@@ -19,7 +19,7 @@ from rockbatch.common.files import made_folder
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.outcome.half_cycles import apparent_restitution
-from rockbatch.pier import Base
+from rockbatch.pier import Base, block_period
 from rockbatch.simulation.histories import cycles_of
 from rockbatch.simulation.recording import recorded
 from rockbatch.simulation.runs import Run, run_fixed
@@ -165,7 +165,7 @@ class _Test:
     def __init__(self, case: Case, parameter: str, measured: Passages, spec: ReleaseSpec) -> None:
         self.case, self.parameter, self.measured, self.spec = case, parameter, measured, spec
         pier = case.pier
-        quarter = math.acosh(1.0 / (1.0 - abs(pier.initial_rotation_rad) / pier.alpha)) / pier.p
+        quarter = 0.25 * block_period(pier, abs(pier.initial_rotation_rad))
         last = float(np.nan_to_num(measured.t).max(initial=0.0)) + (quarter if spec.clock == "first impact" else 0.0)
         duration = max(1.25 * last + quarter, 1.5 * (2 * len(measured.t) + 3) * quarter)
         step = min(STEP, quarter / STEPS_IN_QUARTER)
