@@ -47,6 +47,25 @@ class Recording(NamedTuple):
         return self._replace(rows=self.rows[: int(np.searchsorted(self.rows.t, t, side="right"))].view(np.recarray))
 
 
+def upright(rows: np.recarray, alpha: float) -> np.recarray:
+    """Return ``rows`` until the pier leans beyond ``alpha`` [rad] for good, with a last one at α if it does.
+
+    It lies on straight lines between the ends of the step in which the pier does so, whose velocities and devices are off by the
+    square of its length.
+    """
+    last = int(np.flatnonzero(np.abs(rows.theta) <= alpha)[-1])
+    kept = rows[: last + 1]
+    if last + 1 == len(rows):
+        return kept.view(np.recarray)
+    start, end = rows[last], rows[last + 1]
+    share = (alpha - abs(start.theta)) / (abs(end.theta) - abs(start.theta))
+    at_alpha = rows[last : last + 1].copy()
+    for name in rows.dtype.names or ():
+        at_alpha[name] = start[name] + share * (end[name] - start[name])
+    at_alpha["kind"] = types.STEP
+    return np.concatenate([kept, at_alpha]).view(np.recarray)
+
+
 def recorded(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> Recording:
     """Return the history of a run again, with the steps and the end of its ``outcome``.
 

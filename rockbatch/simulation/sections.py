@@ -30,6 +30,7 @@ from rockbatch.pier import Modes, Pier, bent_above
 from rockbatch.pier.sections import above
 from rockbatch.simulation.elements import elements
 from rockbatch.simulation.models import ground_of, model
+from rockbatch.simulation.recording import upright
 from rockbatch.simulation.restraints import apart
 from rockbatch.simulation.restraints import recorded as recorded_devices
 from rockbatch.simulation.runs import Run
@@ -223,8 +224,7 @@ def forces_in_sections(run: Run, rows: np.recarray, heights: Sequence[float]) ->
     They are taken until the pier leans beyond α for good, at the ends and the middle of each step, and at the vertex of a
     parabola through these if it may exceed them (THEORY.md, Forces).
     """
-    standing = np.flatnonzero(np.abs(rows.theta) <= run.pier.alpha)
-    rows = rows[: standing[-1] + 1].view(np.recarray)
+    rows = upright(rows, run.pier.alpha)
     of, ends = recorded(run, rows), np.arange(len(rows))
     steps = ends[1:][(rows.t[1:] > rows.t[:-1]) & (rows.kind[1:] <= 0.0)]
     at_ends = in_body(of, ends, np.ones(len(ends)))

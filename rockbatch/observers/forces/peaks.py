@@ -19,6 +19,7 @@ from rockbatch.simulation.base_forces import at_rows, observed
 from rockbatch.simulation.coarser import of_model
 from rockbatch.simulation.histories import LANDINGS
 from rockbatch.simulation.models import acceleration_at, block
+from rockbatch.simulation.recording import upright
 from rockbatch.simulation.runs import Run
 
 _UPLIFTS = (types.SEPARATION_LEFT, types.SEPARATION_RIGHT, types.LIFT_OFF)
@@ -131,8 +132,7 @@ def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakF
     taken while N is above the share ``least_normal`` of the weight.
     """
     pier = run.pier
-    standing = np.flatnonzero(np.abs(rows.theta) <= pier.alpha)
-    rows = rows[: standing[-1] + 1].view(np.recarray)
+    rows = upright(rows, pier.alpha)
     extremes = np.zeros(len(Forces._fields))
     noted = Noted(*observed(run, rows, least_normal, np.recarray(0, FORCES), extremes).tolist())
     most = Forces(*extremes.tolist())

@@ -15,7 +15,7 @@ from rockbatch.simulation.base_forces import at_rows
 from rockbatch.simulation.coarser import of_model
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.observing import Observer
-from rockbatch.simulation.recording import Recording
+from rockbatch.simulation.recording import Recording, upright
 from rockbatch.simulation.runs import Run
 from rockbatch.simulation.sections import forces_in_sections
 from rockbatch.study import Output
@@ -26,9 +26,8 @@ SHARES = np.array([0.25, 0.5, 0.75])
 
 def _at_base(recording: Recording) -> Envelope:
     """Return the envelope of shear over normal force of the base, until the pier leans beyond α for good."""
-    run, rows = recording.run, recording.rows
-    standing = np.flatnonzero(np.abs(rows.theta) <= run.pier.alpha)
-    rows = rows[: standing[-1] + 1].view(np.recarray)
+    run = recording.run
+    rows = upright(recording.rows, run.pier.alpha)
     forces = at_rows(run, rows)
     return envelope(None, *(with_values_between(rows.t, values) for values in (forces.normal, forces.shear)))
 
