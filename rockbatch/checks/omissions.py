@@ -87,7 +87,9 @@ OMISSIONS = {
         decides=False,
     ),
     IMPULSES: Omission(
-        "the part of each landing that epsilon stops by an impulse is left out, to which zeta gives a force"
+        "the part of each landing on springs that epsilon or Housner's factor stops by an impulse, which has no force, is left "
+        "out: give zeta in place of epsilon and impact",
+        decides=False,
     ),
     BENDING: Omission(
         f"bending of the shaft is left out, with which a heavy one had {FACTORS} times its rigid base shear by finite elements"
@@ -123,9 +125,10 @@ def open_landings(demand: Demand, runs: Rows, case: Case) -> npt.NDArray[np.bool
     """Return True for each run of which landings by impulse are missing in the demand, shape (n,): a lower bound.
 
     A run without impacts misses none, one with an unknown number (NaN) some. False throughout for demands without landings, on
-    bases that do not stop the pier by an impulse, and where the modes of a bending shaft take up the blow.
+    bases that stop no part of a landing by an impulse, and where the modes of a bending shaft take up the blow.
     """
-    if not (demand.landing and lands_by_impulse(case)) or _follows_modes(demand, case):
+    by_impulse = lands_by_impulse(case) or stops_by_impulse(case)
+    if not (demand.landing and by_impulse) or _follows_modes(demand, case):
         return np.zeros(len(runs), dtype=bool)
     return runs.numbers("impacts") != 0.0
 
@@ -192,9 +195,14 @@ def _of_blows(demand: Demand, runs: Rows, error: Values, case: Case) -> list[str
         return [MODES] if unconverged(demand, error, case).any() else []
     omitted = []
     if open_landings(demand, runs, case).any():
-        omitted.append(LANDINGS_OF_FRAME if is_frame(case) else LANDINGS_OF_BENDING if bends(case) else LANDINGS)
-    if demand.landing and stops_by_impulse(case) and (runs.numbers("impacts") > 0.0).any():
-        omitted.append(IMPULSES)
+        omitted.append(_landings_of(case))
     if demand.bending and not bends(case) and not has_light_shaft(case):
         omitted.append(BENDING)
     return omitted
+
+
+def _landings_of(case: Case) -> str:
+    """Return the name of the omission of landings by impulse, whose remedy depends on the case."""
+    if stops_by_impulse(case):
+        return IMPULSES
+    return LANDINGS_OF_FRAME if is_frame(case) else LANDINGS_OF_BENDING if bends(case) else LANDINGS

@@ -170,8 +170,8 @@ def lands_by_impulse(case: Case) -> bool:
 
 
 def stops_by_impulse(case: Case) -> bool:
-    """Return whether ε < 1, by which an impulse takes part of the speed of every landing on springs; False without ε."""
-    return float(case["parameters"].get("epsilon", 1.0)) < 1.0
+    """Return whether an impulse takes part of the speed of every landing on springs: by ε < 1, or by Housner's factor."""
+    return asks_tension(case) or float(case["parameters"].get("epsilon", 1.0)) < 1.0
 
 
 def is_frame(case: Case) -> bool:

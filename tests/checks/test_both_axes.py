@@ -137,7 +137,7 @@ def test_a_run_that_is_missing_on_one_axis_leaves_the_record_open():
 
 
 def test_moments_in_a_section_combine_and_axial_forces_do_not():
-    table = both([0.1, 0.2], [0.1, 0.2])
+    table = both([0.1, 0.2], [0.1, 0.2], impacts=0)
     names = table[["record", "case", "polarity", "scale"]]
     forces = {"section_moment_kNm": [30.0, 40.0, 50.0, 10.0], "section_axial_greatest_kN": [9.0, 7.0, 6.0, 8.0]}
     sections = names.assign(height_m=7.5, section_axial_least_kN=0.0, sections_error=0.1, **forces)

@@ -43,7 +43,7 @@ def at_base(normal, shear, error=0.0):
 
 def judged(rows, table=None, *, one=None, checked=None, **more):
     checks = [checked or rule(**more)]
-    (verdict,) = judge(checks, runs([0.1]) if table is None else table, [one or case()], interaction=rows)
+    (verdict,) = judge(checks, runs([0.1], impacts=0) if table is None else table, [one or case()], interaction=rows)
     return verdict
 
 

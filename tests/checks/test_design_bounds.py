@@ -129,7 +129,7 @@ def test_forces_in_sections_are_judged_under_every_bound_and_nominally(tmp_path)
     text = study_text(
         pier=pier,
         pulses=seven_pulses(0.3)[:2],
-        cases=[SPRINGS | {"name": "a", "zeta": [0.05, 0.1]}, SPRINGS | {"name": "b"}],
+        cases=[SPRINGS | {"name": "a", "zeta": [0.05, 0.1]}, SPRINGS | {"name": "b", "epsilon": 1.0}],
         bound=[{"name": "soft", "case.beta": {"times": 0.7}}],
         check=[check | {"at_m": 5.0, "reason": "made up", "confirm": ["at_most", "capacity"]} for check in checks],
         output={"sections_m": [5.0], "interaction_m": [5.0]},

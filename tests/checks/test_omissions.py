@@ -34,10 +34,12 @@ from rockbatch.checks.scorecard import scorecard
 from rockbatch.checks.verdicts import read_verdicts, write_verdicts
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
+from rockbatch.motions import pulse
 from rockbatch.pier import Damper, ElasticBase, FootingBase, Part, Pier, RigidBase, Stop, Tendon, YieldingBase
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.results.checking import verdicts
 from rockbatch.results.run_json import describe_case
+from rockbatch.batch.single import simulate
 from rockbatch.study import Case
 
 ENTERED = {
@@ -224,14 +226,38 @@ def test_a_heavy_rigid_shaft_says_that_bending_is_left_out_and_a_light_one_does_
     assert [one.omits for one in found] == [(BENDING,), (BENDING,), ()]
 
 
-def test_springs_with_epsilon_say_that_an_impulse_is_left_out():
-    ask = {"demand": "pivot_force", "at_most": 3.0}
+@pytest.mark.parametrize(
+    ("loss", "omits"),
+    [({}, (IMPULSES,)), ({"epsilon": 0.05}, (IMPULSES,)), ({"impact": "housner"}, (IMPULSES,)), ({"epsilon": 1.0}, ()),
+     ({"zeta": 0.05}, ())],
+)  # fmt: skip
+def test_a_landing_on_springs_that_an_impulse_stops_leaves_its_force_open(loss, omits):
+    """By default ε is 0. The springs take no more than what the impulse leaves of a landing."""
+    pads, ask = case(base=ElasticBase(beta=50.0, **loss)), {"demand": "pivot_force", "at_most": 3.0}
     forces = {"pivot_force_left": 2.0, "pivot_force_right": 2.0, "base_shear_m_s2": 1.0, "forces_error": 0.0}
     table = runs([0.3], name="pads", impacts=3, **forces)
-    assert judged(table, one=case(base=ElasticBase(beta=50.0, epsilon=0.05)), **ask).omits == (IMPULSES,)
-    assert judged(table, one=case(base=ElasticBase(beta=50.0, epsilon=1.0)), **ask).omits == ()
-    assert judged(table, one=case(base=ElasticBase(beta=50.0, zeta=0.05)), **ask).omits == ()
-    assert judged(table.assign(impacts=0), one=case(base=ElasticBase(beta=50.0)), **ask).omits == ()
+    found = judged(table, one=pads, **ask)
+    assert (found.verdict, found.omits) == ("not decided" if omits else "pass", omits)
+    beyond = judged(table, one=pads, **ask | {"at_most": 1.9})
+    assert (beyond.verdict, beyond.omits) == ("fail", omits)
+    standing = judged(table.assign(impacts=0), one=pads, **ask)
+    assert (standing.verdict, standing.omits) == ("pass", ())
+
+
+def test_by_zeta_a_landing_has_more_than_twice_the_force_that_it_has_by_epsilon():
+    """The verdict by ε is open, and the advice that it gives decides."""
+    pier = Pier.rectangle(6.0, 30.0, mass_t=2200.0)
+    motion = pulse("sine", name="p", amplitude=4.0, period=1.5, dt=0.005, duration=4.0)
+    verdicts_of, forces = {}, {}
+    for loss in ("epsilon", "zeta"):
+        base = ElasticBase.from_stiffness(pier, 2e7, **{loss: 0.05})
+        response = simulate(pier, base, motion, forces=True)
+        one = describe_case(Case(base.name, pier, base, {}))
+        rule = Rule("foot", "pivot_force_kN", at_most=1e5, reason="crushing")
+        (found,) = judge([rule], pd.DataFrame([response.row]), [one])
+        verdicts_of[loss], forces[loss] = found.verdict, found.value
+    assert verdicts_of == {"epsilon": "not decided", "zeta": "fail"}
+    assert forces["zeta"] > 2.0 * forces["epsilon"]
 
 
 @pytest.mark.parametrize("ratio", [0.05, 0.19, 0.21, 1.0, 7.0])
@@ -335,7 +361,7 @@ STATISTICS = {
 @pytest.mark.sweep(fast=40)
 @pytest.mark.parametrize("seed", range(150))
 def test_random_checks_are_decided_only_if_a_separate_judge_omits_no_force(seed):
-    """The judge here knows rows only: a run that landed on rigid ground may have any greater force, one mode any at all.
+    """The judge here knows rows only: a run that an impulse stopped may have any greater force, one mode any at all.
 
     Across a shaft of several modes a landing has a force.
     """
@@ -362,16 +388,16 @@ def test_random_checks_are_decided_only_if_a_separate_judge_omits_no_force(seed)
 
     forced, alone = demand in ENTERED, base.bends and base.flexural_modes == 1
     lows = [0.0 if forced and alone else value * (1.0 - errors) for value in values]
-    rigid = isinstance(base, RigidBase) and not base.bends
+    stopped = not (base.bends or (base.on_springs and base.zeta))
     highs = [
-        math.inf if forced and (alone or (rigid and landed)) else value * (1.0 + errors)
+        math.inf if forced and (alone or (stopped and landed)) else value * (1.0 + errors)
         for value, landed in zip(values, impacts, strict=True)
     ]
     low, high = (STATISTICS[statistic](bounds) for bounds in (lows, highs))
     expected = "fail" if low > limit else "pass" if high <= limit else "not decided"
     assert (found.verdict, found.low, found.high) == (expected, pytest.approx(low), pytest.approx(high))
     if expected == "not decided" and math.isinf(high):
-        assert found.left_open in (LANDINGS, MODES)
+        assert found.left_open in (LANDINGS, IMPULSES, MODES)
 
 
 @pytest.mark.parametrize(

@@ -209,7 +209,7 @@ def test_a_case_without_the_key_is_left_out_and_named():
 
 
 TALL = {"width_m": 4.0, "height_m": 20.0, "mass_t": 800.0}
-SPRINGS = {"name": "soft", "base": "elastic", "stiffness_kN_m": 1e6}
+SPRINGS = {"name": "soft", "base": "elastic", "zeta": 0.05, "stiffness_kN_m": 1e6}
 MOMENT = {
     "name": "moment",
     "demand": "section_moment_kNm",
