@@ -22,7 +22,7 @@ from rockbatch.common.grouping import joined
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows, Texts
-from rockbatch.quantities.cases import Case, has_device, is_across, names_along
+from rockbatch.quantities.cases import Case, is_across, names_along
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.quantities.demands import OF_BASE
 from rockbatch.quantities.rows import NOT_RUN, complete, counts_as, rows_of_piers, simulated, with_case
@@ -234,10 +234,10 @@ def _place(axis: Axis) -> str:
 def _why_absent(rule: Rule, axis: Axis) -> str:
     """Return why the demand of a rule does not apply on an axis: "the pier has no damper"; "" if it applies."""
     demand, (case, suite) = DEMANDS[rule.demand], axis
-    if not demand.applies_to(case):
-        return f"a {case['base']} base has no {rule.demand}"
-    if demand.device and not has_device(case, demand.device):
-        return f"the pier has no {demand.device}"
+    if reason := demand.why_absent(case):
+        return reason
+    if (beyond := demand.ceiling) and beyond.unreachable and rule.threshold > beyond.value(case) and not rule.confirm:
+        return f"{rule.demand} above {beyond.value(case):.4g} {beyond.beyond}"
     if demand.weighed and "mass_t" not in case["pier"]:
         return NOT_WEIGHED
     if (

@@ -156,6 +156,11 @@ class Rule:
         return limit * (self.number_of_capacity or 1.0)
 
     @property
+    def threshold(self) -> float:
+        """What the demand of one record must not exceed; of a check that counts records ``above``, 0 unless given."""
+        return (self.above or 0.0) if self.statistic == "count" else self.limit
+
+    @property
     def number_of_capacity(self) -> float | None:
         """The capacity of which ``at_most`` is a share; None without one, for a curve, and for a demand over a capacity."""
         return self.capacity if isinstance(self.capacity, float) and not DEMANDS[self.demand].over_capacity else None

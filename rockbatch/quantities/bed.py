@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from rockbatch.quantities.cases import THOUSAND, always, bearing, width
+from rockbatch.quantities.cases import THOUSAND, YIELDS, always, bearing, width
 from rockbatch.quantities.demands import Ceiling
 from rockbatch.quantities.quantity import FOOTING, Limit, Quantity, ReportFormat, Run
 
@@ -63,6 +63,7 @@ _BEARING = Ceiling(
     lambda case: bearing(case) * (1.0 - ROUNDING),
     "does not occur, as the bed yields there",
     "limit edge_settlement_m or yielding_half_cycles instead, or the pressure below the bearing strength",
+    unreachable=True,
 )
 _CHANGES = "4 times its change by twice the step, and by half as many strips{}; empty with a fixed step"
 _READ = _CHANGES.format(", and 0.125 % of it, for what steps may miss of a peak")
@@ -86,15 +87,16 @@ OF_FOOTING = (
     _quantity("bed_pressure_error_MPa", f"estimated error of the greatest pressure: {_READ}", _of_bed("pressure_error"), "MPa",
         sometimes=True, weighed=True, stood=True),
     _quantity("yielding_half_cycles", "number of rocks to one side in which the ground yielded", _of_bed("yielding_rocks"), "1",
-        more="; it has no error, and one that only just yields may count or not", kind="count", limits=(Limit(),)),
+        more="; it has no error, and one that only just yields may count or not", kind="count", limits=(Limit(),),
+        condition=YIELDS),
     _quantity("bed_work_J_kg", "plastic work of the ground, per unit mass of the pier", _of_bed("work"), "J/kg",
-        error="bed_work_error_J_kg", limits=(Limit(),)),
+        error="bed_work_error_J_kg", limits=(Limit(),), condition=YIELDS),
     _quantity("bed_work_error_J_kg", f"estimated error of it: {_CHANGES.format('')}", _of_bed("work_error"), "J/kg", stood=True,
         sometimes=True),
     _quantity("settlement_left_m", _EDGE.format("left"), _of_bed("settlement_left"), "m",
         more="; above a safety factor of 2 a lower bound", stood=True),
     _quantity("settlement_right_m", _EDGE.format("right"), _of_bed("settlement_right"), "m",
-        more="; likewise", stood=True, settlement=True, error="edge_settlement_error_m", limits=(
+        more="; likewise", stood=True, settlement=True, error="edge_settlement_error_m", condition=YIELDS, limits=(
             Limit("edge_settlement_m", ceiling=_WIDER, words=_EDGE.format("lower"),
                 columns=("settlement_left_m", "settlement_right_m")),
             _IN_MM._replace(name="edge_settlement_mm", words=_EDGE.format("lower"),

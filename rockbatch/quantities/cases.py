@@ -2,14 +2,14 @@
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from rockbatch.pier.backbones import Points, greatest
 from rockbatch.pier.bases import IMPULSIVE
 from rockbatch.pier.block import share_of_shaft
 from rockbatch.pier.first_loading import Polyline
 from rockbatch.pier.laws import RATCHETING
-from rockbatch.pier.restraints import kinds_of
+from rockbatch.pier.restraints import YIELDING_TENDON, kinds_of
 from rockbatch.pier.traits import ASKING_TENSION
 
 Case = Mapping[str, Any]
@@ -17,6 +17,13 @@ Case = Mapping[str, Any]
 
 Lever = Callable[[Case], float]
 """Factor of a case, such as a length by which a rotation becomes a displacement."""
+
+
+class Condition(NamedTuple):
+    """What a case must have for a quantity to be anything but 0 in its model, and the words for its lack."""
+
+    holds: Callable[[Case], bool]
+    lack: str
 
 
 def is_across(case: Case) -> bool:
@@ -172,6 +179,25 @@ def lands_by_impulse(case: Case) -> bool:
 def stops_by_impulse(case: Case) -> bool:
     """Return whether an impulse takes part of the speed of every landing on springs: by ε < 1, or by Housner's factor."""
     return asks_tension(case) or float(case["parameters"].get("epsilon", 1.0)) < 1.0
+
+
+def supports_yield(case: Case) -> bool:
+    """Return whether the supports of a case yield: yielding springs, or a footing on a bed with a strength."""
+    return case["base"] == "yielding" or case["parameters"].get("safety_factor") is not None
+
+
+def may_rest_tilted(case: Case) -> bool:
+    """Return whether a pier may stay at a tilt: on supports that yield, by dampers that hold it, or by tendons."""
+    return supports_yield(case) or holds_a_tilt(case) or has_device(case, "tendon")
+
+
+YIELDS = Condition(supports_yield, "the supports of the case do not yield")
+RESTS_TILTED = Condition(may_rest_tilted, "nothing in the case keeps the pier at a tilt")
+TENDON_YIELDS = Condition(lambda case: has_device(case, YIELDING_TENDON), f"the pier has no {YIELDING_TENDON}")
+LANDS = Condition(lambda case: case["base"] != "footing", "on a bed of strips a landing is a force, and no impact")
+LANDS_BY_IMPULSE = Condition(
+    lambda case: lands_by_impulse(case) or stops_by_impulse(case), "a landing is a force in this case, and no impulse"
+)
 
 
 def is_frame(case: Case) -> bool:

@@ -17,8 +17,11 @@ from rockbatch.pier import MOST_ETA
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.bed import OF_FOOTING
 from rockbatch.quantities.cases import (
+    LANDS,
     ONE,
+    RESTS_TILTED,
     THOUSAND,
+    YIELDS,
     Case,
     Lever,
     alpha,
@@ -162,7 +165,7 @@ FIXED = (
     Quantity(
         "theta_res_over_alpha", "residual rotation over α", "theta_res", more=", at rest on the deformed base",
         page=ReportFormat("θ_res/α", ".5f"), over_alpha=True, bases=TILTS, stood=True, directed=True,
-        suite=OfSuite("Residual rotation |θ_res|/α", ".5f"), error="theta_res_error",
+        suite=OfSuite("Residual rotation |θ_res|/α", ".5f"), error="theta_res_error", condition=RESTS_TILTED,
         limits=(
             rotation("theta_res", "theta_res_over_alpha", "", ONE),
             rotation("theta_res", "theta_res_rad", "rad", alpha, "residual rotation"),
@@ -172,9 +175,9 @@ FIXED = (
         "settlement_m", "mean settlement of the supports", "settlement", "m",
         ReportFormat("settlement", ".2f", 1000), " since the start", bases=SPRINGS, stood=True,
         suite=OfSuite("Settlement", ".2f"), error="settlement_error_m", limits=_SETTLEMENTS,
-        settlement=True,
+        settlement=True, condition=YIELDS,
     ),
-    Quantity("impacts", "number of impacts", "impacts", kind="count", limits=(Limit(),)),
+    Quantity("impacts", "number of impacts", "impacts", kind="count", limits=(Limit(),), condition=LANDS),
     Quantity(
         "separations", "number of separations", "separations", kind="count", limits=(Limit(),),
         more=", on rigid ground of lift-offs from rest; one in the instant of an impact has no event of its own",
@@ -206,7 +209,7 @@ TRAILING = (
     Quantity(
         "base_tilt_rad", "residual tilt of the base", "base_tilt", "rad",
         ReportFormat("base tilt", ".3f", 1000, "theta_res_over_alpha"), bases=SPRINGS, stood=True,
-        limits=_TILTS, directed=True,
+        limits=_TILTS, directed=True, condition=YIELDS,
     ),
     Quantity(
         "ductility_left", _DUCTILITY.format("each"), "ductility_left",
@@ -445,7 +448,7 @@ _OTHERS = (
     ),
     parameter("yield_kN", "yield force of a support, of a backbone that at its first corner", "kN", YIELDING),
     parameter("stiffness_kN_m", "stiffness of a support", "kN/m", TWO_SPRINGS),
-    parameter("safety_factor", "strength of a footing's bed over the pier's weight", "", FOOTING),
+    parameter("safety_factor", "strength of a footing's bed over the pier's weight", "", FOOTING, condition=YIELDS),
     parameter(
         "static_deflection_m",
         "deflection of the supports under the weight at rest, elastic or along a backbone",

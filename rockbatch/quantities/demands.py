@@ -13,7 +13,7 @@ import numpy.typing as npt
 from rockbatch.common.units import with_unit
 from rockbatch.pier import tilt_over_residual
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import ONE, Case, Lever, alpha, bends, holds_a_tilt, width
+from rockbatch.quantities.cases import ONE, Case, Condition, Lever, alpha, bends, has_device, holds_a_tilt, width
 from rockbatch.quantities.statistics import Values
 
 AT_HEIGHTS = {"sections": "sections = 5", "interaction": "interaction_m = [0.0]"}
@@ -37,11 +37,15 @@ Evaluate = Callable[[Rows, Case], Estimated]
 
 
 class Ceiling(NamedTuple):
-    """A value of the case beyond which a limit decides nothing, such as that at θ = α, words for it, and what to do instead."""
+    """A value of the case beyond which a limit decides nothing, such as that at θ = α, words for it, and what to do instead.
+
+    ``unreachable`` if no run exceeds it, so that a check with a limit beyond it does not apply to the case.
+    """
 
     value: Lever
     beyond: str
     remedy: str = "check the unit"
+    unreachable: bool = False
 
 
 class OtherEnd(NamedTuple):
@@ -80,6 +84,7 @@ class Facts:
     directed: bool = False
     settlement: bool = False  # true if it is a settlement of the supports
     cumulative: bool = False  # true if it grows until the run ends, when its peak is decided
+    condition: Condition | None = None  # what a case of its bases must have for it to be anything but 0
 
 
 @dataclass(frozen=True)
@@ -104,12 +109,20 @@ class Demand(Facts):
     over_capacity: bool = False  # true for a share of a capacity that depends on the axial force, which a check states
 
     def applies_to(self, case: Case) -> bool:
-        """Return whether the demand applies to a case by one of ``bases``.
+        """Return whether the demand applies to a case."""
+        return not self.why_absent(case)
 
-        "held" stands for dampers that hold a tilt, "bending" for a shaft that bends, the others for the base of this name.
+    def why_absent(self, case: Case) -> str:
+        """Return why the demand does not apply to a case: its base, device, or ``condition``; "" if it does.
+
+        Of ``bases``, "held" stands for dampers that hold a tilt, "bending" for a shaft that bends.
         """
         held = "held" in self.bases and holds_a_tilt(case)
-        return case["base"] in self.bases or held or ("bending" in self.bases and bends(case))
+        if not (case["base"] in self.bases or held or ("bending" in self.bases and bends(case))):
+            return f"{'an' if case['base'] == 'elastic' else 'a'} {case['base']} base has no {self.name}"
+        if self.device and not has_device(case, self.device):
+            return f"the pier has no {self.device}"
+        return self.condition.lack if self.condition and not self.condition.holds(case) else ""
 
     @property
     def in_section(self) -> bool:
@@ -266,7 +279,13 @@ def event(name: str, meaning: str, happened: Callable[[Rows], npt.NDArray[np.boo
 
 
 def parameter(
-    name: str, meaning: str, unit: str, bases: tuple[str, ...], ceiling: Ceiling | None = None, of: Lever | None = None
+    name: str,
+    meaning: str,
+    unit: str,
+    bases: tuple[str, ...],
+    ceiling: Ceiling | None = None,
+    of: Lever | None = None,
+    condition: Condition | None = None,
 ) -> Demand:
     """Return the demand on a value ``of`` the case, by default its parameter of this ``name`` in run.json.
 
@@ -277,4 +296,4 @@ def parameter(
         value = of(case) if of else float(case["parameters"].get(name, np.nan))
         return without_error(np.array([value]))
 
-    return Demand(name, meaning, evaluate, unit, bases, per_case=True, ceiling=ceiling)
+    return Demand(name, meaning, evaluate, unit, bases, per_case=True, ceiling=ceiling, condition=condition)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from rockbatch.quantities.cases import weight
+from rockbatch.quantities.cases import TENDON_YIELDS, weight
 from rockbatch.quantities.limits import LENGTHS, WIDER
 from rockbatch.quantities.quantity import Limit, Quantity, ReportFormat, Run
 
@@ -101,6 +101,7 @@ DEVICES = (
         _YIELD,
         limits=(Limit(ceiling=WIDER),),
         device="tendon",
+        condition=TENDON_YIELDS,
     ),
     _count("tendon", "tendon_slack", "number of times tendons went slack", "slack"),
     _force_in_kilonewtons("damper", "F"),

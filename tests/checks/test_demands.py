@@ -10,7 +10,7 @@ from check_samples import ELASTIC, PADS, PIER, RIGID, case, in_sections, interac
 
 from rockbatch.checks import Rule, judge
 from rockbatch.common.errors import InputError
-from rockbatch.pier import Damper, DeckSpring, FootingBase, RigidBase, Stop, Tendon
+from rockbatch.pier import Damper, DeckSpring, ElasticBase, FootingBase, RigidBase, Stop, Tendon, YieldingBase
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import DEMANDS
 
@@ -45,7 +45,9 @@ FLIGHTS = {"flights": 2, "flight_duration_s": 0.05, "flight_height_m": 0.002}
 ROW |= FORCES | DEVICES | FLIGHTS | BED | EDGES | {"flight_s": 1.2, "theta_rocking_over_alpha": 0.25}
 TIED = case(
     base=replace(
-        PADS, zeta=0.05, restraints=(Damper("viscous", nu=0.1), Tendon(psi=0.1, strength=0.5), Stop(0.1, 20.0), DeckSpring(0.2))
+        PADS,
+        zeta=0.05,
+        restraints=(Damper("viscous", nu=0.1), Tendon(psi=0.1, strength=0.5), Stop(0.1, 20.0), DeckSpring(0.2)),
     )
 )
 B, H = 7.3575 * math.sin(0.2), 7.3575 * math.cos(0.2)
@@ -73,6 +75,8 @@ BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
     "deflection_max_mm": (70.0, 0.2), **{name: (value, 0.0) for name, value in BED.items()},
     "edge_settlement_m": (0.025, 0.002), "edge_settlement_mm": (25.0, 2.0), "safety_factor": (3.0, 0.0),
 }  # fmt: skip
+BY_IMPULSE = {"impulse_m_s", "impulse_kN_s", "impact_friction_demand"}
+"""Demands of landings that an impulse stops."""
 ON_FOOTING = {*BED, "edge_settlement_m", "edge_settlement_mm", "safety_factor"}
 """Demands that only a footing has."""
 
@@ -81,7 +85,13 @@ ON_FOOTING = {*BED, "edge_settlement_m", "edge_settlement_mm", "safety_factor"}
 def test_every_demand_is_what_a_hand_computes_from_the_row(demand):
     value, error = BY_HAND[demand]
     one = case(base=RigidBase(shaft="elastic")) if demand.startswith("deflection_max") else TIED
-    one = case(base=FootingBase(50.0, safety_factor=3.0)) if demand in ON_FOOTING else one
+    one = (
+        case(base=FootingBase(50.0, safety_factor=3.0))
+        if demand in ON_FOOTING
+        else case()
+        if demand in BY_IMPULSE
+        else one
+    )
     found = judged(runs([0.3], **ROW), one=one, demand=demand, at_most=1000.0)
     assert (found.low, found.value, found.high) == tuple(map(pytest.approx, (value - error, value, value + error)))
 
@@ -104,7 +114,8 @@ def test_the_name_of_a_demand_ends_with_its_unit(name):
 def test_the_error_of_forces_leaves_a_limit_within_it_undecided(demand):
     value, _ = BY_HAND[demand]
     row = ROW | {"forces_error": 0.02}
-    found = judged(runs([0.3], **row), one=TIED, demand=demand, at_most=max(1.01 * value, 1e-3))
+    one = case() if demand in BY_IMPULSE else TIED
+    found = judged(runs([0.3], **row), one=one, demand=demand, at_most=max(1.01 * value, 1e-3))
     assert (found.low, found.high) == (pytest.approx(0.98 * value), pytest.approx(1.02 * value))
     assert found.verdict == ("not decided" if value else "pass")
 
@@ -162,10 +173,61 @@ def test_a_demand_that_a_base_does_not_have_does_not_apply():
     springs = {"theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m", "settlement_m",
                "toe_settlement_m", "static_deflection_m", "stiffness_kN_m"}  # fmt: skip
     yielding, others = {"eta", "ductility", "yield_kN"}, ON_FOOTING | {"deflection_max_m", "deflection_max_mm"}
+    missing = {"rigid": yielding | springs, "elastic": yielding | springs - {"static_deflection_m", "stiffness_kN_m"}}
     assert len(found) == 3 * len(demands)
     for each in found:
-        missing = yielding | springs if each.case == "rigid" else yielding if each.case == "elastic" else set()
-        assert (each.verdict == "does not apply") == (each.demand in missing | others), each.demand
+        absent = each.demand in missing.get(each.case, set()) | others
+        assert (each.verdict == "does not apply") == absent, each.demand
+
+
+SET = {"settlement_m", "toe_settlement_m", "base_tilt_rad", "differential_settlement_m"}
+OF_BED = {"edge_settlement_m", "edge_settlement_mm", "yielding_half_cycles", "bed_work_J_kg"}
+RESIDUAL = {"theta_res_over_alpha", "theta_res_rad"}
+
+
+@pytest.mark.parametrize(
+    ("base", "demands", "lack"),
+    [
+        (ElasticBase(beta=50.0, zeta=0.05), SET, "the supports of the case do not yield"),
+        (FootingBase(50.0), SET | OF_BED, "the supports of the case do not yield"),
+        (YieldingBase(beta=50.0, eta=2.5, zeta=0.05), SET, ""),
+        (FootingBase(50.0, safety_factor=3.0), SET | OF_BED, ""),
+        (ElasticBase(beta=50.0, zeta=0.05), RESIDUAL, "nothing in the case keeps the pier at a tilt"),
+        (ElasticBase(beta=50.0, restraints=(Damper("viscous", nu=0.1),)), RESIDUAL,
+         "nothing in the case keeps the pier at a tilt"),
+        (ElasticBase(beta=50.0, restraints=(Damper("friction", f=0.1),)), RESIDUAL, ""),
+        (ElasticBase(beta=50.0, restraints=(Tendon(psi=0.1, at="left"),)), RESIDUAL, ""),
+        (RigidBase(restraints=(Tendon(psi=0.1),)), {"tendon_yield_m"}, "the pier has no yielding tendon"),
+        (RigidBase(restraints=(Tendon(psi=0.1, strength=0.5),)), {"tendon_yield_m"}, ""),
+        (FootingBase(50.0, safety_factor=3.0), {"impacts", "landing_velocity_m_s"},
+         "on a bed of strips a landing is a force, and no impact"),
+        (FootingBase(50.0, safety_factor=3.0), BY_IMPULSE, "a landing is a force in this case, and no impulse"),
+        (ElasticBase(beta=50.0, zeta=0.05), BY_IMPULSE, "a landing is a force in this case, and no impulse"),
+        (ElasticBase(beta=50.0, epsilon=1.0), BY_IMPULSE, "a landing is a force in this case, and no impulse"),
+        (ElasticBase(beta=50.0, zeta=0.05), {"impacts", "landing_velocity_m_s"}, ""),
+        (ElasticBase(beta=50.0), BY_IMPULSE, ""),
+        (ElasticBase(beta=50.0, impact="housner"), BY_IMPULSE, ""),
+        (RigidBase(), BY_IMPULSE | {"impacts", "landing_velocity_m_s"}, ""),
+    ],
+)  # fmt: skip
+def test_what_is_zero_in_every_run_of_a_model_passes_no_check(base, demands, lack):
+    """A bed that does not yield does not settle, and a dashpot stops no landing by an impulse, whatever the motion is."""
+    zeros = dict.fromkeys((*ROW, "edge_settlement_error_m"), 0.0)
+    table = runs([0.3], **zeros | {"theta_max_error": 1e-4})
+    for demand in demands:
+        found = judged(table, one=case(base=base), demand=demand, at_most=1.0)
+        assert (found.verdict, found.note if lack else "") == ("does not apply" if lack else "pass", lack), demand
+
+
+@pytest.mark.parametrize(("limit", "verdict"), [(1.1, "pass"), (1.3, "does not apply")])
+def test_a_limit_that_the_pressure_of_one_bed_never_exceeds_judges_the_others_alone(limit, verdict):
+    """Bearing strength: 3 times a weight of 29.43 MN on 2.923 m × 25 m. The other bed has none."""
+    table = runs([0.3], bed_pressure_MPa=1.0, bed_pressure_error_MPa=1e-3)
+    yields, elastic = (case(base=FootingBase(50.0, length_m=25.0, safety_factor=factor)) for factor in (3.0, None))
+    found = judged(table, one=yields, demand="bed_pressure_MPa", at_most=limit)
+    assert (found.verdict, "does not occur, as the bed yields there" in found.note) == (verdict, verdict != "pass")
+    assert judged(table, one=elastic, demand="bed_pressure_MPa", at_most=limit).verdict == "pass"
+    assert judged(table, one=yields, demand="bed_pressure_MPa", at_most=limit, confirm=("at_most",)).verdict == "pass"
 
 
 def test_a_check_of_drift_takes_that_of_a_shaft_that_bends_and_not_its_rotation():
@@ -256,7 +318,7 @@ def test_a_force_of_a_pier_that_nobody_has_weighed_does_not_apply():
     one = TIED | {"pier": {key: value for key, value in TIED["pier"].items() if key != "mass_t"}}
     table = runs([0.3], **FORCES | DEVICES)
     _, sections = in_sections(table, "section_shear_kN")
-    demands = [name for name, demand in DEMANDS.items() if demand.weighed and name not in ON_FOOTING]
+    demands = [name for name, demand in DEMANDS.items() if demand.weighed and name not in ON_FOOTING | BY_IMPULSE]
     rules = [Rule(name, name, 100.0, **in_sections(table, name)[0]) for name in demands]
     found = {
         (each.verdict, each.note)

@@ -6,7 +6,7 @@ import numpy as np
 
 from rockbatch.analyses.fragility.cloud import Cloud
 from rockbatch.analyses.fragility.curves import CloudPoint, Curve
-from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, threshold
+from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED
 from rockbatch.analyses.fragility.quantities import FEW
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.batch.listening import count
@@ -28,7 +28,7 @@ def cloud_table(
         constants = curve.identity(varied) | {
             "measure": spec.label,
             "unit": spec.unit,
-            "limit": threshold(curve.limit),
+            "limit": curve.limit.threshold,
         }
         for run in curve.cloud:
             result = {"intensity": run.intensity, "demand": run.demand, "status": run.status}
@@ -50,7 +50,7 @@ def counts(run: CloudPoint, curve: Curve, spec: FragilitySpec) -> str:
         return "exceeds" if run.state == EXCEEDED else "within"
     if run.state == EXCEEDED and run.status == "overturned":
         return "overturned"
-    return "line" if run.demand > spec.censored_below * threshold(curve.limit) else "below"
+    return "line" if run.demand > spec.censored_below * curve.limit.threshold else "below"
 
 
 def described_cloud(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
@@ -63,8 +63,8 @@ def described_cloud(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
     share = fitted.overturning if isinstance(fitted, Cloud) else None
     event = DEMANDS[curve.limit.demand].event
     return {
-        "limit": threshold(curve.limit),
-        "floor": None if event else spec.censored_below * threshold(curve.limit),
+        "limit": curve.limit.threshold,
+        "floor": None if event else spec.censored_below * curve.limit.threshold,
         "demand": "" if event else curve.limit.demand,
         "line": None if line is None else {"ln_a": line.intercept, "b": line.slope, "sigma": line.sigma},
         "logistic": None if share is None else {"alpha_0": share.intercept, "alpha_1": share.slope},

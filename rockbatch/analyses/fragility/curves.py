@@ -12,7 +12,7 @@ import numpy.typing as npt
 from rockbatch.analyses.fragility import cloud
 from rockbatch.analyses.fragility.bounds import NoCurve, Numbers, Values
 from rockbatch.analyses.fragility.ida import Bracket, Capacity, Looks, bisect, capacity, hunt
-from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, applies, threshold
+from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, applies
 from rockbatch.analyses.fragility.lognormal import Capacities, Contribution, Lognormal, contribution, fit
 from rockbatch.analyses.fragility.runs import LevelPlan, Point, RecordRuns, Simulate, first_intensities, level_plans
 from rockbatch.analyses.fragility.study import FragilitySpec
@@ -358,7 +358,7 @@ def _through_cloud(points: Sequence[CloudPoint], rule: Rule, spec: FragilitySpec
     exceeded = np.array([run.state == EXCEEDED for run in points], dtype=np.bool_)
     if DEMANDS[rule.demand].event:
         return cloud.fit_event(x, exceeded, spec.confidence, of_run)
-    limit = threshold(rule)
+    limit = rule.threshold
     if not limit > 0:
         return NoCurve(f"a limit of {limit:g} has no logarithm: a cloud needs one above 0")
     overturned = exceeded & np.array([run.status == "overturned" for run in points], dtype=np.bool_)

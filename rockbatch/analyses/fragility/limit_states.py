@@ -8,7 +8,7 @@ from rockbatch.checks.bounds import of_runs
 from rockbatch.checks.rules import Rule
 from rockbatch.common.naming import chosen_by
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.cases import Case, has_device
+from rockbatch.quantities.cases import Case
 from rockbatch.quantities.catalogue import DEMANDS
 
 LEFT_OUT, WITHSTOOD, UNDECIDED, EXCEEDED = -1, 0, 1, 2
@@ -21,17 +21,10 @@ overturned and the check counts that as unknown; it is left out if the check say
 
 def applies(rule: Rule, case: Case, names: frozenset[str]) -> bool:
     """Return whether a limit applies to a case (as in run.json): by the names or patterns in ``rule.case``, with ``names`` those
-    of all cases, by its demand, and by the device that the demand is of.
+    of all cases, and by its demand.
     """
-    demand = DEMANDS[rule.demand]
-    equipped = not demand.device or has_device(case, demand.device)
     about = not rule.case or case["case"] in chosen_by(tuple(rule.case), names)
-    return about and demand.applies_to(case) and equipped
-
-
-def threshold(rule: Rule) -> float:
-    """Return what the demand of one record must not exceed; of a check that counts records its ``above``, 0 if not given."""
-    return (rule.above or 0.0) if rule.statistic == "count" else rule.limit
+    return about and DEMANDS[rule.demand].applies_to(case)
 
 
 def words(rule: Rule) -> str:
@@ -40,7 +33,7 @@ def words(rule: Rule) -> str:
     """
     if rule == OVERTURNING:
         return ""
-    limit = threshold(rule)
+    limit = rule.threshold
     return rule.demand if DEMANDS[rule.demand].event and limit == 0 else f"{rule.demand} > {limit:g}"
 
 
@@ -52,7 +45,7 @@ def demands(rule: Rule, runs: Rows, case: Case) -> npt.NDArray[np.float64]:
 def states(rule: Rule, runs: Rows, case: Case) -> npt.NDArray[np.int8]:
     """Return the state of each of the n runs of a case, LEFT_OUT to EXCEEDED, shape (n,); one at the limit withstood."""
     demanded = of_runs(rule, runs, case)
-    limit = threshold(rule)
+    limit = rule.threshold
     bounds = demanded.bounds
     state = np.where(bounds.low > limit, EXCEEDED, np.where(bounds.high > limit, UNDECIDED, WITHSTOOD))
     return np.where(demanded.counting, state, LEFT_OUT).astype(np.int8)

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from rockbatch.pier import Pier
-from rockbatch.quantities.cases import always, per_gravity
+from rockbatch.quantities.cases import LANDS, LANDS_BY_IMPULSE, always, per_gravity
 from rockbatch.quantities.demands import Ceiling
 from rockbatch.quantities.limits import LENGTHS, greater
 from rockbatch.quantities.quantity import ENDINGS, Limit, Quantity, ReportFormat, Run, fact, in_print
@@ -53,7 +53,7 @@ def _in_kilonewtons(
     per: Callable[[Pier], float | None],
     limit: Limit,
     behind: str = "",
-    **entered: bool,
+    **entered: Any,
 ) -> Quantity:
     """Return the quantity of a ``field`` in kN, kN m or kN s, for piers whose mass is known, described as "the same in kN, …"."""
     words = f"the same in {in_print(unit)}, if mass_t is given"
@@ -80,7 +80,7 @@ def _over_mass(
     first, second = f"{name}_{ENDINGS[unit]}", f"{name}_{ENDINGS[_TIMES_MASS[unit]]}"
     limit = Limit(words=words)
     head = f"{symbol}/M"
-    entered = {name: facts[name] for name in ("landing", "bending", "directed") if name in facts}
+    entered = {name: facts[name] for name in ("landing", "bending", "directed", "condition") if name in facts}
     return (
         _force(
             first,
@@ -153,12 +153,15 @@ QUANTITIES = (
     ),
     _force(
         "landing_velocity_m_s", "speed of the landing pivot at the hardest impact", "landing_velocity", "m/s",
-        "landing", ".3f", sometimes=True, limits=(Limit(),),
+        "landing", ".3f", sometimes=True, limits=(Limit(),), condition=LANDS,
     ),
-    *_over_mass("impulse", "vertical impulse of the hardest impact", "impulse", "m/s", "impulse", sometimes=True),
+    *_over_mass(
+        "impulse", "vertical impulse of the hardest impact", "impulse", "m/s", "impulse", sometimes=True,
+        condition=LANDS_BY_IMPULSE,
+    ),
     _force(
         "impact_friction_demand", "greatest horizontal over vertical impulse of an impact", "impact_friction_demand", "1",
-        "V/N at impact", ".4f", sometimes=True, limits=_SLIDES,
+        "V/N at impact", ".4f", sometimes=True, limits=_SLIDES, condition=LANDS_BY_IMPULSE,
     ),
     _force(
         "first_uplift_s", "time at which a pivot first leaves its support", "first_uplift", "s", "first uplift", ".3f",
