@@ -292,7 +292,8 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, motions: Suite) -
     recorded = ~np.isin(suite.texts("record"), [*motions.unrecorded])  # a pulse has one direction, and lacks none
     polarities = len({*suite.texts("polarity")})
     not_selected = {name: n * polarities for name, n in motions.not_selected.items()}
-    lacks = {} if none.count == "component" else lacking(counting[recorded], counted_as[recorded], not_selected)
+    by_station = none.count != "component" and DEMANDS[rule.demand].of_motion
+    lacks = lacking(counting[recorded], counted_as[recorded], not_selected) if by_station else {}
     if lacks:
         left_out.add(DIRECTIONS)
     without_vertical = np.isin(records, [*motions.without_vertical]) & DEMANDS[rule.demand].of_motion

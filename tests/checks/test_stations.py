@@ -495,6 +495,8 @@ def test_a_station_of_which_one_component_is_not_selected_lacks_a_direction():
     for motions, told in ((Suite(not_selected={"A": 1, "C": 2}), "A (1 of 2)"), (Suite(not_selected={"C": 2}), "")):
         (found,) = judge([rule], alone, [case()], motions)
         assert (told in found.note, found.omits) == (True, ("directions",) if told else ())
+    (settled,) = judge([Rule("c", "failed", 0)], alone, [case()], Suite(not_selected={"A": 1}))
+    assert (settled.verdict, settled.omits) == ("pass", ())  # of the runs of the study, of which none is missing
     both_ways = pd.concat([alone, alone.assign(polarity="-")])
     assert "A (2 of 4)" in judge([rule], both_ways, [case()], Suite(not_selected={"A": 1}))[0].note
 

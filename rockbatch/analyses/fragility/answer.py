@@ -31,15 +31,19 @@ def of_curves(info: Info) -> Markup:
     """Return sentences on the weakest case for overturning and for the limit exceeded first, and remarks.
 
     The limit exceeded first is the other limit with the lowest median, if that is below the median of overturning or below all
-    levels. Otherwise the second sentence says that no other limit is exceeded, or that none has a lower median. There is none
-    for a single limit, or if a median of another limit is unknown.
+    levels; while the median of a further one is unknown, that is the lowest median that is known. Otherwise the second sentence
+    says that no other limit is exceeded, or that none has a lower median. There is none for a single limit, or if a median of
+    another limit is unknown.
     """
     overturning, *others = grouped(info["curves"], lambda curve: curve["limit_state"]).values()
     sentences = [_of_limit(info, overturning, capital(overturning[0]["limit_state"]))]
     weakest = min(others, key=_lowest, default=None)
     if weakest is not None and (_lowest(weakest) < _lowest(overturning) or _lowest(weakest) == 0.0):
         words = f" ({weakest[0]['words']})" if weakest[0]["words"] else ""
-        sentences.append(_of_limit(info, weakest, f"The limit exceeded first, {weakest[0]['limit_state']}{words},"))
+        open_ = any(_has_no_median(curve) for curve in info["curves"] if curve not in weakest)
+        known = "The limit of the lowest median that is known"
+        rank = known if open_ and _lowest(weakest) > 0.0 else "The limit exceeded first"
+        sentences.append(_of_limit(info, weakest, f"{rank}, {weakest[0]['limit_state']}{words},"))
     elif others and all(_never(curve) for curves in others for curve in curves):
         sentences.append(sentence(f"No other limit is exceeded up to {_intensity(info, info['levels'][-1])}"))
     elif others and not any(_has_no_median(curve) for curves in others for curve in curves):

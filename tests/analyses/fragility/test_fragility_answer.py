@@ -103,6 +103,15 @@ def test_a_curve_without_a_fit_that_is_weaker_than_all_others_comes_first():
     )
 
 
+def test_no_limit_is_called_the_first_while_the_median_of_a_third_one_is_not_known():
+    known, beside = (curve(median=0.6), curve(limit="tilt", median=0.4)), curve(limit="uplift", exceeded=(0, 1, 3, 4))
+    (line,), _ = said(*known)
+    assert "The limit exceeded first, tilt" in line
+    line = said(*known, beside)[0][0]
+    assert "exceeded first" not in line
+    assert "The limit of the lowest median that is known, tilt (theta > 1), has a median of PGV 0.4 m/s" in line
+
+
 @pytest.mark.parametrize(("cases", "words"), [(1, "10 records."), (2, "10 records, in any of 2 cases.")])
 def test_a_limit_that_no_record_reaches_has_no_median_and_that_is_no_flaw(cases, words):
     (line,), marked = said(*(curve(f"case {n}", exceeded=(0, 0, 0, 0)) for n in range(cases)))
