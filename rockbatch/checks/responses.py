@@ -18,7 +18,7 @@ from rockbatch.quantities.rows import rows_of_cases
 
 PEAKS = frozenset(name for name, demand in DEMANDS.items() if demand.reached)
 """Demands that are the greatest rotation times a length of the case, known until a motion ends."""
-DRIFTS = frozenset(("top_drift_m", "top_drift_mm"))
+DRIFTS = frozenset(("top_drift_m", "top_drift_mm", "drift_ratio"))
 TILTS = frozenset(("theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m"))
 _SETTLED = frozenset(("settlement_m", "toe_settlement_m"))
 

@@ -256,7 +256,7 @@ _CALLED = {
         {
             ("heel_uplift_m", "heel_uplift_mm"): "uplift heeluplift",
             ("theta_max_rad", "theta_max_over_alpha"): "rotation maxrotation peakrotation thetamax theta",
-            "theta_max_rad": "driftratio peakdriftratio maxdriftratio topdriftratio",
+            "drift_ratio": "peakdriftratio maxdriftratio topdriftratio",
             ("theta_res_rad", "theta_res_over_alpha"): "residualrotation residual thetares",
             "theta_res_rad": "residualdrift residualdriftratio residualtilt",
             (

@@ -81,6 +81,9 @@ def _most_ductility(case: Case) -> float:
 _SPENT = Ceiling(_most_ductility, "is more than any support carries")
 
 
+_DRIFT_RATIO = rotation("theta_max", "drift_ratio", "1", alpha, "greatest drift over the height at which it is read")
+
+
 def _displacements(name: str, lever: Lever) -> tuple[Limit, Limit]:
     """Return limits on the greatest rotation times a length, in m and in mm; ``name`` gets the unit at its end."""
     in_metres, in_millimetres = product(lever, alpha), product(product(THOUSAND, lever), alpha)
@@ -94,8 +97,9 @@ def _top_drift(run: Run) -> float:
 
 
 def _bent_as_well(limit: Limit) -> Limit:
-    """Return a limit on drift that, for a shaft that bends, takes the recorded drift in place of the rotation's."""
-    bent = largest(("top_drift_m",), THOUSAND if limit.unit == "mm" else ONE, "top_drift_error_m")
+    """Return a limit on drift, or its ratio, that of a shaft that bends takes the recorded drift in place of the rotation's."""
+    times = {"m": ONE, "mm": THOUSAND, "1": lambda case: 1.0 / top(case)}[limit.unit]
+    bent = largest(("top_drift_m",), times, "top_drift_error_m")
 
     def bent_or(rigid: Evaluate | None) -> Evaluate | None:
         if rigid is None:
@@ -103,7 +107,7 @@ def _bent_as_well(limit: Limit) -> Limit:
         return lambda runs, case: bent(runs, case) if bends(case) else rigid(runs, case)
 
     evaluate, reached = bent_or(limit.evaluate), bent_or(limit.reached)
-    return limit._replace(evaluate=evaluate, reached=reached, words="greatest drift", height=top)
+    return limit._replace(evaluate=evaluate, reached=reached, words=limit.words or "greatest drift", height=top)
 
 
 def _settlement(runs: Rows, case: Case) -> Estimated:
@@ -260,7 +264,7 @@ TRAILING = (
         "top_drift_m", "greatest drift, at the height `drift_height_m`",
         _top_drift, "m", ReportFormat("drift", ".1f", 1000, "t_max_s"),
         ": that height times the greatest rotation; of a shaft that bends its greatest horizontal way",
-        limits=tuple(_bent_as_well(limit) for limit in _displacements("top_drift", top)), directed=True,
+        limits=tuple(map(_bent_as_well, (*_displacements("top_drift", top), _DRIFT_RATIO))), directed=True,
     ),
     Quantity(
         "heel_uplift_m", "greatest rise of the heel above the toe",

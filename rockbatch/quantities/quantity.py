@@ -185,7 +185,7 @@ class Quantity(Facts):
             name,
             limit.words or self.words,
             evaluate,
-            limit.unit or in_print(self.unit),
+            in_print(limit.unit or self.unit),
             self.bases,
             residual=self.stood,
             other_end=limit.other_end,

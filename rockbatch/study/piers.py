@@ -248,7 +248,7 @@ PART = Section(
         "apart_m": Key(
             not_negative,
             "10.7",
-            "Distance of the axes of two equal legs, which this part is; `mass_t` is that of both.",
+            "Distance of the axes of two equal legs, which this part is; `mass_t` is that of both, as are forces in sections.",
             many=True,
             usual=USUAL["width_m"]._replace(least=0.0),
         ),

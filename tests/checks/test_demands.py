@@ -61,6 +61,7 @@ BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
     "flight": (1, 0.0), **{name: (value, 0.0) for name, value in FLIGHTS.items()}, "overturned": (0, 0.0), "failed": (0, 0.0),
     "eta": (2.5, 0.0), "static_deflection_m": (9.81 / 50.0**2, 0.0), "yield_kN": (2.5 * 3000 * 9.81 / 2, 0.0),
     "stiffness_kN_m": (50.0**2 * 3000 / 2, 0.0), "top_drift_mm": (2000 * H * 0.06, 2000 * H * 0.0002),
+    "drift_ratio": (0.06, 0.0002),
     "heel_uplift_mm": (2000 * B * 0.06, 2000 * B * 0.0002), "theta_rocking_over_alpha": (0.25, 0.0),
     **{name: (value, 0.0) for name, value in FORCES.items() if "left" not in name and "right" not in name},
     "pivot_force": (2.2, 0.0), "pivot_force_kN": (32373.0, 0.0), "heel_gap_m": (0.15, 0.0), "heel_gap_mm": (150.0, 0.0),
@@ -234,7 +235,7 @@ def test_a_check_of_drift_takes_that_of_a_shaft_that_bends_and_not_its_rotation(
     """Its rotation is within the limit, 2h θ = 0.87 m; its drift, by bending too, is not."""
     bent = case(base=RigidBase(shaft="elastic"))
     table = runs([0.3], theta_max_error=0.001, top_drift_m=1.2, top_drift_error_m=0.003)
-    for demand, factor in (("top_drift_m", 1.0), ("top_drift_mm", 1000.0)):
+    for demand, factor in (("top_drift_m", 1.0), ("top_drift_mm", 1000.0), ("drift_ratio", 0.5 / H)):
         found = judged(table, one=bent, demand=demand, at_most=factor)
         assert (found.verdict, found.value) == ("fail", pytest.approx(1.2 * factor))
         assert found.high - found.value == pytest.approx(0.003 * factor)

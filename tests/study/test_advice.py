@@ -94,6 +94,12 @@ name = "uplift"
 demand = "heel_uplift_mm"
 at_most = 150
 reason = "shear keys"
+
+[[check]]
+name = "ratio"
+demand = "drift_ratio"
+at_most = 0.04
+reason = "joints"
 """
 REPLACED = [  # what is meant, and what is written instead
     # the pier
@@ -162,8 +168,8 @@ REPLACED = [  # what is meant, and what is written instead
     ('demand = "theta_max_rad"', 'demand = "rotation"'),
     ('demand = "theta_max_rad"', 'demand = "theta_maximum_rad"'),
     ('demand = "theta_max_rad"', 'demand = "peak rotation"'),
-    ('demand = "theta_max_rad"', 'demand = "drift_ratio"'),
-    ('demand = "theta_max_rad"', 'demand = "top_drift_ratio"'),
+    ('demand = "drift_ratio"', 'demand = "peak_drift_ratio"'),
+    ('demand = "drift_ratio"', 'demand = "top_drift_ratio"'),
     ('demand = "theta_max_rad"', 'edp = "theta_max_rad"'),
     ('statistic = "mean"', 'statistic = "average"'),
     ("at_most = 0.05", "limit = 0.05"),

@@ -104,7 +104,10 @@ def _half_weight(pier: Pier) -> float | None:
 
 _PIVOT_KN = "greatest force of {} support"
 _PIVOT = f"{_PIVOT_KN} over half the weight"
-_PIVOT_MORE = ", including its dashpot; of a rigid base, when it carries all of N; for a frame the sum over the columns"
+_PIVOT_MORE = (
+    ", including its dashpot; of a rigid base, when it carries all of N; for a frame the sum over the columns; of a footing "
+    "those two at its edges that are equivalent to the push of the bed"
+)
 _GAP, _GAP_MORE = (
     "heel gap: greatest height of {} pivot above its support",
     ", the stroke of a key or damper",
