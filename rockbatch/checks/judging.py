@@ -246,7 +246,15 @@ def _why_absent(rule: Rule, axis: Axis) -> str:
         and (suite.texts("status") != "failed").any()
     ):
         return f"the pier has no section at {rule.at_m:g} m"
+    if _carries_nothing(suite):
+        return f"nothing of the pier is above {rule.at_m:g} m"
     return ""
+
+
+def _carries_nothing(suite: Rows) -> bool:
+    """Return whether the axial force of a section is 0 throughout all runs that have one, as at the top; False without any."""
+    ends = [suite.numbers(f"section_axial_{end}_kN") for end in ("least", "greatest")]
+    return bool(np.isfinite(ends).any() and np.nanmax(np.abs(ends)) == 0.0)
 
 
 def _with_numbers(verdict: Verdict, value: float, low: float, high: float) -> Verdict:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from check_samples import ELASTIC, PADS, PIER, RIGID, case, in_sections, interaction_of, judged, runs
+from check_samples import ELASTIC, PADS, PIER, RIGID, SECTION, case, in_sections, interaction_of, judged, runs
 
 from rockbatch.checks import Rule, judge
 from rockbatch.common.errors import InputError
@@ -285,6 +285,21 @@ def test_a_check_of_a_section_takes_the_rows_of_its_height_and_of_its_run():
         rules[:1], pd.concat([table, runs([0.1], record="late", station="late")]), [case()], sections=sections
     )
     assert (unread[0].low, unread[0].high) == (9.0, INF)
+
+
+def test_a_check_of_a_section_with_nothing_above_it_does_not_apply():
+    """At the top of a pier without a deck there is nothing to bear, whatever the motion is."""
+    table, nothing = runs([0.1], impacts=0), dict.fromkeys(SECTION, 0.0)
+    for demand in ("section_shear_kN", "section_moment_kNm", "section_axial_kN", "section_tension_kN"):
+        for cells, verdict, note in (
+            (nothing, "does not apply", "nothing of the pier is above 7.5 m"),
+            ({}, "pass", ""),
+        ):
+            place, sections = in_sections(table, demand, **cells | {"sections_error": 0.0})
+            (found,) = judge(
+                [Rule("check", demand, 1e6, **place)], table, [case(base=replace(PADS, zeta=0.05))], sections=sections
+            )
+            assert (found.verdict, found.note if note else "") == (verdict, note)
 
 
 @pytest.mark.parametrize(
