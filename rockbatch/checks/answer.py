@@ -309,9 +309,13 @@ class _Cases:
         return (f"{'Apply' if len(idle) > 1 else 'Applies'} to no case: {_listed(idle, ', ')}.",) if idle else ()
 
     def _left_out(self) -> tuple[str, ...]:
-        """Return "Left out by name: A, 2 files of B." for stations, and files of used stations, left out so; () for none."""
-        names = _wholly_or_in_part(self.stations.left_out, self.stations.used)
-        return (f"Left out by name: {_listed(names, ', ')}.",) if names else ()
+        """Return sentences on stations, and files of used ones, left out by name, and on stations not selected; () for none.
+
+        "Left out by name: A, 2 files of B.", "Not selected: C, D."
+        """
+        by_name = _wholly_or_in_part(self.stations.left_out, self.stations.used)
+        lists = {"Left out by name": by_name, "Not selected": self.stations.not_selected}
+        return tuple(f"{words}: {_listed(names, ', ')}." for words, names in lists.items() if names)
 
     def without_limit(self, free: Mapping[str, Sequence[Worst]]) -> Line | None:
         """Return the line on cases that pass only because their governing responses have no limit; None for no case."""

@@ -49,13 +49,16 @@ def joined(cases: Sequence[CaseRuns]) -> CaseRuns:
 
 
 class Stations(NamedTuple):
-    """Stations with a ground motion, and by station the files that could not be used and those left out by name."""
+    """Stations with a ground motion, by station the files that could not be used and those left out by name, and stations of
+    which the study selects no record.
+    """
 
     used: Sequence[str] = ()
     unusable: Mapping[str, Sequence[File]] = {}
     left_out: Mapping[str, Sequence[File]] = {}
     known: bool = True
     """Whether the stations of files that could not be used are known, which an earlier version did not write."""
+    not_selected: Sequence[str] = ()
 
     @property
     def total(self) -> int:
@@ -90,6 +93,11 @@ def runs_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], records: int) -> 
     return counted
 
 
+def is_not_selected(file: File) -> bool:
+    """Return whether a file left out is of a station of which the study does not select this record."""
+    return bool(file.get("station")) and not (file.get("named") or file.get("of"))
+
+
 def stations_of(info: Mapping[str, Any]) -> Stations:
     """Return the stations of the suite in run.json (``info``); a record or file without a known station is one by itself.
 
@@ -103,5 +111,7 @@ def stations_of(info: Mapping[str, Any]) -> Stations:
     unusable = grouped(info["unusable"], station)
     named = grouped((file for file in info.get("left_out", ()) if file.get("named")), station)
     left_out = {name: files for name, files in named.items() if name not in unusable}
+    not_selected = dict.fromkeys(map(station, filter(is_not_selected, info.get("left_out", ()))))
+    missing = tuple(name for name in not_selected if name not in {*used, *unusable, *left_out})
     known = all(file.get("station") for file in info["unusable"])
-    return Stations(list(dict.fromkeys(used)), unusable, left_out, known)
+    return Stations(list(dict.fromkeys(used)), unusable, left_out, known, missing)

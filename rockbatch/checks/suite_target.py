@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
+from rockbatch.checks.coverage import is_not_selected
 from rockbatch.checks.suite import Suite
 from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 
@@ -107,11 +108,7 @@ def suite_of(info: Mapping[str, Any]) -> Suite:
         shocks={record["record"]: record["stations_of_shocks"] for record in records if "stations_of_shocks" in record},
         unrecorded={record["record"] for record in records if not is_recorded(record)},
         without_vertical=info.get("without_vertical", ()),
-        not_selected=Counter(
-            file["station"]
-            for file in info.get("left_out", ())
-            if file.get("station") and not (file.get("named") or file.get("of"))
-        ),
+        not_selected=Counter(file["station"] for file in info.get("left_out", ()) if is_not_selected(file)),
         code=str(target.get("code") or "") if target and _is_judged(target) else "",
     )
 

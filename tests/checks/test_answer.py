@@ -354,6 +354,22 @@ def test_a_component_that_is_left_out_of_a_station_in_use_is_listed_too():
     assert (line.verdict, line.details[-1]) == (PASS, "Left out by name: 1 file of 1336.")
 
 
+def test_stations_of_which_no_record_is_selected_are_listed_beside_a_pass():
+    """One of which another record is used, or that is left out by name besides, is not among them."""
+    weak = {
+        "name": "B1",
+        "source": "B1.AT2",
+        "reason": "not selected: pga_g = 0.4 is not within 0..0.3",
+        "named": False,
+        "of": "",
+    }
+    files = [weak | {"station": station} for station in ("B", "B", "C", "A", "D")]
+    files += [weak | {"station": "D", "named": True}, weak | {"station": "E", "of": "A1.AT2"}]
+    found = stations_of({"records": [{"record": "A1", "station": "A"}], "unusable": [], "left_out": files})
+    (line,) = lines([verdict("a", "pass")], stations=found)
+    assert (line.verdict, line.details[-2:]) == (PASS, ("Left out by name: D.", "Not selected: B, C."))
+
+
 def test_what_passes_comes_first_then_what_fails_then_what_is_open():
     some = [
         verdict("a", "not decided", remarks=("2 stations count",)),

@@ -285,6 +285,8 @@ def _not_covered(design: _Design, stations: Stations) -> Iterator[str]:
     for kind, files in (("that could not be used", stations.unusable), ("left out by name", stations.left_out)):
         if files:
             yield f"records {kind}: {listed([str(file['name']) for of_station in files.values() for file in of_station])}"
+    if stations.not_selected:
+        yield f"stations of which no record is selected: {listed(stations.not_selected)}"
     for worst, _ in design.checks:
         if worst.verdict == DOES_NOT_APPLY:
             yield f"{quoted(worst.check)}, which does not apply: {worst.note}"
