@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.common.units import acceleration_factor, length_factor
+from rockbatch.motions.formats.spelled_out import is_down
 from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.labels.direction_words import folded
 from rockbatch.motions.labels.orientation import orientation_in, orientation_of
@@ -47,11 +48,6 @@ _OF_OTHER_DATA = re.compile(r"\b(?:original|raw|recorder|instrument|resampled|fr
 # possessive (*+), so that matching any header line takes the square of its length at most
 _UNIT = r"[(\[]\s*+(?P<unit>[^()\[\]]*[^()\[\]\s])\s*+[)\]]"
 _NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>[^()\[\]]*?)\s*+(?:{_UNIT}|$)", re.IGNORECASE)
-_POSITIVE_ALONG = re.compile(  # of SCEC's broadband platform: Column 2: H1 component ground acceleration (+ is 035)
-    r"^(?P<column>column\s+\d{1,3}\s*[:=]\s*)[^()\[\]]*\bacc[^()\[\]]*(?P<unit>[(\[][^()\[\]]*[)\]])?\s*"
-    r"[(\[]\s*\+ is (?P<azimuth>\d{1,3})(?:\.0*)?\s*[)\]]$",
-    re.IGNORECASE,
-)
 _PLACE = re.compile(
     r"^(?:recording )?(?:station|location|place|estaci[oó]n|esta[cç][aã]o|stazione|istasyon|lugar|ort|standort)"
     r"(?: ?(?:name|location|nombre))?\s*[:=]\s*(?P<words>[^\W\d_]{3,}.*|\S*[^\x00-\x7f].*)$",
@@ -74,10 +70,6 @@ _DIRECTION = re.compile(
 _STATED = re.compile(
     r"^(?:units?|field[_]unit|unidad(?:e?s)?|unidade|unit[ée]s?|unit[àa](?: di misura)?|einheit(?:en)?|birimi?|eenheid)"
     r"\s*[:=]\s*(?:UTC,\s*)?(?P<unit>(?:\d*\.?\d+ )?\S+)",
-    re.IGNORECASE,
-)
-_OF_SERVICE = re.compile(  # of EarthScope's time series, in pairs or lists
-    r"^TIMESERIES\s+\S+,\s*(?P<npts>\d{1,9}) samples,\s*(?P<rate>[\d.]{1,12}) sps,.*,\s*(?P<unit>[^\s,]+)$",
     re.IGNORECASE,
 )
 _SAID = re.compile(  # acceleration in g; UNITS OF CM/S/S; Acceleration unit: gal; Acc. (cm/s2)
@@ -109,18 +101,6 @@ _OF_FACTOR = re.compile(
 )
 _OF_NO_SAMPLES = re.compile(r"\b(?:target|design|arias|significant|bracketed)\b", re.IGNORECASE)
 _BEYOND_ROUNDING = {"peak": (0.05, math.inf), "duration": (0.01, math.inf)}  # of another stage of processing, perhaps
-_POSITIVE_DOWN = re.compile(  # behind a label, and perhaps its unit: Up-down (cm/s/s) (+ is downward)
-    r"(?P<unit>\s*[(\[][^()\[\]]*[)\]])?\s*[(\[]\s*(?:\+|positive|pos\.?)\s*(?:is|:|=)?\s*(?:down(?:wards?)?|dwn)\s*[)\]]",
-    re.IGNORECASE,
-)
-_POSITIVE = re.compile(
-    r"\s*[(\[]\s*(?:\+|positive|pos\.?)\s*(?:is|:|=)?\s*(?:up|north|east)(?:wards?)?\s*[)\]]", re.IGNORECASE
-)
-_VERTICAL_DOWN = re.compile(  # a whole line: others may speak of depth, or of the signs before a conversion
-    r"vertical(?: (?:component|axis|acceleration|channel))?\s*(?:[:=]|\bis\b)?\s*(?:positive|pos\.?)(?: is)? ?down(?:wards?)?\.?",
-    re.IGNORECASE,
-)
-_OF_SIGN = re.compile(r"(?=.*\bvertical\b)(?=.*\b(?:positive|pos)\b).*\bdown", re.IGNORECASE)
 _SHORT = {"NORTHSOUTH": "NS", "EASTWEST": "EW", "UPDOWN": "UD"}
 _TIME = {"time", "times", "elapsed", "elapsedtime", "zeit", "tiempo", "temps", "tempo", "zaman", "時間", "时间"}
 _SECONDS = [prefix + word for word in _SECOND.split() if len(word) > 2 for prefix in ("", "in", "en")]
@@ -281,20 +261,6 @@ def _is_of_motion(unit: str) -> bool:
     return length_factor(length) is not None and (not slash or time in SECONDS)
 
 
-def spelled_out(line: str) -> list[str]:
-    """Return a header line, and a named line for each property it states without a name; signs in brackets are in its labels.
-
-    "TIMESERIES XX_AAA__HNE_D, 3000 samples, 100 sps, …, M/S**2" has a count, a rate and a unit; "Z (positive down)" is Z-down,
-    and "Column 2: H1 (+ is 35.0)" is 035.
-    """
-    if along := _POSITIVE_ALONG.match(line):
-        return [f"{along['column']}{along['azimuth'].zfill(3)} {along['unit'] or ''}".rstrip()]
-    service = _OF_SERVICE.match(line)
-    if service is None:
-        return [_POSITIVE.sub("", _POSITIVE_DOWN.sub(lambda match: f"-down{match['unit'] or ''}", line))]
-    return [line, f"NPTS = {service['npts']}", f"sampling rate = {service['rate']} Hz", f"unit: {service['unit']}"]
-
-
 def without_index_name(header: Sequence[str]) -> list[str]:
     """Return the header lines that begin with the name of a row index, "", "index" or "No.", without that name."""
     return [_INDEX.sub("", line) for line in header if _INDEX.match(line)]
@@ -374,16 +340,6 @@ def stated_place(header: Sequence[str]) -> str | None:
     phrases = (phrase for match in map(_PLACE.match, header) if match for phrase in match["words"].split(","))
     where, words = stand("", ",".join(phrase for phrase in phrases if not _OF_SOIL.search(phrase)))
     return None if where is Stand.GROUND else words
-
-
-def is_down(header: Sequence[str]) -> bool:
-    """Return whether a line says only that vertical components are positive down, as ``vertical component positive down``."""
-    return any(_VERTICAL_DOWN.fullmatch(line.strip(' #\t",;')) for line in header)
-
-
-def line_about_sign(header: Sequence[str]) -> str:
-    """Return the first line with the words vertical, positive and down, in whatever sense; empty without one."""
-    return next((line for line in header if _OF_SIGN.match(line)), "")
 
 
 def stated_unit(header: Sequence[str]) -> str | None:

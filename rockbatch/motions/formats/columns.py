@@ -21,9 +21,7 @@ from rockbatch.motions.formats.column_header import (
     columns_with_units,
     columns_without_units,
     is_acceleration,
-    is_down,
     is_of_another_quantity,
-    line_about_sign,
     line_about_spectra,
     other_series,
     seconds_in,
@@ -40,6 +38,7 @@ from rockbatch.motions.formats.column_header import (
 )
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, to_components
+from rockbatch.motions.formats.spelled_out import is_down, line_about_sign
 from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.labels.evidence import Kind

@@ -8,8 +8,9 @@ from itertools import chain
 import numpy as np
 
 from rockbatch.common.errors import InputError, NoRecord, Truncated, Unstated
-from rockbatch.motions.formats.column_header import columns_with_units, columns_without_units, spelled_out, stated_count
+from rockbatch.motions.formats.column_header import columns_with_units, columns_without_units, stated_count
 from rockbatch.motions.formats.fixed_width import is_cut_short, lines_of, without_end_marks
+from rockbatch.motions.formats.spelled_out import spelled_out
 from rockbatch.motions.formats.time_steps import grows_evenly
 from rockbatch.motions.limits import HUGE
 from rockbatch.motions.motion import Samples
