@@ -43,6 +43,7 @@ def read_table(
     Raises ``InputError`` with the line for a row unlike those above it, and for commas of unclear meaning.
     """
     header: list[str] = list(stated)
+    counts: list[tuple[float, InputError]] = []  # stated above the rows, each with the error if they are others
     text = without_end_marks(text)
     remainder: list[float] = []
     rows, row_lines, width, end = array("d"), array("q"), 0, 0
@@ -54,18 +55,22 @@ def read_table(
         stripped = line.strip()
         comment = stripped.startswith(_COMMENT)
         row = None if comment else _numbers(stripped, *separators)
-        if row and len(row) == (width or len(row)):
+        if row and len(row) < width and not any(map(str.strip, lines[i + 1 :])):
+            remainder = row
+        elif row:
+            if width and len(row) != width:
+                error = _table_error(lines, f"line {i + 1}: found {len(row)} numbers; expected {width} as above")
+                statement = _count_and_step(rows) if len(rows) <= _MOST_COUNTS else None
+                if statement is None:
+                    raise error
+                counts.append((statement[0], error))
+                header.insert(len(stated) + len(counts) - 1, statement[1])
+                rows, row_lines, width = array("d"), array("q"), 0
             block = [] if width else _even_rows(lines[i + 1 : -1], len(row), *separators)
             width = len(row)
             end = i + 1 + len(block) // width
             rows.extend(chain(row, block))
             row_lines.extend(range(i, end))
-        elif row and len(row) < width and not any(map(str.strip, lines[i + 1 :])):
-            remainder = row
-        elif row:
-            if len(rows) <= _MOST_COUNTS and (counted := _counted(lines, row_lines, rows, wrapped, named, stated)):
-                return counted
-            raise _table_error(lines, f"line {i + 1}: found {len(row)} numbers; expected {width} as above")
         elif stripped.strip(' ;,\t"'):
             if rows and not comment:
                 raise _table_error(lines, f'line {i + 1}: found "{stripped[:60]}"; expected {width} numbers as above')
@@ -91,26 +96,13 @@ def read_table(
             f"line {row_lines[-1] + 1}: its last number is shorter than all others: the file is cut; fetch it again"
         )
     if pairs is not None:
-        return _below_its_count(header, pairs)
-    return header, np.append(table.ravel(), remainder).reshape(-1, 1) if wrapped else table
-
-
-def _counted(
-    lines: Sequence[str],
-    places: Sequence[int],
-    numbers: Sequence[float],
-    wrapped: bool,
-    named: bool,
-    stated: Sequence[str],
-) -> tuple[list[str], Samples] | None:
-    """Return header and table if the ``numbers`` in the lines ``places`` state the size of the table below, else None."""
-    statement = _count_and_step(numbers)
-    if statement is None:
-        return None
-    npts, words = statement
-    below = "\n".join("" if i in places else line for i, line in enumerate(lines))
-    header, table = read_table(below, wrapped, named, [*stated, words])
-    return (header, table) if npts in (table.size, len(table)) else None
+        header, table = _below_its_count(header, pairs)
+    elif wrapped:
+        table = np.append(table.ravel(), remainder).reshape(-1, 1)
+    for count, error in reversed(counts):
+        if count not in (table.size, len(table)):
+            raise error
+    return header, table
 
 
 def _count_and_step(numbers: Sequence[float]) -> tuple[float, str] | None:
