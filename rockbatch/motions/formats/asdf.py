@@ -8,6 +8,7 @@ import io
 import re
 from collections.abc import Container, Iterator
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from rockbatch.motions.sources import stationxml
 from rockbatch.motions.sources.record_file import RecordFile
 from rockbatch.motions.unused import Unusable
 
+T = TypeVar("T")
 _MAGIC = b"\x89HDF\r\n\x1a\n"
 _NAME = re.compile(
     r"(?P<network>\w{0,8})\.(?P<station>\w{1,8})\.(?P<location>\w{0,8})\.(?P<channel>\w{1,8})__(?:.*__)?(?P<tag>.*)"
@@ -43,12 +45,12 @@ def read_asdf(file: RecordFile) -> list[Component | Unusable]:
     """
     try:
         with h5py.File(io.BytesIO(file.data), "r") as store:
-            waveforms = _group(store, "Waveforms")
+            waveforms = _own_member(store, "Waveforms", h5py.Group)
             if waveforms is None:
                 raise InputError(
                     "an HDF5 file without the group Waveforms of ASDF; write it as MiniSEED, or as text columns"
                 )
-            stations = [station for name in waveforms if (station := _group(waveforms, name)) is not None]
+            stations = [s for name in waveforms if (s := _own_member(waveforms, name, h5py.Group)) is not None]
             channels = [channel for station in stations for channel in _channels(station)]
             tags = {match["tag"] for station in stations for name in station if (match := _NAME.fullmatch(name))}
             used = {tag for tag in tags if tag.startswith(_RAW)} or tags
@@ -69,21 +71,16 @@ def read_asdf(file: RecordFile) -> list[Component | Unusable]:
     return [replace(r, notes=(*r.notes, note)) if isinstance(r, Component) else r for r in readings]
 
 
-def _own_member(group: "h5py.Group", name: str) -> object:
-    """Return a member stored in the group itself; ``None`` if missing, and for links, which may lead into other files."""
-    return group.get(name) if isinstance(group.get(name, getlink=True), h5py.HardLink) else None
-
-
-def _group(group: "h5py.Group", name: str) -> "h5py.Group | None":
-    """Return a group stored in another; ``None`` if there is none of this name, or it is a link or a data set."""
-    member = _own_member(group, name)
-    return member if isinstance(member, h5py.Group) else None
+def _own_member(group: "h5py.Group", name: str, kind: type[T]) -> T | None:
+    """Return a member of a ``kind`` stored in the group itself; ``None`` without one: a link may lead into another file."""
+    member = group.get(name) if isinstance(group.get(name, getlink=True), h5py.HardLink) else None
+    return member if isinstance(member, kind) else None
 
 
 def _channels(station: "h5py.Group") -> list[stationxml.Channel]:
     """Return the channels of a station's StationXML; [] without one, or if it is too large."""
-    member = _own_member(station, "StationXML")
-    if not isinstance(member, h5py.Dataset) or member.external or member.size > stationxml.LARGEST:
+    member = _own_member(station, "StationXML", h5py.Dataset)
+    if member is None or member.external or member.size > stationxml.LARGEST:
         return []
     name = f"StationXML of {station.name.rpartition('/')[2]}"
     return stationxml.channels_of(np.asarray(member[()]).tobytes(), name)
@@ -92,8 +89,8 @@ def _channels(station: "h5py.Group") -> list[stationxml.Channel]:
 def _traces(station: "h5py.Group", tags: Container[str]) -> "Iterator[obspy.Trace]":
     """Yield a station's waveforms with one of the ``tags``; raise ``InputError`` for no even series, too long or too many."""
     for number, name in enumerate(station):
-        member, match = _own_member(station, name), _NAME.fullmatch(name)
-        if match is None or match["tag"] not in tags or not isinstance(member, h5py.Dataset):
+        member, match = _own_member(station, name, h5py.Dataset), _NAME.fullmatch(name)
+        if match is None or match["tag"] not in tags or member is None:
             continue
         is_series = member.ndim == 1 and member.dtype.kind in "iuf" and not member.external
         if number > _MOST_TRACES or not is_series or not 0 < member.size <= MOST_SAMPLES:

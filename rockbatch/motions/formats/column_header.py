@@ -205,6 +205,11 @@ def seconds_in(unit: str) -> float | None:
     return SECONDS.get(unit.strip().lower().rstrip("."))
 
 
+def columns_named(header: Sequence[str], width: int) -> list[Column] | None:
+    """Return the columns that a header names, with or without units; ``None`` if it names another number."""
+    return columns_with_units(header, width) or _columns_without_units(header, width)
+
+
 def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None:
     """Return the columns if the header states label and unit of all ``width``; else ``None``.
 
@@ -266,7 +271,7 @@ def without_index_name(header: Sequence[str]) -> list[str]:
     return [_INDEX.sub("", line) for line in header if _INDEX.match(line)]
 
 
-def columns_without_units(header: Sequence[str], width: int) -> list[Column] | None:
+def _columns_without_units(header: Sequence[str], width: int) -> list[Column] | None:
     """Return the columns if the header states the labels of all ``width``, with or without units, ``t, NS, UD``; else None.
 
     A line "channels: NS EW UD" counts first, else the last line whose first label is time, or period or frequency of a spectrum,

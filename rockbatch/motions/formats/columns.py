@@ -16,10 +16,9 @@ from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats.clock_times import in_seconds
 from rockbatch.motions.formats.column_header import (
     Column,
-    StatedStep,
     believed_unit,
+    columns_named,
     columns_with_units,
-    columns_without_units,
     is_acceleration,
     is_of_another_quantity,
     line_about_spectra,
@@ -137,23 +136,15 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: st
     count = stated_count(header)
     if count is not None and count != len(table):
         raise InputError(f"the header says {count} samples, but there are {len(table)} rows; fetch the file again")
-    _refuse_factor(header, options)
-    unit = believed_unit(stated_unit(header), options)
+    if (factor := stated_factor(header)) and "scale" not in options.instead:
+        raise Contradiction(
+            f"its header states a factor of {factor}, and not whether its numbers are multiplied by it already: for this file in "
+            "motions.toml write scale = … with this factor if they are not, or scale = 1 if they are"
+        )
     not_acceleration = [i for i, column in enumerate(columns) if column.other]
     used = [i for i, column in enumerate(columns) if not (column.is_time or column.other or column.label == "-")]
     columns = _with_direction(columns, used, header, stem)
-    units = {i: _unit_of(columns[i], unit, options) for i in used}
-    known = any(map(is_acceleration, units.values()))  # then another unit makes only its own column unusable
-    lacking = [
-        _missing_unit(i, columns[i], units[i]) for i in used if not (units[i] if known else is_acceleration(units[i]))
-    ]
-    other = next((i for i in used if units[i] and is_of_another_quantity(units[i])), None)
-    if lacking and other is not None:
-        raise no_acceleration(_column_name(other, columns[other]), f"numbers in {units[other]}")
-    if lacking:
-        untimed = not (stated_step(header) or options.dt or any(column.is_time for column in columns))
-        message = "; ".join(lacking)
-        raise Unstated(message, keys=("unit", "dt")) if untimed else NoUnit(message)
+    units = _units(columns, used, header, options)
     if not used:
         quantities = " and ".join(columns[i].other for i in not_acceleration)
         raise NoRecord(f"found {quantities or 'a column of time and no other'}; expected accelerations")
@@ -161,9 +152,11 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: st
     dt, values, moved = _on_one_step(columns, table, header, options)
     recordings, sensor = [], Sensor(place=stated_place(header))
     for i in used:
-        orientation = _oriented(columns[i].label, header)
+        label, orientation = columns[i].label, orientation_in(columns[i].label)
+        if orientation.vertical and is_down(header) and not is_upward(label):
+            orientation = replace(orientation, down=True)
         recording = Recording(
-            label=columns[i].label,
+            label=label,
             orientation=orientation,
             stated_by=Kind.USER if columns[i].stated else Kind.HEADER,
             dt=dt,
@@ -178,11 +171,24 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: st
     return recordings
 
 
-def _oriented(label: str, header: Sequence[str]) -> Orientation:
-    """Return the orientation of a column's label; a vertical one is down if the header says so, and its label is not "UP"."""
-    orientation = orientation_in(label)
-    down = orientation.down or (orientation.vertical and is_down(header) and not is_upward(label))
-    return replace(orientation, down=down)
+def _units(
+    columns: Sequence[Column], used: Sequence[int], header: Sequence[str], options: ReadOptions
+) -> dict[int, str]:
+    """Return the units of the columns ``used``, "" for an unknown one; raise ``InputError`` if one of acceleration is missing."""
+    of_all = believed_unit(stated_unit(header), options)
+    own = {i: columns[i].unit for i in used}
+    units = {i: (believed_unit(unit, options) if unit else of_all) or "" for i, unit in own.items()}
+    known = any(map(is_acceleration, units.values()))  # then another unit makes only its own column unusable
+    lacking = [i for i in used if not (units[i] if known else is_acceleration(units[i]))]
+    other = next((i for i in used if units[i] and is_of_another_quantity(units[i])), None)
+    if lacking and other is not None:
+        raise no_acceleration(_column_name(other, columns[other]), f"numbers in {units[other]}")
+    if lacking:
+        untimed = not (stated_step(header) or options.dt or any(column.is_time for column in columns))
+        lacks = [f': the unit "{units[i]}" is not known' if units[i] else " has no unit" for i in lacking]
+        message = "; ".join(_column_name(i, columns[i]) + lack for i, lack in zip(lacking, lacks, strict=True))
+        raise Unstated(message, keys=("unit", "dt")) if untimed else NoUnit(message)
+    return units
 
 
 def _remarks_on_sign(orientation: Orientation, header: Sequence[str], stem: str) -> tuple[str, ...]:
@@ -194,16 +200,6 @@ def _remarks_on_sign(orientation: Orientation, header: Sequence[str], stem: str)
     return (
         f'positive up, though its header says "{line[:60]}": if it is positive down, write polarity = "-" in motions.toml',
     )
-
-
-def _refuse_factor(header: Sequence[str], options: ReadOptions) -> None:
-    """Raise ``Contradiction`` for a header that states a factor, applied or not, unless a manifest states ``scale``."""
-    factor = stated_factor(header)
-    if factor and "scale" not in options.instead:
-        raise Contradiction(
-            f"its header states a factor of {factor}, and not whether its numbers are multiplied by it already: for this file in "
-            "motions.toml write scale = … with this factor if they are not, or scale = 1 if they are"
-        )
 
 
 def _with_direction(columns: list[Column], used: Sequence[int], header: Sequence[str], stem: str) -> list[Column]:
@@ -221,20 +217,6 @@ def _with_direction(columns: list[Column], used: Sequence[int], header: Sequence
     return [replace(column, label=direction) if i in used else column for i, column in enumerate(columns)]
 
 
-def _unit_of(column: Column, of_all: str | None, options: ReadOptions) -> str:
-    """Return a column's unit, as :func:`believed_unit`, else that ``of_all``, else ""."""
-    return (believed_unit(column.unit, options) if column.unit else of_all) or ""
-
-
-def _missing_unit(i: int, column: Column, unit: str) -> str:
-    """Return the message about a column's missing or unknown unit."""
-    return (
-        f'{_column_name(i, column)}: the unit "{unit}" is not known'
-        if unit
-        else f"{_column_name(i, column)} has no unit"
-    )
-
-
 def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[list[Column], tuple[str, ...]]:
     """Return the columns by header and study, and notes on them.
 
@@ -244,8 +226,8 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
     width = table.shape[1]
     columns = (
         _behind_an_index(without_index_name(header), table)
-        or _columns_named(header, width)
-        or _columns_beside_index(header, table)
+        or columns_named(header, width)
+        or _beside_an_index(header, table)
     )
     stated = options.columns
     notes: tuple[str, ...] = ()
@@ -271,29 +253,20 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
     return columns, notes
 
 
-def _columns_named(header: Sequence[str], width: int) -> list[Column] | None:
-    """Return the columns that a header names, with or without units; ``None`` if it names another number."""
-    return columns_with_units(header, width) or columns_without_units(header, width)
-
-
 def _behind_an_index(header: Sequence[str], table: Samples) -> list[Column] | None:
-    """Return the columns of a table whose first one has no name or is called "index": a row number, or times that grow evenly.
+    """Return the columns of a table whose first one, "-" or "time", numbers its rows or grows evenly, and is not named; or None.
 
-    The first is then "-" or "time", and ``header`` names the others; ``None`` for other tables, and if the first grows evenly
-    but another column is time.
+    ``header`` names the others, among which is no time if the first grows evenly.
     """
     if _counts_rows(table[:, 0]):
-        return _columns_beside_index(header, table)
-    named = _columns_named(header, table.shape[1] - 1) if header and grows_evenly(table[:, 0]) else None
+        return _beside_an_index(header, table)
+    named = columns_named(header, table.shape[1] - 1) if header and grows_evenly(table[:, 0]) else None
     return None if named is None or any(column.is_time for column in named) else [Column("time"), *named]
 
 
-def _columns_beside_index(header: Sequence[str], table: Samples) -> list[Column] | None:
-    """Return the columns of a table whose first one counts its rows, from 0 or 1, if the header names all others; else ``None``.
-
-    The first is returned, too, as a column "-".
-    """
-    named = _columns_named(header, table.shape[1] - 1) if _counts_rows(table[:, 0]) else None
+def _beside_an_index(header: Sequence[str], table: Samples) -> list[Column] | None:
+    """Return "-" and the columns beside a first one that numbers the rows, if the header names all of them; else ``None``."""
+    named = columns_named(header, table.shape[1] - 1) if _counts_rows(table[:, 0]) else None
     return None if named is None else [Column("-"), *named]
 
 
@@ -393,18 +366,14 @@ def _on_one_step(
         raise InputError(f'unit of time "{column.unit}"; expected s or ms')
     t = table[:, times[0]] * seconds
     dt, values, notes = on_even_steps(t, table)
-    if stated and "dt" not in options.instead:
-        _check_step(stated, dt, float(np.median(np.diff(t))))
-    return dt, values, notes
-
-
-def _check_step(stated: StatedStep, dt: float, usual: float) -> None:
-    """Raise ``Contradiction`` if the header's interval is over 1 % off both ``dt`` and the ``usual`` step of the times [s]."""
-    if all(abs(stated.dt - step) > SAME_STEP * step for step in (dt, usual)):
+    usual = float(np.median(np.diff(t)))
+    doubted = stated if "dt" not in options.instead else None
+    if doubted and all(abs(doubted.dt - step) > SAME_STEP * step for step in (dt, usual)):
         raise Contradiction(
-            f'the header says "{stated.words}", {stated.dt:g} s, but time grows by {usual:g} s; correct the one that is '
+            f'the header says "{doubted.words}", {doubted.dt:g} s, but time grows by {usual:g} s; correct the one that is '
             "wrong, or write dt = … for this file in motions.toml"
         )
+    return dt, values, notes
 
 
 def _column_name(i: int, column: Column) -> str:

@@ -97,7 +97,7 @@ def parse(text: str) -> list[Recording]:
             recordings.append((_recording(header, series, values, index), header))
         else:
             quantities.append(series["what"])
-            if recordings and _same_sensor(recordings[-1][1], header):
+            if recordings and _sensor_lines(recordings[-1][1]) == _sensor_lines(header):
                 recordings[-1] = (_with_series(recordings[-1][0], series, values), header)
         index = end
     if not recordings:
@@ -107,9 +107,9 @@ def parse(text: str) -> list[Recording]:
     return [recording for recording, _ in recordings]
 
 
-def _same_sensor(a: _Header, b: _Header) -> bool:
-    """Return whether two headers have the same lines for station and sensor."""
-    return all(line_at(a.text, i) == line_at(b.text, i) for i in (_STATION, _SENSOR))
+def _sensor_lines(header: _Header) -> list[str]:
+    """Return the lines of a header's text for station and sensor."""
+    return [line_at(header.text, i) for i in (_STATION, _SENSOR)]
 
 
 def _with_series(recording: Recording, series: re.Match[str], values: Samples) -> Recording:
@@ -158,11 +158,7 @@ def _width_and_count(text: str, index: int) -> tuple[int, int]:
 
 
 def _values(lines: list[str], index: int, series: re.Match[str]) -> tuple[Samples, int]:
-    """Return the values declared by ``lines[index]``, shape (npts,), and the index of the line after their end mark.
-
-    Raises:
-        InputError: no values are declared, others than declared follow, or no end mark.
-    """
+    """Return the values declared by ``lines[index]``, shape (npts,), and the index of the line after their end mark."""
     npts = int(series["npts"])
     if npts < 1:
         raise InputError(f"line {index + 1}: found {npts} values; expected some")
@@ -172,10 +168,7 @@ def _values(lines: list[str], index: int, series: re.Match[str]) -> tuple[Sample
 
 
 def _recording(header: _Header, series: re.Match[str], values: Samples, index: int) -> Recording:
-    """Return the recording of accelerations declared by ``lines[index]``.
-
-    Raises ``InputError`` for missing values and an impossible interval.
-    """
+    """Return the recording of accelerations declared by ``lines[index]``; raise ``InputError`` if values are missing."""
     interval, length, peak, time_of_peak = header.reals[61:65]
     if not 0 < interval < 1e5:
         raise InputError(f"real number 62 of the header says an interval of {interval:g} ms; expected a number above 0")
@@ -198,6 +191,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
         if value != header.unknown:
             stated.append(Stated(quantity, f"{value:.5f}"))
     label, code = _label(header, channel), header.integers[53]
+    velocity, moved = (None if value == header.unknown else value / 100 for value in header.reals[67:69])
     return Recording(
         label=label,
         dt=float(f"{interval / 1000:.12g}"),
@@ -211,7 +205,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
             station, network, location if seed else None, place.upper() or None, fields["number"].strip("?") or None
         ),
         event=event,
-        initial=_initial(header) if corrected else None,
+        initial=Initial(velocity, moved or 0.0) if corrected and velocity is not None else None,
         origin=origin_of(event, name or station, line_at(header.text, 3)),
         stated=tuple(stated),
         notes=(f"location: {place}",) if place else (),
@@ -228,18 +222,8 @@ def _place(header: _Header) -> str:
     return f"{words} (structure type: {structure})".strip()
 
 
-def _initial(header: _Header) -> Initial | None:
-    """Return the ground's state at the first sample; ``None`` without its velocity (real 68), 0 m without displacement (69)."""
-    velocity, displacement = header.reals[67:69]
-    if velocity == header.unknown:
-        return None
-    return Initial(velocity / 100, 0.0 if displacement == header.unknown else displacement / 100)
-
-
 def _unit(header: _Header, series: re.Match[str], index: int) -> str:
-    """Return the unit of the accelerations by its code; raise ``InputError`` unless it is known, and header and text agree with
-    it.
-    """
+    """Return the unit of the accelerations by its code; raise ``InputError`` unless it is known, and header and text agree."""
     code, text = int(series["code"]), series["unit"]
     unit = _UNITS.get(code)
     if unit is None:

@@ -93,7 +93,10 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         raise InputError(f'component "{recording.label}": {error}') from None
     words = "it is stated to be" if recording.stated_by is Kind.USER else "its header says"
     acceleration = recording.values * factor
-    series = [_in_metres(samples) for samples in (recording.velocities, recording.displacements)]
+    series = [
+        None if samples is None or (metres := length_factor(samples[1])) is None else samples[0] * metres
+        for samples in (recording.velocities, recording.displacements)
+    ]
     findings, differences = contradictions_of(recording, factor, file.gravity)
     return Component(
         name=name,
@@ -137,10 +140,3 @@ def contradictions_of(
     as_read = recording.values if recording.as_read is None else recording.as_read
     sampled = Sampled(recording.values, recording.dt, recording.unit, factor, as_read)
     return contradictions(recording.stated, sampled, gravity)
-
-
-def _in_metres(series: Series | None) -> Samples | None:
-    """Return velocities in m/s, or displacements in m; ``None`` if missing or in an unknown unit."""
-    if series is None or (factor := length_factor(series[1])) is None:
-        return None
-    return series[0] * factor

@@ -61,11 +61,8 @@ class _Quantity:
 
 def _peaks(sampled: Sampled, stated: Stated) -> list[float]:
     """Return the largest absolute sample as it is, and less the mean of the samples, in their unit."""
-    return [_largest(sampled.as_read - offset) for offset in (0.0, sampled.as_read.mean())]
-
-
-def _largest(samples: Samples) -> float:
-    return float(np.abs(samples).max(initial=0.0))
+    offsets = (0.0, sampled.as_read.mean())
+    return [float(np.abs(sampled.as_read - offset).max(initial=0.0)) for offset in offsets]
 
 
 def _times_of_peak(sampled: Sampled, stated: Stated) -> list[float]:
@@ -81,29 +78,14 @@ def _durations(sampled: Sampled, stated: Stated) -> list[float]:
     return [duration, stated.begins + duration]
 
 
-def _ranges(sampled: Sampled, stated: Stated) -> list[float]:
-    """Return the range from the least to the largest sample, alone in a list."""
-    return [float(np.ptp(sampled.as_read))]
-
-
-def _steps(sampled: Sampled, stated: Stated) -> list[float]:
-    """Return the sampling interval [s], alone in a list."""
-    return [sampled.dt]
-
-
-def _rates(sampled: Sampled, stated: Stated) -> list[float]:
-    """Return the sampling rate [1/s], alone in a list."""
-    return [1.0 / sampled.dt]
-
-
 _SCALE, _STEP = "check its scale", "check its step"
 QUANTITIES = {  # peaks in five digits, of 1.0000; times to a sample, durations to one more or less; steps as times are printed
     "peak": _Quantity("a peak of", _peaks, _SCALE, (0.05, 0.25), unit="", share=1e-4),
-    "range": _Quantity("a range of", _ranges, _SCALE, (0.05, 0.25), unit="", share=1e-4),
+    "range": _Quantity("a range of", lambda s, _: [np.ptp(s.as_read)], _SCALE, (0.05, 0.25), unit="", share=1e-4),
     "time of the peak": _Quantity("its peak after", _times_of_peak, _STEP, (0.05, 0.25), samples=2),
     "duration": _Quantity("a duration of", _durations, f"{_STEP}, and whether it is cut", (0.01, 0.25), samples=2),
-    "step": _Quantity("a step of", _steps, _STEP, (0.01, 0.01), digits=0, share=1e-3),
-    "rate": _Quantity("a rate of", _rates, _STEP, (0.01, 0.01), "Hz", digits=0, share=1e-3),
+    "step": _Quantity("a step of", lambda s, _: [s.dt], _STEP, (0.01, 0.01), digits=0, share=1e-3),
+    "rate": _Quantity("a rate of", lambda s, _: [1.0 / s.dt], _STEP, (0.01, 0.01), "Hz", digits=0, share=1e-3),
 }
 
 

@@ -8,7 +8,7 @@ from itertools import chain
 import numpy as np
 
 from rockbatch.common.errors import InputError, NoRecord, Truncated, Unstated
-from rockbatch.motions.formats.column_header import columns_with_units, columns_without_units, stated_count
+from rockbatch.motions.formats.column_header import columns_named, stated_count
 from rockbatch.motions.formats.fixed_width import is_cut_short, lines_of, without_end_marks
 from rockbatch.motions.formats.spelled_out import spelled_out
 from rockbatch.motions.formats.time_steps import grows_evenly
@@ -80,7 +80,7 @@ def read_table(
         raise NoRecord("no columns of numbers found in it")
     pairs = None if wrapped and not named else _pairs(rows, remainder, width)
     if width > 1 and (wrapped or stated_count(header) == len(rows) + len(remainder)):
-        wrapped = not (named and (columns_with_units(header, width) or columns_without_units(header, width)))
+        wrapped = not (named and columns_named(header, width))
     if remainder and pairs is None and not wrapped:
         reason = f"line {len(lines)}: found {len(remainder)} numbers; expected {width} as above"
         refusal = _table_error(lines, reason)

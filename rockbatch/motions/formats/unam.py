@@ -81,6 +81,7 @@ def parse(text: str) -> list[Recording]:
     recordings = []
     for i, label in enumerate(labels):
         down = label[:1] == "V" and directions[i][1] == "-"
+        sample = peak_samples[i] if re.fullmatch("[0-9]{1,9}", peak_samples[i]) else None  # counted from 1
         recording = Recording(
             label=label,
             orientation=Orientation(label, vertical=True, down=True) if down else None,
@@ -97,7 +98,7 @@ def parse(text: str) -> list[Recording]:
             stated=(
                 Stated("rate", rates[i]),
                 Stated("peak", peaks[i], "gal"),
-                Stated("time of the peak", _time_of_sample(peak_samples[i], dt)),
+                Stated("time of the peak", f"{(int(sample) - 1) * dt:.6f}" if sample else ""),
             ),
             notes=notes,
             header={"station": name, "file": header[_FILE]},
@@ -112,12 +113,10 @@ def _header(lines: list[str]) -> dict[str, str]:
     Keys are compared without blanks and by their beginnings, since institutes add units such as "(s)".
     """
     entries = {re.sub(r"\s", "", key): value for key, value in keys_of(lines).items()}
-
-    def value_of(name: str) -> str:
+    header = {}
+    for name in (*_NEEDED, *_OPTIONAL):
         begins = re.sub(r"\s", "", name)
-        return next((value for key, value in entries.items() if key.startswith(begins)), "")
-
-    header = {name: value_of(name) for name in (*_NEEDED, *_OPTIONAL)}
+        header[name] = next((value for key, value in entries.items() if key.startswith(begins)), "")
     require(header, *_NEEDED)
     return header
 
@@ -136,11 +135,6 @@ def _texts_of(text: str, count: int) -> list[str]:
     return texts if len(texts) == count else [""] * count
 
 
-def _time_of_sample(number: str, dt: float) -> str:
-    """Return the time [s] of a sample counted from 1, as text, "1.000000"; "" for a text that is no whole number below 10⁹."""
-    return f"{(int(number) - 1) * dt:.6f}" if number.isdecimal() and 0 < len(number) < 10 else ""
-
-
 def _common_value(header: dict[str, str], key: str, count: int) -> str:
     """Return the common value of all channels; raise ``InputError`` if they differ."""
     texts = set(_value_of_each(header, key, count))
@@ -154,10 +148,9 @@ def _first_sample_line(lines: list[str], start: int, labels: list[str]) -> int:
     named = False
     for i in range(start + 1, min(start + _BEHIND, len(lines))):
         words = [word.partition(";")[0] for word in lines[i].split()]
-        if words == labels:
-            named = True
-        elif named and words and lines[i].strip("-+= "):
+        if named and words and lines[i].strip("-+= ") and words != labels:
             return i
+        named = named or words == labels
     raise InputError(
         f"line {start + 4}: expected the directions {' '.join(labels)}, as the header has them, and samples"
     )

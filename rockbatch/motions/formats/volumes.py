@@ -129,6 +129,7 @@ def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | Non
     fields = read_header(lines, header, _TEXT)
     needed = not fields["number"]  # by USC and Caltech
     fields |= read_header(lines, first, [(i, said, needed * example) for i, said, example in _STATED[volume]])
+    fields["of_peak"] = fields["of_peak"].upper().replace("MS/", "M/")  # of Caltech: CMS/SEC/SEC
     samples, begins, end = _samples(lines, first, volume, fields)
     place = fields["place"]
     notes = (*samples.notes, *([f"channel {fields['number']}: {place}"] if place else []))
@@ -208,11 +209,7 @@ def _samples(lines: list[str], first: int, volume: int, fields: dict[str, str]) 
 
 
 def _pairs(lines: list[str], first: int, fields: dict[str, str]) -> tuple[_Samples, float, int]:
-    """Return the samples at even steps of pairs of time and value, their first time [s], and the index after them.
-
-    Raises:
-        InputError: fewer than two points, or a line of USC that does not begin with a blank.
-    """
+    """Return the samples at even steps of pairs of time and value, their first time [s], and the index after them."""
     npts, start = int(fields["npts"]), first + _DATA[1]
     if npts < 2:
         raise InputError(f"line {first + 11}: found {npts} points; expected at least two")
@@ -230,22 +227,16 @@ def _pairs(lines: list[str], first: int, fields: dict[str, str]) -> tuple[_Sampl
 def _undeclared(lines: list[str], start: int, fields: dict[str, str]) -> tuple[float, dict[str, Series], int]:
     """Return interval [s], series by kind ("acc", "vel", "dis"; the last two if they follow) and end of undeclared samples.
 
-    They are of Volume II, in the unit of the stated peak. Raises ``InputError`` for fewer than two points, or with the line of an
-    incomplete series.
+    They are of Volume II, in the unit of the stated peak.
     """
-    unit, npts, series, end = _unit_of_peak(fields), int(fields["npts"]), {}, start
+    npts, series, end = int(fields["npts"]), {}, start
     if npts < 2:
         raise InputError(f"line {start - _DATA[2] + 16}: found {npts} points; expected at least two")
     for kind, per in (("acc", "/SEC/SEC"), ("vel", "/SEC"), ("dis", "")):
         if kind == "acc" or line_at(lines, end)[:1].isspace():
             values, end = equal_columns(lines, end, npts)
-            series[kind] = (values, unit.replace("/SEC/SEC", per))
+            series[kind] = (values, fields["of_peak"].replace("/SEC/SEC", per))
     return number_in(fields["dt"], start), series, end
-
-
-def _unit_of_peak(fields: dict[str, str]) -> str:
-    """Return the unit of the stated peak: "CM/SEC/SEC" for Caltech's "CMS/SEC/SEC"."""
-    return fields["of_peak"].upper().replace("MS/", "M/")
 
 
 def _statements(fields: dict[str, str], begins: float | None, volume: int) -> tuple[Stated, ...]:
@@ -256,7 +247,7 @@ def _statements(fields: dict[str, str], begins: float | None, volume: int) -> tu
         Stated("rate", fields.get("rate", "")),
         Stated("step", fields.get("dt", "")),
         Stated("duration", fields["duration"], begins=start, limits=_OF_RAW if volume == 2 else None),
-        Stated("peak", fields["peak"], _unit_of_peak(fields)),
+        Stated("peak", fields["peak"], fields["of_peak"]),
         Stated("time of the peak", fields["at"], begins=start),
     )
 
