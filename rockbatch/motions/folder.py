@@ -415,10 +415,7 @@ def _readings_of_entries(file: SourceFile, settings: _ReadSettings) -> list[Read
 
 
 def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Sequence[Component | Unusable]:
-    """Return the components of one file, usable or not, by the reader of its format.
-
-    Raises ``InputError`` for a file that no reader knows or that its reader refuses.
-    """
+    """Return the components of one file, usable or not, by the reader of its format."""
     path = archives.bare(file.path)
     data = archives.content(file.path, HEAD)
     if len(data) == HEAD and format_of(path.suffix, data) is not None:  # else these are all, or suffice for the refusal

@@ -72,16 +72,6 @@ MOST_SAMPLES = 10_000_000
 """Greatest number of samples of a pulse or of still ground."""
 
 
-def _check_still(duration: float, dt: float) -> None:
-    """Raise ``InputError`` unless a duration and a step [s] of still ground are above 0 and give 10 million samples at most."""
-    numbers = (("duration_s", duration), ("dt", dt))
-    wrong = [f"{name} = {value:g}: must be a number above 0 [s]" for name, value in numbers if not 0 < value < math.inf]
-    if not wrong and duration / dt > MOST_SAMPLES:
-        wrong.append(f"dt = {dt:g}: more than {MOST_SAMPLES:,} samples in {duration:g} s; take a larger dt")
-    if wrong:
-        raise InputError(*wrong)
-
-
 def frozen(samples: object) -> Samples:
     """Return samples as an array of ``float64`` over bytes, itself if it is one; raise ``TypeError`` unless real numbers.
 
@@ -207,13 +197,13 @@ class Motion(Shown):
     def __post_init__(self) -> None:
         for text in ("name", "station"):  # which go into tables
             object.__setattr__(self, text, legible(getattr(self, text), keep="\t\r\n"))
-        wrong: list[Problem | str] = []
+        wrong, place = list[Problem | str](), f'motion "{self.name}"'
         if not (math.isfinite(self.dt) and self.dt > 0):
-            wrong.append(f'motion "{self.name}": dt = {self.dt:g}: must be a number above 0 [s]')
+            wrong.append(f"{place}: dt = {self.dt:g}: must be a number above 0 [s]")
         elif "dt" not in self.confirm:
             rate = f"; if it is a rate in Hz, write dt = {1.0 / self.dt:g}" if 10.0 <= self.dt <= _GREATEST_RATE else ""
             doubts = USUAL_STEP.doubts("dt", self.dt)
-            wrong += [replace(doubt, text=f"{doubt.text}{rate}", place=f'motion "{self.name}"') for doubt in doubts]
+            wrong += [replace(doubt, text=f"{doubt.text}{rate}", place=place) for doubt in doubts]
         for component in COMPONENTS:
             samples = getattr(self, component)
             if samples is None and component != "horizontal":
@@ -221,26 +211,23 @@ class Motion(Shown):
             try:
                 samples = frozen(samples)
             except TypeError as error:
-                wrong.append(f'motion "{self.name}": {component} acceleration {error}')
+                wrong.append(f"{place}: {component} acceleration {error}")
                 continue
             object.__setattr__(self, component, samples)
             if np.ndim(samples) != 1 or len(samples) == 0:
-                wrong.append(
-                    f'motion "{self.name}": {component} acceleration has shape {np.shape(samples)}: must be samples in a row'
-                )
+                shape = np.shape(samples)
+                wrong.append(f"{place}: {component} acceleration has shape {shape}: must be samples in a row")
             elif not np.isfinite(samples).all():
                 first = int(np.argmin(np.isfinite(samples)))
                 wrong.append(
-                    f'motion "{self.name}": {component} sample {first} (t = {first * self.dt:g} s) is {samples[first]}: '
+                    f"{place}: {component} sample {first} (t = {first * self.dt:g} s) is {samples[first]}: "
                     "must be a number; repair the record or leave it out"
                 )
         for component in COMPONENTS[1:] if not wrong else ():
-            samples = getattr(self, component)
-            if samples is not None and len(samples) != len(self.horizontal):
-                wrong.append(
-                    f'motion "{self.name}": {len(self.horizontal)} horizontal and {len(samples)} {component} samples: '
-                    "bring them to one length"
-                )
+            samples, npts = getattr(self, component), len(self.horizontal)
+            if samples is not None and len(samples) != npts:
+                counts = f"{npts} horizontal and {len(samples)} {component} samples"
+                wrong.append(f"{place}: {counts}: bring them to one length")
         refuse(wrong)
 
     @classmethod
@@ -301,7 +288,11 @@ class Motion(Shown):
         >>> float(response.theta[0]), float(response.theta[-1])
         (0.1, 0.0)
         """
-        _check_still(duration_s, dt)
+        times = {"duration_s": duration_s, "dt": dt}
+        wrong = [f"{key} = {t:g}: must be a number above 0 [s]" for key, t in times.items() if not 0 < t < math.inf]
+        if not wrong and duration_s / dt > MOST_SAMPLES:
+            wrong.append(f"dt = {dt:g}: more than {MOST_SAMPLES:,} samples in {duration_s:g} s; take a larger dt")
+        refuse(wrong)
         return cls(name, dt, np.zeros(round(duration_s / dt) + 1), source="still", initial=Initial(), recorded=False)
 
     @classmethod

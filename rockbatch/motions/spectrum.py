@@ -91,10 +91,7 @@ def responses(acceleration: Samples, dt: float, periods: npt.ArrayLike, damping:
 def _refined(
     acceleration: Samples, dt: float, periods: npt.NDArray[np.float64], damping: float
 ) -> Iterator[tuple[npt.NDArray[np.bool_], Samples, float]]:
-    """Yield a mask of periods, and for these the acceleration refined to 20 samples a period at least, and its dt [s].
-
-    Raises ``InputError`` for periods and damping out of range.
-    """
+    """Yield a mask of periods, and for these the acceleration refined to 20 samples a period at least, and its dt [s]."""
     wrong = [f"period = {period:g}: must be a number above 0 [s]" for period in periods if not 0 < period < math.inf]
     if not 0 <= damping < 1:
         wrong.append(f"damping = {damping:g}: must be within 0 ≤ damping < 1")

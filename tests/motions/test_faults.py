@@ -8,7 +8,7 @@ from rockbatch.motions import fema_p695, read_motions
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.identity.doubles import without_doubles
 from rockbatch.motions.labels.orientation import Orientation
-from rockbatch.motions.quality.faults import FILLED, at_rest, filled_gap, is_spike
+from rockbatch.motions.quality.faults import FILLED, filled_gap, is_spike, parts_missing
 
 DT = 0.01
 A, B, C = (wiggle(600, seed, 0.4) for seed in (1, 2, 3))
@@ -119,8 +119,8 @@ def test_a_record_that_begins_or_ends_in_the_strong_motion_has_a_finding(tmp_pat
             f for m in station(tmp_path, cut).motions for f in m.findings if f.what == "cut" and m.name == "X000"
         ]
         assert finding.text.startswith(f"it does not {parts} at rest")
-    assert at_rest(A, DT) == (True, True)
-    assert at_rest(np.zeros(9), DT) == (True, True)
+    assert parts_missing(A, DT) == []
+    assert parts_missing(np.zeros(9), DT) == []
 
 
 def test_copies_of_one_sample_a_second_cost_no_other_record():
@@ -139,6 +139,6 @@ def test_no_real_record_has_a_fault():
     assert len(components) > 200
     for c in components:
         samples = c.acceleration - (c.acceleration.mean() if c.raw else 0.0)
-        assert (filled_gap(samples, c.dt), is_spike(samples), at_rest(samples, c.dt)) == (None, False, (True, True)), (
+        assert (filled_gap(samples, c.dt), is_spike(samples), parts_missing(samples, c.dt)) == (None, False, []), (
             c.source
         )

@@ -42,10 +42,7 @@ def parse(text: str) -> list[Recording]:
 
 
 def _channel(lines: list[str], start: int) -> tuple[Recording, int]:
-    """Return the channel whose title is ``lines[start]``, and the index of the line after it.
-
-    Raises ``InputError`` with the line for another title or volume, and for an incomplete channel.
-    """
+    """Return the channel whose title is ``lines[start]``, and the index of the line after it."""
     title = read_header(lines, start, [(0, _TITLE, "* VOL1DS FILE: …, after the last declared value")])
     if title["volume"] != "1":
         raise InputError(f"line {start + 1}: Volume {title['volume']}, whose layout is not known; take the .V1 file")

@@ -123,11 +123,7 @@ def _repeats(recordings: Sequence[Recording], ways: Sequence[tuple[object, ...]]
 
 
 def _parse(text: str, options: ReadOptions, beside: Sequence[str] = (), stem: str = "") -> list[Recording]:
-    """Return the columns of acceleration of a file called ``stem``; one in an unknown unit keeps it beside others in known ones.
-
-    Raises ``InputError`` for a single row, unknown columns or step, a column without a unit, no unit that is one of
-    acceleration, and a header that states another count or step.
-    """
+    """Return the columns of acceleration of a file called ``stem``; one in an unknown unit keeps it beside known ones."""
     text, start = in_seconds(text)
     header, table = read_table(text, options.layout == "wrapped", named="layout" not in options.instead, stated=beside)
     if len(table) < 2:
@@ -218,11 +214,7 @@ def _with_direction(columns: list[Column], used: Sequence[int], header: Sequence
 
 
 def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[list[Column], tuple[str, ...]]:
-    """Return the columns by header and study, and notes on them.
-
-    Raises ``InputError`` for a spectrum, for a table without header for which the study states another number of columns, and
-    as :func:`_guessed_columns` if neither names them.
-    """
+    """Return the columns by header and study, and notes on them."""
     width = table.shape[1]
     columns = (
         _behind_an_index(without_index_name(header), table)
@@ -308,11 +300,7 @@ def _with_time(columns: list[Column], table: Samples) -> list[Column]:
 
 
 def _guessed_columns(header: list[str], table: Samples) -> tuple[list[Column], tuple[str, ...]]:
-    """Return columns without labels, and notes: a single acceleration, or evenly growing times and acceleration, in either order.
-
-    Raises ``Unstated`` for another table, and one with whole seconds, which may be numbers of rows or ms instead, and
-    ``InputError`` for two columns below a header about spectra.
-    """
+    """Return columns without labels, and notes: one acceleration, or evenly growing times and acceleration, in either order."""
     width = table.shape[1]
     if width == 1:
         return [Column("")], ()
@@ -343,11 +331,7 @@ def _guessed_columns(header: list[str], table: Samples) -> tuple[list[Column], t
 def _on_one_step(
     columns: list[Column], table: Samples, header: list[str], options: ReadOptions
 ) -> tuple[float, Samples, tuple[str, ...]]:
-    """Return the sampling interval [s], by the column of time or as stated, the table at even times, and notes.
-
-    Raises ``InputError`` for several columns of time, an unknown unit of time, uneven times that cannot be interpolated, no step
-    at all, or a header that states another step than the times have, unless a manifest states ``dt``.
-    """
+    """Return the sampling interval [s], by the column of time or as stated, the table at even times, and notes."""
     times = [i for i, column in enumerate(columns) if column.is_time]
     if len(times) > 1:
         raise InputError(f"found {len(times)} columns of time; expected one")

@@ -246,8 +246,7 @@ def _unit(header: _Header, series: re.Match[str], index: int) -> str:
 def _label(header: _Header, channel: str) -> str:
     """Return the direction by the header's text, else by its code (integer 54), else by the SEED channel.
 
-    It is the one that says up or down, if the others say vertical; the text, perhaps "", if none of them is known. Raises
-    ``InputError`` if they differ in vertical or horizontal, up or down.
+    It is the one that says up or down, if the others say vertical; the text, perhaps "", if none of them is known.
     """
     code, stated = header.integers[53], header.fields["label"]
     by_code = _DIRECTIONS.get(code, str(code) if 1 <= code <= 360 else "")

@@ -67,10 +67,7 @@ def parse(text: str) -> list[Recording]:
 
 
 def _labels(order: str) -> list[str]:
-    """Return the directions of the columns after time, all with positive sign: ["U", "N", "E"] of "Time U(+); N(+); E(+)".
-
-    Raises ``InputError`` for another text.
-    """
+    """Return the directions of the columns after time, all with positive sign: ["U", "N", "E"] of "Time U(+); N(+); E(+)"."""
     time, _, remainder = order[:200].strip().partition(" ")
     matches = [_LABEL.fullmatch(part) for part in remainder.split(";")]
     if time.lower() != "time" or None in matches:

@@ -47,11 +47,7 @@ def declared_series(lines: list[str], start: int) -> tuple[float, dict[str, Seri
 
 
 def _block(lines: list[str], start: int, expected: tuple[str, ...]) -> tuple[str, float, Series, int]:
-    """Return kind ("acc", "vel", "dis"), interval [s], values with unit of the series at ``lines[start]``, and the next index.
-
-    Raises ``InputError`` unless its kind is one of those ``expected``, its count is 1 or more, it states a unit, and its interval
-    is possible.
-    """
+    """Return kind ("acc", "vel", "dis"), interval [s], values with unit of the series at ``lines[start]``, and the next index."""
     line = match_line(_SPACING, lines, start, "… points of accel data equally spaced at … sec. (units: …)")
     quantity = (line["what"] or "acc").lower()
     unit, layout = _UNIT.search(line["rest"]), _FORMAT.search(line["rest"])

@@ -65,10 +65,7 @@ def parse(text: str) -> list[Recording]:
 
 
 def _header(lines: list[str]) -> dict[str, str]:
-    """Return the values by keys of the lines before the first without a colon.
-
-    Raises ``InputError`` for missing or repeated keys, and for other quantities than accelerations.
-    """
+    """Return the values by keys of the lines before the first without a colon."""
     end = next((i for i, line in enumerate(lines[:_MOST_KEYS]) if ":" not in line), len(lines))
     header = keys_of(lines[:end], "SAMPLING_INTERVAL_S", "NDATA", "UNITS", "STREAM", once=True)
     kind = header.get("DATA_TYPE", "ACCELERATION")

@@ -153,11 +153,7 @@ def _events(traces: "list[obspy.Trace]") -> "list[list[obspy.Trace]]":
 
 
 def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -> Component:
-    """Return one channel as a component, its sensitivity by StationXML or by the study.
-
-    Raises ``InputError`` without a sensitivity, for another quantity, an inclined channel, a channel of text and the recorder's
-    clock.
-    """
+    """Return one channel as a component, its sensitivity by StationXML or by the study."""
     stats = trace.stats
     if not np.issubdtype(trace.data.dtype, np.number):
         raise InputError(f"{trace.id} holds text, not samples")
@@ -217,10 +213,7 @@ def _station(trace: "obspy.Trace") -> str:
 
 
 def _directions(channel_id: str, entry: stationxml.Channel | None) -> tuple[Statement, ...]:
-    """Return the statements of a channel's direction: its code, and StationXML's azimuth and dip.
-
-    Raises ``InputError`` for an inclined channel.
-    """
+    """Return the statements of a channel's direction: its code, and StationXML's azimuth and dip."""
     channel = channel_id.rpartition(".")[2]
     code = orientation_of(channel)
     statements = [Statement(Kind.CODE, f"channel {shown(channel)}", code)] if code else []

@@ -116,10 +116,7 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
 
 
 def _parsed(data: bytes) -> tuple[dict[str, float], dict[str, str], Samples]:
-    """Return the header's defined numbers and its texts ("" if undefined) by name, and the samples, shape (npts,).
-
-    Raises ``InputError`` for impossible numbers, and for a file of another length.
-    """
+    """Return the header's defined numbers and its texts ("" if undefined) by name, and the samples, shape (npts,)."""
     if len(data) < _HEADER:
         raise Truncated(f"holds {len(data)} bytes; a SAC header alone has {_HEADER}: the file is cut")
     order = _byte_order(data)

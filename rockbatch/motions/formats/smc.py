@@ -91,10 +91,7 @@ def parse(text: str) -> list[Recording]:
 
 
 def _from_film(values: Samples, number: str) -> tuple[float, Samples, tuple[str, ...]]:
-    """Return interval [s], even samples and notes of pairs of time [s] and value, flattened in ``values``.
-
-    Raises ``NoRecord`` for uneven times, since the corrected file of station ``number`` will do instead.
-    """
+    """Return interval [s], even samples and notes of pairs of time [s] and value, flattened in ``values``."""
     try:
         if len(values) % 2:
             raise InputError(f"no sampling rate, so digitised from film: found {len(values)} numbers; expected pairs")
@@ -112,10 +109,7 @@ def _real(lines: list[str], n: int) -> str:
 
 
 def _label(vertical: int, azimuth: int, unknown: int, text: str) -> str:
-    """Return the direction by angles from the vertical and north [degrees]: "Up", "Down" or "90"; else that of the ``text``.
-
-    Raises ``InputError`` for an inclined component.
-    """
+    """Return the direction by angles from the vertical and north [degrees]: "Up", "Down" or "90"; else that of the ``text``."""
     if vertical in _VERTICAL:
         return _VERTICAL[vertical]
     if vertical not in (90, unknown):

@@ -105,7 +105,6 @@ def _contradiction(stated: Stated, sampled: Sampled, gravity: float) -> Finding 
 
     None also for a text that is no number, a peak in an unknown unit, and a time, step or rate of 0, which programs write for
     unknown ones.
-    Raises ``Truncated`` for another count of samples.
     """
     printed = stated.text.strip()
     number = _PRINTED.fullmatch(printed)

@@ -153,10 +153,7 @@ def _table_error(lines: list[str], reason: str) -> InputError:
 
 
 def _separators(text: str, lines: list[str]) -> tuple[str, str]:
-    """Return the separator of columns besides blanks, and the decimal comma or "": (";", "") for numbers without commas.
-
-    Raises ``InputError`` for numbers with both points and commas, and for commas of unclear meaning.
-    """
+    """Return the separator of columns besides blanks, and the decimal comma or "": (";", "") for numbers without commas."""
     if not _in_numbers(",", text, lines):
         return ";", ""
     semicolon, point, tab = (_in_numbers(sign, text, lines) for sign in ";.\t")

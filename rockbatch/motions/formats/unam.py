@@ -157,10 +157,7 @@ def _first_sample_line(lines: list[str], start: int, labels: list[str]) -> int:
 
 
 def _values(lines: list[str], first: int, npts: int, channels: int, layout: str) -> tuple[Samples, int]:
-    """Return the samples, shape (npts, channels), and the number of further lines, two at most.
-
-    Raises ``InputError`` for fewer samples or more lines, a ``layout`` that is no format of the channels, and lines unlike it.
-    """
+    """Return the samples, shape (npts, channels), and the number of further lines, two at most."""
     form = _FORMAT.fullmatch(layout.replace(" ", ""))
     if form is None or int(form["per_line"]) != channels or int(form["width"]) < 2:
         raise InputError(f'the header says FORMATO DATOS : "{layout[:20]}"; expected one such as {channels}F10.4')

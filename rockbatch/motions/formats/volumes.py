@@ -114,10 +114,7 @@ def parse_pairs(text: str) -> list[Recording]:
 
 
 def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | None], int]:
-    """Return the channel whose title is ``lines[first]`` with the first time of its pairs [s], and the index after it.
-
-    Raises ``InputError`` with the line for another title, for spectra (Volume III), and for an incomplete channel.
-    """
+    """Return the channel whose title is ``lines[first]`` with the first time of its pairs [s], and the index after it."""
     volume = _volume(lines, first)
     if volume is None:
         raise InputError(

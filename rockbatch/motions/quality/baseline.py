@@ -6,11 +6,8 @@ No other baseline correction is done anywhere: no filter, no fitted line.
 import math
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Component
-from rockbatch.motions.motion import Samples
 
 RULES = ("as needed", "keep", "mean", "pre-event")
 
@@ -48,25 +45,13 @@ def remove_offset(component: Component, offset: Offset) -> Component:
         return replace(component, raw=False, notes=(*component.notes, note))
     if offset.rule == "as needed" and not component.raw:
         return component
-    if offset.window_s is None:
-        acceleration, note = without_offset(component.acceleration)
-    else:
+    inside, span = component.acceleration, "over the record"  # needs no picking, and makes the final velocity zero
+    if offset.window_s is not None:
         start, end = offset.window_s
-        inside = component.acceleration[
-            math.ceil(start / component.dt - 1e-9) : math.floor(end / component.dt + 1e-9) + 1
-        ]
+        inside = inside[math.ceil(start / component.dt - 1e-9) : math.floor(end / component.dt + 1e-9) + 1]
         if end > component.duration or len(inside) == 0:
             raise InputError(f"offset_window_s = [{start:g}, {end:g}] is not within its {component.duration:g} s")
-        mean = float(inside.mean())
-        acceleration = component.acceleration - mean
-        note = f"offset {mean:.4g} m/s² removed (mean from {start:g} to {end:g} s, before the event)"
-    return replace(component, acceleration=acceleration, raw=False, notes=(*component.notes, note))
-
-
-def without_offset(acceleration: Samples) -> tuple[Samples, str]:
-    """Return ``acceleration`` [m/s²] less its mean over the record, and a note.
-
-    The mean over the whole record, rather than before the event, needs no picking, and makes the final velocity zero.
-    """
-    offset = float(np.mean(acceleration))
-    return acceleration - offset, f"offset {offset:.4g} m/s² removed (mean over the record)"
+        span = f"from {start:g} to {end:g} s, before the event"
+    mean = float(inside.mean())
+    notes = (*component.notes, f"offset {mean:.4g} m/s² removed (mean {span})")
+    return replace(component, acceleration=component.acceleration - mean, raw=False, notes=notes)

@@ -70,15 +70,9 @@ def is_spike(samples: Samples) -> bool:
     return bool(np.abs(without).max() < SPIKE * np.abs(samples[i]))
 
 
-class AtRest(NamedTuple):
-    """Whether a series begins and ends at rest, and not within the strong motion."""
-
-    begins: bool
-    ends: bool
-
-
-def at_rest(samples: Samples, dt: float) -> AtRest:
-    """Return whether a series begins and ends with small samples beside its peak; both are true for one that never moves."""
+def parts_missing(samples: Samples, dt: float) -> list[str]:
+    """Return "begin" and "end", where a series has large samples beside its peak: within the strong motion, and not at rest."""
     peak = float(np.abs(samples).max(initial=0.0))
     last = max(min(round(_LAST / dt), int(_SHARE * len(samples))), 1)
-    return AtRest(bool(abs(samples[0]) <= BEGINS * peak), bool(np.abs(samples[-last:]).max() <= ENDS * peak))
+    large = {"begin": abs(samples[0]) > BEGINS * peak, "end": np.abs(samples[-last:]).max() > ENDS * peak}
+    return [part for part, is_large in large.items() if is_large]

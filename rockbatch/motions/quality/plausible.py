@@ -5,7 +5,7 @@ compared with real records in motions/README.md.
 """
 
 import re
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,7 @@ from rockbatch.motions.component import Component
 from rockbatch.motions.intensity import measures
 from rockbatch.motions.labels.orientation import KIK_NET, same_azimuth
 from rockbatch.motions.motion import Finding, Motion, Samples
-from rockbatch.motions.quality.faults import at_rest, filled_gap, is_spike
+from rockbatch.motions.quality.faults import filled_gap, is_spike, parts_missing
 from rockbatch.motions.quality.places import Stand, stand
 
 LOWEST, HIGHEST = 0.001, 5.0
@@ -75,6 +75,13 @@ class Candidate:
     peaks: Sequence[tuple[Component, float]]  # the horizontal components of its station, and their PGAs [m/s²]
     gravity: float  # [m/s²]
 
+    @property
+    def series(self) -> Iterator[tuple[str, Samples]]:
+        """Yield the samples of its motion, each behind the beginning of a sentence on them: "", or "vertical: "."""
+        yield "", self.motion.horizontal
+        if self.motion.vertical is not None:
+            yield "vertical: ", self.motion.vertical
+
 
 def unlikely_peak(candidate: Candidate) -> Finding | None:
     """Return a gross finding on a horizontal PGA outside 0.001–5 g, or a vertical one above 5 g; probably the unit is wrong.
@@ -85,17 +92,12 @@ def unlikely_peak(candidate: Candidate) -> Finding | None:
         return None
     horizontal = candidate.motion.pga / candidate.gravity
     vertical = (candidate.motion.pga_vertical or 0.0) / candidate.gravity
-    if LOWEST <= horizontal <= HIGHEST >= vertical:
-        return _strong_peak(max(horizontal, vertical)) if candidate.component.unit.strip().lower() == "g" else None
-    peak = f"PGA {horizontal:.3g} g"
-    if vertical > HIGHEST:
-        peak += f", vertical {vertical:.3g} g,"
-    return Finding("PGA", f"{peak} outside {LOWEST:g}–{HIGHEST:g} g: check the unit", gross=True, key="confirm_pga")
-
-
-def _strong_peak(peak: float) -> Finding | None:
-    """Return a finding on a peak [g] above 2 g, which would be a usual one in m/s²; None below."""
-    if peak <= STRONG:
+    peak = max(horizontal, vertical)
+    if not LOWEST <= horizontal <= HIGHEST >= vertical:
+        size = f"PGA {horizontal:.3g} g" + (f", vertical {vertical:.3g} g," if vertical > HIGHEST else "")
+        text = f"{size} outside {LOWEST:g}–{HIGHEST:g} g: check the unit"
+        return Finding("PGA", text, gross=True, key="confirm_pga")
+    if peak <= STRONG or candidate.component.unit.strip().lower() != "g":
         return None
     text = f"PGA {peak:.3g} g, as few records have; if its numbers are in m/s², it is {peak / GRAVITY:.2g} g: check the unit"
     return Finding("PGA", text, key="confirm_pga")
@@ -148,9 +150,7 @@ def no_zero_line(candidate: Candidate) -> Finding | None:
 
 def alternation(candidate: Candidate) -> Finding | None:
     """Return a gross finding on samples that alternate from one to the next by over 25 % of their peak; else None."""
-    for name, samples in (("", candidate.motion.horizontal), ("vertical: ", candidate.motion.vertical)):
-        if samples is None:
-            continue
+    for name, samples in candidate.series:
         swing, peak = alternating(samples), float(np.abs(samples).max())
         if swing > ALTERNATION * peak:
             text = (
@@ -247,11 +247,10 @@ def faulty_samples(candidate: Candidate) -> Finding | None:
 
 def incomplete_record(candidate: Candidate) -> Finding | None:
     """Return a finding on a horizontal component that does not begin or end at rest; else None."""
-    rest = at_rest(candidate.component.acceleration, candidate.component.dt)
-    if all(rest) or not _moves(candidate.component):
+    parts = parts_missing(candidate.component.acceleration, candidate.component.dt)
+    if not parts or not _moves(candidate.component):
         return None
-    parts = " or ".join(part for part, rests in (("begin", rest.begins), ("end", rest.ends)) if not rests)
-    return Finding("cut", f"it does not {parts} at rest: if it was recorded, a part is missing")
+    return Finding("cut", f"it does not {' or '.join(parts)} at rest: if it was recorded, a part is missing")
 
 
 def unequal_horizontals(candidate: Candidate) -> Finding | None:

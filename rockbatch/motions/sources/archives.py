@@ -210,10 +210,7 @@ def _from_disk(path: Path, first: int | None = None) -> bytes:
 
 
 def _from_gzip(data: bytes, first: int | None = None) -> bytes:
-    """Return the unpacked ``data``, or its ``first`` bytes.
-
-    Raises ``InputError`` for damaged or other data, and for more than 256 MiB or, above 1 MiB, 100 times the packed size.
-    """
+    """Return the unpacked ``data``, or its ``first`` bytes."""
     most = min(LARGEST, max(_NEVER_TOO_LARGE, _GROWTH * len(data)))
     try:
         with gzip.GzipFile(fileobj=io.BytesIO(data)) as file:

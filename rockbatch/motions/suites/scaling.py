@@ -103,12 +103,14 @@ def at_target(
     for motion, factor in zip(paired, target.factors_of(paired, gravity), strict=True):
         if refusal := _refusal(motion, factor, target, gravity, fits_any(motion.name, confirmed)):
             unusable.append(Unusable(motion.name, motion.sources, refusal))
-        elif factor == 1.0:
-            motions.append(motion)
         else:
-            notes = (*motion.notes, f"scaled by {factor:.4g} to {target}")
-            motions.append(replace(motion.times(factor), factor=motion.factor * factor, notes=notes))
+            motions.append(motion if factor == 1.0 else _scaled(motion, factor, f"scaled by {factor:.4g} to {target}"))
     return motion_set.reduced_to(motions, unusable)
+
+
+def _scaled(motion: Motion, factor: float, note: str) -> Motion:
+    """Return a motion with all components times a factor, which its own factor contains, and a note of it."""
+    return replace(motion.times(factor), factor=motion.factor * factor, notes=(*motion.notes, note))
 
 
 def scale_as_listed(motion_set: MotionSet) -> MotionSet:
@@ -116,18 +118,15 @@ def scale_as_listed(motion_set: MotionSet) -> MotionSet:
 
     A sequence has the factor that all its records share, if there is one.
     """
-    lacking = [motion for motion in motion_set if motion.listed.scale is None]
     none = 'has no scale factor: scale = "list" takes those of PEER\'s _SearchResults.csv in its folder'
     several = 'has no scale factor that all its records share: scale them by its factors, and leave out scale = "list"'
-    unusable = [
-        Unusable(m.name, m.sources, f"{m.label} {several if len(m.records) > 1 else none}", station=m.of_station)
-        for m in lacking
-    ]
-    scaled = []
-    for motion in motion_set:
-        if (factor := motion.listed.scale) is not None:
-            notes = (*motion.notes, f"scaled by {factor:.6g}, as PEER's search lists it")
-            scaled.append(replace(motion.times(factor), factor=motion.factor * factor, notes=notes))
+    scaled, unusable = list[Motion](), list[Unusable]()
+    for m in motion_set:
+        if (factor := m.listed.scale) is not None:
+            scaled.append(_scaled(m, factor, f"scaled by {factor:.6g}, as PEER's search lists it"))
+        else:
+            reason = f"{m.label} {several if len(m.records) > 1 else none}"
+            unusable.append(Unusable(m.name, m.sources, reason, station=m.of_station))
     return motion_set.reduced_to(scaled, unusable)
 
 
@@ -194,18 +193,19 @@ def scale_verticals(
         station, unscaled = motion.of_station, recorded[motion.name]
         if motion.vertical is None or unscaled is None:
             motions.append(motion)
-        elif station in alone and (
-            refusal := _refusal(
-                replace(alone[station], name=motion.name), factors[station], target, gravity, station in named
-            )
-        ):
-            unusable.append(Unusable(motion.name, motion.sources, f"its vertical component {refusal}"))
-        else:
-            factor = factors.get(station, motion.factor) * scale
-            words = [f"vertical scaled by {factors[station]:.4g} to {target}"] if station in factors else []
-            words += [f"vertical times {scale:g}"] if scale != 1.0 else []
-            notes = (*motion.notes, *words)
-            motions.append(replace(motion, vertical=unscaled * factor, vertical_factor=factor, notes=notes))
+            continue
+        factor, notes = motion.factor, list(motion.notes)
+        if station in alone:
+            factor = factors[station]
+            vertical = replace(alone[station], name=motion.name)
+            if refusal := _refusal(vertical, factor, target, gravity, station in named):
+                unusable.append(Unusable(motion.name, motion.sources, f"its vertical component {refusal}"))
+                continue
+            notes.append(f"vertical scaled by {factor:.4g} to {target}")
+        if scale != 1.0:
+            factor *= scale
+            notes.append(f"vertical times {scale:g}")
+        motions.append(replace(motion, vertical=unscaled * factor, vertical_factor=factor, notes=tuple(notes)))
     return motion_set.reduced_to(motions, unusable)
 
 
@@ -224,10 +224,7 @@ def _without_pair(motions: Sequence[Motion], target: Target | SpectrumTarget) ->
 def _refusal(
     motion: Motion, factor: float, target: Target | SpectrumTarget | None, gravity: float, confirmed: bool
 ) -> str:
-    """Return the reason to refuse a motion at rest, or one that needs more than ``MOST_FACTOR`` to meet a spectrum; else "".
-
-    The second one has the PGA [g] that it would have; it is used if ``confirmed``.
-    """
+    """Return why a motion at rest, or, unless ``confirmed``, one that needs more than ``MOST_FACTOR``, is refused; else ""."""
     if math.isinf(factor):
         return f"has no motion that can be scaled to {target}"
     if confirmed or factor <= MOST_FACTOR or not isinstance(target, SpectrumTarget):

@@ -196,16 +196,15 @@ def sequence(
     parts = [_resampled(part, dt, notes) for part in parts]
     pause_steps = max(2, round(pause / dt))
     starts = np.cumsum([0, *(part.npts - 1 + pause_steps for part in parts[:-1])])
-    vertical = None
+    rest, vertical, across = [Initial()] * len(parts), None, None
     if any(part.vertical is not None for part in parts):
         lacking = [part.name for part in parts if part.vertical is None]
         notes += [f"no vertical component in {lacks}: zeros" for lacks in dict.fromkeys(lacking)]
         verticals = [part.vertical if part.vertical is not None else np.zeros(part.npts) for part in parts]
-        vertical = _concatenated(verticals, [Initial()] * len(parts), dt, pause_steps, name, "vertical: ", notes)
-    across = None
+        vertical = _concatenated(verticals, rest, dt, pause_steps, name, "vertical: ", notes)
     acrosses = [part.across for part in parts if part.across is not None]
     if len(acrosses) == len(parts):
-        across = _concatenated(acrosses, [Initial()] * len(parts), dt, pause_steps, name, "across: ", notes)
+        across = _concatenated(acrosses, rest, dt, pause_steps, name, "across: ", notes)
     initial = [part.initial or Initial() for part in parts]
     horizontal = _concatenated([part.horizontal for part in parts], initial, dt, pause_steps, name, "", notes)
     shocks = []
@@ -281,7 +280,7 @@ def _concatenated(
 ) -> Samples:
     """Return accelerations one after the other, ``gap`` steps apart, in which the ground reaches the next ``initial`` velocity.
 
-    ``part`` names the component in ``notes`` and errors. Raises ``InputError`` if the pauses need too much acceleration.
+    ``part`` names the component in ``notes`` and errors.
     """
     if len(series) == 1:
         return series[0]
@@ -305,10 +304,8 @@ def _concatenated(
 
 
 def _with_common_origin(parts: Sequence[Motion], whole: Motion) -> Motion:
-    """Return ``whole`` with the sources and findings of all ``parts``, and facts that all share, such as magnitude; else None.
-
-    Its station is theirs joined by " + ".
-    """
+    """Return ``whole`` with the sources and findings of all ``parts``, and facts that all share, such as magnitude; else None."""
+    listed = {name: _common(getattr(part.listed, name) for part in parts) for name in vars(NOT_LISTED)}
     return replace(
         whole,
         source=", ".join(_in_turn((part.source,) for part in parts)),
@@ -323,16 +320,10 @@ def _with_common_origin(parts: Sequence[Motion], whole: Motion) -> Motion:
         magnitude=_common(part.magnitude for part in parts),
         distance_km=_common(part.distance_km for part in parts),
         processed=_common(part.processed for part in parts),
-        listed=_listed_of_all([part.listed for part in parts]),
+        listed=Listed(**listed | {"d5_95_s": None}),  # that of one record
         factor=_common(part.factor for part in parts) or 1.0,
         vertical_factor=_common(part.vertical_factor for part in parts),
     )
-
-
-def _listed_of_all(lists: Sequence[Listed]) -> Listed:
-    """Return the facts of lists on which all agree; None for others, and for D5–95, which is that of one record."""
-    shared = {name: _common(getattr(listed, name) for listed in lists) for name in vars(NOT_LISTED)}
-    return Listed(**shared | {"d5_95_s": None})
 
 
 def _in_turn(sources: Iterable[Iterable[str]]) -> tuple[str, ...]:
@@ -394,14 +385,17 @@ def _sequence_or_refusal(
 ) -> Motion | Unusable | LeftOut:
     """Return a sequence of the motions ``by_name``; unusable if a record of it is, or if they cannot be joined.
 
-    ``reasons`` has those of unusable and left-out records by name. For its name, if it is a record's, and for unknown names of
-    records raises ``InputError`` in a study, where ``source`` is ""; in a manifest the sequence is unusable, or left out if all
-    are unknown.
+    ``reasons`` has those of unusable and left-out records by name. A name that is taken or unknown is an error in a study, where
+    ``source`` is ""; in a manifest the sequence is unusable, or left out if all its records are unknown.
     """
     taken = ["a record has this name; give the sequence one of its own"] if entry.name in by_name else []
     missing = [name for name in entry.records if name not in by_name]
     reasons_of_parts = [f"its record {name} cannot be used: {reasons[name]}" for name in missing if name in reasons]
-    unknown = [_unknown_record(name, by_name) for name in missing if name not in reasons]
+    unknown = []
+    for name in (name for name in missing if name not in reasons):
+        nearest = closest(name, by_name)
+        hint = f"did you mean {shown(nearest)}?" if nearest else "`rockbatch motions PATH` lists them"
+        unknown.append(f"records: there is no record {shown(name)}; {hint}")
     if (taken or unknown) and not source:
         raise InputError(*(f"[[motions.sequence]] {shown(entry.name)}: {message}" for message in (*taken, *unknown)))
     # if only one file beside the manifest is read, or rotation has renamed the records
@@ -414,11 +408,3 @@ def _sequence_or_refusal(
             reasons_of_parts = list(error.messages)
     reason = f"sequence {shown(entry.name)}: {'; '.join((*taken, *reasons_of_parts, *unknown))}"
     return Unusable(entry.name, (source or "[[motions.sequence]]",), reason)
-
-
-def _unknown_record(name: str, records: Mapping[str, Motion]) -> str:
-    """Return the message about a name of no record, with the closest one."""
-    nearest = closest(name, records)
-    return f"records: there is no record {shown(name)}; " + (
-        f"did you mean {shown(nearest)}?" if nearest else "`rockbatch motions PATH` lists them"
-    )

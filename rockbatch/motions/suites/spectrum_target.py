@@ -184,7 +184,7 @@ class SpectrumTarget:
     def run_json_entry(self, motions: Sequence[Motion], gravity: float) -> dict[str, object]:
         """Return its entry of run.json: the target, and the mean spectrum of ``motions`` as used, 0 without any."""
         stations = [[motions[i] for i in station] for station in _stations(motions)]
-        return {
+        entry = {
             "spectrum": str(self.spectrum),
             "code": self.code,
             "stations": min(len(stations), len({station for motion in motions for station in motion.stations})),
@@ -200,15 +200,15 @@ class SpectrumTarget:
             "period_s": _rounded(self.periods),
             "sa_g": _rounded(self.spectrum.at(self.periods)),
             "mean_sa_g": _rounded(np.nan_to_num(self.mean(motions, self.periods, gravity))),
-            **self._components_mean(motions, gravity),
-            **(self._conditions(motions, gravity) if self.code and motions else {}),
         }
+        if motions and self.pairs in TWO_COMPONENT_RULES:
+            entry["components_sa_g"] = _rounded(replace(self, pairs="apart").mean(motions, self.periods, gravity))
+        return entry | (self._conditions(motions, gravity) if self.code and motions else {})
 
     def _conditions(self, motions: Sequence[Motion], gravity: float) -> dict[str, object]:
         """Return the values for a code's further conditions: longest period, both spectra at 0 s [g], and ranges of factors.
 
-        The record factor k₁ of NZS 1170.5 fits a record by least squares of ln S_a; the family factor k₂ is the rest. Infinite
-        periods, and values at 0 s of a spectrum that begins later, are left out.
+        The record factor k₁ of NZS 1170.5 fits a record by least squares of ln S_a; the family factor k₂ is the rest.
         """
         low, high = self.spectrum.limits
         members = [places for places in self._counted(motions) if motions[places[0]].pga > 0]
@@ -234,21 +234,12 @@ class SpectrumTarget:
 
     def _is_alone(self, station: Sequence[Motion]) -> bool:
         """Return whether a station lacks the second component that the rule needs."""
-        return (
-            bool(pairing_obstacle(station)) if self.pairs in TWO_COMPONENT_RULES else len(srss_components(station)) != 2
-        )
-
-    def _components_mean(self, motions: Sequence[Motion], gravity: float) -> dict[str, object]:
-        """Return {"components_sa_g": mean spectrum [g] of components}; {} without motions, or if ``pairs`` needs no two."""
-        if self.pairs not in TWO_COMPONENT_RULES or not motions:
-            return {}
-        return {"components_sa_g": _rounded(replace(self, pairs="apart").mean(motions, self.periods, gravity))}
+        two = not pairing_obstacle(station) if self.pairs in TWO_COMPONENT_RULES else len(srss_components(station)) == 2
+        return not two
 
 
 def _stations(motions: Sequence[Motion], among: Sequence[int] | None = None) -> list[list[int]]:
-    """Return the indices of ``motions``, or of those ``among`` them, grouped by station, which has another name in each
-    earthquake.
-    """
+    """Return the indices of ``motions``, or of those ``among`` them, grouped by station and earthquake."""
     places = range(len(motions)) if among is None else among
     return list(grouped(places, lambda i: motions[i].of_station).values())
 
