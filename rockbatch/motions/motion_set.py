@@ -3,12 +3,11 @@
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from numbers import Integral
 from typing import overload
 
 from rockbatch.common.errors import InputError
-from rockbatch.common.grouping import grouped
+from rockbatch.common.grouping import closest, grouped
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown, several
 from rockbatch.common.units import GRAVITY
@@ -142,8 +141,8 @@ class MotionSet(Shown):
         for motion in self.motions:
             if motion.name == which:
                 return motion
-        close = get_close_matches(which, [motion.name for motion in self.motions], 1)
-        hint = f'did you mean "{close[0]}"?' if close else f"there are {_first_names(self.motions)}"
+        nearest = closest(which, (motion.name for motion in self.motions))
+        hint = f'did you mean "{nearest}"?' if nearest else f"there are {_first_names(self.motions)}"
         raise InputError(f'there is no motion "{which}"; {hint}')
 
     def table(self) -> "pd.DataFrame":

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, refuse
 
 Samples = npt.NDArray[np.float64]
 
@@ -95,8 +95,7 @@ def _refined(
     wrong = [f"period = {period:g}: must be a number above 0 [s]" for period in periods if not 0 < period < math.inf]
     if not 0 <= damping < 1:
         wrong.append(f"damping = {damping:g}: must be within 0 ≤ damping < 1")
-    if wrong:
-        raise InputError(*wrong)
+    refuse(wrong)
     parts = np.ones(len(periods), dtype=int)
     while (few := periods < _PER_PERIOD * dt / parts * (1 - 1e-9)).any():
         parts[few] *= 2

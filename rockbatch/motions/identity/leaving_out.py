@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from pathlib import PurePosixPath
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import refuse
 from rockbatch.common.grouping import closest
 from rockbatch.common.naming import fits
 from rockbatch.common.showing import shown
@@ -71,8 +71,7 @@ class LeaveOut:
                 wrong.append(
                     f"[motions] leave_out: no record, file or station is called {shown(pattern)}, or matches it{hint}"
                 )
-        if wrong:
-            raise InputError(*wrong)
+        refuse(wrong)
 
     def _fitting(self, *names: str) -> str:
         """Return the first pattern that fits one of these names, and remember all that do; "" if none does."""

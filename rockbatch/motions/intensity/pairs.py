@@ -19,8 +19,6 @@ from rockbatch.motions.labels.orientation import not_square
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import PERIODS, Samples, as_periods, responses
 
-Array = npt.NDArray[np.float64]
-
 ANGLES = np.radians(np.arange(180.0))
 """Directions [rad], one degree apart over half a turn; the other half only reverses the components."""
 
@@ -43,7 +41,7 @@ TWO_COMPONENT_RULES = ("geomean", "rotd50", "rotd100")
 """Measures that need both components; the root of the sum of squares of one alone is that component."""
 
 
-def pair_measures(first: Array, second: Array) -> dict[str, float]:
+def pair_measures(first: Samples, second: Samples) -> dict[str, float]:
     """Return the measures by ``PAIR_RULES`` of two histories, shape (n,), in their unit."""
     a, b = _peak(first), _peak(second)
     directions = _peaks_by_direction(first, second)
@@ -51,11 +49,11 @@ def pair_measures(first: Array, second: Array) -> dict[str, float]:
     return dict(zip(PAIR_RULES, values, strict=True))
 
 
-def _peak(u: Array) -> float:
+def _peak(u: Samples) -> float:
     return float(np.abs(u).max())
 
 
-def _peaks_by_direction(first: Array, second: Array) -> Array:
+def _peaks_by_direction(first: Samples, second: Samples) -> Samples:
     """Return max |u₁ cos φ + u₂ sin φ| for each of the directions ``ANGLES``, shape (180,).
 
     Only points outside a circle can be the maximum whose radius is exceeded in every direction: mostly a hundredth of all.
@@ -151,7 +149,7 @@ def srss_components(motions: Sequence[Motion]) -> list[tuple[Samples, float]]:
     return [(first.horizontal, first.dt)]
 
 
-def station_spectra(motions: Sequence[Motion], periods: npt.ArrayLike, damping: float) -> dict[str, Array]:
+def station_spectra(motions: Sequence[Motion], periods: npt.ArrayLike, damping: float) -> dict[str, Samples]:
     """Return the spectral accelerations [m/s²] of a station by ``PAIR_RULES``, shape (periods,) each.
 
     Raises ``InputError`` as :func:`pair_of`, and for periods and damping out of range.

@@ -14,7 +14,6 @@ import math
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 
 from rockbatch.motions.intensity.measures import velocity
 from rockbatch.motions.motion import Motion, Samples
@@ -34,8 +33,6 @@ _WAVELETS = 10
 _NEAR = 0.4  # scales about the first wavelet, as in the authors' program of 2014; the paper's own figure is not at hand
 _SCALES, _BETWEEN = 50, 41  # over all periods, and about the best of them
 _HALVINGS = 9  # of the unit grid on which the wavelet is tabulated
-
-Array = npt.NDArray[np.float64]
 
 
 def pulse_period(motion: Motion) -> float | None:
@@ -72,7 +69,7 @@ def _largest(v: Samples, dt: float) -> tuple[float, int]:
     return float(scale), place
 
 
-def _wavelet_sum(v: Samples, scale: float, place: int) -> Array:
+def _wavelet_sum(v: Samples, scale: float, place: int) -> Samples:
     """Return the pulse, shape (npts,): ten wavelets of one scale, each the largest of the remainder near index ``place``."""
     near = math.ceil(_NEAR * scale)
     window = slice(max(place - near, 0), place + near + 1)
@@ -96,7 +93,7 @@ class _Transform:
         self.padded = 1 << (self.length + len(_wavelet(largest_scale)) - 1).bit_length()
         self.spectrum = np.fft.rfft(signal, self.padded)
 
-    def coefficients(self, scale: float) -> Array:
+    def coefficients(self, scale: float) -> Samples:
         """Return the coefficients, shape (npts,), of wavelets of a scale [samples] centred on each sample."""
         wavelet = _wavelet(scale)
         product = self.spectrum * np.conj(np.fft.rfft(wavelet, self.padded))
@@ -115,7 +112,7 @@ def _sample_reaching(v: Samples, share: float) -> int:
     return int(np.searchsorted(energy, share * energy[-1]))
 
 
-def _wavelet(scale: float) -> Array:
+def _wavelet(scale: float) -> Samples:
     """Return the wavelet of a scale [samples], at an odd number of samples centred on the middle of its support."""
     half = math.ceil(0.5 * _SUPPORT * scale)
     x, psi = _daubechies()
@@ -124,7 +121,7 @@ def _wavelet(scale: float) -> Array:
 
 
 @cache
-def _daubechies() -> tuple[Array, Array]:
+def _daubechies() -> tuple[Samples, Samples]:
     """Return the Daubechies wavelet of order 4, ∫ψ² dx = 1, tabulated on its support 0..7.
 
     The scaling function φ(x) = √2 Σ h_k φ(2x − k) is known at the whole numbers as an eigenvector, and with every use of that
@@ -143,7 +140,7 @@ def _daubechies() -> tuple[Array, Array]:
     return np.arange(len(psi)) / (1 << (_HALVINGS + 1)), psi
 
 
-def _on_finer_grid(coefficients: Array, phi: Array, per_unit: int) -> Array:
+def _on_finer_grid(coefficients: Samples, phi: Samples, per_unit: int) -> Samples:
     """Return √2 Σ c_k φ(2x − k) on a grid of half the step of φ, which has ``per_unit`` steps per unit of x."""
     finer = np.zeros(2 * len(phi) - 1)
     for k, coefficient in enumerate(coefficients):
@@ -151,7 +148,7 @@ def _on_finer_grid(coefficients: Array, phi: Array, per_unit: int) -> Array:
     return finer
 
 
-def _filter() -> Array:
+def _filter() -> Samples:
     """Return the low-pass filter with four vanishing moments, shape (8,): the minimum-phase factor (Daubechies 1992, 6.1)."""
     order = 4
     y = np.roots([math.comb(order - 1 + k, k) for k in reversed(range(order))])

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, refuse
 from rockbatch.common.units import GRAVITY, acceleration_factor
 from rockbatch.motions.limits import SAME_STEP, STEPS, is_step
 from rockbatch.motions.sources.stationxml import Inventories
@@ -89,8 +89,7 @@ class ReadOptions:
                 wrong.append(
                     f'columns = {list(self.columns)}: no component among them; write e.g. ["time", "000", "090", "up"]'
                 )
-        if wrong:
-            raise InputError(*wrong)
+        refuse(wrong)
 
     def with_statement(self, stated: Mapping[str, object]) -> "ReadOptions":
         """Return these options with the statements ``stated`` of a manifest, by field, which replace the file's own."""

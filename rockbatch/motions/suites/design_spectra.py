@@ -7,13 +7,11 @@ from pathlib import Path
 from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
+from rockbatch.motions.spectrum import Samples
 from rockbatch.toml.reader import TomlFile
-
-Array = npt.NDArray[np.float64]
 
 
 class Spectrum(Protocol):
@@ -35,7 +33,7 @@ class Spectrum(Protocol):
     def beyond(self) -> str:
         """Return a remark on a limit of the code that is exceeded and not applied; empty if none is."""
 
-    def at(self, periods: Array) -> Array:
+    def at(self, periods: Samples) -> Samples:
         """Return the spectral acceleration [g] at periods [s], shape (n,); NaN outside ``limits``."""
 
 
@@ -99,7 +97,7 @@ class EurocodeSpectrum:
         symbol = "a_vg" if self.shape == VERTICAL_SHAPE else "a_g"
         return f"{self.name}, {symbol} = {self.ag_g:g} g, {100 * self.damping:g} %"
 
-    def at(self, periods: Array) -> Array:
+    def at(self, periods: Samples) -> Samples:
         """Return the spectral acceleration [g] at periods [s]; NaN outside ``limits``."""
         s, tb, tc, td = self.shape
         eta = max(math.sqrt(10.0 / (5.0 + 100.0 * self.damping)), 0.55)
@@ -125,7 +123,7 @@ class AsceSpectrum:
     def __str__(self) -> str:
         return f"ASCE 7, S_DS = {self.sds_g:g} g, S_D1 = {self.sd1_g:g} g, T_L = {self.tl_s:g} s, 5 %"
 
-    def at(self, periods: Array) -> Array:
+    def at(self, periods: Samples) -> Samples:
         """Return the spectral acceleration [g] at periods [s] of 0 or more, all of which are within ``limits``."""
         ts = self.sd1_g / self.sds_g
         t0 = 0.2 * ts
@@ -153,7 +151,7 @@ class AashtoSpectrum:
     def __str__(self) -> str:
         return f"AASHTO, A_s = {self.as_g:g} g, S_DS = {self.sds_g:g} g, S_D1 = {self.sd1_g:g} g, 5 %"
 
-    def at(self, periods: Array) -> Array:
+    def at(self, periods: Samples) -> Samples:
         """Return the spectral acceleration [g] at periods [s] of 0 or more, all of which are within ``limits``."""
         ts = self.sd1_g / self.sds_g
         t0 = 0.2 * ts
@@ -221,7 +219,7 @@ class NzsSpectrum:
             f"{MOST_ZR / self.hazard_factor:.4g}"
         )
 
-    def at(self, periods: Array) -> Array:
+    def at(self, periods: Samples) -> Samples:
         """Return the spectral acceleration [g] at periods [s]; NaN outside ``limits``."""
         start, plateau, a, b, c = NZS_1170_5[self.subsoil]
         t = np.maximum(periods, 1e-12)
@@ -230,7 +228,7 @@ class NzsSpectrum:
         values = shape * self.hazard_factor * self.return_period_factor * self._near(t)
         return _within(self.limits, periods, values)
 
-    def _near(self, t: Array) -> Array:
+    def _near(self, t: Samples) -> Samples:
         """Return the near-fault factor N(T, D) at periods ``t`` [s], shape of ``t``: 1 up to 1.5 s, 1.6 at 4 s, 1.66 at 4.5 s.
 
         That is up to 2 km from the fault; N − 1 falls linearly to 0 at 20 km, and is 0 for R ≤ 0.75.
@@ -279,7 +277,7 @@ class TableSpectrum:
         """Return the first and the last period of the table [s]."""
         return self.periods[0], self.periods[-1]
 
-    def at(self, periods: Array) -> Array:
+    def at(self, periods: Samples) -> Samples:
         """Return the spectral acceleration [g] at periods [s]; NaN outside ``limits``."""
         if self.linear:
             return _within(self.limits, periods, np.interp(periods, self.periods, self.sa_g))
@@ -318,7 +316,7 @@ def read_spectrum(path: str | os.PathLike[str], damping: float = 0.05, linear: b
     return TableSpectrum(tuple(periods), tuple(values), damping, path.name, linear)
 
 
-def _within(limits: tuple[float, float], periods: Array, values: Array) -> Array:
+def _within(limits: tuple[float, float], periods: Samples, values: Samples) -> Samples:
     """Return ``values``, with NaN at periods [s] outside ``limits``."""
     low, high = limits
     inside = (np.asarray(periods) >= low * (1 - 1e-9)) & (np.asarray(periods) <= high * (1 + 1e-9))

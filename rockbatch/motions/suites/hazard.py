@@ -7,12 +7,10 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError
-
-Values = npt.NDArray[np.float64]
+from rockbatch.common.errors import refuse
+from rockbatch.motions.spectrum import Samples
 
 REACH = 10.0
 """Extrapolation of a curve beyond its table with its end slope, in ln x: a factor of 22,000 either way."""
@@ -62,16 +60,14 @@ class HazardCurve:
     shape: Literal["points", "quadratic"] = "points"
 
     def __post_init__(self) -> None:
-        wrong = [message for _, message in problems(self.levels, self.rates, self.slope, self.shape)]
-        if wrong:
-            raise InputError(*wrong)
+        refuse(message for _, message in problems(self.levels, self.rates, self.slope, self.shape))
 
     @property
     def ends(self) -> tuple[float, float]:
         """Return the lowest and the highest intensity of the points; rates beyond them are extrapolated."""
         return self.levels[0], self.levels[-1]
 
-    def rate(self, x: "Sequence[float] | Values") -> Values:
+    def rate(self, x: "Sequence[float] | Samples") -> Samples:
         """Return the annual rate at which each intensity ``x`` above 0 is exceeded, in its shape; extrapolated beyond the points.
 
         Below the summit of a parabola it is the rate of the summit, and beyond its bottom the rate of the bottom.
@@ -83,7 +79,7 @@ class HazardCurve:
         segment = np.clip(np.searchsorted(logs, log_x) - 1, 0, len(k) - 1)
         return np.exp(np.log(np.array(self.rates))[segment] - k[segment] * (log_x - logs[segment]))
 
-    def log_slope(self, x: Values) -> Values:
+    def log_slope(self, x: Samples) -> Samples:
         """Return k(x) = −d ln ν/d ln x, shape of ``x``, 0 on the rising side of a parabola."""
         log_x = np.log(x)
         if self.shape == "quadratic":
@@ -91,7 +87,7 @@ class HazardCurve:
         k = self._slopes
         return k[np.clip(np.searchsorted(np.log(self.levels), log_x) - 1, 0, len(k) - 1)]
 
-    def quadrature(self) -> tuple[Values, Values]:
+    def quadrature(self) -> tuple[Samples, Samples]:
         """Return rising intensities x and weights w [1/year], shape (n,): ∑ P(x) w = ∫ P(x) |dν(x)|, the mean annual rate.
 
         P is a fragility. The last weight stands for all stronger motions.
@@ -112,14 +108,14 @@ class HazardCurve:
         return float(np.abs(self.rate(self.levels) / np.array(self.rates) - 1.0).max())
 
     @property
-    def _slopes(self) -> Values:
+    def _slopes(self) -> Samples:
         """Return the slopes k between the points, shape (points − 1,); the slope alone, shape (1,), if it is given."""
         if self.slope is not None:
             return np.array([self.slope])
         return -np.diff(np.log(self.rates)) / np.diff(np.log(self.levels))
 
     @property
-    def _parabola(self) -> Values:
+    def _parabola(self) -> Samples:
         """Return the coefficients of ln ν as a polynomial of ln x, of the square first."""
         return np.polyfit(np.log(self.levels), np.log(self.rates), 2)
 

@@ -18,7 +18,6 @@ Sine and cosine: Palmeri & Makris (2007), Figs. 5 and 6. Mavroeidis & Papageorgi
 1099–1131, eq. 3.
 """
 
-import difflib
 import math
 from collections.abc import Callable, Collection
 
@@ -26,6 +25,7 @@ import numpy as np
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import Contradiction, MissingKey, OutOfRange, Problem, Unusual, WrongType, refuse
+from rockbatch.common.grouping import closest
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import MOST_SAMPLES, Initial, Motion, Samples
 
@@ -148,8 +148,8 @@ def _problems(
         wrong.append(Problem("amplitude", amplitude, "must be a number other than 0 [m/s²]", kind=OutOfRange))
     oscillates = shape == "mavroeidis-papageorgiou"
     if shape not in SHAPES:
-        close = difflib.get_close_matches(shape, SHAPES, 1)
-        hint = f'; did you mean "{close[0]}"?' if close else ""
+        nearest = closest(shape, SHAPES)
+        hint = f'; did you mean "{nearest}"?' if nearest else ""
         wrong.append(Problem("shape", shape, f"must be one of {', '.join(SHAPES)}{hint}", kind=WrongType))
     elif oscillates:
         if gamma is None or not (math.isfinite(gamma) and gamma > 1):

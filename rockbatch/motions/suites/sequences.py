@@ -14,7 +14,7 @@ from typing import TypeVar
 import numpy as np
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, refuse
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
 from rockbatch.common.units import GRAVITY, Usual
@@ -62,8 +62,7 @@ class ShockSequence:
         for key, count in (("factors", len(self.factors)), ("polarity", len(self.polarity))):
             if count not in (0, 1, n):
                 wrong.append(f"{key}: {count} given for {n} records; write one for each, or one for all")
-        if wrong:
-            raise InputError(*wrong)
+        refuse(wrong)
 
     def as_motion(self, parts: Sequence[Motion]) -> Motion:
         """Return its records ``parts``, in their order, as one motion, with its pause, factors and polarities.
@@ -240,8 +239,7 @@ def _check(
     wrong += [
         f"{name}: {motion.name} is a sequence itself; give its records" for motion in motions if len(motion.shocks) > 1
     ]
-    if wrong:
-        raise InputError(*wrong)
+    refuse(wrong)
 
 
 def _check_size(parts: Sequence[Motion], dt: float, name: str, pause: float) -> None:
@@ -361,8 +359,7 @@ def add_sequences(
             wrong += error.messages
         else:
             (joined_motions if isinstance(joined, Motion) else refused).append(joined)  # type: ignore[arg-type]
-    if wrong:
-        raise InputError(*wrong)
+    refuse(wrong)
     names = {motion.name for motion in joined_motions}
     parts = {name: entry.name for entry in reversed(sequences) if entry.name in names for name in entry.records}
     alone = {name for entry in sequences if entry.alone for name in entry.records}

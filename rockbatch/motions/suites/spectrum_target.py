@@ -5,9 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import refuse
 from rockbatch.common.grouping import grouped
 from rockbatch.motions.intensity.pairs import (
     TWO_COMPONENT_RULES,
@@ -20,8 +19,6 @@ from rockbatch.motions.intensity.pairs import (
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import Samples, spectral_acceleration
 from rockbatch.motions.suites.design_spectra import Spectrum
-
-Array = npt.NDArray[np.float64]
 
 FACTORS = ("both", "each", "suite", "none")
 """See :class:`SpectrumTarget`."""
@@ -84,8 +81,7 @@ class SpectrumTarget:
             wrong.append(f'factors = "{self.factors}": must be one of {", ".join(FACTORS)}')
         if self.pairs not in PAIRS:
             wrong.append(f'pairs = "{self.pairs}": must be one of {", ".join(PAIRS)}')
-        if wrong:
-            raise InputError(*wrong)
+        refuse(wrong)
 
     @property
     def share(self) -> float:
@@ -102,7 +98,7 @@ class SpectrumTarget:
         return "EN 1998-2" if self.pairs == "srss" and self.spectrum.code == "EN 1998-1" else self.spectrum.code
 
     @property
-    def periods(self) -> Array:
+    def periods(self) -> Samples:
         """Return the periods of the fit [s], shape (n,): a hundred a decade, evenly in ln T, from the least to the largest."""
         low, high = self.range_s
         return np.geomspace(low, high, 1 + max(1, math.ceil(_A_DECADE * math.log10(high / low))))
@@ -131,7 +127,9 @@ class SpectrumTarget:
             factors[moving] *= common if self.factors == "suite" else max(1.0, common)
         return factors.tolist()
 
-    def mean(self, motions: Sequence[Motion], periods: Array, gravity: float, spectra: Array | None = None) -> Array:
+    def mean(
+        self, motions: Sequence[Motion], periods: Samples, gravity: float, spectra: Samples | None = None
+    ) -> Samples:
         """Return the suite's mean spectrum [g] at ``periods`` [s], shape (periods,); NaN without motions.
 
         ``spectra``, shape (motions, periods), are those of the components, if already computed; only "apart" uses them. Stations
@@ -157,13 +155,13 @@ class SpectrumTarget:
         self,
         motions: Sequence[Motion],
         members: Sequence[Sequence[int]],
-        periods: Array,
+        periods: Samples,
         gravity: float,
-        spectra: Array | None = None,
-    ) -> list[Array]:
+        spectra: Samples | None = None,
+    ) -> list[Samples]:
         """Return a spectrum [g] for each of ``members``, shape (periods,)."""
 
-        def spectrum_of(samples: Samples, dt: float) -> Array:
+        def spectrum_of(samples: Samples, dt: float) -> Samples:
             return spectral_acceleration(samples, dt, periods, self.spectrum.damping) / gravity
 
         if self.pairs == "apart":
@@ -250,6 +248,6 @@ def _events(stations: Sequence[Sequence[Motion]]) -> int:
     return len(set(events)) if all(events) else 0
 
 
-def _rounded(values: Array | Sequence[float]) -> list[float]:
+def _rounded(values: Samples | Sequence[float]) -> list[float]:
     """Return values rounded to five significant digits."""
     return [float(f"{value:.5g}") for value in values]
