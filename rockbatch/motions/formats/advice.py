@@ -4,7 +4,7 @@ A statement is as in ``motions.toml``: the file is read again with it, and the m
 records whose header, count and step agree.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from rockbatch.common.errors import InputError, Unstated
@@ -85,19 +85,11 @@ def _trial(statement: Statement, read: Read, options: ReadOptions) -> _Trial:
         except InputError as refusal:
             return _Trial(stated, (), "; ".join(refusal.messages))
         else:
-            reasons = [*_objections(readings)]
             components = [reading for reading in readings if isinstance(reading, Component)]
+            reasons = [reading.reason for reading in readings if isinstance(reading, Unusable)]
+            reasons += [finding.text for component in components for finding in component.findings if finding.gross]
             return _Trial(stated, () if reasons else components, "; ".join(reasons))
     return _Trial(stated, (), "it lacks more than can be stated")
-
-
-def _objections(readings: Sequence[Component | Unusable]) -> Iterator[str]:
-    """Yield the reasons of unusable readings, and the texts of gross findings on components."""
-    for reading in readings:
-        if isinstance(reading, Unusable):
-            yield reading.reason
-        else:
-            yield from (finding.text for finding in reading.findings if finding.gross)
 
 
 def _advice_text(choice: Statement, trial: _Trial, peak: float, gravity: float) -> str:
@@ -115,10 +107,7 @@ def _advice_text(choice: Statement, trial: _Trial, peak: float, gravity: float) 
 
 
 def _units(peak: float, gravity: float) -> str:
-    """Return the words "unit = …" with all units in which a ``peak`` is a PGA of 0.001 to 5 g, each with that PGA.
-
-    Imperial units and mg are in it only if no other fits; without any it asks for the unit.
-    """
+    """Return the words "unit = …" with the usual units in which a ``peak`` is a PGA of 0.001 to 5 g, else others, or none."""
     for units in _UNITS:
         peaks = {unit: peak * acceleration_factor(unit, gravity) / gravity for unit in units}
         fitting = [f"{shown(unit)} (PGA {pga:.2g} g)" for unit, pga in peaks.items() if LOWEST <= pga <= HIGHEST]

@@ -19,10 +19,6 @@ _MOST = 40  # lines of header
 _TITLE = b"STRONG GROUND MOTION RECORDS OF TURKIYE"
 _PEAKS = re.compile(r"PGA VALUES *\((?P<unit>[^)]{1,20})\)", re.IGNORECASE)
 _PEAK = re.compile(r"\((?P<label>[NEU]-[SWD])\) *(?P<peak>[-+]?[0-9.]{1,15})")
-_MOMENT = re.compile(
-    r"(?P<day>\d{2})/(?P<month>\d{2})/(?P<year>\d{4}) (?P<hour>\d{2}):(?P<minute>\d{2}):(?P<second>\d{2}(?:\.\d{1,6})?)",
-    re.ASCII,
-)
 
 
 def is_afad(head: bytes) -> bool:
@@ -54,7 +50,7 @@ def parse(text: str) -> list[Recording]:
             values=values[:, i],
             unit=fields["unit"],
             station=f"{station}, {began}" if station else "",
-            start=moment_in(_MOMENT, began),
+            start=moment_in(began),
             processed=False,
             sensor=Sensor(station, "TK"),
             event=event,

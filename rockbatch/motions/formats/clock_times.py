@@ -10,8 +10,9 @@ _CLOCK = re.compile(
     (?P<zone>[ ]?(?:Z|UTC|GMT)|[+-]\d\d:?\d\d)?"?(?=[ \t]*(?:[,;\t ]|$))""",
     re.MULTILINE | re.VERBOSE,
 )
-_NO_COMMA = re.compile(r"[ \t]*(?:;|[ \t](?!,))")  # between a time and a number
-_DECIMAL_COMMA = re.compile(r"\d,\d")
+_DECIMAL_COMMA = re.compile(  # in the line behind a time, which no comma and no line with points follows
+    r"[ \t]*(?:;|[ \t](?!,))(?=[^\n.]*(?:\n|$))(?=[^\n]*\d,\d)"
+)
 _FEWEST = 3  # lines that begin with a time; a header has one at most
 _DAY = 86400  # s
 
@@ -31,7 +32,8 @@ def in_seconds(text: str) -> tuple[str, float | None]:
         return text, None
     fraction = _nanoseconds(times[0])
     days, latest = 0, first
-    point = "," if any(_has_decimal_commas(text, match.end()) for match in times) else "."
+    has_commas = (_DECIMAL_COMMA.match(text, match.end()) for match in times)
+    point = "," if any(has_commas) else "."
 
     def seconds(match: re.Match[str]) -> str:
         """Return the line's beginning with seconds in place of its time."""
@@ -49,18 +51,6 @@ def in_seconds(text: str) -> tuple[str, float | None]:
         return _CLOCK.sub(seconds, text), _start(times[0], first, fraction)
     except ValueError:  # an impossible clock time
         return text, None
-
-
-def _has_decimal_commas(text: str, start: int) -> bool:
-    """Return whether the numbers from ``start`` to the end of its line, behind a time, have decimal commas.
-
-    They have none behind a comma, or in a line with a point.
-    """
-    if not _NO_COMMA.match(text, start):
-        return False
-    end = text.find("\n", start)
-    line = text[start : end if end >= 0 else len(text)]
-    return "." not in line and _DECIMAL_COMMA.search(line) is not None
 
 
 def _moment(match: re.Match[str]) -> datetime:

@@ -13,10 +13,6 @@ from rockbatch.motions.formats.time_steps import on_even_steps
 from rockbatch.motions.labels.origin import origin_of
 
 _LABEL = re.compile(r"\s*(?P<label>[A-Za-z0-9]{1,8})\(\+\)\s*")
-_MOMENT = re.compile(
-    r"(?P<year>\d{4})/(?P<month>\d{1,2})/(?P<day>\d{1,2})-(?P<hour>\d\d):(?P<minute>\d\d):(?P<second>\d\d(?:\.\d{1,6})?)",
-    re.ASCII,
-)
 _EXTREMES = re.compile(r"\s*(-?\d{1,6}\.\d{1,6})\s*~\s*(-?\d{1,6}\.\d{1,6})\s*", re.ASCII)
 _TAIPEI = 8 * 3600.0  # s ahead of UTC
 
@@ -38,7 +34,7 @@ def parse(text: str) -> list[Recording]:
     station = header.get("StationCode", "")
     local = header.get("StartTime(GMT+08)", "")
     began = local or header.get("StartTime", "")
-    start = moment_in(_MOMENT, began)
+    start = moment_in(began)
     recordings = []
     for i, label in enumerate(labels):
         recording = Recording(

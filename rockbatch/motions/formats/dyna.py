@@ -4,8 +4,6 @@ Lines of ``KEY: value`` (64 of them in DYNA 1.2), then one value per line. The k
 files; empty ones are unknown.
 """
 
-import re
-
 from rockbatch.common.errors import NoRecord
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
@@ -17,11 +15,6 @@ from rockbatch.motions.labels.origin import TURKISH, origin_of
 
 _MOST_KEYS = 200
 _TURKISH = ("TK", "TU", "KO")  # networks whose texts are in Windows-1254
-_MOMENT = re.compile(
-    r"(?P<year>\d{4})/?(?P<month>\d\d)/?(?P<day>\d\d)[_ T]"
-    r"(?P<hour>\d\d):?(?P<minute>\d\d):?(?P<second>\d\d(?:\.\d{1,6})?)",
-    re.ASCII,
-)
 
 
 def is_dyna(head: bytes) -> bool:
@@ -48,7 +41,7 @@ def parse(text: str) -> list[Recording]:
             values=spaced_numbers(lines, len(header), npts, 1),
             unit=header["UNITS"],
             station=", ".join([".".join((*codes, stream[:-1])), event, header.get("PROCESSING", "")]),
-            start=moment_in(_MOMENT, header.get("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS", "")),
+            start=moment_in(header.get("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS", "")),
             raw="NOT REMOVED" in header.get("BASELINE_CORRECTION", "").upper(),
             processed=filtered.upper() != "NONE" if filtered else None,
             sensor=Sensor(codes[1], codes[0], codes[2]),

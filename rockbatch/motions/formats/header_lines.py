@@ -15,6 +15,13 @@ _DAY_FIRST = re.compile(
 CLOCK = r"(?P<hour>\d{1,2}):(?P<minute>[ \d]\d):(?P<second>[ \d]\d(?:\.\d{1,6})?)"
 """Pattern of a time of day; Fortran writes "03:16: 8.0"."""
 
+_MOMENTS = tuple(  # 20160214_001345.000, 2016/2/14-00:13:45, 14/02/2016 00:13:45
+    re.compile(rf"{day}[-_ T](?P<hour>\d\d):?(?P<minute>\d\d):?(?P<second>\d\d(?:\.\d{{1,6}})?)", re.ASCII)
+    for day in (
+        r"(?P<year>\d{4})/?(?P<month>\d{1,2})/?(?P<day>\d{1,2})",
+        r"(?P<day>\d\d)/(?P<month>\d\d)/(?P<year>\d{4})",
+    )
+)
 _ENGLISH_MONTHS = ("JAN", "FEB", "MAR", "APR", "MAY", "JUN", "JUL", "AUG", "SEP", "OCT", "NOV", "DEC")
 _SPANISH_MONTHS = {"ENE": 1, "ABR": 4, "AGO": 8, "SET": 9, "DIC": 12}  # the others are as in English
 _MONTHS = {name: i for i, name in enumerate(_ENGLISH_MONTHS, start=1)} | _SPANISH_MONTHS
@@ -152,9 +159,9 @@ def moment_of(groups: Mapping[str, str]) -> float | None:
         return None
 
 
-def moment_in(pattern: re.Pattern[str], text: str) -> float | None:
-    """Return the time [s since 1970, UTC] at the beginning of a text by a ``pattern``; ``None`` without a match."""
-    match = pattern.match(text)
+def moment_in(text: str) -> float | None:
+    """Return the time [s since 1970, UTC] at the beginning of a text, its date in digits; ``None`` without one."""
+    match = next(filter(None, (pattern.match(text) for pattern in _MOMENTS)), None)
     return moment_of(match.groupdict()) if match else None
 
 
