@@ -50,7 +50,9 @@ def with_advice(error: Unstated, read: Read, options: ReadOptions, gravity: floa
     advice, where = [], _WHERE
     for choice, trial in zip(choices, trials, strict=True):
         if trial.components:
-            without_unit = _without_unit(trial, read, options)
+            other = _trial({**trial.stated, "unit": _OTHER_UNIT}, read, options) if "unit" in trial.stated else trial
+            pairs = zip(trial.components, other.components, strict=True)
+            without_unit = [c for c, changed in pairs if changed.unit != c.unit]  # to which a stated unit applies
             where = _WHERE_FOR_SOME if 0 < len(without_unit) < len(trial.components) else where
             advice.append(_advice_text(choice, trial, max((c.pga for c in without_unit), default=0.0), gravity))
     problem = "; ".join(error.messages)
@@ -61,14 +63,6 @@ def with_advice(error: Unstated, read: Read, options: ReadOptions, gravity: floa
         message = f"{problem}; what could be stated makes no record of it: {trials[0].refusal}"
     stated = dict.fromkeys(key for trial in trials for key in (*trial.stated, *error.keys) if trial.components)
     return type(error)(message, keys=tuple(stated or error.keys))
-
-
-def _without_unit(trial: _Trial, read: Read, options: ReadOptions) -> list[Component]:
-    """Return the components to which a stated unit applies, since they have none of their own; [] if no unit is stated."""
-    if "unit" not in trial.stated:
-        return []
-    other = _trial({**trial.stated, "unit": _OTHER_UNIT}, read, options)
-    return [c for c, changed in zip(trial.components, other.components, strict=True) if changed.unit != c.unit]
 
 
 def _trial(statement: Statement, read: Read, options: ReadOptions) -> _Trial:

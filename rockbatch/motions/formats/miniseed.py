@@ -5,7 +5,6 @@ from collections.abc import Container, Iterable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from rockbatch.common.errors import InputError, Truncated, Unstated, UnusableRecord
 from rockbatch.common.grouping import grouped
@@ -17,7 +16,7 @@ from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.labels.evidence import Kind, Statement, angles_statement, decided_orientation
 from rockbatch.motions.labels.orientation import is_clock, not_acceleration, orientation_of
 from rockbatch.motions.labels.origin import origin_of
-from rockbatch.motions.motion import Finding, Samples
+from rockbatch.motions.motion import Finding
 from rockbatch.motions.quality.places import Stand, depth_as_place, stand
 from rockbatch.motions.sources import stationxml
 from rockbatch.motions.sources.record_file import RecordFile, no_acceleration
@@ -29,9 +28,6 @@ _STATED = "sensitivity = … (counts per m/s²) in the study, or for this file i
 _MOST_NAMED = 5  # of the .xml files that could not be read
 _MOST_PIECES = 1000  # of channels in a file: a network of three hundred stations
 _APART, _LEAST_APART = 3.0, 60.0  # times the longest piece of a channel, and seconds: longer gaps separate two events
-_BLOCK_FIELDS = ["number", "quality", "codes", "year", "day", "hour", "minute", "second", "fraction", "npts"]
-_BLOCK_FORMATS = ["S6", "S1", "S12", "u2", "u2", "u1", "u1", "u1", "u2", "u2"]
-_BLOCK_OFFSETS = [0, 6, 8, 20, 22, 24, 25, 26, 28, 30]  # bytes, in the fixed header of a block
 _BROKEN_OFF = (
     Finding(
         "time of blocks",
@@ -110,9 +106,9 @@ def _channels_broken_off(data: bytes, stream: "obspy.Stream") -> set[str]:
         return set()
     block = np.dtype(
         {
-            "names": _BLOCK_FIELDS,
-            "formats": _BLOCK_FORMATS,
-            "offsets": _BLOCK_OFFSETS,
+            "names": ["number", "quality", "codes", "year", "day", "hour", "minute", "second", "fraction", "npts"],
+            "formats": ["S6", "S1", "S12", "u2", "u2", "u1", "u1", "u1", "u2", "u2"],
+            "offsets": [0, 6, 8, 20, 22, 24, 25, 26, 28, 30],  # bytes, in its fixed header
             "itemsize": lengths.pop(),
         }
     )
@@ -124,18 +120,15 @@ def _channels_broken_off(data: bytes, stream: "obspy.Stream") -> set[str]:
         station, location, channel, network = (text[i:j].strip() for i, j in ((0, 5), (5, 7), (7, 10), (10, 12)))
         of_channel = blocks[blocks["codes"] == codes]
         channel_id = f"{network}.{station}.{location}.{channel}"
-        between = rates.get(channel_id, 0.0) * np.diff(_times(of_channel))  # samples; 0 for a channel of text
+        year, day = of_channel["year"].astype(int) - 1970, of_channel["day"].astype(int)
+        midnight = 86400.0 * (year.astype("M8[Y]").astype("M8[D]") + day).astype(float)  # [s since 1969-12-31]
+        clock = 3600.0 * of_channel["hour"] + 60.0 * of_channel["minute"] + of_channel["second"]
+        times = midnight + clock + 1e-4 * of_channel["fraction"]
+        between = rates.get(channel_id, 0.0) * np.diff(times)  # samples; 0 for a channel of text
         goes_on = np.diff(of_channel["number"].astype(int)) == 1
         if (goes_on & (np.abs(between - of_channel["npts"][:-1]) > 1.0)).any():
             broken.add(channel_id)
     return broken
-
-
-def _times(blocks: npt.NDArray[np.void]) -> Samples:
-    """Return the times of the first samples of blocks [s since 1969-12-31], shape (blocks,)."""
-    midnight = (blocks["year"].astype(int) - 1970).astype("M8[Y]").astype("M8[D]") + blocks["day"].astype(int)
-    day, hour, minute = midnight.astype(float), blocks["hour"].astype(float), blocks["minute"].astype(float)
-    return ((24.0 * day + hour) * 60.0 + minute) * 60.0 + blocks["second"] + 1e-4 * blocks["fraction"]
 
 
 def _events(traces: "list[obspy.Trace]") -> "list[list[obspy.Trace]]":

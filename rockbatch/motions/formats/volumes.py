@@ -11,8 +11,8 @@ strong-motion data tapes", OSMS 85-03, for Caltech's; else the agencies' own fil
 
 import math
 import re
+from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
 
 from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.motions.component import Sensor
@@ -25,7 +25,6 @@ from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.formats.time_steps import from_pairs
 from rockbatch.motions.labels.orientation import is_clock
 from rockbatch.motions.labels.origin import origin_of
-from rockbatch.motions.motion import Samples
 
 _DATA = {1: 27, 2: 45}  # lines of a channel's header, by volume
 _COMPONENT = 6  # line of the text that names it: "CHAN  1: 90 DEG", or USC's and Caltech's "COMP N90E"
@@ -135,14 +134,8 @@ def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | Non
     date = "" if _NOT_SET.match(date) else date
     record = fields["record"] or " ".join(filter(None, [event, date]))
     number, location = fields["station"], fields["location"].strip("-")
-    recording = Recording(
-        label=fields["label"],
-        dt=samples.dt,
-        values=samples.values,
-        unit=samples.unit,
-        velocities=samples.velocities,
-        displacements=samples.displacements,
-        as_read=samples.as_read,
+    recording = replace(
+        samples,
         station=", ".join(filter(None, [number or name, record, place, f"Volume {volume}"])),
         start=_start(fields, begins),
         processed=volume == 2,
@@ -178,20 +171,8 @@ def _start(fields: dict[str, str], begins: float | None) -> float | None:
     return None if trigger is None or begins is None or unset else trigger + begins
 
 
-class _Samples(NamedTuple):
-    """The samples of a channel, as fields of a ``Recording``."""
-
-    dt: float
-    values: Samples
-    unit: str
-    velocities: Series | None = None
-    displacements: Series | None = None
-    notes: tuple[str, ...] = ()
-    as_read: Samples | None = None
-
-
-def _samples(lines: list[str], first: int, volume: int, fields: dict[str, str]) -> tuple[_Samples, float | None, int]:
-    """Return the samples, the time of the first pair [s] (None if they are no pairs), and the index of the line after them."""
+def _samples(lines: list[str], first: int, volume: int, fields: dict[str, str]) -> tuple[Recording, float | None, int]:
+    """Return a recording of label and samples, the time of the first pair [s] (None without pairs), and the next index."""
     start = first + _DATA[volume]
     declared = declares_series(lines, start)
     if volume == 1 and not declared and fields["npts"] and fields["unit"]:
@@ -202,11 +183,13 @@ def _samples(lines: list[str], first: int, volume: int, fields: dict[str, str]) 
         dt, series, end = declared_series(lines, start)
     values, unit = series["acc"]
     # the initial state is computed from these: the header's initial velocity has the wrong sign in files of the USGS
-    return _Samples(dt, values, unit, series.get("vel"), series.get("dis")), None, end
+    velocities, displacements = series.get("vel"), series.get("dis")
+    recording = Recording(fields["label"], dt, values, unit, velocities=velocities, displacements=displacements)
+    return recording, None, end
 
 
-def _pairs(lines: list[str], first: int, fields: dict[str, str]) -> tuple[_Samples, float, int]:
-    """Return the samples at even steps of pairs of time and value, their first time [s], and the index after them."""
+def _pairs(lines: list[str], first: int, fields: dict[str, str]) -> tuple[Recording, float, int]:
+    """Return a recording of pairs of time and value at even steps, their first time [s], and the index after them."""
     npts, start = int(fields["npts"]), first + _DATA[1]
     if npts < 2:
         raise InputError(f"line {first + 11}: found {npts} points; expected at least two")
@@ -218,7 +201,8 @@ def _pairs(lines: list[str], first: int, fields: dict[str, str]) -> tuple[_Sampl
     block = lines[:start] + [line[indent:] for line in lines[start:end]]
     pairs = fixed_numbers(block, start, 2 * npts, _WIDTH, _PER_LINE)[0].reshape(npts, 2)
     dt, values, notes = from_pairs(pairs, f"channel {fields['label']} from line {first + 1} on")
-    return _Samples(dt, values, fields["unit"], notes=notes, as_read=pairs[:, 1]), float(pairs[0, 0]), end
+    recording = Recording(fields["label"], dt, values, fields["unit"], notes=notes, as_read=pairs[:, 1])
+    return recording, float(pairs[0, 0]), end
 
 
 def _undeclared(lines: list[str], start: int, fields: dict[str, str]) -> tuple[float, dict[str, Series], int]:

@@ -135,10 +135,7 @@ def _same_gain(a: Channel, b: Channel) -> bool:
 
 
 def _same_direction(a: Channel, b: Channel) -> bool:
-    """Return whether dip and azimuth agree within 1°; True if a dip is unknown.
-
-    Unknown azimuths agree, and those of upright channels do not count.
-    """
+    """Return whether dip and azimuth agree within 1°, what is unknown with anything; an upright channel has no azimuth."""
     if a.dip is None or b.dip is None:
         return True
     if abs(a.dip - b.dip) > _SAME_DIP:
