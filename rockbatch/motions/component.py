@@ -100,6 +100,10 @@ class Component(Sourced):
     def __post_init__(self) -> None:
         object.__setattr__(self, "acceleration", frozen(self.acceleration))
 
+    def with_findings(self, *findings: Finding) -> "Component":
+        """Return the component with further findings behind its own."""
+        return replace(self, findings=(*self.findings, *findings)) if findings else self
+
     @property
     def path(self) -> str:
         """Return the path of its file, by folder and source."""

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.grouping import grouped
+from rockbatch.motions.alignment import same_step
 from rockbatch.motions.component import UNKNOWN_SENSOR, Component
 from rockbatch.motions.identity.stations import is_numbered
 from rockbatch.motions.labels.orientation import SAME_AZIMUTH, UNKNOWN
@@ -106,6 +107,11 @@ class Candidates:
         distinct = any(parts[i].sensor.is_distinct_from(parts[k].sensor) for i, k in product(first, second))
         turned = len(first) > 1 or bool(self._pointing_alike(first[0], j).all())
         return not distinct and turned and all(self._joinable(i, j).all() for i in first)
+
+    def may_be_parts(self, i: int, j: int) -> bool:
+        """Return whether two may be of consecutive parts of a recording: of one step and processing, in whole files."""
+        a, b = self.components[i], self.components[j]
+        return bool(self.whole_file[[i, j]].all()) and a.processed == b.processed and same_step(a.dt, b.dt)
 
     def copies(self, i: int) -> list[int]:
         """Return later components with the same samples that may be of the same sensor, event and direction.

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from itertools import combinations
 
 from rockbatch.common.grouping import grouped
@@ -40,8 +39,7 @@ def with_gains_compared(components: Sequence[Component]) -> list[Component]:
                 f"one of their {wrong} is wrong, and the files do not say which; ask their network, and leave out the wrong one "
                 "by use = false in motions.toml"
             )
-            findings = (*compared[place].findings, Finding(what, text, gross=True))
-            compared[place] = replace(compared[place], findings=findings)
+            compared[place] = compared[place].with_findings(Finding(what, text, gross=True))
     return compared
 
 

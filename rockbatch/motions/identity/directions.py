@@ -27,6 +27,9 @@ _COPIED = (Kind.CODE, Kind.HEADER)  # statements that programs copy from the fir
 _SQUARE = 5.0  # degrees by which the azimuths of a pair may be off a right angle
 _IN_A_PLANE = 0.7  # deviation over both its terms, of their sums of squares: 0 in a plane, 1 for independent motions
 _ALONE = 1e-6  # residual of a component along an axis that no other has
+_NO_PLANE = Finding(
+    "direction", "one of several horizontal directions of one sensor that are no motion in a plane: is one vertical?"
+)
 _ASKEW = 30.0  # degrees off a right angle beyond which no sensor is built
 
 
@@ -51,20 +54,16 @@ def _judge_set(station: Sequence[Component]) -> list[Component]:
     for i, j, text in _impossible_pairs(components, contradictions):
         contradictions.setdefault(i, text)
         contradictions.setdefault(j, text)
-    if contradictions:
-        return [_held_back(c, contradictions.get(i, ""), components, contradictions) for i, c in enumerate(components)]
-    remarked = [_with_remark(component) for component in components]
-    return list(map(_with_doubt, remarked)) if _leave_a_plane(components) else remarked
-
-
-def _held_back(
-    component: Component, contradiction: str, components: Sequence[Component], contradictions: dict[int, str]
-) -> Component:
-    """Return a component of a set held back: with its own ``contradiction`` and no direction, else with the first of the set."""
-    if contradiction:
-        return replace(component, contradiction=contradiction, orientation=unknown(component.orientation.label))
-    first, text = next(iter(contradictions.items()))
-    return replace(component, contradiction=f"of one set with {components[first].source}, which is held back: {text}")
+    if contradictions:  # the first holds the whole set back
+        first, text = next(iter(contradictions.items()))
+        of_set = f"of one set with {components[first].source}, which is held back: {text}"
+        held = [replace(c, contradiction=contradictions.get(i, of_set)) for i, c in enumerate(components)]
+        return [
+            replace(c, orientation=unknown(c.orientation.label)) if i in contradictions else c
+            for i, c in enumerate(held)
+        ]
+    doubts = [_NO_PLANE] if _leave_a_plane(components) else []
+    return [_with_remark(component).with_findings(*doubts) for component in components]
 
 
 def _by_user(component: Component) -> bool:
@@ -188,8 +187,7 @@ def _without_statement(component: Component, void: Statement, reason: str) -> Co
     believed = next((s for s in remaining if s.orientation is orientation), None)
     instead = f"decided by: {believed.words}" if believed else "its azimuth is stated nowhere else"
     finding = Finding("direction", f"{void.words}, which tells nothing ({reason}); {instead}")
-    findings = (*component.findings, finding)
-    return replace(component, statements=remaining, orientation=orientation, findings=findings)
+    return replace(component, statements=remaining, orientation=orientation).with_findings(finding)
 
 
 def _with_believed_defaults(component: Component) -> Component:
@@ -207,8 +205,7 @@ def _with_remark(component: Component) -> Component:
     code, angles = _strong_statement(component, Kind.CODE), _strong_statement(component, Kind.ANGLES)
     if _by_user(component) or code is None or angles is None or not angles.differs_from(code):
         return component
-    finding = Finding("direction", f"{code.words}, but {angles.words}; decided by: these angles")
-    return replace(component, findings=(*component.findings, finding))
+    return component.with_findings(Finding("direction", f"{code.words}, but {angles.words}; decided by: these angles"))
 
 
 def _impossible_pairs(
@@ -278,12 +275,6 @@ def _leave_a_plane(components: Sequence[Component]) -> bool:
     deviations = (residual @ samples)[checked] / residual.diagonal()[checked, None]  # from the fit to all others
     energies = (samples[checked] ** 2 + (samples[checked] - deviations) ** 2).sum(axis=1)
     return bool(((deviations**2).sum(axis=1) > _IN_A_PLANE**2 * energies).any())
-
-
-def _with_doubt(component: Component) -> Component:
-    """Return a component with a finding that it is one of several horizontals that are no motion in a plane."""
-    text = "one of several horizontal directions of one sensor that are no motion in a plane: is one vertical?"
-    return replace(component, findings=(*component.findings, Finding("direction", text)))
 
 
 def _components_and_statements(*components: Component) -> str:

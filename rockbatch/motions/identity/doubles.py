@@ -93,15 +93,14 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     for i, j in (pair for pair in stretched if not stands_for.keys() & pair):
         for k, other in ((i, components[j]), (j, components[i])):
             text = f"{other.source} has the same samples with a step of {other.dt:g} s: one of their steps is wrong; check both"
-            findings.setdefault(k, []).append(
-                Finding("step", text, gross=not _of_two_stations(components[i], components[j]))
-            )
+            stations = {components[i].sensor.number, components[j].sensor.number} - {""}
+            findings.setdefault(k, []).append(Finding("step", text, gross=len(stations) < 2))
     for i, j in (pair for pair in denied if not stands_for.keys() & pair and pair not in stretched):
         for k, other in ((i, components[j]), (j, components[i])):
             text = f"{other.source} is the same sensor, event and direction by its header, and has other samples: check both"
             findings.setdefault(k, []).append(Finding("header", text))
     for i, own in findings.items():
-        components[i] = replace(components[i], findings=(*components[i].findings, *own))
+        components[i] = components[i].with_findings(*own)
     remaining = [component for i, component in enumerate(components) if i not in stands_for]
     return remaining, [*below, *left_out]
 
@@ -116,11 +115,6 @@ def _at_other_steps(components: Sequence[Component]) -> Iterator[tuple[int, int]
             one_file = a.file == b.file
             if not (one_file or same_step(a.dt, b.dt)) and common_factor(a.acceleration, b.acceleration):
                 yield i, j
-
-
-def _of_two_stations(a: Component, b: Component) -> bool:
-    """Return whether two components are of two stations by their headers."""
-    return len({a.sensor.number, b.sensor.number} - {""}) > 1
 
 
 def _factor_finding(component: Component, other: Component) -> Finding:

@@ -46,20 +46,15 @@ class LeaveOut:
         """Return the set with motions and unusable files moved to the left-out ones if their record or station fits a pattern."""
         if not self._patterns:
             return motions
-        used: list[Motion] = []
-        unusable: list[Unusable] = []
-        left_out: list[LeftOut] = []
-        for motion in motions.motions:
-            if pattern := self._fitting(motion.name, motion.of_station):
-                left_out.append(_left_out(motion.name, motion.sources, pattern, motion.of_station))
-            else:
-                used.append(motion)
-        for file in motions.unusable:
-            if pattern := self._fitting(file.name, file.station):
-                left_out.append(_left_out(file.name, file.sources, pattern, file.station))
-            else:
-                unusable.append(file)
-        return MotionSet(used, unusable, [*motions.left_out, *left_out])
+        left_out: dict[int, LeftOut] = {}
+        items: list[Motion | Unusable] = [*motions.motions, *motions.unusable]
+        for item in items:
+            station = item.of_station if isinstance(item, Motion) else item.station
+            if pattern := self._fitting(item.name, station):
+                left_out[id(item)] = _left_out(item.name, item.sources, pattern, station)
+        used = [motion for motion in motions.motions if id(motion) not in left_out]
+        unusable = [file for file in motions.unusable if id(file) not in left_out]
+        return MotionSet(used, unusable, [*motions.left_out, *left_out.values()])
 
     def finish(self) -> None:
         """Raise ``InputError`` with every pattern that fitted nothing; return None if all did."""

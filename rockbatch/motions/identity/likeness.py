@@ -61,7 +61,7 @@ def pairs_of_one_recording(components: Sequence[Component]) -> Recordings:
         for j in candidates.same_by_headers(i):
             if j in pairs.get(i, ()) or likeness_of(components[i], components[j]) >= _ALIKE:
                 join(i, j)
-            elif candidates.way[i] >= 0 and not _may_be_parts(i, j, candidates):  # unknown directions may be two
+            elif candidates.way[i] >= 0 and not candidates.may_be_parts(i, j):  # unknown directions may be two
                 denied.append((i, j))
     for i, j in candidates.similar_pairs():
         first, second = components[i], components[j]
@@ -75,16 +75,6 @@ def pairs_of_one_recording(components: Sequence[Component]) -> Recordings:
     for i, j in _pairs_of_sets(components, pairs, scaled, candidates):
         join(i, j)
     return Recordings(pairs, sorted(scaled), [(i, j) for i, j in denied if j not in pairs.get(i, ())])
-
-
-def _may_be_parts(i: int, j: int, candidates: Candidates) -> bool:
-    """Return whether two components may be of consecutive parts of a recording: of one step and processing, in whole files.
-
-    A whole file has a vertical and a horizontal component.
-    """
-    a, b = candidates.components[i], candidates.components[j]
-    alike = a.processed == b.processed and same_step(a.dt, b.dt)
-    return bool(candidates.whole_file[i] and candidates.whole_file[j]) and alike
 
 
 def _pairs_of_sets(

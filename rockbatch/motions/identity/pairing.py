@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from rockbatch.common.errors import Contradiction, InputError, NoDirection
+from rockbatch.common.errors import Contradiction, NoDirection
 from rockbatch.common.grouping import distinct, grouped
 from rockbatch.common.naming import fits_any
 from rockbatch.common.showing import shown
@@ -57,9 +57,10 @@ def to_motions(
     unusable: list[Unusable] = []
     sound: list[Component] = []
     for c in components:
-        if (kind := _holding_error(c)) is None:
+        if c.orientation.known and not c.contradiction:
             sound.append(c)
         else:
+            kind = Contradiction if c.contradiction else NoDirection
             question, label = _direction_question(c), c.orientation.label
             unusable.append(Unusable(c.name, c.sources, question, label, station=station_of(c), kind=kind))
     components = _with_steps_compared(_with_packaged(sound, packaged))
@@ -126,13 +127,6 @@ def _confirmed_motions(
     return MotionSet(motions, unusable)
 
 
-def _holding_error(component: Component) -> type[InputError] | None:
-    """Return the kind of error for which a component is held back; ``None`` for a known direction without contradiction."""
-    if component.contradiction:
-        return Contradiction
-    return None if component.orientation.known else NoDirection
-
-
 def _direction_question(component: Component) -> str:
     """Return the request to state the direction of a component, unknown or contradictory, in motions.toml."""
     if component.contradiction:
@@ -189,7 +183,7 @@ def _with_steps_compared(components: Sequence[Component]) -> list[Component]:
                 if not (same_step(c.dt, usual) or any(finding.what == "step" for finding in c.findings)):
                     said = f"{first.source} has as many samples with a step of {usual:g} s, not {c.dt:g} s"
                     findings[id(c)] = Finding("step", f"{said}: check which step is right")
-    return [replace(c, findings=(*c.findings, findings[id(c)])) if id(c) in findings else c for c in components]
+    return [c.with_findings(*filter(None, [findings.get(id(c))])) for c in components]
 
 
 def _rotate_horizontals(
@@ -222,19 +216,16 @@ def _partner(h: Component, together: Sequence[Component]) -> tuple[Component | N
 
     None if none is suitable, or several are, which are then refused.
     """
-    obstacles = [(v, _why_dead(h, v) or too_unlike(h, v)) for v in together]
+    obstacles = []
+    for v in together:
+        dead = h.pga > 0.0 and float(np.ptp(v.acceleration)) <= _NEVER_MOVES * h.pga
+        obstacles.append((v, "it never moves: a dead channel" if dead else too_unlike(h, v)))
     refused, suitable = [pair for pair in obstacles if pair[1]], [v for v, obstacle in obstacles if not obstacle]
     if len(suitable) < 2:
         return (suitable[0] if suitable else None), refused
     names = ", ".join(v.source for v in suitable)
     reason = f"several vertical components of one station ({names}): keep one of them"
     return None, [*refused, *((v, reason) for v in suitable)]
-
-
-def _why_dead(h: Component, v: Component) -> str:
-    """Return the reason to refuse a vertical that never moves while the horizontal does; "" if it moves, or neither does."""
-    still = float(np.ptp(v.acceleration)) <= _NEVER_MOVES * h.pga
-    return "it never moves: a dead channel" if still and h.pga > 0.0 else ""
 
 
 def _motion(h: Component, v: Component | None, notes: Iterable[str], station: str, requested: bool) -> Motion:
