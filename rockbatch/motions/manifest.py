@@ -180,7 +180,7 @@ class Manifest:
                 table.complain(
                     f"file = {shown(values['file'])}: lies outside this folder; put a manifest there", "file"
                 )
-            elif not _file_exists(path):
+            elif not (os.path.isfile(path) or is_member(path)):
                 hint = nearby(path, path.relative_to(folder).as_posix()) if len(file.problems) < _MOST_HINTS else ""
                 table.complain(f"file = {shown(values['file'])}: no such file in {folder}{hint}", "file")
             elif (path, values.get("component")) in listed:
@@ -207,14 +207,6 @@ class Manifest:
             except InputError as error:
                 problems += error.problems
         refuse(problems)
-
-
-def _file_exists(path: Path) -> bool:
-    """Return whether a file exists, on the disk or in an archive; False for names that are too long and closed folders."""
-    try:
-        return path.is_file() or is_member(path)
-    except OSError:
-        return False
 
 
 def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
@@ -262,18 +254,17 @@ def apply_entries(
 
 
 def _apply_entry(component: Component, entry: Entry, gravity: float) -> Component:
-    """Return a component with the values of an entry, and notes on its changed samples.
-
-    Another unit or time step than the component's leaves its initial values unknown.
-    """
+    """Return a component with the values of an entry, and notes; another unit or step leaves its initial state unknown."""
     values, file = entry.values, entry.table.file.path.name
     notes = list(component.notes)
     factor = 1.0
     initial = component.initial
-    if "unit" in values:
-        factor *= _unit_factor(component, entry, gravity)
-        if factor != 1.0:
-            initial = None  # its unit is unknown, too
+    if "unit" in values and not component.unit:
+        entry.table.complain("unit: the file has a scale of its own; leave it out, or write scale instead", "unit")
+    elif "unit" in values:
+        ratio = acceleration_factor(values["unit"], gravity) / acceleration_factor(component.unit, gravity)
+        if abs(ratio - 1.0) > _SAME:
+            factor, initial = ratio, None  # the unit of the initial state is unknown, too
             notes.append(f"unit {values['unit']} as {file} says, instead of {component.unit}")
     if "dt" in values and abs(values["dt"] - component.dt) > _SAME * component.dt:
         initial = None
@@ -308,15 +299,6 @@ def _apply_entry(component: Component, entry: Entry, gravity: float) -> Componen
     )
 
 
-def _unit_factor(component: Component, entry: Entry, gravity: float) -> float:
-    """Return the ratio of the manifest's unit to the component's, 1 if they agree; for counts 1, and a problem is added."""
-    if not component.unit:
-        entry.table.complain("unit: the file has a scale of its own; leave it out, or write scale instead", "unit")
-        return 1.0
-    ratio = acceleration_factor(entry.values["unit"], gravity) / acceleration_factor(component.unit, gravity)
-    return 1.0 if abs(ratio - 1.0) <= _SAME else ratio
-
-
 def _orientation(orientation: Orientation, entry: Entry) -> Orientation:
     """Return the orientation by an entry's role and azimuth; ``orientation`` itself if the entry states neither.
 
@@ -343,22 +325,19 @@ def is_manifest(path: Path) -> bool:
         return True
     try:
         with opened_input(path) as file:
-            head = _first_line(file.read(_LONGEST_HEAD).decode("utf-8-sig", "replace"))
+            head = file.read(_LONGEST_HEAD).decode("utf-8-sig", "replace")
     except OSError:
         return True  # reading it then reports the error with the other mistakes
     try:
-        return "file" in [cell.strip() for cell in next(csv.reader([head], delimiter=_delimiter(head)), [])]
+        lines = io.StringIO(head, newline=None)
+        return "file" in [cell.strip() for cell in next(csv.reader(lines, delimiter=_delimiter(head)), [])]
     except csv.Error:
         return False
 
 
-def _first_line(text: str) -> str:
-    return io.StringIO(text, newline=None).readline()
-
-
-def _delimiter(head: str) -> str:
+def _delimiter(text: str) -> str:
     """Return ";" if the first line has one, as Excel writes it in countries with decimal commas, else ","."""
-    return ";" if ";" in head else ","
+    return ";" if ";" in io.StringIO(text, newline=None).readline() else ","
 
 
 def _from_csv(path: Path) -> TomlFile:
@@ -367,7 +346,7 @@ def _from_csv(path: Path) -> TomlFile:
     Unknown columns and lines with too many cells become problems; raises ``InputError`` with a line that is no CSV.
     """
     content = TomlFile.text_of(path)
-    delimiter = _delimiter(_first_line(content))
+    delimiter = _delimiter(content)
     rows = csv.reader(io.StringIO(content, newline=""), delimiter=delimiter)
     records: list[dict[str, object]] = []
     file = TomlFile(path, content, {"record": records}, {("header",): 1})

@@ -131,11 +131,9 @@ def _sort_key(record: RankedRecord) -> tuple[int, float]:
 
 def _used_record(components: Sequence[Motion]) -> RankedRecord:
     """Return the record of a station's used motions, the strongest first, with the names of their findings as doubts."""
-    by_strength = sorted(components, key=lambda motion: -motion.pga)
-    first = by_strength[0]
-    return RankedRecord(
-        Use.USED, first.name, first.files, by_strength, _finding_names(by_strength), station=first.of_station
-    )
+    ordered = sorted(components, key=lambda motion: -motion.pga)
+    first = ordered[0]
+    return RankedRecord(Use.USED, first.name, first.files, ordered, _finding_names(ordered), station=first.of_station)
 
 
 def _unused_records(unusable: Iterable[Unusable]) -> Iterator[RankedRecord]:
@@ -193,20 +191,15 @@ def rows(motions: MotionSet) -> list[dict[str, Cell]]:
     """Return the rows of ``rockbatch motions --csv``: one per motion, then per unused or left-out file, with its ``reason``."""
     stations = motions.stations()
     not_used: list[Unusable | LeftOut] = [*motions.unusable, *motions.left_out]
-    used = [_row(motion, stations[motion.of_station]) | {"use": Use.USED.value} for motion in motions]
-    return used + [
-        _unused_row(file)
-        | {"use": use_of(file).value, "check": ", ".join(doubts_about(file)) or None, "reason": file.reason}
-        for file in not_used
-    ]
+    table = [_row(motion, stations[motion.of_station]) | {"use": Use.USED.value} for motion in motions]
+    for file in not_used:
+        held = file.motion if isinstance(file, Unusable) else None
+        measured = _row(held, ()) if held else {"record": file.name, "file_h": file.source}
+        doubts = ", ".join(doubts_about(file)) or None
+        table.append({**measured, "use": use_of(file).value, "check": doubts, "reason": file.reason})
+    return table
 
 
 def _row(motion: Motion, components: Sequence[Motion]) -> dict[str, Cell]:
     """Return the row of a motion, with the PGA [g] of its station's strongest other component and the period of its pulse [s]."""
     return row(motion) | {"pga_h2_g": _other_pga_g(motion, components), "pulse_period_s": pulse_period(motion)}
-
-
-def _unused_row(file: Unusable | LeftOut) -> dict[str, Cell]:
-    """Return the row of an unused file: the measures of a motion held back, else its name and source only."""
-    held = file.motion if isinstance(file, Unusable) else None
-    return _row(held, ()) if held else {"record": file.name, "file_h": file.source}

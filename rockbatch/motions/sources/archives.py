@@ -143,9 +143,9 @@ def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
 
 
 def is_member(path: Path) -> bool:
-    """Return whether a path leads to one of the :func:`members` of an archive, even a refused one; False if it is unreadable."""
-    archive = archive_of(path)
+    """Return whether a path leads to one of the :func:`members` of an archive, even a refused one; False if unreadable."""
     try:
+        archive = archive_of(path)
         return archive is not None and path in _paths_in(archive, state_of(archive.stat()))
     except (InputError, OSError):
         return False
