@@ -1,9 +1,11 @@
 """Two series of samples compared: their best alignment, correlation by chance, and the factor and delay of a copy."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.motions.motion import Samples
 
@@ -96,11 +98,11 @@ def _independent_values(a: Samples, b: Samples) -> float:
     n = 1 << (len(a) + len(b)).bit_length()
     first, second = (np.square(np.abs(np.fft.rfft(x - x.mean(), n))) for x in (a, b))
     bandwidth = float(first.sum() * second.sum()) / (float(first @ second) or 1.0) / n
-    return 2.0 * bandwidth * min(map(_strong_samples, (a, b))) / 0.9
+    strong = min(int(np.diff(places_of_energy(x, (0.05, 0.95)))[0]) for x in (a, b))
+    return 2.0 * bandwidth * strong / 0.9
 
 
-def _strong_samples(values: Samples) -> int:
-    """Return the number of samples in which 5 to 95% of the sum of their squares grow."""
-    energy = np.cumsum(np.square(values))
-    first, last = np.searchsorted(energy, [0.05 * energy[-1], 0.95 * energy[-1]])
-    return int(last - first)
+def places_of_energy(samples: Samples, shares: Sequence[float]) -> npt.NDArray[np.int64]:
+    """Return the index of the first sample at which the sum of squares reaches each of ``shares`` of its final value."""
+    energy = np.cumsum(np.square(samples))
+    return np.searchsorted(energy, np.multiply(shares, energy[-1]))

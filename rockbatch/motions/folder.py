@@ -40,12 +40,11 @@ from rockbatch.motions.manifest import Manifest, apply_entries, is_manifest, opt
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.quality.baseline import Offset, remove_offset
 from rockbatch.motions.sources import archives
+from rockbatch.motions.sources.companions import companions_by_quantity, statements_beside
 from rockbatch.motions.sources.files import MANIFESTS, SourceFile, files_of, inventories_beside
 from rockbatch.motions.sources.listed import NOT_LISTED
 from rockbatch.motions.sources.peer_search import Lists, listed_in, of_file
-from rockbatch.motions.sources.quantities_in_names import companions_by_quantity
 from rockbatch.motions.sources.record_file import ReadOptions, RecordFile
-from rockbatch.motions.sources.sorted_files import statements_beside
 from rockbatch.motions.sources.source import file_of
 from rockbatch.motions.sources.stationxml import Inventories
 from rockbatch.motions.suites.sequences import ShockSequence, add_sequences

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rockbatch.common.files import write_output
-from rockbatch.motions.figures import spectra, trace
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.ranking import RankedRecord, Use, ranked_records
+from rockbatch.motions.small_figures import spectra, trace
 from rockbatch.motions.unused import LeftOut, Unusable
 from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.reporting.svg import sketch

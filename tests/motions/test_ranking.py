@@ -13,7 +13,7 @@ import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.commands.motions import _GLANCE, _scorecard, overview
 from rockbatch.common.errors import Contradiction, NoUnit, Truncated
-from rockbatch.motions import LeftOut, MotionSet, Unusable, figures
+from rockbatch.motions import LeftOut, MotionSet, Unusable, small_figures
 from rockbatch.motions.intensity import measures
 from rockbatch.motions.motion import Finding
 from rockbatch.motions.ranking import COLUMNS, Use, pulse_period, ranked_records
@@ -163,20 +163,20 @@ def test_the_scorecard_with_every_column_fits_into_80_letters(monkeypatch):
 def test_a_trace_keeps_the_extremes_in_a_few_points():
     samples = np.random.default_rng(1).normal(size=50_000)
     samples[[12_345, 43_210]] = 60.0, -70.0
-    figure = figures.trace(rb.Motion("long", 0.005, samples))
+    figure = small_figures.trace(rb.Motion("long", 0.005, samples))
     line = figure.panels[0].marks[0]
-    assert len(line.x) <= figures.MOST_POINTS
+    assert len(line.x) <= small_figures.MOST_POINTS
     assert (line.y.max(), line.y.min()) == pytest.approx((60 / 9.81, -70 / 9.81))
 
 
 def test_small_spectra_are_on_one_scale():
     pair = [motion("a", 0.2), motion("b", 0.4)]
-    first, second = (figure.panels[0] for figure in figures.spectra(pair))
+    first, second = (figure.panels[0] for figure in small_figures.spectra(pair))
     assert first.y == second.y
     assert first.y.fraction(np.sqrt(first.y.low * first.y.high)) == pytest.approx(0.5)
     assert first.x.fraction(small_figures.PERIODS) == pytest.approx(np.linspace(0.0, 1.0, len(small_figures.PERIODS)))
     assert second.marks[1].y == pytest.approx(2 * first.marks[1].y)
-    assert first.marks[1].y == pytest.approx(pair[0].spectrum(figures.PERIODS).to_numpy())
+    assert first.marks[1].y == pytest.approx(pair[0].spectrum(small_figures.PERIODS).to_numpy())
 
 
 def test_what_is_held_back_is_written_into_run_json_without_its_samples():

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.grouping import grouped
-from rockbatch.motions.alignment import same_step
+from rockbatch.motions.alignment import places_of_energy, same_step
 from rockbatch.motions.component import UNKNOWN_SENSOR, Component
 from rockbatch.motions.identity.stations import is_numbered
 from rockbatch.motions.labels.orientation import SAME_AZIMUTH, UNKNOWN
@@ -201,8 +201,7 @@ def _kind_of_direction(component: Component) -> tuple[str, ...]:
 
 def _growth_times(component: Component) -> Samples:
     """Return the times [s] between neighbouring ``_SHARES`` of ∫a² dt, then their sum, shape (5,)."""
-    energy = np.cumsum(np.square(component.acceleration))
-    times = np.searchsorted(energy, np.multiply(_SHARES, energy[-1])) * component.dt
+    times = places_of_energy(component.acceleration, _SHARES) * component.dt
     return np.append(np.diff(times), times[-1] - times[0])
 
 

@@ -15,6 +15,7 @@ from functools import cache
 
 import numpy as np
 
+from rockbatch.motions.alignment import places_of_energy
 from rockbatch.motions.intensity.measures import velocity
 from rockbatch.motions.motion import Motion, Samples
 
@@ -46,7 +47,7 @@ def period_of_pulse(v: Samples, dt: float) -> float | None:
         return None
     scale, place = _largest(v, dt)
     pulse = _wavelet_sum(v, scale, place)
-    is_early = _sample_reaching(pulse, 0.10) < _sample_reaching(v, 0.20)
+    is_early = bool(places_of_energy(pulse, [0.10]) < places_of_energy(v, [0.20]))
     return _PSEUDO_PERIOD * scale * dt if is_early and _indicator(v, pulse) > PULSE_LIKE else None
 
 
@@ -104,12 +105,6 @@ class _Transform:
         coefficients = np.abs(self.coefficients(scale))
         place = int(np.argmax(coefficients))
         return float(coefficients[place]), place
-
-
-def _sample_reaching(v: Samples, share: float) -> int:
-    """Return the index of the first sample at which ∫v² dt reaches a share of its final value."""
-    energy = np.cumsum(v * v)
-    return int(np.searchsorted(energy, share * energy[-1]))
 
 
 def _wavelet(scale: float) -> Samples:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rockbatch.motions.alignment import places_of_energy
 from rockbatch.motions.motion import Samples
 
 FILLED = 0.3
@@ -40,10 +41,9 @@ def filled_gap(samples: Samples, dt: float) -> Gap | None:
     Zeros, a held value and linear interpolation are straight. ``None`` also if half of the series is, as film read at points, and
     for a line between two shocks, before which the motion has faded and behind which it begins from rest.
     """
-    energy = np.cumsum(np.square(samples))
-    if len(samples) < _FEWEST or not energy[-1] > 0.0:
+    if len(samples) < _FEWEST or not samples.any():
         return None
-    first, last = np.searchsorted(energy, np.multiply(_STRONG, energy[-1]))
+    first, last = places_of_energy(samples, _STRONG)
     bends = np.abs(np.diff(samples[first : last + 2], 2))
     straight = np.concatenate(([0], bends < _STRAIGHT * np.median(bends), [0])) if len(bends) else np.zeros(2)
     starts, ends = (first + np.flatnonzero(np.diff(straight) == step) for step in (1, -1))
