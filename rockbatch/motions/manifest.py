@@ -300,10 +300,7 @@ def _apply_entry(component: Component, entry: Entry, gravity: float) -> Componen
 
 
 def _orientation(orientation: Orientation, entry: Entry) -> Orientation:
-    """Return the orientation by an entry's role and azimuth; ``orientation`` itself if the entry states neither.
-
-    An azimuth of a vertical component becomes a problem of the manifest.
-    """
+    """Return the orientation by an entry's role and azimuth; ``orientation`` itself if the entry states neither."""
     values = entry.values
     if not values.keys() & {"role", "azimuth"}:
         return orientation
@@ -341,10 +338,7 @@ def _delimiter(text: str) -> str:
 
 
 def _from_csv(path: Path) -> TomlFile:
-    """Return a ``motions.csv``, with any line ends, as if it were TOML; empty cells are missing keys.
-
-    Unknown columns and lines with too many cells become problems; raises ``InputError`` with a line that is no CSV.
-    """
+    """Return a ``motions.csv``, with any line ends, as if it were TOML; empty cells are missing keys."""
     content = TomlFile.text_of(path)
     delimiter = _delimiter(content)
     rows = csv.reader(io.StringIO(content, newline=""), delimiter=delimiter)

@@ -95,10 +95,7 @@ def _component_key(component: Component, file_readings: Sequence[Reading]) -> st
 def _record_table(
     component: Component, name: str, called: str | int | None, station: str, double: str, with_unit: bool
 ) -> str:
-    """Return the table of a component of the file ``name``, ``called`` so in it, with remarks on missing and doubtful facts.
-
-    Without ``called`` it has no key component.
-    """
+    """Return the table of a component of the file ``name``, ``called`` so in it, with remarks on missing and doubtful facts."""
     orientation = component.orientation
     lines: list[tuple[str, str | float]] = [("file", name)]
     if called is not None:
@@ -130,10 +127,7 @@ def _remark(name: str, unusable: Unusable) -> str:
 
 
 def _toml_value(value: str | float) -> str:
-    """Return a value as TOML writes it: a number in full, a text in quotes.
-
-    Characters that TOML or a terminal would not take are escaped.
-    """
+    """Return a value as TOML writes it, a number in full, a text in quotes, legible."""
     if isinstance(value, str):
         return json.dumps(legible(value), ensure_ascii=False)
     short = f"{value:g}"

@@ -92,10 +92,7 @@ def read_component(file: RecordFile) -> list[Component | Unusable]:
 
 
 def _parse(text: str) -> list[Recording]:
-    """Return the recording of an AT2 file in a list, unit "" if unstated; raise ``InputError`` with the line if unusable.
-
-    PEER's records are corrected; other files do not say.
-    """
+    """Return the recording of an AT2 file in a list, unit "" if unstated; PEER's records are corrected, others do not say."""
     lines = text[:_HEADER_CHARACTERS].splitlines(keepends=True)[:_HEADER_LINES]
     first = next((i for i, line in enumerate(lines) if _count_and_step(line)), None)
     fields = None if first is None else _count_and_step(lines[first])

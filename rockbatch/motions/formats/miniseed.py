@@ -222,10 +222,7 @@ def _directions(channel_id: str, entry: stationxml.Channel | None) -> tuple[Stat
 
 
 def _epoch_with_sensitivity(file: RecordFile, trace: "obspy.Trace") -> stationxml.Channel | None:
-    """Return the epoch of StationXML that has a channel's sensitivity at the time of the trace; ``None`` without one.
-
-    If epochs contradict each other, ``None`` if the study states the sensitivity; else ``Unstated`` is raised.
-    """
+    """Return the epoch of StationXML that has a channel's sensitivity at the time of the trace; ``None`` without one."""
     epochs = file.inventories.epochs_of(trace.id)
     start, end = trace.stats.starttime.timestamp, trace.stats.endtime.timestamp
     if not any(epoch.start <= start < epoch.end for epoch in epochs):

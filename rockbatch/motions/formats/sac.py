@@ -141,10 +141,7 @@ def _parsed(data: bytes) -> tuple[dict[str, float], dict[str, str], Samples]:
 
 
 def _statements(numbers: dict[str, float]) -> list[Stated]:
-    """Return the header's statements about its samples: the duration from B to E, and the range from DEPMIN to DEPMAX.
-
-    Without both numbers, or with a DEPMAX not above DEPMIN, nothing is stated.
-    """
+    """Return the header's statements about its samples: the duration from B to E, and the range from DEPMIN to DEPMAX."""
     statements = []
     if "B" in numbers and "E" in numbers:
         begins, ends = numbers["B"], numbers["E"]

@@ -101,11 +101,7 @@ def contradictions(
 
 
 def _contradiction(stated: Stated, sampled: Sampled, gravity: float) -> Finding | str | None:
-    """Return the finding on a statement that the samples contradict, a note on a small difference; None within its tolerances.
-
-    None also for a text that is no number, a peak in an unknown unit, and a time, step or rate of 0, which programs write for
-    unknown ones.
-    """
+    """Return the finding on a statement that the samples contradict, a note on a small difference; None within its tolerances."""
     printed = stated.text.strip()
     number = _PRINTED.fullmatch(printed)
     if number is None:

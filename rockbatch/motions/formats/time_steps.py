@@ -90,10 +90,7 @@ def _is_growing(t: Samples) -> bool:
 
 
 def _candidates(t: Samples, usual: float) -> list[float]:
-    """Return possible steps of an even grid: parts of the ``usual`` one, from coarse to fine, then the greatest common step.
-
-    The last is left out for times of more than nine decimals, or too large to count in their last decimal.
-    """
+    """Return possible steps of an even grid: parts of the ``usual`` one, from coarse to fine, then the greatest common step."""
     steps = [usual / parts for parts in range(1, _FINEST + 1)]
     printed = _resolution(t)
     if printed > 0 and np.abs(t).max() < _WHOLE * printed:

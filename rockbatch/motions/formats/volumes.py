@@ -206,10 +206,7 @@ def _pairs(lines: list[str], first: int, fields: dict[str, str]) -> tuple[Record
 
 
 def _undeclared(lines: list[str], start: int, fields: dict[str, str]) -> tuple[float, dict[str, Series], int]:
-    """Return interval [s], series by kind ("acc", "vel", "dis"; the last two if they follow) and end of undeclared samples.
-
-    They are of Volume II, in the unit of the stated peak.
-    """
+    """Return interval [s], series by kind and end of undeclared samples of Volume II, in the unit of the stated peak."""
     npts, series, end = int(fields["npts"]), {}, start
     if npts < 2:
         raise InputError(f"line {start - _DATA[2] + 16}: found {npts} points; expected at least two")

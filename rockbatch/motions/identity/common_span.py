@@ -90,10 +90,7 @@ def _interpolated(samples: Samples, places: Samples) -> Samples:
 
 
 def _offset(first: Component, second: Component, name: str) -> tuple[float, list[str]]:
-    """Return the delay of the second component [s]; 0 if a start time is unknown.
-
-    A delay within a tenth of the finer step of whole steps is rounded to them, with a note if by more than 1 µs.
-    """
+    """Return the delay of the second component [s], whole steps if nearly so, with a note; 0 if a start time is unknown."""
     if first.start is None or second.start is None:
         return 0.0, []
     offset, step = second.start - first.start, min(first.dt, second.dt)

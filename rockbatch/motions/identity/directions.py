@@ -108,10 +108,7 @@ def _copies_as_their_originals(station: Sequence[Component]) -> list[Component]:
 
 
 def _contradiction(component: Component) -> str:
-    """Return the first two contradictory statements of a component in words; "" for none, or if :func:`_by_user`.
-
-    Angles of 0°, which may be defaults, and weak statements do not count.
-    """
+    """Return the first two contradictory statements of a component in words; "" for none, or if :func:`_by_user`."""
     if _by_user(component):
         return ""
     pairs = combinations((s for s in component.statements if not (s.default or s.weak)), 2)

@@ -228,10 +228,7 @@ def tell_use_of_originals(left_out: Iterable[LeftOut], motions: MotionSet) -> li
 
 
 def _finding_on_copy(copy: Component, used: Component, factor: float | None, decided: bool) -> Finding | None:
-    """Return a finding on a left-out ``copy`` times a ``factor``, or with a peak 1.5 times larger or smaller; else None.
-
-    A factor over 5 % off ±1 that is not ``decided``, as by a file's name, is gross: it has to be confirmed.
-    """
+    """Return a finding on a left-out ``copy`` times a ``factor``, gross unless ``decided``, or with another peak; else None."""
     if factor is not None:
         text = f"{copy.source}, left out, has the same samples times {factor:.4g}: check which of them is right"
         return Finding("factor", text, gross=not decided and abs(abs(factor) - 1.0) > _GROSS_FACTOR)

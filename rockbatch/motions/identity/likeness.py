@@ -107,10 +107,7 @@ def _pairs_of_sets(
 
 
 def _similar_envelopes(components: Sequence[Component], sets: Sequence[Sequence[int]]) -> set[tuple[int, int]]:
-    """Return pairs of sets (i < j) whose horizontals have similar envelopes around a peak, however they were rotated and cut.
-
-    Sets without one or two horizontals, or with steps of 0.11 s or more, are in none.
-    """
+    """Return pairs of sets (i < j) whose horizontals have similar envelopes around a peak, however they were rotated and cut."""
     shapes, owners = [np.empty((0, len(_AROUND)))], list[int]()
     for number, members in enumerate(sets):
         horizontals = [components[i] for i in members if not components[i].orientation.vertical]

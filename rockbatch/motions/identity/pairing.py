@@ -104,10 +104,7 @@ def to_motions(
 def _confirmed_motions(
     candidates: Iterable[Candidate], patterns: Mapping[str, Sequence[str]], required: bool
 ) -> MotionSet:
-    """Return the motions with findings, as notes too; as unusable those to be confirmed, or without a ``required`` vertical.
-
-    ``patterns`` are of the names that each key confirms.
-    """
+    """Return the motions with findings, as notes too; as unusable those to be confirmed, or without a ``required`` vertical."""
     motions: list[Motion] = []
     unusable: list[Unusable] = []
     for candidate in candidates:
@@ -189,10 +186,7 @@ def _with_steps_compared(components: Sequence[Component]) -> list[Component]:
 def _rotate_horizontals(
     horizontals: Sequence[tuple[int, Component]], azimuths: Sequence[float], known_as: Sequence[str]
 ) -> tuple[list[tuple[int, Component]], list[Unusable]]:
-    """Return horizontals with their stations' numbers, those of files rotated to ``azimuths``, and those that cannot be.
-
-    A package's are rotated already. ``known_as`` has the names of the stations.
-    """
+    """Return horizontals with their stations' numbers, those of files rotated to ``azimuths``, and those that cannot be."""
     turned: list[tuple[int, Component]] = []
     unusable: list[Unusable] = []
     for station, group in grouped([pair for pair in horizontals if pair[1].folder], lambda pair: pair[0]).items():
@@ -212,10 +206,7 @@ def _candidates(horizontal: Component, station: int, verticals: Sequence[Sequenc
 
 
 def _partner(h: Component, together: Sequence[Component]) -> tuple[Component | None, list[tuple[Component, str]]]:
-    """Return the only suitable vertical of those ``together`` with a horizontal component, and the refused ones with reasons.
-
-    None if none is suitable, or several are, which are then refused.
-    """
+    """Return the only suitable vertical of those ``together`` with a horizontal component, and the refused ones with reasons."""
     obstacles = []
     for v in together:
         dead = h.pga > 0.0 and float(np.ptp(v.acceleration)) <= _NEVER_MOVES * h.pga

@@ -267,10 +267,7 @@ class _Zip(_Archive):
 
 
 def _zip_entry(info: zipfile.ZipInfo) -> _Entry:
-    """Return a file as a .zip lists it, with / for the backslash that some programs write between folders.
-
-    A file that is encrypted, a link, or packed by a method that is not read gets a kind that says so.
-    """
+    """Return a file as a .zip lists it, its kind if it is encrypted, a link, or packed by a method that is not read."""
     kind = ""
     if info.flag_bits & 1:
         kind = "encrypted; unpack it with its password"

@@ -84,10 +84,7 @@ def inventories_beside(file: Path) -> list[SourceFile]:
 
 
 def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
-    """Yield the files of an archive; the archive itself, with the reason as its refusal, if it cannot be read or is empty.
-
-    A manifest in it is a companion.
-    """
+    """Yield the files of an archive; the archive itself, with the reason as its refusal, if it cannot be read or is empty."""
     try:
         members = list(archives.members(path))
         refusal = "" if members else "an archive without files"
