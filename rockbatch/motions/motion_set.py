@@ -138,9 +138,8 @@ class MotionSet(Shown):
             return self.motions[which]
         if not isinstance(which, str):
             raise InputError(f"motions[{which!r}]: must be a place, a slice of places or a name")
-        for motion in self.motions:
-            if motion.name == which:
-                return motion
+        if found := next((motion for motion in self.motions if motion.name == which), None):
+            return found
         nearest = closest(which, (motion.name for motion in self.motions))
         hint = f'did you mean "{nearest}"?' if nearest else f"there are {_first_names(self.motions)}"
         raise InputError(f'there is no motion "{which}"; {hint}')

@@ -280,7 +280,7 @@ def _with_unique_names(motions: Sequence[Motion], folders: Sequence[str]) -> lis
         return file.name + name[len(file.stem) :] if clashes else name
 
     def with_folder(i: int, name: str) -> str:
-        return f"{folders[i].rsplit('/', 1)[-1]}/{name}" if folders[i] else name
+        return f"{Path(folders[i]).name}/{name}" if folders[i] else name
 
     def with_folder_above(i: int, name: str) -> str:
         alike = in_folder[folders[i], motions[i].name] > 1  # which no folder tells apart

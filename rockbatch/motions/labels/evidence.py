@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
-from rockbatch.motions.labels.orientation import SAME_AZIMUTH, Orientation, is_upward, unknown
+from rockbatch.motions.labels.orientation import Orientation, angle_between, is_upward, same_azimuth, unknown
 
 
 class Kind(Enum):
@@ -48,7 +48,7 @@ class Statement:
             return mine.down != others.down and self.states_sign and other.states_sign
         if mine.azimuth is None or others.azimuth is None:
             return False
-        apart = abs((mine.azimuth - others.azimuth + 180.0) % 360.0 - 180.0)
+        apart = angle_between(mine.azimuth, others.azimuth)
         if self.is_angle != other.is_angle and not (self.has_number and other.has_number):
             return abs(apart - 90.0) <= _EXCHANGED
         return apart > _ROUNDED
@@ -56,7 +56,7 @@ class Statement:
     def differs_from(self, other: "Statement") -> bool:
         """Return whether only one is vertical, or azimuths differ by over 5°; an unknown azimuth differs from none."""
         a, b = self.orientation.azimuth, other.orientation.azimuth
-        apart = 0.0 if a is None or b is None else abs((a - b + 180.0) % 360.0 - 180.0)
+        apart = 0.0 if a is None or b is None else angle_between(a, b)
         return self.orientation.vertical != other.orientation.vertical or apart > _ROUNDED
 
     @property
@@ -121,4 +121,4 @@ def same_direction(a: Orientation, b: Orientation) -> bool:
         return True
     if a.azimuth is None or b.azimuth is None:
         return a.azimuth is b.azimuth and a.label.upper() == b.label.upper() != ""
-    return abs((a.azimuth - b.azimuth + 180.0) % 360.0 - 180.0) <= SAME_AZIMUTH
+    return same_azimuth(a.azimuth, b.azimuth)

@@ -376,21 +376,19 @@ SAME_AZIMUTH = 1.0
 
 def same_azimuth(a: float | None, b: float | None) -> bool:
     """Return whether two azimuths [degrees] agree within 1°, 360 and 0 being the same; False if one is unknown."""
-    if a is None or b is None:
-        return False
-    return _between(b, a) <= SAME_AZIMUTH
+    return a is not None and b is not None and angle_between(b, a) <= SAME_AZIMUTH
 
 
 def not_square(a: float | None, b: float | None, names: str) -> str:
     """Return a message on two azimuths [degrees] that are not at a right angle within 1°; "" if they are, or one is unknown."""
     if a is None or b is None:
         return ""
-    angle = _between(a, b)
+    angle = angle_between(a, b)
     skew = abs(angle - 90.0) > SAME_AZIMUTH  # agencies round their azimuths
     return f"{names} are {angle:g}° apart, not square to each other" if skew else ""
 
 
-def _between(a: float, b: float) -> float:
+def angle_between(a: float, b: float) -> float:
     """Return the angle between two azimuths [degrees], 0 to 180."""
     return abs((b - a + 180.0) % 360.0 - 180.0)
 

@@ -12,13 +12,12 @@ import stat
 import tarfile
 import zipfile
 import zlib
-from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import islice
 from pathlib import Path, PurePosixPath
-from typing import BinaryIO, NamedTuple
+from typing import IO, NamedTuple
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import state_of, whole_input
@@ -80,22 +79,14 @@ class _Entry(NamedTuple):
     size: int
     packed: int
     kind: str
-    place: zipfile.ZipInfo | tarfile.TarInfo
+    open: Callable[[], IO[bytes] | None]
 
 
-class _Archive(ABC):
-    """An archive in memory, listed once, by name; ``by_path`` has the files that may be opened, of one path the first."""
+class _Archive(NamedTuple):
+    """The files of an archive in memory, by name, and those that may be opened by path, of one path the first."""
 
-    def __init__(self, listed: Iterable[_Entry]) -> None:
-        self.entries = sorted(listed, key=lambda entry: entry.name)
-        self.by_path: dict[PurePosixPath, _Entry] = {}
-        for entry in self.entries:
-            if not _refusal(entry):
-                self.by_path.setdefault(_member_path(entry.name), entry)
-
-    @abstractmethod
-    def opened(self, entry: _Entry) -> BinaryIO:
-        """Return a file of the archive, opened for reading."""
+    entries: list[_Entry]
+    by_path: dict[PurePosixPath, _Entry]
 
 
 def members(archive: Path) -> Iterator[Member]:
@@ -230,7 +221,7 @@ def _from_archive(path: Path, first: int | None = None) -> bytes:
     if entry is None:
         raise InputError("no longer in the archive")
     try:
-        with opened.opened(entry) as file:
+        with entry.open() or io.BytesIO() as file:
             return file.read(entry.size if first is None else first)
     except _DAMAGED:
         raise InputError("damaged within its archive; fetch the archive again") from None
@@ -241,71 +232,58 @@ def _opened_archive(archive: Path, state: tuple[int, ...]) -> _Archive:
     """Return an archive, on the disk or in another one, listed once for its ``state``; raise ``InputError`` if damaged."""
     data = _from_disk(archive) if archive_of(archive) is None else _from_archive(archive)
     if archive.name.lower().endswith(".zip"):
-        return _Zip(data)
-    return _Tar(_from_gzip(data) if archive.name.lower().endswith("gz") else data)
+        entries = _zip_entries(data)
+    else:
+        entries = _tar_entries(_from_gzip(data) if archive.name.lower().endswith("gz") else data)
+    if len(entries) > _MOST_FILES:
+        raise InputError(_TOO_MANY)
+    files = sorted((entry for entry in entries if entry is not None), key=lambda entry: entry.name)
+    return _Archive(files, {_member_path(e.name): e for e in reversed(files) if not _refusal(e)})
 
 
-class _Zip(_Archive):
-    """A .zip archive."""
-
-    def __init__(self, data: bytes) -> None:
-        if not data:
-            raise InputError("the file is empty")
-        _refuse_long_lists(data[-_END_SIZE - _LONGEST_COMMENT :])
-        try:
-            self._file = zipfile.ZipFile(io.BytesIO(data))
-        except _DAMAGED:
-            raise InputError("not a zip archive, or a damaged one; fetch it again") from None
-        infos = self._file.infolist()
-        if len(infos) > _MOST_FILES:
-            raise InputError(_TOO_MANY)
-        super().__init__(_zip_entry(info) for info in infos if not info.is_dir())
-
-    def opened(self, entry: _Entry) -> BinaryIO:
-        """Return a file of the archive, opened for reading."""
-        return self._file.open(entry.place)  # type: ignore[arg-type, return-value]
-
-
-def _zip_entry(info: zipfile.ZipInfo) -> _Entry:
-    """Return a file as a .zip lists it, its kind if it is encrypted, a link, or packed by a method that is not read."""
-    kind = ""
-    if info.flag_bits & 1:
-        kind = "encrypted; unpack it with its password"
-    elif stat.S_ISLNK(info.external_attr >> 16):
-        kind = "a link; unpack the archive"
-    elif info.compress_type not in _READ_METHODS:
-        kind = f"packed by method {info.compress_type}, which is not read; unpack it"
-    return _Entry(info.filename.replace("\\", "/"), info.file_size, info.compress_size, kind, info)
+def _zip_entries(data: bytes) -> list[_Entry | None]:
+    """Return the files as a .zip lists them, with / for the backslash that some programs write; None for folders."""
+    if not data:
+        raise InputError("the file is empty")
+    _refuse_long_lists(data[-_END_SIZE - _LONGEST_COMMENT :])
+    try:
+        packed = zipfile.ZipFile(io.BytesIO(data))
+    except _DAMAGED:
+        raise InputError("not a zip archive, or a damaged one; fetch it again") from None
+    entries: list[_Entry | None] = []
+    for info in packed.infolist():
+        kind = ""
+        if info.flag_bits & 1:
+            kind = "encrypted; unpack it with its password"
+        elif stat.S_ISLNK(info.external_attr >> 16):
+            kind = "a link; unpack the archive"
+        elif info.compress_type not in _READ_METHODS:
+            kind = f"packed by method {info.compress_type}, which is not read; unpack it"
+        name = info.filename.replace("\\", "/")
+        entry = _Entry(name, info.file_size, info.compress_size, kind, partial(packed.open, info))
+        entries.append(None if info.is_dir() else entry)
+    return entries
 
 
-class _Tar(_Archive):
-    """A .tar archive, unpacked from .gz."""
-
-    def __init__(self, data: bytes) -> None:
-        if len(data) < _BLOCK or any(data[-_BLOCK:]):
-            raise InputError("not a tar archive, or a cut one; fetch it again")
-        try:
-            self._file = tarfile.open(fileobj=io.BytesIO(data), mode="r:")  # noqa: SIM115
-            infos = list(islice(self._file, _MOST_FILES + 1))
-        except _DAMAGED:
-            raise InputError("not a tar archive, or a damaged one; fetch it again") from None
-        if len(infos) > _MOST_FILES:
-            raise InputError(_TOO_MANY)
-        super().__init__(_tar_entry(info, len(data)) for info in infos if not info.isdir())
-
-    def opened(self, entry: _Entry) -> BinaryIO:
-        """Return a file of the archive, opened for reading."""
-        return self._file.extractfile(entry.place)  # type: ignore[arg-type, return-value]
-
-
-def _tar_entry(info: tarfile.TarInfo, most: int) -> _Entry:
-    """Return a file as a .tar lists it; one of more than ``most`` bytes, the size of the archive, cannot be in it."""
-    kind = ""
-    if info.issym() or info.islnk():
-        kind = "a link; unpack the archive"
-    elif not info.isreg() or info.issparse() or info.size > most:
-        kind = "no regular file; unpack the archive"
-    return _Entry(info.name.removeprefix("./"), info.size, info.size, kind, info)
+def _tar_entries(data: bytes) -> list[_Entry | None]:
+    """Return the files as a .tar lists them, one more than the most at most; None for folders."""
+    if len(data) < _BLOCK or any(data[-_BLOCK:]):
+        raise InputError("not a tar archive, or a cut one; fetch it again")
+    try:
+        packed = tarfile.open(fileobj=io.BytesIO(data), mode="r:")  # noqa: SIM115
+        infos = list(islice(packed, _MOST_FILES + 1))
+    except _DAMAGED:
+        raise InputError("not a tar archive, or a damaged one; fetch it again") from None
+    entries: list[_Entry | None] = []
+    for info in infos:
+        kind = ""
+        if info.issym() or info.islnk():
+            kind = "a link; unpack the archive"
+        elif not info.isreg() or info.issparse() or info.size > len(data):  # more than the archive cannot be in it
+            kind = "no regular file; unpack the archive"
+        entry = _Entry(info.name.removeprefix("./"), info.size, info.size, kind, partial(packed.extractfile, info))
+        entries.append(None if info.isdir() else entry)
+    return entries
 
 
 def _refuse_long_lists(tail: bytes) -> None:
