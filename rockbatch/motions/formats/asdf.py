@@ -55,9 +55,9 @@ def read_asdf(file: RecordFile) -> list[Component | Unusable]:
             tags = {match["tag"] for station in stations for name in station if (match := _NAME.fullmatch(name))}
             used = {tag for tag in tags if tag.startswith(_RAW)} or tags
             traces = [trace for station in stations for trace in _traces(station, used)]
+    except InputError:
+        raise
     except (OSError, KeyError, OverflowError, RuntimeError, TypeError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
         raise InputError(f"not an HDF5 file that can be read ({type(error).__name__}); fetch it again") from None
     if not traces:
         raise InputError("holds no waveforms")

@@ -96,7 +96,8 @@ def read_table(
             f"line {row_lines[-1] + 1}: its last number is shorter than all others: the file is cut; fetch it again"
         )
     if pairs is not None:
-        header, table = _below_its_count(header, pairs)
+        statement = None if grows_evenly(pairs[:, 0]) else _count_and_step(list(pairs[0]))
+        header, table = (header, pairs) if statement is None else ([*header, statement[1]], pairs[1:])
     elif wrapped:
         table = np.append(table.ravel(), remainder).reshape(-1, 1)
     for count, error in reversed(counts):
@@ -135,14 +136,6 @@ def _pairs(rows: Sequence[float], remainder: Sequence[float], width: int) -> Sam
     if grows_evenly(pairs[1:, 0]):  # a count and a step may stand above them
         return pairs
     return pairs[:, ::-1] if width > 2 and grows_evenly(pairs[:, 1]) else None
-
-
-def _below_its_count(header: list[str], pairs: Samples) -> tuple[list[str], Samples]:
-    """Return header and pairs; a first pair that is count and step of those below goes into the header."""
-    statement = _count_and_step(list(pairs[0]))
-    if statement is None or grows_evenly(pairs[:, 0]):
-        return header, pairs
-    return [*header, statement[1]], pairs[1:]
 
 
 def _table_error(lines: list[str], reason: str) -> InputError:
@@ -189,11 +182,7 @@ def _even_rows(lines: Sequence[str], width: int, between: str, decimal: str) -> 
     """
     rows = array("d")
     for first in range(0, len(lines), _PIECE):
-        text = "\n".join(lines[first : first + _PIECE]).replace('"', " ")
-        if between:
-            text = text.replace(between, " ")
-        if decimal:
-            text = text.replace(decimal, ".")
+        text = _plain("\n".join(lines[first : first + _PIECE]), between, decimal)
         words = [line.split() for line in text.split("\n")]
         if "_" in text or set(map(len, words)) != {width}:
             break
@@ -204,16 +193,18 @@ def _even_rows(lines: Sequence[str], width: int, between: str, decimal: str) -> 
     return rows
 
 
+def _plain(text: str, between: str, decimal: str) -> str:
+    """Return a text with blanks in place of quotation marks and separators, and points in place of decimal commas."""
+    text = text.replace('"', " ")
+    text = text.replace(between, " ") if between else text
+    return text.replace(decimal, ".") if decimal else text
+
+
 def _numbers(line: str, between: str, decimal: str) -> list[float] | None:
     """Return the numbers of a line, also touching ones and with D exponents; [] for a blank line, ``None`` for other texts."""
     if "_" in line:  # Python would read 1_0 as ten
         return None
-    if '"' in line:
-        line = line.replace('"', " ")
-    if between:
-        line = line.replace(between, " ")
-    if decimal:
-        line = line.replace(decimal, ".")
+    line = _plain(line, between, decimal)
     if _SIGN.search(line) and _TOUCHING.fullmatch(line):  # the second is slower, and few lines reach it
         line = _SIGN.sub(r" \g<0>", line)
     try:

@@ -27,11 +27,6 @@ Indices = npt.NDArray[np.int64]
 Truths = npt.NDArray[np.bool_]
 
 
-def _digest_of_samples(component: Component) -> bytes:
-    """Return a digest of the sampling interval and the samples."""
-    return hashlib.sha256(repr(component.dt).encode() + component.acceleration.tobytes()).digest()
-
-
 def _codes(values: Iterable[Hashable]) -> Indices:
     """Return integers that are equal for equal values, -1 for None and empty ones, shape (n,)."""
     codes: dict[Hashable, int] = {}
@@ -57,7 +52,8 @@ class Candidates:
         self.file, self.suffix = _codes(c.path for c in components), _codes(c.suffix for c in components)
         self.numbered = _codes(c.site if is_numbered(c.site) else "" for c in components)
         self.sensor, self.event = _codes(c.sensor.number for c in components), _codes(c.event for c in components)
-        self.samples = _codes(map(_digest_of_samples, components))
+        digests = (hashlib.sha256(repr(c.dt).encode() + c.acceleration.tobytes()).digest() for c in components)
+        self.samples = _codes(digests)
         self.with_samples, self.of_sensor = _places(self.samples), _places(self.sensor)
         self.way = _codes(map(_kind_of_direction, components))
         self.azimuth = np.array([c.orientation.azimuth for c in components], dtype=float)

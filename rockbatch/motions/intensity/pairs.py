@@ -25,17 +25,15 @@ ANGLES = np.radians(np.arange(180.0))
 _JITTER = 0.1  # of dt: starts that differ by less from a whole number of samples count as simultaneous
 
 
-PAIR_RULES = ("srss", "geomean", "rotd50", "rotd100")
-"""Measures of a pair: the root of the sum of squares, the geometric mean, and the median and greatest over all directions."""
-
-
 RULE_NAMES = {
     "srss": "the root of the sum of squares",
     "geomean": "the geometric mean",
     "rotd50": "RotD50",
     "rotd100": "RotD100",
 }
-"""Names of these measures in words."""
+"""Measures of a pair, in words; RotD50 and RotD100 are the median and the greatest over all directions."""
+
+PAIR_RULES = tuple(RULE_NAMES)
 
 TWO_COMPONENT_RULES = ("geomean", "rotd50", "rotd100")
 """Measures that need both components; the root of the sum of squares of one alone is that component."""

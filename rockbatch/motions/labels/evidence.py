@@ -49,7 +49,8 @@ class Statement:
         if mine.azimuth is None or others.azimuth is None:
             return False
         apart = angle_between(mine.azimuth, others.azimuth)
-        if self.is_angle != other.is_angle and not (self.has_number and other.has_number):
+        one_of_angles = (self.kind is Kind.ANGLES) != (other.kind is Kind.ANGLES)
+        if one_of_angles and not (self.has_number and other.has_number):
             return abs(apart - 90.0) <= _EXCHANGED
         return apart > _ROUNDED
 
@@ -60,19 +61,14 @@ class Statement:
         return self.orientation.vertical != other.orientation.vertical or apart > _ROUNDED
 
     @property
-    def is_angle(self) -> bool:
-        """Return whether it is made of a header's angles."""
-        return self.kind is Kind.ANGLES
-
-    @property
     def has_number(self) -> bool:
         """Return whether it is of angles, or its label has digits, "N35E", rather than letters alone."""
-        return self.is_angle or any(c.isdecimal() for c in self.orientation.label)
+        return self.kind is Kind.ANGLES or any(c.isdecimal() for c in self.orientation.label)
 
     @property
     def states_sign(self) -> bool:
         """Return whether it says if a vertical component is positive up or down: by angles, "UP" or "DWN", but not by "V"."""
-        return self.is_angle or self.orientation.down or is_upward(self.orientation.label)
+        return self.kind is Kind.ANGLES or self.orientation.down or is_upward(self.orientation.label)
 
 
 def decided_orientation(statements: Sequence[Statement], label: str = "") -> Orientation:
@@ -85,7 +81,7 @@ def decided_orientation(statements: Sequence[Statement], label: str = "") -> Ori
     strong = [s.orientation for s in ordered if not (s.default or s.weak)] or [s.orientation for s in ordered]
     if not strong:
         return unknown(label)
-    if ordered[0].is_angle and strong[0].azimuth is None:  # of which only the dip is known
+    if ordered[0].kind is Kind.ANGLES and strong[0].azimuth is None:  # of which only the dip is known
         return next((o for o in strong if o.azimuth is not None and not strong[0].vertical), strong[0])
     return strong[0]
 

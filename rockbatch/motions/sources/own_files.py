@@ -41,16 +41,14 @@ def is_own(path: Path) -> bool:
     False if it cannot be read.
     """
     suffix = bare(path).suffix.lower()
+    if suffix not in (*_TABLES, *_HISTORIES):
+        return False
     try:
-        if suffix in _HISTORIES:
-            return content(path, len(_HISTORIES_BEGIN)).startswith(_HISTORIES_BEGIN)
-        return suffix in _TABLES and _is_head(content(path, _MOST_OF_A_HEAD))
+        begin = content(path, _MOST_OF_A_HEAD)
     except (InputError, OSError):
         return False  # its reader reports what is wrong with it
-
-
-def _is_head(begin: bytes) -> bool:
-    """Return whether the first line has all columns of a group in :data:`_NAMED_TOGETHER`, in any order, among others."""
+    if suffix in _HISTORIES:
+        return begin.startswith(_HISTORIES_BEGIN)
     first = begin.removeprefix(b"\xef\xbb\xbf").partition(b"\n")[0].decode(errors="replace")
     cells = {cell.strip(' \r"') for cell in re.split("[,;\t]", first)}
     return any(names <= cells for names in _NAMED_TOGETHER)

@@ -198,10 +198,7 @@ class _Reader:
         self.gains: list[float | None] = []
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
-        """Enter an element; keep attributes of networks, stations and channels.
-
-        Raises ``_NoStationXML`` for another root, and for elements nested too deep.
-        """
+        """Enter an element; keep attributes of networks, stations and channels."""
         name = tag.rpartition("}")[2]
         if (not self.above and name != _ROOT) or len(self.above) > _DEEPEST:
             raise _NoStationXML

@@ -51,15 +51,14 @@ def selected(motion_set: MotionSet, selection: Selection, gravity: float = GRAVI
             reason = "selected by magnitude, which is not known; write magnitude in motions.toml"
             unusable.append(Unusable(motion.name, motion.sources, reason))
             continue
-        outside = []
-        for key, (low, high) in ranges.items():
-            value = _MEASURES[key](motion, gravity)
-            if value is not None and not low <= value <= high:
-                outside.append(f"{key} = {value:.4g} is not within {low:g}..{high:g}")
+        outside = [
+            f"{key} = {value:.4g} is not within {low:g}..{high:g}"
+            for key, (low, high) in ranges.items()
+            if (value := _MEASURES[key](motion, gravity)) is not None and not low <= value <= high
+        ]
         if outside:
-            left_out.append(
-                LeftOut(motion.name, motion.sources, f"not selected: {', '.join(outside)}", motion.of_station)
-            )
+            reason = f"not selected: {', '.join(outside)}"
+            left_out.append(LeftOut(motion.name, motion.sources, reason, motion.of_station))
         else:
             chosen.append(motion)
     return motion_set.reduced_to(chosen, unusable, left_out)
