@@ -45,13 +45,6 @@ def first_bytes(filename: FileLike) -> bytes:
         return b""
 
 
-def name_and_bytes(filename: FileLike) -> tuple[str, bytes]:
-    """Return the name for messages, and contents, of a path or file-like object. Raises ``OSError`` if it cannot be read."""
-    if isinstance(filename, str | os.PathLike):
-        return str(filename), Path(filename).read_bytes()
-    return str(getattr(filename, "name", "data")), filename.read()
-
-
 def plugin(
     name: str, matches: Callable[[bytes], bool], parse: Callable[[str], Sequence[Recording]]
 ) -> tuple[Callable[[FileLike], bool], Callable[..., "obspy.Stream"]]:
@@ -67,7 +60,10 @@ def plugin(
 
     def read_format(filename: FileLike, headonly: bool = False, **kwargs: object) -> "obspy.Stream":
         """Return a file of this format as an ObsPy Stream, with a Trace per channel; ObsPy's other arguments are ignored."""
-        place, data = name_and_bytes(filename)
+        if isinstance(filename, str | os.PathLike):
+            place, data = str(filename), Path(filename).read_bytes()
+        else:
+            place, data = str(getattr(filename, "name", "data")), filename.read()
         try:
             recordings = parse(text_of(data))
             _warn_of_contradictions(place, recordings)

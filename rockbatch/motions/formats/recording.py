@@ -51,13 +51,8 @@ class Recording:
 
 
 def reader(parse: Callable[[str], Sequence[Recording]]) -> Callable[[RecordFile], list[Component | Unusable]]:
-    """Return the reader of a text format whose files ``parse`` turns into recordings."""
-
-    def read(file: RecordFile) -> list[Component | Unusable]:
-        """Return the components of a file in m/s²; raise ``InputError`` as ``parse`` does."""
-        return to_components(file, parse(file.text))
-
-    return read
+    """Return the reader of a text format whose files ``parse`` turns into recordings: it returns components in m/s²."""
+    return lambda file: to_components(file, parse(file.text))
 
 
 def letters(text: str, most: int = 5) -> str:

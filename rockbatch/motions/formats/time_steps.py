@@ -41,7 +41,9 @@ def on_even_steps(t: Samples, values: Samples) -> tuple[float, Samples, tuple[st
             f"time does not grow evenly: by {usual:g} as a rule, by {steps[uneven]:g} after sample {uneven + 1} "
             f"(t = {t[uneven]:g}); a gap is not filled, cut the record there or repair it"
         )
-    t = _since_first(t)
+    decimals = math.floor(-math.log10(float(np.spacing(np.abs(t).max()))))
+    if decimals <= _MOST_DIGITS:  # floats lose digits of seconds since 1970
+        t = np.round(t - t[0], decimals)
     for step in _candidates(t, usual):
         counts = np.concatenate([[0.0], np.cumsum(np.rint(steps / step))])
         if counts[-1] > _GROWTH * len(t) or np.diff(counts).min() < 1:
@@ -76,12 +78,6 @@ def from_pairs(pairs: Samples, channel: str) -> tuple[float, Samples, tuple[str,
     except InputError as error:
         raise InputError(f"{channel}: {error}") from None
     return dt, values[:, 0], notes
-
-
-def _since_first(t: Samples) -> Samples:
-    """Return times after the first without the digits that floats lose of seconds since 1970; exact times as they are."""
-    decimals = math.floor(-math.log10(float(np.spacing(np.abs(t).max()))))
-    return t if decimals > _MOST_DIGITS else np.round(t - t[0], decimals)
 
 
 def _is_growing(t: Samples) -> bool:

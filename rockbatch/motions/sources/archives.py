@@ -13,7 +13,6 @@ import tarfile
 import zipfile
 import zlib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import lru_cache, partial
 from itertools import islice
 from pathlib import Path, PurePosixPath
@@ -63,13 +62,13 @@ def bare(path: Path) -> Path:
     return path.with_suffix("") if path.suffix.lower() == ".gz" else path
 
 
-@dataclass(frozen=True)
-class Member:
-    """A file in an archive: its path, its name there as written, and why it must not be opened ("" if it may)."""
+class Member(NamedTuple):
+    """A file in an archive: its path, its name there, why it must not be opened ("" if it may), and its size [bytes]."""
 
     path: Path
     name: str
     refusal: str
+    size: int = 0
 
 
 class _Entry(NamedTuple):
@@ -97,10 +96,10 @@ def members(archive: Path) -> Iterator[Member]:
     """
     total = 0
     visited: set[Path] = set()
-    for number, (member, size) in enumerate(_listed(archive), 1):
+    for number, member in enumerate(_listed(archive), 1):
         if number > _MOST_FILES:
             raise InputError(_TOO_MANY)
-        total += size
+        total += member.size
         refusal = member.refusal
         if not refusal and member.path in visited:
             refusal = "the archive has two files of this name; unpack it"
@@ -108,11 +107,11 @@ def members(archive: Path) -> Iterator[Member]:
             refusal = f"the archive unpacks to more than {_MOST_UNPACKED // 2**30} GiB; unpack it"
         elif not refusal:
             visited.add(member.path)
-        yield Member(member.path, member.name, refusal)
+        yield member._replace(refusal=refusal)
 
 
-def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
-    """Yield the files of an archive, and of archives in it, with their sizes [bytes]; ``outer`` is the prefix of their names.
+def _listed(archive: Path, outer: str = "") -> Iterator[Member]:
+    """Yield the files of an archive, and of archives in it; ``outer`` is the prefix of their names.
 
     Hidden and read-me files are left out; an inner archive that cannot be read, or lies in another inner one, is a file with that
     reason.
@@ -121,16 +120,15 @@ def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
         name, path = PurePosixPath(entry.name), archive / _member_path(entry.name)
         if any(part.startswith(".") and part != ".." for part in name.parts) or name.stem.lower() == "readme":
             continue
-        member = Member(
-            path, f"{outer}{entry.name}", _refusal(entry) or (_WITHIN if outer and is_archive(name) else "")
-        )
-        if member.refusal or not is_archive(name):
-            yield member, entry.size
+        refusal = _refusal(entry) or (_WITHIN if outer and is_archive(name) else "")
+        member = Member(path, f"{outer}{entry.name}", refusal, entry.size)
+        if refusal or not is_archive(name):
+            yield member
             continue
         try:
             yield from list(_listed(path, f"{member.name}/"))
         except InputError as error:
-            yield Member(path, member.name, "; ".join(error.messages)), 0
+            yield Member(path, member.name, "; ".join(error.messages))
 
 
 def is_member(path: Path) -> bool:

@@ -112,7 +112,7 @@ class SpectrumTarget:
         moving = [i for i, motion in enumerate(motions) if motion.pga > 0]
         if self.factors == "none" or not moving:
             return factors.tolist()
-        stations = _stations(motions, moving)
+        stations = list(grouped(moving, lambda i: motions[i].of_station).values())
         members = self._members(stations)
         rows = np.array(self._rows(motions, members, self.periods, gravity))
         target = self.spectrum.at(self.periods)
@@ -236,10 +236,9 @@ class SpectrumTarget:
         return not two
 
 
-def _stations(motions: Sequence[Motion], among: Sequence[int] | None = None) -> list[list[int]]:
-    """Return the indices of ``motions``, or of those ``among`` them, grouped by station and earthquake."""
-    places = range(len(motions)) if among is None else among
-    return list(grouped(places, lambda i: motions[i].of_station).values())
+def _stations(motions: Sequence[Motion]) -> list[list[int]]:
+    """Return the indices of ``motions`` grouped by station and earthquake."""
+    return list(grouped(range(len(motions)), lambda i: motions[i].of_station).values())
 
 
 def _events(stations: Sequence[Sequence[Motion]]) -> int:
