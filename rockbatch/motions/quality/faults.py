@@ -6,6 +6,7 @@ Limits stand beside what real records have: 113 components at hand (`pytest test
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.motions.alignment import places_of_energy
 from rockbatch.motions.motion import Samples
@@ -45,16 +46,21 @@ def filled_gap(samples: Samples, dt: float) -> Gap | None:
         return None
     first, last = places_of_energy(samples, _STRONG)
     bends = np.abs(np.diff(samples[first : last + 2], 2))
-    straight = np.concatenate(([0], bends < _STRAIGHT * np.median(bends), [0])) if len(bends) else np.zeros(2)
-    starts, ends = (first + np.flatnonzero(np.diff(straight) == step) for step in (1, -1))
+    straight = bends < _STRAIGHT * np.median(bends) if len(bends) else bends > 0.0
     rest, second = _FADED * np.abs(samples).max(), round(1.0 / dt)
     gaps = [
-        (int(end - start), int(start))
-        for start, end in zip(starts, ends, strict=True)
+        (end - start, start)
+        for start, end in (first + runs(straight)).tolist()
         if end - start >= _FEWEST and np.abs(samples[max(start - second, 0) : end + 3]).max() > rest
     ]
     count, start = max(gaps, default=(0, 0))
     return Gap(start * dt, count * dt) if count * dt > FILLED else None
+
+
+def runs(mask: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
+    """Return where each run of True begins, and ends before, shape (runs, 2)."""
+    edges = np.diff(np.concatenate(([0], mask, [0])))
+    return np.column_stack([np.flatnonzero(edges == step) for step in (1, -1)])
 
 
 def is_spike(samples: Samples) -> bool:

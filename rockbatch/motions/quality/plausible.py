@@ -16,7 +16,7 @@ from rockbatch.motions.component import Component
 from rockbatch.motions.intensity import measures
 from rockbatch.motions.labels.orientation import KIK_NET, same_azimuth
 from rockbatch.motions.motion import Finding, Motion, Samples
-from rockbatch.motions.quality.faults import filled_gap, is_spike, parts_missing
+from rockbatch.motions.quality.faults import filled_gap, is_spike, parts_missing, runs
 from rockbatch.motions.quality.places import Stand, stand
 
 LOWEST, HIGHEST = 0.001, 5.0
@@ -200,14 +200,12 @@ def flat_tops(samples: Samples) -> list[int]:
     tops: list[int] = []
     for upright in (samples, -samples):
         top = float(upright.max())
-        at_top = np.concatenate(([0], upright >= top - FLAT * peak, [0]))
-        starts, ends = np.flatnonzero(np.diff(at_top) == 1), np.flatnonzero(np.diff(at_top) == -1)
-        for start, end in zip(starts, ends, strict=True):
+        for start, end in runs(upright >= top - FLAT * peak).tolist():
             if end - start < 2 or start == 0 or end == len(samples) or top <= 0.0:
                 continue
             spread = max(float(np.ptp(upright[start:end])), resolution)
             if top - max(upright[start - 1], upright[end]) > FLATTER * spread:
-                tops.append(int(end - start))
+                tops.append(end - start)
     return tops
 
 

@@ -20,6 +20,7 @@ Sine and cosine: Palmeri & Makris (2007), Figs. 5 and 6. Mavroeidis & Papageorgi
 
 import math
 from collections.abc import Callable, Collection
+from functools import partial
 
 import numpy as np
 
@@ -126,49 +127,33 @@ def pulse_length(shape: str, period: float, gamma: float | None = None) -> float
 
 
 def _problems(
-    shape: str,
-    amplitude: float,
-    period: float,
-    dt: float,
-    duration: float,
-    gamma: float | None,
-    nu: float | None,
+    shape: str, amplitude: float, period: float, dt: float, duration: float, gamma: float | None, nu: float | None
 ) -> list[Problem]:
     """Return the problems of impossible values of a pulse; [] if all are possible."""
-    wrong = [
-        Problem(name, value, "must be a number above 0 [s]", kind=OutOfRange)
-        for name, value in (("period", period), ("dt", dt), ("duration", duration))
-        if not (math.isfinite(value) and value > 0)
-    ]
+    impossible = partial(Problem, kind=OutOfRange)
+    times = {"period": period, "dt": dt, "duration": duration}
+    wrong = [impossible(key, t, "must be a number above 0 [s]") for key, t in times.items() if not 0.0 < t < math.inf]
     if not wrong and duration / dt > MOST_SAMPLES:
-        text = f"more than {MOST_SAMPLES:,} samples in {duration:g} s; take a larger one"
-        wrong.append(Problem("dt", dt, text, kind=OutOfRange))
+        wrong.append(impossible("dt", dt, f"more than {MOST_SAMPLES:,} samples in {duration:g} s; take a larger one"))
     times_are_sound = not wrong
     if not math.isfinite(amplitude) or amplitude == 0:
-        wrong.append(Problem("amplitude", amplitude, "must be a number other than 0 [m/s²]", kind=OutOfRange))
-    oscillates = shape == "mavroeidis-papageorgiou"
+        wrong.append(impossible("amplitude", amplitude, "must be a number other than 0 [m/s²]"))
     if shape not in SHAPES:
         nearest = closest(shape, SHAPES)
         hint = f'; did you mean "{nearest}"?' if nearest else ""
         wrong.append(Problem("shape", shape, f"must be one of {', '.join(SHAPES)}{hint}", kind=WrongType))
-    elif oscillates:
-        if gamma is None or not (math.isfinite(gamma) and gamma > 1):
-            wrong.append(
-                Problem("gamma", gamma, f"a {shape} pulse needs its number of oscillations, above 1", kind=OutOfRange)
-            )
+    elif shape == "mavroeidis-papageorgiou":
+        if gamma is None or not 1.0 < gamma < math.inf:
+            wrong.append(impossible("gamma", gamma, f"a {shape} pulse needs its number of oscillations, above 1"))
         if nu is None or not math.isfinite(nu):
-            wrong.append(Problem("nu", nu, f"a {shape} pulse needs its phase [rad]", kind=OutOfRange))
+            wrong.append(impossible("nu", nu, f"a {shape} pulse needs its phase [rad]"))
     elif gamma is not None or nu is not None:
         text = f'gamma and nu have no meaning for shape = "{shape}": leave them out'
         wrong.append(Problem("gamma", gamma, text, kind=Contradiction, named=False))
     if times_are_sound and dt >= period:
-        text = f"must be below the period, {period:g} s (a fiftieth of it is usual)"
-        wrong.append(Problem("dt", dt, text, kind=OutOfRange))
-    if not wrong:
-        _, length = _formula(shape, amplitude, period, gamma, nu)
-        if duration < length * (1 - 1e-9):
-            text = f"the pulse lasts {length:g} s; write that or more"
-            wrong.append(Problem("duration", duration, text, kind=OutOfRange))
+        wrong.append(impossible("dt", dt, f"must be below the period, {period:g} s (a fiftieth of it is usual)"))
+    if not wrong and duration < (length := pulse_length(shape, period, gamma)) * (1 - 1e-9):
+        wrong.append(impossible("duration", duration, f"the pulse lasts {length:g} s; write that or more"))
     return wrong
 
 
