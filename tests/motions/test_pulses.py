@@ -99,6 +99,7 @@ def test_all_mistakes_come_at_once():
     ("wrong", "message"),
     [
         ({"shape": "cosin"}, 'did you mean "cosine"'),
+        ({"shape": "Half-Sin"}, 'did you mean "half-sine"'),
         ({"shape": "sine", "duration": 0.4}, "the pulse lasts 0.5 s"),
         ({"shape": "sine", "dt": 0.5}, "dt = 0.5: must be below the period"),
         ({"shape": "mavroeidis-papageorgiou"}, "number of oscillations"),
