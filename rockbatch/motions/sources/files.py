@@ -26,7 +26,8 @@ _BY_SUFFIX = {suffix: what for what, suffixes in _COMPANIONS.items() for suffix 
 _NAMES = {"license", "licence", "copying", "notice", "authors", "citation", "contributing", "changelog", "index"}
 _INVENTORY = ".xml"
 _OUTSIDE = "a link that leads out of the folder; copy the file into it"
-_SEARCH_RESULTS = "_searchresults.csv"  # of PEER's database, beside its records
+SEARCH_RESULTS = "_searchresults.csv"
+"""Name, in lower case, of the list of a search in PEER's database, beside its records."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +113,7 @@ def _source_file(path: Path, source: str) -> SourceFile:
 
     It is known by its name (license.txt), its suffix (.pdf), or content that this program wrote. A manifest is neither.
     """
-    if path.name.lower() == _SEARCH_RESULTS:
+    if path.name.lower() == SEARCH_RESULTS:
         return SourceFile(path, source, companion="a table about the records")
     suffix = archives.bare(path).suffix.lower()
     if path.stem.lower() in _NAMES and suffix in ("", ".txt"):

@@ -8,11 +8,10 @@ from pathlib import Path
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions.sources import archives
-from rockbatch.motions.sources.files import SourceFile
+from rockbatch.motions.sources.files import SEARCH_RESULTS, SourceFile
 from rockbatch.motions.sources.listed import NOT_LISTED, Listed
 from rockbatch.motions.sources.record_file import text_of
 
-NAME = "_searchresults.csv"
 _LARGEST = 2**24  # bytes; a search of a hundred records with its spectra has 0.3 MB
 _NUMBER, _FILE = "record sequence number", re.compile(r"(?:horizontal-[12]|vertical) acc\. filename")
 _KEYS = {  # beginnings of column heads, in the order of preference
@@ -33,7 +32,7 @@ def listed_in(files: Sequence[SourceFile]) -> Lists:
     """Return the rows of all undamaged lists among these files, by folder and by "RSN779" or file name of the record."""
     lists: dict[tuple[Path, str], Listed] = {}
     for file in files:
-        if file.path.name.lower() == NAME and not file.refusal:
+        if file.path.name.lower() == SEARCH_RESULTS and not file.refusal:
             try:
                 rows = _rows(text_of(archives.content(file.path, _LARGEST)))
             except (InputError, OSError, csv.Error):
