@@ -112,6 +112,12 @@ def test_a_count_above_pairs_that_is_another_one_is_refused(tmp_path):
     assert f"the header says {N + 1} samples" in why(tmp_path, f"{N + 1} {DT}\n{pairs(1)}", unit="g")
 
 
+def test_a_step_with_a_point_may_stand_above_decimal_commas(tmp_path):
+    rows = in_columns(A, B, between=" ").replace(".", ",")
+    options = ReadOptions(unit="g", columns=("000", "090"))
+    assert is_a(read(tmp_path, f"{N} {DT}\n{rows}", options=options).motions[0])
+
+
 # Headers
 
 

@@ -66,6 +66,8 @@ def read_table(
                 counts.append((statement[0], error))
                 header.insert(len(stated) + len(counts) - 1, statement[1])
                 rows, row_lines, width = array("d"), array("q"), 0
+                separators = _separators(text, lines[i:])  # the count may have a point above decimal commas
+                row = _numbers(stripped, *separators) or row
             block = [] if width else _even_rows(lines[i + 1 : -1], len(row), *separators)
             width = len(row)
             end = i + 1 + len(block) // width
