@@ -84,7 +84,9 @@ def named(
     shown = dict.fromkeys((*BASE_KEYS, *varied))
     # Supports are compared with supports only: rigid ground lacks their keys
     kinds = {key: (key in rigid, case["base"] == "rigid") for key, case in firsts.items()}
-    values = {kind: [constants[key] for key in cases if kinds[key] == kind] for kind in kinds.values()}
+    values = {
+        kind: [(firsts[key]["base"], constants[key]) for key in cases if kinds[key] == kind] for kind in kinds.values()
+    }
     differing = {kind: _differing(shown, of_kind) for kind, of_kind in values.items()}
     digits = {
         name: distinguishing_digits(constants_of.get(name) for constants_of in constants.values()) for name in shown
@@ -128,9 +130,17 @@ def _tick(index: int) -> str:
     return chr(ord("a") + index) if index < 26 else str(index + 1)
 
 
-def _differing(names: Iterable[str], values: Sequence[Mapping[str, object]]) -> list[str]:
-    """Return the ``names`` whose values are not all equal."""
-    return [name for name in names if len({str(of_foundation.get(name)) for of_foundation in values}) > 1]
+def _differing(names: Iterable[str], values: Sequence[tuple[str, Mapping[str, object]]]) -> list[str]:
+    """Return the ``names`` whose values are not all equal; ``values`` are those of each foundation, after its base.
+
+    Bases none of which has a name are not compared by it: a footing has no spring.
+    """
+    found = []
+    for name in names:
+        having = {base for base, of_foundation in values if name in of_foundation}
+        if len({str(of_foundation.get(name)) for base, of_foundation in values if base in having}) > 1:
+            found.append(name)
+    return found
 
 
 def _constants(cases: Sequence[Case], given: Collection[str]) -> dict[str, object]:

@@ -50,6 +50,9 @@ HELD = {"damper": [{"kind": "friction", "f": [0.01, 0.02]}]}
          ["one: β = 30", "other: K = 1.5 × 10⁶ kN/m"]),
         ([RIGID, RIGID | {"name": "held"} | HELD, {"name": "pads", "base": "elastic", "stiffness_kN_m": 1.5e6} | HELD],
          ["rigid", "held: f = 0.01", "held: f = 0.02", "pads: f = 0.01", "pads: f = 0.02"]),
+        ([PADS | {"beta": [30.0, 40.0], "eta": 2.5}, PADS | {"name": "held", "beta": 40.0, "eta": 2.5},
+          {"name": "soil", "base": "footing", "width_m": 4.0, "length_m": 6.0, "stiffness_MN_m3": 600.0, "bearing_MPa": 3.0}],
+         ["pads: β = 30", "pads: β = 40", "held: β = 40", "soil"]),  # a footing has no spring law, which tells none apart
     ],
 )  # fmt: skip
 def test_a_foundation_is_called_by_the_keys_of_its_study_that_tell_it_apart(tmp_path, cases, names):
