@@ -168,11 +168,16 @@ def _timed(element: Element, setting: Setting) -> str:
 
 
 def _dots(element: Element, setting: Setting) -> str:
-    """Return rows of peaks on a common axis: in each the label, and for each column the strip and the runs without a peak."""
+    """Return rows of peaks on a common axis: in each the label, and for each column the strip and the runs without a peak.
+
+    Rows that are folded on the screen are left out, since one row has them all.
+    """
     columns = int(_style(element).get("--n", "1"))
     wide = round(0.58 * ACROSS / columns - 20.0)
     cells: list[str] = []
     for child in element:
+        if "folded" in _classes(child):
+            continue
         for cell in child if "row" in _classes(child) else [child]:
             strip = cell.tag == "svg"
             cells.append(

@@ -272,6 +272,12 @@ def test_strips_of_two_columns_share_the_width_and_have_their_heads_above():
     assert sum(widths) < 0.6 * typeset.ACROSS
 
 
+def test_records_that_share_a_row_have_none_of_their_own():
+    row = '<div class="row {}"><span class="of">{}</span></div>'
+    rows = row.format("", "worst") + row.format("rest", "remaining") + row.format("folded", "second")
+    assert re.findall(r"\[(\w+)\]", blocks(parsed(f'<div class="dots">{rows}</div>'), Setting({}))) == ["worst", "remaining"]
+
+
 def test_histories_keep_the_room_for_the_labels_of_their_axis():
     setting = Setting({})
     blocks(parsed('<div class="timed" style="--h:100px"><svg class="plot"><text x="-34">a</text></svg></div>'), setting)
