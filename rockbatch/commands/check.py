@@ -2,7 +2,8 @@
 
 import argparse
 import math
-from collections.abc import Callable, Sequence
+import shlex
+from collections.abc import Callable, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
@@ -24,6 +25,7 @@ from rockbatch.results.labelled import Labelled, labelled
 from rockbatch.results.opened import open_results
 from rockbatch.results.reading import Saved
 from rockbatch.terminal.streams import aligned, coloured, filled, say, show, shown, width
+from rockbatch.toml.reader import TomlFile
 
 WORST = 10
 """Number of verdicts printed in full if there are too many to print all."""
@@ -51,7 +53,20 @@ def main(arguments: argparse.Namespace) -> int:
     code = tell(results, write_verdicts(arguments.directory, results), saved, arguments.all)
     if is_plain(arguments.directory / "report.html"):
         say(str(write_report(arguments.directory, saved=saved)))
+    study = saved.info["study"]
+    edited = [file["path"] for file in (study, *study.get("checks", ())) if not _is_as_run(file)]
+    if edited and arguments.rules is None:
+        again = shlex.join(["rockbatch", "run", study["path"], "--out", str(arguments.directory)])
+        say(f"{', '.join(edited)}: edited since the run, whose limits these are; {again} applies the new ones")
     return code
+
+
+def _is_as_run(file: Mapping[str, str]) -> bool:
+    """Return whether a file of run.json has the text that it had then; True if it cannot be read where it was."""
+    try:
+        return TomlFile.text_of(Path(file["path"])) == file["text"]
+    except ValueError:  # an InputError, or a path with a NUL
+        return True
 
 
 def report(arguments: argparse.Namespace) -> int:

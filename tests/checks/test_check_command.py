@@ -1,6 +1,7 @@
 """``rockbatch check`` and ``rb.check``: what is judged, and the exit code."""
 
 import math
+from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -68,6 +69,18 @@ def test_rules_of_a_file_take_the_place_of_those_of_the_study(passing, tmp_path,
     assert [verdict.check for verdict in read_verdicts(passing)] == ["margin"]
     study = rules_file(tmp_path / "pier.toml", STUDY + MARGIN)
     assert main(["check", str(passing), "--rules", str(study)]) == 0
+
+
+def test_a_study_edited_since_its_run_is_named_with_the_command_that_applies_it(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    folder(tmp_path / "out", runs([0.4]), [case()], MARGIN)
+    for text, told in ((MARGIN, ""), (MARGIN.replace("0.5", "0.3"), "rockbatch run pier.toml --out out")):
+        Path("pier.toml").write_text(text, encoding="utf-8")
+        assert main(["check", "out"]) == 0
+        assert told in (said := capsys.readouterr().err)
+        assert ("edited" in said) == bool(told)
+        assert main(["check", "out", "--rules", "pier.toml"]) == bool(told)
+        assert "edited" not in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
