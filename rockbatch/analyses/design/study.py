@@ -223,13 +223,16 @@ def _having(table: Table, study: Study, paths: Sequence[str]) -> tuple[tuple[str
               for case in tables["case"]}  # fmt: skip
     for place, path in enumerate(paths):
         if not any(has[place] for has in having.values()):
-            near = closest(path, sorted(paths_in(tables)))
+            others = sorted({*paths_in(tables)})
+            near = closest(path, others, alike=0.8)
+            same_table = [other for other in others if other.rpartition(".")[0] == path.rpartition(".")[0]]
             if path.rpartition(".")[2] in FIXED_BY_POINTS and any("backbone_mm_kN" in case for case in tables["case"]):
                 text = "no case has this key, which the points of backbone_mm_kN fix, and these are not varied"
                 table.complain(f"{shown(path)}: {text}; vary another key", "vary")
                 return (), ()
             where = "[pier] has no such key" if path.startswith("pier.") else "no case has this key"
-            hint = f", or did you mean {shown(near)}?" if near else ""
+            instead = " or ".join(map(shown, [near] if near else same_table))
+            hint = f", or vary {instead}" if instead else ""
             table.complain(f"{shown(path)}: {where}; write its value there{hint}", "vary")
             return (), ()
     chosen = tuple(name for name, has in having.items() if all(has))

@@ -40,14 +40,13 @@ def _changed(table: Tables, path: Sequence[str], value: float) -> Tables | None:
 
 
 def paths_in(tables: Tables) -> Iterator[str]:
-    """Yield the paths of all keys written in the pier and the cases, also in tables one level within; some may come twice."""
+    """Yield the paths of all numbers, or lists, in the pier, the cases and tables one level within; some may come twice."""
     for top in ("pier", "case"):
         for table in _listed(tables.get(top, ())):
             for name, value in table.items():
-                inner = [key for part in _listed(value) for key in part]
-                yield from (f"{top}.{name}.{key}" for key in inner)
-                if not inner:
-                    yield f"{top}.{name}"
+                inner = [(key, number) for part in _listed(value) for key, number in part.items()]
+                named = [(f"{name}.{key}", number) for key, number in inner] or [(name, value)]
+                yield from (f"{top}.{key}" for key, number in named if not isinstance(number, str | bool))
 
 
 def _listed(value: Any) -> list[Tables]:

@@ -673,7 +673,10 @@ def test_the_command_counts_only_runs_that_are_not_finished(tmp_path, capsys):
     [
         ({"vary": "case.zeta", "between": [0.01, 0.1]}, '"case.zeta": no case has this key; write its value there'),
         ({"vary": "case.damper.force_kN"}, '"case.damper.force_kN": no case has this key'),
-        ({"vary": "pier.height_m", "between": [10.0, 20.0]}, '"pier.height_m": [pier] has no such key'),
+        (
+            {"vary": "pier.height_m", "between": [10.0, 20.0]},
+            '"pier.height_m": [pier] has no such key; write its value there, or vary "pier.alpha" or "pier.p"',
+        ),
         ({"vary": "pier.pp"}, '"pier.pp": no such key; did you mean pier.p?'),
         ({"vary": "case.base"}, '"case.base": another value makes another design'),
         ({"vary": "pier.gravity"}, '"pier.gravity": motions that are given in g would change with it'),
